@@ -1,0 +1,121 @@
+"""The design file: what a user writes, one TOML a design. Defaults are the paper's sensor."""
+
+from __future__ import annotations
+
+import datetime
+from typing import Annotated
+
+from pydantic import AfterValidator, Field, model_validator
+
+from pneutouch.spec.fields import Table, name, number, numbers
+
+
+def _within(low: float, high: float, unit: str) -> AfterValidator:
+    def check(values: list[float]) -> list[float]:
+        for value in values:
+            if not low <= value <= high:
+                raise ValueError(f"every entry must be from {low:g} to {high:g} {unit}")
+        if len(set(values)) != len(values):
+            raise ValueError("every entry may appear once only")
+        return sorted(values)
+
+    return AfterValidator(check)
+
+
+class Document(Table):
+    """[document]: what stands in the head of the datasheet."""
+
+    title: str = Field(default="Pneumatic touch sensor", max_length=80, description="Title of the datasheet.")
+    revision: str = Field(default="A", max_length=8, description="Revision letter of the design.")
+    date: datetime.date | None = Field(
+        default=None, description="Date of the revision, YYYY-MM-DD; the datasheet never asks the clock."
+    )
+
+
+class Membrane(Table):
+    """[membrane]: the soft dome (paper, section 2-B)."""
+
+    inner_radius_mm: float = number(9.25, unit="mm", low=1, high=100, help="Inner radius R0 of the unloaded dome.")
+    wall_thickness_mm: float = number(1.5, unit="mm", low=0.05, high=50, help="Wall thickness t0 of the unloaded dome.")
+    material: str = name("TangoPlus", registry="materials", help="Resin of the dome: the offline stiffness.")
+
+    @model_validator(mode="after")
+    def _wall_below_radius(self) -> Membrane:
+        if self.wall_thickness_mm >= self.inner_radius_mm:
+            raise ValueError(
+                f"wall_thickness_mm = {self.wall_thickness_mm:g} must be less than "
+                f"inner_radius_mm = {self.inner_radius_mm:g}"
+            )
+        return self
+
+
+class Connector(Table):
+    """[connector]: the rigid body that closes the cavity and carries the tube."""
+
+    material: str = name("ABS", registry="materials", help="Material of the connector.")
+    port: str = name("barb-4x2.5", registry="ports", help="Pneumatic port.")
+    seat: str = name("glued-flange", registry="seats", help="How the membrane's flange is held.")
+    mount: str = name("bolt-circle-4xM3", registry="mounts", help="Pattern of the mounting holes.")
+
+
+class Pneumatics(Table):
+    """[pneumatics]: the air."""
+
+    driving_pressures_kPa: Annotated[list[float], _within(0, 1000, "kPa")] = numbers(  # noqa: N815
+        [0.0, 5.0, 12.0, 22.0], unit="kPa", low=0, high=1000,
+        help="Gauge pressures before contact at which the sensor is used: the online stiffness.",
+    )  # fmt: skip
+    ambient_pressure_kPa: float = number(  # noqa: N815
+        101.325, unit="kPa", low=20, high=1000, help="Absolute pressure around the sensor."
+    )
+    tube_length_mm: float = number(
+        300.0, unit="mm", low=0, high=20000, help="Tube between the port and the pressure sensor."
+    )
+    dead_volume_mL: float | None = number(  # noqa: N815
+        None, unit="mL", low=0, high=1000,
+        help="Total gas volume behind the cavity; left out: computed from connector and tube.",
+    )  # fmt: skip
+
+
+class Indentation(Table):
+    """[indentation]: how the sensor is pressed (paper, section 3-B)."""
+
+    depth_mm: float | None = number(
+        None, unit="mm", low=0.01, high=200,
+        help="Plate travel after first contact; left out: three quarters of the inner radius.",
+    )  # fmt: skip
+    steps: int = number(14, unit="", low=2, high=1000, help="Number of equal plate steps.")
+    plate_diameter_mm: float = number(30.0, unit="mm", low=1, high=500, help="Diameter of the rigid flat plate.")
+
+
+class Print(Table):
+    """[print]: the machines."""
+
+    profile: str = name("objet260-connex", registry="printers", help="Printer of the membrane.")
+    connector_profile: str = name("abs-filament", registry="printers", help="Printer of the connector.")
+
+
+class Design(Table):
+    """A whole design file."""
+
+    document: Document = Document()
+    membrane: Membrane = Membrane()
+    connector: Connector = Connector()
+    pneumatics: Pneumatics = Pneumatics()
+    indentation: Indentation = Indentation()
+    print: Print = Print()
+
+    @property
+    def depth_mm(self) -> float:
+        """Plate travel: as given, else three quarters of R0 (paper, section 3-B)."""
+        given = self.indentation.depth_mm
+        return 0.75 * self.membrane.inner_radius_mm if given is None else given
+
+    @model_validator(mode="after")
+    def _depth_inside_dome(self) -> Design:
+        if self.depth_mm > 0.95 * self.membrane.inner_radius_mm:
+            raise ValueError(
+                f"indentation.depth_mm = {self.depth_mm:g} must be at most 0.95 of "
+                f"membrane.inner_radius_mm = {self.membrane.inner_radius_mm:g}: the plate would reach the seat"
+            )
+        return self

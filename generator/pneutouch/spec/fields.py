@@ -1,0 +1,96 @@
+"""How a parameter is declared: once, with unit, bounds, default and help.
+
+The command line, the commented design file, the datasheet's table and the error messages read the
+declaration; nothing repeats it.
+"""
+
+from __future__ import annotations
+
+import typing
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, JsonValue
+from pydantic.fields import FieldInfo
+
+
+class Table(BaseModel):
+    """Base of every TOML table: no unknown keys, no silent conversions, no infinities, immutable."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Declaration:
+    """What a field's declaration says: ``key`` with ``unit``, bounds, ``default`` and ``help``."""
+
+    key: str
+    unit: str
+    low: float | None
+    high: float | None
+    default: Any
+    help: str
+    registry: str | None
+
+    @property
+    def right(self) -> str:
+        """What would be right, in words: ``a number from 1 to 100 mm``."""
+        if self.low is not None:
+            unit = f" {self.unit}" if self.unit else ""
+            return f"from {self.low:g} to {self.high:g}{unit}"
+        return f"one of the {self.registry}" if self.registry else self.help
+
+
+def number(default: float | None, *, unit: str, low: float, high: float, help: str) -> Any:
+    """Declare a number, in ``unit``, from ``low`` to ``high`` inclusive."""
+    extra: dict[str, JsonValue] = {"unit": unit, "low": low, "high": high}
+    return Field(default=default, ge=low, le=high, description=help, json_schema_extra=extra)
+
+
+def numbers(default: list[float], *, unit: str, low: float, high: float, help: str) -> Any:
+    """Declare a non-empty list of numbers; each entry obeys the bounds."""
+    extra: dict[str, JsonValue] = {"unit": unit, "low": low, "high": high}
+    return Field(
+        default=default, min_length=1, max_length=50, description=help, json_schema_extra=extra,
+        validate_default=True,
+    )  # fmt: skip
+
+
+def name(default: str, *, registry: str, help: str) -> Any:
+    """Declare a name that the catalogue resolves in ``registry`` (materials, printers, ports ...)."""
+    return Field(default=default, min_length=1, description=help, json_schema_extra={"registry": registry})
+
+
+def declaration(model: type[BaseModel], key: str) -> Declaration:
+    """Return the declaration of ``key`` in ``model``."""
+    info: FieldInfo = model.model_fields[key]
+    extra = info.json_schema_extra if isinstance(info.json_schema_extra, dict) else {}
+
+    def entry(word: str) -> Any:
+        return extra.get(word)
+
+    return Declaration(
+        key=key, unit=str(entry("unit") or ""), low=entry("low"), high=entry("high"),
+        default=info.get_default(call_default_factory=True), help=info.description or "",
+        registry=entry("registry"),
+    )  # fmt: skip
+
+
+def declarations(model: type[BaseModel]) -> list[Declaration]:
+    """Return the declarations of a table in the order they were written."""
+    return [declaration(model, key) for key in model.model_fields]
+
+
+def table_of(model: type[BaseModel], key: str) -> type[BaseModel] | None:
+    """Return the model of the sub-table ``key``, or None where ``key`` is a plain value."""
+    info = model.model_fields.get(key)
+    if info is None:
+        return None
+    kinds: tuple[Any, ...] = (info.annotation, *typing.get_args(info.annotation))
+    for kind in kinds:
+        if isinstance(kind, type) and issubclass(kind, BaseModel):
+            return kind
+    return None
+
+
+Kind = Literal["elastomer", "rigid"]

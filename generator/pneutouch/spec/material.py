@@ -1,0 +1,53 @@
+"""A cured material: every number with its source."""
+
+from __future__ import annotations
+
+from pydantic import Field, model_validator
+
+from pneutouch.spec.fields import Kind, Table
+from pneutouch.spec.quantity import Quantity
+
+
+class Measured(Table):
+    """What the paper measured on its own sensor (R0 9.25 mm, t0 1.5 mm) in this material, Table S1."""
+
+    sensitivity_0kPa_kPa_per_N: Quantity  # noqa: N815
+    sensitivity_22kPa_kPa_per_N: Quantity  # noqa: N815
+    hysteresis_percent: Quantity
+    repeatability_kPa_per_N: Quantity  # noqa: N815
+
+
+class Material(Table):
+    """One cured material. A digital material is told apart by its code and its base resins together."""
+
+    title: str = Field(description="Name as people say it.")
+    code: str = Field(description="Short form for part numbers.")
+    kind: Kind = Field(description="elastomer or rigid.")
+    base_resins: list[str] = Field(min_length=1, max_length=3, description="Resins the machine jets.")
+    colour: str = Field(pattern=r"^#[0-9A-F]{6}$", description="Display colour; carries no meaning.")
+    density_g_per_cm3: Quantity
+    poisson_ratio: Quantity | None = None
+    shear_modulus_MPa: Quantity | None = None  # noqa: N815
+    young_modulus_MPa: Quantity | None = None  # noqa: N815
+    shore_a: Quantity | None = None
+    shore_a_one_year: Quantity | None = None
+    shore_d: Quantity | None = None
+    tensile_strength_MPa: Quantity | None = None  # noqa: N815
+    elongation_at_break_percent: Quantity | None = None
+    measured: Measured | None = None
+
+    @model_validator(mode="after")
+    def _elastomer_complete(self) -> Material:
+        if self.kind == "elastomer" and (self.shear_modulus_MPa is None or self.poisson_ratio is None):
+            raise ValueError("an elastomer needs shear_modulus_MPa and poisson_ratio")
+        return self
+
+    @property
+    def is_digital(self) -> bool:
+        """Whether the printer mixes it from more than one base resin."""
+        return len(self.base_resins) > 1
+
+    @property
+    def label(self) -> str:
+        """Title with the base resins, without which a digital material's code is ambiguous."""
+        return f"{self.title} ({' + '.join(self.base_resins)})" if self.is_digital else self.title

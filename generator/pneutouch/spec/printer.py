@@ -1,0 +1,86 @@
+"""A printer profile: what the machine can hold, resolve and build."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from pneutouch.spec.fields import Kind, Table
+from pneutouch.spec.material import Material
+from pneutouch.spec.quantity import Quantity
+from pneutouch.units import UM
+
+
+class Envelope(Table):
+    """Build envelope in mm."""
+
+    x: float = Field(gt=0)
+    y: float = Field(gt=0)
+    z: float = Field(gt=0)
+    source: str = Field(min_length=8)
+
+
+class Mode(Table):
+    """A print mode: its layer height, and whether it mixes digital materials."""
+
+    name: str
+    layer_height_um: float = Field(gt=0)
+    digital_materials: bool
+    source: str = Field(min_length=8)
+
+
+class Resolution(Table):
+    """Smallest addressable step in the plane, in micrometres."""
+
+    x_um: float = Field(gt=0)
+    y_um: float = Field(gt=0)
+    source: str = Field(min_length=8)
+
+
+class Feature(Table):
+    """A smallest size in mm: below ``least`` it fails, below ``recommended`` it is at risk."""
+
+    least: float | None = Field(default=None, gt=0)
+    recommended: float = Field(gt=0)
+    source: str = Field(min_length=8)
+
+
+class Smallest(Table):
+    """Smallest features by kind of material."""
+
+    wall_rigid_mm: Feature
+    wall_soft_mm: Feature
+    hole_mm: Feature
+
+    def wall(self, kind: Kind) -> Feature:
+        """The wall limit for a kind of material."""
+        return self.wall_soft_mm if kind == "elastomer" else self.wall_rigid_mm
+
+
+class Printer(Table):
+    """One machine as a lab runs it."""
+
+    title: str
+    process: Literal["polyjet", "filament"]
+    envelope_mm: Envelope
+    resolution: Resolution
+    accuracy_mm: Quantity
+    smallest: Smallest
+    resins: list[str] = Field(min_length=1, description="Base resins or filaments the machine runs.")
+    resins_at_once: int = Field(ge=1, le=8)
+    mode: list[Mode] = Field(min_length=1)
+    support: str = Field(description="Support material and how it comes off.")
+
+    def mode_for(self, material: Material) -> Mode | None:
+        """The finest mode that prints the material, or None where the machine cannot run it."""
+        if not set(material.base_resins) <= set(self.resins):
+            return None
+        if len(material.base_resins) > self.resins_at_once:
+            return None
+        modes = [mode for mode in self.mode if mode.digital_materials or not material.is_digital]
+        return min(modes, key=lambda mode: mode.layer_height_um, default=None)
+
+    def finest_step(self, mode: Mode) -> float:
+        """The smallest step the machine can make in a mode, in mm: no mesh needs to be finer."""
+        return UM * min(mode.layer_height_um, self.resolution.x_um, self.resolution.y_um)

@@ -1,0 +1,109 @@
+"""Read a TOML file into a model, or say which key is wrong and what would be right."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ValidationError
+
+from pneutouch.errors import InputError, nearest
+from pneutouch.spec.fields import declaration, table_of
+
+Model = TypeVar("Model", bound=BaseModel)
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """Return the content of a TOML file; raises InputError for a folder, a bad file or broken TOML."""
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except IsADirectoryError:
+        raise InputError(f"{path}: this is a folder; give a TOML file") from None
+    except FileNotFoundError:
+        raise InputError(f"{path}: no such file") from None
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: not UTF-8 text (byte {error.start}); a TOML file is UTF-8") from None
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{path}: not valid TOML: {error}") from None
+
+
+def validate(model: type[Model], content: dict[str, Any], where: str) -> Model:
+    """Validate ``content`` against ``model``; ``where`` names the file in the message."""
+    try:
+        return model.model_validate(content)
+    except ValidationError as error:
+        lines = [_explain(model, detail) for detail in error.errors()]
+        raise InputError("\n".join(f"{where}: {line}" for line in lines)) from None
+
+
+def override(content: dict[str, Any], assignments: list[str], model: type[BaseModel]) -> dict[str, Any]:
+    """Return ``content`` with ``table.key=value`` assignments applied; values are TOML, or bare words."""
+    result = {key: dict(value) if isinstance(value, dict) else value for key, value in content.items()}
+    for assignment in assignments:
+        key, equals, text = assignment.partition("=")
+        path = key.strip().split(".")
+        if not equals or len(path) != 2:
+            raise InputError(f"--set {assignment}: write table.key=value, such as membrane.material=FLX9960")
+        table = table_of(model, path[0])
+        if table is None:
+            raise InputError(f"--set {assignment}: unknown table {path[0]}.{nearest(path[0], model.model_fields)}")
+        if path[1] not in table.model_fields:
+            raise InputError(f"--set {assignment}: unknown key {key}.{nearest(path[1], table.model_fields)}")
+        section = result.setdefault(path[0], {})
+        if not isinstance(section, dict):
+            raise InputError(f"{path[0]} = {section!r}: must be a table")
+        section[path[1]] = _toml_value(text.strip())
+    return result
+
+
+def _toml_value(text: str) -> Any:
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        return text
+
+
+def _explain(model: type[BaseModel], detail: Any) -> str:
+    """One line for one pydantic error: the key, the value, and what would be right."""
+    path = [str(step) for step in detail["loc"] if not isinstance(step, int)]
+    index = next((step for step in detail["loc"] if isinstance(step, int)), None)
+    owner: type[BaseModel] | None = model
+    for step in path[:-1]:
+        owner = table_of(owner, step) if owner else None
+    key = ".".join(path)
+    if detail["type"] == "extra_forbidden" and owner is not None:
+        kind = "table" if isinstance(detail["input"], dict) else "key"
+        return f"{key}: unknown {kind}.{nearest(path[-1], owner.model_fields)}"
+    if detail["type"] == "missing":
+        return f"{key}: missing; give {_right(owner, path)}"
+    if detail["type"] == "value_error":
+        return f"{key}: {detail['ctx']['error']}" if key else str(detail["ctx"]["error"])
+    if not path:
+        return str(detail["msg"])
+    label = f"{key}[{index}]" if index is not None else key
+    return f"{label} = {_shown(detail['input'])}: must be {_wanted(detail)}{_right(owner, path)}"
+
+
+def _wanted(detail: Any) -> str:
+    """The kind of value a field takes, where the value is of the wrong kind altogether."""
+    kinds = {
+        "float_type": "a number ", "int_type": "a whole number ", "finite_number": "a finite number ",
+        "string_type": "text: ", "list_type": "a list of numbers, ", "model_type": "a table ",
+        "dict_type": "a table ", "too_short": "a list with at least one entry ",
+        "too_long": "a list with at most 50 entries ",
+    }  # fmt: skip
+    return kinds.get(detail["type"], "")
+
+
+def _right(owner: type[BaseModel] | None, path: list[str]) -> str:
+    if owner is None or not path or path[-1] not in owner.model_fields:
+        return "a valid value"
+    return declaration(owner, path[-1]).right
+
+
+def _shown(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."

@@ -1,0 +1,40 @@
+"""A commented design file, written from the declarations."""
+
+from __future__ import annotations
+
+import textwrap
+from typing import Any
+
+from pneutouch.spec.design import Design
+from pneutouch.spec.fields import Declaration, declarations, table_of
+
+
+def design_template(title: str) -> str:
+    """Return a design file with every table and key, its default, unit, bounds and help."""
+    blocks = [f"# {title}: a pneutouch design. Every key may be left out; shown are the defaults."]
+    for key in Design.model_fields:
+        model = table_of(Design, key)
+        assert model is not None
+        lines = [f"[{key}]"]
+        for entry in declarations(model):
+            default = title if (key, entry.key) == ("document", "title") else entry.default
+            lines += _entry(entry, default)
+        blocks.append("\n".join(lines))
+    return "\n\n".join(blocks) + "\n"
+
+
+def _entry(entry: Declaration, default: Any) -> list[str]:
+    bounds = "" if entry.low is None else f" From {entry.low:g} to {entry.high:g} {entry.unit}".rstrip() + "."
+    names = f" One of the {entry.registry}: see pneutouch list." if entry.registry else ""
+    comment = textwrap.wrap(f"{entry.help}{bounds}{names}", width=96)
+    value = f"# {entry.key} =" if default is None else f"{entry.key} = {_toml(default)}"
+    return [*(f"# {line}" for line in comment), value]
+
+
+def _toml(value: Any) -> str:
+    if isinstance(value, str):
+        escaped = value.replace("\\", "\\\\").replace('"', '\\"')
+        return f'"{escaped}"'
+    if isinstance(value, list):
+        return "[" + ", ".join(_toml(item) for item in value) + "]"
+    return repr(value)
