@@ -1,0 +1,95 @@
+"""The shelves: every kind of thing is a folder of TOML files, and a file's name is the thing's name.
+
+Files in the working folder come before the shipped ones, so a lab's own printer profile overrides ours.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar, cast
+
+from pydantic import BaseModel
+
+from pneutouch.errors import InputError, nearest
+from pneutouch.spec.design import Design
+from pneutouch.spec.material import Material
+from pneutouch.spec.part import Barb, BoltCircle, GluedFlange
+from pneutouch.spec.printer import Printer
+from pneutouch.spec.read import read_toml, validate
+
+Model = TypeVar("Model", bound=BaseModel)
+
+_PACKAGE = Path(__file__).resolve().parents[1]
+_CHECKOUT = _PACKAGE.parents[1]
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """One shelf: the model of its files and the folder they lie in."""
+
+    model: type[BaseModel]
+    folder: str
+    part: bool = False
+
+
+KINDS: dict[str, Kind] = {
+    "designs": Kind(Design, "designs"),
+    "materials": Kind(Material, "printprofiles/materials"),
+    "printers": Kind(Printer, "printprofiles"),
+    "ports": Kind(Barb, "parts/ports", part=True),
+    "seats": Kind(GluedFlange, "parts/seats", part=True),
+    "mounts": Kind(BoltCircle, "parts/mounts", part=True),
+}
+
+
+def shipped_root() -> Path:
+    """The folder that holds ``designs`` and ``printprofiles``: the checkout, else the installed data."""
+    installed = _PACKAGE / "data"
+    return installed if installed.is_dir() else _CHECKOUT
+
+
+@dataclass(frozen=True, slots=True)
+class Library:
+    """Everything that can be named. ``folders`` are searched in order; the first hit wins."""
+
+    folders: tuple[Path, ...]
+
+    @staticmethod
+    def default() -> Library:
+        """The working folder, then what is shipped."""
+        return Library((Path.cwd(), shipped_root()))
+
+    def shelf(self, kind: str) -> dict[str, Path]:
+        """Names of one kind with their files, sorted by name."""
+        entry = KINDS[kind]
+        roots = (*self.folders, _PACKAGE) if entry.part else self.folders
+        found: dict[str, Path] = {}
+        for root in roots:
+            folder = root / entry.folder
+            for path in sorted(folder.glob("*.toml")) if folder.is_dir() else ():
+                found.setdefault(path.stem, path)
+        return dict(sorted(found.items()))
+
+    def load(self, kind: str, name: str, *, asked_by: str = "") -> Any:
+        """Load one thing by name; ``asked_by`` (file and key) heads the message where it is unknown."""
+        shelf = self.shelf(kind)
+        if name not in shelf:
+            head = f"{asked_by} = {name!r}: " if asked_by else f"{name}: "
+            raise InputError(f"{head}no such name among the {kind}.{nearest(name, shelf)}")
+        path = shelf[name]
+        return validate(KINDS[kind].model, read_toml(path), str(path))
+
+    def all(self, kind: str, model: type[Model]) -> dict[str, Model]:
+        """Load everything of one kind; ``model`` is the kind's model, for the type checker."""
+        return {name: cast(Model, self.load(kind, name)) for name in self.shelf(kind)}
+
+    def design_file(self, name: str) -> Path:
+        """The file of a design given by name or by path."""
+        path = Path(name)
+        if path.suffix == ".toml" or (path.exists() and "/" in name):
+            return path
+        shelf = self.shelf("designs")
+        if name in shelf:
+            return shelf[name]
+        raise InputError(f"{name}: no such design or file.{nearest(name, shelf)}")
