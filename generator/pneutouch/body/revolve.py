@@ -1,0 +1,83 @@
+"""Revolve a sampled meridian into a closed triangle mesh, cheaper than a plain grid at the same error.
+
+Each ring gets only as many vertices as its own radius needs, and its polygon is widened until it
+encloses the area of its circle, which keeps the volume. Strips between rings of different counts are
+zipped. A ring's count depends on its radius, lean and error alone: two bodies that share a planar face
+with the same rings get the same triangles there.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneutouch.meridian import Meridian, Ring, sample
+
+Vertices = NDArray[np.float64]
+Triangles = NDArray[np.int64]
+
+
+def circle_count(radius: float, error: float, lean: float = 1.0) -> int:
+    """Vertices, a multiple of four, that keep a widened polygon within ``error`` mm of its circle."""
+    if radius <= 0:
+        return 1
+    # widen() moves a vertex out by r theta^2/12 to leading order, theta being the angle between vertices.
+    needed = 2 * math.pi * math.sqrt(radius * lean / (12 * error))
+    return max(8, 4 * math.ceil(needed / 4))
+
+
+def widen(count: int) -> float:
+    """Factor on the radius that gives a regular polygon the area of the circle."""
+    if count == 1:
+        return 1.0
+    angle = 2 * math.pi / count
+    return math.sqrt(angle / math.sin(angle))
+
+
+def revolve(meridian: Meridian, tolerance: float) -> tuple[Vertices, Triangles]:
+    """Mesh a solid of revolution: vertices (n, 3) in mm, triangles (m, 3) facing outwards.
+
+    Half of ``tolerance`` (mm) goes to the meridian's chords and half to the circles'.
+    """
+    error = 0.5 * tolerance
+    rings = sample(meridian, error)
+    counts = [circle_count(ring.radius, error, ring.lean) for ring in rings]
+    offsets = np.concatenate([[0], np.cumsum(counts)])
+    vertices = np.concatenate([_ring_points(r, n) for r, n in zip(rings, counts, strict=True)])
+    pairs = [(k, k + 1) for k in range(len(rings) - 1)]
+    if meridian.is_ring:
+        pairs.append((len(rings) - 1, 0))
+    strips = []
+    for a, b in pairs:
+        # Always zip from the smaller ring, so that a face comes out the same whichever way it is walked.
+        swap = (rings[a].radius, rings[a].height) > (rings[b].radius, rings[b].height)
+        one, other = (b, a) if swap else (a, b)
+        strip = _zip(int(offsets[one]), counts[one], int(offsets[other]), counts[other])
+        strips.append(strip[:, ::-1] if swap else strip)
+    return vertices, np.concatenate(strips)
+
+
+def _ring_points(ring: Ring, count: int) -> Vertices:
+    angle = 2 * np.pi * np.arange(count) / count
+    radius = ring.radius * widen(count)
+    return np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.full(count, ring.height)])
+
+
+def _zip(first: int, n: int, second: int, m: int) -> Triangles:
+    """Triangles between two rings that start at vertex ``first`` (``n`` of them) and ``second`` (``m``).
+
+    Walks both rings at once, always stepping on the one whose next vertex comes first.
+    """
+    steps = np.concatenate([np.arange(1, n + 1) / n, np.arange(1, m + 1) / m])
+    on_first = np.concatenate([np.ones(n, bool), np.zeros(m, bool)])
+    order = np.argsort(steps, kind="stable")
+    on_first = on_first[order]
+    i = np.cumsum(on_first) - on_first
+    j = np.cumsum(~on_first) - ~on_first
+    a, b = first + i % n, second + j % m
+    ahead = np.where(on_first, first + (i + 1) % n, second + (j + 1) % m)
+    triangles = np.column_stack([a, ahead, b])
+    # A ring of one vertex lies on the axis; stepping along it would make triangles without area.
+    return triangles[~on_first if n == 1 else on_first if m == 1 else slice(None)]
