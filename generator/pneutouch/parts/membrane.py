@@ -1,0 +1,27 @@
+"""The membrane: a hemisphere with a clamped rim and a flange, open at its base so that it can be cleaned."""
+
+from __future__ import annotations
+
+import math
+
+from pneutouch.meridian import Arc, Line, Meridian
+from pneutouch.parts.layout import Layout
+
+INNER_WALL = "inner wall"
+OUTER_WALL = "outer wall"
+HELD = "held"
+"""Faces of the flange that the connector holds: what the mechanics clamps."""
+
+
+def membrane_meridian(layout: Layout) -> Meridian:
+    """Meridian from the pole inside, round the flange, back to the pole outside."""
+    inner, outer, flange = layout.inner_radius, layout.outer_radius, layout.flange_radius
+    low = -layout.flange_thickness
+    return Meridian((
+        Arc((0.0, 0.0), inner, math.pi / 2, 0.0, INNER_WALL),
+        Line((inner, 0.0), (inner, low), HELD),
+        Line((inner, low), (flange, low), HELD),
+        Line((flange, low), (flange, 0.0), HELD),
+        Line((flange, 0.0), (outer, 0.0), "flange top"),
+        Arc((0.0, 0.0), outer, 0.0, math.pi / 2, OUTER_WALL),
+    ))  # fmt: skip
