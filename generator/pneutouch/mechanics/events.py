@@ -1,0 +1,67 @@
+"""What happens on the way of the plate: detected, located, never averaged over."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pneutouch.mechanics.contact import Pressed
+from pneutouch.mechanics.sensor import Sensor
+from pneutouch.meridian.segments import Array
+
+_NEAR_BASE = 0.98
+"""Share of R0 at which the contact counts as having reached the base; beyond it the free arc has no room."""
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """An event at an indentation (mm); ``ends_range`` where figures must not be fitted beyond it."""
+
+    kind: str
+    indentation: float
+    ends_range: bool
+    message: str
+
+
+def events(sensor: Sensor, indentation: Array, pressed: Pressed, closure: str) -> list[Event]:
+    """The events of one pressed curve, in the order of the plate's way."""
+    stretch = pressed.thickness_stretch**-0.5
+    margins: list[tuple[str, Array, bool, str]] = [
+        ("gauge range", pressed.pressure - sensor.gauge_limit, True,
+         f"the cavity pressure leaves the gauge's range of {1e3 * sensor.gauge_limit:g} kPa"),
+        ("plate edge", pressed.contact_radius - sensor.plate_radius, True,
+         "the contact reaches the edge of the plate"),
+        ("contact at base", pressed.contact_radius - _NEAR_BASE * sensor.inner_radius, True,
+         "the contact reaches the base circle, where a cap of constant curvature ends"),
+        ("slack wall", 1 - 1e-9 - stretch, False,
+         "the wall is shorter than unloaded: a real membrane wrinkles, this theory does not"),
+    ]  # fmt: skip
+    if sensor.break_stretch is not None:
+        text = f"the stretch reaches the resin's least elongation at break, {sensor.break_stretch - 1:.0%}"
+        margins.append(("break strain", stretch - sensor.break_stretch, True, text))
+    if closure == "printed":
+        falling = np.concatenate([[-1.0], -np.diff(pressed.contact_radius)])
+        text = "the contact radius falls as the plate advances: the printed equations describe no contact"
+        margins.append(("contact radius falls", falling, True, text))
+    found = [
+        Event(kind, _crossing(indentation, margin), ends, text)
+        for kind, margin, ends, text in margins
+        if np.any(margin[1:] > 0)
+    ]
+    return sorted(found, key=lambda event: event.indentation)
+
+
+def range_end(found: list[Event], depth: float) -> float:
+    """Indentation (mm) up to which figures may be fitted: the first event that ends the range, else the depth."""
+    return min((event.indentation for event in found if event.ends_range), default=depth)
+
+
+def _crossing(indentation: Array, margin: Array) -> float:
+    """Where the margin turns positive, by linear interpolation between the steps."""
+    after = int(np.argmax(margin > 0)) if margin[0] <= 0 else 1 + int(np.argmax(margin[1:] > 0))
+    before, here = margin[after - 1], margin[after]
+    if before > 0 or here == before:
+        return float(indentation[after - 1])
+    share = -before / (here - before)
+    return float(indentation[after - 1] + share * (indentation[after] - indentation[after - 1]))

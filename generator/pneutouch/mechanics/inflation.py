@@ -1,0 +1,84 @@
+"""State I of the paper's membrane theory in closed form: a cap of constant curvature (eq. 4 to 9).
+
+With x = h/R0 the thickness stretch is 2/(1 + x^2), and stationary energy gives, for the neo-Hookean law
+with C1 = mu/2,
+
+    p R0/(C1 t0) = 8 x/(1 + x^2) - 64 x/(1 + x^2)^4 .
+
+Its maximum is the limit point: beyond it the dome goes on growing at falling pressure.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from pneutouch.errors import ComputationError
+from pneutouch.mechanics.roots import bisect
+from pneutouch.meridian.segments import Array
+
+_HIGHEST = 1e6
+"""Largest x searched on the falling branch; p R0/(mu t0) is 4e-6 there."""
+
+
+def relative_pressure(x: Array) -> Array:
+    """P R0/(mu t0) at relative height x = h/R0."""
+    square = 1 + x**2
+    return 4 * x / square - 32 * x / square**4
+
+
+def thickness_stretch(x: Array) -> Array:
+    """Wall now over wall before (eq. 5)."""
+    return 2 / (1 + x**2)
+
+
+def membrane_stretch(x: Array) -> Array:
+    """In-plane stretch, the same in all directions (eq. 3)."""
+    return thickness_stretch(x) ** -0.5
+
+
+def _limit_height() -> float:
+    """X of the limit point, where (1 - x^2)(1 + x^2)^3 = 8 (1 - 7 x^2)."""
+
+    def slope(x: Array) -> Array:
+        square = x**2
+        return 8 * (1 - 7 * square) - (1 - square) * (1 + square) ** 3
+
+    # The slope is negative below the limit point and positive above it on this bracket.
+    return float(bisect(slope, np.array(1.2), np.array(3.0)))
+
+
+LIMIT_HEIGHT = _limit_height()
+"""h/R0 at the limit point: 1.80524, for every stiffness, size and wall."""
+
+LIMIT_PRESSURE = float(relative_pressure(np.array(LIMIT_HEIGHT)))
+"""p R0/(mu t0) at the limit point: 1.51991."""
+
+EXACT_LIMIT_PRESSURE, EXACT_LIMIT_HEIGHT = 1.57537, 1.69000
+"""The same without assuming constant curvature: limit point of the exact neo-Hookean membrane.
+
+Shooting on the membrane equations; recomputed by an independent solver in the tests.
+"""
+
+
+def pressure(x: Array, inner_radius: float, wall: float, shear_modulus: float) -> Array:
+    """Driving pressure in MPa that holds the dome at relative height x (eq. 9)."""
+    return shear_modulus * wall / inner_radius * relative_pressure(x)
+
+
+def relative_height(
+    p: Array, inner_radius: float, wall: float, shear_modulus: float, *, falling: bool = False
+) -> Array:
+    """h/R0 at driving pressures ``p`` (MPa, from 0 to the limit), on the rising or the falling branch."""
+    target = np.asarray(p, float) * inner_radius / (shear_modulus * wall)
+    if np.any(target > LIMIT_PRESSURE * (1 + 1e-12)) or np.any(target < 0):
+        raise ComputationError(
+            f"no equilibrium of the membrane at p R0/(mu t0) = {float(np.max(target)):.4g}: the limit point "
+            f"is {LIMIT_PRESSURE:.4g}; lower the driving pressure"
+        )
+    if falling:
+        low, high = np.full(target.shape, math.log(LIMIT_HEIGHT)), np.full(target.shape, math.log(_HIGHEST))
+        return np.exp(bisect(lambda s: target - relative_pressure(np.exp(s)), low, high))
+    low, high = np.ones(target.shape), np.full(target.shape, LIMIT_HEIGHT)
+    return bisect(lambda x: relative_pressure(x) - target, low, high)

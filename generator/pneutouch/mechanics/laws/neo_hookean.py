@@ -1,0 +1,19 @@
+"""Neo-Hookean law, W = C1 (I1 - 3) with C1 = mu/2 (paper, eq. 7).
+
+In equibiaxial tension with thickness stretch lambda (in-plane stretches lambda**-1/2),
+W = C1 (lambda^2 + 2/lambda - 3).
+"""
+
+from __future__ import annotations
+
+from pneutouch.meridian.segments import Array
+
+
+def energy(shear_modulus: float, thickness_stretch: Array) -> Array:
+    """Energy density, MPa, of the undeformed wall."""
+    return 0.5 * shear_modulus * (thickness_stretch**2 + 2 / thickness_stretch - 3)
+
+
+def energy_slope(shear_modulus: float, thickness_stretch: Array) -> Array:
+    """Derivative of the energy density by the thickness stretch, MPa."""
+    return shear_modulus * (thickness_stretch - thickness_stretch**-2)

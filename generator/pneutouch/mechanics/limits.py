@@ -1,0 +1,71 @@
+"""How far a sensor may be driven: limit point, break strain of the resin, range of the gauge."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pneutouch.mechanics.inflation import LIMIT_HEIGHT, LIMIT_PRESSURE, pressure, thickness_stretch
+from pneutouch.mechanics.sensor import Sensor
+
+
+@dataclass(frozen=True, slots=True)
+class LimitPoint:
+    """The maximum of the inflation curve: apex heights in mm, driving pressure in MPa."""
+
+    apex_inner: float
+    apex_outer: float
+    driving_pressure: float
+    thickness_stretch: float
+
+    @property
+    def membrane_stretch(self) -> float:
+        """In-plane stretch."""
+        return float(self.thickness_stretch**-0.5)
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Driving pressures (MPa) at which each limit is met; None where it is not met before the limit point."""
+
+    limit_point: float
+    break_strain: float | None
+    gauge: float
+
+    @property
+    def binding(self) -> str:
+        """Name of the limit met first."""
+        return min(self.named(), key=lambda item: item[1])[0]
+
+    @property
+    def lowest(self) -> float:
+        """The driving pressure at which the first limit is met, MPa."""
+        return min(value for _, value in self.named())
+
+    def named(self) -> list[tuple[str, float]]:
+        """The limits that are met, with their names."""
+        pairs = [("limit point", self.limit_point), ("break strain", self.break_strain), ("gauge range", self.gauge)]
+        return [(name, value) for name, value in pairs if value is not None]
+
+
+def limit_point(sensor: Sensor) -> LimitPoint:
+    """The limit point of the paper's membrane: the same stretch for every resin and size."""
+    stretch = float(thickness_stretch(np.array(LIMIT_HEIGHT)))
+    apex = LIMIT_HEIGHT * sensor.inner_radius
+    scale = sensor.shear_modulus * sensor.wall_thickness / sensor.inner_radius
+    return LimitPoint(apex, apex + stretch * sensor.wall_thickness, LIMIT_PRESSURE * scale, stretch)
+
+
+def limits(sensor: Sensor) -> Limits:
+    """Driving pressures at which inflation alone meets each limit.
+
+    The break strain is a uniaxial elongation at break; setting the equibiaxial stretch against it is an
+    assumption, stated with the figures.
+    """
+    broken = None
+    if sensor.break_stretch is not None:
+        height = np.sqrt(2 * sensor.break_stretch**2 - 1)
+        if height < LIMIT_HEIGHT:
+            broken = float(pressure(height, sensor.inner_radius, sensor.wall_thickness, sensor.shear_modulus))
+    return Limits(limit_point(sensor).driving_pressure, broken, sensor.gauge_limit)

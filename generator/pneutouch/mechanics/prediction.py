@@ -1,0 +1,131 @@
+"""A prediction: what a model says of a sensor, in the units and names that leave the program."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from pneutouch.mechanics.events import Event
+from pneutouch.mechanics.limits import LimitPoint, Limits
+from pneutouch.mechanics.response import Figures, tangent_stiffness
+from pneutouch.meridian.segments import Array
+from pneutouch.units import KPA, ML
+
+_DIGITS = 12
+"""Significant digits written: rounding of the last bits differs between processors."""
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """One driving pressure: the inflated dome and its loading curve (arrays of one length, mm, N, MPa).
+
+    ``figures`` hold from first contact to ``range_end`` (mm of indentation).
+    """
+
+    driving_pressure: float
+    apex_inner: float
+    apex_outer: float
+    cavity_volume: float
+    range_end: float
+    figures: Figures | None
+    indentation: Array
+    force: Array
+    pressure_rise: Array
+    contact_radius: Array
+    membrane_stretch: Array
+    events: tuple[Event, ...]
+
+    def document(self) -> dict[str, Any]:
+        """The state as ``predict --json`` prints it."""
+        f = self.figures
+        return {
+            "driving_pressure_kPa": self.driving_pressure / KPA,
+            "apex_height_inner_mm": self.apex_inner,
+            "apex_height_outer_mm": self.apex_outer,
+            "cavity_volume_mL": self.cavity_volume / ML,
+            "range_end_mm": self.range_end,
+            "sensitivity_kPa_per_N": f.sensitivity if f else None,
+            "sensitivity_through_origin_kPa_per_N": f.sensitivity_through_origin if f else None,
+            "r_squared": f.r_squared if f else None,
+            "nonlinearity_percent": 100 * f.nonlinearity if f else None,
+            "stiffness_N_per_mm": f.stiffness if f else None,
+            "force_range_N": list(f.force_range) if f else None,
+            "saturation_force_N": f.saturation_force if f else None,
+            "curve": {
+                "indentation_mm": self.indentation.tolist(),
+                "contact_force_N": self.force.tolist(),
+                "pressure_rise_kPa": (self.pressure_rise / KPA).tolist(),
+                "contact_radius_mm": self.contact_radius.tolist(),
+                "membrane_stretch": self.membrane_stretch.tolist(),
+                "tangent_stiffness_N_per_mm": tangent_stiffness(self.indentation, self.force).tolist(),
+            },
+            "events": [
+                {
+                    "kind": event.kind,
+                    "indentation_mm": event.indentation,
+                    "ends_range": event.ends_range,
+                    "message": event.message,
+                }
+                for event in self.events
+            ],
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Prediction:
+    """All that one model says of one sensor."""
+
+    design: str
+    model: str
+    closure: str
+    error_estimate: dict[str, Any]
+    limit_point: LimitPoint
+    limits: Limits
+    dead_volume: float
+    states: tuple[State, ...]
+    assumptions: tuple[str, ...]
+
+    def document(self) -> dict[str, Any]:
+        """The prediction as ``predict --json`` prints it and ``prediction.json`` keeps it."""
+        point, caps = self.limit_point, self.limits
+        content = {
+            "design": self.design,
+            "model": self.model,
+            "closure": self.closure,
+            "error_estimate": self.error_estimate,
+            "limit_point": {
+                "apex_height_inner_mm": point.apex_inner,
+                "apex_height_outer_mm": point.apex_outer,
+                "driving_pressure_kPa": point.driving_pressure / KPA,
+                "membrane_stretch": point.membrane_stretch,
+                "thickness_stretch": point.thickness_stretch,
+            },
+            "limits": {
+                "limit_point_kPa": caps.limit_point / KPA,
+                "break_strain_kPa": None if caps.break_strain is None else caps.break_strain / KPA,
+                "gauge_range_kPa": caps.gauge / KPA,
+                "binding": caps.binding,
+            },
+            "dead_volume_mL": self.dead_volume / ML,
+            "states": [state.document() for state in self.states],
+            "assumptions": list(self.assumptions),
+        }
+        return {key: _rounded(value) for key, value in content.items()}
+
+
+_NOTHING = 1e-12
+"""Forces and pressure rises below this (N, kPa) are rounding."""
+
+
+def _rounded(value: Any) -> Any:
+    if isinstance(value, float):
+        if abs(value) < _NOTHING:
+            return 0.0
+        return float(np.format_float_positional(value, _DIGITS, unique=False, fractional=False)) + 0.0
+    if isinstance(value, dict):
+        return {key: _rounded(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_rounded(item) for item in value]
+    return value
