@@ -1,0 +1,33 @@
+"""A finding of a rule: what, where, how far off, and what would fix it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+Severity = Literal["error", "warning", "note"]
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One finding. ``where`` is a point in the design frame in mm; ``source`` backs the limit."""
+
+    rule: str
+    severity: Severity
+    body: str
+    message: str
+    fix: str
+    source: str
+    where: tuple[float, float, float] | None = None
+
+    def document(self) -> dict[str, Any]:
+        """The finding as ``check --json`` prints it."""
+        return {
+            "rule": self.rule,
+            "severity": self.severity,
+            "body": self.body,
+            "message": self.message,
+            "where_mm": None if self.where is None else [round(value, 3) for value in self.where],
+            "fix": self.fix,
+            "source": self.source,
+        }

@@ -1,0 +1,1 @@
+"""The rules, one file each: ``check(assembly, prediction)`` returns findings."""
