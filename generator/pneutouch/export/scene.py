@@ -1,0 +1,82 @@
+"""GLB and binary STL through trimesh, and the cut-open scene of the datasheet's 3D view."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pneutouch.body import Body
+
+if TYPE_CHECKING:
+    import trimesh
+
+_GLTF_FROM_PRINT = np.array([[1e-3, 0, 0, 0], [0, 0, 1e-3, 0], [0, -1e-3, 0, 0], [0, 0, 0, 1.0]])
+"""glTF is in metres with y up; the vertex data stay in mm with z up, and the node carries this matrix."""
+
+
+def stl(body: Body) -> bytes:
+    """Binary STL of one body in mm."""
+    return bytes(_mesh(body).export(file_type="stl"))
+
+
+def glb(bodies: tuple[Body, ...]) -> bytes:
+    """GLB with one named, coloured mesh a body; vertex data in mm, placed by a node matrix in metres."""
+    return bytes(_scene(bodies).export(file_type="glb"))
+
+
+def viewer_html(bodies: tuple[Body, ...]) -> str:
+    """A self-contained page that shows the bodies cut open; drag to turn, and it turns by itself until then."""
+    from trimesh.scene.cameras import Camera
+    from trimesh.viewer.notebook import scene_to_html
+
+    scene = _scene(tuple(cut_open(body) for body in bodies))
+    # A camera without a name gets a random one.
+    scene.camera = Camera(name="camera", fov=(30, 30))
+    scene.set_camera(angles=(np.radians(-28), np.radians(25), 0), fov=(30, 30), distance=1.7 * float(scene.scale))
+    page: str = scene_to_html(scene)
+    still = "function animate(){requestAnimationFrame(animate);controls.update();}"
+    turning = (
+        "var held=false;addEventListener('pointerdown',function(){held=true});"
+        "function animate(){requestAnimationFrame(animate);controls.update();if(!held){var t=controls.target,"
+        "p=camera.position.clone().sub(t);p.applyAxisAngle(new THREE.Vector3(0,1,0),0.004);"
+        "camera.position.copy(p.add(t));camera.lookAt(t);render();}}"
+    )
+    return page.replace(still, turning)
+
+
+def _mesh(body: Body) -> trimesh.Trimesh:
+    import trimesh
+
+    return trimesh.Trimesh(body.vertices, body.triangles, process=False)
+
+
+def _scene(bodies: tuple[Body, ...]) -> trimesh.Scene:
+    import trimesh
+    from trimesh.visual.material import PBRMaterial
+
+    scene = trimesh.Scene()
+    for body in bodies:
+        mesh = _mesh(body)
+        colour = [*bytes.fromhex(body.material.colour[1:]), 255]
+        look = PBRMaterial(name=body.material.label, baseColorFactor=colour, metallicFactor=0.0, roughnessFactor=0.6)
+        mesh.visual = trimesh.visual.TextureVisuals(material=look)
+        scene.add_geometry(mesh, node_name=body.name, geom_name=body.name, transform=_GLTF_FROM_PRINT)
+    return scene
+
+
+def cut_open(body: Body) -> Body:
+    """The body without the quarter towards the viewer."""
+    from manifold3d import Manifold, Mesh64
+
+    low, high = body.bounds
+    middle = 0.5 * (low + high)
+    knife = Manifold.cube((high - low + 1).tolist()).translate(
+        (middle[0], low[1] - 1 - (high - middle)[1], low[2] - 0.5)
+    )
+    whole: Any = Manifold(Mesh64(body.vertices, body.triangles.astype(np.uint64)))
+    rest = (whole - knife).to_mesh64()
+    return replace(
+        body, vertices=np.array(rest.vert_properties[:, :3], order="C"), triangles=rest.tri_verts.astype(np.int64)
+    )
