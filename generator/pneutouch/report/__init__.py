@@ -1,0 +1,7 @@
+"""The datasheet, its figures, and the sheet that goes to the printer."""
+
+from pneutouch.report.datasheet import datasheet
+from pneutouch.report.print_sheet import print_sheet
+from pneutouch.report.sheet import Sheet
+
+__all__ = ["Sheet", "datasheet", "print_sheet"]

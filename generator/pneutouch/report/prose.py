@@ -1,0 +1,79 @@
+"""The sentences of a datasheet that do not depend on a calculation."""
+
+from __future__ import annotations
+
+from pneutouch.catalogue import Scene
+
+PAPER = (
+    "He, Herzig, Nanayakkara, Maiolino: 3D-printed soft sensors for adaptive sensing with online and offline "
+    "tunable-stiffness. Soft Robotics, DOI 10.1089/soro.2021.0074"
+)
+
+LIMITS_OF_USE = (
+    "Laboratory use. Not a safety component; not for fluids other than clean dry air; not for contact with "
+    "food or wounds. The figures hold for slow, central contact with a flat rigid body."
+)
+
+RELIABILITY = (
+    "Cycles to failure", "Tear under edge contact", "Leak rate of the glued joint", "Storage life", "Drop and shock",
+)  # fmt: skip
+
+METHOD = (
+    "Press a rigid flat plate centrally, in 0.5 mm steps to three quarters of the inner radius; hold 4 s.",
+    "Return to no contact, rest 30 s and reset the driving pressure between indentations.",
+    "Three runs at each driving pressure; record force, cavity pressure and plate position.",
+    "Sensitivity is the slope of the least-squares line, with intercept, of pressure rise over force.",
+    "Measure the dead volume: close the sensor, inject a known volume of air, read the pressure.",
+)
+"""After the paper, section 3-B and Supplement C."""
+
+HANDLING = (
+    "Glue the flange on all three faces of its groove; the figures assume a rim clamped at the base plane.",
+    "Leak test before first use: hold the highest driving pressure for ten minutes.",
+    "Condition with five full-depth indentations before calibrating; re-zero after every change of driving pressure.",
+    "Reset the driving pressure often: a sealed cavity drifts with temperature.",
+    "Clean with water and mild soap. Keep from solvents, sunlight and sharp edges.",
+)
+
+DEFINITIONS = (
+    ["Sensitivity S", "kPa/N; slope of the least-squares line of pressure rise over force, at a stated driving pressure, dead volume and range"],
+    ["Force range", "from first contact to the first event that ends the range, or to the stated depth"],
+    ["Non-linearity", "greatest distance from that line over the full-scale pressure rise"],
+    ["Stiffness", "mean slope of force over indentation in the range"],
+    ["Apex height", "above the base plane; inside and outside differ by the thinned wall"],
+    ["Limit point", "greatest driving pressure of the inflation curve; beyond it the dome snaps"],
+)  # fmt: skip
+
+
+def description(scene: Scene) -> str:
+    """One paragraph: what it is and how it works."""
+    membrane = scene.design.membrane
+    return (
+        f"A soft hemispherical membrane ({membrane.inner_radius_mm:g} mm inner radius, {membrane.wall_thickness_mm:g} mm "
+        f"wall, {scene.membrane_material.label}) closes an air cavity on a rigid connector ({scene.connector_material.label}). "
+        "Pressing the dome raises the pressure of the trapped air, and the pressure reads the force. Stiffness and "
+        "sensitivity are set offline by the resin and online by the driving pressure."
+    )
+
+
+def printing(scene: Scene) -> list[str]:
+    """How to print, clean and assemble, in order."""
+    lines = [
+        f"Membrane: print in {scene.membrane_material.label}, dome up, rim on the tray. The sensing face then touches no "
+        "support and comes out glossy; support fills the cavity and leaves through the open base. Dome down takes less "
+        "support but leaves the sensing face matte.",
+        f"Membrane support: {scene.printer.support}. Aim the jet through the open base; keep it moving, the wall is soft.",
+        f"Connector: print in {scene.connector_material.label}, seat up. Remove support from groove, channel and barb "
+        f"({scene.connector_printer.support}). Push a {scene.port.bore_diameter:g} mm drill or wire through the bore.",
+        f"Fit: {scene.fit_clearance:.2f} mm a side between flange and groove, the printers' accuracies added up. "
+        "Dry-fit, then fill the gap with a flexible adhesive that wets both materials; the flange's underside lies on the seat.",
+        f"Tube: push {scene.port.tube_outer_diameter:g} x {scene.port.tube_inner_diameter:g} mm soft tube over the barb; "
+        f"the mounting surface needs a hole of at least {scene.port.tube_outer_diameter + 1:g} mm for it.",
+    ]
+    if scene.membrane_material.is_digital:
+        pair = " + ".join(scene.membrane_material.base_resins)
+        lines.insert(
+            1,
+            f"Digital material: choose {scene.membrane_material.title} made of {pair}; the vendor uses the same digits for other pairs.",
+        )
+    return lines

@@ -1,0 +1,245 @@
+"""What a datasheet says, as plain data: both the page and the PDF are set from it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from pneutouch import __version__
+from pneutouch.catalogue import Scene
+from pneutouch.mechanics import Prediction
+from pneutouch.mechanics.prediction import State
+from pneutouch.parts import Assembly
+from pneutouch.printability import Finding
+from pneutouch.report import ordering, prose
+from pneutouch.spec.material import Material
+from pneutouch.units import KPA, ML
+
+DASH = "–"
+NOT_TESTED = "not tested"
+_ROOM_TEMPERATURE = 293.15
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """Everything a datasheet is made from; ``resins`` are the materials to compare with."""
+
+    scene: Scene
+    assembly: Assembly
+    prediction: Prediction
+    findings: list[Finding]
+    input_hash: str
+    resins: dict[str, Material]
+
+    def content(self) -> dict[str, Any]:
+        """The sections of the sheet; every leaf is text, ready to be printed."""
+        document = self.scene.design.document
+        return {
+            "title": document.title,
+            "name": self.scene.name,
+            "part_number": ordering.part_number(self.scene),
+            "revision": document.revision,
+            "date": document.date.isoformat() if document.date else "undated",
+            "tool": f"pneutouch {__version__}",
+            "input_hash": self.input_hash,
+            "status": "Predicted. No unit has been built or tested.",
+            "description": prose.description(self.scene),
+            "limits_of_use": prose.LIMITS_OF_USE,
+            "key_figures": self.key_figures(),
+            "ratings": self.ratings(),
+            "operating": self.operating(),
+            "performance": self.performance(),
+            "model_error": self.model_error(),
+            "limits": self.limits(),
+            "environment": self.environment(),
+            "reliability": [[what, NOT_TESTED] for what in prose.RELIABILITY],
+            "bodies": self.bodies(),
+            "printing": prose.printing(self.scene),
+            "method": prose.METHOD,
+            "ordering": ordering.code_table(self.scene),
+            "handling": prose.HANDLING,
+            "definitions": prose.DEFINITIONS,
+            "assumptions": list(self.prediction.assumptions),
+            "findings": [[f.severity, f.rule, f.message, f.fix] for f in self.findings],
+            "sources": self.sources(),
+            "revisions": [[document.revision, document.date.isoformat() if document.date else "undated", "As predicted; first issue of this revision."]],
+        }  # fmt: skip
+
+    def key_figures(self) -> list[list[str]]:
+        """Tiles of the first page: name, value, unit, condition."""
+        first, last = self.prediction.states[0], self.prediction.states[-1]
+        limits = self.prediction.limits
+        mass = sum(solid.mass for solid in self.assembly.solids)
+        wide = 2 * self.assembly.layout.plate_radius
+        error = self.prediction.error_estimate["sensitivity_relative"]
+        sure = "model error unknown" if error is None else f"model error up to {error:.0%}"
+        return [
+            ["Sensitivity", _sensitivity(first), "kPa/N", f"at {first.driving_pressure / KPA:g} kPa; {sure}"],
+            ["Sensitivity", _sensitivity(last), "kPa/N", f"at {last.driving_pressure / KPA:g} kPa; {sure}"],
+            ["Force range", _range(last), "N", f"at {last.driving_pressure / KPA:g} kPa"],
+            ["Max. driving pressure", f"{limits.lowest / KPA:.1f}", "kPa", f"{limits.binding} binds"],
+            ["Dead volume", f"{self.prediction.dead_volume / ML:.2f}", "mL", "behind the cavity"],
+            ["Size", f"Ø{wide:.1f}", "mm", f"{mass:.1f} g without tube"],
+        ]
+
+    def ratings(self) -> list[list[str]]:
+        """Absolute maximum ratings: quantity, value, unit, basis."""
+        limits = self.prediction.limits
+        binds = f"{limits.binding}; {self.prediction.model} theory"
+        return [
+            ["Driving pressure", f"{limits.lowest / KPA:.1f}", "kPa gauge", binds],
+            ["Cavity pressure while pressed", f"{limits.gauge / KPA:g}", "kPa gauge", "range of the pressure sensor (SMC PSE543-R06)"],
+            ["Overload force", DASH, "N", NOT_TESTED],
+            ["Burst pressure", DASH, "kPa", NOT_TESTED],
+            ["Temperature", DASH, "°C", NOT_TESTED + "; the paper's tests ran at 18 to 26 °C"],
+        ]  # fmt: skip
+
+    def operating(self) -> list[list[str]]:
+        """Operating conditions that the figures hold for."""
+        design = self.scene.design
+        pressures = ", ".join(f"{p:g}" for p in design.pneumatics.driving_pressures_kPa)
+        stated = "stated in the design" if design.pneumatics.dead_volume_mL is not None else (
+            f"channel {self.assembly.channel_volume / ML:.3f} mL and {design.pneumatics.tube_length_mm:g} mm of tube"
+        )  # fmt: skip
+        return [
+            ["Driving pressure", pressures, "kPa gauge", "before contact"],
+            ["Medium", "air", "", "trapped, isothermal"],
+            ["Ambient pressure", f"{design.pneumatics.ambient_pressure_kPa:g}", "kPa", "absolute"],
+            ["Dead volume", f"{self.prediction.dead_volume / ML:.3f}", "mL", stated],
+            ["Contact body", f"Ø{design.indentation.plate_diameter_mm:g}", "mm", "rigid, flat, frictionless plate"],
+            [
+                "Indentation",
+                f"0 to {design.depth_mm:.2f}",
+                "mm",
+                f"{design.indentation.steps} steps from first contact",
+            ],
+        ]
+
+    def performance(self) -> list[list[str]]:
+        """One row a driving pressure."""
+        return [
+            [
+                f"{s.driving_pressure / KPA:g}", f"{s.apex_inner:.2f}", f"{s.apex_outer:.2f}", _sensitivity(s),
+                self._published(s.driving_pressure / KPA), f"{s.figures.r_squared:.4f}" if s.figures else DASH,
+                f"{100 * s.figures.nonlinearity:.1f}" if s.figures else DASH,
+                f"{s.figures.stiffness:.2f}" if s.figures else DASH, _range(s), _ends(s),
+            ]
+            for s in self.prediction.states
+        ]  # fmt: skip
+
+    def is_paper_sensor(self) -> bool:
+        """Whether radius and wall are the paper's, so that its Table S1 applies."""
+        layout = self.assembly.layout
+        return (layout.inner_radius, layout.wall) == (9.25, 1.5) and self.scene.membrane_material.measured is not None
+
+    def published(self) -> dict[float, float]:
+        """Published sensitivities of this very sensor: driving pressure in kPa to kPa/N."""
+        measured = self.scene.membrane_material.measured
+        if measured is None or not self.is_paper_sensor():
+            return {}
+        return {0.0: measured.sensitivity_0kPa_kPa_per_N.nominal, 22.0: measured.sensitivity_22kPa_kPa_per_N.nominal}
+
+    def _published(self, pressure: float) -> str:
+        value = self.published().get(round(pressure, 9))
+        return DASH if value is None else f"{value:.3f}"
+
+    def model_error(self) -> list[str]:
+        """Sentences on how far the model is off."""
+        error = self.prediction.error_estimate
+        lines = [
+            f"Limit point against the exact membrane: pressure {error['limit_pressure_relative']:+.1%}, "
+            f"apex height {error['limit_apex_height_relative']:+.1%}.",
+        ]
+        if error["sensitivity_relative"] is None:
+            return [*lines, f"Sensitivity: unknown; {error['sensitivity_basis']}."]
+        pairs = ", ".join(
+            f"{value:+.0%} at {pressure} kPa"
+            for value, pressure in zip(error["sensitivity_relative_0kPa_22kPa"], (0, 22), strict=False)
+        )
+        return [*lines, f"Sensitivity: {pairs}; {error['sensitivity_basis']}."]
+
+    def limits(self) -> list[list[str]]:
+        """The three limits of the driving pressure and which of them binds."""
+        limits, point = self.prediction.limits, self.prediction.limit_point
+        broken = DASH if limits.break_strain is None else f"{limits.break_strain / KPA:.1f}"
+        where = "the resin's least elongation at break" + ("; not met before the limit point" if broken == DASH else "")
+        rows = [
+            ["limit point", f"{limits.limit_point / KPA:.2f}", f"dome snaps at {point.apex_inner:.2f} mm inside, {point.apex_outer:.2f} mm outside"],
+            ["break strain", broken, where],
+            ["gauge range", f"{limits.gauge / KPA:g}", "pressure sensor of ±100 kPa"],
+        ]  # fmt: skip
+        return [[*row, "binds" if row[0] == limits.binding else ""] for row in rows]
+
+    def environment(self) -> list[list[str]]:
+        """Temperature, humidity and ageing, calculated or quoted, never guessed."""
+        state, material = self.prediction.states[0], self.scene.membrane_material
+        ambient = self.scene.design.pneumatics.ambient_pressure_kPa
+        drift = (ambient + state.driving_pressure / KPA) / _ROOM_TEMPERATURE
+        rows = [
+            [
+                "Zero drift of the sealed gas",
+                f"{drift:.2f} kPa/K",
+                f"ideal gas at {state.driving_pressure / KPA:g} kPa, 20 °C",
+            ]
+        ]
+        if state.figures is not None:
+            rows.append(
+                [
+                    "the same as force",
+                    f"{drift / state.figures.sensitivity:.2f} N/K",
+                    "drift over the predicted sensitivity",
+                ]
+            )
+        rows.append(["Fast contact", "up to 1.4 times", "gas stiffness, adiabatic against isothermal air"])
+        if material.shore_a and material.shore_a_one_year:
+            text = f"Shore A {material.shore_a.text()} to {material.shore_a_one_year.text()}"
+            rows.append(["Ageing, one year in light and air", text, "paper, Table 1"])
+        rows.append(["Humidity, oils, ozone, UV", NOT_TESTED, ""])
+        return rows
+
+    def bodies(self) -> list[list[str]]:
+        """Material and print of each body."""
+        scene = self.scene
+        machines = (
+            (scene.printer, scene.membrane_mode), (scene.connector_printer, scene.connector_mode)
+        )  # fmt: skip
+        return [
+            [
+                solid.name, solid.material.label, f"{solid.volume / ML:.3f} mL, {solid.mass:.2f} g",
+                f"{printer.title}, {mode.name}, {mode.layer_height_um:g} µm", printer.support,
+            ]
+            for solid, (printer, mode) in zip(self.assembly.solids, machines, strict=True)
+        ]  # fmt: skip
+
+    def sources(self) -> list[list[str]]:
+        """Where the resin's numbers come from: quantity, value, source."""
+        m = self.scene.membrane_material
+        entries = [
+            ("Shear modulus, MPa", m.shear_modulus_MPa), ("Poisson ratio", m.poisson_ratio),
+            ("Density, g/cm³", m.density_g_per_cm3), ("Shore A", m.shore_a),
+            ("Tensile strength, MPa", m.tensile_strength_MPa), ("Elongation at break, %", m.elongation_at_break_percent),
+        ]  # fmt: skip
+        rows = [[what, quantity.text(), quantity.source] for what, quantity in entries if quantity is not None]
+        if m.measured is not None:
+            rows.append(
+                ["Hysteresis at 0 kPa, %", m.measured.hysteresis_percent.text(), m.measured.hysteresis_percent.source]
+            )
+        accuracy = self.scene.printer.accuracy_mm
+        return [
+            ["The paper", "", prose.PAPER],
+            *rows,
+            [f"Accuracy of the {self.scene.printer.title}, mm", f"±{accuracy.nominal:g}", accuracy.source],
+        ]
+
+
+def _sensitivity(state: State) -> str:
+    return f"{state.figures.sensitivity:.2f}" if state.figures else DASH
+
+
+def _range(state: State) -> str:
+    return f"0 to {state.figures.force_range[1]:.1f}" if state.figures else DASH
+
+
+def _ends(state: State) -> str:
+    kinds = [event.kind for event in state.events if event.ends_range]
+    return kinds[0] if kinds else "depth"
