@@ -1,0 +1,5 @@
+"""``python -m pneutouch``."""
+
+from pneutouch.cli import run
+
+run()

@@ -1,0 +1,177 @@
+"""The command line. Heavy packages load inside the commands that use them: ``--help`` never pays."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from pneutouch import __version__
+from pneutouch.errors import PneutouchError
+
+if TYPE_CHECKING:
+    from pneutouch.pipeline.evaluate import Evaluation
+
+app = typer.Typer(
+    add_completion=False, no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False,
+    help="Pneumatic touch sensors: from a design file to print files, a prediction and a datasheet.",
+)  # fmt: skip
+
+DesignArgument = Annotated[str, typer.Argument(metavar="DESIGN", help="Name of a design, or path of a TOML file.")]
+SetOption = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="TABLE.KEY=VALUE", help="Override a field of the design; may be repeated."),
+]
+ModelOption = Annotated[str, typer.Option("--model", help="Rung of the ladder of models: membrane.")]
+ClosureOption = Annotated[str, typer.Option("--closure", help="Contact closure: variational or printed.")]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON document and nothing else.")]
+OutOption = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder that takes the output folder.")]
+
+
+@contextmanager
+def _reporting() -> Iterator[None]:
+    """Turn errors into one message on stderr and the exit code of design section 4."""
+    try:
+        yield
+    except PneutouchError as error:
+        typer.echo(f"error: {error}", err=True)
+        raise typer.Exit(error.exit_code) from None
+    except BrokenPipeError:
+        sys.stderr.close()
+        raise typer.Exit(0) from None
+
+
+def _version(asked: bool) -> None:
+    if asked:
+        typer.echo(f"pneutouch {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def main(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
+    """Pneumatic touch sensors: from a design file to print files, a prediction and a datasheet."""
+
+
+@app.command()
+def build(
+    design: DesignArgument, set_: SetOption = None, model: ModelOption = "membrane",
+    closure: ClosureOption = "variational", out: OutOption = Path("outputs"), json: JsonOption = False,
+) -> None:  # fmt: skip
+    """Build everything: print files, prediction, datasheet."""
+    with _reporting():
+        from pneutouch.pipeline.evaluate import evaluate
+        from pneutouch.pipeline.files import check_writable
+
+        evaluation = evaluate(design, set_, model=model, closure=closure)
+        check_writable(out / evaluation.scene.name)
+        folder = _build_with_progress(evaluation, out)
+        for finding in evaluation.findings:
+            typer.echo(f"{finding.severity}: {finding.rule}: {finding.message}; {finding.fix}", err=True)
+        if json:
+            _print_json({"design": evaluation.scene.name, "folder": str(folder)})
+        else:
+            typer.echo(str(folder))
+
+
+@app.command()
+def predict(
+    design: DesignArgument, set_: SetOption = None, model: ModelOption = "membrane",
+    closure: ClosureOption = "variational", json: JsonOption = False,
+) -> None:  # fmt: skip
+    """Predict the figures alone."""
+    with _reporting():
+        from pneutouch.pipeline.evaluate import evaluate
+
+        document = evaluate(design, set_, model=model, closure=closure).prediction.document()
+        if json:
+            _print_json(document)
+        else:
+            from pneutouch.cli.text import prediction_text
+
+            typer.echo(prediction_text(document))
+
+
+@app.command()
+def check(design: DesignArgument, set_: SetOption = None, json: JsonOption = False) -> None:
+    """Check printability and mechanical limits; exit 1 where a rule is broken."""
+    with _reporting():
+        from pneutouch.pipeline.evaluate import evaluate
+
+        findings = evaluate(design, set_).findings
+        broken = any(finding.severity == "error" for finding in findings)
+        if json:
+            _print_json({"design": design, "passed": not broken, "findings": [f.document() for f in findings]})
+        else:
+            from pneutouch.cli.text import findings_text
+
+            typer.echo(findings_text([finding.document() for finding in findings]))
+        if broken:
+            raise typer.Exit(1)
+
+
+@app.command("list")
+def list_(
+    kind: Annotated[str | None, typer.Argument(help="designs, materials, printers or parts.")] = None,
+    json: JsonOption = False,
+) -> None:
+    """List designs, materials, printers and parts."""
+    with _reporting():
+        from pneutouch.cli.text import listing, listing_text
+
+        content = listing(kind)
+        if json:
+            _print_json(content)
+        else:
+            typer.echo(listing_text(content))
+
+
+@app.command()
+def new(
+    name: Annotated[str, typer.Argument(help="Name of the design: letters, digits, - and _.")],
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder of the design file.")] = Path("designs"),
+) -> None:
+    """Write a commented design file."""
+    with _reporting():
+        from pneutouch.pipeline.new import new_design
+
+        typer.echo(str(new_design(name, out)))
+
+
+def _print_json(document: Any) -> None:
+    from pneutouch.pipeline.files import json_bytes
+
+    typer.echo(json_bytes(document).decode(), nl=False)
+
+
+def _build_with_progress(evaluation: Evaluation, out: Path) -> Path:
+    from pneutouch.pipeline.build import STEPS
+    from pneutouch.pipeline.build import build as run
+
+    if not sys.stderr.isatty():
+        return run(evaluation, out)
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = (
+        TextColumn("{task.description:<12}"),
+        BarColumn(),
+        TextColumn("{task.completed}/{task.total}"),
+        TimeElapsedColumn(),
+    )
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("", total=len(STEPS))
+        report: Callable[[str], None] = lambda step: bar.update(task, description=step, completed=STEPS.index(step))  # noqa: E731
+        return run(evaluation, out, report)
+
+
+def run() -> None:
+    """Entry point of the ``pneutouch`` command."""
+    app()

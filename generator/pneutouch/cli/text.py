@@ -1,0 +1,101 @@
+"""What the commands print for people: plain text tables that fit a terminal."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pneutouch.catalogue import KINDS, Library
+from pneutouch.errors import InputError, nearest
+from pneutouch.spec.design import Design
+from pneutouch.spec.material import Material
+from pneutouch.spec.printer import Printer
+
+_GROUPS = {
+    "designs": ["designs"],
+    "materials": ["materials"],
+    "printers": ["printers"],
+    "parts": ["ports", "seats", "mounts"],
+}
+
+
+def prediction_text(document: dict[str, Any]) -> str:
+    """The prediction as a table, with limits, events and the model's error."""
+    point, limits = document["limit_point"], document["limits"]
+    head = ["kPa", "apex in mm", "apex out mm", "S kPa/N", "R2", "N/mm", "range N", "range ends at"]
+    rows = []
+    for state in document["states"]:
+        ends = [event["kind"] for event in state["events"] if event["ends_range"]]
+        force = state["force_range_N"]
+        rows.append([
+            f"{state['driving_pressure_kPa']:g}", f"{state['apex_height_inner_mm']:.3f}", f"{state['apex_height_outer_mm']:.3f}",
+            _optional(state["sensitivity_kPa_per_N"], ".3f"), _optional(state["r_squared"], ".4f"),
+            _optional(state["stiffness_N_per_mm"], ".3f"), "-" if force is None else f"0-{force[1]:.2f}",
+            ends[0] if ends else "depth",
+        ])  # fmt: skip
+    error = document["error_estimate"]
+    sensitivity = error["sensitivity_relative"]
+    far = "unknown" if sensitivity is None else f"up to {sensitivity:.0%}"
+    return "\n".join([
+        f"{document['design']}: model {document['model']} ({document['closure']}), dead volume {document['dead_volume_mL']:.3f} mL",
+        f"limit point {point['driving_pressure_kPa']:.2f} kPa at {point['apex_height_inner_mm']:.2f} mm inside, "
+        f"{point['apex_height_outer_mm']:.2f} mm outside; the {limits['binding']} binds",
+        "", columns(head, rows), "",
+        f"error in sensitivity {far}: {error['sensitivity_basis']}",
+    ])  # fmt: skip
+
+
+def findings_text(findings: list[dict[str, Any]]) -> str:
+    """Findings, one a line, or a word that there are none."""
+    lines = [
+        f"{f['severity']}: {f['rule']}: {f['body']}: {f['message']}; {f['fix']}  [{f['source']}]" for f in findings
+    ]
+    return "\n".join(lines) if lines else "no findings"
+
+
+def listing(kind: str | None, library: Library | None = None) -> dict[str, list[dict[str, str]]]:
+    """Names and titles by kind; ``kind`` is one of designs, materials, printers, parts, or None for all."""
+    if kind is not None and kind not in _GROUPS:
+        raise InputError(f"KIND = {kind!r}: unknown.{nearest(kind, _GROUPS)}")
+    shelves = library or Library.default()
+    groups = _GROUPS if kind is None else {kind: _GROUPS[kind]}
+    return {
+        group: [
+            {"name": name, "title": _title(shelves.load(shelf, name)), **({"kind": shelf} if KINDS[shelf].part else {})}
+            for shelf in shelf_names
+            for name in shelves.shelf(shelf)
+        ]
+        for group, shelf_names in groups.items()
+    }
+
+
+def listing_text(content: dict[str, list[dict[str, str]]]) -> str:
+    """The listing as text."""
+    blocks = []
+    for group, entries in content.items():
+        rows = [[entry["name"], *([entry["kind"]] if "kind" in entry else []), entry["title"]] for entry in entries]
+        blocks.append(f"{group}\n" + columns([], rows, indent="  "))
+    return "\n\n".join(blocks)
+
+
+def columns(head: list[str], rows: list[list[str]], indent: str = "") -> str:
+    """Left-aligned columns two spaces apart."""
+    table = [head, *rows] if head else rows
+    widths = [max(len(row[k]) for row in table) for k in range(len(table[0]))] if table else []
+    return "\n".join(
+        (indent + "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True))).rstrip()
+        for row in table
+    )
+
+
+def _optional(value: float | None, form: str) -> str:
+    return "-" if value is None else format(value, form)
+
+
+def _title(thing: Any) -> str:
+    if isinstance(thing, Design):
+        return thing.document.title
+    if isinstance(thing, Material):
+        return f"{thing.label}, {thing.kind}"
+    if isinstance(thing, Printer):
+        return f"{thing.title}: {', '.join(thing.resins)}"
+    return str(thing.title)

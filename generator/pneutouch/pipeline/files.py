@@ -1,0 +1,92 @@
+"""Write an output folder whole or not at all: written beside, then renamed into place."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import shutil
+import tempfile
+from pathlib import Path
+
+from pneutouch.errors import InputError
+
+MANIFEST = "manifest.json"
+
+
+def digest(content: bytes) -> str:
+    """SHA-256 of a file's content, hexadecimal."""
+    return hashlib.sha256(content).hexdigest()
+
+
+def json_bytes(document: object) -> bytes:
+    """A JSON document as bytes: sorted keys, two spaces, one newline at the end."""
+    return (json.dumps(document, indent=2, sort_keys=True, ensure_ascii=False, allow_nan=False) + "\n").encode()
+
+
+def check_writable(folder: Path) -> None:
+    """Raise InputError where an output folder cannot be made or written, or holds somebody else's files."""
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"--out: {folder} is a file; it must be a folder")
+    if folder.is_dir() and any(folder.iterdir()) and not (folder / MANIFEST).is_file():
+        raise InputError(
+            f"--out: {folder} holds files but no {MANIFEST}: not written by pneutouch; give another folder"
+        )
+    parent = next(path for path in (folder.parent, *folder.parent.parents) if path.exists())
+    if not parent.is_dir():
+        raise InputError(f"--out: {parent} is a file; it must be a folder")
+    if not os.access(parent, os.W_OK | os.X_OK):
+        raise InputError(f"--out: {parent} cannot be written; give a folder you may write to")
+
+
+def write_folder(folder: Path, files: dict[str, bytes]) -> None:
+    """Replace ``folder`` by ``files`` (path inside it to content); what others put there is kept.
+
+    Everything is written to a hidden folder beside it first. A run that stops before the last renames
+    leaves the previous output as it was.
+    """
+    check_writable(folder)
+    try:
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        fresh = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
+    except OSError as error:
+        raise InputError(f"--out: {folder.parent}: {error.strerror}; give a folder you may write to") from None
+    try:
+        for name, content in files.items():
+            path = fresh / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(content)
+        _swap(folder, fresh)
+    except OSError as error:
+        raise InputError(f"--out: {folder}: {error.strerror}; the previous output is unchanged") from None
+    finally:
+        shutil.rmtree(fresh, ignore_errors=True)
+
+
+def _swap(folder: Path, fresh: Path) -> None:
+    """Put ``fresh`` in the place of ``folder``, which ends up, with our own files, under the hidden name."""
+    fresh.chmod(0o755)
+    if not folder.exists():
+        fresh.rename(folder)
+        return
+    _keep_foreign(folder, fresh)
+    aside = fresh.with_name(f"{fresh.name}.old")
+    folder.rename(aside)
+    try:
+        fresh.rename(folder)
+    except OSError:
+        aside.rename(folder)
+        raise
+    shutil.rmtree(aside, ignore_errors=True)
+
+
+def _keep_foreign(folder: Path, fresh: Path) -> None:
+    """Copy files that the previous manifest does not list, and that do not stand in the way."""
+    manifest = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
+    ours = {*manifest.get("files", {}), MANIFEST}
+    for path in sorted(folder.rglob("*")):
+        name = path.relative_to(folder).as_posix()
+        target = fresh / name
+        if path.is_file() and name not in ours and not target.exists():
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(path, target)

@@ -1,0 +1,28 @@
+"""Write a commented design file for a new design."""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+
+from pneutouch.errors import InputError
+from pneutouch.spec.template import design_template
+
+
+def new_design(name: str, folder: Path) -> Path:
+    """Write ``folder/name.toml`` with every key, its default, unit, bounds and help; never over a file."""
+    if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]*", name):
+        raise InputError(f"NAME = {name!r}: use letters, digits, - and _, starting with a letter or digit")
+    path = folder / f"{name}.toml"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)
+    except FileExistsError:
+        what = "there is such a file already; give another name" if path.exists() else f"{folder} is not a folder"
+        raise InputError(f"{path}: {what}") from None
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror}; give a folder you may write to with --out") from None
+    with os.fdopen(handle, "w", encoding="utf-8") as file:
+        file.write(design_template(name))
+    return path
