@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: venv demo test lint check-slow lock clean
+.PHONY: venv demo test lint check-slow chart lock clean
 
 venv: $(VENV)/.dev
 
@@ -43,3 +43,7 @@ lock:
 
 clean:
 	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache
+
+# Speed against accuracy, measured here and now; writes docs/accuracy.md and its charts.
+chart: $(VENV)/.dev
+	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.chart

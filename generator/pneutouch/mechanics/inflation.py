@@ -55,12 +55,6 @@ LIMIT_HEIGHT = _limit_height()
 LIMIT_PRESSURE = float(relative_pressure(np.array(LIMIT_HEIGHT)))
 """p R0/(mu t0) at the limit point: 1.51991."""
 
-EXACT_LIMIT_PRESSURE, EXACT_LIMIT_HEIGHT = 1.57537, 1.69000
-"""The same without assuming constant curvature: limit point of the exact neo-Hookean membrane.
-
-Shooting on the membrane equations; recomputed by an independent solver in the tests.
-"""
-
 
 def pressure(x: Array, inner_radius: float, wall: float, shear_modulus: float) -> Array:
     """Driving pressure in MPa that holds the dome at relative height x (eq. 9)."""

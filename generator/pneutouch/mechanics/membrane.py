@@ -6,15 +6,9 @@ import numpy as np
 
 from pneutouch.mechanics.contact import Pressed, press
 from pneutouch.mechanics.events import events, range_end
+from pneutouch.mechanics.exact_membrane import height_errors, limit_point_errors
 from pneutouch.mechanics.gas import TrappedGas
-from pneutouch.mechanics.inflation import (
-    EXACT_LIMIT_HEIGHT,
-    EXACT_LIMIT_PRESSURE,
-    LIMIT_HEIGHT,
-    LIMIT_PRESSURE,
-    relative_height,
-    thickness_stretch,
-)
+from pneutouch.mechanics.inflation import relative_height, thickness_stretch
 from pneutouch.mechanics.laws import LAWS
 from pneutouch.mechanics.prediction import State
 from pneutouch.mechanics.response import figures
@@ -22,11 +16,17 @@ from pneutouch.mechanics.sensor import Sensor
 from pneutouch.meridian.segments import Array
 from pneutouch.units import KPA
 
-ERROR_AGAINST_EXACT_MEMBRANE = {
-    "limit_pressure_relative": LIMIT_PRESSURE / EXACT_LIMIT_PRESSURE - 1,
-    "limit_apex_height_relative": LIMIT_HEIGHT / EXACT_LIMIT_HEIGHT - 1,
-}
-"""What the assumption of constant curvature costs at the limit point."""
+
+def error_against_exact_membrane(sensor: Sensor, driving_pressures: Array) -> dict[str, float]:
+    """What the assumption of constant curvature costs in state I: relative errors, the greatest for the heights."""
+    pressure, height = limit_point_errors()
+    scale = sensor.inner_radius / (sensor.shear_modulus * sensor.wall_thickness)
+    heights = height_errors(driving_pressures * scale)
+    return {
+        "limit_pressure_relative": pressure,
+        "limit_apex_height_relative": height,
+        "apex_height_relative": float(heights[np.argmax(np.abs(heights))]),
+    }
 
 
 _FINE = 8

@@ -9,7 +9,7 @@ import numpy as np
 from pneutouch.errors import InputError, nearest
 from pneutouch.mechanics.contact import CLOSURES
 from pneutouch.mechanics.limits import limit_point, limits
-from pneutouch.mechanics.membrane import ERROR_AGAINST_EXACT_MEMBRANE, membrane_states
+from pneutouch.mechanics.membrane import error_against_exact_membrane, membrane_states
 from pneutouch.mechanics.prediction import Prediction
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.units import KPA
@@ -41,11 +41,12 @@ def predict(
         raise InputError(f"--model {model}: unknown model.{nearest(model, MODELS)}")
     if closure not in CLOSURES:
         raise InputError(f"--closure {closure}: unknown closure.{nearest(closure, CLOSURES)}")
-    states = membrane_states(sensor, np.array(driving_pressures, float), closure)
+    pressures = np.array(driving_pressures, float)
+    states = membrane_states(sensor, pressures, closure)
     gas = f"dead volume {sensor.dead_volume / 1e3:.4g} mL, ambient pressure {sensor.ambient_pressure / KPA:g} kPa"
     return Prediction(
         design=design, model=model, closure=closure,
-        error_estimate={**ERROR_AGAINST_EXACT_MEMBRANE, **(sensitivity_error or {})},
+        error_estimate={**error_against_exact_membrane(sensor, pressures), **(sensitivity_error or {})},
         limit_point=limit_point(sensor), limits=limits(sensor), dead_volume=sensor.dead_volume,
         states=states, assumptions=(*_MEMBRANE_ASSUMPTIONS, gas),
     )  # fmt: skip

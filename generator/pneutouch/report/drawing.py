@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,13 +12,13 @@ from pneutouch.body import Solid
 from pneutouch.meridian import sample
 from pneutouch.parts import Assembly
 from pneutouch.parts.port import port_length
+from pneutouch.report.dimension import CENTRE, THIN, circle, horizontal, leader, polar, vertical
 from pneutouch.report.style import BOLD, INK, MUTED, figure, svg
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_THIN, _THICK = 0.4, 0.9
-_TEXT = 6.8
+_THICK = 0.9
 _HATCHES = {"membrane": "////////", "connector": "\\\\\\\\"}
 
 
@@ -30,108 +31,97 @@ def section_drawing(assembly: Assembly) -> str:
         return svg(drawn)
 
 
+@dataclass(frozen=True, slots=True)
+class _Frame:
+    """Where the section's dimensions go: ``unit`` is the drawing's step in mm, ``tip`` the port's lower end."""
+
+    unit: float
+    tip: float
+    left: float
+    right: float
+    low: float
+
+
+def _frame(assembly: Assembly) -> _Frame:
+    layout = assembly.layout
+    tip = layout.plate_low - port_length(assembly.scene.port)
+    unit = max(layout.plate_radius / 22, (layout.outer_radius - tip) / 26)
+    reach = layout.plate_radius + 4 * unit
+    return _Frame(unit, tip, -reach, reach, tip - 4 * unit)
+
+
 def _section(ax: Axes, assembly: Assembly) -> None:
-    layout, port, scene = assembly.layout, assembly.scene.port, assembly.scene
-    soft, rigid = scene.printer.accuracy_mm.nominal, scene.connector_printer.accuracy_mm.nominal
+    layout, frame = assembly.layout, _frame(assembly)
     for solid in assembly.solids:
         _hatched(ax, solid)
-    tip = layout.plate_low - port_length(port)
-    unit = max(layout.plate_radius / 22, (layout.outer_radius - tip) / 26)
-    ax.plot([0, 0], [tip - 2 * unit, layout.outer_radius + 2 * unit], color=MUTED, lw=_THIN, ls=(0, (8, 2, 2, 2)))
-    outer = layout.plate_radius
-    right = outer + 4 * unit
-    _vertical(ax, right, 0, layout.outer_radius, outer * 0.02, f"{layout.outer_radius:.2f} ±{soft:.2f}")
-    _vertical(
-        ax,
-        right,
-        layout.plate_low,
-        layout.plate_high,
-        outer,
-        f"{layout.plate_high - layout.plate_low:.2f} ±{rigid:.2f}",
-    )
-    _vertical(ax, right, tip, layout.plate_low, 0.5 * port.barb_diameter, f"{port_length(port):.2f} ±{rigid:.2f}")
-    left = -outer - 4 * unit
-    _vertical(ax, left, layout.plate_high, 0, -layout.flange_radius, f"{layout.flange_thickness:.2f} ±{soft:.2f}")
-    _vertical(ax, left - 12.5 * unit, tip, layout.outer_radius, left, f"({layout.outer_radius - tip:.2f})")
-    low = tip - 4 * unit
-    _horizontal(
-        ax,
-        low,
-        -layout.flange_radius,
-        layout.flange_radius,
-        layout.plate_high,
-        f"Ø{2 * layout.flange_radius:.2f} ±{soft:.2f}",
-    )
-    _horizontal(ax, low - 4.5 * unit, -outer, outer, layout.plate_low, f"Ø{2 * outer:.2f} ±{rigid:.2f}")
-    _leader(
-        ax,
-        _polar(layout.inner_radius, 128),
-        _polar(layout.outer_radius + 4.5 * unit, 128),
-        f"R{layout.inner_radius:g} ±{soft:.2f}",
-        "right",
-    )
+    axis = [frame.tip - 2 * frame.unit, layout.outer_radius + 2 * frame.unit]
+    ax.plot([0, 0], axis, color=MUTED, lw=THIN, ls=CENTRE)
+    _section_lengths(ax, assembly, frame)
+    _section_leaders(ax, assembly, frame)
+    xs = (frame.left - 21 * frame.unit, frame.right + 13 * frame.unit)
+    ys = (frame.low - 7.5 * frame.unit, layout.outer_radius + 5 * frame.unit)
+    _finish(ax, "Section A-A", xs, ys)
+
+
+def _section_lengths(ax: Axes, assembly: Assembly, frame: _Frame) -> None:
+    layout, scene = assembly.layout, assembly.scene
+    soft, rigid = _tolerances(assembly)
+    plate, flange = layout.plate_radius, layout.flange_radius
+    barb = 0.5 * scene.port.barb_diameter
+    thick, reach = layout.plate_high - layout.plate_low, port_length(scene.port)
+    vertical(ax, frame.right, 0, layout.outer_radius, 0.02 * plate, f"{layout.outer_radius:.2f} {soft}")
+    vertical(ax, frame.right, layout.plate_low, layout.plate_high, plate, f"{thick:.2f} {rigid}")
+    vertical(ax, frame.right, frame.tip, layout.plate_low, barb, f"{reach:.2f} {rigid}")
+    vertical(ax, frame.left, layout.plate_high, 0, -flange, f"{layout.flange_thickness:.2f} {soft}")
+    outside = frame.left - 12.5 * frame.unit
+    vertical(ax, outside, frame.tip, layout.outer_radius, frame.left, f"({layout.outer_radius - frame.tip:.2f})")
+    horizontal(ax, frame.low, -flange, flange, layout.plate_high, f"Ø{2 * flange:.2f} {soft}")
+    horizontal(ax, frame.low - 4.5 * frame.unit, -plate, plate, layout.plate_low, f"Ø{2 * plate:.2f} {rigid}")
+
+
+def _section_leaders(ax: Axes, assembly: Assembly, frame: _Frame) -> None:
+    layout, port, unit = assembly.layout, assembly.scene.port, frame.unit
+    soft, _ = _tolerances(assembly)
+    outside = layout.outer_radius + 4.5 * unit
     middle = layout.inner_radius + 0.5 * layout.wall
-    _leader(
-        ax,
-        _polar(middle, 52),
-        _polar(layout.outer_radius + 4.5 * unit, 52),
-        f"wall {layout.wall:g} ±{soft:.2f}",
-        "left",
-    )
-    below = layout.plate_low - 0.55 * port.stem_length
-    _leader(
-        ax,
-        (0.5 * port.stem_diameter, below),
-        (6.5 * unit, below - 0.5 * unit),
-        f"Ø{port.stem_diameter:g}, bore Ø{port.bore_diameter:g}",
-        "left",
-    )
-    barb = layout.plate_low - port.stem_length
-    _leader(
-        ax,
-        (-0.5 * port.barb_diameter, barb),
-        (-6.5 * unit, barb - 1.5 * unit),
-        f"barb Ø{port.barb_diameter:g}",
-        "right",
-    )
-    _finish(
-        ax, "Section A-A", (left - 21 * unit, right + 13 * unit), (low - 7.5 * unit, layout.outer_radius + 5 * unit)
-    )
+    below, shoulder = layout.plate_low - 0.55 * port.stem_length, layout.plate_low - port.stem_length
+    stem, barb = 0.5 * port.stem_diameter, 0.5 * port.barb_diameter
+    leader(ax, polar(layout.inner_radius, 128), polar(outside, 128), f"R{layout.inner_radius:g} {soft}", "right")
+    leader(ax, polar(middle, 52), polar(outside, 52), f"wall {layout.wall:g} {soft}", "left")
+    text = f"Ø{port.stem_diameter:g}, bore Ø{port.bore_diameter:g}"
+    leader(ax, (stem, below), (6.5 * unit, below - 0.5 * unit), text, "left")
+    leader(ax, (-barb, shoulder), (-6.5 * unit, shoulder - 1.5 * unit), f"barb Ø{port.barb_diameter:g}", "right")
+
+
+def _tolerances(assembly: Assembly) -> tuple[str, str]:
+    """Tolerances of the membrane and of the connector: the stated accuracies of their printers."""
+    scene = assembly.scene
+    return f"±{scene.printer.accuracy_mm.nominal:.2f}", f"±{scene.connector_printer.accuracy_mm.nominal:.2f}"
 
 
 def _plan(ax: Axes, assembly: Assembly) -> None:
     layout, mount = assembly.layout, assembly.scene.mount
-    rigid = assembly.scene.connector_printer.accuracy_mm.nominal
+    _, rigid = _tolerances(assembly)
     unit = layout.plate_radius / 22
     outlines = [layout.plate_radius, layout.ring_radius, layout.groove_outer, layout.flange_radius, layout.outer_radius]
     for radius in dict.fromkeys(outlines):
-        _circle(ax, 0, 0, radius)
-    _circle(ax, 0, 0, layout.bolt_circle_radius, color=MUTED, ls=(0, (8, 2, 2, 2)), lw=_THIN)
+        circle(ax, 0, 0, radius)
+    circle(ax, 0, 0, layout.bolt_circle_radius, color=MUTED, ls=CENTRE, lw=THIN)
     hidden = {"ls": (0, (3, 1.5))} if mount.family == "blind" else {}
     for bore in assembly.solids[1].bores:
-        _circle(ax, bore.x, bore.y, bore.radius, **hidden)
+        circle(ax, bore.x, bore.y, bore.radius, **hidden)
     reach = layout.plate_radius + 2.5 * unit
     for ends in (([-reach, reach], [0, 0]), ([0, 0], [-reach, reach])):
-        ax.plot(*ends, color=MUTED, lw=_THIN, ls=(0, (8, 2, 2, 2)))
+        ax.plot(*ends, color=MUTED, lw=THIN, ls=CENTRE)
     bore = assembly.solids[1].bores[0]
     at = math.atan2(bore.y, bore.x)
     edge = (bore.x + bore.radius * math.cos(at), bore.y + bore.radius * math.sin(at))
-    text = f"{mount.count} × Ø{mount.hole_diameter:g} ±{rigid:.2f}, {mount.screw}"
+    text = f"{mount.count} × Ø{mount.hole_diameter:g} {rigid}, {mount.screw}"
     if mount.hole_depth is not None:
         text += f",\n{mount.hole_depth:g} deep, from behind"
-    _leader(ax, edge, (0.35 * layout.plate_radius, layout.plate_radius + 5 * unit), text, "left")
-    circle = math.radians(225)
-    on_circle = (
-        layout.bolt_circle_radius * math.cos(circle * 0.93),
-        layout.bolt_circle_radius * math.sin(circle * 0.93),
-    )
-    _leader(
-        ax,
-        on_circle,
-        (-layout.plate_radius, -layout.plate_radius - 4 * unit),
-        f"bolt circle Ø{2 * layout.bolt_circle_radius:g}",
-        "left",
-    )
+    leader(ax, edge, (0.35 * layout.plate_radius, layout.plate_radius + 5 * unit), text, "left")
+    low = (-layout.plate_radius, -layout.plate_radius - 4 * unit)
+    leader(ax, polar(layout.bolt_circle_radius, 209), low, f"bolt circle Ø{2 * layout.bolt_circle_radius:g}", "left")
     _finish(ax, "View from above", (-reach - 3 * unit, reach + 3 * unit), (-reach - 3 * unit, reach + 5 * unit))
 
 
@@ -145,58 +135,7 @@ def _hatched(ax: Axes, solid: Solid) -> None:
         # Drawing practice turns the holes of a pattern into the section plane.
         x = math.copysign(math.hypot(bore.x, bore.y), bore.x)
         ax.fill([x - bore.radius, x + bore.radius, x + bore.radius, x - bore.radius],
-                [bore.low, bore.low, bore.high, bore.high], facecolor="white", edgecolor=INK, lw=_THIN)  # fmt: skip
-
-
-def _polar(radius: float, degrees: float) -> tuple[float, float]:
-    return radius * math.cos(math.radians(degrees)), radius * math.sin(math.radians(degrees))
-
-
-def _circle(ax: Axes, x: float, y: float, radius: float, **look: object) -> None:
-    angle = np.linspace(0, 2 * np.pi, 181)
-    ax.plot(x + radius * np.cos(angle), y + radius * np.sin(angle), **{"color": INK, "lw": 0.7, **look})  # type: ignore[arg-type]
-
-
-def _arrow(ax: Axes, start: tuple[float, float], end: tuple[float, float]) -> None:
-    style = {
-        "arrowstyle": "<|-|>,head_width=0.12,head_length=0.3",
-        "lw": _THIN,
-        "color": INK,
-        "shrinkA": 0,
-        "shrinkB": 0,
-    }
-    ax.annotate("", end, start, arrowprops=style)
-
-
-def _horizontal(ax: Axes, y: float, x0: float, x1: float, feature: float, text: str) -> None:
-    for x in (x0, x1):
-        ax.plot([x, x], [feature, y - 0.6], color=INK, lw=0.25)
-    _arrow(ax, (x0, y), (x1, y))
-    ax.text(
-        0.5 * (x0 + x1),
-        y,
-        text,
-        ha="center",
-        va="center",
-        fontsize=_TEXT,
-        bbox={"fc": "white", "ec": "none", "pad": 0.8},
-    )
-
-
-def _vertical(ax: Axes, x: float, y0: float, y1: float, feature: float, text: str) -> None:
-    reach = x + math.copysign(0.6, x)
-    for y in (y0, y1):
-        ax.plot([feature, reach], [y, y], color=INK, lw=0.25)
-    _arrow(ax, (x, y0), (x, y1))
-    ax.annotate(
-        text, (x, 0.5 * (y0 + y1)), xytext=(3 if x > 0 else -3, 0), textcoords="offset points",
-        ha="left" if x > 0 else "right", va="center", fontsize=_TEXT,
-    )  # fmt: skip
-
-
-def _leader(ax: Axes, at: tuple[float, float], to: tuple[float, float], text: str, ha: str) -> None:
-    arrow = {"arrowstyle": "-|>,head_width=0.12,head_length=0.3", "lw": _THIN, "color": INK, "shrinkA": 1, "shrinkB": 0}
-    ax.annotate(text, at, xytext=to, arrowprops=arrow, ha=ha, va="center", fontsize=_TEXT, multialignment="left")
+                [bore.low, bore.low, bore.high, bore.high], facecolor="white", edgecolor=INK, lw=THIN)  # fmt: skip
 
 
 def _finish(ax: Axes, title: str, xs: tuple[float, float], ys: tuple[float, float]) -> None:

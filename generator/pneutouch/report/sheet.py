@@ -148,7 +148,8 @@ class Sheet:
         error = self.prediction.error_estimate
         lines = [
             f"Limit point against the exact membrane: pressure {error['limit_pressure_relative']:+.1%}, "
-            f"apex height {error['limit_apex_height_relative']:+.1%}.",
+            f"apex height {error['limit_apex_height_relative']:+.1%}; apex heights at the driving pressures up to "
+            f"{error['apex_height_relative']:+.1%}.",
         ]
         if error["sensitivity_relative"] is None:
             return [*lines, f"Sensitivity: unknown; {error['sensitivity_basis']}."]

@@ -28,7 +28,8 @@ _SETTINGS: dict[Any, Any] = {
     "xtick.major.width": 0.6, "ytick.major.width": 0.6, "xtick.major.size": 2.5, "ytick.major.size": 2.5,
     "lines.linewidth": 1.2, "lines.markersize": 3.2, "legend.fontsize": 7, "legend.frameon": False,
     "hatch.linewidth": 0.35, "svg.hashsalt": "pneutouch", "svg.fonttype": "path",
-    "mathtext.fontset": "custom", "mathtext.rm": "Inter", "mathtext.it": "Inter", "mathtext.bf": "Inter Semi Bold",
+    "mathtext.fontset": "custom", "mathtext.rm": "Inter", "mathtext.it": "Inter", "mathtext.bf": "Inter",
+    "mathtext.cal": "Inter",
 }  # fmt: skip
 
 

@@ -1,0 +1,114 @@
+"""The command line as a user meets it: figures, exit codes, JSON alone on stdout, light imports."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import time
+
+import pytest
+
+HEAVY = {"cadquery", "OCP", "trimesh", "matplotlib", "scipy", "lib3mf", "typst", "jinja2", "vtkmodules"}
+
+
+def test_predict_gives_the_papers_limit_point_and_heights(command, root):
+    result = command("predict", "paper-dome", "--model", "membrane", "--json", cwd=root)
+    assert result.returncode == 0, result.stderr
+    document = json.loads(result.stdout)
+    point = document["limit_point"]
+    assert point["driving_pressure_kPa"] == pytest.approx(41.90, abs=0.02)
+    assert point["apex_height_inner_mm"] == pytest.approx(16.70, abs=0.01)
+    assert point["apex_height_outer_mm"] == pytest.approx(17.40, abs=0.01)
+    heights = {state["driving_pressure_kPa"]: state["apex_height_inner_mm"] for state in document["states"]}
+    assert heights[12.0] == pytest.approx(10.010, abs=1e-3)
+    assert heights[22.0] == pytest.approx(10.853, abs=1e-3)
+
+
+def test_set_overrides_a_field(command, root):
+    words = ["--set", "membrane.material=FLX9960", "--set", "pneumatics.driving_pressures_kPa=[20]", "--json"]
+    document = json.loads(command("predict", "paper-dome", *words, cwd=root).stdout)
+    assert document["limit_point"]["driving_pressure_kPa"] == pytest.approx(224.3, abs=0.05)
+    assert [state["driving_pressure_kPa"] for state in document["states"]] == [20.0]
+
+
+def test_designs_are_found_from_anywhere(command):
+    assert command("predict", "paper-dome").returncode == 0
+
+
+def test_check_exits_1_where_a_rule_is_broken_and_0_otherwise(command, root):
+    assert command("check", "paper-dome", cwd=root).returncode == 0
+    broken = command("check", "stiff-dome", "--set", "membrane.wall_thickness_mm=0.5", "--json", cwd=root)
+    assert broken.returncode == 1
+    document = json.loads(broken.stdout)
+    assert document["passed"] is False
+    assert document["findings"][0]["severity"] == "error"
+
+
+def test_list_shows_designs_materials_printers_and_parts(command, root):
+    document = json.loads(command("list", "--json", cwd=root).stdout)
+    assert set(document) == {"designs", "materials", "printers", "parts"}
+    assert "paper-dome" in [entry["name"] for entry in document["designs"]]
+    assert len(document["designs"]) >= 5
+    assert {entry["kind"] for entry in document["parts"]} == {"ports", "seats", "mounts"}
+    text = command("list", "materials", cwd=root).stdout
+    assert "FLX9960-DM (TangoPlus + VeroClear)" in text
+    assert command("list", "material", cwd=root).returncode == 2
+
+
+def test_new_writes_a_design_that_predicts_and_never_overwrites(command, tmp_path):
+    assert command("new", "my-sensor").returncode == 0
+    path = tmp_path / "designs/my-sensor.toml"
+    assert "# Inner radius R0" in path.read_text()
+    assert command("predict", "my-sensor").returncode == 0
+    before = path.read_text()
+    again = command("new", "my-sensor")
+    assert again.returncode == 2
+    assert "already" in again.stderr
+    assert path.read_text() == before
+    for name in ("../x", "a b", "", "-x"):
+        assert command("new", "--", name).returncode == 2
+
+
+def test_build_prints_the_folder_and_nothing_else_on_stdout(command, tmp_path):
+    result = command("build", "paper-dome", "--out", str(tmp_path / "o"), "--json")
+    assert result.returncode == 0, result.stderr
+    document = json.loads(result.stdout)
+    assert document["folder"].endswith("o/paper-dome")
+    assert "warning" in result.stderr
+
+
+def test_an_output_that_is_a_file_is_refused_before_any_work(command, tmp_path):
+    (tmp_path / "file").write_text("x")
+    start = time.perf_counter()
+    result = command("build", "paper-dome", "--out", str(tmp_path / "file"))
+    assert result.returncode == 2
+    assert "--out" in result.stderr
+    assert "Traceback" not in result.stderr
+    assert time.perf_counter() - start < 5
+
+
+def modules_after(*words):
+    code = f"import sys; sys.argv = {['pneutouch', *words]!r}\nfrom pneutouch.cli import run\ntry: run()\nexcept SystemExit: pass\nprint('MODULES', *sys.modules)"
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    loaded = result.stdout.split("MODULES")[-1].split()
+    return {name.split(".")[0] for name in loaded}
+
+
+@pytest.mark.parametrize(
+    "words", [["--help"], ["predict", "--help"], ["predict", "paper-dome", "--model", "membrane", "--json"], ["list"]]
+)
+def test_light_commands_load_no_heavy_package(words):
+    assert modules_after(*words) & HEAVY == set()
+
+
+def test_help_costs_little_more_than_typer_and_pydantic():
+    """Ratio of the best of several runs, taken in turn so that the machine's mood cancels."""
+
+    def seconds(*words):
+        start = time.perf_counter()
+        subprocess.run([sys.executable, *words], check=True, capture_output=True)
+        return time.perf_counter() - start
+
+    pairs = [(seconds("-c", "import typer, pydantic"), seconds("-m", "pneutouch", "--help")) for _ in range(7)]
+    assert min(ours for _, ours in pairs) <= 2.5 * min(base for base, _ in pairs)

@@ -1,0 +1,136 @@
+"""Bad input: exit 2, one clear message with file, key, value and what would be right, nothing written."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pneutouch.catalogue import Library, load_scene
+from pneutouch.errors import InputError
+from pneutouch.pipeline import evaluate
+from pneutouch.spec.design import Design
+from pneutouch.spec.read import validate
+
+ROOT = Path(__file__).resolve().parents[2]
+
+CASES = [
+    ("[membrane]\ninner_radius_mm = -3", ["membrane.inner_radius_mm = -3", "from 1 to 100 mm"]),
+    ("[membrane]\ninner_radius_mm = 0", ["inner_radius_mm = 0", "from 1 to 100 mm"]),
+    ("[membrane]\ninner_radius_mm = 1e9", ["1000000000.0", "from 1 to 100 mm"]),
+    ("[membrane]\ninner_radius_mm = nan", ["nan", "finite number", "from 1 to 100 mm"]),
+    ("[membrane]\ninner_radius_mm = inf", ["inf", "from 1 to 100 mm"]),
+    ('[membrane]\ninner_radius_mm = "9"', ["'9'", "a number from 1 to 100 mm"]),
+    ("[membrane]\ninner_radius_mm = true", ["True", "a number from 1 to 100 mm"]),
+    ("[membrane]\ninner_radius_mm = [9]", ["[9]", "a number from 1 to 100 mm"]),
+    ("[membrane]\ninner_radius_mm = 5\nwall_thickness_mm = 5", ["wall_thickness_mm = 5", "less than", "inner_radius_mm = 5"]),
+    ("[membrane]\nmaterial = 3", ["membrane.material = 3", "text"]),
+    ('[membrane]\nmaterial = "TangoPlsu"', ["membrane.material = 'TangoPlsu'", "Did you mean TangoPlus?"]),
+    ('[membrane]\nmaterial = "ABS"', ["membrane.material", "ABS", "elastomer"]),
+    ('[connector]\nmaterial = "TangoPlus"', ["connector.material", "rigid"]),
+    ('[membrane]\nmaterial = "Agilus30"', ["print.profile = 'objet260-connex'", "cannot run Agilus30", "TangoPlus"]),
+    ('[connector]\nport = "barb"', ["connector.port = 'barb'", "barb-4x2.5"]),
+    ("[membrane]\nwall_thikness_mm = 1", ["membrane.wall_thikness_mm", "unknown key", "Did you mean wall_thickness_mm?"]),
+    ("[membran]\nmaterial = 'x'", ["membran", "unknown table", "Did you mean membrane?"]),
+    ("membrane = 3", ["membrane = 3", "a table"]),
+    ("[pneumatics]\ndriving_pressures_kPa = []", ["driving_pressures_kPa = []", "at least one"]),
+    ("[pneumatics]\ndriving_pressures_kPa = [0, -5]", ["driving_pressures_kPa", "from 0 to 1000 kPa"]),
+    ("[pneumatics]\ndriving_pressures_kPa = [5, 5]", ["driving_pressures_kPa", "once only"]),
+    ("[pneumatics]\ndriving_pressures_kPa = [0, nan]", ["driving_pressures_kPa[1]", "finite"]),
+    ("[pneumatics]\ndriving_pressures_kPa = [0, 'a']", ["driving_pressures_kPa[1] = 'a'", "a number"]),
+    ("[pneumatics]\ndriving_pressures_kPa = [0, 42]", ["driving_pressures_kPa[1] = 42", "limit point", "at most 41.90 kPa"]),
+    ("[pneumatics]\ndead_volume_mL = -1", ["dead_volume_mL = -1", "from 0 to 1000 mL"]),
+    ("[indentation]\nsteps = 1.5", ["steps = 1.5", "whole number"]),
+    ("[indentation]\ndepth_mm = 9.2", ["depth_mm = 9.2", "0.95"]),
+    ("[membrane]\ninner_radius_mm = 99\nwall_thickness_mm = 30", ["print.profile", "must fit 255 x 252 x 200 mm"]),
+    ("[membrane]\ninner_radius_mm = 1.2\nwall_thickness_mm = 0.5", ["inner_radius_mm = 1.2", "too small for"]),
+    ("[membrane\n", ["not valid TOML"]),
+    ("[document]\ndate = 'yesterday'", ["document.date", "yesterday"]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "words"), CASES, ids=[text.replace("\n", " ")[:50] for text, _ in CASES])
+def test_a_wrong_design_says_what_is_wrong_and_what_would_be_right(text, words, tmp_path):
+    path = tmp_path / "bad.toml"
+    path.write_text(text)
+    with pytest.raises(InputError) as caught:
+        evaluate(str(path), library=Library((ROOT,)))
+    message = str(caught.value)
+    for word in (str(path), *words):
+        assert word in message
+    assert "Traceback" not in message
+
+
+@pytest.mark.parametrize(
+    ("assignment", "words"),
+    [
+        ("membrane.material", ["table.key=value"]),
+        ("material=FLX9960", ["table.key=value"]),
+        ("membran.material=FLX9960", ["unknown table membran", "Did you mean membrane?"]),
+        ("membrane.materiel=FLX9960", ["unknown key membrane.materiel", "Did you mean material?"]),
+        ("membrane.inner_radius_mm=wide", ["membrane.inner_radius_mm = 'wide'", "a number from 1 to 100 mm"]),
+    ],
+)
+def test_a_wrong_override_says_so(assignment, words):
+    with pytest.raises(InputError) as caught:
+        load_scene("paper-dome", [assignment], Library((ROOT,)))
+    assert all(word in str(caught.value) for word in words)
+
+
+def test_overrides_take_words_numbers_and_lists():
+    scene = load_scene(
+        "paper-dome",
+        ["membrane.material=FLX9960", "membrane.inner_radius_mm=8.5", "pneumatics.driving_pressures_kPa=[1, 3]"],
+        Library((ROOT,)),
+    )
+    assert scene.membrane_material.title == "FLX9960-DM"
+    assert scene.design.membrane.inner_radius_mm == 8.5
+    assert scene.design.pneumatics.driving_pressures_kPa == [1.0, 3.0]
+
+
+def test_a_folder_a_missing_file_and_a_binary_file_are_named(tmp_path):
+    library = Library((ROOT,))
+    folder = tmp_path / "folder.toml"
+    folder.mkdir()
+    binary = tmp_path / "binary.toml"
+    binary.write_bytes(b"\xff\xfe\x00")
+    for path, word in ((folder, "folder"), (tmp_path / "none.toml", "no such file"), (binary, "UTF-8")):
+        with pytest.raises(InputError, match=word):
+            evaluate(str(path), library=library)
+    with pytest.raises(InputError, match="Did you mean paper-dome"):
+        evaluate("paper-doom", library=library)
+
+
+anything = st.one_of(
+    st.none(), st.booleans(), st.integers(), st.floats(), st.text(max_size=5), st.lists(st.floats(), max_size=3)
+)
+tables = {key: info.annotation for key, info in Design.model_fields.items()}
+
+
+@given(st.sampled_from(sorted(tables)), st.data())
+def test_no_value_of_any_field_gets_past_validation_unbounded_or_ends_in_another_error(table, data):
+    key = data.draw(st.sampled_from(sorted(tables[table].model_fields)))
+    value = data.draw(anything)
+    try:
+        design = validate(Design, {table: {key: value}}, "x.toml")
+    except InputError as error:
+        assert f"{table}" in str(error)
+        return
+    accepted = getattr(getattr(design, table), key)
+    numbers = accepted if isinstance(accepted, list) else [accepted]
+    assert all(math.isfinite(n) for n in numbers if isinstance(n, float))
+
+
+@pytest.mark.parametrize("words", [["build"], ["predict"], ["check"]])
+def test_commands_exit_2_without_traceback_and_write_nothing(words, command, tmp_path):
+    bad = tmp_path / "bad.toml"
+    bad.write_text("[membrane]\ninner_radius_mm = -3\n")
+    result = command(*words, str(bad))
+    assert result.returncode == 2
+    assert result.stdout == ""
+    assert "membrane.inner_radius_mm = -3" in result.stderr
+    assert "Traceback" not in result.stderr
+    assert list(tmp_path.iterdir()) == [bad]

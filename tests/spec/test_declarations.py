@@ -1,0 +1,45 @@
+"""Every field is declared once, with help, and numbers with unit and bounds; the template follows from that."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+
+import pytest
+
+from pneutouch.spec.design import Design
+from pneutouch.spec.fields import declarations, table_of
+from pneutouch.spec.quantity import Quantity
+from pneutouch.spec.read import validate
+from pneutouch.spec.template import design_template
+
+FIELDS = [(table, entry) for table in Design.model_fields for entry in declarations(table_of(Design, table))]
+
+
+@pytest.mark.parametrize(("table", "entry"), FIELDS, ids=[f"{table}.{entry.key}" for table, entry in FIELDS])
+def test_every_field_has_help_and_numbers_have_bounds_and_units(table, entry):
+    assert entry.help.endswith(".")
+    unit = re.search(r"_(mm|kPa|mL)$", entry.key)
+    if unit:
+        assert entry.unit == unit[1]
+        assert entry.low < entry.high
+
+
+def test_template_is_a_valid_design_with_every_key_and_every_default():
+    text = design_template('my "sensor"')
+    design = validate(Design, tomllib.loads(text), "template")
+    assert design.membrane == Design().membrane
+    assert design.pneumatics == Design().pneumatics
+    assert design.document.title == 'my "sensor"'
+    for table, entry in FIELDS:
+        assert f"{entry.key} =" in text
+        assert f"[{table}]" in text
+
+
+def test_a_quantity_needs_a_value_or_a_range_and_a_source():
+    for content in ({"source": "somewhere"}, {"value": 1.0}, {"low": 2.0, "high": 1.0, "source": "somewhere"}):
+        with pytest.raises(ValueError):
+            Quantity.model_validate(content)
+    ranged = Quantity(low=1.3, high=1.8, source="vendor sheet")
+    assert (ranged.nominal, ranged.least, ranged.most) == (pytest.approx(1.55), 1.3, 1.8)
+    assert ranged.text() == "1.3 to 1.8"

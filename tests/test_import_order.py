@@ -1,0 +1,73 @@
+"""The import order of the house, held by reading every import statement."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import pneutouch
+
+PACKAGE = Path(pneutouch.__file__).parent
+
+LAYERS = [
+    {"errors", "units"}, {"spec"}, {"catalogue"}, {"meridian"}, {"body"}, {"parts", "mechanics"},
+    {"printability", "selection", "bench", "texture"}, {"export", "report"}, {"pipeline"}, {"cli", "studio"},
+]  # fmt: skip
+RANK = {name: rank for rank, names in enumerate(LAYERS) for name in names}
+APART = [{"parts", "mechanics"}]
+
+
+def imports(path: Path):
+    """Own packages a file imports, with the line."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        names = []
+        if isinstance(node, ast.ImportFrom) and node.module:
+            names = [node.module] if node.module != "pneutouch" else [f"pneutouch.{a.name}" for a in node.names]
+            assert node.level == 0, f"{path}:{node.lineno}: relative import"
+            assert all(alias.name != "*" for alias in node.names), f"{path}:{node.lineno}: star import"
+        elif isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        for name in names:
+            yield name, node.lineno
+
+
+def test_imports_run_one_way():
+    wrong = []
+    for path in PACKAGE.rglob("*.py"):
+        own = path.relative_to(PACKAGE).parts[0].removesuffix(".py")
+        if own not in RANK:
+            continue
+        for name, line in imports(path):
+            part = name.split(".")[1] if name.startswith("pneutouch.") else None
+            if part in RANK and (RANK[part] > RANK[own] or {part, own} in APART):
+                wrong.append(f"{path}:{line}: {own} imports {part}")
+    assert not wrong, "\n".join(wrong)
+
+
+def test_every_folder_has_its_place_in_the_order():
+    found = {path.name for path in PACKAGE.iterdir() if path.is_dir() and (path / "__init__.py").is_file()}
+    assert found <= set(RANK), found - set(RANK)
+
+
+def test_files_and_functions_stay_short():
+    long = []
+    for path in PACKAGE.rglob("*.py"):
+        text = path.read_text()
+        if text.count("\n") > 300:
+            long.append(f"{path}: {text.count(chr(10))} lines")
+        for node in ast.walk(ast.parse(text)):
+            if isinstance(node, ast.FunctionDef) and node.end_lineno - node.lineno > 60:
+                long.append(f"{path}:{node.lineno}: {node.name}")
+    assert not long, "\n".join(long)
+
+
+def test_no_print_and_no_mutable_state_at_module_level():
+    wrong = []
+    for path in PACKAGE.rglob("*.py"):
+        tree = ast.parse(path.read_text())
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "print":
+                wrong.append(f"{path}:{node.lineno}: print")
+            if isinstance(node, ast.Global):
+                wrong.append(f"{path}:{node.lineno}: global")
+    assert not wrong, "\n".join(wrong)

@@ -1,0 +1,73 @@
+"""The README's code is run: its commands, its design file and its Python."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import re
+import shlex
+import subprocess
+import sys
+
+import pytest
+
+from pneutouch.spec.design import Design
+from pneutouch.spec.read import validate
+from tests.conftest import ROOT
+
+TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def blocks(language):
+    return re.findall(rf"```{language}\n(.*?)```", TEXT, re.DOTALL)
+
+
+COMMANDS = [line for block in blocks("sh") for line in block.splitlines() if line.startswith("pneutouch ")]
+
+
+@pytest.mark.parametrize("line", COMMANDS)
+def test_command_runs(line, tmp_path):
+    words = shlex.split(line.replace("/tmp/sensors", str(tmp_path / "sensors")), comments=True)[1:]
+    result = subprocess.run(
+        [sys.executable, "-m", "pneutouch", *words], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert result.returncode == 0, result.stderr
+
+
+def test_the_two_commands_are_targets_of_the_makefile():
+    makefile = (ROOT / "Makefile").read_text()
+    for line in blocks("sh")[0].splitlines():
+        target = line.split("#")[0].split()[1]
+        assert re.search(rf"^{target}:", makefile, re.MULTILINE)
+
+
+def test_the_design_file_is_valid():
+    import tomllib
+
+    for block in blocks("toml"):
+        assert validate(Design, tomllib.loads(block), "README.md").membrane.inner_radius_mm == 6
+
+
+def test_the_python_runs_and_prints_the_limit_of_50_dm():
+    output = io.StringIO()
+    with contextlib.redirect_stdout(output):
+        for block in blocks("python"):
+            exec(compile(block, "README.md", "exec"), {})
+    first, second = output.getvalue().splitlines()
+    assert float(first) == pytest.approx(135.56, abs=0.01)
+    assert len(second.split(",")) == 4
+
+
+def test_every_file_the_readme_names_is_built(built):
+    named = re.findall(r"^\| `(.*?)` \|", TEXT, re.MULTILINE)
+    files = {
+        part for line in re.findall(r"^\| (`.*?) \|", TEXT, re.MULTILINE) for part in re.findall(r"`([^`]+)`", line)
+    }
+    assert named
+    folder = built("paper-dome")
+    assert {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()} == files
+
+
+def test_every_link_leads_somewhere():
+    for target in re.findall(r"\]\(([^)]+)\)", TEXT):
+        assert (ROOT / target).is_file(), target
