@@ -186,6 +186,10 @@ def test_canonical_step_forgets_time_counters_and_order():
     head = "HEADER;\nFILE_NAME('x','{time}',('a'));\nENDSEC;\nDATA;\n"
     one = head.format(time="2020") + "#1 = A(#2,#3);\n#2 = B(1.);\n#3 = C('x');\n#4 = D(#3);\nENDSEC;\nEND;\n"
     other = head.format(time="2031") + "#9 = D(#5);\n#5 = C('x');\n#7 = B(1.);\n#8 = A(#7,#5);\nENDSEC;\nEND;\n"
+    wrapped = one.replace("A(#2,#3)", "A(#2,\n    #3)").replace("C('x')", "C(\n  'x')")
+    assert canonical(one) == canonical(wrapped)
+    assert canonical(one) == canonical(one.replace("B(1.)", "B(1.0000000000002)"))
+    assert "B(0.00000025)" in canonical(one.replace("B(1.)", "B(2.5E-07)"))
     changed = one.replace("C('x')", "C('y')")
     assert canonical(one) == canonical(other)
     assert canonical(one) != canonical(changed)

@@ -2,18 +2,24 @@
 
 Open CASCADE writes the time into the header, numbers occurrences by a counter that runs on through the
 process, and orders styles by memory address. Nothing of that is content, so it is taken out: entities are
-renumbered by walking the file from its roots, and the roots are sorted by a hash of all they refer to.
+renumbered by walking the file from its roots, the roots are sorted by a hash of all they refer to, and
+numbers are rounded above the noise of floating-point sums.
 """
 
 from __future__ import annotations
 
 import hashlib
+import itertools
 import re
 from functools import cache
 
 _TIMESTAMP = re.compile(r"(FILE_NAME\('[^']*',)'[^']*'")
 _ENTITY = re.compile(r"#(\d+)\s*=\s*(.*?);\s*(?=#\d+\s*=|ENDSEC)", re.DOTALL)
 _REFERENCE = re.compile(r"#(\d+)")
+_REAL = re.compile(r"(?<![#\w.])-?\d+\.\d*(?:E[+-]?\d+)?")
+_DECIMALS = 10
+"""Lengths to 1e-10 mm: Open CASCADE's own tolerance is 1e-7, and what lies below is noise of the run."""
+
 _OCCURRENCE = re.compile(r"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\()'\d+'")
 
 
@@ -34,8 +40,17 @@ def canonical(text: str) -> str:
 
 
 def _tidy(content: str) -> str:
-    joined = " ".join(line.strip() for line in content.splitlines())
-    return _OCCURRENCE.sub(r"\1'1'", joined)
+    """One line without the blanks and breaks whose places depend on how long the numbers are."""
+    joined = "".join(line.strip() for line in content.splitlines())
+    texts = joined.split("'")
+    outside = [_REAL.sub(_rounded, "".join(text.split())) for text in texts[::2]]
+    pieces = [piece for pair in itertools.zip_longest(outside, texts[1::2]) for piece in pair if piece is not None]
+    return _OCCURRENCE.sub(r"\1'1'", "'".join(pieces))
+
+
+def _rounded(match: re.Match[str]) -> str:
+    text = f"{round(float(match[0]), _DECIMALS) + 0.0:.{_DECIMALS}f}".rstrip("0")
+    return text
 
 
 def _walk(entities: dict[int, str]) -> list[int]:
