@@ -62,7 +62,7 @@ def _mark_limits(ax: Axes, sensor: Sensor, height: Array, p: Array) -> None:
     if sensor.break_stretch is not None and stretch[-1] > sensor.break_stretch:
         k = int(np.argmax(stretch > sensor.break_stretch))
         ax.plot(height[k], p[k], "X", color=INK, ms=5)
-        ax.annotate("break strain", (height[k], p[k]), xytext=(6, -9), textcoords="offset points", fontsize=6.5)
+        ax.annotate("break strain", (height[k], p[k]), xytext=(0, -11), textcoords="offset points", ha="center", fontsize=6.5)
 
 
 def response(prediction: Prediction) -> str:

@@ -86,8 +86,8 @@ def _section_leaders(ax: Axes, assembly: Assembly, frame: _Frame) -> None:
     middle = layout.inner_radius + 0.5 * layout.wall
     below, shoulder = layout.plate_low - 0.55 * port.stem_length, layout.plate_low - port.stem_length
     stem, barb = 0.5 * port.stem_diameter, 0.5 * port.barb_diameter
-    leader(ax, polar(layout.inner_radius, 128), polar(outside, 128), f"R{layout.inner_radius:g} {soft}", "right")
-    leader(ax, polar(middle, 52), polar(outside, 52), f"wall {layout.wall:g} {soft}", "left")
+    leader(ax, polar(layout.inner_radius, 140), polar(outside, 140), f"R{layout.inner_radius:g} {soft}", "right")
+    leader(ax, polar(middle, 40), polar(outside, 40), f"wall {layout.wall:g} {soft}", "left")
     text = f"Ø{port.stem_diameter:g}, bore Ø{port.bore_diameter:g}"
     leader(ax, (stem, below), (6.5 * unit, below - 0.5 * unit), text, "left")
     leader(ax, (-barb, shoulder), (-6.5 * unit, shoulder - 1.5 * unit), f"barb Ø{port.barb_diameter:g}", "right")
