@@ -49,8 +49,7 @@ def _tidy(content: str) -> str:
 
 
 def _rounded(match: re.Match[str]) -> str:
-    text = f"{round(float(match[0]), _DECIMALS) + 0.0:.{_DECIMALS}f}".rstrip("0")
-    return text
+    return f"{round(float(match[0]), _DECIMALS) + 0.0:.{_DECIMALS}f}".rstrip("0")
 
 
 def _walk(entities: dict[int, str]) -> list[int]:
