@@ -1,42 +1,68 @@
-"""The membrane theory beside the paper's measurements (Table S1) and the exact membrane, nothing fitted."""
+"""Every model beside the paper's measurements (Table S1), nothing fitted."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import json
+from dataclasses import dataclass, replace
 
 from pneutouch.catalogue import Library
 from pneutouch.mechanics import predict
-from pneutouch.pipeline.evaluate import material_sensor
+from pneutouch.pipeline.table_s1 import PRESSURES, SHIPPED, compute_errors, material_sensor, measured
 from pneutouch.spec.material import Material
-from pneutouch.units import KPA
+from pneutouch.units import KPA, ML
+
+METHODS = {
+    "variational": ("membrane", "variational"),
+    "printed": ("membrane", "printed"),
+    "solid": ("solid", "variational"),
+}
 
 
 @dataclass(frozen=True)
 class Cell:
-    """One cell of Table S1: measured and predicted sensitivity, kPa/N."""
+    """One cell of Table S1: measured sensitivity (kPa/N), and each method's relative error and what ended its range."""
 
     material: str
     pressure: float
     measured: float
-    variational: float
-    printed: float
+    errors: dict[str, float]
+    ends: str
+    range_end: float
 
-    @property
-    def errors(self) -> tuple[float, float]:
-        return self.variational / self.measured - 1, self.printed / self.measured - 1
+    def value(self, method: str) -> float:
+        """The predicted sensitivity, kPa/N."""
+        return self.measured * (1 + self.errors[method])
 
 
-def table_s1(library: Library) -> list[Cell]:
-    """All fourteen cells on the paper's sensor: no dead volume, plate to three quarters of R0."""
+def resins(library: Library) -> list[Material]:
+    """The resins of Table S1, softest first."""
+    found = [m for m in library.all("materials", Material).values() if measured(m)]
+    return sorted(found, key=lambda m: m.shear_modulus_MPa.nominal if m.shear_modulus_MPa else 0.0)
+
+
+def table_s1(library: Library, dead_volume_ml: float = 0.0) -> list[Cell]:
+    """All fourteen cells on the paper's sensor: plate to three quarters of R0."""
     cells = []
-    for material in library.all("materials", Material).values():
-        if material.measured is None:
-            continue
-        measured = material.measured.sensitivity_0kPa_kPa_per_N, material.measured.sensitivity_22kPa_kPa_per_N
-        sensor = material_sensor(material)
-        states = [predict("", sensor, [0.0, 22 * KPA], closure=c).states for c in ("variational", "printed")]
-        for k, pressure in enumerate((0.0, 22.0)):
-            one, other = (found[k].figures for found in states)
-            assert one is not None and other is not None
-            cells.append(Cell(material.title, pressure, measured[k].nominal, one.sensitivity, other.sensitivity))
+    for material in resins(library):
+        truth = measured(material)
+        assert truth is not None
+        sensor = replace(material_sensor(material), dead_volume=dead_volume_ml * ML)
+        runs = {
+            name: predict("", sensor, [p * KPA for p in PRESSURES], model=model, closure=closure).states
+            for name, (model, closure) in METHODS.items()
+        }
+        for k, pressure in enumerate(PRESSURES):
+            errors = {name: s[k].figures.sensitivity / truth[k] - 1 for name, s in runs.items() if s[k].figures}
+            state = runs["solid"][k]
+            ends = next((event.kind for event in state.events if event.ends_range), "depth")
+            cells.append(Cell(material.title, pressure, truth[k], errors, ends, state.range_end))
     return sorted(cells, key=lambda cell: (cell.pressure, -cell.measured))
+
+
+def ship_errors(library: Library) -> None:
+    """Write the file that predictions with the solid read their error in sensitivity from."""
+    found = {
+        m.title: [None if e is None else round(e, 4) for e in compute_errors(m, "solid", "variational")]
+        for m in resins(library)
+    }
+    SHIPPED.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")

@@ -35,8 +35,8 @@ def library() -> Library:
 @pytest.fixture(scope="session")
 def evaluated(library: Library) -> Callable[..., Evaluation]:
     @cache
-    def run(name: str, *assignments: str, closure: str = "variational") -> Evaluation:
-        return evaluate(name, list(assignments), closure=closure, library=library)
+    def run(name: str, *assignments: str, model: str = "solid", closure: str = "variational") -> Evaluation:
+        return evaluate(name, list(assignments), model=model, closure=closure, library=library)
 
     return run
 

@@ -34,6 +34,14 @@ class ComputationError(PneutouchError):
     exit_code = 3
 
 
+class BeyondLimitError(ComputationError):
+    """A driving pressure beyond the limit point: ``pressure`` asked for and ``limit``, MPa."""
+
+    def __init__(self, pressure: float, limit: float, message: str) -> None:
+        super().__init__(message)
+        self.pressure, self.limit = pressure, limit
+
+
 def nearest(word: str, known: Iterable[str]) -> str:
     """Return ``" Did you mean X?"`` for the known word nearest to ``word``, or the known words."""
     candidates = sorted(known)

@@ -26,7 +26,15 @@ def test_predict_gives_the_papers_limit_point_and_heights(command, root):
 
 
 def test_set_overrides_a_field(command, root):
-    words = ["--set", "membrane.material=FLX9960", "--set", "pneumatics.driving_pressures_kPa=[20]", "--json"]
+    words = [
+        "--model",
+        "membrane",
+        "--set",
+        "membrane.material=FLX9960",
+        "--set",
+        "pneumatics.driving_pressures_kPa=[20]",
+        "--json",
+    ]
     document = json.loads(command("predict", "paper-dome", *words, cwd=root).stdout)
     assert document["limit_point"]["driving_pressure_kPa"] == pytest.approx(224.3, abs=0.05)
     assert [state["driving_pressure_kPa"] for state in document["states"]] == [20.0]

@@ -18,7 +18,8 @@ from pneutouch.mechanics.inflation import (
     relative_pressure,
     thickness_stretch,
 )
-from pneutouch.mechanics.laws import LAWS
+from pneutouch.mechanics.membrane_energy import energy as wall_energy
+from pneutouch.mechanics.membrane_energy import energy_slope
 from tests.mechanics.exact_membrane import inflated, limit_point
 
 MODULI = {"TangoPlus": 0.17, "FLX9940": 0.27, "FLX9950": 0.55, "FLX9960": 0.91, "FLX9970": 1.64,
@@ -93,20 +94,19 @@ def test_closed_form_is_stationary_energy():
         def energy(height, p=p):
             volume = np.pi / 6 * height * (3 * radius**2 + height**2)
             stretch = 2 * radius**2 / (radius**2 + height**2)
-            return 2 * np.pi * radius**2 * wall * LAWS["neo-hookean"].energy(modulus, stretch) - p * volume
+            return 2 * np.pi * radius**2 * wall * wall_energy(modulus, stretch) - p * volume
 
         slope = (energy(h + step) - energy(h - step)) / (2 * step)
         assert abs(slope) < 1e-6 * modulus * wall * radius
 
 
 def test_law_slope_is_the_slope_of_its_energy_and_its_modulus_is_mu():
-    law = LAWS["neo-hookean"]
     stretch = np.linspace(0.3, 1.4, 23)
     step = 1e-6
-    numeric = (law.energy(0.55, stretch + step) - law.energy(0.55, stretch - step)) / (2 * step)
-    assert law.energy_slope(0.55, stretch) == pytest.approx(numeric, abs=1e-8)
+    numeric = (wall_energy(0.55, stretch + step) - wall_energy(0.55, stretch - step)) / (2 * step)
+    assert energy_slope(0.55, stretch) == pytest.approx(numeric, abs=1e-8)
     # W'' by the thickness stretch at 1 is 3 mu: equibiaxial strain e has lambda_t = 1 - 2 e and W = 6 mu e^2.
-    curvature = (law.energy_slope(1.0, np.array(1 + step)) - law.energy_slope(1.0, np.array(1 - step))) / (2 * step)
+    curvature = (energy_slope(1.0, np.array(1 + step)) - energy_slope(1.0, np.array(1 - step))) / (2 * step)
     assert curvature == pytest.approx(3.0, rel=1e-6)
 
 

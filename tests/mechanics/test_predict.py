@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
 
 from pneutouch.errors import InputError
-from pneutouch.mechanics import predict
+from pneutouch.mechanics import predict as predict_with
 from pneutouch.mechanics.limits import limit_point, limits
 from tests.mechanics.test_contact import PAPER
 from tests.mechanics.test_inflation import MODULI
+
+predict = partial(predict_with, model="membrane")
 
 
 def test_limit_point_is_the_same_stretch_for_every_resin_and_linear_in_the_radius():
@@ -81,7 +84,7 @@ def test_more_steps_change_the_sensitivity_little():
 @pytest.mark.parametrize("words", [{"model": "solidd"}, {"closure": "variation"}])
 def test_unknown_model_or_closure_is_an_input_error(words):
     with pytest.raises(InputError, match="unknown"):
-        predict("x", PAPER, [0.0], **words)
+        predict_with("x", PAPER, [0.0], **words)
 
 
 def test_document_is_rounded_and_names_units():

@@ -38,7 +38,7 @@ def test_page_is_self_contained_and_holds_the_3d_view(html):
     assert "<iframe" in html
     assert "THREE" in html
     assert "url(data:font/otf;base64," in html
-    assert html.count("<svg") == 5
+    assert html.count("<svg") == 6
 
 
 def test_sheet_states_the_predicted_figures(built, html, pdf_text):
@@ -48,7 +48,11 @@ def test_sheet_states_the_predicted_figures(built, html, pdf_text):
         for value in (state["sensitivity_kPa_per_N"], state["apex_height_inner_mm"], state["apex_height_outer_mm"]):
             assert f"{value:.2f}" in html
             assert f"{value:.2f}" in text
-    for word in ("41.90", "limit point", "PNT-R0925-T150-TP-B4-GF-M3"):
+    for word in (
+        f"{prediction['limit_point']['driving_pressure_kPa']:.2f}",
+        "limit point",
+        "PNT-R0925-T150-TP-B4-GF-M3",
+    ):
         assert word in html
         assert word in text
 

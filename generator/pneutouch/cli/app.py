@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -26,8 +27,10 @@ SetOption = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="TABLE.KEY=VALUE", help="Override a field of the design; may be repeated."),
 ]
-ModelOption = Annotated[str, typer.Option("--model", help="Rung of the ladder of models: membrane.")]
-ClosureOption = Annotated[str, typer.Option("--closure", help="Contact closure: variational or printed.")]
+ModelOption = Annotated[str, typer.Option("--model", help="Rung of the ladder of models: membrane or solid.")]
+ClosureOption = Annotated[
+    str, typer.Option("--closure", help="Contact closure of the membrane: variational or printed.")
+]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON document and nothing else.")]
 OutOption = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder that takes the output folder.")]
 
@@ -43,6 +46,17 @@ def _reporting() -> Iterator[None]:
     except BrokenPipeError:
         sys.stderr.close()
         raise typer.Exit(0) from None
+    except typer.Exit:
+        raise
+    except Exception as error:
+        if os.environ.get("PNEUTOUCH_DEBUG"):
+            raise
+        typer.echo(
+            f"error: internal fault ({type(error).__name__}: {error}); please report it with the design file. "
+            "PNEUTOUCH_DEBUG=1 shows where",
+            err=True,
+        )
+        raise typer.Exit(3) from None
 
 
 def _version(asked: bool) -> None:
@@ -62,7 +76,7 @@ def main(
 
 @app.command()
 def build(
-    design: DesignArgument, set_: SetOption = None, model: ModelOption = "membrane",
+    design: DesignArgument, set_: SetOption = None, model: ModelOption = "solid",
     closure: ClosureOption = "variational", out: OutOption = Path("outputs"), json: JsonOption = False,
 ) -> None:  # fmt: skip
     """Build everything: print files, prediction, datasheet."""
@@ -83,7 +97,7 @@ def build(
 
 @app.command()
 def predict(
-    design: DesignArgument, set_: SetOption = None, model: ModelOption = "membrane",
+    design: DesignArgument, set_: SetOption = None, model: ModelOption = "solid",
     closure: ClosureOption = "variational", json: JsonOption = False,
 ) -> None:  # fmt: skip
     """Predict the figures alone."""

@@ -32,13 +32,17 @@ def prediction_text(document: dict[str, Any]) -> str:
             _optional(state["stiffness_N_per_mm"], ".3f"), "-" if force is None else f"0-{force[1]:.2f}",
             ends[0] if ends else "depth",
         ])  # fmt: skip
+    closure = f" ({document['closure']} contact)" if document["closure"] else ""
+    reach = f"no limit point; the {limits['binding']} binds" if point is None else (
+        f"limit point {point['driving_pressure_kPa']:.2f} kPa at {point['apex_height_inner_mm']:.2f} mm inside, "
+        f"{point['apex_height_outer_mm']:.2f} mm outside; the {limits['binding']} binds"
+    )  # fmt: skip
     error = document["error_estimate"]
     sensitivity = error["sensitivity_relative"]
     far = "unknown" if sensitivity is None else f"up to {sensitivity:.0%}"
     return "\n".join([
-        f"{document['design']}: model {document['model']} ({document['closure']}), dead volume {document['dead_volume_mL']:.3f} mL",
-        f"limit point {point['driving_pressure_kPa']:.2f} kPa at {point['apex_height_inner_mm']:.2f} mm inside, "
-        f"{point['apex_height_outer_mm']:.2f} mm outside; the {limits['binding']} binds",
+        f"{document['design']}: model {document['model']}{closure}, dead volume {document['dead_volume_mL']:.3f} mL",
+        reach,
         "", columns(head, rows), "",
         f"error in sensitivity {far}: {error['sensitivity_basis']}",
     ])  # fmt: skip

@@ -20,7 +20,7 @@ import numpy as np
 
 from pneutouch.mechanics.cap import PressedCap, pressed_cap
 from pneutouch.mechanics.gas import TrappedGas
-from pneutouch.mechanics.laws import Law
+from pneutouch.mechanics.membrane_energy import energy_slope
 from pneutouch.mechanics.roots import bisect
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.meridian.segments import Array
@@ -43,10 +43,10 @@ class Pressed:
         )
 
 
-def press(sensor: Sensor, law: Law, gas: TrappedGas, apex: Array, indentation: Array, closure: str) -> Pressed:
+def press(sensor: Sensor, gas: TrappedGas, apex: Array, indentation: Array, closure: str) -> Pressed:
     """Press the dome, inflated to apex height ``apex`` (mm), by ``indentation`` (mm) with a closure's name."""
     height = apex - indentation
-    model = CLOSURES[closure](sensor, law, gas, apex, height)
+    model = CLOSURES[closure](sensor, gas, apex, height)
     zero = np.zeros(np.broadcast_shapes(np.shape(gas.driving_pressure), np.shape(height)))
     rho = bisect(model.residual, zero, zero + sensor.inner_radius)
     cap = pressed_cap(rho, height, sensor.inner_radius)
@@ -59,7 +59,6 @@ class _Closure:
     """What both closures start from; heights broadcast against the gas's driving pressures."""
 
     sensor: Sensor
-    law: Law
     gas: TrappedGas
     apex: Array
     height: Array
@@ -74,7 +73,7 @@ class _Closure:
     def wall_slope(self, cap: PressedCap, reference_area: Array | float) -> Array:
         """Derivative of the wall's energy by the membrane's area, N/mm."""
         stretch = reference_area / cap.area
-        return -self.wall_volume * self.law.energy_slope(self.sensor.shear_modulus, stretch) * stretch / cap.area
+        return -self.wall_volume * energy_slope(self.sensor.shear_modulus, stretch) * stretch / cap.area
 
 
 class Variational(_Closure):

@@ -14,7 +14,7 @@ import math
 
 import numpy as np
 
-from pneutouch.errors import ComputationError
+from pneutouch.errors import BeyondLimitError, ComputationError
 from pneutouch.mechanics.roots import bisect
 from pneutouch.meridian.segments import Array
 
@@ -66,11 +66,15 @@ def relative_height(
 ) -> Array:
     """h/R0 at driving pressures ``p`` (MPa, from 0 to the limit), on the rising or the falling branch."""
     target = np.asarray(p, float) * inner_radius / (shear_modulus * wall)
-    if np.any(target > LIMIT_PRESSURE * (1 + 1e-12)) or np.any(target < 0):
-        raise ComputationError(
-            f"no equilibrium of the membrane at p R0/(mu t0) = {float(np.max(target)):.4g}: the limit point "
-            f"is {LIMIT_PRESSURE:.4g}; lower the driving pressure"
+    if np.any(target > LIMIT_PRESSURE * (1 + 1e-12)):
+        scale = shear_modulus * wall / inner_radius
+        text = (
+            f"no equilibrium of the membrane at p R0/(mu t0) = {float(np.max(target)):.4g}: the limit point is "
+            f"{LIMIT_PRESSURE:.4g}; lower the driving pressure"
         )
+        raise BeyondLimitError(float(np.max(target)) * scale, LIMIT_PRESSURE * scale, text)
+    if np.any(target < 0):
+        raise ComputationError("the membrane theory knows no suction; give driving pressures from 0")
     if falling:
         low, high = np.full(target.shape, math.log(LIMIT_HEIGHT)), np.full(target.shape, math.log(_HIGHEST))
         return np.exp(bisect(lambda s: target - relative_pressure(np.exp(s)), low, high))

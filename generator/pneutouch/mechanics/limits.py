@@ -29,7 +29,7 @@ class LimitPoint:
 class Limits:
     """Driving pressures (MPa) at which each limit is met; None where it is not met before the limit point."""
 
-    limit_point: float
+    limit_point: float | None
     break_strain: float | None
     gauge: float
 

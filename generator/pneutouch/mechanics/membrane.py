@@ -2,35 +2,63 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from pneutouch.mechanics.contact import Pressed, press
 from pneutouch.mechanics.events import events, range_end
 from pneutouch.mechanics.exact_membrane import height_errors, limit_point_errors
 from pneutouch.mechanics.gas import TrappedGas
-from pneutouch.mechanics.inflation import relative_height, thickness_stretch
-from pneutouch.mechanics.laws import LAWS
-from pneutouch.mechanics.prediction import State
+from pneutouch.mechanics.inflation import LIMIT_HEIGHT, pressure, relative_height, thickness_stretch
+from pneutouch.mechanics.limits import limit_point, limits
+from pneutouch.mechanics.prediction import InflationCurve, Result, State
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.meridian.segments import Array
 from pneutouch.units import KPA
 
 
-def error_against_exact_membrane(sensor: Sensor, driving_pressures: Array) -> dict[str, float]:
+def error_against_exact_membrane(sensor: Sensor, driving_pressures: Array) -> dict[str, Any]:
     """What the assumption of constant curvature costs in state I: relative errors, the greatest for the heights."""
-    pressure, height = limit_point_errors()
+    limit_pressure, limit_height = limit_point_errors()
     scale = sensor.inner_radius / (sensor.shear_modulus * sensor.wall_thickness)
     heights = height_errors(driving_pressures * scale)
+    greatest = float(heights[np.argmax(np.abs(heights))])
     return {
-        "limit_pressure_relative": pressure,
-        "limit_apex_height_relative": height,
-        "apex_height_relative": float(heights[np.argmax(np.abs(heights))]),
+        "limit_pressure_relative": limit_pressure,
+        "limit_apex_height_relative": limit_height,
+        "apex_height_relative": greatest,
+        "summary": [
+            f"Against the exact membrane: limit pressure {limit_pressure:+.1%}, apex height there {limit_height:+.1%}, "
+            f"apex heights at the driving pressures up to {greatest:+.1%}."
+        ],
     }
 
 
 _FINE = 8
 """Events are looked for on a grid this many times finer than the steps."""
+
+
+def membrane_result(sensor: Sensor, driving_pressures: Array, closure: str) -> Result:
+    """Limit point, limits and states of the membrane theory."""
+    return Result(
+        limit_point(sensor),
+        limits(sensor),
+        inflation_curve(sensor),
+        membrane_states(sensor, driving_pressures, closure),
+    )
+
+
+def inflation_curve(sensor: Sensor) -> InflationCurve:
+    """Both branches of the closed form, to 1.8 times the height of the limit point."""
+    x = np.concatenate([np.linspace(1.0, LIMIT_HEIGHT, 60), np.linspace(LIMIT_HEIGHT, 1.8 * LIMIT_HEIGHT, 60)[1:]])
+    apex = x * sensor.inner_radius
+    return InflationCurve(
+        apex_inner=apex, apex_outer=apex + thickness_stretch(x) * sensor.wall_thickness,
+        volume=np.pi / 6 * apex * (3 * sensor.inner_radius**2 + apex**2),
+        pressure=pressure(x, sensor.inner_radius, sensor.wall_thickness, sensor.shear_modulus),
+    )  # fmt: skip
 
 
 def membrane_states(sensor: Sensor, driving_pressures: Array, closure: str) -> tuple[State, ...]:
@@ -45,7 +73,7 @@ def membrane_states(sensor: Sensor, driving_pressures: Array, closure: str) -> t
     gas = TrappedGas(driving_pressures[:, None], volume[:, None], sensor.dead_volume, sensor.ambient_pressure)
 
     def pressed(indentation: Array) -> Pressed:
-        return press(sensor, LAWS["neo-hookean"], gas, apex[:, None], indentation, closure)
+        return press(sensor, gas, apex[:, None], indentation, closure)
 
     fine = np.linspace(0.0, sensor.depth, _FINE * sensor.steps + 1)
     way = pressed(fine)
@@ -61,7 +89,7 @@ def membrane_states(sensor: Sensor, driving_pressures: Array, closure: str) -> t
             figures=figures(grid[k], fitted.force[k], (fitted.pressure[k] - p) / KPA),
             indentation=fine[::_FINE], force=way.force[k, ::_FINE], pressure_rise=way.pressure[k, ::_FINE] - p,
             contact_radius=way.contact_radius[k, ::_FINE],
-            membrane_stretch=way.thickness_stretch[k, ::_FINE] ** -0.5, events=tuple(happened[k]),
+            max_stretch=way.thickness_stretch[k, ::_FINE] ** -0.5, events=tuple(happened[k]),
         )
         for k, p in enumerate(driving_pressures)
     )  # fmt: skip

@@ -18,6 +18,16 @@ _DIGITS = 12
 
 
 @dataclass(frozen=True, slots=True)
+class Shape:
+    """The deformed wall at an indentation (mm; None before contact): cells (n, m, 2) in (r, z), mm, and the
+    greatest principal stretch in each cell (n,)."""
+
+    indentation: float | None
+    cells: Array
+    stretch: Array
+
+
+@dataclass(frozen=True, slots=True)
 class State:
     """One driving pressure: the inflated dome and its loading curve (arrays of one length, mm, N, MPa).
 
@@ -34,8 +44,10 @@ class State:
     force: Array
     pressure_rise: Array
     contact_radius: Array
-    membrane_stretch: Array
+    max_stretch: Array
     events: tuple[Event, ...]
+    max_von_mises: Array | None = None
+    shapes: tuple[Shape, ...] = ()
 
     def document(self) -> dict[str, Any]:
         """The state as ``predict --json`` prints it."""
@@ -58,7 +70,8 @@ class State:
                 "contact_force_N": self.force.tolist(),
                 "pressure_rise_kPa": (self.pressure_rise / KPA).tolist(),
                 "contact_radius_mm": self.contact_radius.tolist(),
-                "membrane_stretch": self.membrane_stretch.tolist(),
+                "max_stretch": self.max_stretch.tolist(),
+                **({} if self.max_von_mises is None else {"max_von_mises_MPa": self.max_von_mises.tolist()}),
                 "tangent_stiffness_N_per_mm": tangent_stiffness(self.indentation, self.force).tolist(),
             },
             "events": [
@@ -74,16 +87,37 @@ class State:
 
 
 @dataclass(frozen=True, slots=True)
+class InflationCurve:
+    """Free inflation through the limit point and past it; arrays of one length in order of volume (mm, mm3, MPa)."""
+
+    apex_inner: Array
+    apex_outer: Array
+    volume: Array
+    pressure: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """What a rung computes: the limit point (None where the pressure has no maximum), the limits and the states."""
+
+    limit_point: LimitPoint | None
+    limits: Limits
+    inflation: InflationCurve
+    states: tuple[State, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Prediction:
     """All that one model says of one sensor."""
 
     design: str
     model: str
-    closure: str
+    closure: str | None
     error_estimate: dict[str, Any]
-    limit_point: LimitPoint
+    limit_point: LimitPoint | None
     limits: Limits
     dead_volume: float
+    inflation: InflationCurve
     states: tuple[State, ...]
     assumptions: tuple[str, ...]
 
@@ -95,7 +129,9 @@ class Prediction:
             "model": self.model,
             "closure": self.closure,
             "error_estimate": self.error_estimate,
-            "limit_point": {
+            "limit_point": None
+            if point is None
+            else {
                 "apex_height_inner_mm": point.apex_inner,
                 "apex_height_outer_mm": point.apex_outer,
                 "driving_pressure_kPa": point.driving_pressure / KPA,
@@ -103,12 +139,18 @@ class Prediction:
                 "thickness_stretch": point.thickness_stretch,
             },
             "limits": {
-                "limit_point_kPa": caps.limit_point / KPA,
+                "limit_point_kPa": None if caps.limit_point is None else caps.limit_point / KPA,
                 "break_strain_kPa": None if caps.break_strain is None else caps.break_strain / KPA,
                 "gauge_range_kPa": caps.gauge / KPA,
                 "binding": caps.binding,
             },
             "dead_volume_mL": self.dead_volume / ML,
+            "inflation": {
+                "apex_height_inner_mm": self.inflation.apex_inner.tolist(),
+                "apex_height_outer_mm": self.inflation.apex_outer.tolist(),
+                "cavity_volume_mL": (self.inflation.volume / ML).tolist(),
+                "driving_pressure_kPa": (self.inflation.pressure / KPA).tolist(),
+            },
             "states": [state.document() for state in self.states],
             "assumptions": list(self.assumptions),
         }

@@ -4,10 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from pneutouch.mechanics.laws import Hyperelastic, hyperelastic, neo_hookean
+
 
 @dataclass(frozen=True, slots=True)
 class Sensor:
-    """A dome with its gas and its plate. ``break_stretch`` is the stretch at which the resin may tear."""
+    """A dome with its gas and its plate. ``break_stretch`` is the stretch at which the resin may tear.
+
+    ``law`` is a hyperelastic law's name with its constants where the resin has one of its own; without it the
+    wall is neo-Hookean with ``shear_modulus``.
+    """
 
     inner_radius: float
     wall_thickness: float
@@ -20,3 +26,11 @@ class Sensor:
     steps: int
     break_stretch: float | None
     gauge_limit: float
+    law: tuple[str, tuple[float, ...]] | None = None
+
+    @property
+    def material(self) -> Hyperelastic:
+        """The wall's hyperelastic law. Raises InputError for constants that make no solid."""
+        if self.law is None:
+            return neo_hookean(self.shear_modulus, self.poisson_ratio)
+        return hyperelastic(*self.law, self.poisson_ratio)

@@ -4,22 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
 from pneutouch.catalogue import Library, Scene, load_scene
-from pneutouch.errors import InputError
+from pneutouch.errors import BeyondLimitError, InputError
 from pneutouch.mechanics import Prediction, Sensor, predict
-from pneutouch.mechanics.limits import limit_point
 from pneutouch.parts import Assembly, assemble
+from pneutouch.pipeline.table_s1 import material_sensor, sensitivity_error
 from pneutouch.printability import Finding, check
-from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
-from pneutouch.units import GAUGE_LIMIT, KPA, STANDARD_ATMOSPHERE
-
-PAPER_RADIUS, PAPER_WALL, PAPER_PLATE = 9.25, 1.5, 30.0
-"""The paper's sensor in mm: section 2-B and Supplement B."""
+from pneutouch.units import KPA
 
 
 @dataclass(frozen=True)
@@ -40,7 +35,7 @@ class Evaluation:
 
 def evaluate(
     name: str, assignments: list[str] | None = None, *,
-    model: str = "membrane", closure: str = "variational", library: Library | None = None,
+    model: str = "solid", closure: str = "variational", library: Library | None = None,
 ) -> Evaluation:  # fmt: skip
     """Load, draw and predict a design given by name or path. Raises InputError where it cannot work."""
     shelves = library or Library.default()
@@ -48,12 +43,15 @@ def evaluate(
     assembly = assemble(scene)
     _check_envelope(assembly)
     sensor = sensor_of(assembly)
-    _check_driving(scene, sensor)
     pressures = [p * KPA for p in scene.design.pneumatics.driving_pressures_kPa]
-    prediction = predict(
-        scene.name, sensor, pressures, model=model, closure=closure,
-        sensitivity_error=sensitivity_error(scene.membrane_material, model, closure),
-    )  # fmt: skip
+    try:
+        prediction = predict(
+            scene.name, sensor, pressures, model=model, closure=closure,
+            sensitivity_error=sensitivity_error(scene.membrane_material, model, closure),
+        )  # fmt: skip
+    except BeyondLimitError as error:
+        raise _beyond_limit(scene, error) from None
+    _check_plate(scene, prediction)
     return Evaluation(scene, assembly, sensor, prediction, shelves)
 
 
@@ -72,47 +70,26 @@ def sensor_of(assembly: Assembly) -> Sensor:
     )
 
 
-def material_sensor(material: Material) -> Sensor:
-    """The paper's sensor in a material: no dead volume, 14 steps to three quarters of R0."""
-    assert material.shear_modulus_MPa is not None and material.poisson_ratio is not None
-    elongation = material.elongation_at_break_percent
-    return Sensor(
-        inner_radius=PAPER_RADIUS, wall_thickness=PAPER_WALL,
-        shear_modulus=material.shear_modulus_MPa.nominal, poisson_ratio=material.poisson_ratio.nominal,
-        ambient_pressure=STANDARD_ATMOSPHERE, dead_volume=0.0, plate_radius=0.5 * PAPER_PLATE,
-        depth=0.75 * PAPER_RADIUS, steps=14,
-        break_stretch=None if elongation is None else 1 + elongation.least / 100, gauge_limit=GAUGE_LIMIT,
-    )  # fmt: skip
+def _beyond_limit(scene: Scene, error: BeyondLimitError) -> InputError:
+    """The limit point in terms of the design file."""
+    pressures = scene.design.pneumatics.driving_pressures_kPa
+    k = int(np.argmin([abs(p - error.pressure / KPA) for p in pressures]))
+    return InputError(
+        f"{scene.where}: pneumatics.driving_pressures_kPa[{k}] = {pressures[k]:g}: beyond the limit point, where "
+        f"the dome snaps; with this resin, wall and radius it must be at most {error.limit / KPA:.2f} kPa"
+    )
 
 
-def sensitivity_error(material: Material, model: str, closure: str) -> dict[str, Any]:
-    """The model's relative error in sensitivity on the paper's sensor in this material, where it was measured."""
-    if material.measured is None:
-        return {
-            "sensitivity_relative": None,
-            "sensitivity_basis": f"no measurement of a sensor in {material.label} is known",
-        }
-    states = predict("", material_sensor(material), [0.0, 22 * KPA], model=model, closure=closure).states
-    measured = (material.measured.sensitivity_0kPa_kPa_per_N, material.measured.sensitivity_22kPa_kPa_per_N)
-    errors = [
-        state.figures.sensitivity / quantity.nominal - 1
-        for state, quantity in zip(states, measured, strict=True)
-        if state.figures is not None
-    ]
-    return {
-        "sensitivity_relative": float(np.max(np.abs(errors))) if errors else None,
-        "sensitivity_relative_0kPa_22kPa": errors,
-        "sensitivity_basis": "this model on the paper's sensor in the same resin against its Table S1, nothing fitted",
-    }
-
-
-def _check_driving(scene: Scene, sensor: Sensor) -> None:
-    limit = limit_point(sensor).driving_pressure / KPA
-    for k, pressure in enumerate(scene.design.pneumatics.driving_pressures_kPa):
-        if pressure > limit:
+def _check_plate(scene: Scene, prediction: Prediction) -> None:
+    """Refuse a plate whose edge would dig into the dome within the depth."""
+    for state in prediction.states:
+        ending = [event for event in state.events if event.ends_range]
+        if ending and ending[0].kind == "plate edge":
             raise InputError(
-                f"{scene.where}: pneumatics.driving_pressures_kPa[{k}] = {pressure:g}: beyond the limit point, where "
-                f"the dome snaps; with this resin, wall and radius it must be at most {limit:.2f} kPa"
+                f"{scene.where}: indentation.plate_diameter_mm = {scene.design.indentation.plate_diameter_mm:g}: the contact "
+                f"reaches the plate's edge at {ending[0].indentation:.2f} mm of indentation; it must be wider than the "
+                f"contact (twice membrane.inner_radius_mm = {2 * scene.design.membrane.inner_radius_mm:g} mm is safe), or "
+                f"indentation.depth_mm less"
             )
 
 

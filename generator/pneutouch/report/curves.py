@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pneutouch.mechanics import Prediction, Sensor
-from pneutouch.mechanics.inflation import LIMIT_HEIGHT, membrane_stretch, pressure
 from pneutouch.meridian.segments import Array
 from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MARKERS, MUTED, figure, label_ends, svg
 from pneutouch.units import KPA
@@ -21,48 +20,77 @@ SIZE = (86.0, 62.0)
 
 def inflation(sensor: Sensor, prediction: Prediction) -> str:
     """Driving pressure over inner apex height, both branches, with the limit point and the other limits."""
-    x = np.concatenate([np.linspace(1.0, LIMIT_HEIGHT, 120), np.linspace(LIMIT_HEIGHT, 3.2, 120)[1:]])
-    height = x * sensor.inner_radius
-    p = pressure(x, sensor.inner_radius, sensor.wall_thickness, sensor.shear_modulus) / KPA
-    point = prediction.limit_point
+    curve, point = prediction.inflation, prediction.limit_point
+    height, p = curve.apex_inner, curve.pressure / KPA
     with figure(*SIZE) as drawn:
         ax = drawn.add_subplot()
-        rising = x <= LIMIT_HEIGHT
-        ax.plot(height[rising], p[rising], color=ACCENT, lw=1.6)
-        ax.plot(height[~rising], p[~rising], color=MUTED, ls=LINES[1])
+        peak = int(np.argmax(p))
+        ax.plot(height[: peak + 1], p[: peak + 1], color=ACCENT, lw=1.6)
+        ax.plot(height[peak:], p[peak:], color=MUTED, ls=LINES[1])
         for state in prediction.states:
             label = "driving pressures of this design" if state is prediction.states[0] else None
-            ax.plot(
-                state.apex_inner,
-                state.driving_pressure / KPA,
-                "o",
-                color=INK,
-                ms=3.5,
-                mfc="white",
-                zorder=3,
-                label=label,
-            )
-        ax.plot(point.apex_inner, point.driving_pressure / KPA, "D", color=INK, ms=4.5, zorder=4)
-        ax.annotate(
-            f"limit point\n{point.driving_pressure / KPA:.1f} kPa, {point.apex_inner:.2f} mm",
-            (point.apex_inner, point.driving_pressure / KPA), xytext=(0, 7), textcoords="offset points", ha="center",
-        )  # fmt: skip
-        _mark_limits(ax, sensor, height, p)
+            at = (state.apex_inner, state.driving_pressure / KPA)
+            ax.plot(*at, "o", color=INK, ms=3.5, mfc="white", zorder=3, label=label)
+        if point is not None:
+            at = (point.apex_inner, point.driving_pressure / KPA)
+            ax.plot(*at, "D", color=INK, ms=4.5, zorder=4)
+            text = f"limit point\n{at[1]:.1f} kPa, {at[0]:.2f} mm"
+            ax.annotate(text, at, xytext=(0, 7), textcoords="offset points", ha="center")
+        _mark_limits(ax, sensor, prediction)
         ax.set(xlabel="inner apex height  (mm)", ylabel="driving pressure  (kPa)", ylim=(0, 1.28 * p.max()))
         ax.legend(loc="lower right", handletextpad=0.2)
         return svg(drawn)
 
 
-def _mark_limits(ax: Axes, sensor: Sensor, height: Array, p: Array) -> None:
-    gauge = sensor.gauge_limit / KPA
+def _mark_limits(ax: Axes, sensor: Sensor, prediction: Prediction) -> None:
+    curve = prediction.inflation
+    p, gauge = curve.pressure / KPA, sensor.gauge_limit / KPA
     if gauge < 1.2 * p.max():
         ax.axhline(gauge, color=MUTED, lw=0.8, ls=LINES[4])
-        ax.text(height[-1], gauge, f"gauge range {gauge:g} kPa", ha="right", va="bottom", color=MUTED, fontsize=6.5)
-    stretch = membrane_stretch(height / sensor.inner_radius)
-    if sensor.break_stretch is not None and stretch[-1] > sensor.break_stretch:
-        k = int(np.argmax(stretch > sensor.break_stretch))
-        ax.plot(height[k], p[k], "X", color=INK, ms=5)
-        ax.annotate("break strain", (height[k], p[k]), xytext=(0, -11), textcoords="offset points", ha="center", fontsize=6.5)
+        ax.text(
+            curve.apex_inner[-1],
+            gauge,
+            f"gauge range {gauge:g} kPa",
+            ha="right",
+            va="bottom",
+            color=MUTED,
+            fontsize=6.5,
+        )
+    torn = prediction.limits.break_strain
+    if torn is not None:
+        rising = slice(0, int(np.argmax(p)) + 1)
+        height = float(np.interp(torn / KPA, p[rising], curve.apex_inner[rising]))
+        ax.plot(height, torn / KPA, "X", color=INK, ms=5)
+        ax.annotate("break strain", (height, torn / KPA), xytext=(7, -3), textcoords="offset points", fontsize=6.5)
+
+
+def shapes(prediction: Prediction) -> str:
+    """Half sections of the deformed wall at the lowest and the highest driving pressure, shaded by stretch."""
+    from matplotlib.collections import PolyCollection
+
+    states = prediction.states[:1] + prediction.states[1:][-1:]
+    drawn_shapes = [(state, shape) for state in states for shape in state.shapes[1:]]
+    top = max(float(shape.stretch.max()) for _, shape in drawn_shapes)
+    every = np.concatenate([shape.cells.reshape(-1, 2) for _, shape in drawn_shapes])
+    (right, high), low = 1.06 * every.max(axis=0), min(0.0, float(every[:, 1].min())) - 0.05 * float(every[:, 1].max())
+    with figure(180, 56) as drawn:
+        axes = np.atleast_1d(drawn.subplots(1, len(drawn_shapes), sharey=True))
+        for ax, (state, shape) in zip(axes, drawn_shapes, strict=True):
+            look: dict[str, Any] = {"cmap": "cividis_r", "clim": (1.0, top), "edgecolors": "face", "lw": 0.2}
+            wall = PolyCollection(list(shape.cells), array=shape.stretch, **look)
+            rest = PolyCollection(list(state.shapes[0].cells), facecolors="none", edgecolors=FAINT, lw=0.3, zorder=0)
+            ax.add_collection(rest)
+            ax.add_collection(wall)
+            ax.axhline(0, color=INK, lw=0.8)
+            if shape.indentation:
+                ax.axhline(float(shape.cells[..., 1].max()), xmax=0.97, color=INK, lw=1.6)
+            pressed = f", pressed {shape.indentation:.2f} mm" if shape.indentation else ""
+            ax.set_title(f"{state.driving_pressure / KPA:g} kPa{pressed}", fontsize=7)
+            ax.set(aspect="equal", xlabel="radius  (mm)", xlim=(0, right), ylim=(low, high))
+            ax.grid(False)
+        axes[0].set_ylabel("height  (mm)")
+        drawn.colorbar(wall, ax=list(axes), label="greatest stretch  (-)", shrink=0.9)
+        return svg(drawn)
 
 
 def response(prediction: Prediction) -> str:

@@ -44,7 +44,9 @@ def _figures(sheet: Sheet, sensor: Sensor) -> dict[str, str]:
     prediction, chosen = sheet.prediction, sheet.scene.membrane_material.title
     highest = max(prediction.states[-1].driving_pressure, _LEAST_SPAN)
     resins = resin_curves(sensor, sheet.resins, highest, prediction.model, prediction.closure)
+    deformed = {"shapes": curves.shapes(prediction)} if prediction.states[0].shapes else {}
     return {
+        **deformed,
         "drawing": section_drawing(sheet.assembly),
         "inflation": curves.inflation(sensor, prediction),
         "sensitivity": curves.sensitivities(resins, chosen, sheet.published()),

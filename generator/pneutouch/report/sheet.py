@@ -50,6 +50,7 @@ class Sheet:
             "operating": self.operating(),
             "performance": self.performance(),
             "model_error": self.model_error(),
+            "has_shapes": bool(self.prediction.states[0].shapes),
             "limits": self.limits(),
             "environment": self.environment(),
             "reliability": [[what, NOT_TESTED] for what in prose.RELIABILITY],
@@ -85,7 +86,7 @@ class Sheet:
     def ratings(self) -> list[list[str]]:
         """Absolute maximum ratings: quantity, value, unit, basis."""
         limits = self.prediction.limits
-        binds = f"{limits.binding}; {self.prediction.model} theory"
+        binds = f"{limits.binding}, model {self.prediction.model}"
         return [
             ["Driving pressure", f"{limits.lowest / KPA:.1f}", "kPa gauge", binds],
             ["Cavity pressure while pressed", f"{limits.gauge / KPA:g}", "kPa gauge", "range of the pressure sensor (SMC PSE543-R06)"],
@@ -145,27 +146,19 @@ class Sheet:
 
     def model_error(self) -> list[str]:
         """Sentences on how far the model is off."""
-        error = self.prediction.error_estimate
-        lines = [
-            f"Limit point against the exact membrane: pressure {error['limit_pressure_relative']:+.1%}, "
-            f"apex height {error['limit_apex_height_relative']:+.1%}; apex heights at the driving pressures up to "
-            f"{error['apex_height_relative']:+.1%}.",
-        ]
-        if error["sensitivity_relative"] is None:
-            return [*lines, f"Sensitivity: unknown; {error['sensitivity_basis']}."]
-        pairs = ", ".join(
-            f"{value:+.0%} at {pressure} kPa"
-            for value, pressure in zip(error["sensitivity_relative_0kPa_22kPa"], (0, 22), strict=False)
-        )
-        return [*lines, f"Sensitivity: {pairs}; {error['sensitivity_basis']}."]
+        return list(self.prediction.error_estimate["summary"])
 
     def limits(self) -> list[list[str]]:
         """The three limits of the driving pressure and which of them binds."""
         limits, point = self.prediction.limits, self.prediction.limit_point
         broken = DASH if limits.break_strain is None else f"{limits.break_strain / KPA:.1f}"
         where = "the resin's least elongation at break" + ("; not met before the limit point" if broken == DASH else "")
+        reach = "none: the pressure goes on rising" if point is None else (
+            f"dome snaps at {point.apex_inner:.2f} mm inside, {point.apex_outer:.2f} mm outside"
+        )  # fmt: skip
+        peak = DASH if limits.limit_point is None else f"{limits.limit_point / KPA:.2f}"
         rows = [
-            ["limit point", f"{limits.limit_point / KPA:.2f}", f"dome snaps at {point.apex_inner:.2f} mm inside, {point.apex_outer:.2f} mm outside"],
+            ["limit point", peak, reach],
             ["break strain", broken, where],
             ["gauge range", f"{limits.gauge / KPA:g}", "pressure sensor of ±100 kPa"],
         ]  # fmt: skip

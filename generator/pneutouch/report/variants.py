@@ -7,18 +7,23 @@ from dataclasses import replace
 import numpy as np
 
 from pneutouch.mechanics import Sensor, predict
-from pneutouch.mechanics.limits import limits
+from pneutouch.mechanics.limits import limit_point
 from pneutouch.meridian.segments import Array
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
 
-_POINTS = 12
+_POINTS = {"membrane": 12, "solid": 4}
+"""Driving pressures a curve is computed at: the solid costs a tenth of a second each."""
+
 _MARGIN = 0.95
 """Curves stop at this share of a resin's own limit."""
 
+_LIMIT_SHARE = {"membrane": 1.0, "solid": 0.8}
+"""A safe share of the membrane's limit pressure: thick compressible walls reach theirs earlier."""
+
 
 def resin_curves(
-    sensor: Sensor, materials: dict[str, Material], highest: float, model: str, closure: str
+    sensor: Sensor, materials: dict[str, Material], highest: float, model: str, closure: str | None
 ) -> dict[str, tuple[Array, Array]]:
     """Sensitivity (kPa/N) over driving pressure (kPa), from 0 to ``highest`` (MPa), by resin title.
 
@@ -28,10 +33,10 @@ def resin_curves(
     for material in materials.values():
         if material.kind != "elastomer" or material.shear_modulus_MPa is None:
             continue
-        variant = replace(sensor, shear_modulus=material.shear_modulus_MPa.nominal)
-        top = min(highest, _MARGIN * limits(variant).limit_point)
-        pressures = np.linspace(0.0, top, _POINTS)
-        states = predict("", variant, pressures.tolist(), model=model, closure=closure).states
+        variant = replace(sensor, shear_modulus=material.shear_modulus_MPa.nominal, law=None, break_stretch=None)
+        top = min(highest, _MARGIN * _LIMIT_SHARE[model] * limit_point(variant).driving_pressure)
+        pressures = np.linspace(0.0, top, _POINTS[model])
+        states = predict("", variant, pressures.tolist(), model=model, closure=closure or "variational").states
         values = [(p / KPA, s.figures.sensitivity) for p, s in zip(pressures, states, strict=True) if s.figures]
         if values:
             x, y = zip(*values, strict=True)

@@ -1,27 +1,33 @@
-"""Strain energy laws of an incompressible membrane: one file each, and one line here."""
+"""Hyperelastic laws: one file each, and one line here."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
-from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.meridian.segments import Array
+from pneutouch.errors import InputError, nearest
+from pneutouch.mechanics.laws.hyperelastic import Hyperelastic
+from pneutouch.mechanics.laws.mooney_rivlin import mooney_rivlin
+from pneutouch.mechanics.laws.neo_hookean import neo_hookean
+from pneutouch.mechanics.laws.ogden import ogden
+from pneutouch.mechanics.laws.yeoh import yeoh
 
-Density = Callable[[float, Array], Array]
-
-
-@dataclass(frozen=True, slots=True)
-class Law:
-    """Energy density and its slope by the thickness stretch in equibiaxial tension, both in MPa.
-
-    Called with the shear modulus (MPa) and the thickness stretch.
-    """
-
-    energy: Density
-    energy_slope: Density
-
-
-LAWS: dict[str, Law] = {
-    "neo-hookean": Law(neo_hookean.energy, neo_hookean.energy_slope),
+LAWS: dict[str, Callable[..., Hyperelastic]] = {
+    "neo-hookean": neo_hookean,
+    "mooney-rivlin": mooney_rivlin,
+    "yeoh": yeoh,
+    "ogden": lambda *flat, poisson_ratio: ogden(tuple(zip(flat[::2], flat[1::2], strict=True)), poisson_ratio),
 }
+"""Laws by name; called with their constants (MPa; Ogden: mu, alpha, mu, alpha ...) and ``poisson_ratio``."""
+
+
+def hyperelastic(name: str, constants: tuple[float, ...], poisson_ratio: float) -> Hyperelastic:
+    """Build a law by name. Raises InputError for an unknown name or constants it cannot take."""
+    if name not in LAWS:
+        raise InputError(f"law = {name!r}: unknown.{nearest(name, LAWS)}")
+    try:
+        return LAWS[name](*constants, poisson_ratio=poisson_ratio)
+    except (TypeError, ValueError):
+        raise InputError(f"law {name}: cannot take the constants {list(constants)}") from None
+
+
+__all__ = ["LAWS", "Hyperelastic", "hyperelastic", "mooney_rivlin", "neo_hookean", "ogden", "yeoh"]

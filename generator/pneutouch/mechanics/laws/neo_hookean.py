@@ -1,19 +1,18 @@
-"""Neo-Hookean law, W = C1 (I1 - 3) with C1 = mu/2 (paper, eq. 7).
-
-In equibiaxial tension with thickness stretch lambda (in-plane stretches lambda**-1/2),
-W = C1 (lambda^2 + 2/lambda - 3).
-"""
+"""Neo-Hookean law, W = (mu/2)(I1 - 3): the paper's, eq. 7 with C1 = mu/2."""
 
 from __future__ import annotations
 
-from pneutouch.meridian.segments import Array
+from functools import partial
+
+from pneutouch.mechanics.laws.hyperelastic import Hyperelastic
+from pneutouch.mechanics.laws.strain import Jet, Strain
 
 
-def energy(shear_modulus: float, thickness_stretch: Array) -> Array:
-    """Energy density, MPa, of the undeformed wall."""
-    return 0.5 * shear_modulus * (thickness_stretch**2 + 2 / thickness_stretch - 3)
+def energy(s: Strain, c1: float) -> Jet:
+    """W in MPa."""
+    return c1 * (s.first - 3.0)
 
 
-def energy_slope(shear_modulus: float, thickness_stretch: Array) -> Array:
-    """Derivative of the energy density by the thickness stretch, MPa."""
-    return shear_modulus * (thickness_stretch - thickness_stretch**-2)
+def neo_hookean(mu: float, poisson_ratio: float = 0.49) -> Hyperelastic:
+    """The law with shear modulus ``mu`` (MPa)."""
+    return Hyperelastic(partial(energy, c1=0.5 * mu), poisson_ratio, "(mu/2)(I1-3)")

@@ -1,0 +1,45 @@
+"""A hyperelastic material: an isochoric energy with Poisson's ratio; its modulus is read off the energy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from pneutouch.errors import InputError
+from pneutouch.mechanics.laws.strain import Jet, Strain
+
+Energy = Callable[[Strain], Jet]
+
+
+@dataclass(frozen=True)
+class Hyperelastic:
+    """An isochoric energy (MPa) and Poisson's ratio of the small-strain solid.
+
+    `convention` states the energy the parameters belong to; `mu` is read off the energy itself, so a wrong convention
+    shows as a wrong modulus.
+    """
+
+    energy: Energy
+    poisson_ratio: float
+    convention: str
+    mu: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.poisson_ratio < 0.5:
+            raise InputError(f"poisson_ratio = {self.poisson_ratio:g}: must lie between 0 and 0.5, both excluded")
+        one = np.ones(1)
+        # In pure shear j = h = 1 and a = l^2 + l^-2, whose second derivative is 8: W'' = 8 W_a = 4 mu.
+        mu = 2.0 * float(self.energy(Strain(2.0 * one, one, one)).data[1, 0])
+        if not mu > 0.0:
+            raise InputError(
+                f"law {self.convention}: its small-strain shear modulus is {mu:g} MPa; it must be positive"
+            )
+        object.__setattr__(self, "mu", mu)
+
+    @property
+    def bulk_ratio(self) -> float:
+        """K/mu of the small-strain solid."""
+        nu = self.poisson_ratio
+        return 2.0 * (1.0 + nu) / (3.0 * (1.0 - 2.0 * nu))

@@ -1,0 +1,27 @@
+"""Ogden law of one to three terms, W = sum (2 mu_i/alpha_i^2)(l1^alpha_i + l2^alpha_i + l3^alpha_i - 3).
+
+In this convention mu = sum mu_i. Sets in Ogden's 1972 form (mu_i/alpha_i) convert by mu_i -> mu_i alpha_i/2.
+"""
+
+from __future__ import annotations
+
+from functools import partial, reduce
+
+from pneutouch.errors import InputError
+from pneutouch.mechanics.laws.hyperelastic import Hyperelastic
+from pneutouch.mechanics.laws.strain import Jet, Strain
+
+Terms = tuple[tuple[float, float], ...]
+
+
+def energy(s: Strain, terms: Terms) -> Jet:
+    """W in MPa."""
+    parts = ((2.0 * mu / alpha**2) * (s.power_sum(alpha) - 3.0) for mu, alpha in terms)
+    return reduce(Jet.__add__, parts)
+
+
+def ogden(terms: Terms, poisson_ratio: float = 0.49) -> Hyperelastic:
+    """The law with (mu_i, alpha_i) pairs, mu_i in MPa."""
+    if not 1 <= len(terms) <= 3 or any(alpha == 0.0 for _, alpha in terms):
+        raise InputError("law ogden: give one to three (mu, alpha) pairs with alpha other than 0")
+    return Hyperelastic(partial(energy, terms=terms), poisson_ratio, "sum 2mu/alpha^2(sum l^alpha-3)")

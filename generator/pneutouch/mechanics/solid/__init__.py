@@ -1,0 +1,38 @@
+"""Axisymmetric hyperelastic finite elements: a dome, its trapped gas and a flat rigid plate.
+
+Units throughout: mm, N, MPa (pressures too).  Entry points: `dome`/`flanged_dome` (meshes), `laws.hyperelastic` (materials),
+`Solid` (the discrete body), `inflate` (study 1), `indent` (study 2).
+"""
+
+from pneutouch.mechanics.solid.errors import NoConvergenceError, SolidError, UnreachableLoadError
+from pneutouch.mechanics.solid.events import Event
+from pneutouch.mechanics.solid.indent import Indentation, Press, PressState, indent
+from pneutouch.mechanics.solid.inflate import FreeState, Inflation, inflate, state_at
+from pneutouch.mechanics.solid.mesh import SolidMesh, dome, flanged_dome
+from pneutouch.mechanics.solid.model import Solid
+from pneutouch.mechanics.solid.sensitivity import Line, fit_sensitivity
+from pneutouch.mechanics.solid.stress import Peak, Probe, burst
+
+__all__ = [
+    "Event",
+    "FreeState",
+    "Indentation",
+    "Inflation",
+    "Line",
+    "NoConvergenceError",
+    "Peak",
+    "Press",
+    "PressState",
+    "Probe",
+    "Solid",
+    "SolidError",
+    "SolidMesh",
+    "UnreachableLoadError",
+    "burst",
+    "dome",
+    "fit_sensitivity",
+    "flanged_dome",
+    "indent",
+    "inflate",
+    "state_at",
+]

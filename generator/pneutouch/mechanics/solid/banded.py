@@ -1,0 +1,118 @@
+"""Banded storage of a symmetric matrix assembled from blocks, its factorisations and its inertia."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import lapack
+from scipy.sparse import csr_array
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+
+class Pattern:
+    """Where block entries go: blocks (n_blocks, d, d) with dof tables (n_blocks, d), -1 for a fixed dof.
+
+    Several block families share one flat vector, in the order given.  The sum over blocks is a product with a constant
+    sparse 0/1 matrix, several times faster than an indexed accumulation.
+    """
+
+    def __init__(self, tables: list[Index], size: int, width: int = 0) -> None:
+        self.size = size
+        rows, cols, flat, offset = [], [], [], 0
+        for table in tables:
+            d = table.shape[1]
+            i = np.broadcast_to(table[:, :, None], (table.shape[0], d, d)).ravel()
+            j = np.broadcast_to(table[:, None, :], (table.shape[0], d, d)).ravel()
+            keep = np.flatnonzero((i >= j) & (j >= 0))
+            rows.append(i[keep])
+            cols.append(j[keep])
+            flat.append(keep + offset)
+            offset += i.size
+        i, j, self._flat = np.concatenate(rows), np.concatenate(cols), np.concatenate(flat)
+        self.width = max(width, int((i - j).max()))
+        place = (i - j) + j * (self.width + 1)
+        ones = np.ones(place.size)
+        self._sum = csr_array((ones, (place, self._flat)), shape=(size * (self.width + 1), offset))
+        self._gather = _gatherer(tables, size)
+
+    def matrix(self, blocks: list[Array]) -> Array:
+        """Lower band (width + 1, size), Fortran ordered, of the sum of blocks."""
+        flat = np.concatenate([b.ravel() for b in blocks])
+        band: Array = (self._sum @ flat).reshape(self.size, self.width + 1).T
+        return band
+
+    def vector(self, blocks: list[Array]) -> Array:
+        """Sum (size,) of block vectors, each (n_blocks, d)."""
+        total: Array = self._gather @ np.concatenate([b.ravel() for b in blocks])
+        return total
+
+
+def _gatherer(tables: list[Index], size: int) -> csr_array:
+    place = np.concatenate([t.ravel() for t in tables])
+    keep = np.flatnonzero(place >= 0)
+    return csr_array((np.ones(keep.size), (place[keep], keep)), shape=(size, place.size))
+
+
+@dataclass(frozen=True)
+class Solved:
+    """x with K x = b (size, n_rhs), and whether K is positive definite."""
+
+    x: Array
+    definite: bool
+
+
+def solve(band: Array, b: Array) -> Solved:
+    """Solve by Cholesky, and by pivoted LU where the matrix is not positive definite; b (size, n_rhs).
+
+    A singular matrix returns non-finite x.
+    """
+    factor, info = lapack.dpbtrf(band, lower=1)
+    if info == 0:
+        x, _ = lapack.dpbtrs(factor, b, lower=1)
+        return Solved(x, True)
+    width = band.shape[0] - 1
+    _, _, x, info = lapack.dgbsv(width, width, _general(band), b)
+    return Solved(x if info == 0 else np.full_like(b, np.nan), False)
+
+
+def _general(band: Array) -> Array:
+    """Both triangles in the layout LAPACK's gb routines want, with room for fill."""
+    width, n = band.shape[0] - 1, band.shape[1]
+    full = np.zeros((3 * width + 1, n), order="F")
+    full[2 * width :] = band
+    for k in range(1, width + 1):
+        full[2 * width - k, k:] = band[k, : n - k]
+    return full
+
+
+def negative_pivots(band: Array) -> int:
+    """Negative eigenvalues of the matrix, by Sylvester's law on a block LDL^T; blocks as wide as the band."""
+    width, n = band.shape[0] - 1, band.shape[1]
+    step = max(width, 1)
+    count = 0
+    carried = np.zeros((min(step, n), min(step, n)))
+    for start in range(0, n, step):
+        stop, reach = min(start + step, n), min(start + 2 * step, n)
+        square = _dense(band, start, reach)
+        m = stop - start
+        square[:m, :m] -= carried
+        value, vector = np.linalg.eigh(square[:m, :m])
+        count += int((value < 0.0).sum())
+        below = square[m:, :m] @ vector
+        value = np.where(np.abs(value) > 1e-300, value, 1e-300)
+        carried = (below / value) @ below.T
+    return count
+
+
+def _dense(band: Array, start: int, stop: int) -> Array:
+    """Rows and columns start..stop as a full symmetric matrix."""
+    m = stop - start
+    out = np.zeros((m, m))
+    for k in range(min(band.shape[0], m)):
+        index = np.arange(m - k)
+        out[index + k, index] = out[index, index + k] = band[k, start : stop - k]
+    return out

@@ -1,0 +1,146 @@
+"""A rigid flat plate with a rounded rim, met without friction: a stiff potential on the outer wall."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneutouch.mechanics.solid.elements import line_shapes
+from pneutouch.mechanics.solid.mesh import SolidMesh
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Plate:
+    """Underside at `height`, flat to `radius` and turning up beyond it as a parabola of curvature 1/`rim` (mm)."""
+
+    height: float
+    radius: float
+    rim: float
+
+    def underside(self, r: Array) -> tuple[Array, Array, Array]:
+        """Height of the underside at r and its first two derivatives; all shaped like r."""
+        beyond = np.maximum(r - self.radius, 0.0)
+        return self.height + 0.5 * beyond**2 / self.rim, beyond / self.rim, np.where(beyond > 0.0, 1.0 / self.rim, 0.0)
+
+    def at(self, height: float) -> Plate:
+        """The same plate at another height."""
+        return Plate(height, self.radius, self.rim)
+
+
+@dataclass(frozen=True)
+class Touch:
+    """Contact at the quadrature points of the outer wall, (n_edges, n_points) each; nondimensional."""
+
+    energy: float
+    traction: Array
+    gap: Array
+    slope: Array
+    curve: Array
+
+
+class Contact:
+    """psi = (k/2) sum w <-g>^2, g the vertical gap and w the reference area of a point.
+
+    A stiff penalty: the Newton step meets the plate inside its quadratic model (`newton.direction`), which makes the
+    cost
+    independent of k, so k is simply taken large enough that the penetration traction/k cannot be measured.  The
+    energy is
+    once continuously differentiable: the line search sees no jump where points come and go.
+    """
+
+    def __init__(self, mesh: SolidMesh, nodes: Array, stiffness: float, points: int = 3) -> None:
+        self.edges = mesh.outer
+        self.stiffness = stiffness
+        x, w = np.polynomial.legendre.leggauss(points)
+        self.shape, slope = line_shapes(x, mesh.outer.shape[1])
+        self.slope = slope
+        line = nodes[mesh.outer]
+        radius = line[..., 0] @ self.shape.T
+        self.weight = 2.0 * np.pi * radius * np.hypot(line[..., 0] @ slope.T, line[..., 1] @ slope.T) * w
+        # Force that rounding of the gap leaves; no residual can be asked to fall below it.
+        self.noise = float(np.finfo(np.float64).eps * stiffness * np.linalg.norm(self.weight))
+        self.longest = float(np.hypot(*(line[:, 1] - line[:, 0]).T).max())
+        n = 2 * mesh.outer.shape[1]
+        self._n = n
+        pairs = self.shape[:, :, None] * self.shape[:, None, :]
+        self._pairs = pairs.reshape(points, -1)
+
+    def positions(self, nodes: Array) -> tuple[Array, Array]:
+        """R and z of the points, (n_edges, n_points) each."""
+        line = nodes[self.edges]
+        return line[..., 0] @ self.shape.T, line[..., 1] @ self.shape.T
+
+    def touch(self, nodes: Array, plate: Plate) -> Touch:
+        """Energy and tractions against the plate for positions (n_nodes, 2)."""
+        r, z = self.positions(nodes)
+        under, slope, curve = plate.underside(r)
+        gap = under - z
+        traction = np.maximum(-self.stiffness * gap, 0.0)
+        energy = float(np.vdot(self.weight, traction**2)) / (2.0 * self.stiffness)
+        return Touch(energy, traction, gap, slope, curve)
+
+    def linear(self, touch: Touch, move: Array) -> Array:
+        """Tractions (unclipped) after a nodal displacement `move` (n_nodes, 2), the gap taken as linear in it."""
+        r, z = self.positions(move)
+        return np.asarray(-self.stiffness * (touch.gap + touch.slope * r - z))
+
+    def force(self, traction: Array, slope: Array) -> Array:
+        """Derivative of the energy by edge positions under given tractions, (n_edges, 2 n)."""
+        load = self.weight * traction
+        out = np.empty((load.shape[0], self._n))
+        out[:, 1::2] = load @ self.shape
+        out[:, 0::2] = -(load * slope) @ self.shape
+        return out
+
+    def hessian(self, touch: Touch, active: NDArray[np.bool_]) -> Array:
+        """Second derivative with `active` points (n_edges, n_points) in contact, (n_edges, 2 n, 2 n)."""
+        stiff = np.where(active, self.stiffness, 0.0) * self.weight
+        n = self._n // 2
+        out = np.zeros((stiff.shape[0], self._n, self._n))
+        out[:, 1::2, 1::2] = (stiff @ self._pairs).reshape(-1, n, n)
+        if touch.slope.any():
+            across = -((stiff * touch.slope) @ self._pairs).reshape(-1, n, n)
+            out[:, 0::2, 1::2], out[:, 1::2, 0::2] = across, across
+            along = stiff * touch.slope**2 - self.weight * touch.traction * touch.curve
+            out[:, 0::2, 0::2] = (along @ self._pairs).reshape(-1, n, n)
+        return out
+
+    def footprint(self, nodes: Array, touch: Touch) -> Footprint:
+        """Edge of the contact, largest pressure, and how far the wall has left the plate inside that edge."""
+        r, _ = self.positions(nodes)
+        # Edges run from base to apex: reversed, the points go outward from the axis.
+        out, gap, load = r.ravel()[::-1], touch.gap.ravel()[::-1], touch.traction.ravel()[::-1]
+        meeting = np.flatnonzero(load > 0.0)
+        if meeting.size == 0:
+            return Footprint(0.0, 0.0, 0.0)
+        last = int(meeting[-1])
+        # The cell the edge runs through cannot resolve it: gaps count from the next cell inward.
+        inside = float(gap[: max(1, last + 1 - 2 * self.shape.shape[0])].max())
+        return Footprint(_edge(out[last : last + 3], gap[last + 1 : last + 3]), inside, float(load.max()))
+
+
+@dataclass(frozen=True)
+class Footprint:
+    """radius of the contact's outer edge, the largest gap inside it (positive: the centre is off), largest traction."""
+
+    radius: float
+    inside_gap: float
+    traction: float
+
+
+def _edge(r: Array, gap: Array) -> float:
+    """Edge between the last point in contact r[0] and the first free one r[1], where the root of the gap extrapolates
+    to zero.
+
+    The gap of a smooth wall opens with the square of the distance from the edge.
+    """
+    if gap.size < 2:
+        return float(r[0])
+    first, second = np.sqrt(np.maximum(gap, 0.0))
+    if second <= first:
+        return float(0.5 * (r[0] + r[1]))
+    return float(np.clip(r[1] - first * (r[2] - r[1]) / (second - first), min(r[0], r[1]), max(r[0], r[1])))

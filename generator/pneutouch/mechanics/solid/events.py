@@ -1,0 +1,146 @@
+"""What happens on the way down that a curve must not be read across, or that a user should know."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from pneutouch.mechanics.solid.errors import NoConvergenceError
+from pneutouch.mechanics.solid.newton import Stalled
+from pneutouch.mechanics.solid.walker import DISSIPATION, Spot, Walker, lost_work
+
+#: A neo-Hookean surface creases where the stretch across it is 2.4 times the least stretch along it, strain 0.35 in
+#: plane
+#: strain (Hong, Zhao & Suo 2009, Appl. Phys. Lett. 95, 111901; from memory, unread).  The smooth solution lives on,
+#: unsafely.
+CREASE = 2.4
+#: The wall has left the plate inside the contact when the gap there passes this share of the wall.
+SEPARATION = 1.0e-2
+#: The wall hangs over its clamp when it passes below the base plane by this share of itself.
+OVERHANG = 2.0e-2
+#: Position of a jump, in R0.
+JUMP_WITHIN = 3.5e-3
+_MOST_TRIES = 40
+
+#: Kinds after which the path is another one: a straight-line fit ends before them.
+BREAKS_CURVE = ("unstable", "snap", "clamp_fold", "separation", "lost")
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that happened at a plate travel (mm).
+
+    kind, of those that end the path: unstable (the inflated state itself), snap (a jump to another branch), clamp_fold
+    (the same, at the clamped edge), lost (no equilibrium found), floor (the inner wall reaches the base plane).
+    Of those that do not: separation (the wall leaves the plate inside the contact: buckling inward), crease, overhang
+    (the wall hangs below its base plane, where nothing it would lie on is modelled), plate_rim, break, gauge_range.
+    """
+
+    kind: str
+    indentation: float
+    detail: str
+
+
+class Point(NamedTuple):
+    """A quantity y at plate travel x, with dy/dx where it is known."""
+
+    x: float
+    y: float
+    slope: float | None = None
+
+
+@dataclass(frozen=True)
+class Jump:
+    """Plate height (R0) of the last state before the path breaks off, and why."""
+
+    kind: str
+    height: float
+    why: str
+
+
+def descend(walker: Walker, height: float) -> Jump | None:
+    """Take the walker down to `height`; None there, or the jump that ended the path, before which it then stands."""
+    if not walker.here.stable:
+        return Jump("unstable", walker.here.height, "the state itself is unstable with its gas shut in")
+    while walker.here.height - height > 1.0e-12:
+        before = walker.here
+        try:
+            after = walker.step(height)
+        except NoConvergenceError as failure:
+            return Jump("lost", before.height, failure.why)
+        if _sound(walker.path[:-1], after):
+            continue
+        jump = _close_in(walker, after.height)
+        if jump is not None:
+            return jump
+    return None
+
+
+def _sound(path: list[Spot], after: Spot) -> bool:
+    return after.stable and lost_work(path, after) <= DISSIPATION
+
+
+def _close_in(walker: Walker, end: float) -> Jump | None:
+    """Bisect between the last sound state and a suspect one; None if the end is reached on one branch after all.
+
+    A suspect height may prove sound when approached in shorter steps, so the last bracket is walked before it counts.
+    """
+    walker.path.pop()
+    beyond: Spot | Stalled = Stalled("no equilibrium follows without a jump")
+    bad, tried_from_here = end, False
+    for _ in range(_MOST_TRIES):
+        here = walker.here
+        closed = here.height - bad <= JUMP_WITHIN
+        if closed and tried_from_here:
+            break
+        height = bad if closed else 0.5 * (here.height + bad)
+        found = walker.solve(height)
+        if isinstance(found, Stalled) or not _sound(walker.path, found):
+            beyond, bad, tried_from_here = found, height, True
+            continue
+        walker.path.append(found)
+        if found.height <= end + 1.0e-12:
+            return None
+        bad, tried_from_here = end if closed else bad, False
+    if isinstance(beyond, Stalled):
+        return Jump("snap", walker.here.height, beyond.why)
+    return Jump(_kind(walker.here, beyond), walker.here.height, _describe(walker.path, beyond))
+
+
+def _kind(here: Spot, beyond: Spot) -> str:
+    """clamp_fold where the wall moves most within a wall of its clamp, else snap."""
+    solid = here.scene.solid
+    moved = solid.rest[np.hypot(*(beyond.state.x - here.state.x).T).argmax()]
+    held = solid.rest[solid.mesh.clamped]
+    near = held.size > 0 and np.hypot(*(held - moved).T).min() < solid.wall
+    return "clamp_fold" if near else "snap"
+
+
+def _describe(path: list[Spot], after: Spot) -> str:
+    solid = after.scene.solid
+    r, z = solid.mesh.nodes[np.hypot(*(after.state.x - path[-1].state.x).T).argmax()]
+    place = f"the wall point at rest at r {r:.2f}, z {z:.2f} mm moves most"
+    if not after.stable:
+        return f"the tangent has a negative mode; {place}"
+    share = 100.0 * lost_work(path, after)
+    change = 100.0 * (after.force / max(path[-1].force, 1.0e-300) - 1.0)
+    return f"the force changes by {change:.1f} % at once and {share:.0f} % of a step's work is lost; {place}"
+
+
+def crossing(a: Point, b: Point, level: float) -> float | None:
+    """Where y rises through a level between two points, on the Hermite cubic if slopes are known, else on a line.
+
+    A point compared with itself tells whether the level was passed from the start.
+    """
+    if a == b:
+        return a.x if a.y >= level else None
+    if not a.y < level <= b.y:
+        return None
+    span, rise = b.x - a.x, b.y - a.y
+    share = np.linspace(0.0, 1.0, 1001)
+    curve = a.y + share * rise
+    if a.slope is not None and b.slope is not None:
+        curve += share * (1.0 - share) * ((1.0 - share) * (a.slope * span - rise) + share * (rise - b.slope * span))
+    return float(a.x + span * share[int(np.argmax(curve >= level))])

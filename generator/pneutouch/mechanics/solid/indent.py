@@ -1,0 +1,240 @@
+"""Study 2: a plate comes down on an inflated dome with its gas shut in."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneutouch.mechanics.solid.contact import Plate
+from pneutouch.mechanics.solid.errors import SolidError
+from pneutouch.mechanics.solid.events import (
+    BREAKS_CURVE,
+    CREASE,
+    OVERHANG,
+    SEPARATION,
+    Event,
+    Jump,
+    Point,
+    crossing,
+    descend,
+)
+from pneutouch.mechanics.solid.inflate import FreeState
+from pneutouch.mechanics.solid.model import Solid
+from pneutouch.mechanics.solid.sensitivity import Line, fit_sensitivity
+from pneutouch.mechanics.solid.stress import Probe
+from pneutouch.mechanics.solid.supply import Gas
+from pneutouch.mechanics.solid.walker import Spot, Walker
+
+Array = NDArray[np.float64]
+
+#: Curvature radius of the plate's rim over the plate's radius (0.5 mm at 30 mm diameter, assumed: the paper has none).
+#: A mesh whose outer edges are longer rounds it to their length.
+RIM = 1.0 / 30.0
+
+
+@dataclass(frozen=True)
+class Press:
+    """How a dome is pressed: depth and plate diameter in mm (None: endless), ambient in MPa, dead volume in mm^3.
+
+    steps:       equal plate steps at which states are returned.
+    gauge_range: gauge pressure (MPa) beyond which the pressure sensor clips.
+    break_strain: largest principal strain (stretch - 1) the material bears.
+    """
+
+    depth: float
+    steps: int = 14
+    plate_diameter: float | None = 30.0
+    ambient: float = 0.101325
+    dead_volume: float = 0.0
+    gauge_range: float = 0.1
+    break_strain: float = np.inf
+
+    def __post_init__(self) -> None:
+        if not (self.depth > 0.0 and self.steps >= 1 and self.ambient >= 0.0 and self.dead_volume >= 0.0):
+            raise ValueError("depth and steps must be positive, ambient and dead_volume not negative")
+        if self.plate_diameter is not None and not self.plate_diameter > 0.0:
+            raise ValueError("plate_diameter must be positive, or None for an endless plate")
+
+
+@dataclass(frozen=True)
+class PressState:
+    """One equilibrium under the plate; mm, N, MPa.
+
+    indentation, force, pressure (gauge), rise (over the driving pressure), volume (mm^3).
+    contact_radius: outer edge of the contact.  contact_pressure: largest, per area at rest.  inside_gap: positive where
+    the wall has left the plate within the contact.  penetration: what the plate's stiffness lets through.
+    stiffness: dF/d(indentation), N/mm.  slope: dp/dF at shut-in gas, MPa/N.
+    stretch, von_mises: largest on the faces away from the clamp; fold: see `stress.Peak`.
+    inner_apex: height.  overhang: how far the wall hangs below its base plane.  positions: (n_nodes, 2).
+    """
+
+    indentation: float
+    force: float
+    pressure: float
+    rise: float
+    volume: float
+    contact_radius: float
+    contact_pressure: float
+    inside_gap: float
+    stiffness: float
+    slope: float
+    stretch: float
+    von_mises: float
+    fold: float
+    penetration: float
+    inner_apex: float
+    overhang: float
+    positions: Array
+
+
+@dataclass(frozen=True)
+class Indentation:
+    """States at the plate steps (the first at first contact) up to the depth, or to the event that ended the path.
+
+    ``path`` has every state that was solved on the way, those between the steps and at located events too.
+    """
+
+    states: list[PressState]
+    path: list[PressState]
+    events: list[Event]
+    complete: bool
+
+    def column(self, name: str) -> Array:
+        """One field of every state, (n_states,)."""
+        return np.array([getattr(s, name) for s in self.states])
+
+    def line(self) -> Line:
+        """Straight line of pressure rise over force, ending before the first event that breaks the curve.
+
+        Raises SolidError with fewer than two states.
+        """
+        ends = [e.indentation for e in self.events if e.kind in BREAKS_CURVE]
+        keep = self.column("indentation") < min(ends, default=np.inf)
+        if keep.sum() < 2:
+            raise SolidError(
+                f"no straight line: {keep.sum()} states before the path breaks at {min(ends, default=0.0):.4g} mm"
+            )
+        return fit_sensitivity(self.column("force")[keep], self.column("rise")[keep])
+
+
+def indent(solid: Solid, free: FreeState, press: Press) -> Indentation:
+    """Shut the gas in at a free state and bring the plate down.
+
+    Returns every state found and typed events; `complete` is False where an event ended the path before the depth.
+    Raises NoConvergenceError only if not even first contact has an equilibrium.
+    """
+    length, mu = solid.length, solid.mu
+    gas = Gas.filled(free.pressure / mu, free.volume / length**3, press.ambient / mu, press.dead_volume / length**3)
+    radius = np.inf if press.plate_diameter is None else 0.5 * press.plate_diameter / length
+    rim = max(RIM * radius if np.isfinite(radius) else 0.0, solid.contact.longest)
+    plate = Plate(float(free.positions[solid.mesh.outer, 1].max()) / length, max(radius - 0.5 * rim, 0.5 * radius), rim)
+    walker = Walker(solid, gas, plate, free.unit.x)
+    recorder = _Recorder(solid, free, plate, Probe(solid))
+    states = [recorder.state(walker.here)]
+    events = recorder.events(states[0], states[0], press)
+    for k in range(1, press.steps + 1):
+        begun = len(walker.path)
+        jump = descend(walker, plate.height - press.depth / length * k / press.steps)
+        for spot in walker.path[begun:]:
+            if not _floored(events):
+                states.append(recorder.state(spot))
+                events += recorder.events(states[-2], states[-1], press)
+        if jump is not None or _floored(events):
+            return _finish(states, events, jump, recorder, press)
+    return _finish(states, events, None, recorder, press)
+
+
+def _floored(events: list[Event]) -> bool:
+    return any(e.kind == "floor" for e in events)
+
+
+def _finish(
+    states: list[PressState], events: list[Event], jump: Jump | None, recorder: _Recorder, press: Press
+) -> Indentation:
+    """Keep the states at the plate's own steps, and say what ended the path."""
+    if jump is not None:
+        events = [*events, Event(jump.kind, recorder.indentation(jump.height), jump.why)]
+    step = press.depth / press.steps
+    asked = [s for s in states if abs(s.indentation / step - round(s.indentation / step)) < 1.0e-9]
+    return Indentation(asked, states, events, len(asked) == press.steps + 1)
+
+
+class _Recorder:
+    """Turns solver states into dimensional ones and compares neighbours for events."""
+
+    def __init__(self, solid: Solid, free: FreeState, plate: Plate, probe: Probe) -> None:
+        self._solid, self._free, self._plate, self._probe = solid, free, plate, probe
+
+    def indentation(self, height: float) -> float:
+        """Plate travel in mm at a nondimensional height."""
+        return (self._plate.height - height) * self._solid.length
+
+    def state(self, spot: Spot) -> PressState:
+        """Everything reported at one converged state."""
+        solid, x, touch = self._solid, spot.state.x, spot.state.touch
+        assert touch is not None
+        length, mu = solid.length, solid.mu
+        foot, peak = solid.contact.footprint(x, touch), self._probe.peak(x)
+        pressure = spot.state.filling.pressure * mu
+        return PressState(
+            indentation=self.indentation(spot.height),
+            force=spot.force * mu * length**2,
+            pressure=pressure,
+            rise=pressure - self._free.pressure,
+            volume=spot.state.volume * length**3,
+            contact_radius=foot.radius * length,
+            contact_pressure=foot.traction * mu,
+            inside_gap=foot.inside_gap * length,
+            stiffness=-spot.stiffness * mu * length,
+            slope=spot.pressure_rate / spot.stiffness / length**2 if spot.stiffness else np.nan,
+            stretch=peak.stretch,
+            von_mises=peak.von_mises,
+            fold=peak.fold,
+            penetration=max(0.0, -float(touch.gap.min())) * length,
+            inner_apex=float(x[solid.mesh.inner[-1, 1], 1]) * length,
+            overhang=max(0.0, float((solid.rest[:, 1].min() - x[:, 1]).max()) * length),
+            positions=x * length,
+        )
+
+    def events(self, a: PressState, b: PressState, press: Press) -> list[Event]:
+        """Levels passed between two neighbouring states."""
+        wall, flat = self._solid.mesh.wall, self._plate.radius * self._solid.length
+        levels = {
+            "gauge_range": press.gauge_range,
+            "break": press.break_strain,
+            "crease": CREASE,
+            "separation": SEPARATION * wall,
+            "plate_rim": flat,
+            "floor": 0.0,
+            "overhang": OVERHANG * wall,
+        }
+        before, after = _watched(a), _watched(b)
+        places = {kind: crossing(before[kind], after[kind], level) for kind, level in levels.items()}
+        return [Event(kind, where, _DETAIL[kind]) for kind, where in places.items() if where is not None]
+
+
+_DETAIL = {
+    "gauge_range": "the pressure sensor's range ends",
+    "break": "the material's break strain is reached",
+    "crease": "a face of the wall is compressed enough to crease",
+    "separation": "the wall leaves the plate inside the contact",
+    "plate_rim": "the contact reaches the plate's rim",
+    "floor": "the inner wall reaches the base plane",
+    "overhang": "the wall hangs below its base plane, where nothing it would lie on is modelled",
+}
+
+
+def _watched(s: PressState) -> dict[str, Point]:
+    """The quantities whose levels are events, at one state."""
+    rate = s.slope * s.stiffness if np.isfinite(s.slope) else None
+    return {
+        "gauge_range": Point(s.indentation, s.pressure, rate),
+        "break": Point(s.indentation, s.stretch - 1.0),
+        "crease": Point(s.indentation, s.fold),
+        "separation": Point(s.indentation, s.inside_gap),
+        "plate_rim": Point(s.indentation, s.contact_radius),
+        "floor": Point(s.indentation, -s.inner_apex),
+        "overhang": Point(s.indentation, s.overhang),
+    }

@@ -1,0 +1,242 @@
+"""Study 1: free inflation by volume, through and past the limit point, and the state at a driving pressure."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneutouch.mechanics.solid.errors import NoConvergenceError, UnreachableLoadError
+from pneutouch.mechanics.solid.model import Solid
+from pneutouch.mechanics.solid.newton import Outcome, Scene, Stalled, State, minimise, stability
+from pneutouch.mechanics.solid.supply import Liquid, Regulator
+
+Array = NDArray[np.float64]
+
+#: Volume control is this stiff, in mu/R0^3: far above -dp/dV of any dome, so the total tangent stays definite.
+_LIQUID = 30.0
+_FIRST_GROWTH, _LARGEST_GROWTH, _SMALLEST_GROWTH = 0.10, 0.25, 1.0e-4
+_EMPTYING = 0.02
+_MAX_STATES = 400
+
+
+@dataclass(frozen=True)
+class FreeState:
+    """An inflated state without contact.
+
+    positions: (n_nodes, 2) in mm.  pressure: gauge, MPa.  volume: cavity, mm^3.  stiffness: dp/dV, MPa/mm^3 (zero at
+    the
+    limit point).  stable: whether it holds under a regulated pressure.  inner_apex, outer_apex: heights in mm.
+    """
+
+    positions: Array
+    pressure: float
+    volume: float
+    stiffness: float
+    stable: bool
+    inner_apex: float
+    outer_apex: float
+    unit: State
+    by_volume: Array
+
+
+@dataclass(frozen=True)
+class Inflation:
+    """States in order of volume, and the limit point if the path reached one (the largest pressure)."""
+
+    states: list[FreeState]
+    limit: FreeState | None
+    why_no_limit: str
+
+    @cached_property
+    def pressure(self) -> Array:
+        """Gauge pressures in MPa, (n_states,)."""
+        return np.array([s.pressure for s in self.states])
+
+    @cached_property
+    def volume(self) -> Array:
+        """Cavity volumes in mm^3, (n_states,)."""
+        return np.array([s.volume for s in self.states])
+
+
+def free_state(solid: Solid, scene: Scene, outcome: Outcome) -> FreeState:
+    """Dimensional record of a converged state, with the slope dp/dV = 1/(g' K^-1 g) and the stability of K."""
+    state = outcome.state
+    way = stability(scene, state)
+    compliance = float(state.by_volume @ way.soft)
+    x = state.x * solid.length
+    return FreeState(
+        positions=x,
+        pressure=state.filling.pressure * solid.mu,
+        volume=state.volume * solid.length**3,
+        stiffness=solid.mu / solid.length**3 / compliance,
+        stable=way.wall_stable,
+        inner_apex=float(x[solid.mesh.inner[-1, 1], 1]),
+        outer_apex=float(x[solid.mesh.outer[-1, 1], 1]),
+        unit=state,
+        by_volume=solid.expand(way.soft) / compliance,
+    )
+
+
+def _scene(solid: Solid, target: float) -> Scene:
+    return Scene(solid, Liquid(target, _LIQUID), None)
+
+
+def rest_state(solid: Solid) -> FreeState:
+    """The unloaded dome, with its first slope dp/dV."""
+    scene = _scene(solid, solid.cavity.volume(solid.rest))
+    outcome = minimise(scene, solid.rest)
+    if isinstance(outcome, Stalled):
+        raise NoConvergenceError("0 kPa", outcome.why, "a mesh without distorted cells")
+    return free_state(solid, scene, outcome)
+
+
+def _guess(solid: Solid, path: list[FreeState], volume: float) -> Array:
+    """Positions at a volume by the tangent of the last state, or the Hermite cubic through the last two."""
+    last = path[-1].unit
+    ahead = volume - last.volume
+    if len(path) < 2:
+        return last.x + ahead * path[-1].by_volume
+    return between(path[-2], path[-1], volume)
+
+
+def between(a: FreeState, b: FreeState, volume: float) -> Array:
+    """Hermite cubic in V through positions and dx/dV of two states, at a volume inside or beyond them."""
+    span = b.unit.volume - a.unit.volume
+    s = (volume - a.unit.volume) / span
+    bend = b.unit.x - a.unit.x
+    first, last = span * a.by_volume - bend, bend - span * b.by_volume
+    return np.asarray(a.unit.x + s * bend + s * (1.0 - s) * ((1.0 - s) * first + s * last))
+
+
+def pressure_between(a: FreeState, b: FreeState, share: float) -> float:
+    """Pressure (MPa) on the Hermite cubic p(V) of two states; share 0 at a, 1 at b."""
+    span = b.volume - a.volume
+    rise, first, last = b.pressure - a.pressure, a.stiffness * span, b.stiffness * span
+    bow = (1.0 - share) * (first - rise) + share * (rise - last)
+    return a.pressure + share * rise + share * (1.0 - share) * bow
+
+
+def at_volume(solid: Solid, path: list[FreeState], volume: float, guess: Array | None = None) -> FreeState | Stalled:
+    """State at a nondimensional volume, reached from the end of a path."""
+    last = path[-1]
+    slope = last.stiffness * solid.length**3 / solid.mu
+    pressure = last.unit.filling.pressure + slope * (volume - last.unit.volume)
+    scene = _scene(solid, volume + pressure / _LIQUID)
+    outcome = minimise(scene, _guess(solid, path, volume) if guess is None else guess)
+    return outcome if isinstance(outcome, Stalled) else free_state(solid, scene, outcome)
+
+
+def inflate(
+    solid: Solid, to_pressure: float | None = None, past_limit: float = 1.3, largest: float = 30.0
+) -> Inflation:
+    """Fill (or, for a negative pressure, empty) the cavity by volume from rest.
+
+    to_pressure: stop once this gauge pressure (MPa) is bracketed; None goes on to the limit point.
+    past_limit:  go on to this multiple of the limit volume.  largest: give up on a limit at this multiple of V0.
+    Raises NoConvergenceError where volume steps shrink to nothing.
+    """
+    path = [rest_state(solid)]
+    rest = path[0].unit.volume
+    sign = -1.0 if to_pressure is not None and to_pressure < 0.0 else 1.0
+    growth, limit = _FIRST_GROWTH if sign > 0.0 else _EMPTYING, None
+    while len(path) < _MAX_STATES:
+        last = path[-1]
+        ended = _ended(path, limit, to_pressure, past_limit, largest * rest)
+        if ended is not None:
+            return Inflation(path, limit, ended)
+        step = at_volume(solid, path, last.unit.volume * (1.0 + sign * growth))
+        if isinstance(step, Stalled):
+            growth *= 0.4
+            if growth < _SMALLEST_GROWTH and limit is not None:
+                return Inflation(path, limit, f"no equilibrium past {last.volume:.4g} mm3: {step.why}")
+            if growth < _SMALLEST_GROWTH:
+                raise NoConvergenceError(f"volume {last.volume:.4g} mm3", step.why, "a finer mesh")
+            continue
+        path.append(step)
+        growth = min(1.3 * growth, _LARGEST_GROWTH if sign > 0.0 else _EMPTYING)
+        if limit is None and last.stiffness > 0.0 >= step.stiffness:
+            limit = find_limit(solid, last, step)
+            path.insert(-1, limit)
+        elif limit is None and last.stable and not step.stable:
+            return Inflation(path, last, "another mode than the volume goes soft first: the wall buckles")
+    return Inflation(path, limit, "too many volume steps")
+
+
+def _ended(
+    path: list[FreeState], limit: FreeState | None, goal: float | None, past: float, largest: float
+) -> str | None:
+    """Why a volume path is done, or None."""
+    last = path[-1]
+    if goal is not None and abs(last.pressure) >= abs(goal) and len(path) > 1:
+        return "the driving pressure came first"
+    if limit is not None and (goal is not None or last.unit.volume >= past * limit.unit.volume):
+        return ""
+    if last.unit.volume > largest:
+        return f"the pressure still rises at {last.unit.volume / path[0].unit.volume:.3g} times the unloaded volume"
+    return None
+
+
+def find_limit(solid: Solid, before: FreeState, after: FreeState, tolerance: float = 1.0e-7) -> FreeState:
+    """The state of zero dp/dV between two states of opposite slope; volume to `tolerance` of itself."""
+    middle = before
+    for _ in range(30):
+        a, b = before.unit.volume, after.unit.volume
+        root = _slope_root(before, after)
+        found = at_volume(solid, [before], root, between(before, after, root))
+        if isinstance(found, Stalled):
+            raise NoConvergenceError("the limit point", found.why, "a finer mesh")
+        middle = found
+        moved = abs(middle.stiffness) * abs(b - a) <= tolerance * (abs(before.stiffness) + abs(after.stiffness)) * a
+        if moved or abs(b - a) < tolerance * a:
+            return middle
+        before, after = (middle, after) if middle.stiffness > 0.0 else (before, middle)
+    return middle
+
+
+def _slope_root(before: FreeState, after: FreeState) -> float:
+    """Volume where the Hermite cubic p(V) of two states has its maximum; nondimensional."""
+    a, b = before.unit.volume, after.unit.volume
+    scale = after.volume - before.volume
+    rise, first, last = after.pressure - before.pressure, before.stiffness * scale, after.stiffness * scale
+    roots = np.roots([3.0 * (first + last - 2.0 * rise), 2.0 * (3.0 * rise - 2.0 * first - last), first])
+    inside = [float(r.real) for r in roots if abs(r.imag) < 1e-12 and 0.0 < r.real < 1.0]
+    share = inside[0] if inside else first / (first - last)
+    return a + (b - a) * float(np.clip(share, 0.02, 0.98))
+
+
+def state_at(solid: Solid, pressure: float, inflation: Inflation | None = None) -> FreeState:
+    """The first state at a driving pressure (gauge, MPa) on the rising branch; a given inflation is reused.
+
+    Raises UnreachableLoadError at or above the limit point.
+    """
+    if pressure == 0.0:
+        return inflation.states[0] if inflation else rest_state(solid)
+    done = inflation or inflate(solid, to_pressure=pressure)
+    beyond = done.limit is not None and abs(pressure) >= abs(done.limit.pressure)
+    for a, b in zip(done.states, done.states[1:], strict=False):
+        if beyond or a.stiffness <= 0.0:
+            break
+        if min(a.pressure, b.pressure) <= pressure <= max(a.pressure, b.pressure):
+            return _between(solid, a, b, pressure)
+    limit = done.limit or max(done.states, key=lambda s: abs(s.pressure))
+    why = done.why_no_limit or "it lies beyond the limit point"
+    raise UnreachableLoadError(pressure, limit.pressure, why)
+
+
+def _between(solid: Solid, a: FreeState, b: FreeState, pressure: float) -> FreeState:
+    """Newton at a regulated pressure, from the Hermite cubic between two states that bracket it."""
+    share = np.linspace(0.0, 1.0, 201)
+    curve = np.array([pressure_between(a, b, float(s)) for s in share])
+    up = 1.0 if b.pressure > a.pressure else -1.0
+    near = float(np.interp(up * pressure, up * curve, share))
+    guess = between(a, b, a.unit.volume + near * (b.unit.volume - a.unit.volume))
+    scene = Scene(solid, Regulator(pressure / solid.mu), None)
+    outcome = minimise(scene, guess)
+    if isinstance(outcome, Stalled):
+        raise NoConvergenceError(
+            f"driving pressure {1e3 * pressure:.4f} kPa", outcome.why, "a pressure further below the limit"
+        )
+    return free_state(solid, scene, outcome)

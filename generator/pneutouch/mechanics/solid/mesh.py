@@ -1,0 +1,152 @@
+"""Meridian meshes: quadrilaterals in the (r, z) half plane with named boundaries."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+#: Walls up to this share of R0 need one cell across (S within 0.2 % of a refined mesh), thicker ones two.
+_THIN = 0.1
+_TO_BENDING_LENGTH = 3.0
+
+
+@dataclass(frozen=True)
+class SolidMesh:
+    """A meridian cut of the wall, in mm; quadratic (8 or 9 nodes) or linear (4 nodes) quadrilaterals.
+
+    nodes:   (n_nodes, 2), columns r and z.
+    cells:   (n_cells, 4 | 8 | 9): corners counter-clockwise in (xi, eta), then the mid-sides of eta=-1, xi=+1, eta=+1,
+             xi=-1, then the centre.
+    inner, outer: (n_edges, 2 | 3) edges of the wetted wall and of the wall the plate can meet: start, end, (mid);
+    both run
+             from the base to the apex, which is the end of the last edge.
+    clamped: nodes with both displacements zero.
+    axis:    nodes on r = 0, whose radial displacement is zero.
+    sliding: nodes whose vertical displacement alone is zero (a symmetry plane).
+    length, wall: inner radius and wall thickness, the scales of lengths and of contact.
+    """
+
+    nodes: Array
+    cells: Index
+    inner: Index
+    outer: Index
+    clamped: Index
+    axis: Index
+    sliding: Index
+    length: float
+    wall: float
+
+    def __post_init__(self) -> None:
+        if self.cells.shape[1] not in (4, 8, 9):
+            raise ValueError(f"cells have {self.cells.shape[1]} nodes; 4, 8 or 9 are known")
+        if not np.isfinite(self.nodes).all() or self.nodes[:, 0].min() < 0.0:
+            raise ValueError("node coordinates must be finite, with r >= 0")
+        if not (self.length > 0.0 and self.wall > 0.0):
+            raise ValueError("length and wall must be positive")
+        for name, line in (("inner", self.inner), ("outer", self.outer)):
+            if (line[1:, 0] != line[:-1, 1]).any() or line[-1, 1] not in self.axis:
+                raise ValueError(f"the {name} edges must form one line from the base to the axis")
+
+
+def _grid_cells(n_columns: int, n_rows: int, nodes_per_cell: int) -> Index:
+    """Cells over a grid of (2 n_columns + 1) x (2 n_rows + 1) points, numbered down each column first; (n_cells, 9)."""
+    height = 2 * n_rows + 1
+    corner = (2 * np.arange(n_columns)[:, None] * height + 2 * np.arange(n_rows)[None, :]).reshape(-1, 1)
+    right, up = 2 * height, 2
+    offsets = [0, right, right + up, up, height, right + 1, height + up, 1, height + 1]
+    cells: Index = (corner + np.array(offsets)[None, :nodes_per_cell]).astype(np.intp)
+    return cells
+
+
+def _boundary(n_columns: int, height: int, row: int) -> Index:
+    """Edges (start, end, mid) along one row of grid points, in column order; (n_columns, 3)."""
+    start = 2 * np.arange(n_columns) * height + row
+    return np.stack([start, start + 2 * height, start + height], axis=1).astype(np.intp)
+
+
+def _from_grid(grid: Array, n_columns: int, n_rows: int, order: int, scales: tuple[float, float]) -> SolidMesh:
+    """Mesh of a grid of points (2 n_columns + 1, 2 n_rows + 1, 2), first column clamped, last column on the axis."""
+    height = 2 * n_rows + 1
+    nodes = grid.reshape(-1, 2).copy()
+    base = np.arange(height)
+    top = 2 * n_columns * height + base
+    nodes[top, 0] = 0.0
+    cells = _grid_cells(n_columns, n_rows, {1: 4, 2: 9, 8: 8}[order])
+    inner, outer = _boundary(n_columns, height, 0), _boundary(n_columns, height, height - 1)
+    if order == 1:
+        inner, outer = inner[:, :2], outer[:, :2]
+    keep = np.unique(cells)
+    renumber = np.full(nodes.shape[0], -1, dtype=np.intp)
+    renumber[keep] = np.arange(keep.size)
+    base, top = (renumber[x][renumber[x] >= 0] for x in (base, top))
+    cells, inner, outer = (renumber[x] for x in (cells, inner, outer))
+    none = np.zeros(0, dtype=np.intp)
+    return SolidMesh(nodes[keep], cells, inner, outer, base, top, none, *scales)
+
+
+def graded(n: int, ratio: float) -> Array:
+    """N + 1 points over [0, 1] in geometric progression; the first interval is `ratio` times the last."""
+    steps = np.geomspace(ratio, 1.0, n) if n > 1 else np.ones(1)
+    return np.concatenate([[0.0], np.cumsum(steps) / steps.sum()])
+
+
+def _with_middles(points: Array) -> Array:
+    """Insert the middle of every interval; (n,) to (2 n - 1,)."""
+    out = np.empty(2 * points.size - 1)
+    out[::2], out[1::2] = points, 0.5 * (points[1:] + points[:-1])
+    return out
+
+
+def arc_cells(wall_ratio: float) -> int:
+    """Cells along the arc that keep S within half a per cent: three to the bending length sqrt(R0 t0), 24 to 48."""
+    return int(np.clip(np.ceil(_TO_BENDING_LENGTH * 0.5 * np.pi / np.sqrt(wall_ratio)), 24, 48))
+
+
+def dome(
+    inner_radius: float,
+    wall: float,
+    arc: int | None = None,
+    through: int | None = None,
+    order: int = 2,
+    base_ratio: float = 1.0,
+    slides: bool = False,
+) -> SolidMesh:
+    """Hemispherical wall on the plane z = 0, `arc` cells from base to apex and `through` across the wall.
+
+    arc None takes `arc_cells`; through None takes one cell for walls to a tenth of R0, else two.  order: 2 for
+    nine-node, 8 for eight-node, 1 for four-node cells.  base_ratio < 1 makes cells shorter towards the base.
+    slides: the base face moves freely in r (a symmetry plane), for tests against the sphere.
+    """
+    arc = arc or arc_cells(wall / inner_radius)
+    through = through or (1 if wall <= _THIN * inner_radius else 2)
+    angle = 0.5 * np.pi * _with_middles(graded(arc, base_ratio))
+    radius = inner_radius + wall * _with_middles(np.linspace(0.0, 1.0, through + 1))
+    grid = np.stack([np.cos(angle)[:, None] * radius, np.sin(angle)[:, None] * radius], axis=-1)
+    mesh = _from_grid(grid, arc, through, order, (inner_radius, wall))
+    if not slides:
+        return mesh
+    return replace(mesh, clamped=mesh.sliding, sliding=mesh.clamped)
+
+
+def flanged_dome(
+    inner_radius: float, wall: float, skirt: float, free: float, arc: int = 24, below: int = 8
+) -> SolidMesh:
+    """A dome whose wall runs on below z = 0 as a tube of length `skirt`, clamped but for its upper `free` part (mm).
+
+    An example of a meridian that is not a bare hemisphere; the cavity then includes the inside of the tube.
+    """
+    angle = 0.5 * np.pi * _with_middles(np.linspace(0.0, 1.0, arc + 1))
+    radius = inner_radius + wall * np.linspace(0.0, 1.0, 3)
+    cap = np.stack([np.cos(angle)[:, None] * radius, np.sin(angle)[:, None] * radius], axis=-1)
+    held_part, free_part = np.linspace(-skirt, -free, max(1, below // 2) + 1), np.linspace(-free, 0.0, below + 1)
+    depth = _with_middles(np.concatenate([held_part[:-1], free_part]))
+    tube = np.stack(np.broadcast_arrays(radius[None, :], depth[:-1, None]), axis=-1)
+    columns = arc + (depth.size - 1) // 2
+    mesh = _from_grid(np.concatenate([tube, cap]), columns, 1, 2, (inner_radius, wall))
+    held = np.flatnonzero(mesh.nodes[:, 1] <= -free * (1.0 - 1e-12)).astype(np.intp)
+    return replace(mesh, clamped=held)

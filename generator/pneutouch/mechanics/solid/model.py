@@ -1,0 +1,168 @@
+"""The discrete body: energy, forces and stiffness of a wall, in lengths of R0 and stresses of mu."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import reverse_cuthill_mckee
+
+from pneutouch.mechanics.laws.hyperelastic import Hyperelastic
+from pneutouch.mechanics.laws.strain import Strain
+from pneutouch.mechanics.solid.banded import Pattern
+from pneutouch.mechanics.solid.cavity import Cavity
+from pneutouch.mechanics.solid.contact import Contact
+from pneutouch.mechanics.solid.elements import DEFAULT_SCHEME, Scheme, gauss_square, pressure_modes, strain_operator
+from pneutouch.mechanics.solid.mesh import Index, SolidMesh
+
+Array = NDArray[np.float64]
+
+#: Contact stiffness in mu/t0: a traction of mu leaves a penetration of 3e-5 of the wall.
+CONTACT_STIFFNESS = 3.0e4
+
+
+@dataclass(frozen=True)
+class Local:
+    """Everything the integration points know at one set of positions.
+
+    energy:   stored energy / (mu R0^3); inf where a point is inverted.
+    gradient: (n_points, 5) strains (F_rR, F_rZ, F_zR, F_zZ, r/R).
+    jets:     (10, n_points) weighted energy derivatives, see `Jet`; the averaged pressure is included.
+    basis:    (n_points, 3, 5) derivatives of (a, j, h) by the strains.
+    """
+
+    energy: float
+    gradient: Array
+    jets: Array
+    basis: Array
+
+
+class Solid:
+    """A wall of one material on one mesh.  Positions are (n_nodes, 2) arrays in units of the inner radius."""
+
+    def __init__(self, mesh: SolidMesh, material: Hyperelastic, scheme: Scheme | None = None) -> None:
+        self.mesh, self.material = mesh, material
+        self.scheme = scheme or DEFAULT_SCHEME[mesh.cells.shape[1]]
+        self.length, self.mu = mesh.length, material.mu
+        self.wall = mesh.wall / mesh.length
+        self.rest = mesh.nodes / mesh.length
+        self._integration()
+        self.dofs = _number_dofs(mesh)
+        flat = self.dofs.ravel()
+        self.size = int((flat >= 0).sum())
+        tables = [self.dofs[x].reshape(x.shape[0], -1) for x in (mesh.cells, mesh.inner, mesh.outer)]
+        self.pattern = Pattern(tables[:2], self.size)
+        self.contact_pattern = Pattern(tables[2:], self.size, self.pattern.width)
+        self._order = np.empty(self.size, dtype=np.intp)
+        self._order[flat[flat >= 0]] = np.flatnonzero(flat >= 0)
+        self.cavity = Cavity(mesh.inner)
+        # Rounding leaves this much force in the exact unloaded state; no residual can be asked to fall below it.
+        idle = self.forces(self.local(self.rest))
+        self.noise = float(np.linalg.norm(self.pattern.vector([idle, np.zeros((len(mesh.inner), tables[1].shape[1]))])))
+        self.contact = Contact(mesh, self.rest, CONTACT_STIFFNESS / self.wall)
+
+    def _integration(self) -> None:
+        """Constant operators: strains (`_b`, also as `_tall` and its transpose `_wide`) and tested pressure modes."""
+        points, weights = gauss_square(self.scheme.gauss)
+        b, measure, _ = strain_operator(self.rest, self.mesh.cells, points)
+        self._weight = measure * weights
+        n_cells, n_points = self._weight.shape
+        self._b = np.ascontiguousarray(b)
+        self._tall = self._b.reshape(n_cells, n_points * 5, -1)
+        self._wide = np.ascontiguousarray(np.swapaxes(self._tall, 1, 2))
+        modes = pressure_modes(points, self._weight, self.scheme.pressure)
+        self._tested = np.ascontiguousarray(modes * self._weight[:, None, :])
+        self._flat_weight = self._weight.ravel()
+        self._kappa = self.material.bulk_ratio
+
+    def expand(self, step: Array) -> Array:
+        """Nodal displacement (n_nodes, 2) of a vector of free unknowns (size,)."""
+        out = np.zeros(self.rest.size)
+        out[self._order] = step
+        return out.reshape(-1, 2)
+
+    def push(self, blocks: Array) -> Array:
+        """Sum (size,) of forces on the edges of the outer wall, (n_edges, 2 n)."""
+        return self.contact_pattern.vector([blocks])
+
+    def local(self, x: Array) -> Local:
+        """Strains, energy and energy derivatives at the integration points for positions x."""
+        n_cells, n_points = self._weight.shape
+        gathered = x[self.mesh.cells].reshape(n_cells, -1, 1)
+        f = np.matmul(self._tall, gathered).reshape(-1, 5)
+        f11, f12, f21, f22, h = np.ascontiguousarray(f.T)
+        j = f11 * f22 - f12 * f21
+        if not (j.min() > 0.0 and h.min() > 0.0):
+            return Local(np.inf, f, f, f)
+        a = f11 * f11 + f12 * f12 + f21 * f21 + f22 * f22
+        jets = self.material.energy(Strain(a, j, h)).data * (self._flat_weight / self.mu)
+        change = (j * h - 1.0).reshape(n_cells, n_points)
+        content = np.matmul(self._tested, change[..., None])
+        pressure = self._kappa * np.matmul(np.swapaxes(self._tested, 1, 2), content).ravel()
+        energy = float(jets[0].sum()) + 0.5 * self._kappa * float(np.vdot(content, content))
+        jets[2] += pressure * h
+        jets[3] += pressure * j
+        jets[8] += pressure
+        basis = np.zeros((j.size, 3, 5))
+        basis[:, 0, :4] = 2.0 * f[:, :4]
+        basis[:, 1, 0], basis[:, 1, 1], basis[:, 1, 2], basis[:, 1, 3] = f22, -f21, -f12, f11
+        basis[:, 2, 4] = 1.0
+        return Local(energy, f, jets, basis)
+
+    def forces(self, local: Local) -> Array:
+        """Derivative of the stored energy by cell positions, (n_cells, 2 n_nodes)."""
+        stress = np.matmul(local.jets[1:4].T[:, None, :], local.basis)
+        blocks = np.matmul(self._wide, stress.reshape(self._weight.shape[0], -1, 1))
+        return np.asarray(blocks[..., 0])
+
+    def stiffness(self, local: Local) -> Array:
+        """Second derivative of the stored energy by cell positions, (n_cells, 2 n_nodes, 2 n_nodes)."""
+        n_cells, n_points = self._weight.shape
+        jets, basis = local.jets, local.basis
+        hessian = jets[[4, 5, 6, 5, 7, 8, 6, 8, 9]].T.reshape(-1, 3, 3)
+        d = np.matmul(np.swapaxes(basis, 1, 2), np.matmul(hessian, basis))
+        twice = 2.0 * jets[1]
+        for k in range(4):
+            d[:, k, k] += twice
+        for i, k, sign in ((0, 3, 1.0), (1, 2, -1.0)):
+            d[:, i, k] += sign * jets[2]
+            d[:, k, i] += sign * jets[2]
+        db = np.matmul(d.reshape(n_cells, n_points, 5, 5), self._b)
+        k_cells = np.matmul(self._wide, db.reshape(n_cells, n_points * 5, -1))
+        swelling = self._swelling(local)
+        k_cells += self._kappa * np.matmul(np.swapaxes(swelling, 1, 2), swelling)
+        return np.asarray(k_cells)
+
+    def _swelling(self, local: Local) -> Array:
+        """Derivative of the averaged volume modes by cell positions, (n_cells, n_modes, 2 n_nodes)."""
+        n_cells, n_points = self._weight.shape
+        h = local.gradient[:, 4:]
+        by_strain = local.basis[:, 1] * h
+        f = local.gradient
+        by_strain[:, 4] = f[:, 0] * f[:, 3] - f[:, 1] * f[:, 2]
+        tested = self._tested[..., None] * by_strain.reshape(n_cells, 1, n_points, 5)
+        return np.asarray(np.matmul(tested.reshape(n_cells, -1, n_points * 5), self._tall))
+
+
+def _number_dofs(mesh: SolidMesh) -> Index:
+    """Unknown of each node and direction (n_nodes, 2), -1 where fixed; renumbered if that narrows the band."""
+    n = mesh.nodes.shape[0]
+    native = np.arange(n)
+    d = mesh.cells.shape[1]
+    i = np.repeat(mesh.cells, d, axis=1).ravel()
+    k = np.tile(mesh.cells, (1, d)).ravel()
+    graph = csr_array((np.ones(i.size), (i, k)), shape=(n, n))
+    order = np.empty(n, dtype=np.intp)
+    order[reverse_cuthill_mckee(graph, symmetric_mode=True)] = native
+    rank = order if np.abs(order[i] - order[k]).max() < np.abs(i - k).max() else native
+    fixed = np.zeros((n, 2), dtype=bool)
+    fixed[mesh.clamped] = True
+    fixed[mesh.axis, 0] = True
+    fixed[mesh.sliding, 1] = True
+    by_rank = np.empty(n, dtype=np.intp)
+    by_rank[rank] = native
+    free = ~fixed[by_rank].ravel()
+    numbers = np.where(free, np.cumsum(free) - 1, -1).reshape(n, 2)
+    return numbers[rank].astype(np.intp)

@@ -1,0 +1,254 @@
+"""Newton's method on the total energy of wall, filling and contact, with an energy line search."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneutouch.mechanics.solid.banded import negative_pivots, solve
+from pneutouch.mechanics.solid.contact import Plate, Touch
+from pneutouch.mechanics.solid.model import Local, Solid
+from pneutouch.mechanics.solid.supply import Filling, Supply
+
+Array = NDArray[np.float64]
+
+#: Converged: unbalanced force below this share of the forces that balance (wall, gas, plate).
+RESIDUAL = 1.0e-9
+#: and the energy still to be gained, estimated from the last step, below this share of the energy scale.
+GAIN = 1.0e-14
+MAX_ITERATIONS = 40
+_ARMIJO = 1.0e-4
+_SHORTEST = 1.0e-6
+#: Rounds in which the set of touching points is settled inside one quadratic model.
+_SETTLING = 10
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A body, what fills it, and the plate above it (None: not there); nondimensional."""
+
+    solid: Solid
+    supply: Supply
+    plate: Plate | None
+
+
+@dataclass(frozen=True)
+class State:
+    """Positions x (n_nodes, 2) with all that was evaluated there.
+
+    residual: gradient of the total energy (size,); inner: its part without the plate; scale: size of the forces that
+    balance in it; by_volume: gradient of the cavity volume (size,).
+    """
+
+    x: Array
+    energy: float
+    residual: Array
+    inner: Array
+    scale: float
+    local: Local
+    volume: float
+    by_volume: Array
+    filling: Filling
+    touch: Touch | None
+
+
+@dataclass(frozen=True)
+class Direction:
+    """Solution of one tangent system K + c g g', g the gradient of the volume and c the stiffness of the filling.
+
+    step: the answer (size,); soft: K^-1 g; denominator: 1 + c g.K^-1 g; stable: the whole is positive definite;
+    wall_stable: K alone is; lift: what was added to the diagonal to go downhill.
+    """
+
+    step: Array
+    soft: Array
+    denominator: float
+    stable: bool
+    wall_stable: bool
+    lift: float = 0.0
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A converged state."""
+
+    state: State
+    iterations: int
+
+
+@dataclass(frozen=True)
+class Stalled:
+    """Newton did not converge: why, in words."""
+
+    why: str
+
+
+def evaluate(scene: Scene, x: Array) -> State | None:
+    """Energy and residual at x; None where a point of the wall is inverted or the cavity is gone."""
+    solid = scene.solid
+    local = solid.local(x)
+    if not np.isfinite(local.energy):
+        return None
+    volume, edge_gradient = solid.cavity.gradient(x)
+    filling = scene.supply.at(volume)
+    if filling is None:
+        return None
+    touch = None if scene.plate is None else solid.contact.touch(x, scene.plate)
+    no_cell = np.zeros((solid.mesh.cells.shape[0], 2 * solid.mesh.cells.shape[1]))
+    by_volume = solid.pattern.vector([no_cell, edge_gradient])
+    inner = solid.pattern.vector([solid.forces(local), -filling.pressure * edge_gradient])
+    push = 0.0 * inner if touch is None else solid.push(solid.contact.force(touch.traction, touch.slope))
+    load = abs(filling.pressure) * float(np.linalg.norm(by_volume)) + float(np.linalg.norm(push))
+    noise = solid.noise if touch is None else solid.noise + solid.contact.noise
+    scale = load + 1.0e-3 * solid.wall + 10.0 * noise / RESIDUAL
+    energy = local.energy + filling.energy + (0.0 if touch is None else touch.energy)
+    return State(x, energy, inner + push, inner, scale, local, volume, by_volume, filling, touch)
+
+
+def tangent(scene: Scene, state: State) -> Array:
+    """Banded stiffness of wall and follower pressure, without contact and the rank-one term of the filling."""
+    load = -state.filling.pressure * scene.solid.cavity.hessian(state.x)
+    return scene.solid.pattern.matrix([scene.solid.stiffness(state.local), load])
+
+
+def full_tangent(scene: Scene, state: State) -> Array:
+    """`tangent` with the contact stiffness at the state's own active points."""
+    band = tangent(scene, state)
+    return band if state.touch is None else band + _contact_band(scene, state.touch, state.touch.traction > 0.0)
+
+
+def _contact_band(scene: Scene, touch: Touch, active: NDArray[np.bool_]) -> Array:
+    return scene.solid.contact_pattern.matrix([scene.solid.contact.hessian(touch, active)])
+
+
+def direction(scene: Scene, state: State) -> Direction:
+    """Newton step: the least of the quadratic model of wall and filling with the plate met exactly in it.
+
+    Which points touch is settled inside the model, where a change costs one banded solve and no assembly; the outer
+    steps
+    then converge as without contact, and full steps survive the line search.
+    """
+    band = tangent(scene, state)
+    if state.touch is None:
+        return _downhill(state, band, state.residual)
+    touch, contact = state.touch, scene.solid.contact
+    linear = contact.linear(touch, np.zeros_like(state.x))
+    active = linear > 0.0
+    seen = {active.tobytes()}
+    for _ in range(_SETTLING):
+        pull = state.inner + scene.solid.push(contact.force(np.where(active, linear, 0.0), touch.slope))
+        way = _downhill(state, band + _contact_band(scene, touch, active), pull)
+        if way.lift:
+            # Keep what made this tangent definite for the rest of the settling: fewer failed factorisations.
+            band = band.copy(order="F")
+            band[0] += way.lift
+        active = contact.linear(touch, scene.solid.expand(way.step)) > 0.0
+        if active.tobytes() in seen:
+            break
+        seen.add(active.tobytes())
+    return way
+
+
+def stability(scene: Scene, state: State, load: Array | None = None) -> Direction:
+    """The tangent at a converged state, its negative pivots counted where there are any; `step` answers `load` (size,).
+
+    An indefinite band can still belong to a stable total, since the filling stiffens one mode:
+    negatives(K + c g g') = negatives(K) - [1 + c g'K^-1 g < 0], from the inertia of the bordered matrix.
+    """
+    band = full_tangent(scene, state)
+    way = _rank_one(state, band, state.residual if load is None else load)
+    if way.wall_stable or not way.stable:
+        return way
+    return replace(way, stable=negative_pivots(band) == 1)
+
+
+def _rank_one(state: State, band: Array, load: Array) -> Direction:
+    """-(band + c g g')^-1 load by Sherman-Morrison; one negative pivot is presumed where the band is not definite."""
+    solved = solve(band, np.stack([-load, state.by_volume], axis=1))
+    plain, soft = solved.x[:, 0], solved.x[:, 1]
+    rate = state.filling.rate
+    denominator = 1.0 + rate * float(state.by_volume @ soft)
+    step = plain - soft * (rate * float(state.by_volume @ plain) / denominator)
+    stable = solved.definite or (denominator < 0.0 and bool(np.isfinite(step).all()))
+    return Direction(step, soft, denominator, stable, solved.definite)
+
+
+def _downhill(state: State, band: Array, residual: Array) -> Direction:
+    """The Newton step if the tangent is positive definite, else one of a lifted tangent."""
+    way = _rank_one(state, band, residual)
+    if way.stable and float(way.step @ residual) <= 0.0:
+        return way
+    step, lift = _safe_step(state, band, residual)
+    return replace(way, step=step, stable=False, lift=lift)
+
+
+def _safe_step(state: State, band: Array, residual: Array) -> tuple[Array, float]:
+    """A descent direction where the tangent has negative modes: the diagonal is raised until it has none."""
+    lift = float(np.abs(band[0]).mean()) * 1.0e-4
+    rhs = np.stack([-residual, state.by_volume], axis=1)
+    for _ in range(12):
+        raised = band.copy(order="F")
+        raised[0] += lift
+        solved = solve(raised, rhs)
+        if solved.definite:
+            plain, soft = solved.x[:, 0], solved.x[:, 1]
+            rate = state.filling.rate
+            share = rate * float(state.by_volume @ plain) / (1.0 + rate * float(state.by_volume @ soft))
+            return np.asarray(plain - soft * share), lift
+        lift *= 8.0
+    return -residual, 0.0
+
+
+def minimise(scene: Scene, x: Array, max_iterations: int = MAX_ITERATIONS) -> Outcome | Stalled:
+    """Least total energy near x.  Returns the state, or why there is none; never an unconverged state."""
+    state = evaluate(scene, x)
+    if state is None:
+        return Stalled("the starting guess turns the wall inside out")
+    left = np.inf
+    for iteration in range(max_iterations):
+        size = float(np.linalg.norm(state.residual))
+        if size <= RESIDUAL * state.scale and left <= GAIN * _energy_scale(scene, state):
+            return Outcome(state, iteration)
+        way = direction(scene, state)
+        slope = float(way.step @ state.residual)
+        if slope >= 0.0 and scene.plate is not None:
+            way = _downhill(state, full_tangent(scene, state), state.residual)
+            slope = float(way.step @ state.residual)
+        if not np.isfinite(slope) or slope >= 0.0:
+            return Stalled(f"the Newton step does not go downhill (slope {slope:.2e})")
+        moved = _search(scene, state, way.step, slope)
+        if moved is None:
+            return Stalled("no step along the Newton direction lowers the energy")
+        # The gain of a Newton step goes with the square of the residual it starts from.
+        state, left = moved, -slope * (float(np.linalg.norm(moved.residual)) / max(size, 1.0e-300)) ** 2
+    return Stalled(f"residual {np.linalg.norm(state.residual) / state.scale:.1e} after {max_iterations} iterations")
+
+
+def _energy_scale(scene: Scene, state: State) -> float:
+    return state.local.energy + state.scale * scene.solid.wall
+
+
+def _search(scene: Scene, state: State, step: Array, slope: float) -> State | None:
+    """Backtrack from the full step until the energy falls as Armijo asks; None when it never does.
+
+    Near convergence the energy difference drowns in rounding: there a step is also taken when it lowers the slope.
+    """
+    move = scene.solid.expand(step)
+    noise = 1.0e-13 * (abs(state.energy) + state.local.energy + scene.solid.wall)
+    share = 1.0
+    while share > _SHORTEST:
+        trial = evaluate(scene, state.x + share * move)
+        if trial is None:
+            share *= 0.4
+            continue
+        drop = trial.energy - state.energy
+        if drop <= _ARMIJO * share * slope:
+            return trial
+        along = float(step @ trial.residual)
+        if abs(drop) <= noise and abs(along) <= 0.9 * abs(slope):
+            return trial
+        curve = 2.0 * (drop - share * slope)
+        share = float(np.clip(-slope * share * share / curve, 0.1 * share, 0.5 * share)) if curve > 0.0 else 0.3 * share
+    return None

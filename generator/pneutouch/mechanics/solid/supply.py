@@ -1,0 +1,77 @@
+"""What fills the cavity, as a potential of its volume: p = -potential', stiffness c = potential'' (a rank-one term).
+
+All three are nondimensional: volumes in R0^3, pressures in mu.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import log
+from typing import NamedTuple, Protocol
+
+
+class Filling(NamedTuple):
+    """Potential, gauge pressure and -dp/dV at one volume."""
+
+    energy: float
+    pressure: float
+    rate: float
+
+
+class Supply(Protocol):
+    """Anything with a potential of the cavity volume."""
+
+    def at(self, volume: float) -> Filling | None:
+        """Potential, pressure and rate, or None where the volume is impossible."""
+        ...
+
+
+@dataclass(frozen=True)
+class Regulator:
+    """A constant gauge pressure."""
+
+    pressure: float
+
+    def at(self, volume: float) -> Filling:
+        """Potential -p V."""
+        return Filling(-self.pressure * volume, self.pressure, 0.0)
+
+
+@dataclass(frozen=True)
+class Liquid:
+    """A nearly incompressible filling of rest volume `target`: volume control as an energy.
+
+    The pressure is what it takes, `stiffness` only says how far V may fall short of the target; every (p, V) it
+    yields is
+    an exact point of the pressure-volume curve.
+    """
+
+    target: float
+    stiffness: float
+
+    def at(self, volume: float) -> Filling:
+        """Potential stiffness/2 (V - target)^2."""
+        lack = self.target - volume
+        return Filling(0.5 * self.stiffness * lack * lack, self.stiffness * lack, self.stiffness)
+
+
+@dataclass(frozen=True)
+class Gas:
+    """Trapped isothermal gas: absolute pressure times (V + dead) stays `content`."""
+
+    content: float
+    ambient: float
+    dead: float
+
+    @classmethod
+    def filled(cls, pressure: float, volume: float, ambient: float, dead: float) -> Gas:
+        """The gas shut in at a gauge pressure and cavity volume."""
+        return cls((pressure + ambient) * (volume + dead), ambient, dead)
+
+    def at(self, volume: float) -> Filling | None:
+        """Potential -[C ln(V + dead) - ambient V] (physics.md 2.2)."""
+        room = volume + self.dead
+        if room <= 0.0:
+            return None
+        absolute = self.content / room
+        return Filling(self.ambient * volume - self.content * log(room), absolute - self.ambient, absolute / room)

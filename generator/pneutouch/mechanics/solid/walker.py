@@ -1,0 +1,135 @@
+"""Follows one contact path as the plate comes down: prediction, solution, stability, cutback."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneutouch.mechanics.solid.contact import Plate
+from pneutouch.mechanics.solid.errors import NoConvergenceError
+from pneutouch.mechanics.solid.model import Solid
+from pneutouch.mechanics.solid.newton import Scene, Stalled, State, minimise, stability
+from pneutouch.mechanics.solid.supply import Supply
+
+Array = NDArray[np.float64]
+
+#: Longest plate travel in one solve, in R0: longer steps can land on another branch.
+LONGEST = 0.06
+_SHORTEST = 1.0e-4
+#: The work of the first step, where contact begins at a point, is only known to this share.
+_FIRST_STEP = 0.06
+#: A step that loses more than this share of a full step's work has left the branch it started on.
+DISSIPATION = 0.01
+
+
+@dataclass(frozen=True)
+class Spot:
+    """A converged state under the plate at `height`; all nondimensional (R0, mu).
+
+    force: on the plate.  stiffness: dF/dheight (negative).  by_height: dx/dheight, (n_nodes, 2).  pressure_rate:
+    dp/dheight.  stable: the total tangent is positive definite.
+    """
+
+    height: float
+    state: State
+    scene: Scene
+    iterations: int
+    force: float
+    stiffness: float
+    by_height: Array
+    pressure_rate: float
+    stable: bool
+
+
+def spot_of(scene: Scene, state: State, height: float, iterations: int) -> Spot:
+    """Force and the tangent of the path at a converged state."""
+    solid, touch = scene.solid, state.touch
+    if touch is None:
+        raise ValueError("a spot needs a plate")
+    contact = solid.contact
+    active = np.where(touch.traction > 0.0, -contact.stiffness, 0.0)
+    way = stability(scene, state, solid.push(contact.force(active, touch.slope)))
+    move = solid.expand(way.step)
+    r, z = contact.positions(move)
+    stiffness = float(np.vdot(contact.weight * active, 1.0 + touch.slope * r - z))
+    rate = -state.filling.rate * float(way.step @ state.by_volume)
+    force = float(np.vdot(contact.weight, touch.traction))
+    return Spot(height, state, scene, iterations, force, stiffness, move, rate, way.stable)
+
+
+def lost_work(path: list[Spot], after: Spot) -> float:
+    """Energy unaccounted for from the end of a path to `after`, as a share of the plate's work in a full step.
+
+    Near zero along one branch, since dPi/dheight = -force there.  The trapezium is corrected by the curvature of the
+    force
+    through three states; the first step, whose force starts at zero, by the slope at its end, which is coarser.
+    """
+    here = path[-1]
+    travel = here.height - after.height
+    work = 0.5 * travel * (here.force + after.force)
+    floor = 1.0e-6 * here.scene.solid.wall * travel
+    if len(path) > 1:
+        before = path[-2]
+        past = before.height - here.height
+        bend = ((after.force - here.force) / travel - (here.force - before.force) / past) * 2.0 / (travel + past)
+        fixed = work - travel**3 * bend / 12.0
+        allowance = 0.0
+    else:
+        fixed = work - travel * (-after.stiffness * travel - (after.force - here.force)) / 6.0
+        allowance = _FIRST_STEP
+    lost = abs(fixed - (after.state.energy - here.state.energy))
+    # A jump releases the same energy however short the step it falls in, so short steps are held to the work of a
+    # full one.
+    share = lost / (max(1.0, LONGEST / travel) * (work + floor))
+    return max(0.0, share - allowance)
+
+
+class Walker:
+    """Keeps the states of a path and steps to new plate heights."""
+
+    def __init__(self, solid: Solid, supply: Supply, plate: Plate, start: Array) -> None:
+        self._solid = solid
+        scene = Scene(solid, supply, plate)
+        found = minimise(scene, start)
+        if isinstance(found, Stalled):
+            raise NoConvergenceError("first contact", found.why, "a finer mesh")
+        self.path = [spot_of(scene, found.state, plate.height, found.iterations)]
+        self._plate = plate
+
+    @property
+    def here(self) -> Spot:
+        """The newest state."""
+        return self.path[-1]
+
+    def step(self, height: float) -> Spot:
+        """One state further down the path, at `height` or short of it where the step had to be cut; kept."""
+        travel = min(self.here.height - height, LONGEST)
+        why = ""
+        shortest = min(_SHORTEST, 0.5 * travel)
+        while travel > shortest:
+            spot = self.solve(self.here.height - travel)
+            if not isinstance(spot, Stalled):
+                self.path.append(spot)
+                return spot
+            why = spot.why
+            travel *= 0.35
+        where = f"plate height {self.here.height * self._solid.length:.6g} mm"
+        raise NoConvergenceError(where, why, "a finer mesh or a smaller depth")
+
+    def solve(self, height: float) -> Spot | Stalled:
+        """State at `height` from the extrapolated path; not kept."""
+        scene = replace(self.here.scene, plate=self._plate.at(height))
+        found = minimise(scene, self._extrapolate(height))
+        if isinstance(found, Stalled):
+            found = minimise(scene, self.here.state.x)
+        if isinstance(found, Stalled):
+            return found
+        return spot_of(scene, found.state, height, found.iterations)
+
+    def _extrapolate(self, height: float) -> Array:
+        """Positions ahead along the tangent of the path; at first contact, a point, there is none."""
+        if len(self.path) < 2:
+            return self.here.state.x
+        return np.asarray(self.here.state.x + (height - self.here.height) * self.here.by_height)

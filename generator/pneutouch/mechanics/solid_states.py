@@ -1,0 +1,143 @@
+"""The rung ``solid``: the paper's finite element study (section 2-C and Supplement B) run for a sensor."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
+
+from pneutouch.mechanics.events import Event, range_end
+from pneutouch.mechanics.limits import LimitPoint, Limits
+from pneutouch.mechanics.prediction import InflationCurve, Result, Shape, State
+from pneutouch.mechanics.response import figures
+from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.solid import (
+    FreeState,
+    Indentation,
+    Inflation,
+    Press,
+    PressState,
+    Probe,
+    Solid,
+    burst,
+    dome,
+    indent,
+    inflate,
+    state_at,
+)
+from pneutouch.meridian.segments import Array
+from pneutouch.units import KPA
+
+_PAST_LIMIT = 1.6
+"""Inflation goes on to this multiple of the limit volume: enough to show the falling branch."""
+
+KINDS = {
+    "unstable": ("loss of stability", True),
+    "snap": ("inward buckling", True),
+    "clamp_fold": ("fold at the clamp", True),
+    "lost": ("no equilibrium found", True),
+    "floor": ("apex at the base plane", True),
+    "separation": ("contact separates at the centre", True),
+    "break": ("break strain", True),
+    "gauge_range": ("gauge range", True),
+    "plate_rim": ("plate edge", True),
+    "crease": ("creasing", False),
+    "overhang": ("wall below the base plane", False),
+}
+"""The solver's events as they are reported, and whether figures must not be fitted beyond them."""
+
+
+def solid_result(sensor: Sensor, driving_pressures: Array, *, cells: int | None = None) -> Result:
+    """Inflate through the limit point, then press at every driving pressure (MPa, ascending).
+
+    ``cells`` is the number of cells along the arc; left out, the wall ratio decides (docs/accuracy.md says why).
+    Raises BeyondLimitError beyond the limit point, ComputationError where no equilibrium is found.
+    """
+    solid = Solid(dome(sensor.inner_radius, sensor.wall_thickness, arc=cells), sensor.material)
+    run = inflate(solid, past_limit=_PAST_LIMIT)
+    states = tuple(_state(sensor, solid, run, float(p)) for p in driving_pressures)
+    return Result(_limit_point(sensor, run), _limits(sensor, solid, run), _inflation(run), states)
+
+
+def _limit_point(sensor: Sensor, run: Inflation) -> LimitPoint | None:
+    if run.limit is None:
+        return None
+    inner, outer = run.limit.inner_apex, run.limit.outer_apex
+    return LimitPoint(inner, outer, run.limit.pressure, (outer - inner) / sensor.wall_thickness)
+
+
+def _inflation(run: Inflation) -> InflationCurve:
+    """The curve between the solved states: Hermite cubics in the volume, with the solid's own slopes dp/dV."""
+    volume = run.volume
+    grid = np.unique(np.concatenate([np.linspace(volume[0], volume[-1], 90), volume]))
+    inner, outer = (
+        PchipInterpolator(volume, [getattr(s, name) for s in run.states])(grid) for name in ("inner_apex", "outer_apex")
+    )
+    pressure = CubicHermiteSpline(volume, run.pressure, [s.stiffness for s in run.states])(grid)
+    return InflationCurve(inner, outer, grid, pressure)
+
+
+def _limits(sensor: Sensor, solid: Solid, run: Inflation) -> Limits:
+    """Driving pressures at which the limits are met on the rising branch, the one that can be driven to."""
+    torn = None if sensor.break_stretch is None else burst(solid, run, sensor.break_stretch - 1)
+    if torn is not None and run.limit is not None and torn[1] > run.limit.outer_apex:
+        torn = None
+    return Limits(
+        limit_point=None if run.limit is None else run.limit.pressure,
+        break_strain=None if torn is None else torn[0],
+        gauge=sensor.gauge_limit,
+    )
+
+
+def _state(sensor: Sensor, solid: Solid, run: Inflation, pressure: float) -> State:
+    free = state_at(solid, pressure, run)
+    press = Press(
+        sensor.depth, sensor.steps, 2 * sensor.plate_radius, sensor.ambient_pressure, sensor.dead_volume,
+        sensor.gauge_limit, np.inf if sensor.break_stretch is None else sensor.break_stretch - 1,
+    )  # fmt: skip
+    found = indent(solid, free, press)
+    happened = _events(found)
+    end = min(range_end(happened, sensor.depth), found.path[-1].indentation)
+    grid = np.linspace(0.0, end, sensor.steps + 1)
+    force, rise = _curve(found.path, grid)
+    return State(
+        driving_pressure=pressure, apex_inner=free.inner_apex, apex_outer=free.outer_apex,
+        cavity_volume=free.volume, range_end=end, figures=figures(grid, force, rise / KPA),
+        indentation=found.column("indentation"), force=found.column("force"),
+        pressure_rise=found.column("rise"), contact_radius=found.column("contact_radius"),
+        max_stretch=found.column("stretch"), max_von_mises=found.column("von_mises"),
+        events=tuple(happened), shapes=_shapes(solid, free, found, end),
+    )  # fmt: skip
+
+
+def _events(found: Indentation) -> list[Event]:
+    events = [Event(KINDS[e.kind][0], max(e.indentation, 0.0), KINDS[e.kind][1], e.detail) for e in found.events]
+    return sorted(events, key=lambda event: event.indentation)
+
+
+def _curve(path: list[PressState], grid: Array) -> tuple[Array, Array]:
+    """Force (N) and pressure rise (MPa) at indentations between the solved states, on their Hermite cubics."""
+    x = np.array([s.indentation for s in path])
+    keep = np.concatenate([[True], np.diff(x) > 1e-9])
+    x, states = x[keep], [s for s, k in zip(path, keep, strict=True) if k]
+    force, rise = np.array([s.force for s in states]), np.array([s.rise for s in states])
+    stiffness = np.array([s.stiffness for s in states])
+    rate = np.nan_to_num(np.array([s.slope for s in states])) * stiffness
+    k = np.clip(np.searchsorted(x, grid, side="right") - 1, 0, len(x) - 2)
+    span = x[k + 1] - x[k]
+    share = (grid - x[k]) / span
+
+    def cubic(y: Array, slope: Array) -> Array:
+        step = y[k + 1] - y[k]
+        bow = (1 - share) * (slope[k] * span - step) + share * (step - slope[k + 1] * span)
+        value: Array = y[k] + share * step + share * (1 - share) * bow
+        return value
+
+    return cubic(force, stiffness), cubic(rise, rate)
+
+
+def _shapes(solid: Solid, free: FreeState, found: Indentation, end: float) -> tuple[Shape, ...]:
+    """The wall at rest, inflated, and pressed to the end of the range."""
+    probe = Probe(solid)
+    last = max((s for s in found.path if s.indentation <= end * (1 + 1e-9)), key=lambda s: s.indentation)
+    positions = [(None, solid.rest * solid.length), (0.0, free.positions), (last.indentation, last.positions)]
+    return tuple(Shape(at, probe.outlines(x), probe.cell_stretch(x / solid.length)) for at, x in positions)

@@ -1,0 +1,103 @@
+"""The discrete energy against its own derivatives, and the linear algebra."""
+
+import numpy as np
+import pytest
+
+from pneutouch.mechanics.laws import neo_hookean, ogden
+from pneutouch.mechanics.solid import Solid, dome, flanged_dome
+from pneutouch.mechanics.solid.banded import negative_pivots
+from pneutouch.mechanics.solid.cavity import Cavity
+from pneutouch.mechanics.solid.contact import Plate
+from pneutouch.mechanics.solid.newton import Scene, evaluate, full_tangent
+from pneutouch.mechanics.solid.supply import Gas, Liquid
+
+
+def _dense(band):
+    n = band.shape[1]
+    out = np.zeros((n, n))
+    for k in range(band.shape[0]):
+        i = np.arange(n - k)
+        out[i + k, i] = out[i, i + k] = band[k, : n - k]
+    return out
+
+
+@pytest.mark.parametrize("order", [1, 2, 8])
+@pytest.mark.parametrize("law", [neo_hookean(0.17), ogden(((0.1, 1.3), (0.07, 4.0)))])
+def test_residual_and_tangent_are_derivatives_of_the_energy(order, law):
+    solid = Solid(dome(9.25, 1.5, arc=8, order=order), law)
+    rng = np.random.default_rng(0)
+    x = solid.rest + solid.expand(2e-3 * rng.normal(size=solid.size))
+    scene = Scene(solid, Gas.filled(0.1, 2.1, 0.6, 0.2), Plate(1.1, 0.3, 0.1))
+    state = evaluate(scene, x)
+    d = rng.normal(size=solid.size)
+    d /= np.linalg.norm(d)
+    step = 1e-7
+    up, down = (evaluate(scene, x + s * step * solid.expand(d)) for s in (1, -1))
+    slope = float(state.residual @ d)
+    assert (up.energy - down.energy) / (2 * step) == pytest.approx(
+        slope, rel=1e-5, abs=1e-9 * abs(state.energy) / step * 1e-5
+    )
+    k = _dense(full_tangent(scene, state)) + state.filling.rate * np.outer(state.by_volume, state.by_volume)
+    change = (up.residual - down.residual) / (2 * step)
+    assert np.abs(k @ d - change).max() < 1e-6 * np.abs(change).max()
+
+
+def test_cavity_volume_is_exact_and_converges_to_the_hemisphere():
+    mesh = dome(2.0, 0.3, arc=40, order=1)
+    line = mesh.nodes[np.append(mesh.inner[:, 0], mesh.inner[-1, 1])]
+    r, z = line.T
+    frusta = np.pi / 3 * np.diff(z) * (r[1:] ** 2 + r[1:] * r[:-1] + r[:-1] ** 2)
+    assert Cavity(mesh.inner).volume(mesh.nodes) == pytest.approx(frusta.sum(), rel=1e-13)
+    errors = []
+    for arc in (8, 16):
+        mesh = dome(1.0, 0.1, arc=arc)
+        errors.append(abs(Cavity(mesh.inner).volume(mesh.nodes) - 2 * np.pi / 3))
+    assert errors[1] < 1e-5 and np.log2(errors[0] / errors[1]) > 3.8
+
+
+def test_inertia_matches_eigenvalues():
+    rng = np.random.default_rng(1)
+    for shift in (-3.0, 0.0, 2.0, 9.0):
+        band = rng.normal(size=(6, 47))
+        band[0] += shift
+        assert negative_pivots(band) == (np.linalg.eigvalsh(_dense(band)) < 0).sum()
+
+
+def test_inertia_of_band_plus_rank_one():
+    rng = np.random.default_rng(2)
+    for _ in range(50):
+        band = rng.normal(size=(4, 23))
+        band[0] += rng.uniform(0, 6)
+        g, c = rng.normal(size=23), rng.uniform(0.1, 30)
+        k = _dense(band)
+        denominator = 1 + c * g @ np.linalg.solve(k, g)
+        predicted = negative_pivots(band) - (denominator < 0)
+        assert predicted == (np.linalg.eigvalsh(k + c * np.outer(g, g)) < 0).sum()
+
+
+def test_unloaded_dome_is_in_equilibrium_and_stable():
+    solid = Solid(dome(9.25, 1.5), neo_hookean(0.17))
+    v0 = solid.cavity.volume(solid.rest)
+    state = evaluate(Scene(solid, Liquid(v0, 30.0), None), solid.rest)
+    assert np.abs(state.residual).max() < 1e-12
+    assert negative_pivots(full_tangent(Scene(solid, Liquid(v0, 30.0), None), state)) == 0
+
+
+def test_bands_stay_narrow():
+    assert Solid(dome(9.25, 1.5), neo_hookean(0.17)).pattern.width == 25
+    assert Solid(flanged_dome(9.25, 1.5, 3.0, 1.5), neo_hookean(0.17)).pattern.width == 17
+
+
+def test_inverted_cells_are_refused():
+    mesh = dome(1.0, 0.2, arc=4)
+    nodes = mesh.nodes.copy()
+    nodes[mesh.cells[0, 0]], nodes[mesh.cells[0, 1]] = nodes[mesh.cells[0, 1]].copy(), nodes[mesh.cells[0, 0]].copy()
+    bad = type(mesh)(**{**mesh.__dict__, "nodes": nodes})
+    with pytest.raises(ValueError, match="inverted"):
+        Solid(bad, neo_hookean(1.0))
+
+
+def test_broken_boundary_lines_are_refused():
+    mesh = dome(1.0, 0.2, arc=4)
+    with pytest.raises(ValueError, match="one line"):
+        type(mesh)(**{**mesh.__dict__, "inner": mesh.inner[::-1]})
