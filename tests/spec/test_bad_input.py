@@ -48,6 +48,8 @@ CASES = [
     ("[membrane]\ninner_radius_mm = 99\nwall_thickness_mm = 30", ["print.profile", "must fit 255 x 252 x 200 mm"]),
     ("[membrane]\ninner_radius_mm = 1.2\nwall_thickness_mm = 0.5", ["inner_radius_mm = 1.2", "too small for"]),
     ("[membrane\n", ["not valid TOML"]),
+    ("[indentation]\nplate_diameter_mm = 4", ["plate_diameter_mm = 4", "plate's edge", "wider", "18.5 mm"]),
+    ("[indentation]\ndepth_mm = 20", ["depth_mm = 20", "0.95"]),
     ("[document]\ndate = 'yesterday'", ["document.date", "yesterday"]),
 ]  # fmt: skip
 
@@ -134,3 +136,45 @@ def test_commands_exit_2_without_traceback_and_write_nothing(words, command, tmp
     assert "membrane.inner_radius_mm = -3" in result.stderr
     assert "Traceback" not in result.stderr
     assert list(tmp_path.iterdir()) == [bad]
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (("value = 0.49", "value = 0.5"), ["poisson_ratio = 0.5", "between 0 and 0.5"]),
+        (("value = 0.17", "value = -0.17"), ["shear modulus is -0.17 MPa", "positive"]),
+        (('title = "TangoPlus"', 'law = { name = "yeoh", constants = [-0.1, 0, 0], source = "made up here" }\ntitle = "TangoPlus"'), ["law", "positive"]),
+        (('title = "TangoPlus"', 'law = { name = "yeo", constants = [1.0], source = "made up here" }\ntitle = "TangoPlus"'), ["Did you mean yeoh?"]),
+        (('title = "TangoPlus"', 'law = { name = "ogden", constants = [1.0], source = "made up here" }\ntitle = "TangoPlus"'), ["cannot take the constants [1.0]"]),
+    ],
+)  # fmt: skip
+def test_a_resin_that_makes_no_solid_is_refused(change, words, tmp_path):
+    folder = tmp_path / "printprofiles/materials"
+    folder.mkdir(parents=True)
+    text = (ROOT / "printprofiles/materials/TangoPlus.toml").read_text().replace(*change)
+    (folder / "TangoPlus.toml").write_text(text)
+    with pytest.raises(InputError) as caught:
+        evaluate("paper-dome", library=Library((tmp_path, ROOT)))
+    for word in ("membrane.material = 'TangoPlus'", *words):
+        assert word in str(caught.value)
+
+
+def test_a_source_that_says_nothing_is_refused(tmp_path):
+    folder = tmp_path / "printprofiles/materials"
+    folder.mkdir(parents=True)
+    law = 'law = { name = "yeoh", constants = [0.1, 0, 0], source = "me" }\n'
+    (folder / "TangoPlus.toml").write_text(law + (ROOT / "printprofiles/materials/TangoPlus.toml").read_text())
+    with pytest.raises(InputError, match=r"law\.source = 'me': .*at least 8 characters"):
+        evaluate("paper-dome", library=Library((tmp_path, ROOT)))
+
+
+def test_a_resin_with_a_law_of_its_own_is_predicted_with_it(tmp_path):
+    folder = tmp_path / "printprofiles/materials"
+    folder.mkdir(parents=True)
+    law = 'law = { name = "mooney-rivlin", constants = [0.06, 0.025], source = "made up for this test" }\n'
+    (folder / "TangoPlus.toml").write_text(law + (ROOT / "printprofiles/materials/TangoPlus.toml").read_text())
+    own = evaluate("paper-dome", library=Library((tmp_path, ROOT))).prediction
+    plain = evaluate("paper-dome", library=Library((ROOT,))).prediction
+    assert own.limit_point is None or own.limit_point.driving_pressure > 1.1 * plain.limit_point.driving_pressure
+    assert own.states[0].figures.sensitivity == pytest.approx(plain.states[0].figures.sensitivity, rel=0.1)
+    assert any("c10(I1-3)+c01(I2-3)" in line for line in own.assumptions)

@@ -31,6 +31,9 @@ ModelOption = Annotated[str, typer.Option("--model", help="Rung of the ladder of
 ClosureOption = Annotated[
     str, typer.Option("--closure", help="Contact closure of the membrane: variational or printed.")
 ]
+ClampOption = Annotated[
+    str, typer.Option("--clamp", help="Where the solid is held: base (plane) or flange (as printed).")
+]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON document and nothing else.")]
 OutOption = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder that takes the output folder.")]
 
@@ -77,14 +80,14 @@ def main(
 @app.command()
 def build(
     design: DesignArgument, set_: SetOption = None, model: ModelOption = "solid",
-    closure: ClosureOption = "variational", out: OutOption = Path("outputs"), json: JsonOption = False,
+    closure: ClosureOption = "variational", clamp: ClampOption = "base", out: OutOption = Path("outputs"), json: JsonOption = False,
 ) -> None:  # fmt: skip
     """Build everything: print files, prediction, datasheet."""
     with _reporting():
         from pneutouch.pipeline.evaluate import evaluate
         from pneutouch.pipeline.files import check_writable
 
-        evaluation = evaluate(design, set_, model=model, closure=closure)
+        evaluation = evaluate(design, set_, model=model, closure=closure, clamp=clamp)
         check_writable(out / evaluation.scene.name)
         folder = _build_with_progress(evaluation, out)
         for finding in evaluation.findings:
@@ -98,13 +101,13 @@ def build(
 @app.command()
 def predict(
     design: DesignArgument, set_: SetOption = None, model: ModelOption = "solid",
-    closure: ClosureOption = "variational", json: JsonOption = False,
+    closure: ClosureOption = "variational", clamp: ClampOption = "base", json: JsonOption = False,
 ) -> None:  # fmt: skip
     """Predict the figures alone."""
     with _reporting():
         from pneutouch.pipeline.evaluate import evaluate
 
-        document = evaluate(design, set_, model=model, closure=closure).prediction.document()
+        document = evaluate(design, set_, model=model, closure=closure, clamp=clamp).prediction.document()
         if json:
             _print_json(document)
         else:

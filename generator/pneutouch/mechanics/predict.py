@@ -38,8 +38,11 @@ _SOLID_ASSUMPTIONS = (
     "elongation at break is set against the greatest principal stretch on the faces, half a wall away from the clamp",
 )
 
+_CLAMPED_BASE = "rim clamped at the base plane, as in the paper"
+_CLAMPED_FLANGE = "flange clamped on the faces that the connector holds, its top free"
+
 _COMMON_ASSUMPTIONS = (
-    "rigid, flat, frictionless plate; base clamped at the base plane",
+    "rigid, flat, frictionless plate",
     "ideal gas at constant temperature (Boyle); fast contact is stiffer, up to 1.4 times for adiabatic air",
     "elastic wall: no rate, relaxation or temperature dependence of the resin",
 )
@@ -65,6 +68,7 @@ def predict(
         raise InputError(f"--closure {closure}: unknown closure.{nearest(closure, CLOSURES)}")
     pressures = np.array(driving_pressures, float)
     gas = f"dead volume {sensor.dead_volume / ML:.4g} mL, ambient pressure {sensor.ambient_pressure / KPA:g} kPa"
+    held = _CLAMPED_FLANGE if model == "solid" and sensor.flange is not None else _CLAMPED_BASE
     if model == "membrane":
         found = membrane_result(sensor, pressures, closure)
         errors: dict[str, Any] = error_against_exact_membrane(sensor, pressures)
@@ -79,5 +83,5 @@ def predict(
         design=design, model=model, closure=closure if model == "membrane" else None,
         error_estimate=_merged(errors, sensitivity_error or {}),
         limit_point=found.limit_point, limits=found.limits, dead_volume=sensor.dead_volume,
-        inflation=found.inflation, states=found.states, assumptions=(*assumptions, *_COMMON_ASSUMPTIONS, gas),
+        inflation=found.inflation, states=found.states, assumptions=(*assumptions, held, *_COMMON_ASSUMPTIONS, gas),
     )  # fmt: skip

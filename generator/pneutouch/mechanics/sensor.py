@@ -12,7 +12,8 @@ class Sensor:
     """A dome with its gas and its plate. ``break_stretch`` is the stretch at which the resin may tear.
 
     ``law`` is a hyperelastic law's name with its constants where the resin has one of its own; without it the
-    wall is neo-Hookean with ``shear_modulus``.
+    wall is neo-Hookean with ``shear_modulus``. ``flange`` is the width and thickness of the flange where the solid
+    shall be held as it is printed; without it the wall is clamped at the base plane, as in the paper.
     """
 
     inner_radius: float
@@ -27,6 +28,7 @@ class Sensor:
     break_stretch: float | None
     gauge_limit: float
     law: tuple[str, tuple[float, ...]] | None = None
+    flange: tuple[float, float] | None = None
 
     @property
     def material(self) -> Hyperelastic:

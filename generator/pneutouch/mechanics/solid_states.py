@@ -22,6 +22,7 @@ from pneutouch.mechanics.solid import (
     dome,
     indent,
     inflate,
+    printed_dome,
     state_at,
 )
 from pneutouch.meridian.segments import Array
@@ -52,7 +53,9 @@ def solid_result(sensor: Sensor, driving_pressures: Array, *, cells: int | None 
     ``cells`` is the number of cells along the arc; left out, the wall ratio decides (docs/accuracy.md says why).
     Raises BeyondLimitError beyond the limit point, ComputationError where no equilibrium is found.
     """
-    solid = Solid(dome(sensor.inner_radius, sensor.wall_thickness, arc=cells), sensor.material)
+    size = (sensor.inner_radius, sensor.wall_thickness)
+    mesh = dome(*size, arc=cells) if sensor.flange is None else printed_dome(*size, *sensor.flange, arc=cells)
+    solid = Solid(mesh, sensor.material)
     run = inflate(solid, past_limit=_PAST_LIMIT)
     states = tuple(_state(sensor, solid, run, float(p)) for p in driving_pressures)
     return Result(_limit_point(sensor, run), _limits(sensor, solid, run), _inflation(run), states)

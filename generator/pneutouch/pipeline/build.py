@@ -83,6 +83,7 @@ def inputs(evaluation: Evaluation) -> dict[str, Any]:
     return {
         "model": evaluation.prediction.model,
         "closure": evaluation.prediction.closure,
+        "clamp": "base" if evaluation.sensor.flange is None else "flange",
         **{key: model.model_dump(mode="json") for key, model in models.items()},
     }
 

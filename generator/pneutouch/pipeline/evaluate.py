@@ -8,13 +8,16 @@ from functools import cached_property
 import numpy as np
 
 from pneutouch.catalogue import Library, Scene, load_scene
-from pneutouch.errors import BeyondLimitError, InputError
+from pneutouch.errors import BeyondLimitError, InputError, nearest
 from pneutouch.mechanics import Prediction, Sensor, predict
 from pneutouch.parts import Assembly, assemble
 from pneutouch.pipeline.table_s1 import material_sensor, sensitivity_error
 from pneutouch.printability import Finding, check
 from pneutouch.spec.printer import Printer
 from pneutouch.units import KPA
+
+CLAMPS = ("base", "flange")
+"""Where the solid is held."""
 
 
 @dataclass(frozen=True)
@@ -35,14 +38,19 @@ class Evaluation:
 
 def evaluate(
     name: str, assignments: list[str] | None = None, *,
-    model: str = "solid", closure: str = "variational", library: Library | None = None,
+    model: str = "solid", closure: str = "variational", clamp: str = "base", library: Library | None = None,
 ) -> Evaluation:  # fmt: skip
-    """Load, draw and predict a design given by name or path. Raises InputError where it cannot work."""
+    """Load, draw and predict a design given by name or path. Raises InputError where it cannot work.
+
+    ``clamp`` says where the solid is held: at the "base" plane, as in the paper, or at the "flange", as printed.
+    """
+    if clamp not in CLAMPS:
+        raise InputError(f"--clamp {clamp}: unknown.{nearest(clamp, CLAMPS)}")
     shelves = library or Library.default()
     scene = load_scene(name, assignments, shelves)
     assembly = assemble(scene)
     _check_envelope(assembly)
-    sensor = sensor_of(assembly)
+    sensor = sensor_of(assembly, clamp)
     pressures = [p * KPA for p in scene.design.pneumatics.driving_pressures_kPa]
     try:
         prediction = predict(
@@ -55,19 +63,29 @@ def evaluate(
     return Evaluation(scene, assembly, sensor, prediction, shelves)
 
 
-def sensor_of(assembly: Assembly) -> Sensor:
+def sensor_of(assembly: Assembly, clamp: str = "base") -> Sensor:
     """The mechanics' view of an assembly: mm and MPa."""
-    design, material = assembly.scene.design, assembly.scene.membrane_material
+    layout = assembly.layout
+    design = assembly.scene.design
     return replace(
-        material_sensor(material),
-        inner_radius=assembly.layout.inner_radius,
-        wall_thickness=assembly.layout.wall,
+        _material_sensor(assembly.scene),
+        inner_radius=layout.inner_radius,
+        wall_thickness=layout.wall,
         ambient_pressure=design.pneumatics.ambient_pressure_kPa * KPA,
         dead_volume=assembly.dead_volume,
         plate_radius=0.5 * design.indentation.plate_diameter_mm,
         depth=design.depth_mm,
         steps=design.indentation.steps,
+        flange=(layout.flange_width, layout.flange_thickness) if clamp == "flange" else None,
     )
+
+
+def _material_sensor(scene: Scene) -> Sensor:
+    """The paper's sensor in the scene's resin; a law that makes no solid is the material file's fault."""
+    try:
+        return material_sensor(scene.membrane_material)
+    except InputError as error:
+        raise InputError(f"{scene.where}: membrane.material = {scene.design.membrane.material!r}: {error}") from None
 
 
 def _beyond_limit(scene: Scene, error: BeyondLimitError) -> InputError:

@@ -7,6 +7,7 @@ computing them again would double the time of every prediction. The membrane's c
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -26,16 +27,21 @@ SHIPPED = Path(__file__).with_name("table_s1.json")
 
 
 def material_sensor(material: Material) -> Sensor:
-    """The paper's sensor in a material: no dead volume, 14 steps to three quarters of R0."""
+    """The paper's sensor in a material: no dead volume, 14 steps to three quarters of R0.
+
+    Raises InputError for a Poisson ratio or a law that makes no solid.
+    """
     assert material.shear_modulus_MPa is not None and material.poisson_ratio is not None
     elongation = material.elongation_at_break_percent
-    return Sensor(
+    sensor = Sensor(
         inner_radius=PAPER_RADIUS, wall_thickness=PAPER_WALL,
         shear_modulus=material.shear_modulus_MPa.nominal, poisson_ratio=material.poisson_ratio.nominal,
         ambient_pressure=STANDARD_ATMOSPHERE, dead_volume=0.0, plate_radius=0.5 * PAPER_PLATE,
         depth=0.75 * PAPER_RADIUS, steps=14,
         break_stretch=None if elongation is None else 1 + elongation.least / 100, gauge_limit=GAUGE_LIMIT,
+        law=None if material.law is None else (material.law.name, tuple(material.law.constants)),
     )  # fmt: skip
+    return replace(sensor, shear_modulus=sensor.material.mu)
 
 
 def measured(material: Material) -> tuple[float, float] | None:

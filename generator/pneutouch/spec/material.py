@@ -17,6 +17,14 @@ class Measured(Table):
     repeatability_kPa_per_N: Quantity  # noqa: N815
 
 
+class HyperelasticLaw(Table):
+    """A law of the material's own, where the neo-Hookean one with its shear modulus is not enough."""
+
+    name: str = Field(description="neo-hookean, mooney-rivlin, yeoh or ogden.")
+    constants: list[float] = Field(min_length=1, max_length=6, description="MPa; Ogden: mu, alpha, mu, alpha ...")
+    source: str = Field(min_length=8)
+
+
 class Material(Table):
     """One cured material. A digital material is told apart by its code and its base resins together."""
 
@@ -34,6 +42,7 @@ class Material(Table):
     shore_d: Quantity | None = None
     tensile_strength_MPa: Quantity | None = None  # noqa: N815
     elongation_at_break_percent: Quantity | None = None
+    law: HyperelasticLaw | None = None
     measured: Measured | None = None
 
     @model_validator(mode="after")

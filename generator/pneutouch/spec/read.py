@@ -84,7 +84,8 @@ def _explain(model: type[BaseModel], detail: Any) -> str:
     if not path:
         return str(detail["msg"])
     label = f"{key}[{index}]" if index is not None else key
-    return f"{label} = {_shown(detail['input'])}: must be {_wanted(detail)}{_right(owner, path)}"
+    right = f"{_wanted(detail)}{_right(owner, path)}".strip()
+    return f"{label} = {_shown(detail['input'])}: {f'must be {right}' if right else detail['msg']}"
 
 
 def _wanted(detail: Any) -> str:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from pneutouch.mechanics.laws import neo_hookean, ogden
-from pneutouch.mechanics.solid import Solid, dome, flanged_dome
+from pneutouch.mechanics.solid import Solid, dome, printed_dome
 from pneutouch.mechanics.solid.banded import negative_pivots
 from pneutouch.mechanics.solid.cavity import Cavity
 from pneutouch.mechanics.solid.contact import Plate
@@ -85,7 +85,7 @@ def test_unloaded_dome_is_in_equilibrium_and_stable():
 
 def test_bands_stay_narrow():
     assert Solid(dome(9.25, 1.5), neo_hookean(0.17)).pattern.width == 25
-    assert Solid(flanged_dome(9.25, 1.5, 3.0, 1.5), neo_hookean(0.17)).pattern.width == 17
+    assert Solid(printed_dome(9.25, 1.5, 2.25, 2.25), neo_hookean(0.17)).pattern.width <= 45
 
 
 def test_inverted_cells_are_refused():

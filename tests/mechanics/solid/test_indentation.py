@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid import Press, Solid, SolidError, dome, flanged_dome, indent, inflate, state_at
+from pneutouch.mechanics.solid import Press, Solid, SolidError, dome, indent, inflate, printed_dome, state_at
 
 MODULI = (0.17, 0.27, 0.55, 0.91, 1.64, 4.00, 5.33)
 TABLE_S1 = {
@@ -134,13 +134,25 @@ def test_small_plate_reaches_its_rim():
     assert run.column("contact_radius").max() < 3.6
 
 
-def test_flanged_meridian_is_softer_than_the_clamped_base():
-    # the tube below z = 0 holds gas too: give the clamped dome the same
-    clamped = press(dead_volume=np.pi * 9.25**2 * 3.0)
-    flanged = press(mesh=flanged_dome(9.25, 1.5, 3.0, 1.5))
-    assert flanged.complete and 0.5 * clamped.states[-1].force < flanged.states[-1].force < clamped.states[-1].force
-    held = press(mesh=flanged_dome(9.25, 1.5, 3.0, 1e-3))
+def test_the_printed_rim_gives_a_little_and_a_stiff_hold_gives_the_clamped_base():
+    clamped, printed = press(), press(mesh=printed_dome(9.25, 1.5, 2.25, 2.25))
+    assert printed.complete
+    assert 0.9 * clamped.states[-1].force < printed.states[-1].force < clamped.states[-1].force
+    held = press(mesh=printed_dome(9.25, 1.5, 0.02, 0.02))
     assert held.states[-1].force == pytest.approx(clamped.states[-1].force, rel=0.01)
+
+
+def test_the_printed_mesh_has_the_wall_and_the_flange_and_one_line_of_wetted_wall():
+    mesh = printed_dome(9.25, 1.5, 2.25, 2.5)
+    corners = mesh.nodes[mesh.cells[:, :4]]
+    x, y = corners[..., 0], corners[..., 1]
+    area = 0.5 * np.abs(np.sum(x * np.roll(y, -1, 1) - np.roll(x, -1, 1) * y, axis=1)).sum()
+    assert area == pytest.approx(np.pi / 4 * (10.75**2 - 9.25**2) + 3.75 * 2.5, rel=2e-3)
+    held = mesh.nodes[mesh.clamped]
+    assert held[:, 1].max() == 0.0
+    assert np.all((held[:, 0] <= 9.25 + 1e-9) | (held[:, 1] <= -2.5 + 1e-9) | (held[:, 0] >= 13 - 1e-9))
+    assert mesh.nodes[mesh.inner[0, 0]] == pytest.approx([9.25, 0.0])
+    assert mesh.nodes[mesh.outer[0, 0]] == pytest.approx([10.75, 0.0])
 
 
 def test_too_few_states_for_a_line_is_said():

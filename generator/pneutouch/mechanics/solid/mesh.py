@@ -53,7 +53,7 @@ class SolidMesh:
                 raise ValueError(f"the {name} edges must form one line from the base to the axis")
 
 
-def _grid_cells(n_columns: int, n_rows: int, nodes_per_cell: int) -> Index:
+def grid_cells(n_columns: int, n_rows: int, nodes_per_cell: int) -> Index:
     """Cells over a grid of (2 n_columns + 1) x (2 n_rows + 1) points, numbered down each column first; (n_cells, 9)."""
     height = 2 * n_rows + 1
     corner = (2 * np.arange(n_columns)[:, None] * height + 2 * np.arange(n_rows)[None, :]).reshape(-1, 1)
@@ -63,7 +63,7 @@ def _grid_cells(n_columns: int, n_rows: int, nodes_per_cell: int) -> Index:
     return cells
 
 
-def _boundary(n_columns: int, height: int, row: int) -> Index:
+def boundary(n_columns: int, height: int, row: int) -> Index:
     """Edges (start, end, mid) along one row of grid points, in column order; (n_columns, 3)."""
     start = 2 * np.arange(n_columns) * height + row
     return np.stack([start, start + 2 * height, start + height], axis=1).astype(np.intp)
@@ -76,8 +76,8 @@ def _from_grid(grid: Array, n_columns: int, n_rows: int, order: int, scales: tup
     base = np.arange(height)
     top = 2 * n_columns * height + base
     nodes[top, 0] = 0.0
-    cells = _grid_cells(n_columns, n_rows, {1: 4, 2: 9, 8: 8}[order])
-    inner, outer = _boundary(n_columns, height, 0), _boundary(n_columns, height, height - 1)
+    cells = grid_cells(n_columns, n_rows, {1: 4, 2: 9, 8: 8}[order])
+    inner, outer = boundary(n_columns, height, 0), boundary(n_columns, height, height - 1)
     if order == 1:
         inner, outer = inner[:, :2], outer[:, :2]
     keep = np.unique(cells)
@@ -95,7 +95,7 @@ def graded(n: int, ratio: float) -> Array:
     return np.concatenate([[0.0], np.cumsum(steps) / steps.sum()])
 
 
-def _with_middles(points: Array) -> Array:
+def with_middles(points: Array) -> Array:
     """Insert the middle of every interval; (n,) to (2 n - 1,)."""
     out = np.empty(2 * points.size - 1)
     out[::2], out[1::2] = points, 0.5 * (points[1:] + points[:-1])
@@ -105,6 +105,11 @@ def _with_middles(points: Array) -> Array:
 def arc_cells(wall_ratio: float) -> int:
     """Cells along the arc that keep S within half a per cent: three to the bending length sqrt(R0 t0), 24 to 48."""
     return int(np.clip(np.ceil(_TO_BENDING_LENGTH * 0.5 * np.pi / np.sqrt(wall_ratio)), 24, 48))
+
+
+def cells_across(wall_ratio: float) -> int:
+    """Cells through the wall: one for walls to a tenth of R0, else two."""
+    return 1 if wall_ratio <= _THIN else 2
 
 
 def dome(
@@ -123,30 +128,11 @@ def dome(
     slides: the base face moves freely in r (a symmetry plane), for tests against the sphere.
     """
     arc = arc or arc_cells(wall / inner_radius)
-    through = through or (1 if wall <= _THIN * inner_radius else 2)
-    angle = 0.5 * np.pi * _with_middles(graded(arc, base_ratio))
-    radius = inner_radius + wall * _with_middles(np.linspace(0.0, 1.0, through + 1))
+    through = through or cells_across(wall / inner_radius)
+    angle = 0.5 * np.pi * with_middles(graded(arc, base_ratio))
+    radius = inner_radius + wall * with_middles(np.linspace(0.0, 1.0, through + 1))
     grid = np.stack([np.cos(angle)[:, None] * radius, np.sin(angle)[:, None] * radius], axis=-1)
     mesh = _from_grid(grid, arc, through, order, (inner_radius, wall))
     if not slides:
         return mesh
     return replace(mesh, clamped=mesh.sliding, sliding=mesh.clamped)
-
-
-def flanged_dome(
-    inner_radius: float, wall: float, skirt: float, free: float, arc: int = 24, below: int = 8
-) -> SolidMesh:
-    """A dome whose wall runs on below z = 0 as a tube of length `skirt`, clamped but for its upper `free` part (mm).
-
-    An example of a meridian that is not a bare hemisphere; the cavity then includes the inside of the tube.
-    """
-    angle = 0.5 * np.pi * _with_middles(np.linspace(0.0, 1.0, arc + 1))
-    radius = inner_radius + wall * np.linspace(0.0, 1.0, 3)
-    cap = np.stack([np.cos(angle)[:, None] * radius, np.sin(angle)[:, None] * radius], axis=-1)
-    held_part, free_part = np.linspace(-skirt, -free, max(1, below // 2) + 1), np.linspace(-free, 0.0, below + 1)
-    depth = _with_middles(np.concatenate([held_part[:-1], free_part]))
-    tube = np.stack(np.broadcast_arrays(radius[None, :], depth[:-1, None]), axis=-1)
-    columns = arc + (depth.size - 1) // 2
-    mesh = _from_grid(np.concatenate([tube, cap]), columns, 1, 2, (inner_radius, wall))
-    held = np.flatnonzero(mesh.nodes[:, 1] <= -free * (1.0 - 1e-12)).astype(np.intp)
-    return replace(mesh, clamped=held)

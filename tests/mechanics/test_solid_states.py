@@ -1,0 +1,119 @@
+"""The solid as a rung of the ladder: the paper's figures, ranges, events, and what leaves the program."""
+
+from __future__ import annotations
+
+import statistics
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pneutouch.errors import BeyondLimitError, InputError
+from pneutouch.mechanics import predict
+from pneutouch.pipeline.table_s1 import SHIPPED, compute_errors, sensitivity_error
+from pneutouch.spec.material import Material
+from tests.mechanics.test_contact import PAPER
+
+
+@pytest.fixture(scope="module")
+def paper():
+    return predict("paper", PAPER, [0.0, 0.012, 0.022])
+
+
+def test_apex_at_22_kpa_and_both_sensitivities_of_tango(paper):
+    assert paper.states[2].apex_inner == pytest.approx(10.94, abs=0.02)
+    assert paper.states[0].figures.sensitivity == pytest.approx(2.547, rel=0.10)
+    assert paper.states[2].figures.sensitivity == pytest.approx(1.923, rel=0.10)
+
+
+def test_limit_point_of_the_thick_wall(paper):
+    """4 x 60 linear quads with mean dilatation, an independent program: 39.61 kPa (nu 0.49, base clamped)."""
+    assert 1e3 * paper.limit_point.driving_pressure == pytest.approx(39.61, rel=2e-3)
+    curve = paper.inflation
+    assert curve.pressure.max() == pytest.approx(paper.limit_point.driving_pressure, rel=1e-4)
+    assert np.all(np.diff(curve.volume) > 0)
+    assert curve.pressure[-1] < 0.97 * curve.pressure.max()
+
+
+def test_work_on_the_gas_is_the_pressure_along_the_inflation_curve(paper):
+    """The apex heights and volumes on one curve belong together: the driving pressures lie on it."""
+    for state in paper.states:
+        at = np.interp(state.driving_pressure, paper.inflation.pressure[:40], paper.inflation.apex_inner[:40])
+        assert state.apex_inner == pytest.approx(at, abs=0.01)
+
+
+def test_shipped_errors_are_what_the_solid_gives_today(library):
+    import json
+
+    shipped = json.loads(SHIPPED.read_text())
+    for name in ("TangoPlus", "FLX9970"):
+        material: Material = library.load("materials", name)
+        assert shipped[material.title] == pytest.approx(compute_errors(material, "solid", "variational"), abs=2e-3)
+    twelve = [abs(e) for title, errors in shipped.items() if title != "FLX9995-DM" for e in errors]
+    assert len(twelve) == 12
+    assert statistics.median(twelve) <= 0.10
+
+
+def test_a_resin_without_measurements_has_no_error_to_state(library):
+    found = sensitivity_error(library.load("materials", "Agilus30"), "solid", "variational")
+    assert found["sensitivity_relative"] is None
+
+
+def test_printed_flange_is_a_little_softer_than_the_clamped_base(paper):
+    printed = predict("x", replace(PAPER, flange=(2.25, 2.25)), [0.0, 0.012, 0.022])
+    assert 0.98 < printed.limit_point.driving_pressure / paper.limit_point.driving_pressure < 1.0
+    for one, other in zip(printed.states, paper.states, strict=True):
+        assert one.figures.stiffness < other.figures.stiffness
+    assert any("flange clamped" in line for line in printed.assumptions)
+
+
+def test_range_ends_at_the_gauge_where_the_pressure_says_so():
+    state = predict("x", replace(PAPER, gauge_limit=0.05), [0.022]).states[0]
+    event = next(event for event in state.events if event.kind == "gauge range")
+    assert state.range_end == event.indentation
+    at = np.interp(event.indentation, state.indentation, state.pressure_rise + 0.022)
+    assert at == pytest.approx(0.05, rel=0.01)
+
+
+def test_stiff_resin_buckles_inwards_and_the_fit_stops_there():
+    state = predict("x", replace(PAPER, shear_modulus=1.64, break_stretch=None), [0.0]).states[0]
+    event = next(event for event in state.events if event.kind == "inward buckling")
+    assert 5.5 < event.indentation < 6.6
+    assert state.range_end <= event.indentation
+    assert state.indentation[-1] <= event.indentation, "no state beyond the jump is reported"
+
+
+def test_figures_do_not_depend_on_the_number_of_steps():
+    few, many = (predict("x", replace(PAPER, steps=n), [0.022]).states[0].figures.sensitivity for n in (14, 56))
+    assert few == pytest.approx(many, rel=0.01)
+
+
+def test_beyond_the_limit_point_names_pressure_and_limit():
+    with pytest.raises(BeyondLimitError) as caught:
+        predict("x", PAPER, [0.0, 0.0405])
+    assert caught.value.pressure == 0.0405
+    assert 1e3 * caught.value.limit == pytest.approx(39.6, abs=0.1)
+
+
+def test_document_has_stress_stretch_and_the_inflation_curve(paper):
+    document = paper.document()
+    curve = document["states"][2]["curve"]
+    assert len({len(values) for values in curve.values()}) == 1
+    assert max(curve["max_von_mises_MPa"]) > 0.1
+    assert max(curve["max_stretch"]) > 1.2
+    assert set(document["inflation"]) == {
+        "apex_height_inner_mm", "apex_height_outer_mm", "cavity_volume_mL", "driving_pressure_kPa",
+    }  # fmt: skip
+
+
+def test_shapes_lie_above_the_base_and_under_the_plate(paper):
+    state = paper.states[2]
+    rest, inflated, pressed = state.shapes
+    assert inflated.cells[..., 1].max() == pytest.approx(state.apex_outer, abs=1e-6)
+    assert pressed.cells[..., 1].max() == pytest.approx(state.apex_outer - pressed.indentation, abs=2e-3)
+    assert rest.stretch == pytest.approx(1.0, abs=1e-9)
+
+
+def test_poisson_ratio_of_a_half_is_refused():
+    with pytest.raises(InputError, match=r"poisson_ratio = 0\.5"):
+        predict("x", replace(PAPER, poisson_ratio=0.5), [0.0])
