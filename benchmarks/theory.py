@@ -40,13 +40,13 @@ def resins(library: Library) -> list[Material]:
     return sorted(found, key=lambda m: m.shear_modulus_MPa.nominal if m.shear_modulus_MPa else 0.0)
 
 
-def table_s1(library: Library, dead_volume_ml: float = 0.0) -> list[Cell]:
-    """All fourteen cells on the paper's sensor: plate to three quarters of R0."""
+def table_s1(library: Library, dead_volume_ml: float = 0.0, flange: tuple[float, float] | None = None) -> list[Cell]:
+    """All fourteen cells on the paper's sensor: plate to three quarters of R0; ``flange`` as in Sensor."""
     cells = []
     for material in resins(library):
         truth = measured(material)
         assert truth is not None
-        sensor = replace(material_sensor(material), dead_volume=dead_volume_ml * ML)
+        sensor = replace(material_sensor(material), dead_volume=dead_volume_ml * ML, flange=flange)
         runs = {
             name: predict("", sensor, [p * KPA for p in PRESSURES], model=model, closure=closure).states
             for name, (model, closure) in METHODS.items()

@@ -106,6 +106,12 @@ def test_a_folder_a_missing_file_and_a_binary_file_are_named(tmp_path):
         evaluate("paper-doom", library=library)
 
 
+def test_a_byte_order_mark_and_a_file_without_ending_are_read(tmp_path):
+    path = tmp_path / "mine"
+    path.write_bytes(b"\xef\xbb\xbf[membrane]\ninner_radius_mm = 8\n")
+    assert load_scene(str(path), [], Library((ROOT,))).design.membrane.inner_radius_mm == 8
+
+
 anything = st.one_of(
     st.none(), st.booleans(), st.integers(), st.floats(), st.text(max_size=5), st.lists(st.floats(), max_size=3)
 )

@@ -86,10 +86,9 @@ class Library:
 
     def design_file(self, name: str) -> Path:
         """The file of a design given by name or by path."""
-        path = Path(name)
-        if path.suffix == ".toml" or (path.exists() and "/" in name):
-            return path
-        shelf = self.shelf("designs")
+        path, shelf = Path(name), self.shelf("designs")
         if name in shelf:
             return shelf[name]
+        if path.suffix == ".toml" or "/" in name or path.is_file():
+            return path
         raise InputError(f"{name}: no such design or file.{nearest(name, shelf)}")

@@ -17,7 +17,7 @@ Model = TypeVar("Model", bound=BaseModel)
 def read_toml(path: Path) -> dict[str, Any]:
     """Return the content of a TOML file; raises InputError for a folder, a bad file or broken TOML."""
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except IsADirectoryError:
         raise InputError(f"{path}: this is a folder; give a TOML file") from None
     except FileNotFoundError:

@@ -20,7 +20,7 @@ class Line:
 
 
 def fit_sensitivity(force: Array, rise: Array) -> Line:
-    """Pressure rise (MPa) over force (N) with intercept; slope in MPa/N (physics.md 5).  Both (n,), n >= 2."""
+    """Pressure rise (MPa) over force (N) with intercept; slope in MPa/N.  Both (n,), n >= 2."""
     x, y = force - force.mean(), rise - rise.mean()
     slope = float(x @ y / (x @ x))
     rest = y - slope * x

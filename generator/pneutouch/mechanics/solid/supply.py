@@ -69,7 +69,7 @@ class Gas:
         return cls((pressure + ambient) * (volume + dead), ambient, dead)
 
     def at(self, volume: float) -> Filling | None:
-        """Potential -[C ln(V + dead) - ambient V] (physics.md 2.2)."""
+        """Potential -[C ln(V + dead) - ambient V]."""
         room = volume + self.dead
         if room <= 0.0:
             return None
