@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pneutouch.mechanics import Prediction, Sensor
+from pneutouch.mechanics import Prediction, Sensor, State
 from pneutouch.meridian.segments import Array
 from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MARKERS, MUTED, figure, label_ends, svg
 from pneutouch.units import KPA
@@ -97,17 +98,14 @@ def response(prediction: Prediction) -> str:
     """Pressure rise over contact force at each driving pressure, with the fitted lines."""
     with figure(*SIZE) as drawn:
         ax = drawn.add_subplot()
-        for k, state in enumerate(prediction.states):
-            kept = state.indentation <= state.range_end * (1 + 1e-12)
-            force, rise = state.force, state.pressure_rise / KPA
-            look: dict[str, Any] = {"color": INK if k % 2 == 0 else ACCENT, "ls": LINES[k % len(LINES)]}
-            ax.plot(force[kept], rise[kept], marker=MARKERS[k % len(MARKERS)], mfc="white", mew=0.8,
-                    label=f"{state.driving_pressure / KPA:g} kPa", **look)  # fmt: skip
+        _plot_states(ax, prediction, lambda state: (state.force, state.pressure_rise / KPA))
+        for state in prediction.states:
             if state.figures is not None:
-                line = state.figures.intercept + state.figures.sensitivity * force[kept]
-                ax.plot(force[kept], line, color=FAINT, lw=0.8, zorder=1)
+                force = np.array(state.figures.force_range)
+                ax.plot(
+                    force, state.figures.intercept + state.figures.sensitivity * force, color=FAINT, lw=0.8, zorder=1
+                )
         ax.set(xlabel="contact force  (N)", ylabel="pressure rise  (kPa)", xlim=(0, None), ylim=(0, None))
-        ax.legend(title="driving pressure", title_fontsize=7, loc="upper left", handlelength=3)
         return svg(drawn)
 
 
@@ -115,15 +113,21 @@ def indentation(prediction: Prediction) -> str:
     """Contact force over indentation at each driving pressure."""
     with figure(*SIZE) as drawn:
         ax = drawn.add_subplot()
-        for k, state in enumerate(prediction.states):
-            kept = state.indentation <= state.range_end * (1 + 1e-12)
-            ax.plot(
-                state.indentation[kept], state.force[kept], marker=MARKERS[k % len(MARKERS)], mfc="white", mew=0.8,
-                color=INK if k % 2 == 0 else ACCENT, ls=LINES[k % len(LINES)], label=f"{state.driving_pressure / KPA:g} kPa",
-            )  # fmt: skip
+        _plot_states(ax, prediction, lambda state: (state.indentation, state.force))
         ax.set(xlabel="indentation  (mm)", ylabel="contact force  (N)", xlim=(0, None), ylim=(0, None))
-        ax.legend(title="driving pressure", title_fontsize=7, loc="upper left", handlelength=3)
         return svg(drawn)
+
+
+def _plot_states(ax: Axes, prediction: Prediction, curve: Callable[[State], tuple[Array, Array]]) -> None:
+    """One curve a driving pressure, up to the end of its range."""
+    for k, state in enumerate(prediction.states):
+        kept = state.indentation <= state.range_end * (1 + 1e-12)
+        x, y = curve(state)
+        ax.plot(
+            x[kept], y[kept], marker=MARKERS[k % len(MARKERS)], mfc="white", mew=0.8, color=INK if k % 2 == 0 else ACCENT,
+            ls=LINES[k % len(LINES)], label=f"{state.driving_pressure / KPA:g} kPa",
+        )  # fmt: skip
+    ax.legend(title="driving pressure", title_fontsize=7, loc="upper left", handlelength=3)
 
 
 def sensitivities(curves: dict[str, tuple[Array, Array]], chosen: str, published: dict[float, float]) -> str:

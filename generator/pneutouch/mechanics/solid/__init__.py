@@ -11,7 +11,6 @@ from pneutouch.mechanics.solid.inflate import FreeState, Inflation, inflate, sta
 from pneutouch.mechanics.solid.mesh import SolidMesh, dome
 from pneutouch.mechanics.solid.model import Solid
 from pneutouch.mechanics.solid.printed import printed_dome
-from pneutouch.mechanics.solid.sensitivity import Line, fit_sensitivity
 from pneutouch.mechanics.solid.stress import Peak, Probe, burst
 
 __all__ = [
@@ -19,7 +18,6 @@ __all__ = [
     "FreeState",
     "Indentation",
     "Inflation",
-    "Line",
     "NoConvergenceError",
     "Peak",
     "Press",
@@ -31,7 +29,6 @@ __all__ = [
     "UnreachableLoadError",
     "burst",
     "dome",
-    "fit_sensitivity",
     "indent",
     "inflate",
     "printed_dome",

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pneutouch.mechanics.response import Figures, figures
 from pneutouch.mechanics.solid.contact import Plate
-from pneutouch.mechanics.solid.errors import SolidError
 from pneutouch.mechanics.solid.events import (
     BREAKS_CURVE,
     CREASE,
@@ -22,10 +22,10 @@ from pneutouch.mechanics.solid.events import (
 )
 from pneutouch.mechanics.solid.inflate import FreeState
 from pneutouch.mechanics.solid.model import Solid
-from pneutouch.mechanics.solid.sensitivity import Line, fit_sensitivity
 from pneutouch.mechanics.solid.stress import Probe
 from pneutouch.mechanics.solid.supply import Gas
 from pneutouch.mechanics.solid.walker import Spot, Walker
+from pneutouch.units import KPA
 
 Array = NDArray[np.float64]
 
@@ -105,18 +105,11 @@ class Indentation:
         """One field of every state, (n_states,)."""
         return np.array([getattr(s, name) for s in self.states])
 
-    def line(self) -> Line:
-        """Straight line of pressure rise over force, ending before the first event that breaks the curve.
-
-        Raises SolidError with fewer than two states.
-        """
+    def figures(self) -> Figures | None:
+        """Figures of the curve before the first event that breaks it; None with too few states."""
         ends = [e.indentation for e in self.events if e.kind in BREAKS_CURVE]
         keep = self.column("indentation") < min(ends, default=np.inf)
-        if keep.sum() < 2:
-            raise SolidError(
-                f"no straight line: {keep.sum()} states before the path breaks at {min(ends, default=0.0):.4g} mm"
-            )
-        return fit_sensitivity(self.column("force")[keep], self.column("rise")[keep])
+        return figures(*(self.column(name)[keep] for name in ("indentation", "force")), self.column("rise")[keep] / KPA)
 
 
 def indent(solid: Solid, free: FreeState, press: Press) -> Indentation:
