@@ -109,7 +109,8 @@ class Indentation:
         """Figures of the curve before the first event that breaks it; None with too few states."""
         ends = [e.indentation for e in self.events if e.kind in BREAKS_CURVE]
         keep = self.column("indentation") < min(ends, default=np.inf)
-        return figures(*(self.column(name)[keep] for name in ("indentation", "force")), self.column("rise")[keep] / KPA)
+        indentation, force, rise = (self.column(name)[keep] for name in ("indentation", "force", "rise"))
+        return figures(indentation, force, rise / KPA)
 
 
 def indent(solid: Solid, free: FreeState, press: Press) -> Indentation:
