@@ -30,7 +30,7 @@ def prediction_text(document: dict[str, Any]) -> str:
             f"{state['driving_pressure_kPa']:g}", f"{state['apex_height_inner_mm']:.3f}", f"{state['apex_height_outer_mm']:.3f}",
             _optional(state["sensitivity_kPa_per_N"], ".3f"), _optional(state["r_squared"], ".4f"),
             _optional(state["stiffness_N_per_mm"], ".3f"), "-" if force is None else f"0-{force[1]:.2f}",
-            ends[0] if ends else "depth",
+            f"{ends[0] if ends else 'depth'}, {state['range_end_mm']:.2f} mm",
         ])  # fmt: skip
     closure = f" ({document['closure']} contact)" if document["closure"] else ""
     reach = f"no limit point; the {limits['binding']} binds" if point is None else (

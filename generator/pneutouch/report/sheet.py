@@ -236,4 +236,4 @@ def _range(state: State) -> str:
 
 def _ends(state: State) -> str:
     kinds = [event.kind for event in state.events if event.ends_range]
-    return kinds[0] if kinds else "depth"
+    return f"{kinds[0] if kinds else 'depth'}, {state.range_end:.2f} mm"
