@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import statistics
 from dataclasses import replace
 
@@ -10,8 +11,9 @@ import pytest
 
 from pneutouch.errors import BeyondLimitError, InputError
 from pneutouch.mechanics import predict
-from pneutouch.pipeline.table_s1 import SHIPPED, compute_errors, sensitivity_error
+from pneutouch.pipeline.table_s1 import SHIPPED, compute_errors, fingerprint, sensitivity_error
 from pneutouch.spec.material import Material
+from pneutouch.spec.quantity import Quantity
 from tests.mechanics.test_contact import PAPER
 
 
@@ -43,20 +45,40 @@ def test_work_on_the_gas_is_the_pressure_along_the_inflation_curve(paper):
 
 
 def test_shipped_errors_are_what_the_solid_gives_today(library):
-    import json
-
     shipped = json.loads(SHIPPED.read_text())
+    materials = [m for m in library.all("materials", Material).values() if m.measured]
+    assert set(shipped) == {fingerprint(m) for m in materials}
     for name in ("TangoPlus", "FLX9970"):
         material: Material = library.load("materials", name)
-        assert shipped[material.title] == pytest.approx(compute_errors(material, "solid", "variational"), abs=2e-3)
-    twelve = [abs(e) for title, errors in shipped.items() if title != "FLX9995-DM" for e in errors]
+        assert shipped[fingerprint(material)] == pytest.approx(
+            compute_errors(material, "solid", "variational"), abs=2e-3
+        )
+    twelve = [abs(e) for m in materials if m.title != "FLX9995-DM" for e in shipped[fingerprint(m)]]
     assert len(twelve) == 12
     assert statistics.median(twelve) <= 0.10
 
 
-def test_a_resin_without_measurements_has_no_error_to_state(library):
-    found = sensitivity_error(library.load("materials", "Agilus30"), "solid", "variational")
-    assert found["sensitivity_relative"] is None
+def test_an_error_is_stated_only_near_the_sensor_that_was_measured(library):
+    tango = library.load("materials", "TangoPlus")
+    stated = sensitivity_error(tango, PAPER, "solid", "variational")["sensitivity_relative"]
+    assert stated == pytest.approx(0.08, abs=0.01)
+    for far in ({"wall_thickness": 4.0}, {"dead_volume": 4900.0}, {"flange": (2.0, 2.0)}):
+        found = sensitivity_error(tango, replace(PAPER, **far), "solid", "variational")
+        assert found["sensitivity_relative"] is None
+        assert "unknown" in found["summary"][0]
+    assert (
+        sensitivity_error(library.load("materials", "Agilus30"), PAPER, "solid", "variational")["sensitivity_relative"]
+        is None
+    )
+
+
+def test_a_labs_own_resin_is_computed_not_looked_up(library):
+    tango = library.load("materials", "TangoPlus")
+    stiffer = tango.model_copy(
+        update={"title": "mine", "shear_modulus_MPa": Quantity(value=3.0, source="made up here")}
+    )
+    found = sensitivity_error(stiffer, PAPER, "solid", "variational")
+    assert found["sensitivity_relative"] > 0.5
 
 
 def test_printed_flange_is_a_little_softer_than_the_clamped_base(paper):

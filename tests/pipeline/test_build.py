@@ -15,7 +15,7 @@ import pytest
 
 from pneutouch.errors import InputError, RuleBrokenError
 from pneutouch.pipeline import build
-from pneutouch.pipeline.files import write_folder
+from pneutouch.pipeline.files import check_writable, write_folder
 
 FILES = {
     "paper-dome.3mf", "stl/membrane.stl", "stl/connector.stl", "paper-dome.step", "paper-dome.glb", "datasheet.html",
@@ -110,6 +110,29 @@ def test_a_new_build_replaces_our_files_and_keeps_other_peoples(tmp_path):
         "notes/mine.csv": b"measured",
     }
     assert list(tmp_path.iterdir()) == [folder]
+
+
+def test_links_and_empty_folders_of_other_people_are_kept(tmp_path):
+    folder, elsewhere = tmp_path / "x", tmp_path / "data"
+    elsewhere.mkdir()
+    write_folder(folder, {"manifest.json": b'{"files": {}}'})
+    (folder / "link").symlink_to(elsewhere)
+    (folder / "empty").mkdir()
+    write_folder(folder, {"manifest.json": b'{"files": {}}', "a.txt": b"1"})
+    assert (folder / "link").is_symlink()
+    assert (folder / "empty").is_dir()
+    (tmp_path / "alias").symlink_to(folder)
+    with pytest.raises(InputError, match="is a link"):
+        write_folder(tmp_path / "alias", {"manifest.json": b"{}"})
+
+
+def test_a_damaged_manifest_is_refused_before_any_work(tmp_path):
+    for text in ("", "[]", '{"file": 1}'):
+        folder = tmp_path / "x"
+        folder.mkdir(exist_ok=True)
+        (folder / "manifest.json").write_text(text)
+        with pytest.raises(InputError, match="damaged"):
+            check_writable(folder)
 
 
 def test_folders_that_are_not_ours_are_not_touched(tmp_path):

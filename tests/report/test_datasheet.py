@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 
+import numpy as np
 import pypdfium2
 import pytest
 
@@ -68,6 +69,42 @@ def test_published_measurements_stand_beside_the_prediction_only_for_the_papers_
     assert "1.923" in html
     other = (built("fingertip-dome") / "datasheet.html").read_text(encoding="utf-8")
     assert "2.417" not in other
+
+
+def test_zero_drift_is_that_of_the_gas_in_a_dome_that_yields(evaluated):
+    """By brute force: the volume at which the warmed gas and the dome's own curve balance."""
+    from pneutouch.report import Sheet
+
+    evaluation = evaluated("paper-dome")
+    sheet = Sheet(evaluation.scene, evaluation.assembly, evaluation.prediction, [], "", {})
+    state, curve = evaluation.prediction.states[3], evaluation.prediction.inflation
+    volume = np.linspace(0.9 * state.cavity_volume, 1.1 * state.cavity_volume, 200001)
+    dome = np.interp(volume, curve.volume, curve.pressure) + 0.101325
+    content = (0.022 + 0.101325) * state.cavity_volume
+    warmed = volume[np.argmin(np.abs(dome - content * (1 + 2 / 293.15) / volume))]
+    before = volume[np.argmin(np.abs(dome - content / volume))]
+    rise = np.interp(warmed, volume, dome) - np.interp(before, volume, dome)
+    assert sheet.zero_drift(state) == pytest.approx(1e3 * rise / 2, rel=0.1)
+    assert sheet.zero_drift(state) < 0.5 * 123.3 / 293.15
+
+
+def test_rating_stays_below_the_limit_that_binds(evaluated, built):
+    limit = evaluated("paper-dome").prediction.limits.lowest
+    html = (built("paper-dome") / "datasheet.html").read_text(encoding="utf-8")
+    assert f"{int(10 * 0.9e3 * limit) / 10:.1f}" in html
+
+
+def test_a_resin_that_cannot_be_solved_does_not_stop_the_sheet(evaluated, library, monkeypatch):
+    from pneutouch.errors import ComputationError
+    from pneutouch.report import variants
+    from pneutouch.spec.material import Material
+
+    def fail(*words, **options):
+        raise ComputationError("no equilibrium")
+
+    monkeypatch.setattr(variants, "predict", fail)
+    materials = library.all("materials", Material)
+    assert variants.resin_curves(evaluated("paper-dome").sensor, materials, 0.02, "solid", None) == {}
 
 
 def test_pdf_is_a_few_a4_pages_with_text_on_each(built):

@@ -50,6 +50,7 @@ CASES = [
     ("[membrane\n", ["not valid TOML"]),
     ("[indentation]\nplate_diameter_mm = 4", ["plate_diameter_mm = 4", "plate's edge", "wider", "18.5 mm"]),
     ("[indentation]\ndepth_mm = 20", ["depth_mm = 20", "0.95"]),
+    ('[document]\ntitle = "a\\u0007b"', ["document.title", "cannot be printed"]),
     ("[document]\ndate = 'yesterday'", ["document.date", "yesterday"]),
 ]  # fmt: skip
 
@@ -73,6 +74,7 @@ def test_a_wrong_design_says_what_is_wrong_and_what_would_be_right(text, words, 
         ("material=FLX9960", ["table.key=value"]),
         ("membran.material=FLX9960", ["unknown table membran", "Did you mean membrane?"]),
         ("membrane.materiel=FLX9960", ["unknown key membrane.materiel", "Did you mean material?"]),
+        ("membrane.inner_radius_mm=5\n[zz]\na=1", ["membrane.inner_radius_mm", "a number from 1 to 100 mm"]),
         ("membrane.inner_radius_mm=wide", ["membrane.inner_radius_mm = 'wide'", "a number from 1 to 100 mm"]),
     ],
 )

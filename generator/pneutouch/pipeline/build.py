@@ -49,8 +49,9 @@ def build(evaluation: Evaluation, out: Path, progress: Progress = lambda step: N
     progress("STEP")
     files[f"{scene.name}.step"] = step(scene.name, assembly.solids, assembly.print_offset)
     progress("datasheet")
-    resins = evaluation.library.all("materials", Material)
-    sheet = Sheet(scene, assembly, evaluation.prediction, evaluation.findings, input_hash(evaluation), resins)
+    sheet = Sheet(
+        scene, assembly, evaluation.prediction, evaluation.findings, input_hash(evaluation), _resins(evaluation)
+    )
     files |= datasheet(sheet, evaluation.sensor, viewer_html(bodies))
     files["print-sheet.md"] = print_sheet(sheet).encode()
     progress("files")
@@ -85,7 +86,15 @@ def inputs(evaluation: Evaluation) -> dict[str, Any]:
         "closure": evaluation.prediction.closure,
         "clamp": "base" if evaluation.sensor.flange is None else "flange",
         **{key: model.model_dump(mode="json") for key, model in models.items()},
+        "compared_resins": {name: m.model_dump(mode="json") for name, m in _resins(evaluation).items()},
+        "error_estimate": evaluation.prediction.error_estimate,
     }
+
+
+def _resins(evaluation: Evaluation) -> dict[str, Material]:
+    """The resins that the datasheet compares."""
+    materials = evaluation.library.all("materials", Material)
+    return {name: material for name, material in materials.items() if material.kind == "elastomer"}
 
 
 def input_hash(evaluation: Evaluation) -> str:

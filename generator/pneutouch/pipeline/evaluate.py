@@ -10,8 +10,9 @@ import numpy as np
 from pneutouch.catalogue import Library, Scene, load_scene
 from pneutouch.errors import BeyondLimitError, InputError, nearest
 from pneutouch.mechanics import Prediction, Sensor, predict
+from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.parts import Assembly, assemble
-from pneutouch.pipeline.table_s1 import material_sensor, sensitivity_error
+from pneutouch.pipeline.table_s1 import sensitivity_error
 from pneutouch.printability import Finding, check
 from pneutouch.spec.printer import Printer
 from pneutouch.units import KPA
@@ -55,7 +56,7 @@ def evaluate(
     try:
         prediction = predict(
             scene.name, sensor, pressures, model=model, closure=closure,
-            sensitivity_error=sensitivity_error(scene.membrane_material, model, closure),
+            sensitivity_error=sensitivity_error(scene.membrane_material, sensor, model, closure),
         )  # fmt: skip
     except BeyondLimitError as error:
         raise _beyond_limit(scene, error) from None

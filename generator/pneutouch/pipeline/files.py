@@ -28,10 +28,10 @@ def check_writable(folder: Path) -> None:
     """Raise InputError where an output folder cannot be made or written, or holds somebody else's files."""
     if folder.exists() and not folder.is_dir():
         raise InputError(f"--out: {folder} is a file; it must be a folder")
-    if folder.is_dir() and any(folder.iterdir()) and not (folder / MANIFEST).is_file():
-        raise InputError(
-            f"--out: {folder} holds files but no {MANIFEST}: not written by pneutouch; give another folder"
-        )
+    if folder.is_symlink():
+        raise InputError(f"--out: {folder} is a link; give the folder it leads to")
+    if folder.is_dir() and any(folder.iterdir()):
+        _our_files(folder)
     parent = next(path for path in (folder.parent, *folder.parent.parents) if path.exists())
     if not parent.is_dir():
         raise InputError(f"--out: {parent} is a file; it must be a folder")
@@ -64,29 +64,45 @@ def write_folder(folder: Path, files: dict[str, bytes]) -> None:
 
 
 def _swap(folder: Path, fresh: Path) -> None:
-    """Put ``fresh`` in the place of ``folder``, which ends up, with our own files, under the hidden name."""
+    """Put ``fresh`` in the place of ``folder``; what is not ours moves over, what is ours goes."""
     fresh.chmod(0o755)
     if not folder.exists():
         fresh.rename(folder)
         return
-    _keep_foreign(folder, fresh)
+    if any(folder.iterdir()):
+        _keep_foreign(folder, fresh)
     aside = fresh.with_name(f"{fresh.name}.old")
     folder.rename(aside)
     try:
         fresh.rename(folder)
-    except OSError:
+    except BaseException:
         aside.rename(folder)
         raise
     shutil.rmtree(aside, ignore_errors=True)
 
 
+def _our_files(folder: Path) -> set[str]:
+    """The files that the folder's manifest lists; raises InputError where the folder is not one of ours."""
+    try:
+        manifest = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
+        return {*manifest["files"], MANIFEST}
+    except FileNotFoundError:
+        text = f"holds files but no {MANIFEST}: not written by pneutouch"
+    except (OSError, ValueError, KeyError, TypeError):
+        text = f"has a {MANIFEST} that pneutouch did not write or that is damaged"
+    raise InputError(f"--out: {folder} {text}; give another folder, or empty this one")
+
+
 def _keep_foreign(folder: Path, fresh: Path) -> None:
-    """Copy files that the previous manifest does not list, and that do not stand in the way."""
-    manifest = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
-    ours = {*manifest.get("files", {}), MANIFEST}
+    """Copy files, links and empty folders that the previous manifest does not list and that are not in the way."""
+    ours = _our_files(folder)
     for path in sorted(folder.rglob("*")):
         name = path.relative_to(folder).as_posix()
         target = fresh / name
-        if path.is_file() and name not in ours and not target.exists():
+        if name in ours or target.exists() or target.is_symlink():
+            continue
+        if path.is_symlink() or path.is_file():
             target.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy2(path, target)
+            shutil.copy2(path, target, follow_symlinks=False)
+        elif path.is_dir() and not any(path.iterdir()):
+            target.mkdir(parents=True)

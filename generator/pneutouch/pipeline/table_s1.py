@@ -6,42 +6,25 @@ computing them again would double the time of every prediction. The membrane's c
 
 from __future__ import annotations
 
+import hashlib
 import json
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from pneutouch.mechanics import Sensor, predict
+from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.spec.material import Material
-from pneutouch.units import GAUGE_LIMIT, KPA, STANDARD_ATMOSPHERE
-
-PAPER_RADIUS, PAPER_WALL, PAPER_PLATE = 9.25, 1.5, 30.0
-"""The paper's sensor in mm: section 2-B and Supplement B."""
+from pneutouch.units import KPA
 
 PRESSURES = (0.0, 22.0)
 """Driving pressures of Table S1, kPa."""
 
 SHIPPED = Path(__file__).with_name("table_s1.json")
 
-
-def material_sensor(material: Material) -> Sensor:
-    """The paper's sensor in a material: no dead volume, 14 steps to three quarters of R0.
-
-    Raises InputError for a Poisson ratio or a law that makes no solid.
-    """
-    assert material.shear_modulus_MPa is not None and material.poisson_ratio is not None
-    elongation = material.elongation_at_break_percent
-    sensor = Sensor(
-        inner_radius=PAPER_RADIUS, wall_thickness=PAPER_WALL,
-        shear_modulus=material.shear_modulus_MPa.nominal, poisson_ratio=material.poisson_ratio.nominal,
-        ambient_pressure=STANDARD_ATMOSPHERE, dead_volume=0.0, plate_radius=0.5 * PAPER_PLATE,
-        depth=0.75 * PAPER_RADIUS, steps=14,
-        break_stretch=None if elongation is None else 1 + elongation.least / 100, gauge_limit=GAUGE_LIMIT,
-        law=None if material.law is None else (material.law.name, tuple(material.law.constants)),
-    )  # fmt: skip
-    return replace(sensor, shear_modulus=sensor.material.mu)
+NEAR_WALL, NEAR_DEAD_VOLUME = (0.10, 0.25), 0.2
+"""Wall ratios, and the share of the cavity taken by dead volume, that still count as near the paper's sensor."""
 
 
 def measured(material: Material) -> tuple[float, float] | None:
@@ -60,13 +43,35 @@ def compute_errors(material: Material, model: str, closure: str) -> list[float |
     return [s.figures.sensitivity / t - 1 if s.figures else None for s, t in zip(states, truth, strict=True)]
 
 
-def sensitivity_error(material: Material, model: str, closure: str) -> dict[str, Any]:
-    """The part of ``error_estimate`` on sensitivity: greatest and single relative errors, and their basis."""
+def fingerprint(material: Material) -> str:
+    """What the solid's error on the paper's sensor follows from: the resin's mechanics and its measurements."""
+    sensor = material_sensor(material)
+    facts = [sensor.shear_modulus, sensor.poisson_ratio, sensor.break_stretch, sensor.law, measured(material)]
+    return hashlib.sha256(json.dumps(facts).encode()).hexdigest()[:16]
+
+
+def is_near_paper(sensor: Sensor) -> bool:
+    """Whether a sensor is near enough to the paper's for its error to say something."""
+    low, high = NEAR_WALL
+    cavity = 2 / 3 * np.pi * sensor.inner_radius**3
+    close = low <= sensor.wall_thickness / sensor.inner_radius <= high
+    return bool(close and sensor.dead_volume <= NEAR_DEAD_VOLUME * cavity and sensor.flange is None)
+
+
+def sensitivity_error(material: Material, sensor: Sensor, model: str, closure: str) -> dict[str, Any]:
+    """The part of ``error_estimate`` on sensitivity: greatest and single relative errors, and their basis.
+
+    Unknown where nothing was measured, and where the sensor is not near the one that was.
+    """
     if measured(material) is None:
-        basis = f"no measurement of a sensor in {material.label} is known"
-        return {"sensitivity_relative": None, "sensitivity_basis": basis, "summary": [f"Sensitivity: {basis}."]}
+        return _unknown(f"no measurement of a sensor in {material.label} is known")
+    if not is_near_paper(sensor):
+        return _unknown(
+            "the only measurements are of the paper's sensor (wall 0.16 R0, no stated dead volume, clamped base)"
+        )
     if model == "solid":
-        errors = json.loads(SHIPPED.read_text(encoding="utf-8"))[material.title]
+        errors = json.loads(SHIPPED.read_text(encoding="utf-8")).get(fingerprint(material))
+        errors = errors or compute_errors(material, model, closure)
     else:
         errors = compute_errors(material, model, closure)
     known = [abs(error) for error in errors if error is not None]
@@ -78,3 +83,7 @@ def sensitivity_error(material: Material, model: str, closure: str) -> dict[str,
         "sensitivity_basis": basis,
         "summary": [f"Sensitivity: {pairs or 'no figure'}; {basis}."],
     }
+
+
+def _unknown(why: str) -> dict[str, Any]:
+    return {"sensitivity_relative": None, "sensitivity_basis": why, "summary": [f"Sensitivity: error unknown; {why}."]}

@@ -22,7 +22,7 @@ def print_sheet(sheet: Sheet) -> str:
     deviation = max(assembly.deviation(body) for body in assembly.bodies)
     findings = [f"- {f.severity}: {f.body}: {f.message}; {f.fix}." for f in sheet.findings] or ["- none"]
     return "\n".join([
-        f"# Print sheet: {scene.design.document.title}", "",
+        f"# Print sheet: {_escaped(scene.design.document.title)}", "",
         f"{part_number(scene)}, revision {scene.design.document.revision}, input {sheet.input_hash}", "",
         "| body | file | material | machine | mode | size, mm | mass |",
         "|---|---|---|---|---|---|---|", *rows, "",
@@ -34,6 +34,10 @@ def print_sheet(sheet: Sheet) -> str:
         "## Steps", "", *(f"{k}. {line}" for k, line in enumerate(prose.printing(scene), start=1)), "",
         "## Findings of the rules", "", *findings, "",
     ])  # fmt: skip
+
+
+def _escaped(text: str) -> str:
+    return text.replace("\\", "\\\\").replace("|", "\\|").replace("<", "&lt;")
 
 
 def _size(body: Body) -> str:

@@ -18,17 +18,8 @@ RELIABILITY = (
     "Cycles to failure", "Tear under edge contact", "Leak rate of the glued joint", "Storage life", "Drop and shock",
 )  # fmt: skip
 
-METHOD = (
-    "Press a rigid flat plate centrally, in 0.5 mm steps to three quarters of the inner radius; hold 4 s.",
-    "Return to no contact, rest 30 s and reset the driving pressure between indentations.",
-    "Three runs at each driving pressure; record force, cavity pressure and plate position.",
-    "Sensitivity is the slope of the least-squares line, with intercept, of pressure rise over force.",
-    "Measure the dead volume: close the sensor, inject a known volume of air, read the pressure.",
-)
-"""After the paper, section 3-B and Supplement C."""
-
 HANDLING = (
-    "Glue the flange on all three faces of its groove; the figures assume a rim clamped at the base plane.",
+    "Glue the flange on all three faces of its groove: the figures assume a rim that does not move.",
     "Leak test before first use: hold the highest driving pressure for ten minutes.",
     "Condition with five full-depth indentations before calibrating; re-zero after every change of driving pressure.",
     "Reset the driving pressure often: a sealed cavity drifts with temperature.",
@@ -53,6 +44,20 @@ def description(scene: Scene) -> str:
         f"wall, {scene.membrane_material.label}) closes an air cavity on a rigid connector ({scene.connector_material.label}). "
         "Pressing the dome raises the pressure of the trapped air, and the pressure reads the force. Stiffness and "
         "sensitivity are set offline by the resin and online by the driving pressure."
+    )
+
+
+def method(scene: Scene) -> tuple[str, ...]:
+    """How to measure what the sheet predicts, after the paper's section 3-B and Supplement C."""
+    indentation = scene.design.indentation
+    step = scene.design.depth_mm / indentation.steps
+    return (
+        f"Press a rigid flat plate of {indentation.plate_diameter_mm:g} mm centrally, in {indentation.steps} steps of {step:.2f} mm "
+        f"to {scene.design.depth_mm:.2f} mm; hold 4 s.",
+        "Return to no contact, rest 30 s and reset the driving pressure between indentations.",
+        "Three runs at each driving pressure; record force, cavity pressure and plate position.",
+        "Sensitivity is the slope of the least-squares line, with intercept, of pressure rise over force.",
+        "Measure the dead volume: close the sensor, inject a known volume of air, read the pressure.",
     )
 
 

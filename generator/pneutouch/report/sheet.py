@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
+
+import numpy as np
 
 from pneutouch import __version__
 from pneutouch.catalogue import Scene
@@ -11,6 +14,7 @@ from pneutouch.mechanics import Prediction
 from pneutouch.mechanics.prediction import State
 from pneutouch.parts import Assembly
 from pneutouch.printability import Finding
+from pneutouch.printability.rules.driving import RATED_SHARE
 from pneutouch.report import ordering, prose
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA, ML
@@ -56,7 +60,7 @@ class Sheet:
             "reliability": [[what, NOT_TESTED] for what in prose.RELIABILITY],
             "bodies": self.bodies(),
             "printing": prose.printing(self.scene),
-            "method": prose.METHOD,
+            "method": prose.method(self.scene),
             "ordering": ordering.code_table(self.scene),
             "handling": prose.HANDLING,
             "definitions": prose.DEFINITIONS,
@@ -78,7 +82,12 @@ class Sheet:
             ["Sensitivity", _sensitivity(first), "kPa/N", f"at {first.driving_pressure / KPA:g} kPa; {sure}"],
             ["Sensitivity", _sensitivity(last), "kPa/N", f"at {last.driving_pressure / KPA:g} kPa; {sure}"],
             ["Force range", _range(last), "N", f"at {last.driving_pressure / KPA:g} kPa"],
-            ["Max. driving pressure", f"{limits.lowest / KPA:.1f}", "kPa", f"{limits.binding} binds"],
+            [
+                "Max. driving pressure",
+                f"{self.rated_pressure():.1f}",
+                "kPa",
+                f"{RATED_SHARE:.0%} of the {limits.binding}",
+            ],
             ["Dead volume", f"{self.prediction.dead_volume / ML:.2f}", "mL", "behind the cavity"],
             ["Size", f"Ø{wide:.1f}", "mm", f"{mass:.1f} g without tube"],
         ]
@@ -86,14 +95,20 @@ class Sheet:
     def ratings(self) -> list[list[str]]:
         """Absolute maximum ratings: quantity, value, unit, basis."""
         limits = self.prediction.limits
-        binds = f"{limits.binding}, model {self.prediction.model}"
+        basis = (
+            f"{RATED_SHARE:.0%} of the {limits.binding} ({limits.lowest / KPA:.2f} kPa, model {self.prediction.model})"
+        )
         return [
-            ["Driving pressure", f"{limits.lowest / KPA:.1f}", "kPa gauge", binds],
-            ["Cavity pressure while pressed", f"{limits.gauge / KPA:g}", "kPa gauge", "range of the pressure sensor (SMC PSE543-R06)"],
+            ["Driving pressure", f"{self.rated_pressure():.1f}", "kPa gauge", basis],
+            ["Cavity pressure while pressed", DASH, "kPa gauge", f"{NOT_TESTED}; the pressure sensor (SMC PSE543-R06) reads to 100 kPa"],
             ["Overload force", DASH, "N", NOT_TESTED],
             ["Burst pressure", DASH, "kPa", NOT_TESTED],
             ["Temperature", DASH, "°C", NOT_TESTED + "; the paper's tests ran at 18 to 26 °C"],
         ]  # fmt: skip
+
+    def rated_pressure(self) -> float:
+        """Greatest driving pressure to be used, kPa, rounded down: a share of the limit that binds."""
+        return math.floor(10 * RATED_SHARE * self.prediction.limits.lowest / KPA) / 10
 
     def operating(self) -> list[list[str]]:
         """Operating conditions that the figures hold for."""
@@ -129,12 +144,14 @@ class Sheet:
         ]  # fmt: skip
 
     def is_paper_sensor(self) -> bool:
-        """Whether radius and wall are the paper's, so that its Table S1 applies."""
-        layout = self.assembly.layout
-        return (layout.inner_radius, layout.wall) == (9.25, 1.5) and self.scene.membrane_material.measured is not None
+        """Whether this is the paper's sensor under the paper's conditions, so that its Table S1 applies."""
+        layout, design = self.assembly.layout, self.scene.design
+        same = (layout.inner_radius, layout.wall, design.indentation.plate_diameter_mm) == (9.25, 1.5, 30.0)
+        press = design.indentation.depth_mm is None and design.pneumatics.ambient_pressure_kPa == 101.325
+        return same and press and self.prediction.dead_volume == 0 and self.scene.membrane_material.measured is not None
 
     def published(self) -> dict[float, float]:
-        """Published sensitivities of this very sensor: driving pressure in kPa to kPa/N."""
+        """Published sensitivities of this sensor: driving pressure in kPa to kPa/N."""
         measured = self.scene.membrane_material.measured
         if measured is None or not self.is_paper_sensor():
             return {}
@@ -167,15 +184,9 @@ class Sheet:
     def environment(self) -> list[list[str]]:
         """Temperature, humidity and ageing, calculated or quoted, never guessed."""
         state, material = self.prediction.states[0], self.scene.membrane_material
-        ambient = self.scene.design.pneumatics.ambient_pressure_kPa
-        drift = (ambient + state.driving_pressure / KPA) / _ROOM_TEMPERATURE
-        rows = [
-            [
-                "Zero drift of the sealed gas",
-                f"{drift:.2f} kPa/K",
-                f"ideal gas at {state.driving_pressure / KPA:g} kPa, 20 °C",
-            ]
-        ]
+        drift = self.zero_drift(state)
+        at = f"at {state.driving_pressure / KPA:g} kPa, 20 °C"
+        rows = [["Zero drift of the sealed gas", f"{drift:.2f} kPa/K", f"ideal gas in the yielding dome {at}"]]
         if state.figures is not None:
             rows.append(
                 [
@@ -190,6 +201,17 @@ class Sheet:
             rows.append(["Ageing, one year in light and air", text, "paper, Table 1"])
         rows.append(["Humidity, oils, ozone, UV", NOT_TESTED, ""])
         return rows
+
+    def zero_drift(self, state: State) -> float:
+        """Pressure change of the shut-in gas by temperature without contact, kPa/K.
+
+        The dome yields as the gas warms: dp/dT = (p_abs/T) k/(k + p_abs/V), k = dp/dV of the dome and V the gas.
+        """
+        curve = self.prediction.inflation
+        slope = float(np.interp(state.cavity_volume, curve.volume, np.gradient(curve.pressure, curve.volume)))
+        absolute = self.scene.design.pneumatics.ambient_pressure_kPa * KPA + state.driving_pressure
+        gas = absolute / (state.cavity_volume + self.prediction.dead_volume)
+        return absolute / _ROOM_TEMPERATURE * slope / (slope + gas) / KPA
 
     def bodies(self) -> list[list[str]]:
         """Material and print of each body."""

@@ -22,11 +22,20 @@ def _within(low: float, high: float, unit: str) -> AfterValidator:
     return AfterValidator(check)
 
 
+def _printable(text: str) -> str:
+    if not text.isprintable():
+        raise ValueError(f"{text!r} has characters that cannot be printed; it must be one line of printable text")
+    return text
+
+
+Printable = Annotated[str, AfterValidator(_printable)]
+
+
 class Document(Table):
     """[document]: what stands in the head of the datasheet."""
 
-    title: str = Field(default="Pneumatic touch sensor", max_length=80, description="Title of the datasheet.")
-    revision: str = Field(default="A", max_length=8, description="Revision letter of the design.")
+    title: Printable = Field(default="Pneumatic touch sensor", max_length=80, description="Title of the datasheet.")
+    revision: Printable = Field(default="A", max_length=8, description="Revision letter of the design.")
     date: datetime.date | None = Field(
         default=None, description="Date of the revision, YYYY-MM-DD; the datasheet never asks the clock."
     )

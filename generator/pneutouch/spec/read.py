@@ -61,9 +61,10 @@ def override(content: dict[str, Any], assignments: list[str], model: type[BaseMo
 
 def _toml_value(text: str) -> Any:
     try:
-        return tomllib.loads(f"value = {text}")["value"]
+        found = tomllib.loads(f"value = {text}")
     except tomllib.TOMLDecodeError:
         return text
+    return found["value"] if set(found) == {"value"} else text
 
 
 def _explain(model: type[BaseModel], detail: Any) -> str:

@@ -105,8 +105,17 @@ def _close_in(walker: Walker, end: float) -> Jump | None:
             return None
         bad, tried_from_here = end if closed else bad, False
     if isinstance(beyond, Stalled):
-        return Jump("snap", walker.here.height, beyond.why)
+        return _past_a_stall(walker, beyond)
     return Jump(_kind(walker.here, beyond), walker.here.height, _describe(walker.path, beyond))
+
+
+def _past_a_stall(walker: Walker, stalled: Stalled) -> Jump:
+    """A solver that found nothing is no evidence of another branch: look a little further before naming the end."""
+    for further in (1, 2, 4, 8):
+        found = walker.solve(walker.here.height - further * JUMP_WITHIN)
+        if not isinstance(found, Stalled) and not _sound(walker.path, found):
+            return Jump(_kind(walker.here, found), walker.here.height, _describe(walker.path, found))
+    return Jump("lost", walker.here.height, stalled.why)
 
 
 def _kind(here: Spot, beyond: Spot) -> str:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from pneutouch.mechanics.response import Figures, figures
 from pneutouch.mechanics.solid.contact import Plate
+from pneutouch.mechanics.solid.errors import UnreachableLoadError
 from pneutouch.mechanics.solid.events import (
     BREAKS_CURVE,
     CREASE,
@@ -34,6 +35,10 @@ Array = NDArray[np.float64]
 RIM = 1.0 / 30.0
 
 
+#: A pressure this far below absolute vacuum, in mu, is rounding.
+_ROUNDING = 1.0e-9
+
+
 @dataclass(frozen=True)
 class Press:
     """How a dome is pressed: depth and plate diameter in mm (None: endless), ambient in MPa, dead volume in mm^3.
@@ -52,8 +57,11 @@ class Press:
     break_strain: float = np.inf
 
     def __post_init__(self) -> None:
-        if not (self.depth > 0.0 and self.steps >= 1 and self.ambient >= 0.0 and self.dead_volume >= 0.0):
-            raise ValueError("depth and steps must be positive, ambient and dead_volume not negative")
+        finite = np.isfinite([self.depth, self.ambient, self.dead_volume]).all()
+        if not (finite and self.depth > 0.0 and self.steps >= 1 and self.ambient >= 0.0 and self.dead_volume >= 0.0):
+            raise ValueError("depth and steps must be positive, ambient and dead_volume not negative, all finite")
+        if np.isnan(self.gauge_range) or np.isnan(self.break_strain):
+            raise ValueError("gauge_range and break_strain must be numbers")
         if self.plate_diameter is not None and not self.plate_diameter > 0.0:
             raise ValueError("plate_diameter must be positive, or None for an endless plate")
 
@@ -120,6 +128,8 @@ def indent(solid: Solid, free: FreeState, press: Press) -> Indentation:
     Raises NoConvergenceError only if not even first contact has an equilibrium.
     """
     length, mu = solid.length, solid.mu
+    if free.pressure + press.ambient < -_ROUNDING * mu:
+        raise UnreachableLoadError(free.pressure, -press.ambient, "it lies below absolute vacuum")
     gas = Gas.filled(free.pressure / mu, free.volume / length**3, press.ambient / mu, press.dead_volume / length**3)
     radius = np.inf if press.plate_diameter is None else 0.5 * press.plate_diameter / length
     rim = max(RIM * radius if np.isfinite(radius) else 0.0, solid.contact.longest)

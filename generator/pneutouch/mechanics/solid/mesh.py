@@ -127,6 +127,8 @@ def dome(
     nine-node, 8 for eight-node, 1 for four-node cells.  base_ratio < 1 makes cells shorter towards the base.
     slides: the base face moves freely in r (a symmetry plane), for tests against the sphere.
     """
+    if not (np.isfinite([inner_radius, wall]).all() and inner_radius > 0.0 and wall > 0.0):
+        raise ValueError(f"inner_radius {inner_radius} and wall {wall} must be positive and finite")
     arc = arc or arc_cells(wall / inner_radius)
     through = through or cells_across(wall / inner_radius)
     angle = 0.5 * np.pi * with_middles(graded(arc, base_ratio))

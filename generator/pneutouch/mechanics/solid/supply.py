@@ -6,7 +6,7 @@ All three are nondimensional: volumes in R0^3, pressures in mu.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import log
+from math import log1p
 from typing import NamedTuple, Protocol
 
 
@@ -57,21 +57,27 @@ class Liquid:
 
 @dataclass(frozen=True)
 class Gas:
-    """Trapped isothermal gas: absolute pressure times (V + dead) stays `content`."""
+    """Trapped isothermal gas: absolute pressure times (V + dead) stays `content`; shut in at the volume `start`."""
 
     content: float
     ambient: float
     dead: float
+    start: float
 
     @classmethod
     def filled(cls, pressure: float, volume: float, ambient: float, dead: float) -> Gas:
         """The gas shut in at a gauge pressure and cavity volume."""
-        return cls((pressure + ambient) * (volume + dead), ambient, dead)
+        return cls((pressure + ambient) * (volume + dead), ambient, dead, volume)
 
     def at(self, volume: float) -> Filling | None:
-        """Potential -[C ln(V + dead) - ambient V]."""
+        """Potential -[C ln((V + dead)/(start + dead)) - ambient (V - start)].
+
+        Counted from the shut-in state: with a large dead volume the full potential would drown a step's work in rounding.
+        """
         room = volume + self.dead
         if room <= 0.0:
             return None
+        swell = volume - self.start
         absolute = self.content / room
-        return Filling(self.ambient * volume - self.content * log(room), absolute - self.ambient, absolute / room)
+        energy = self.ambient * swell - self.content * log1p(swell / (self.start + self.dead))
+        return Filling(energy, absolute - self.ambient, absolute / room)

@@ -7,8 +7,8 @@ from pneutouch.parts import Assembly
 from pneutouch.printability.finding import Finding
 from pneutouch.units import KPA
 
-_MARGIN = 0.9
-"""Share of the binding limit above which a warning is due: the dome grows fast near the limit point."""
+RATED_SHARE = 0.9
+"""Share of the binding limit that a sensor is rated at, and warned above: the dome grows fast near the limit point."""
 
 _SOURCES = {
     "limit point": "paper, section 4-A: the valid range ends at the maximum driving pressure",
@@ -22,11 +22,11 @@ def check(assembly: Assembly, prediction: Prediction) -> list[Finding]:
     limits = prediction.limits
     highest = prediction.states[-1].driving_pressure
     apex = (0.0, 0.0, prediction.states[-1].apex_outer)
-    fix = f"lower pneumatics.driving_pressures_kPa below {_MARGIN * limits.lowest / KPA:.1f}"
+    fix = f"lower pneumatics.driving_pressures_kPa below {RATED_SHARE * limits.lowest / KPA:.1f}"
     source = _SOURCES[limits.binding]
     text = f"{highest / KPA:g} kPa against the {limits.binding} at {limits.lowest / KPA:.1f} kPa"
     if highest > limits.lowest:
         return [Finding("driving", "error", "membrane", text, fix, source, apex)]
-    if highest > _MARGIN * limits.lowest:
+    if highest > RATED_SHARE * limits.lowest:
         return [Finding("driving", "warning", "membrane", text, fix, source, apex)]
     return []

@@ -1,0 +1,30 @@
+"""The paper's sensor in any resin: where measurements are known, and where a resin's mechanics is read from its file."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from pneutouch.mechanics.sensor import Sensor
+from pneutouch.spec.material import Material
+from pneutouch.units import GAUGE_LIMIT, STANDARD_ATMOSPHERE
+
+PAPER_RADIUS, PAPER_WALL, PAPER_PLATE = 9.25, 1.5, 30.0
+"""The paper's sensor in mm: section 2-B and Supplement B."""
+
+
+def material_sensor(material: Material) -> Sensor:
+    """The paper's sensor in a material: no dead volume, 14 steps to three quarters of R0.
+
+    Raises InputError for a Poisson ratio or a law that makes no solid.
+    """
+    assert material.shear_modulus_MPa is not None and material.poisson_ratio is not None
+    elongation = material.elongation_at_break_percent
+    sensor = Sensor(
+        inner_radius=PAPER_RADIUS, wall_thickness=PAPER_WALL,
+        shear_modulus=material.shear_modulus_MPa.nominal, poisson_ratio=material.poisson_ratio.nominal,
+        ambient_pressure=STANDARD_ATMOSPHERE, dead_volume=0.0, plate_radius=0.5 * PAPER_PLATE,
+        depth=0.75 * PAPER_RADIUS, steps=14,
+        break_stretch=None if elongation is None else 1 + elongation.least / 100, gauge_limit=GAUGE_LIMIT,
+        law=None if material.law is None else (material.law.name, tuple(material.law.constants)),
+    )  # fmt: skip
+    return replace(sensor, shear_modulus=sensor.material.mu)
