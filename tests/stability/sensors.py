@@ -1,0 +1,48 @@
+"""Random sensors in the catalogue's elastomers, and what became of them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+
+import numpy as np
+
+from pneutouch.catalogue import Library
+from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.solid import Press, Solid, dome, inflate, state_at
+from pneutouch.spec.material import Material
+from pneutouch.units import ML
+from tests.stability.truth import Study
+
+#: Plate over inner radius: 30 mm on 9.25 mm, as in the paper.
+PLATE = 30.0 / 9.25
+
+
+def random_sensors(
+    library: Library, count: int, seed: int, walls: tuple[float, float] = (0.05, 0.4), depth: float = 0.5
+) -> Iterator[tuple[str, Study]]:
+    """Label and study of `count` sensors: any elastomer, R0 4 to 30 mm, wall ratio within `walls`, driving pressure to
+    80 % of the limit, dead volume to 5 mL, pressed to `depth` R0 in 1 to 19 steps.
+    """
+    resins = [(k, m) for k, m in library.all("materials", Material).items() if m.kind == "elastomer"]
+    rng = np.random.default_rng(seed)
+    for number in range(count):
+        name, resin = resins[number % len(resins)]
+        sensor = material_sensor(resin)
+        assert sensor.break_stretch is not None
+        radius, ratio, share = rng.uniform(4.0, 30.0), rng.uniform(*walls), rng.uniform(0.0, 0.8)
+        solid = Solid(dome(radius, ratio * radius), sensor.material)
+        run = inflate(solid, past_limit=1.0)
+        assert run.limit is not None
+        free = state_at(solid, share * run.limit.pressure, run)
+        press = Press(
+            depth * radius, int(rng.integers(1, 20)), PLATE * radius, sensor.ambient_pressure,
+            rng.uniform(0.0, 5.0) * ML, sensor.gauge_limit, sensor.break_stretch - 1.0,
+        )  # fmt: skip
+        label = f"{number}: {name}, R0 {radius:.3f} mm, t0/R0 {ratio:.3f}, {share:.0%} of the limit, {press}"
+        yield label, Study.of(solid, free, press)
+
+
+def tally(ends: Counter[str]) -> str:
+    """Counts as one line, the most frequent first."""
+    return ", ".join(f"{kind} {count}" for kind, count in ends.most_common())
