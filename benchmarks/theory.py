@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 from pneutouch.catalogue import Library
 from pneutouch.mechanics import predict
-from pneutouch.pipeline.table_s1 import PRESSURES, SHIPPED, compute_errors, material_sensor, measured
+from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.pipeline.table_s1 import PRESSURES, SHIPPED, compute_errors, fingerprint, measured
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA, ML
 
@@ -62,7 +63,7 @@ def table_s1(library: Library, dead_volume_ml: float = 0.0, flange: tuple[float,
 def ship_errors(library: Library) -> None:
     """Write the file that predictions with the solid read their error in sensitivity from."""
     found = {
-        m.title: [None if e is None else round(e, 4) for e in compute_errors(m, "solid", "variational")]
+        fingerprint(m): [None if e is None else round(e, 4) for e in compute_errors(m, "solid", "variational")]
         for m in resins(library)
     }
     SHIPPED.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")

@@ -2,23 +2,93 @@
 
 from __future__ import annotations
 
+import json
 import re
 
+import numpy as np
 import pytest
+from benchmarks import laws, peers
 from benchmarks.chart import DOCS, contact_section, inflation_section
+from benchmarks.felupe_sweep import felupe_limit
 from benchmarks.meshing import manifold_revolve, plain_grid
+from benchmarks.pages import speed
+from benchmarks.pages.speed_chart import front
+from benchmarks.scenes import PAPER, SCENES
+from benchmarks.speed_accuracy import METHODS, extrapolate, limit, run
 from benchmarks.theory import table_s1
 
 
+def page() -> str:
+    return (DOCS / "accuracy.md").read_text(encoding="utf-8")
+
+
+def stored(name: str):
+    return json.loads((DOCS / name).read_text(encoding="utf-8"))
+
+
 def test_theory_sections_are_what_the_code_gives(library):
-    text = (DOCS / "accuracy.md").read_text(encoding="utf-8")
-    assert "\n".join(inflation_section()) in text
-    assert "\n".join(contact_section(table_s1(library))) in text
+    assert "\n".join(inflation_section()) in page()
+    assert "\n".join(contact_section(table_s1(library))) in page()
+    assert "\n".join(laws.section(laws.curves())) in page()
+
+
+def test_tables_are_made_of_the_stored_numbers():
+    data = stored("speed-accuracy.json")
+    assert "\n".join(speed.table(data)) in page()
+    assert "\n".join(speed.scene_table(data)) in page()
+    assert "\n".join(speed.verdicts(data, stored("peers.json"))) in page()
+
+
+@pytest.mark.parametrize("scene", SCENES[:8:3], ids=lambda scene: scene.name)
+def test_stored_errors_are_what_the_methods_give_today(scene):
+    """Times aside, a row follows from the code: sensitivity, range and limit pressure again, on the same range."""
+    data = stored("speed-accuracy.json")
+    truth = next(s["reference"] for s in data["scenes"] if s["scene"] == scene.name)
+    for method in ("membrane variational", "solid 12 x 1", "solid default"):
+        row = next(r for r in data["rows"] if (r["scene"], r["method"]) == (scene.name, method))
+        answer = run(method, scene)
+        assert answer.end == pytest.approx(row["range_end_mm"], rel=1e-6)
+        assert answer.ends == row["ends"]
+        grid = np.linspace(0.0, row["compared_to_mm"], scene.sensor.steps + 1)
+        assert answer.sensitivity(grid) == pytest.approx(row["sensitivity_kPa_per_N"], rel=1e-6)
+        top = limit(method, scene) * 1e3 / truth["limit_pressure_kPa"] - 1
+        assert top == pytest.approx(row["limit_error"], abs=1e-7)
+
+
+def test_every_scene_and_method_is_charted_and_the_reference_knows_its_error():
+    data = stored("speed-accuracy.json")
+    assert len(SCENES) >= 12
+    assert {(r["scene"], r["method"]) for r in data["rows"]} == {(s.name, m) for s in SCENES for m in METHODS}
+    assert all(s["reference"]["sensitivity_error"] < 0.005 for s in data["scenes"])
+    default = [r for r in data["rows"] if r["method"] == "solid default"]
+    assert max(abs(r["sensitivity_error"]) for r in default) < 0.01
+
+
+def test_extrapolation_finds_the_limit_of_a_power_and_distrusts_noise():
+    exact, steps = 2.0, np.array([1.0, 0.5, 0.25])
+    for order in (1.0, 2.0, 3.5):
+        value, error = extrapolate(*(np.array(exact + 0.1 * h**order) for h in steps))
+        assert value == pytest.approx(exact, abs=1e-12)
+        assert error == pytest.approx(0.1 * 0.25**order)
+    value, error = extrapolate(np.array(1.0), np.array(1.1), np.array(1.0))
+    assert (value, error) == (pytest.approx(0.9), pytest.approx(0.1))
+
+
+def test_the_front_keeps_what_nothing_beats():
+    assert front([(1, 5), (2, 6), (3, 1), (4, 1), (2, 4)]) == [(1, 5), (2, 4), (3, 1)]
+
+
+def test_ours_and_felupe_agree_on_the_limit_pressure():
+    ours, _ = peers.solve(peers.OURS, 24, 2)
+    truth = stored("peers.json")["reference_limit_kPa"] * 1e-3
+    assert ours == pytest.approx(truth, rel=2e-4)
+    pytest.importorskip("felupe", reason="FElupe is an optional peer")
+    theirs, _ = felupe_limit(PAPER, 8, 1, mixed=True, count=8)
+    assert theirs == pytest.approx(truth, rel=3e-3)
 
 
 def test_mesh_table_keeps_every_tolerance_at_fewer_triangles_than_the_plain_grid():
-    text = (DOCS / "accuracy.md").read_text(encoding="utf-8")
-    rows = re.findall(r"^\| ([\d.]+) \| ([^|]+) \| [\d.]+ \| (\d+) \| ([\d.]+) \|", text, re.MULTILINE)
+    rows = re.findall(r"^\| ([\d.]+) \| ([^|]+) \| [\d.]+ \| (\d+) \| ([\d.]+) \|", page(), re.MULTILINE)
     ours = {t: (int(n), float(d)) for t, method, n, d in rows if method == "pneutouch"}
     plain = {t: int(n) for t, method, n, _ in rows if method == "plain grid, numpy"}
     assert set(ours) == {"0.1", "0.05", "0.016", "0.005"}

@@ -1,0 +1,118 @@
+"""The chart of speed against accuracy."""
+
+from __future__ import annotations
+
+import statistics
+from typing import TYPE_CHECKING, Any
+
+from benchmarks.peers import WITHIN
+from benchmarks.speed_accuracy import METHODS
+from pneutouch.report.style import ACCENT, FAINT, INK, LINES, MARKERS, MUTED, figure, svg
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+DEFAULT = "solid default"
+SENSITIVITY_TARGET = 0.01
+CUT = 0.8
+"""A range shorter than this share of the reference's counts as cut: an event that the reference does not have."""
+
+
+def of(rows: list[dict[str, Any]], method: str) -> list[dict[str, Any]]:
+    """The rows of one method."""
+    return [row for row in rows if row["method"] == method]
+
+
+def sizes(rows: list[dict[str, Any]], key: str) -> list[float]:
+    """Absolute errors of rows that have one."""
+    return [abs(row[key]) for row in rows if row[key] is not None]
+
+
+def front(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Points (cost, error) that no other beats in both, by rising cost."""
+    kept: list[tuple[float, float]] = []
+    for cost, error in sorted(points):
+        if not kept or error < kept[-1][1]:
+            kept.append((cost, error))
+    return kept
+
+
+def chart(data: dict[str, Any], peers: dict[str, Any]) -> str:
+    """Two log-log panels: sensitivity over the work of both studies, limit pressure over the inflation sweep."""
+    with figure(178, 92) as drawn:
+        left, right = drawn.subplots(1, 2)
+        _sensitivity_panel(left, data)
+        _limit_panel(right, data, peers)
+        return svg(drawn)
+
+
+def _front_line(ax: Axes, points: list[tuple[float, float]]) -> None:
+    line = front(points)
+    ax.plot(*zip(*line, strict=True), color=FAINT, lw=5, solid_capstyle="round", zorder=0, label="Pareto front")
+
+
+def _sensitivity_panel(ax: Axes, data: dict[str, Any]) -> None:
+    points = []
+    for method in METHODS:
+        rows = of(data["rows"], method)
+        errors = [100 * e for e in sizes(rows, "sensitivity_error")]
+        cost = 1e3 * statistics.median(row["processor_s"] for row in rows)
+        middle, worst = statistics.median(errors), max(errors)
+        membrane, chosen = method.startswith("membrane"), method == DEFAULT
+        marker = MARKERS[2] if membrane else (MARKERS[3] if chosen else MARKERS[0])
+        colour = MUTED if membrane else (ACCENT if chosen else INK)
+        cut = sum(row["range_share"] < CUT for row in rows) > len(rows) // 4
+        ax.plot([cost, cost], [middle, worst], color=colour, lw=0.8, zorder=2)
+        ax.plot(cost, worst, marker="_", color=colour, ms=5, zorder=2)
+        face = "white" if cut and not membrane else colour
+        ax.plot(cost, middle, marker=marker, color=colour, mfc=face, ms=6 if chosen else 4, ls="", zorder=3)
+        label = method.replace("membrane ", "").replace("solid ", "").replace(" x ", "×")
+        if membrane:
+            ax.annotate(
+                label, (cost, middle), xytext=(6, 0), textcoords="offset points", va="center", fontsize=6, color=colour
+            )
+        else:
+            aside = 6 if method.endswith(" 24 x 1") else 0  # it stands beside 16 x 1
+            ax.annotate(label, (cost, worst), xytext=(aside, 4), textcoords="offset points", ha="center", rotation=90,
+                        fontsize=6, color=colour)  # fmt: skip
+        if not cut or membrane:
+            points.append((cost, middle))
+    _front_line(ax, points)
+    ax.legend(loc="upper right", fontsize=6)
+    ax.axhline(100 * SENSITIVITY_TARGET, color=MUTED, lw=0.5)
+    ax.text(
+        0.02, 100 * SENSITIVITY_TARGET, "1 %", transform=ax.get_yaxis_transform(), fontsize=6, va="bottom", color=MUTED
+    )
+    ax.set(xscale="log", yscale="log", xlabel="processor time, studies 1 and 2 in 14 steps  (ms)",
+           ylabel="error of sensitivity, median to worst scene  (%)")  # fmt: skip
+
+
+def _limit_panel(ax: Axes, data: dict[str, Any], peers: dict[str, Any]) -> None:
+    points = []
+    looks = [
+        (MARKERS[0], ACCENT, "-"),
+        (MARKERS[1], INK, LINES[1]),
+        (MARKERS[4], INK, LINES[2]),
+        (MARKERS[2], MUTED, LINES[3]),
+    ]
+    names = list(dict.fromkeys(row["program"] for row in peers["rows"]))
+    for k, name in enumerate(names):
+        rows = [row for row in peers["rows"] if row["program"] == name]
+        marker, colour, line = looks[k % len(looks)]
+        errors = [max(100 * abs(row["limit_error"]), 1e-3) for row in rows]
+        cost = [1e3 * row["solve_s"] for row in rows]
+        points += zip(cost, errors, strict=True)
+        ax.plot(
+            cost, errors, marker=marker, color=colour, ls=line, lw=1.6 if k == 0 else 0.9, label=f"{name}, solve alone"
+        )
+        ax.plot(
+            [1e3 * row["whole_s"] for row in rows], errors, marker=marker, mfc="white", color=colour, ls="", zorder=2
+        )
+    ax.plot([], [], marker="o", mfc="white", color=INK, ls="", label="hollow: whole process")
+    _front_line(ax, points)
+    ax.axhline(100 * WITHIN, color=MUTED, lw=0.5)
+    ax.set(xscale="log", yscale="log", xlabel="processor time, inflation through the limit point  (ms)",
+           ylabel="error of limit pressure, paper's sensor  (%)")  # fmt: skip
+    ax.text(0.02, 100 * WITHIN, "0.5 %", transform=ax.get_yaxis_transform(), fontsize=6, va="bottom", color=MUTED)
+    ax.set_ylim(top=8)
+    ax.legend(loc="upper left", fontsize=6, ncols=1)

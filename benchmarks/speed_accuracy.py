@@ -1,0 +1,224 @@
+"""Speed against accuracy: every method on every scene, beside a reference extrapolated from three refinements."""
+
+from __future__ import annotations
+
+import statistics
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from benchmarks.scenes import SCENES, Scene
+from pneutouch.mechanics.events import range_end
+from pneutouch.mechanics.limits import limit_point
+from pneutouch.mechanics.membrane import membrane_states
+from pneutouch.mechanics.response import figures
+from pneutouch.mechanics.solid import Press, Solid, dome, indent, inflate, state_at
+from pneutouch.mechanics.solid_states import _curve, _events
+from pneutouch.meridian.segments import Array
+from pneutouch.units import KPA
+
+REFINEMENTS = ((32, 2), (64, 4), (128, 8))
+"""Cells along the arc and across the wall of the three meshes behind the reference: each halves the cells' sides."""
+
+MESHES: dict[str, tuple[int | None, int | None]] = {
+    "solid 8 x 1": (8, 1), "solid 12 x 1": (12, 1), "solid 16 x 1": (16, 1), "solid 24 x 1": (24, 1),
+    "solid default": (None, None), "solid 36 x 2": (36, 2), "solid 48 x 3": (48, 3),
+}  # fmt: skip
+"""The default is 24 to 48 cells along the arc and one or two across, by the wall ratio."""
+
+METHODS = ("membrane variational", "membrane printed", *MESHES)
+_RUNS = 3
+_FINE_STEPS = 140
+"""Steps of the membrane's curve where it is read between the 14 that are timed."""
+
+_SHY = 0.98
+"""Finer meshes fold a little earlier: what comes so near an event of a coarser one is not computed."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a method says of a scene: mm, MPa, N. ``curve`` gives force and rise at indentations up to ``end``."""
+
+    apex: float
+    end: float
+    ends: str
+    curve: Callable[[Array], tuple[Array, Array]]
+
+    def sensitivity(self, grid: Array) -> float:
+        """Slope of rise over force on a grid of indentations, kPa/N."""
+        force, rise = self.curve(grid)
+        found = figures(grid, force, rise / KPA)
+        return np.nan if found is None else found.sensitivity
+
+
+def solid_answer(scene: Scene, arc: int | None, through: int | None, depth: float | None = None) -> Answer:
+    """Study 1 to the driving pressure and study 2 in 14 steps, mesh and all; ``depth`` (mm) may stop it short."""
+    s = scene.sensor
+    solid = Solid(dome(s.inner_radius, s.wall_thickness, arc=arc, through=through), s.material)
+    free = state_at(solid, scene.pressure)
+    press = Press(depth or s.depth, s.steps, 2 * s.plate_radius, s.ambient_pressure, s.dead_volume, s.gauge_limit)
+    found = indent(solid, free, press)
+    happened = _events(found)
+    end = min(range_end(happened, press.depth), found.path[-1].indentation)
+    ends = next((event.kind for event in happened if event.ends_range), "depth")
+    return Answer(free.inner_apex, end, ends, lambda grid: _curve(found.path, grid))
+
+
+def membrane_answer(scene: Scene, closure: str) -> Answer:
+    """The same work by the membrane."""
+    pressures = np.array([scene.pressure])
+    (state,) = membrane_states(scene.sensor, pressures, closure)
+    ends = next((event.kind for event in state.events if event.ends_range), "depth")
+
+    def curve(grid: Array) -> tuple[Array, Array]:
+        (fine,) = membrane_states(replace(scene.sensor, steps=_FINE_STEPS), pressures, closure)
+        return np.interp(grid, fine.indentation, fine.force), np.interp(grid, fine.indentation, fine.pressure_rise)
+
+    return Answer(state.apex_inner, state.range_end, ends, curve)
+
+
+def solid_limit(scene: Scene, arc: int | None, through: int | None) -> float:
+    """Limit pressure, MPa; nan where there is none."""
+    s = scene.sensor
+    run = inflate(Solid(dome(s.inner_radius, s.wall_thickness, arc=arc, through=through), s.material), past_limit=1.0)
+    return np.nan if run.limit is None else run.limit.pressure
+
+
+def run(method: str, scene: Scene) -> Answer:
+    """One method on one scene."""
+    if method in MESHES:
+        return solid_answer(scene, *MESHES[method])
+    return membrane_answer(scene, method.split()[1])
+
+
+def limit(method: str, scene: Scene) -> float:
+    """One method's limit pressure, MPa."""
+    if method in MESHES:
+        return solid_limit(scene, *MESHES[method])
+    return limit_point(scene.sensor).driving_pressure
+
+
+def extrapolate(coarse: Array, middle: Array, fine: Array) -> tuple[Array, Array]:
+    """Value at vanishing cells and what is thought of its error, from meshes each twice as fine.
+
+    Richardson's with the order observed, where that lies between 0.6 and 4; else first order is assumed, the least
+    that the singular edge of the clamp lets one expect. The error stated is what was added.
+    """
+    last, before = np.asarray(fine - middle, float), np.asarray(middle - coarse, float)
+    ratio = np.divide(before, last, out=np.full_like(last, 2.0), where=np.abs(last) > 0)
+    ratio = np.where((ratio >= 1.5) & (ratio <= 16.0), ratio, 2.0)
+    added = last / (ratio - 1)
+    return fine + added, np.abs(added)
+
+
+@dataclass(frozen=True)
+class Reference:
+    """Three refined answers of one scene."""
+
+    answers: tuple[Answer, Answer, Answer]
+    limits: tuple[float, float, float]
+
+    @property
+    def end(self) -> float:
+        """Event-free on all three meshes up to this indentation, mm."""
+        return min(answer.end for answer in self.answers)
+
+    @property
+    def ends(self) -> str:
+        """The event that ended the range of the finest mesh that met one, else "depth"."""
+        return next((a.ends for a in reversed(self.answers) if a.ends != "depth"), "depth")
+
+    def apex(self) -> tuple[float, float]:
+        """Inner apex height at the driving pressure, with its error; mm."""
+        value, error = extrapolate(*(np.array(a.apex) for a in self.answers))
+        return float(value), float(error)
+
+    def limit(self) -> tuple[float, float]:
+        """Limit pressure, with its error; MPa."""
+        value, error = extrapolate(*(np.array(x) for x in self.limits))
+        return float(value), float(error)
+
+    def force(self, grid: Array) -> tuple[Array, Array]:
+        """Forces on a grid of indentations, with their errors; N."""
+        return extrapolate(*(a.curve(grid)[0] for a in self.answers))
+
+    def sensitivity(self, grid: Array) -> tuple[float, float]:
+        """Sensitivity over a grid of indentations, with its error; kPa/N."""
+        value, error = extrapolate(*(np.array(a.sensitivity(grid)) for a in self.answers))
+        return float(value), float(error)
+
+
+def reference(scene: Scene) -> Reference:
+    """Solve a scene on the three refinements; each only nearly as deep as the one before found no event."""
+    answers: list[Answer] = []
+    for arc, through in REFINEMENTS:
+        cut = bool(answers) and answers[-1].ends != "depth"
+        answers.append(solid_answer(scene, arc, through, _SHY * answers[-1].end if cut else None))
+    limits = tuple(solid_limit(scene, arc, through) for arc, through in REFINEMENTS)
+    return Reference((answers[0], answers[1], answers[2]), limits)  # type: ignore[arg-type]
+
+
+def compare(method: str, scene: Scene, answer: Answer, truth: Reference) -> dict[str, Any]:
+    """Errors of one answer over the range that is free of events for it and for the reference alike."""
+    common = min(answer.end, truth.end)
+    grid = np.linspace(0.0, common, scene.sensor.steps + 1)
+    force, _ = truth.force(grid)
+    row: dict[str, Any] = {
+        "method": method, "scene": scene.name, "range_end_mm": answer.end, "ends": answer.ends,
+        "compared_to_mm": common, "range_share": common / truth.end,
+        "sensitivity_kPa_per_N": answer.sensitivity(grid),
+        "own_sensitivity_kPa_per_N": answer.sensitivity(np.linspace(0.0, answer.end, scene.sensor.steps + 1)),
+        "sensitivity_error": answer.sensitivity(grid) / truth.sensitivity(grid)[0] - 1,
+        "force_error": float(np.max(np.abs(answer.curve(grid)[0] - force)) / np.max(force)),
+        "apex_error": answer.apex / truth.apex()[0] - 1 if scene.pressure else None,
+        "limit_error": limit(method, scene) / truth.limit()[0] - 1,
+    }  # fmt: skip
+    return {key: None if isinstance(value, float) and np.isnan(value) else value for key, value in row.items()}
+
+
+def describe(scene: Scene, truth: Reference) -> dict[str, Any]:
+    """A scene, its reference and the reference's own errors."""
+    s = scene.sensor
+    grid = np.linspace(0.0, truth.end, s.steps + 1)
+    (apex, apex_off), (top, top_off), (slope, slope_off) = truth.apex(), truth.limit(), truth.sensitivity(grid)
+    force, force_off = truth.force(grid)
+    known = not np.isnan(top)
+    return {
+        "scene": scene.name, "inner_radius_mm": s.inner_radius, "wall_thickness_mm": s.wall_thickness,
+        "law": [s.law[0], list(s.law[1])] if s.law else ["neo-hookean", [s.shear_modulus]],
+        "poisson_ratio": s.poisson_ratio, "driving_pressure_kPa": scene.pressure / KPA,
+        "dead_volume_mL": s.dead_volume * 1e-3, "depth_mm": s.depth,
+        "reference": {
+            "range_end_mm": truth.end, "ends": truth.ends,
+            "range_ends_mm": [a.end for a in truth.answers],
+            "apex_height_inner_mm": apex, "apex_error": apex_off / apex,
+            "limit_pressure_kPa": top / KPA if known else None, "limit_error": top_off / top if known else None,
+            "sensitivity_kPa_per_N": slope, "sensitivity_error": slope_off / slope,
+            "force_N": float(force[-1]), "force_error": float(np.max(force_off) / np.max(force)),
+        },
+    }  # fmt: skip
+
+
+def measure(scenes: tuple[Scene, ...] = SCENES) -> dict[str, Any]:
+    """All methods on all scenes: errors, and the processor time (s, median of runs taken in turn) of the same work."""
+    truths = {scene.name: reference(scene) for scene in scenes}
+    rows = []
+    for scene in scenes:
+        answers: dict[str, Answer] = {}
+        seconds: dict[str, list[float]] = {method: [] for method in METHODS}
+        for _ in range(_RUNS):
+            for method in METHODS:
+                start = time.process_time()
+                answers[method] = run(method, scene)
+                seconds[method].append(time.process_time() - start)
+        for method, answer in answers.items():
+            row = compare(method, scene, answer, truths[scene.name])
+            rows.append({**row, "processor_s": statistics.median(seconds[method])})
+    return {
+        "refinements": [list(r) for r in REFINEMENTS],
+        "scenes": [describe(scene, truths[scene.name]) for scene in scenes],
+        "rows": rows,
+    }

@@ -1,0 +1,126 @@
+"""Map of validity: over wall ratio, driving pressure and depth, where each method holds, is off, or stops.
+
+Every sensor is the paper's in TangoPlus with another wall, no dead volume; "within 5 %" is its sensitivity from first
+contact to the depth against the solid on a refined mesh.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from benchmarks.scenes import PAPER, Scene
+from benchmarks.speed_accuracy import Answer, membrane_answer, solid_answer, solid_limit
+from pneutouch.errors import PneutouchError
+from pneutouch.report.style import ACCENT, INK, MUTED, figure, svg
+
+WALL_RATIOS = (0.02, 0.05, 0.1, 0.162, 0.25, 0.35, 0.5)
+FRACTIONS = (0.0, 0.25, 0.5, 0.75, 0.95)
+DEPTHS = (0.1, 0.25, 0.5, 0.75)
+"""Shares of R0 for walls and depths, and of the solid's limit pressure for driving pressures."""
+
+FINE = (64, 3)
+METHODS = ("membrane variational", "membrane printed", "solid 12 x 1", "solid default")
+WITHIN = 0.05
+
+LOOKS: dict[str, dict[str, Any]] = {
+    "within 5 %": {"marker": "o", "color": ACCENT, "ms": 5.5},
+    "off by more": {"marker": "o", "color": INK, "mfc": "white", "ms": 5.5},
+    "ends before": {"marker": "x", "color": INK, "ms": 5},
+    "fails": {"marker": "s", "color": INK, "ms": 5},
+    "no such state": {"marker": "_", "color": MUTED, "ms": 6},
+}
+"""Outcomes: the method's own range ends before the depth; it raised an error; the refined solid itself buckles,
+tears or leaves the gauge's range before the depth, so there is nothing to compare with."""
+
+
+def _answer(method: str, scene: Scene) -> Answer | None:
+    try:
+        if method.startswith("membrane"):
+            return membrane_answer(scene, method.split()[1])
+        return solid_answer(scene, *((12, 1) if method == "solid 12 x 1" else (None, None)))
+    except PneutouchError:
+        return None
+
+
+def _outcome(answer: Answer | None, truth: Answer, depth: float) -> str:
+    if truth.end < depth * (1 - 1e-9):
+        return "no such state"
+    if answer is None:
+        return "fails"
+    if answer.end < depth * (1 - 1e-9):
+        return "ends before"
+    grid = np.linspace(0.0, depth, 15)
+    error = answer.sensitivity(grid) / truth.sensitivity(grid) - 1
+    return "within 5 %" if abs(error) <= WITHIN else "off by more"
+
+
+def measure() -> list[dict[str, Any]]:
+    """One row for every method, wall ratio, driving pressure and depth."""
+    rows = []
+    for ratio in WALL_RATIOS:
+        sensor = replace(PAPER, wall_thickness=ratio * PAPER.inner_radius)
+        limit = solid_limit(Scene("", sensor, 0.0), None, None)
+        for fraction in FRACTIONS:
+            scene = Scene("", sensor, fraction * limit)
+            truth = solid_answer(scene, *FINE)
+            answers = {method: _answer(method, scene) for method in METHODS}
+            rows += [
+                {
+                    "method": method, "wall_ratio": ratio, "limit_fraction": fraction, "depth_ratio": depth,
+                    "outcome": _outcome(answer, truth, depth * sensor.inner_radius),
+                }
+                for method, answer in answers.items()
+                for depth in DEPTHS
+            ]  # fmt: skip
+    return rows
+
+
+def draw(rows: list[dict[str, Any]]) -> str:
+    """Small multiples: methods down, depths across."""
+    with figure(178, 175) as drawn:
+        drawn.get_layout_engine().set(rect=(0, 0, 1, 0.96))  # type: ignore[union-attr]
+        axes = drawn.subplots(len(METHODS), len(DEPTHS), sharex=True, sharey=True)
+        for i, method in enumerate(METHODS):
+            for k, depth in enumerate(DEPTHS):
+                ax = axes[i, k]
+                for outcome, look in LOOKS.items():
+                    mine = [
+                        (row["wall_ratio"], row["limit_fraction"])
+                        for row in rows
+                        if (row["method"], row["depth_ratio"], row["outcome"]) == (method, depth, outcome)
+                    ]
+                    x, y = zip(*mine, strict=True) if mine else ((), ())
+                    ax.plot(x, y, ls="", label=outcome, clip_on=False, **look)
+                ax.set(xscale="log", xlim=(0.016, 0.62), ylim=(-0.08, 1.03))
+                ax.set_xticks(WALL_RATIOS, [f"{r:g}" for r in WALL_RATIOS], rotation=90, fontsize=6)
+                ax.minorticks_off()
+                if i == 0:
+                    ax.set_title(f"to {depth:g} R0", fontsize=7.5)
+                if k == 0:
+                    ax.set_ylabel(f"{method}\np / limit  (-)", fontsize=7)
+                if i == len(METHODS) - 1:
+                    ax.set_xlabel("wall / R0  (-)")
+        handles, labels = axes[0, 0].get_legend_handles_labels()
+        drawn.legend(handles, labels, loc="upper center", ncols=5)
+        return svg(drawn)
+
+
+def section(rows: list[dict[str, Any]]) -> list[str]:
+    """The map on the page, with a count of each outcome."""
+    counts = {
+        method: [sum(r["method"] == method and r["outcome"] == outcome for r in rows) for outcome in LOOKS]
+        for method in METHODS
+    }
+    lines = [f"| {method} | " + " | ".join(map(str, counts[method])) + " |" for method in METHODS]
+    return [
+        "## Map of validity", "",
+        f"The paper's sensor in TangoPlus with walls of {WALL_RATIOS[0]:g} to {WALL_RATIOS[-1]:g} R0, driven to shares of its "
+        "limit pressure and pressed to four depths; data in `validity.json`. Within 5 % means the sensitivity from first contact to the depth "
+        f"against the solid on {FINE[0]} x {FINE[1]} cells. \"ends before\": the method's own range ends before the depth; \"fails\": it "
+        "raised an error; \"no such state\": the refined solid itself meets an event before the depth.", "",
+        "![Where each method holds](validity.svg)", "",
+        "| method | " + " | ".join(LOOKS) + " |", "|---|" + "---|" * len(LOOKS), *lines, "",
+    ]  # fmt: skip
