@@ -74,6 +74,9 @@ def test_new_writes_a_design_that_predicts_and_never_overwrites(command, tmp_pat
     assert again.returncode == 2
     assert "already" in again.stderr
     assert path.read_text() == before
+    hiding = command("new", "paper-dome")
+    assert hiding.returncode == 2
+    assert "would hide" in hiding.stderr
     for name in ("../x", "a b", "", "-x"):
         assert command("new", "--", name).returncode == 2
 

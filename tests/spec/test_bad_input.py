@@ -51,7 +51,7 @@ CASES = [
     ("[indentation]\nplate_diameter_mm = 4", ["plate_diameter_mm = 4", "plate's edge", "wider", "18.5 mm"]),
     ("[indentation]\ndepth_mm = 20", ["depth_mm = 20", "0.95"]),
     ('[document]\ntitle = "a\\u0007b"', ["document.title", "cannot be printed"]),
-    ("[document]\ndate = 'yesterday'", ["document.date", "yesterday"]),
+    ("[document]\ndate = 'yesterday'", ["document.date", "yesterday", "a date such as 2026-11-21"]),
 ]  # fmt: skip
 
 

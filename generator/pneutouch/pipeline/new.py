@@ -6,6 +6,7 @@ import os
 import re
 from pathlib import Path
 
+from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
 from pneutouch.spec.template import design_template
 
@@ -15,6 +16,11 @@ def new_design(name: str, folder: Path) -> Path:
     if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]*", name):
         raise InputError(f"NAME = {name!r}: use letters, digits, - and _, starting with a letter or digit")
     path = folder / f"{name}.toml"
+    known = Library.default().shelf("designs").get(name)
+    if known is not None and known.resolve() != path.resolve():
+        raise InputError(
+            f"NAME = {name!r}: {known} is a design of this name, which the new file would hide; give another name"
+        )
     try:
         folder.mkdir(parents=True, exist_ok=True)
         handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)

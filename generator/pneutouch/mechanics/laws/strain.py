@@ -1,10 +1,9 @@
 """Isochoric invariants of an axisymmetric deformation, and the one mechanism that differentiates an energy of them.
 
 An axisymmetric deformation has the in-plane gradient F (2 x 2) and the hoop stretch h = r/R.  Every isotropic energy
-is a
-function of a = |F|^2, j = det F and h, so a law is written once as energy and its first and second derivatives by
-(a, j, h) follow from second-order Taylor arithmetic (`Jet`).  Energies are isochoric: they see lambda_i J^(-1/3).  The
-volumetric part is K/2 (J - 1)^2 and lives in the element, where J is averaged.
+is a function of a = |F|^2, j = det F and h, so a law is written once as energy and its first and second derivatives
+by (a, j, h) follow from second-order Taylor arithmetic (`Jet`).  Energies are isochoric: they see lambda_i J^(-1/3).
+The volumetric part is K/2 (J - 1)^2 and lives in the element, where J is averaged.
 """
 
 from __future__ import annotations

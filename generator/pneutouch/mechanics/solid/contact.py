@@ -46,10 +46,8 @@ class Contact:
     """psi = (k/2) sum w <-g>^2, g the vertical gap and w the reference area of a point.
 
     A stiff penalty: the Newton step meets the plate inside its quadratic model (`newton.direction`), which makes the
-    cost
-    independent of k, so k is simply taken large enough that the penetration traction/k cannot be measured.  The
-    energy is
-    once continuously differentiable: the line search sees no jump where points come and go.
+    cost independent of k, so k is simply taken large enough that the penetration traction/k cannot be measured.  The
+    energy is once continuously differentiable: the line search sees no jump where points come and go.
     """
 
     def __init__(self, mesh: SolidMesh, nodes: Array, stiffness: float, points: int = 3) -> None:

@@ -12,9 +12,8 @@ from pneutouch.mechanics.solid.newton import Stalled
 from pneutouch.mechanics.solid.walker import DISSIPATION, Spot, Walker, lost_work
 
 #: A neo-Hookean surface creases where the stretch across it is 2.4 times the least stretch along it, strain 0.35 in
-#: plane
-#: strain (Hong, Zhao & Suo 2009, Appl. Phys. Lett. 95, 111901; quoted, not derived here).  The smooth solution lives on,
-#: unsafely.
+#: plane strain (Hong, Zhao & Suo 2009, Appl. Phys. Lett. 95, 111901; quoted, not derived here).  The smooth solution
+#: lives on, unsafely.
 CREASE = 2.4
 #: The wall has left the plate inside the contact when the gap there passes this share of the wall.
 SEPARATION = 1.0e-2

@@ -27,8 +27,7 @@ class FreeState:
     """An inflated state without contact.
 
     positions: (n_nodes, 2) in mm.  pressure: gauge, MPa.  volume: cavity, mm^3.  stiffness: dp/dV, MPa/mm^3 (zero at
-    the
-    limit point).  stable: whether it holds under a regulated pressure.  inner_apex, outer_apex: heights in mm.
+    the limit point).  stable: whether it holds under a regulated pressure.  inner_apex, outer_apex: heights in mm.
     """
 
     positions: Array

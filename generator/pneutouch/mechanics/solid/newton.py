@@ -127,8 +127,7 @@ def direction(scene: Scene, state: State) -> Direction:
     """Newton step: the least of the quadratic model of wall and filling with the plate met exactly in it.
 
     Which points touch is settled inside the model, where a change costs one banded solve and no assembly; the outer
-    steps
-    then converge as without contact, and full steps survive the line search.
+    steps then converge as without contact, and full steps survive the line search.
     """
     band = tangent(scene, state)
     if state.touch is None:

@@ -42,8 +42,7 @@ class Liquid:
     """A nearly incompressible filling of rest volume `target`: volume control as an energy.
 
     The pressure is what it takes, `stiffness` only says how far V may fall short of the target; every (p, V) it
-    yields is
-    an exact point of the pressure-volume curve.
+    yields is an exact point of the pressure-volume curve.
     """
 
     target: float

@@ -63,8 +63,7 @@ def lost_work(path: list[Spot], after: Spot) -> float:
     """Energy unaccounted for from the end of a path to `after`, as a share of the plate's work in a full step.
 
     Near zero along one branch, since dPi/dheight = -force there.  The trapezium is corrected by the curvature of the
-    force
-    through three states; the first step, whose force starts at zero, by the slope at its end, which is coarser.
+    force through three states; the first step, whose force starts at zero, by the slope at its end, which is coarser.
     """
     here = path[-1]
     travel = here.height - after.height
