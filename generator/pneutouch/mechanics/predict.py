@@ -35,6 +35,7 @@ _SOLID_ASSUMPTIONS = (
     "axisymmetric hyperelastic solid with the wall's full stiffness; no wrinkles around the axis",
     "R0 is the inner radius; heights are those of the inner and the outer surface",
     "the wall below the base plane, self-contact and contact with the connector are not modelled",
+    "the fold of the wall at its clamped corner, which refined meshes find in deep presses, is not resolved by default",
     "the plate's edge is rounded with a thirtieth of its radius",
     "elongation at break is set against the greatest principal stretch on the faces, half a wall away from the clamp",
 )
