@@ -101,7 +101,7 @@ def _same_mesh(rows: list[dict[str, Any]]) -> str:
         + ", ".join(parts)
         + ". The gain at 0.5 % comes from "
         "the element too: its coarsest meshes are within it. Whole processes are the start of Python, NumPy and SciPy, which "
-        "a session pays once; CalculiX, compiled, has no such start."
+        "a running program pays once; CalculiX, compiled, has no such start."
     )
 
 
