@@ -1,0 +1,106 @@
+"""``pneutouch sweep``: many designs to one dataset."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from pneutouch.cli.app import JsonOption, SetOption, app, print_json, reporting
+from pneutouch.errors import InputError
+
+if TYPE_CHECKING:
+    from pneutouch.pipeline.sweep import Outcome, Plan
+
+_MODEL_HELP = "Rung of the ladder of models; solid where neither this nor the file says."
+
+
+@app.command()
+def sweep(
+    file: Annotated[Path | None, typer.Argument(metavar="SWEEP.toml", help="Sweep file: a grid or a list.")] = None,
+    design: Annotated[str | None, typer.Option("--design", help="Base design, where there is no sweep file.")] = None,
+    over: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--over", metavar="TABLE.KEY=VALUES", help="Vary a field: A,B,C or FROM:TO:COUNT; may be repeated."
+        ),
+    ] = None,
+    set_: SetOption = None,
+    model: Annotated[str | None, typer.Option("--model", help=_MODEL_HELP)] = None,
+    closure: Annotated[str | None, typer.Option("--closure", help="Contact closure of the membrane.")] = None,
+    clamp: Annotated[str | None, typer.Option("--clamp", help="Where the solid is held: base or flange.")] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="FILE.nc", help="Dataset; left out: outputs/<name>.nc.")
+    ] = None,
+    workers: Annotated[int | None, typer.Option("--workers", help="Processes; left out: one a core.")] = None,
+    scheduler: Annotated[
+        str | None, typer.Option("--scheduler", metavar="ADDRESS", help="Compute on this Dask cluster.")
+    ] = None,
+    fresh: Annotated[
+        bool, typer.Option("--fresh", help="Forget progress and replace another sweep's dataset.")
+    ] = False,
+    json: JsonOption = False,
+) -> None:
+    """Predict a grid or a list of designs into one dataset (netCDF)."""
+    with reporting():
+        # Before numpy loads: the processes take the cores, and results must not depend on how many there are.
+        os.environ["OMP_NUM_THREADS"] = "1"
+        from pneutouch.pipeline.sweep import sweep as run
+        from pneutouch.pipeline.sweep.run import Machines
+
+        plan = _plan(file, design, over or [], set_ or [], {"model": model, "closure": closure, "clamp": clamp})
+        target = Path("outputs") / f"{plan.name}.nc" if out is None else out
+        with _bar() as progress:
+            done = run(plan, target, Machines(workers, scheduler), fresh=fresh, progress=progress)
+        _tell(done, json=json)
+
+
+def _plan(
+    file: Path | None, design: str | None, over: list[str], set_: list[str], options: dict[str, str | None]
+) -> Plan:
+    from pneutouch.pipeline.sweep import plan_of_file, plan_of_flags
+
+    if file is not None and (design is not None or over):
+        raise InputError(f"{file}: a sweep file and {'--over' if over else '--design'}: give one or the other")
+    if file is not None:
+        return plan_of_file(file, set_, **options)
+    if design is None or not over:
+        raise InputError("give a sweep file, or --design NAME with --over TABLE.KEY=VALUES")
+    return plan_of_flags(design, over, set_, **options)
+
+
+def _tell(done: Outcome, *, json: bool) -> None:
+    """The dataset on stdout; on stderr what became of the states."""
+    if json:
+        print_json({
+            "dataset": str(done.path), "points": done.points, "computed": done.computed, "states": done.states,
+            "input_hash": done.input_hash,
+        })  # fmt: skip
+        return
+    counts = ", ".join(f"{count} {status}" for status, count in done.states.items())
+    there = "; was there already, --fresh computes it again" if done.computed == 0 else ""
+    typer.echo(f"{done.points} points, states: {counts}{there}", err=True)
+    typer.echo(str(done.path))
+
+
+@contextlib.contextmanager
+def _bar() -> Iterator[Callable[[int, int], None]]:
+    """A progress bar on stderr where that is a terminal."""
+    if not sys.stderr.isatty():
+        yield lambda done, total: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+    columns = (
+        TextColumn("points"), BarColumn(), TextColumn("{task.completed}/{task.total}"),
+        TimeElapsedColumn(), TimeRemainingColumn(),
+    )  # fmt: skip
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("")
+        yield lambda done, total: bar.update(task, completed=done, total=total)

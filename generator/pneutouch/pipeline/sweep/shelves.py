@@ -1,0 +1,29 @@
+"""A library that reads every file once: thousands of points name the same few materials, printers and parts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from pneutouch.catalogue import Library
+
+
+@dataclass(frozen=True)
+class Shelves(Library):
+    """A library over ``folders`` that do not change while it is used; what it hands out is immutable and shared."""
+
+    _shelves: dict[str, dict[str, Path]] = field(default_factory=dict, repr=False, compare=False)
+    _things: dict[tuple[str, str], Any] = field(default_factory=dict, repr=False, compare=False)
+
+    def shelf(self, kind: str) -> dict[str, Path]:
+        """Names of one kind with their files, sorted by name."""
+        if kind not in self._shelves:
+            self._shelves[kind] = super().shelf(kind)
+        return self._shelves[kind]
+
+    def load(self, kind: str, name: str, *, asked_by: str = "") -> Any:
+        """Load one thing by name; raises InputError as a library does."""
+        if (kind, name) not in self._things:
+            self._things[kind, name] = super().load(kind, name, asked_by=asked_by)
+        return self._things[kind, name]

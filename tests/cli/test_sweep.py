@@ -1,0 +1,114 @@
+"""``pneutouch sweep`` as a user meets it; the commands and the Python of docs/sweep.md are run."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import re
+import shlex
+
+import pytest
+import xarray
+
+from pneutouch.pipeline.sweep.variables import POINT, STATE
+from tests.cli.test_commands import HEAVY, modules_after
+from tests.conftest import ROOT
+from tests.pipeline.sweep.conftest import cluster
+
+__all__ = ["cluster"]
+
+TEXT = (ROOT / "docs/sweep.md").read_text(encoding="utf-8")
+
+
+def blocks(language):
+    return re.findall(rf"```{language}\n(.*?)```", TEXT, re.DOTALL)
+
+
+COMMANDS = [line for block in blocks("sh") for line in block.splitlines() if line.startswith("pneutouch ")]
+
+
+@pytest.fixture
+def bench(tmp_path):
+    """A folder with the examples in it."""
+    (tmp_path / "docs").symlink_to(ROOT / "docs")
+    return tmp_path
+
+
+@pytest.mark.parametrize("line", [line for line in COMMANDS if "--scheduler" not in line])
+def test_the_page_s_commands_run(line, command, bench):
+    result = command(*shlex.split(line)[1:])
+    assert result.returncode == 0, result.stderr
+    path = json.loads(result.stdout)["dataset"] if "--json" in line else result.stdout.strip()
+    data = xarray.load_dataset(bench / path, engine="scipy")
+    assert set(data.data_vars) == {variable.name for variable in (*STATE, *POINT)}
+    assert (data.status == "ok").sum() > 20
+
+
+def test_the_page_s_cluster_commands_run(command, bench, cluster):
+    (line,) = [line for line in COMMANDS if "--scheduler" in line]
+    local, *_ = COMMANDS
+    result = command(*shlex.split(line.replace("tcp://127.0.0.1:8786", cluster.address))[1:])
+    assert result.returncode == 0, result.stderr
+    assert command(*shlex.split(local)[1:], "--workers", "1").returncode == 0
+    assert (bench / "cluster.nc").read_bytes() == (bench / "outputs/wall-and-resin.nc").read_bytes()
+
+
+def test_the_page_s_python_and_list_run(command, bench, monkeypatch):
+    assert command("sweep", "docs/examples/wall-and-resin.toml", "--workers", "1").returncode == 0
+    monkeypatch.chdir(bench)
+    output = io.StringIO()
+    with contextlib.redirect_stdout(output):
+        for block in blocks("python"):
+            exec(compile(block, "sweep.md", "exec"), {})
+    *sensitivities, refused = output.getvalue().replace("[", "").replace("]", "").split()
+    assert len(sensitivities) == 7
+    assert int(refused) == 2  # 22 kPa on TangoPlus thinner than 0.787 mm, its wall at that limit (41.9 kPa at 1.5 mm)
+    (bench / "list.toml").write_text(blocks("toml")[0])
+    result = command("sweep", "list.toml", "--json")
+    assert json.loads(result.stdout)["states"] == {"ok": 6, "refused": 0, "failed": 0}
+
+
+def test_the_page_names_every_variable():
+    for variable in (*STATE, *POINT):
+        assert f"`{variable.name}`" in TEXT, variable.name
+
+
+def test_the_dataset_is_named_on_stdout_and_the_states_on_stderr(command, tmp_path):
+    words = ["--design", "paper-dome", "--over", "membrane.wall_thickness_mm=0.5,1.5", "--model", "membrane"]
+    result = command("sweep", *words)
+    assert (result.returncode, result.stdout) == (0, "outputs/paper-dome-sweep.nc\n")
+    assert result.stderr == "2 points, states: 7 ok, 1 refused, 0 failed\n"
+    assert [path.name for path in (tmp_path / "outputs").iterdir()] == ["paper-dome-sweep.nc"]
+    again = command("sweep", *words)
+    assert "was there already" in again.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ([], "give a sweep file, or --design"),
+        (["--design", "paper-dome"], "give a sweep file, or --design"),
+        (["missing.toml"], "missing.toml: no such file"),
+        (["docs/examples/wall-and-resin.toml", "--design", "paper-dome"], "one or the other"),
+        (["docs/examples/wall-and-resin.toml", "--over", "membrane.material=FLX9940"], "one or the other"),
+        (["docs/examples/wall-and-resin.toml", "--set", "membrane.material=FLX9940"], "varied too"),
+        (["docs/examples/wall-and-resin.toml", "--set", "membrane.material"], "--set membrane.material"),
+        (["docs/examples/wall-and-resin.toml", "--workers", "0"], "--workers 0"),
+        (["docs/examples/wall-and-resin.toml", "--model", "solit"], "Did you mean solid?"),
+        (["docs/examples/wall-and-resin.toml", "--out", "x.csv"], "ends in .nc"),
+    ],
+)
+def test_bad_words_exit_2_and_leave_nothing(words, message, command, bench):
+    result = command("sweep", *words)
+    assert (result.returncode, result.stdout) == (2, "")
+    assert message in result.stderr
+    assert "Traceback" not in result.stderr
+    assert list(bench.iterdir()) == [bench / "docs"]
+
+
+def test_other_commands_load_nothing_of_it():
+    unwanted = {"xarray", "pandas", "dask", "distributed"}
+    for words in (["--help"], ["sweep", "--help"], ["predict", "paper-dome", "--model", "membrane", "--json"]):
+        loaded = modules_after(*words)
+        assert loaded & (unwanted | HEAVY) == set(), words
