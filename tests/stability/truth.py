@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneutouch.mechanics.solid import Event, FreeState, Indentation, Press, PressState, Solid, indent
-from pneutouch.mechanics.solid.contact import Plate
-from pneutouch.mechanics.solid.indent import RIM
+from pneutouch.mechanics.solid.contact import RIM, Plate
 from pneutouch.mechanics.solid.newton import Scene, Stalled, State, evaluate, full_tangent, minimise
 from pneutouch.mechanics.solid.supply import Gas, Regulator
 

@@ -1,6 +1,7 @@
 """How a sensor behaves: laws, gas, the membrane theory, and curves turned into figures."""
 
-from pneutouch.mechanics.predict import MODELS, predict
+from pneutouch.mechanics.ladder import MODELS
+from pneutouch.mechanics.predict import predict
 from pneutouch.mechanics.prediction import Prediction, State
 from pneutouch.mechanics.sensor import Sensor
 

@@ -2,27 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from pneutouch.errors import InputError, nearest
 from pneutouch.mechanics.contact import CLOSURES
+from pneutouch.mechanics.ladder import DEFAULT_TOLERANCE, DISCRETISATION, MODELS, NUMERICAL, TABULATION, climb
 from pneutouch.mechanics.membrane import error_against_exact_membrane, membrane_result
-from pneutouch.mechanics.prediction import Prediction
+from pneutouch.mechanics.prediction import Prediction, Result
 from pneutouch.mechanics.sensor import Sensor
+from pneutouch.meridian.segments import Array
 from pneutouch.units import KPA, ML
 
-MODELS = ("membrane", "solid")
-"""The rungs there are, cheapest first."""
-
-DISCRETISATION = {"sensitivity_discretisation_relative": 0.011, "limit_pressure_relative": 0.002}
-"""Greatest relative errors of the solid at its default resolution against a refined mesh (docs/accuracy.md)."""
+Error = dict[str, Any]
 
 _DISCRETISATION_SUMMARY = (
     f"Discretisation: sensitivity within {DISCRETISATION['sensitivity_discretisation_relative']:.1%}, limit pressure "
     f"within {DISCRETISATION['limit_pressure_relative']:.1%} of a refined mesh."
 )
+_TABULATION_SUMMARY = f"Tabulation: sensitivity within {TABULATION:.1%} of the solid, that is within {NUMERICAL['atlas']:.1%} of a refined mesh."
 
 _MEMBRANE_ASSUMPTIONS = (
     "thin neo-Hookean membrane, incompressible, C1 = mu/2; no bending stiffness: the wall's own stiffness is missing",
@@ -56,34 +56,78 @@ def _merged(one: dict[str, Any], other: dict[str, Any]) -> dict[str, Any]:
 
 def predict(
     design: str, sensor: Sensor, driving_pressures: list[float], *,
-    model: str = "solid", closure: str = "variational", sensitivity_error: dict[str, Any] | None = None,
+    model: str = "solid", closure: str = "variational", tolerance: float = DEFAULT_TOLERANCE,
+    sensitivity_error: Callable[[str], Error] | None = None,
 ) -> Prediction:  # fmt: skip
     """Predict a sensor at ascending driving pressures (MPa) with one rung; ``closure`` is the membrane's.
 
-    ``sensitivity_error`` is what is known of the model's error in sensitivity for this resin. Raises
-    InputError for an unknown model or closure, BeyondLimitError beyond the limit point, ComputationError where
-    no equilibrium is found.
+    ``auto`` takes the cheapest rung whose stated error meets the tolerance (a fraction) and says why.
+    ``sensitivity_error`` tells what is known of a rung's error in sensitivity for this resin. Raises InputError for
+    an unknown model or closure and for a sensor outside the atlas's box, BeyondLimitError beyond the limit point,
+    ComputationError where no equilibrium is found.
     """
     if model not in MODELS:
         raise InputError(f"--model {model}: unknown model.{nearest(model, MODELS)}")
     if closure not in CLOSURES:
         raise InputError(f"--closure {closure}: unknown closure.{nearest(closure, CLOSURES)}")
     pressures = np.array(driving_pressures, float)
+    rung, found, why = _found(sensor, pressures, model, closure, tolerance)
+    errors, assumptions = _stated(rung, sensor, pressures)
+    if sensitivity_error is not None:
+        errors = _merged(errors, sensitivity_error(rung))
+    if why:
+        errors = _merged({"rung": why, "summary": [f"Model {rung}: {why}."]}, errors)
     gas = f"dead volume {sensor.dead_volume / ML:.4g} mL, ambient pressure {sensor.ambient_pressure / KPA:g} kPa"
-    held = _CLAMPED_FLANGE if model == "solid" and sensor.flange is not None else _CLAMPED_BASE
-    if model == "membrane":
-        found = membrane_result(sensor, pressures, closure)
-        errors: dict[str, Any] = error_against_exact_membrane(sensor, pressures)
-        assumptions: tuple[str, ...] = _MEMBRANE_ASSUMPTIONS
-    else:
-        from pneutouch.mechanics.solid_states import solid_result
-
-        found = solid_result(sensor, pressures)
-        errors = {**DISCRETISATION, "summary": [_DISCRETISATION_SUMMARY]}
-        assumptions = (f"law {sensor.material.convention}, Poisson ratio {sensor.poisson_ratio:g}", *_SOLID_ASSUMPTIONS)
+    held = _CLAMPED_FLANGE if rung == "solid" and sensor.flange is not None else _CLAMPED_BASE
     return Prediction(
-        design=design, model=model, closure=closure if model == "membrane" else None,
-        error_estimate=_merged(errors, sensitivity_error or {}),
+        design=design, model=rung, closure=closure if rung == "membrane" else None, error_estimate=errors,
         limit_point=found.limit_point, limits=found.limits, dead_volume=sensor.dead_volume,
         inflation=found.inflation, states=found.states, assumptions=(*assumptions, held, *_COMMON_ASSUMPTIONS, gas),
     )  # fmt: skip
+
+
+def _found(
+    sensor: Sensor, pressures: Array, model: str, closure: str, tolerance: float
+) -> tuple[str, Result, str | None]:
+    """The rung that answered, its answer, and why it was taken where it was not asked for by name."""
+    if model != "auto":
+        found, lacking = _asked(model, sensor, pressures, closure)
+        if lacking is not None:
+            raise InputError(f"--model {model}: {lacking}; take --model auto or solid")
+        return model, found, None
+    way = climb(sensor, tolerance)
+    passed = list(way.passed)
+    for rung in way.rungs:
+        found, lacking = _asked(rung, sensor, pressures, closure)
+        if lacking is None:
+            break
+        passed.append(f"{rung}: {lacking}")
+    why = f"the cheapest whose stated error, {NUMERICAL[rung]:.1%} in sensitivity, meets {tolerance:.1%}"
+    return rung, found, "; ".join([why, *(f"passed over {text}" for text in passed)])
+
+
+def _asked(rung: str, sensor: Sensor, pressures: Array, closure: str) -> tuple[Result, str | None]:
+    """One rung's answer, and what it lacks."""
+    if rung == "membrane":
+        return membrane_result(sensor, pressures, closure), None
+    if rung == "atlas":
+        from pneutouch.mechanics.atlas_states import atlas_result, outside_atlas
+
+        why = outside_atlas(sensor)
+        if why is not None:
+            raise InputError(f"--model atlas: {why}; take --model auto or solid")
+        return atlas_result(sensor, pressures)
+    from pneutouch.mechanics.solid_states import solid_result
+
+    return solid_result(sensor, pressures), None
+
+
+def _stated(rung: str, sensor: Sensor, pressures: Array) -> tuple[Error, tuple[str, ...]]:
+    """Numerical errors and assumptions of a rung."""
+    if rung == "membrane":
+        return error_against_exact_membrane(sensor, pressures), _MEMBRANE_ASSUMPTIONS
+    law = f"law {sensor.material.convention}, Poisson ratio {sensor.poisson_ratio:g}"
+    if rung == "atlas":
+        errors = {**DISCRETISATION, "sensitivity_tabulation_relative": TABULATION, "summary": [_TABULATION_SUMMARY]}
+        return errors, (law, *_SOLID_ASSUMPTIONS)
+    return {**DISCRETISATION, "summary": [_DISCRETISATION_SUMMARY]}, (law, *_SOLID_ASSUMPTIONS)

@@ -8,6 +8,7 @@ the sensor makers' usual ones.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -32,6 +33,45 @@ class Figures:
     saturation_force: float | None
 
 
+class Lines(NamedTuple):
+    """Key figures of many curves, arrays of one shape; NaN for no saturation. Units as in `Figures`, nonlinearity and
+    r_squared as fractions."""
+
+    sensitivity: Array
+    intercept: Array
+    sensitivity_through_origin: Array
+    r_squared: Array
+    nonlinearity: Array
+    stiffness: Array
+    force_low: Array
+    force_high: Array
+    saturation_force: Array
+
+
+def lines(indentation: Array, force: Array, rise: Array) -> Lines:
+    """Key figures of curves along the last axis, (..., n) each; definitions in `figures`.
+
+    A curve whose force does not vary has NaN for what it does not determine.
+    """
+    mean_force, mean_rise = force.mean(axis=-1, keepdims=True), rise.mean(axis=-1, keepdims=True)
+    df, dr = force - mean_force, rise - mean_rise
+    with np.errstate(invalid="ignore", divide="ignore"):
+        slope = (df * dr).sum(axis=-1) / (df * df).sum(axis=-1)
+        residual = dr - slope[..., None] * df
+        spread, span = (dr * dr).sum(axis=-1), np.ptp(rise, axis=-1)
+        return Lines(
+            sensitivity=slope,
+            intercept=mean_rise[..., 0] - slope * mean_force[..., 0],
+            sensitivity_through_origin=(force * rise).sum(axis=-1) / (force * force).sum(axis=-1),
+            r_squared=1.0 - np.where(spread > 0, (residual * residual).sum(axis=-1) / spread, 0.0),
+            nonlinearity=np.where(span > 0, np.abs(residual).max(axis=-1) / span, 0.0),
+            stiffness=(force[..., -1] - force[..., 0]) / (indentation[..., -1] - indentation[..., 0]),
+            force_low=force.min(axis=-1),
+            force_high=force.max(axis=-1),
+            saturation_force=saturation_force(force, rise, slope),
+        )
+
+
 def figures(indentation: Array, force: Array, rise: Array) -> Figures | None:
     """Key figures over all the points given, or None where they do not determine a straight line.
 
@@ -41,26 +81,33 @@ def figures(indentation: Array, force: Array, rise: Array) -> Figures | None:
     """
     if len(force) < _LEAST_POINTS or np.ptp(force) <= 0 or np.ptp(indentation) <= 0:
         return None
-    slope, intercept = np.polyfit(force, rise, 1)
-    residual = rise - (slope * force + intercept)
-    spread = float(np.sum((rise - rise.mean()) ** 2))
+    found = lines(indentation, force, rise)
+    saturated = float(found.saturation_force)
     return Figures(
-        sensitivity=float(slope),
-        intercept=float(intercept),
-        sensitivity_through_origin=float(force @ rise / (force @ force)),
-        r_squared=1.0 - float(residual @ residual) / spread if spread > 0 else 1.0,
-        nonlinearity=float(np.max(np.abs(residual)) / np.ptp(rise)) if np.ptp(rise) > 0 else 0.0,
-        stiffness=float((force[-1] - force[0]) / (indentation[-1] - indentation[0])),
-        force_range=(float(force.min()), float(force.max())),
-        saturation_force=saturation_force(force, rise, float(slope)),
-    )
+        sensitivity=float(found.sensitivity), intercept=float(found.intercept),
+        sensitivity_through_origin=float(found.sensitivity_through_origin), r_squared=float(found.r_squared),
+        nonlinearity=float(found.nonlinearity), stiffness=float(found.stiffness),
+        force_range=(float(found.force_low), float(found.force_high)),
+        saturation_force=None if np.isnan(saturated) else saturated,
+    )  # fmt: skip
 
 
-def saturation_force(force: Array, rise: Array, slope: float) -> float | None:
-    """Force at which the local slope of pressure over force falls below half the fitted one, or None."""
-    local = np.gradient(rise, force)
-    below = np.flatnonzero(local < _SATURATED * slope)
-    return float(force[below[0]]) if below.size else None
+def saturation_force(force: Array, rise: Array, slope: Array | float) -> Array:
+    """Force at which the local slope of pressure over force falls below half the fitted one, NaN where it does not.
+
+    A curve that begins flat has not saturated: the slope must have been above before. Curves along the last axis; the
+    local slope is the second-order difference, one-sided at the ends.
+    """
+    step, climb = np.diff(force), np.diff(rise)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        side = climb / step
+        before, after = step[..., :-1], step[..., 1:]
+        middle = (after * side[..., :-1] + before * side[..., 1:]) / (before + after)
+    local = np.concatenate([side[..., :1], middle, side[..., -1:]], axis=-1)
+    low = local < _SATURATED * np.asarray(slope)[..., None]
+    below = low & np.logical_or.accumulate(~low, axis=-1)
+    first = np.take_along_axis(force, below.argmax(axis=-1)[..., None], axis=-1)[..., 0]
+    return np.where(below.any(axis=-1), first, np.nan)
 
 
 def tangent_stiffness(indentation: Array, force: Array) -> Array:

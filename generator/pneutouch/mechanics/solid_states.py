@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
 from pneutouch.mechanics.events import Event, range_end
+from pneutouch.mechanics.hermite import hermite
 from pneutouch.mechanics.limits import LimitPoint, Limits
 from pneutouch.mechanics.prediction import InflationCurve, Result, Shape, State
 from pneutouch.mechanics.response import figures
@@ -25,6 +25,7 @@ from pneutouch.mechanics.solid import (
     printed_dome,
     state_at,
 )
+from pneutouch.mechanics.solid.mesh import Index
 from pneutouch.meridian.segments import Array
 from pneutouch.units import KPA
 
@@ -58,7 +59,7 @@ def solid_result(sensor: Sensor, driving_pressures: Array, *, cells: int | None 
     solid = Solid(mesh, sensor.material)
     run = inflate(solid, past_limit=_PAST_LIMIT)
     states = tuple(_state(sensor, solid, run, float(p)) for p in driving_pressures)
-    return Result(_limit_point(sensor, run), _limits(sensor, solid, run), _inflation(run), states)
+    return Result(_limit_point(sensor, run), _limits(sensor, solid, run), _inflation(solid, run), states)
 
 
 def _limit_point(sensor: Sensor, run: Inflation) -> LimitPoint | None:
@@ -68,15 +69,23 @@ def _limit_point(sensor: Sensor, run: Inflation) -> LimitPoint | None:
     return LimitPoint(inner, outer, run.limit.pressure, (outer - inner) / sensor.wall_thickness)
 
 
-def _inflation(run: Inflation) -> InflationCurve:
-    """The curve between the solved states: Hermite cubics in the volume, with the solid's own slopes dp/dV."""
+def _inflation(solid: Solid, run: Inflation) -> InflationCurve:
+    """The curve between the solved states: Hermite cubics in the volume, with the solid's own slopes."""
     volume = run.volume
     grid = np.unique(np.concatenate([np.linspace(volume[0], volume[-1], 90), volume]))
-    inner, outer = (
-        PchipInterpolator(volume, [getattr(s, name) for s in run.states])(grid) for name in ("inner_apex", "outer_apex")
-    )
-    pressure = CubicHermiteSpline(volume, run.pressure, [s.stiffness for s in run.states])(grid)
-    return InflationCurve(inner, outer, grid, pressure)
+
+    def along(values: list[float], slopes: list[float]) -> Array:
+        return hermite(grid, volume, np.array(values), np.array(slopes))
+
+    def apex(line: Index) -> list[float]:
+        # Positions by volume are nondimensional: R0 over R0 cubed.
+        return [float(s.by_volume[line[-1, 1], 1]) / solid.length**2 for s in run.states]
+
+    return InflationCurve(
+        along([s.inner_apex for s in run.states], apex(solid.mesh.inner)),
+        along([s.outer_apex for s in run.states], apex(solid.mesh.outer)), grid,
+        along([s.pressure for s in run.states], [s.stiffness for s in run.states]),
+    )  # fmt: skip
 
 
 def _limits(sensor: Sensor, solid: Solid, run: Inflation) -> Limits:
@@ -125,17 +134,7 @@ def _curve(path: list[PressState], grid: Array) -> tuple[Array, Array]:
     force, rise = np.array([s.force for s in states]), np.array([s.rise for s in states])
     stiffness = np.array([s.stiffness for s in states])
     rate = np.nan_to_num(np.array([s.slope for s in states])) * stiffness
-    k = np.clip(np.searchsorted(x, grid, side="right") - 1, 0, len(x) - 2)
-    span = x[k + 1] - x[k]
-    share = (grid - x[k]) / span
-
-    def cubic(y: Array, slope: Array) -> Array:
-        step = y[k + 1] - y[k]
-        bow = (1 - share) * (slope[k] * span - step) + share * (step - slope[k + 1] * span)
-        value: Array = y[k] + share * step + share * (1 - share) * bow
-        return value
-
-    return cubic(force, stiffness), cubic(rise, rate)
+    return hermite(grid, x, force, stiffness), hermite(grid, x, rise, rate)
 
 
 def _shapes(solid: Solid, free: FreeState, found: Indentation, end: float) -> tuple[Shape, ...]:

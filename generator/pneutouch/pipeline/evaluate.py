@@ -10,6 +10,7 @@ import numpy as np
 from pneutouch.catalogue import Library, Scene, load_scene
 from pneutouch.errors import BeyondLimitError, InputError, nearest
 from pneutouch.mechanics import Prediction, Sensor, predict
+from pneutouch.mechanics.ladder import DEFAULT_TOLERANCE
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.parts import Assembly, assemble
 from pneutouch.pipeline.table_s1 import sensitivity_error
@@ -39,11 +40,12 @@ class Evaluation:
 
 def evaluate(
     name: str, assignments: list[str] | None = None, *,
-    model: str = "solid", closure: str = "variational", clamp: str = "base", library: Library | None = None,
+    model: str = "solid", closure: str = "variational", clamp: str = "base", tolerance: float = DEFAULT_TOLERANCE,
+    library: Library | None = None,
 ) -> Evaluation:  # fmt: skip
     """Load, draw and predict a design given by name or path. Raises InputError where it cannot work.
 
-    ``clamp`` says where the solid is held: at the "base" plane, as in the paper, or at the "flange", as printed.
+    ``tolerance`` is what ``model="auto"`` must meet. ``clamp`` says where the solid is held: at the "base" plane, as in the paper, or at the "flange", as printed.
     """
     if clamp not in CLAMPS:
         raise InputError(f"--clamp {clamp}: unknown.{nearest(clamp, CLAMPS)}")
@@ -55,8 +57,8 @@ def evaluate(
     pressures = [p * KPA for p in scene.design.pneumatics.driving_pressures_kPa]
     try:
         prediction = predict(
-            scene.name, sensor, pressures, model=model, closure=closure,
-            sensitivity_error=sensitivity_error(scene.membrane_material, sensor, model, closure),
+            scene.name, sensor, pressures, model=model, closure=closure, tolerance=tolerance,
+            sensitivity_error=lambda rung: sensitivity_error(scene.membrane_material, sensor, rung, closure),
         )  # fmt: skip
     except BeyondLimitError as error:
         raise _beyond_limit(scene, error) from None

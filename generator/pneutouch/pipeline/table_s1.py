@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -39,8 +40,13 @@ def compute_errors(material: Material, model: str, closure: str) -> list[float |
     """Relative errors at the pressures of Table S1; None where the model gives no figure."""
     truth = measured(material)
     assert truth is not None
-    states = predict("", material_sensor(material), [p * KPA for p in PRESSURES], model=model, closure=closure).states
-    return [s.figures.sensitivity / t - 1 if s.figures else None for s, t in zip(states, truth, strict=True)]
+    return list(_errors(material_sensor(material), truth, model, closure))
+
+
+@lru_cache
+def _errors(sensor: Sensor, truth: tuple[float, float], model: str, closure: str) -> tuple[float | None, ...]:
+    states = predict("", sensor, [p * KPA for p in PRESSURES], model=model, closure=closure).states
+    return tuple(s.figures.sensitivity / t - 1 if s.figures else None for s, t in zip(states, truth, strict=True))
 
 
 def fingerprint(material: Material) -> str:
@@ -69,9 +75,9 @@ def sensitivity_error(material: Material, sensor: Sensor, model: str, closure: s
         return _unknown(
             "the only measurements are of the paper's sensor (wall 0.16 R0, no stated dead volume, clamped base)"
         )
-    if model == "solid":
+    if model in ("atlas", "solid"):
         errors = json.loads(SHIPPED.read_text(encoding="utf-8")).get(fingerprint(material))
-        errors = errors or compute_errors(material, model, closure)
+        errors = errors or compute_errors(material, "solid", closure)
     else:
         errors = compute_errors(material, model, closure)
     known = [abs(error) for error in errors if error is not None]

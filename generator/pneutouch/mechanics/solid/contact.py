@@ -13,6 +13,21 @@ from pneutouch.mechanics.solid.mesh import SolidMesh
 Array = NDArray[np.float64]
 
 
+#: Curvature radius of the plate's rim over the plate's radius (0.5 mm at 30 mm diameter, assumed: the paper has none).
+#: A mesh whose outer edges are longer rounds it to their length.
+RIM = 1.0 / 30.0
+
+
+def rim_radius(radius: Array, longest: Array) -> Array:
+    """Curvature radius of the rim of plates on meshes whose longest outer edges are given."""
+    return np.maximum(np.where(np.isfinite(radius), RIM * radius, 0.0), longest)
+
+
+def flat_radius(radius: Array, longest: Array) -> Array:
+    """How far a plate is flat: its rim begins half the rim's radius inside its edge."""
+    return np.maximum(radius - 0.5 * rim_radius(radius, longest), 0.5 * radius)
+
+
 @dataclass(frozen=True)
 class Plate:
     """Underside at `height`, flat to `radius` and turning up beyond it as a parabola of curvature 1/`rim` (mm)."""

@@ -20,7 +20,9 @@ SEPARATION = 1.0e-2
 #: The wall hangs over its clamp when it passes below the base plane by this share of itself.
 OVERHANG = 2.0e-2
 #: Position of a jump, in R0.
-JUMP_WITHIN = 3.5e-3
+JUMP_WITHIN = 5.0e-4
+#: How far past a stall a second equilibrium is first looked for, in R0.
+_BEYOND_STALL = 3.5e-3
 _MOST_TRIES = 40
 #: Two equilibria whose positions differ by more than this, in R0, are two.
 _APART = 1.0e-3
@@ -113,7 +115,7 @@ def _close_in(walker: Walker, end: float) -> Jump | None:
 def _past_a_stall(walker: Walker, stalled: Stalled) -> Jump:
     """A solver that found nothing is no evidence of another branch: look a little further before naming the end."""
     for further in (1, 2, 4, 8):
-        found = walker.solve(walker.here.height - further * JUMP_WITHIN)
+        found = walker.solve(walker.here.height - further * _BEYOND_STALL)
         if not isinstance(found, Stalled) and not _sound(walker.path, found) and _stays_away(walker.here, found):
             return Jump(_kind(walker.here, found), walker.here.height, _describe(walker.path, found))
     return Jump("lost", walker.here.height, stalled.why)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneutouch.mechanics.response import Figures, figures
-from pneutouch.mechanics.solid.contact import Plate
+from pneutouch.mechanics.solid.contact import Plate, flat_radius, rim_radius
 from pneutouch.mechanics.solid.errors import UnreachableLoadError
 from pneutouch.mechanics.solid.events import (
     BREAKS_CURVE,
@@ -29,11 +29,6 @@ from pneutouch.mechanics.solid.walker import Spot, Walker
 from pneutouch.units import KPA
 
 Array = NDArray[np.float64]
-
-#: Curvature radius of the plate's rim over the plate's radius (0.5 mm at 30 mm diameter, assumed: the paper has none).
-#: A mesh whose outer edges are longer rounds it to their length.
-RIM = 1.0 / 30.0
-
 
 #: A pressure this far below absolute vacuum, in mu, is rounding.
 _ROUNDING = 1.0e-9
@@ -131,9 +126,10 @@ def indent(solid: Solid, free: FreeState, press: Press) -> Indentation:
     if free.pressure + press.ambient < -_ROUNDING * mu:
         raise UnreachableLoadError(free.pressure, -press.ambient, "it lies below absolute vacuum")
     gas = Gas.filled(free.pressure / mu, free.volume / length**3, press.ambient / mu, press.dead_volume / length**3)
-    radius = np.inf if press.plate_diameter is None else 0.5 * press.plate_diameter / length
-    rim = max(RIM * radius if np.isfinite(radius) else 0.0, solid.contact.longest)
-    plate = Plate(float(free.positions[solid.mesh.outer, 1].max()) / length, max(radius - 0.5 * rim, 0.5 * radius), rim)
+    radius = np.array(np.inf if press.plate_diameter is None else 0.5 * press.plate_diameter / length)
+    longest = np.array(solid.contact.longest)
+    apex = float(free.positions[solid.mesh.outer, 1].max()) / length
+    plate = Plate(apex, float(flat_radius(radius, longest)), float(rim_radius(radius, longest)))
     walker = Walker(solid, gas, plate, free.unit.x)
     recorder = _Recorder(solid, free, plate, Probe(solid))
     states = [recorder.state(walker.here)]
@@ -216,10 +212,10 @@ class _Recorder:
         }
         before, after = _watched(a), _watched(b)
         places = {kind: crossing(before[kind], after[kind], level) for kind, level in levels.items()}
-        return [Event(kind, where, _DETAIL[kind]) for kind, where in places.items() if where is not None]
+        return [Event(kind, where, DETAIL[kind]) for kind, where in places.items() if where is not None]
 
 
-_DETAIL = {
+DETAIL = {
     "gauge_range": "the pressure sensor's range ends",
     "break": "the material's break strain is reached",
     "crease": "a face of the wall is compressed enough to crease",

@@ -10,9 +10,11 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
-#: Walls up to this share of R0 need one cell across (S within 0.2 % of a refined mesh), thicker ones two.
-_THIN = 0.1
+#: Walls up to this share of R0 need one cell across (S within 0.2 % of a refined mesh), thicker ones two. The atlas begins
+#: above it, so that one family of meshes serves all of its box.
+_THIN = 0.055
 _TO_BENDING_LENGTH = 3.0
+_ARC_CELLS = (24, 48)
 
 
 @dataclass(frozen=True)
@@ -104,11 +106,17 @@ def with_middles(points: Array) -> Array:
 
 def arc_cells(wall_ratio: float) -> int:
     """Cells along the arc that keep S within half a per cent: three to the bending length sqrt(R0 t0), 24 to 48."""
-    return int(np.clip(np.ceil(_TO_BENDING_LENGTH * 0.5 * np.pi / np.sqrt(wall_ratio)), 24, 48))
+    return int(np.clip(np.ceil(_TO_BENDING_LENGTH * 0.5 * np.pi / np.sqrt(wall_ratio)), *_ARC_CELLS))
+
+
+def longest_outer_edge(wall_ratio: Array) -> Array:
+    """Chord of the outer edges of the default mesh, in R0, for wall ratios of any shape."""
+    cells = np.clip(np.ceil(_TO_BENDING_LENGTH * 0.5 * np.pi / np.sqrt(wall_ratio)), *_ARC_CELLS)
+    return 2.0 * (1.0 + wall_ratio) * np.sin(0.25 * np.pi / cells)
 
 
 def cells_across(wall_ratio: float) -> int:
-    """Cells through the wall: one for walls to a tenth of R0, else two."""
+    """Cells through the wall: one for walls to 0.055 R0, else two."""
     return 1 if wall_ratio <= _THIN else 2
 
 
@@ -123,7 +131,7 @@ def dome(
 ) -> SolidMesh:
     """Hemispherical wall on the plane z = 0, `arc` cells from base to apex and `through` across the wall.
 
-    arc None takes `arc_cells`; through None takes one cell for walls to a tenth of R0, else two.  order: 2 for
+    arc None takes `arc_cells`; through None takes one cell for walls to 0.055 R0, else two.  order: 2 for
     nine-node, 8 for eight-node, 1 for four-node cells.  base_ratio < 1 makes cells shorter towards the base.
     slides: the base face moves freely in r (a symmetry plane), for tests against the sphere.
     """

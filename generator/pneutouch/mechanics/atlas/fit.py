@@ -1,0 +1,166 @@
+"""Turns surveys into the atlas's coefficients: one potential over wall, volume and depth, and the fields beside it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import solve_triangular
+
+from pneutouch.mechanics.atlas.recipe import FIELDS, Axes, Recipe, axes
+from pneutouch.mechanics.atlas.spline import Axis, roughness
+from pneutouch.mechanics.atlas.survey import Survey
+from pneutouch.meridian.segments import Array
+
+_SMOOTH = 1.0e-5
+"""Weight of the coefficients' roughness: decides only where no state supports them."""
+_ALIKE = 1.0e-3
+"""Weight of a coefficient's distance from the mean of its neighbours over the wall ratio, likewise."""
+_SETTLING = 200
+_FLOOR = 0.15
+"""Pressures and forces below this share of the limit pressure are fitted to absolute, above it to relative error."""
+
+MOST = {
+    "contact_radius": np.inf,
+    "stretch": 6.0,
+    "von_mises": 12.0,
+    "overhang": np.inf,
+    "fold": 6.0,
+    "inner_apex": np.inf,
+}
+"""Where a face turns over at the tip of a crease, strains are immense and mean nothing: cut before they are fitted."""
+
+
+@dataclass(frozen=True)
+class System:
+    """Least squares by its triangular factor R'R and right side, (n, n) and (n, several)."""
+
+    factor: Array
+    right: Array
+
+    def solve(self, near: Array | None = None) -> Array:
+        """The coefficients, drawn to those of `near` where nothing else decides; (n, several)."""
+        right = self.right if near is None else self.right + _ALIKE**2 * near
+        found: Array = solve_triangular(self.factor, solve_triangular(self.factor, right, trans="T"))
+        return found
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """One wall ratio's coefficients: apex (volume,), and the systems for the potential in units of the limit pressure
+    and for the fields, over (volume, depth) flat.
+
+    support: cells with states in or next to them (volume cells, depth cells). fold_from, fold_volume: see `Survey`.
+    """
+
+    limit_volume: float
+    limit_pressure: float
+    apex: Array
+    potential: System
+    fields: System
+    support: Array
+    fold_from: float
+    fold_volume: Array
+
+
+def fit_sheet(survey: Survey, recipe: Recipe) -> Sheet:
+    """Least squares over all states of one survey; energy, pressure and force are met by one and the same potential."""
+    way = axes(recipe)
+    rest, reach = survey.free_volume[0], survey.limit_volume - survey.free_volume[0]
+    apex = _fit_apex(survey, way.volume, rest, reach)
+    nu = (survey.volume - rest) / reach
+    rise, slope = way.volume.rows(nu) @ apex, way.volume.rows(nu, 1) @ apex
+    w = np.maximum(rise - survey.height, 0.0)
+
+    def products(by_volume: int, by_depth: int) -> Array:
+        a, b = way.volume.rows(nu, by_volume), way.depth.rows(w, by_depth)
+        return (a[:, :, None] * b[:, None, :]).reshape(nu.size, -1)
+
+    force = products(0, 1)
+    pressure = (products(1, 0) + slope[:, None] * force) / reach
+    value = products(0, 0)
+    unit = survey.limit_pressure
+    found = [(value, survey.energy, 0.1 * _FLOOR), (pressure, survey.pressure, _FLOOR), (force, survey.force, _FLOOR)]
+    scales = [1.0 / (floor * unit + np.abs(wanted)) for _, wanted, floor in found]
+    smooth = _smoothness(way)
+    potential = _system(
+        [rows * (unit * scale)[:, None] for (rows, _, _), scale in zip(found, scales, strict=True)],
+        [(wanted * scale)[:, None] for (_, wanted, _), scale in zip(found, scales, strict=True)], smooth / _FLOOR,
+    )  # fmt: skip
+    wanted = np.stack(
+        [np.minimum(field, MOST[name]) for name, field in zip(FIELDS, survey.fields, strict=True)], axis=1
+    )
+    support = np.zeros((way.volume.cells, way.depth.cells))
+    support[way.volume.basis(nu)[0], way.depth.basis(w)[0]] = 1.0
+    return Sheet(
+        survey.limit_volume, unit, apex, potential, _system([value], [wanted], smooth), _grown(support),
+        survey.fold_from, survey.fold_volume,
+    )  # fmt: skip
+
+
+def _grown(support: Array) -> Array:
+    """Cells with states and their neighbours: the states' spacing is no boundary, stability is."""
+    wide = np.pad(support, 1)
+    rows, columns = support.shape
+    return np.asarray(np.maximum.reduce([wide[i : i + rows, k : k + columns] for i in range(3) for k in range(3)]))
+
+
+def _fit_apex(survey: Survey, axis: Axis, rest: float, reach: float) -> Array:
+    """The free apex over nu; below nu = 0, where it only gives w its meaning, as straight as smoothness allows."""
+    nu = (survey.free_volume - rest) / reach
+    stiff = roughness(axis.size, 2)
+    stiff[axis.basis(np.zeros(1))[0][0] :] = 0.0
+    left = np.concatenate([axis.rows(nu), 1e-3 * stiff, 1e-6 * roughness(axis.size, 4)])
+    right = np.concatenate([survey.free_apex, np.zeros(left.shape[0] - nu.size)])
+    found: Array = np.linalg.lstsq(left, right, rcond=None)[0]
+    return found
+
+
+def _smoothness(way: Axes) -> Array:
+    volume, depth = way.volume.size, way.depth.size
+    rough = np.concatenate([
+        np.kron(roughness(volume, 4), np.eye(depth)), np.kron(np.eye(volume), roughness(depth, 4)),
+    ])  # fmt: skip
+    return np.concatenate([_SMOOTH * rough, _ALIKE * np.eye(volume * depth)])
+
+
+def _system(rows: list[Array], values: list[Array], smooth: Array) -> System:
+    left = np.concatenate(rows)
+    factor = np.linalg.qr(np.concatenate([left, smooth]), mode="r")
+    return System(np.asarray(factor), left.T @ np.concatenate(values))
+
+
+def join(sheets: list[Sheet], recipe: Recipe) -> dict[str, Array]:
+    """The tables of the atlas: splines over the logarithm of the wall ratio through every sheet's coefficients."""
+    wall, shape = axes(recipe).wall, (-1, axes(recipe).volume.size, axes(recipe).depth.size)
+    through = np.linalg.inv(wall.rows(np.log(recipe.wall_ratios)))
+    unit = np.array([sheet.limit_pressure for sheet in sheets])
+    potential = unit[:, None] * _settled([sheet.potential for sheet in sheets])[..., 0]
+    fields = _settled([sheet.fields for sheet in sheets])
+
+    def along(stack: Array) -> Array:
+        return np.tensordot(through, stack, axes=1)
+
+    def stacked(name: str) -> Array:
+        return np.stack([np.asarray(getattr(sheet, name)) for sheet in sheets])
+
+    return {
+        **{name: along(stacked(name)) for name in ("limit_volume", "limit_pressure", "apex")},
+        "potential": along(potential).reshape(shape),
+        **{name: along(fields[..., k]).reshape(shape).astype(np.float32) for k, name in enumerate(FIELDS)},
+        **{name: stacked(name) for name in ("fold_from", "fold_volume")},
+        "support": stacked("support").astype(bool),
+    }
+
+
+def _settled(systems: list[System]) -> Array:
+    """Coefficients of all walls, (walls, n, several), where each leans on its neighbours beyond its own states.
+
+    States end at another volume for every wall; a spline over the walls needs what lies beyond to agree.
+    """
+    found = np.stack([system.solve() for system in systems])
+    last = len(systems) - 1
+    for _ in range(_SETTLING):
+        for i, system in enumerate(systems):
+            found[i] = system.solve(0.5 * (found[max(i - 1, 0)] + found[min(i + 1, last)]))
+    return found

@@ -1,0 +1,187 @@
+"""Many sensors pressed at once in the atlas: trapped gas, limits and events added to its states."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneutouch.mechanics.atlas.spline import Index
+from pneutouch.mechanics.atlas.table import REST_VOLUME, Point, Slices
+from pneutouch.mechanics.solid.contact import flat_radius
+from pneutouch.mechanics.solid.mesh import longest_outer_edge
+from pneutouch.meridian.segments import Array
+
+Flags = NDArray[np.bool_]
+
+_NEWTON = 8
+_LONGEST = 0.05
+_LAST_STEP = 1.0e-4
+"""Longest step of a solution in nu, and the step after which none is needed."""
+_CLOSE = 1.0e-9
+_INFLATING = 40
+_BELOW_REST = 0.01
+"""The table's pressure at rest is zero to its error only: the root may lie that little below."""
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Sensors to press, arrays of one length: mm, mm^3, MPa. break_stretch and plate_radius may be infinite."""
+
+    inner_radius: Array
+    wall_thickness: Array
+    shear_modulus: Array
+    ambient_pressure: Array
+    dead_volume: Array
+    driving_pressure: Array
+    depth: Array
+    plate_radius: Array
+    gauge_limit: Array
+    break_stretch: Array
+
+    def __len__(self) -> int:
+        return self.inner_radius.size
+
+    def take(self, rows: Index | Flags | slice) -> Batch:
+        """Some of the sensors."""
+        return Batch(*(getattr(self, field.name)[rows] for field in fields(self)))
+
+    @property
+    def wall_ratio(self) -> Array:
+        """t0/R0."""
+        return self.wall_thickness / self.inner_radius
+
+
+class Track(NamedTuple):
+    """Where the plate's way leads, (n, m) each; nondimensional. ok: a stable state of the gas was found and the atlas
+    knows it; margin: dp/dV of wall less gas, positive while stable."""
+
+    nu: Array
+    height: Array
+    point: Point
+    margin: Array
+    ok: Flags
+
+    def each(self, change: Callable[[Any], Any]) -> Track:
+        """The same of changed arrays."""
+        return Track(
+            change(self.nu), change(self.height), self.point.each(change), change(self.margin), change(self.ok)
+        )
+
+
+class Solved(NamedTuple):
+    """States found, (n,) each; see `Track`."""
+
+    nu: Array
+    point: Point
+    margin: Array
+    ok: Flags
+
+
+class Press:
+    """A batch with its slices, gas and inflated states; all nondimensional from here on."""
+
+    def __init__(self, batch: Batch, slices: Slices, k: Index) -> None:
+        self.batch, self.slices, self.k = batch, slices, k
+        mu, radius = batch.shear_modulus, batch.inner_radius
+        self.pressure = batch.driving_pressure / mu
+        self.ambient = batch.ambient_pressure / mu
+        self.dead = batch.dead_volume / radius**3
+        self.reach = slices.reach(k)
+        self.free = _inflated(slices, k, self.pressure)
+        self.apex = slices.free_apex(k, self.free)[:, 0]
+        room = self.volume(self.free) + self.dead
+        self.content = (self.pressure + self.ambient) * room
+
+    def volume(self, nu: Array) -> Array:
+        """Cavity volume."""
+        return REST_VOLUME + nu * self.reach
+
+    def rows(self, rows: Index | Flags) -> Press:
+        """Some of the sensors, inflated states kept."""
+        part = object.__new__(Press)
+        part.batch, part.slices, part.k = self.batch.take(rows), self.slices, self.k[rows]
+        for name in ("pressure", "ambient", "dead", "reach", "free", "apex", "content"):
+            setattr(part, name, getattr(self, name)[rows])
+        return part
+
+    def solve(self, nu: Array, height: Array) -> Solved:
+        """States in which wall and gas have one pressure, from guesses of their volume; (n,).
+
+        The last step is so small that the values follow it along their tangents, to its square.
+        """
+        reached = np.zeros(nu.size, dtype=bool)
+        for _ in range(_NEWTON):
+            point = self.slices.point(self.k, nu, height)
+            room = self.volume(nu) + self.dead
+            gas = self.content / room
+            margin = point.by_volume + gas / room
+            step = (gas - self.ambient - point.pressure) / np.where(margin > 0, margin, 1.0) / self.reach
+            reached = np.abs(step) < _LAST_STEP
+            if np.all(reached | (margin <= 0)):
+                break
+            nu = nu + np.where(margin > 0, np.clip(step, -_LONGEST, _LONGEST), 0.0)
+        step = np.where(reached, step, 0.0)
+        swell = step * self.reach
+        point = point._replace(
+            pressure=point.pressure + point.by_volume * swell, force=point.force - point.by_height * swell
+        )
+        ok = reached & (margin > 0) & point.supported & ~point.folded
+        return Solved(nu + step, point, margin, ok)
+
+    def march(self, indentation: Array) -> Track:
+        """Equilibria at plate travels (n, m) in R0, ascending along the last axis from zero."""
+        nu = self.free
+        ok = np.ones(nu.size, dtype=bool)
+        rate, bend, before = np.zeros_like(nu), np.zeros_like(nu), indentation[:, 0]
+        columns: list[tuple[Any, ...]] = []
+        for column in indentation.T:
+            travel = column - before
+            height = self.apex - column
+            found = self.solve(nu + travel * (rate + 0.5 * travel * bend), height)
+            ok = ok & found.ok
+            now = found.point.by_height / np.where(found.margin > 0, found.margin, 1.0) / self.reach
+            with np.errstate(invalid="ignore", divide="ignore"):
+                bend = np.where(ok & (travel > 0) & (len(columns) > 1), (now - rate) / travel, 0.0)
+            nu, rate, before = np.where(ok, found.nu, nu), np.where(ok, now, 0.0), column
+            columns.append((found.nu, height, *found.point, found.margin, ok))
+        stacked = [np.stack(part, axis=1) for part in zip(*columns, strict=True)]
+        return Track(stacked[0], stacked[1], Point(*stacked[2:-2]), stacked[-2], stacked[-1])
+
+    def field(self, name: str, track: Track) -> Array:
+        """A tabulated field along a track, (n, m)."""
+        k = np.repeat(self.k, track.nu.shape[1])
+        flat = self.slices.field(name, k, track.nu.ravel(), track.height.ravel())
+        return flat.reshape(track.nu.shape)
+
+    @property
+    def flat_radius(self) -> Array:
+        """How far the plate is flat, in R0."""
+        radius = self.batch.plate_radius / self.batch.inner_radius
+        return flat_radius(radius, longest_outer_edge(self.batch.wall_ratio))
+
+
+def _inflated(slices: Slices, k: Index, pressure: Array) -> Array:
+    """The volume nu of the free dome at a pressure on the rising branch; 1 at and beyond the limit point.
+
+    Newton's method, kept between brackets and halving where it would leave them: near the limit point the slope goes.
+    """
+    low, high = np.full_like(pressure, -_BELOW_REST), np.ones_like(pressure)
+    nu = np.clip(1.0 - np.sqrt(np.maximum(1.0 - pressure / slices.limit_pressure[k], 0.0)), 0.0, 1.0)
+    for _ in range(_INFLATING):
+        apex = slices.free_apex(k, nu)
+        point = slices.point(k, nu, apex[:, 0])
+        # Along the free curve the plate rides on the apex.
+        slope = point.by_volume * slices.reach(k) + point.by_height * apex[:, 1]
+        gap = point.pressure - pressure
+        low, high = np.where(gap < 0, nu, low), np.where(gap < 0, high, nu)
+        newton = nu - gap / np.where(slope > 0, slope, 1.0)
+        inside = (newton > low) & (newton < high) & (slope > 0)
+        step = np.where(inside, newton, 0.5 * (low + high)) - nu
+        nu = nu + step
+        if np.abs(step).max() < _CLOSE:
+            break
+    return nu

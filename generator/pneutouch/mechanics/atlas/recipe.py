@@ -1,0 +1,109 @@
+"""What the atlas is made from: where the solid is asked, and how its answers are held."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import asdict, dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from pneutouch.mechanics.atlas.spline import Axis
+from pneutouch.meridian.segments import Array
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """The box and the resolution of the atlas, in units of R0 and mu.
+
+    Coordinates: t0/R0; ``nu``, the cavity volume above the unloaded one as a share of its way to the limit point; ``w``,
+    how far the plate is below the free apex at that volume. A press with trapped gas leaves nu = 0 downwards where the
+    cavity is squeezed below its unloaded volume. ambients, first_pressures: presses with trapped
+    gas from these ambient pressures (in mu; 0: vented) and shares of the limit pressure, which line the edge at zero
+    pressure. stiffest_gas: greatest ambient pressure over mu. deepest: greatest plate travel;
+    states are asked for to ``beyond``, so that the edge of the box is not the edge of the data.
+    """
+
+    poisson_ratio: float = 0.49
+    thinnest: float = 0.06
+    thickest: float = 0.35
+    walls: int = 27
+    margin: float = 1.07
+    lowest_volume: float = -0.34
+    highest_volume: float = 1.06
+    deepest: float = 0.75
+    stiffest_gas: float = 3.0
+    beyond: float = 0.80
+    volumes: int = 68
+    depths: int = 60
+    ambients: tuple[float, ...] = (0.0, 0.004, 0.01, 0.02, 0.04, 0.07, 0.1, 0.15, 0.2, 0.3, 0.45, 0.7, 1.2)
+    first_pressures: tuple[float, ...] = (0.0, 0.05)
+    folds: int = 46
+    degree: int = 4
+    volume_cells: int = 40
+    volume_stretch: float = 0.3
+    depth_cells: int = 30
+    depth_stretch: float = 0.1
+
+    @property
+    def wall_ratios(self) -> Array:
+        """Surveyed t0/R0, (walls,): even in the logarithm, from a little below the box to a little above it."""
+        return np.geomspace(self.thinnest / self.margin, self.thickest * self.margin, self.walls)
+
+    @property
+    def survey_volumes(self) -> Array:
+        """Surveyed nu, ascending, with nu = 0 among them; (volumes,)."""
+        below = round(self.volumes * 0.42)
+        up = np.linspace(0.0, self.highest_volume, self.volumes - below)
+        down = np.linspace(self.lowest_volume, 0.0, below, endpoint=False)
+        return np.concatenate([down, up])
+
+    @property
+    def survey_depths(self) -> Array:
+        """Surveyed w, (depths,)."""
+        return axes(self).depth.even(self.depths)
+
+    @property
+    def fold_depths(self) -> Array:
+        """Depths below the unloaded apex at which the buckling edge is kept, (folds,)."""
+        return np.linspace(0.35, self.beyond, self.folds)
+
+    def text(self) -> str:
+        """The recipe as JSON, as the atlas carries it."""
+        return json.dumps(asdict(self), sort_keys=True)
+
+    @classmethod
+    def from_text(cls, text: str) -> Recipe:
+        """A recipe read back."""
+        content: dict[str, Any] = json.loads(text)
+        fields: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in content.items()}
+        return cls(**fields)
+
+    def fingerprint(self) -> str:
+        """Tells recipes apart."""
+        return hashlib.sha256(self.text().encode()).hexdigest()[:16]
+
+
+class Axes(NamedTuple):
+    """The three directions of the tables."""
+
+    wall: Axis
+    volume: Axis
+    depth: Axis
+
+
+def axes(recipe: Recipe) -> Axes:
+    """The directions of a recipe; walls in their logarithm, cubic, with as many coefficients as surveys."""
+    walls = recipe.wall_ratios
+    return Axes(
+        Axis(float(np.log(walls[0])), float(np.log(walls[-1])), recipe.walls - 3, 3),
+        Axis(recipe.lowest_volume, recipe.highest_volume, recipe.volume_cells, recipe.degree, recipe.volume_stretch),
+        Axis(0.0, recipe.beyond, recipe.depth_cells, recipe.degree, recipe.depth_stretch),
+    )
+
+
+RECIPE = Recipe()
+
+FIELDS = ("contact_radius", "stretch", "von_mises", "overhang", "fold", "inner_apex")
+"""What is tabulated beside the potential: see `solid.PressState`; lengths in R0, stresses in mu."""

@@ -1,0 +1,171 @@
+"""Figures of many sensors at once, from the atlas and through the same `response` as every other curve."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneutouch.mechanics.atlas.press import Batch, Flags, Press, Track
+from pneutouch.mechanics.atlas.spline import Index
+from pneutouch.mechanics.atlas.table import Atlas, shipped
+from pneutouch.mechanics.response import Lines, lines
+from pneutouch.meridian.segments import Array
+from pneutouch.units import KPA
+
+ENDS = ("depth", "plate edge", "gauge range", "break strain", "inward buckling", "outside the atlas")
+"""What may end a range; in a `Response` by number. The first is no event: the whole travel was used."""
+DEPTH, EDGE, GAUGE, BREAK, BUCKLING, OUTSIDE = range(len(ENDS))
+
+_CHUNK = 1000
+_FIELDS = ("stretch", "contact_radius")
+_ROUNDS = 12
+_WITHIN = 1.0e-4
+
+
+class Response(NamedTuple):
+    """Answers for n sensors; (n,) or (n, m) arrays in mm, N, MPa, sensitivities in kPa/N.
+
+    ends: number in `ENDS`. range_end: mm of indentation. limit_pressure: of the limit point. Curves reach from first
+    contact to range_end in equal steps. max_stretch: over the range, the free state included. Rows that cannot be
+    (beyond the limit point, outside the box) are NaN throughout.
+    """
+
+    lines: Lines
+    ends: NDArray[np.intp]
+    range_end: Array
+    limit_pressure: Array
+    apex_outer: Array
+    cavity_volume: Array
+    max_stretch: Array
+    indentation: Array
+    force: Array
+    rise: Array
+
+    def take(self, rows: Index | Flags) -> Response:
+        """Some of the sensors."""
+        some: list[Any] = [column[rows] for column in self[1:]]
+        return Response(Lines(*(column[rows] for column in self.lines)), *some)
+
+    @classmethod
+    def join(cls, parts: Sequence[Response]) -> Response:
+        """Several as one."""
+        columns: list[Any] = [np.concatenate(column) for column in zip(*(part[1:] for part in parts), strict=True)]
+        found = [np.concatenate(column) for column in zip(*(part.lines for part in parts), strict=True)]
+        return cls(Lines(*found), *columns)
+
+
+def inside(batch: Batch, atlas: Atlas) -> Flags:
+    """Whether the atlas speaks for sensors: wall, depth and stiffness of the gas. The rest of its box is in `box`."""
+    recipe = atlas.recipe
+    wall, depth = batch.wall_ratio, batch.depth / batch.inner_radius
+    gas = batch.ambient_pressure / batch.shear_modulus
+    slack = 1e-9
+    return np.asarray(
+        (wall >= recipe.thinnest * (1 - slack)) & (wall <= recipe.thickest * (1 + slack))
+        & (depth <= recipe.deepest * (1 + slack)) & (gas <= recipe.stiffest_gas)
+    )  # fmt: skip
+
+
+def respond(batch: Batch, steps: int = 14, atlas: Atlas | None = None) -> Response:
+    """Press every sensor to its depth, or to the first event that ends the range, and read off the figures."""
+    chosen = atlas or shipped()
+    parts = [
+        _respond(batch.take(slice(start, start + _CHUNK)), steps, chosen) for start in range(0, len(batch), _CHUNK)
+    ]
+    return parts[0] if len(parts) == 1 else Response.join(parts)
+
+
+def _respond(batch: Batch, steps: int, atlas: Atlas) -> Response:
+    good = inside(batch, atlas)
+    walls, k = np.unique(np.where(good, batch.wall_ratio, atlas.recipe.thickest), return_inverse=True)
+    slices = atlas.slices(walls, _FIELDS)
+    limit = slices.limit_pressure[k] * batch.shear_modulus
+    press = Press(batch, slices, k)
+    share = np.linspace(0.0, 1.0, steps + 1)
+    depth = batch.depth / batch.inner_radius
+    track = press.march(share * depth[:, None])
+    end, ends = _first_end(press, share * depth[:, None], track)
+    cut = np.flatnonzero(ends != DEPTH)
+    if cut.size:
+        again = press.rows(cut).march(share * end[cut, None])
+        for whole, part in zip(
+            (*track[:2], *track.point, *track[3:]), (*again[:2], *again.point, *again[3:]), strict=True
+        ):
+            whole[cut] = part
+    mu, radius = batch.shear_modulus[:, None], batch.inner_radius[:, None]
+    indentation = share * end[:, None] * radius
+    force = track.point.force * mu * radius**2
+    rise = (track.point.pressure - press.pressure[:, None]) * mu
+    hopeless = ~good | (batch.driving_pressure >= limit) | (end <= 0.0)
+    for array in (indentation, force, rise):
+        array[hopeless] = np.nan
+    stretch = press.field("stretch", track).max(axis=1)
+    return Response(
+        lines(indentation, force, rise / KPA), np.where(good, ends, OUTSIDE),
+        np.where(hopeless, np.nan, end * batch.inner_radius), np.where(good, limit, np.nan),
+        np.where(hopeless, np.nan, press.apex * batch.inner_radius),
+        np.where(hopeless, np.nan, press.volume(press.free) * batch.inner_radius**3),
+        np.where(hopeless, np.nan, stretch), indentation, force, rise,
+    )  # fmt: skip
+
+
+def _margins(press: Press, track: Track) -> Array:
+    """What turns positive where a range ends, in the order of `ENDS` from EDGE to BREAK; (3, n, m)."""
+    batch = press.batch
+    gauge = track.point.pressure - (batch.gauge_limit / batch.shear_modulus)[:, None]
+    edge = press.field("contact_radius", track) - press.flat_radius[:, None]
+    tear = press.field("stretch", track) - batch.break_stretch[:, None]
+    return np.stack([edge, gauge, tear])
+
+
+def _first_end(press: Press, indentation: Array, track: Track) -> tuple[Array, NDArray[np.intp]]:
+    """Plate travel (R0) at which each range ends, and why."""
+    broken = (_margins(press, track) > 0.0).any(axis=0) | ~track.ok
+    hit = np.flatnonzero(broken.any(axis=1))
+    end, ends = indentation[:, -1].copy(), np.full(len(press.batch), DEPTH)
+    at_once = hit[broken[hit, 0]]
+    end[at_once] = 0.0
+    if hit.size:
+        column = np.maximum(broken[hit].argmax(axis=1), 1)
+        part = press.rows(hit)
+        start = track.nu[hit, column - 1]
+        bracket = indentation[hit, column - 1], indentation[hit, column]
+        low, ends[hit] = _closed_in(part, start, *bracket)
+        end[hit] = np.where(broken[hit, 0], 0.0, low)
+    return end, ends
+
+
+def _closed_in(press: Press, nu: Array, low: Array, high: Array) -> tuple[Array, NDArray[np.intp]]:
+    """Close in on the first end between a sound travel and one past it; the last sound travel, and the reason.
+
+    By false position with halved weights (Illinois) on the greatest margin, by halves where the state itself is lost.
+    """
+    before, _, _ = _worst(press, nu, low)
+    after, ends, _ = _worst(press, nu, high)
+    for _ in range(_ROUNDS):
+        with np.errstate(invalid="ignore"):
+            share = before / (before - after)
+        share = np.where(np.isfinite(after), np.clip(share, 0.02, 0.98), 0.5)
+        middle = low + share * (high - low)
+        worst, reason, found = _worst(press, nu, middle)
+        over = worst > 0.0
+        low, high = np.where(over, low, middle), np.where(over, middle, high)
+        before, after = np.where(over, 0.5 * before, worst), np.where(over, worst, 0.5 * after)
+        ends, nu = np.where(over, reason, ends), np.where(over, nu, found)
+        if np.all((high - low < _WITHIN) | (np.abs(worst) < _WITHIN)):
+            break
+    return np.where(np.abs(after) < np.abs(before), high, low), ends
+
+
+def _worst(press: Press, nu: Array, indentation: Array) -> tuple[Array, NDArray[np.intp], Array]:
+    """Greatest margin at plate travels (n,), infinite where the state is lost; its reason; and the volume nu."""
+    height = press.apex - indentation
+    found = press.solve(nu, height)
+    one = Track(found.nu, height, found.point, found.margin, found.ok).each(lambda column: column[:, None])
+    margins = _margins(press, one)[..., 0]
+    unknown = (found.margin > 0.0) & ~found.point.supported & ~found.point.folded
+    reason = np.where(found.ok, EDGE + margins.argmax(axis=0), np.where(unknown, OUTSIDE, BUCKLING))
+    return np.where(found.ok, margins.max(axis=0), np.inf), reason, np.where(found.ok, found.nu, nu)

@@ -1,0 +1,145 @@
+"""Asks the solid for one wall ratio: equilibria over cavity volume and plate height, gas left out.
+
+A state is the least elastic energy at a given volume and plate height; its pressure and force are the slopes of that
+energy, so that any gas can be put behind it afterwards.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pneutouch.mechanics.atlas.recipe import FIELDS, Recipe
+from pneutouch.mechanics.atlas.surveyor import Equilibrium, Pressed, Surveyor
+from pneutouch.meridian.segments import Array
+
+_NEAR_ZERO = 0.3
+"""Below this share of the limit pressure, a pressure that rises as the plate goes up belongs to a buckled wall."""
+
+
+@dataclass(frozen=True)
+class Survey:
+    """Everything asked of one wall ratio.
+
+    free_volume, free_apex: the free inflation curve from nu = 0 on, (n,). limit_volume, limit_pressure: the limit point.
+    volume, height, energy, pressure, force, stiffness (dp/dV at a fixed plate): (m,). fields: (len(FIELDS), m).
+    """
+
+    wall_ratio: float
+    limit_volume: float
+    limit_pressure: float
+    free_volume: Array
+    free_apex: Array
+    volume: Array
+    height: Array
+    energy: Array
+    pressure: Array
+    force: Array
+    stiffness: Array
+    fields: Array
+    fold_from: float
+    fold_volume: Array
+
+
+def survey(wall_ratio: float, recipe: Recipe) -> Survey:
+    """Ask the solid for every reachable state of one wall ratio. Raises ComputationError where the dome itself fails."""
+    surveyor = Surveyor(wall_ratio, recipe)
+    rows = [_down(surveyor, surveyor.touching(free)) for free in surveyor.free]
+    found = [node for row in rows for node in row.values()]
+    above = rows[0]
+    for nu in reversed(recipe.survey_volumes[recipe.survey_volumes < 0.0]):
+        above = _squeezed(surveyor, above, float(nu))
+        found += above.values()
+    presses = [
+        surveyor.pressed(share * surveyor.limit.pressure, ambient)
+        for share in recipe.first_pressures
+        for ambient in recipe.ambients
+    ]
+    found += [node for press in presses for node in press.path]
+    return _gathered(surveyor, found, *_fold(surveyor, presses))
+
+
+def _fold(surveyor: Surveyor, presses: list[Pressed]) -> tuple[float, Array]:
+    """Where the sheet of states ends by buckling: the depth below the unloaded apex at which a vented press does, and the
+    least volume at depths beyond; (recipe.fold_depths,).
+
+    The ends of the presses are points of that edge; where no press has ended, the lowest press is.
+    """
+    rest, recipe = surveyor.rest.outer_apex, surveyor.recipe
+    grid: Array = recipe.fold_depths
+    tracks = [np.array([[rest - node.height, node.state.volume] for node in press.path]).T for press in presses]
+    ended = [track[:, -1] for track, press in zip(tracks, presses, strict=True) if press.ended]
+    lowest = np.min([np.interp(grid, track[0], track[1], left=np.inf, right=np.inf) for track in tracks], axis=0)
+    vented = tracks[0][0, -1] if presses[0].ended else np.inf
+    if len(ended) > 1:
+        depth, volume = np.array(sorted(map(tuple, ended)), float).T
+        lowest = np.minimum(lowest, np.interp(grid, depth, volume, left=np.inf, right=np.inf))
+    return float(min(vented, recipe.beyond)), np.where(np.isfinite(lowest), lowest, 0.0)
+
+
+def _down(surveyor: Surveyor, start: Equilibrium) -> dict[int, Equilibrium]:
+    """The plate coming down at a fixed volume, as far as a gas can hold it."""
+    row = {0: start}
+    for k, w in enumerate(surveyor.recipe.survey_depths[1:], start=1):
+        found = surveyor.step(row[k - 1], start.state.volume, start.height - w)
+        if found is None or not surveyor.reachable(found):
+            break
+        row[k] = found
+    return row
+
+
+def _squeezed(surveyor: Surveyor, above: dict[int, Equilibrium], nu: float) -> dict[int, Equilibrium]:
+    """The row at a volume below the unloaded one, each state from the one above it, as long as a gas can be there.
+
+    The free apex is continued along its tangent, so that w keeps its meaning. Only the unbroken deep end of the row
+    counts: past a break lies another branch.
+    """
+    volume, rest = surveyor.volume(nu), surveyor.rest
+    apex = rest.outer_apex + surveyor.first_slope * (volume - rest.volume)
+    lowest = rest.outer_apex - surveyor.recipe.beyond
+    row: dict[int, Equilibrium] = {}
+    for k in sorted(above, reverse=True):
+        height = apex - surveyor.recipe.survey_depths[k]
+        if height < lowest:
+            continue
+        found = surveyor.step(above[k], volume, height)
+        if found is None or not surveyor.reachable(found) or _turned(surveyor, found, row.get(k + 1)):
+            if row:
+                break
+            continue
+        row[k] = found
+    return row
+
+
+def _turned(surveyor: Surveyor, found: Equilibrium, deeper: Equilibrium | None) -> bool:
+    if deeper is None:
+        return False
+    low, high = deeper.state.filling.pressure, found.state.filling.pressure
+    return low < high and low < _NEAR_ZERO * surveyor.limit.pressure
+
+
+def _gathered(surveyor: Surveyor, found: list[Equilibrium], fold_from: float, fold_volume: Array) -> Survey:
+    solid = surveyor.solid
+    inner = solid.mesh.inner[-1, 1]
+
+    def fields(node: Equilibrium) -> list[float]:
+        x, touch = node.state.x, node.state.touch
+        assert touch is not None
+        peak = surveyor.probe.peak(x)
+        values = {
+            "contact_radius": solid.contact.footprint(x, touch).radius,
+            "stretch": peak.stretch, "von_mises": peak.von_mises, "fold": peak.fold,
+            "inner_apex": float(x[inner, 1]),
+            "overhang": float((solid.rest[:, 1].min() - x[:, 1]).max()),
+        }  # fmt: skip
+        return [values[name] for name in FIELDS]
+
+    return Survey(
+        solid.wall, surveyor.limit.volume, surveyor.limit.pressure,
+        np.array([f.volume for f in surveyor.free]), np.array([f.outer_apex for f in surveyor.free]),
+        np.array([n.state.volume for n in found]), np.array([n.height for n in found]),
+        np.array([n.energy for n in found]), np.array([n.state.filling.pressure for n in found]),
+        np.array([n.force for n in found]), np.array([n.stiffness for n in found]),
+        np.array([fields(n) for n in found]).T, fold_from, fold_volume,
+    )  # fmt: skip

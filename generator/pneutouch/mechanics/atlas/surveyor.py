@@ -1,0 +1,185 @@
+"""Walks from equilibrium to equilibrium of one dome: at held volumes, or with trapped gas."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from pneutouch.errors import ComputationError
+from pneutouch.mechanics.atlas.recipe import Recipe
+from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.solid import Probe, Solid, dome, inflate
+from pneutouch.mechanics.solid.contact import Plate
+from pneutouch.mechanics.solid.events import descend
+from pneutouch.mechanics.solid.inflate import FreeState, Inflation, at_volume, state_at
+from pneutouch.mechanics.solid.newton import Scene, Stalled, State, minimise, stability
+from pneutouch.mechanics.solid.supply import Gas, Liquid, Regulator, Supply
+from pneutouch.mechanics.solid.walker import Walker
+from pneutouch.meridian.segments import Array
+
+_HOLDS = (1.0e3, 1.0e2, 1.0e4)
+"""Stiffnesses in mu/R0^3 that hold the volume, tried in turn; the state keeps the volume it really has."""
+_HALVINGS = 3
+_LOST = 4.0e-3
+_LOST_AT_CONTACT = 0.5
+"""Work unaccounted for in one step, as a share of it, beyond which the step has changed branch; the first step, from a
+point of contact, is only known coarsely."""
+_SUCTION = 2.0e-3
+"""States are kept down to this share of the limit pressure below zero, no further: sucked off the plate the wall answers
+with another, softer stiffness, and the kink there would spoil the smooth side."""
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """A state held at its volume under the plate, with its tangents; nondimensional (R0, mu).
+
+    by_height, by_volume: derivatives of the positions, the other coordinate fixed. curvature: second derivatives of the
+    energy by volume and height, (2, 2).
+    """
+
+    state: State
+    height: float
+    force: float
+    by_height: Array
+    by_volume: Array
+    curvature: Array
+    stable: bool
+
+    @property
+    def gradient(self) -> Array:
+        """Pressure and minus the force: the energy's derivatives by volume and height."""
+        return np.array([self.state.filling.pressure, -self.force])
+
+    @property
+    def stiffness(self) -> float:
+        """Derivative of the pressure by volume under a fixed plate."""
+        return float(self.curvature[0, 0])
+
+    @property
+    def energy(self) -> float:
+        """Energy of wall and contact alone."""
+        return self.state.energy - self.state.filling.energy
+
+
+class Pressed(NamedTuple):
+    """States of one press with trapped gas, and whether it ended before the greatest depth."""
+
+    path: list[Equilibrium]
+    ended: bool
+
+
+class Surveyor:
+    """Steps from equilibrium to equilibrium of one dome with R0 = mu = 1."""
+
+    def __init__(self, wall_ratio: float, recipe: Recipe) -> None:
+        self.recipe = recipe
+        self.solid = Solid(dome(1.0, wall_ratio), neo_hookean(1.0, recipe.poisson_ratio))
+        self.probe = Probe(self.solid)
+        self.run = run = inflate(self.solid, past_limit=1.2)
+        if run.limit is None:
+            raise ComputationError(f"t0/R0 = {wall_ratio:g}: no limit point: {run.why_no_limit}")
+        self.rest, self.limit = run.states[0], run.limit
+        self.free = [self._free(run, nu) for nu in recipe.survey_volumes if nu >= 0.0]
+        apex = self.solid.mesh.outer[-1, 1]
+        self.first_slope = float(self.rest.by_volume[apex, 1])
+
+    def _free(self, run: Inflation, nu: float) -> FreeState:
+        volume = self.rest.volume + nu * (self.limit.volume - self.rest.volume)
+        below = [s for s in run.states if s.volume <= volume * (1 + 1e-12)]
+        if nu == 0.0:
+            return below[0]
+        found = at_volume(self.solid, below[-1:], volume)
+        if isinstance(found, Stalled):
+            raise ComputationError(f"t0/R0 = {self.solid.wall:g}, nu = {nu:g}: {found.why}")
+        return found
+
+    def volume(self, nu: float) -> float:
+        """Cavity volume at a share of the way to the limit point."""
+        return self.rest.volume + nu * (self.limit.volume - self.rest.volume)
+
+    def touching(self, free: FreeState) -> Equilibrium:
+        """A free state with the plate at its apex."""
+        found = self._solve(free.unit.x, free.volume, free.outer_apex, free.pressure)
+        if found is None:
+            raise ComputationError(f"t0/R0 = {self.solid.wall:g}: no equilibrium at first contact")
+        return found
+
+    def _solve(self, guess: Array, volume: float, height: float, pressure: float) -> Equilibrium | None:
+        plate = Plate(height, np.inf, self.solid.contact.longest)
+        for hold in _HOLDS:
+            scene = Scene(self.solid, Liquid(volume + pressure / hold, hold), plate)
+            found = minimise(scene, guess)
+            if not isinstance(found, Stalled):
+                return self._equilibrium(scene, found.state, height)
+        return None
+
+    def _equilibrium(self, scene: Scene, state: State, height: float) -> Equilibrium:
+        solid, touch, contact = self.solid, state.touch, self.solid.contact
+        assert touch is not None
+        active = np.where(touch.traction > 0.0, -contact.stiffness, 0.0)
+        way = stability(scene, state, solid.push(contact.force(active, touch.slope)))
+        stiffness = 1.0 / float(state.by_volume @ way.soft)
+        by_volume, drift = solid.expand(way.soft) * stiffness, float(state.by_volume @ way.step)
+        # The hold lets the volume drift as the plate moves; here the derivatives are at a fixed volume.
+        by_height = solid.expand(way.step) - drift * by_volume
+        mixed = -(state.filling.rate + stiffness) * drift
+        r, z = contact.positions(by_height)
+        push = -float(np.vdot(contact.weight * active, 1.0 + touch.slope * r - z))
+        return Equilibrium(
+            state, height, float(np.vdot(contact.weight, touch.traction)), by_height, by_volume,
+            np.array([[stiffness, mixed], [mixed, push]]), way.stable,
+        )  # fmt: skip
+
+    def step(self, a: Equilibrium, volume: float, height: float, halvings: int = _HALVINGS) -> Equilibrium | None:
+        """The equilibrium at another volume and height on the same branch, or None where the branch ends."""
+        more, lift = volume - a.state.volume, height - a.height
+        guess = a.state.x + a.by_height * lift + a.by_volume * more
+        b = self._solve(guess, volume, height, a.state.filling.pressure + a.stiffness * more)
+        if b is not None and b.stable and _lost(a, b) < (_LOST if a.force > 0.0 else _LOST_AT_CONTACT):
+            return b
+        if halvings == 0:
+            return None
+        middle = self.step(a, a.state.volume + 0.5 * more, a.height + 0.5 * lift, halvings - 1)
+        return None if middle is None else self.step(middle, volume, height, halvings - 1)
+
+    def pressed(self, pressure: float, ambient: float) -> Pressed:
+        """The states of one press with trapped gas (vented for no ambient pressure) down to where it ends."""
+        free = state_at(self.solid, pressure, self.run)
+        supply: Supply = Regulator(pressure)
+        if ambient > 0.0:
+            supply = Gas.filled(pressure, free.volume, ambient, 0.0)
+        plate = Plate(free.outer_apex, np.inf, self.solid.contact.longest)
+        walker = Walker(self.solid, supply, plate, free.unit.x)
+        for depth in self.recipe.survey_depths[1:]:
+            ended = descend(walker, plate.height - depth) is not None
+            if ended:
+                break
+        return Pressed([self._equilibrium(spot.scene, spot.state, spot.height) for spot in walker.path[1:]], ended)
+
+    def reachable(self, found: Equilibrium) -> bool:
+        """Whether a trapped gas can hold the state, started at rest or above with the plate no lower than the box allows.
+
+        The stiffest gas starts as full as that depth lets it, with no dead volume and the greatest ambient pressure:
+        p + pa = (p1 + pa) V1/V, dp/dV = -(p + pa)/V.
+        """
+        volume, pressure, recipe = found.state.volume, found.state.filling.pressure, self.recipe
+        apex, volumes = [f.outer_apex for f in self.free], [f.volume for f in self.free]
+        start = max(volume, float(np.interp(found.height + recipe.beyond, apex, volumes)))
+        first = float(np.interp(start, volumes, [f.pressure for f in self.free]))
+        most = (first + recipe.stiffest_gas) * start / volume - recipe.stiffest_gas
+        rate = (pressure + recipe.stiffest_gas) / volume
+        if volume < self.rest.volume:
+            # Squeezed to so low a pressure, the gas cannot have been that stiff: it must have started at rest or above.
+            rate = min(rate, max(pressure, 0.0) / (self.rest.volume - volume) * self.rest.volume / volume)
+        lowest = -_SUCTION * self.limit.pressure
+        return lowest <= pressure <= most + 1e-9 and found.stiffness + rate > 0.0
+
+
+def _lost(a: Equilibrium, b: Equilibrium) -> float:
+    """Energy that the work of pressure and force does not account for, as a share of that work."""
+    move = np.array([b.state.volume - a.state.volume, b.height - a.height])
+    work = 0.5 * move @ (a.gradient + b.gradient) - move @ (b.curvature - a.curvature) @ move / 12.0
+    scale = 0.5 * np.abs(move) @ (np.abs(a.gradient) + np.abs(b.gradient)) + 1e-5
+    return float(abs(b.energy - a.energy - work) / scale)

@@ -1,0 +1,161 @@
+"""The atlas: its tables, read once, and states looked up in them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneutouch.mechanics.atlas.recipe import FIELDS, Axes, Recipe, axes
+from pneutouch.mechanics.atlas.spline import Index
+from pneutouch.meridian.segments import Array
+
+SHIPPED = Path(__file__).with_name("atlas.npz")
+
+#: Cavity volume of the unloaded hemisphere in R0^3.
+REST_VOLUME = 2.0 / 3.0 * np.pi
+
+
+class Point(NamedTuple):
+    """A state looked up, nondimensional; arrays of one length.
+
+    by_volume, by_height: derivatives of the pressure by volume and plate height; force_by_height: of the force.
+    supported: whether the solid was asked near it. folded: whether the wall has buckled before it.
+    """
+
+    pressure: Array
+    force: Array
+    by_volume: Array
+    by_height: Array
+    force_by_height: Array
+    supported: NDArray[np.bool_]
+    folded: NDArray[np.bool_]
+
+    def each(self, change: Callable[[Any], Any]) -> Point:
+        """The same of changed arrays."""
+        return Point(*map(change, self))
+
+
+@dataclass(frozen=True)
+class Slices:
+    """The tables cut at wall ratios: limit_volume, limit_pressure (k,), apex (k, volume), potential (k, volume, depth),
+    support (k, volume cells, depth cells), fields (k, fields, volume, depth). rest_apex: outer height of the unloaded dome;
+    fold_from, fold_volume (k,), (k, folds): the buckling edge, see `survey._fold`."""
+
+    way: Axes
+    limit_volume: Array
+    limit_pressure: Array
+    apex: Array
+    potential: Array
+    support: NDArray[np.bool_]
+    rest_apex: Array
+    fold_from: Array
+    fold_volume: Array
+    fold_depths: Array
+    fields: dict[str, Array]
+
+    def reach(self, k: Index) -> Array:
+        """Volume from rest to the limit point, of the slices k."""
+        found: Array = self.limit_volume[k] - REST_VOLUME
+        return found
+
+    def free_apex(self, k: Index, nu: Array) -> Array:
+        """Outer apex height of the free dome and its first two derivatives by nu, (n, 3)."""
+        cell, weight = self.way.volume.basis(nu)
+        return self._apex(k, cell, weight)
+
+    def _apex(self, k: Index, cell: Index, weight: Array) -> Array:
+        block = self.apex[k[:, None], cell[:, None] + np.arange(self.way.volume.degree + 1)]
+        found: Array = np.matmul(weight, block[..., None])[..., 0]
+        return found
+
+    def point(self, k: Index, nu: Array, height: Array) -> Point:
+        """Pressure, force and their slopes at volumes nu and plate heights, (n,) each."""
+        cell, by_nu = self.way.volume.basis(nu)
+        apex = self._apex(k, cell, by_nu)
+        depth, by_w = self.way.depth.basis(apex[:, 0] - height)
+        jet = _contract(self.potential, k, cell, depth, by_nu, by_w)
+        rise, bend, reach = apex[:, 1], apex[:, 2], self.reach(k)
+        force = jet[:, 0, 1]
+        mixed = (jet[:, 1, 1] + jet[:, 0, 2] * rise) / reach
+        along = jet[:, 2, 0] + 2 * jet[:, 1, 1] * rise + jet[:, 0, 2] * rise**2 + force * bend
+        return Point(
+            (jet[:, 1, 0] + force * rise) / reach, force, along / reach**2, -mixed, -jet[:, 0, 2],
+            self.support[k, cell, depth], self._folded(k, nu, height),
+        )  # fmt: skip
+
+    def _folded(self, k: Index, nu: Array, height: Array) -> NDArray[np.bool_]:
+        depth = self.rest_apex[k] - height
+        deep = depth > self.fold_from[k]
+        if not deep.any():
+            return deep
+        grid = self.fold_depths
+        share = (depth - grid[0]) / (grid[1] - grid[0])
+        j = np.clip(share.astype(np.intp), 0, grid.size - 2)
+        share = share - j
+        least = (1 - share) * self.fold_volume[k, j] + share * self.fold_volume[k, j + 1]
+        return np.asarray(deep & (REST_VOLUME + nu * self.reach(k) < least))
+
+    def field(self, name: str, k: Index, nu: Array, height: Array) -> Array:
+        """A tabulated field (see `recipe.FIELDS`) at volumes nu and plate heights, (n,)."""
+        cell, by_nu = self.way.volume.basis(nu)
+        depth, by_w = self.way.depth.basis(self._apex(k, cell, by_nu)[:, 0] - height)
+        found: Array = _contract(self.fields[name], k, cell, depth, by_nu[:, :1], by_w[:, :1])[:, 0, 0]
+        return found
+
+
+def _contract(table: Array, k: Index, cell: Index, depth: Index, by_nu: Array, by_w: Array) -> Array:
+    """Weights times the coefficients of one cell each, (n, orders, orders)."""
+    size = by_nu.shape[2], by_w.shape[2]
+    window = np.lib.stride_tricks.sliding_window_view(table, size, axis=(1, 2))
+    return np.asarray(np.matmul(np.matmul(by_nu, window[k, cell, depth]), np.swapaxes(by_w, 1, 2)))
+
+
+class Atlas:
+    """The tables over all wall ratios. ``error`` says how far they were found from the solid (see `Recorded`)."""
+
+    def __init__(self, tables: dict[str, Array], recipe: Recipe) -> None:
+        self.recipe = recipe
+        self._tables = tables
+        self._way = axes(recipe)
+
+    def slices(self, wall_ratio: Array, names: tuple[str, ...] = FIELDS) -> Slices:
+        """The tables at wall ratios inside the box, (k,), with the named fields."""
+        way = self._way.wall
+        cell, weight = way.basis(np.log(wall_ratio))
+        four = cell[:, None] + np.arange(way.degree + 1)
+
+        def cut(name: str) -> Array:
+            table = self._tables[name]
+            rows = np.zeros((cell.size, table.shape[0]))
+            np.put_along_axis(rows, four, weight[:, 0], axis=1)
+            return (rows @ table.reshape(table.shape[0], -1)).reshape(-1, *table.shape[1:])
+
+        nodes = np.log(self.recipe.wall_ratios)
+        below = np.clip(np.searchsorted(nodes, np.log(wall_ratio), side="right") - 1, 0, nodes.size - 2)
+        support: NDArray[np.bool_] = self._tables["support"].astype(bool)
+        share = ((np.log(wall_ratio) - nodes[below]) / (nodes[below + 1] - nodes[below]))[:, None]
+
+        def between(name: str) -> Array:
+            table = self._tables[name].reshape(nodes.size, -1)
+            found: Array = (1 - share) * table[below] + share * table[below + 1]
+            return found
+
+        return Slices(
+            self._way, cut("limit_volume"), cut("limit_pressure"), cut("apex"), cut("potential"),
+            support[below] & support[below + 1], 1.0 + wall_ratio, between("fold_from")[:, 0], between("fold_volume"),
+            self.recipe.fold_depths, {name: cut(name) for name in names},
+        )  # fmt: skip
+
+
+@cache
+def shipped() -> Atlas:
+    """The atlas that comes with the package."""
+    with np.load(SHIPPED) as file:
+        recipe = Recipe.from_text(str(file["recipe"]))
+        return Atlas({name: file[name] for name in file.files}, recipe)

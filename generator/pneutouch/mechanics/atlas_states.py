@@ -1,0 +1,144 @@
+"""The rung ``atlas``: the solid's answers looked up for a sensor, in the form that every rung returns."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pneutouch.errors import BeyondLimitError
+from pneutouch.mechanics.atlas.press import Batch, Press, Track
+from pneutouch.mechanics.atlas.respond import BREAK, BUCKLING, DEPTH, EDGE, ENDS, GAUGE, OUTSIDE, respond
+from pneutouch.mechanics.atlas.table import REST_VOLUME, Atlas, Slices, shipped
+from pneutouch.mechanics.events import Event
+from pneutouch.mechanics.limits import LimitPoint, Limits
+from pneutouch.mechanics.prediction import InflationCurve, Result, State
+from pneutouch.mechanics.response import figures
+from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.solid.events import CREASE, OVERHANG, Point, crossing
+from pneutouch.mechanics.solid.indent import DETAIL
+from pneutouch.meridian.segments import Array
+from pneutouch.units import KPA
+
+_DETAIL = {
+    EDGE: DETAIL["plate_rim"], GAUGE: DETAIL["gauge_range"], BREAK: DETAIL["break"],
+    BUCKLING: "the wall buckles inward under the plate, or its gas no longer holds it",
+}  # fmt: skip
+_NO_LIMIT = 1.0e9
+"""A stretch no wall reaches: no break strain is known."""
+
+
+def outside_atlas(sensor: Sensor, atlas: Atlas | None = None) -> str | None:
+    """Why the atlas does not speak for a sensor, or None where it does. The box is in `atlas.recipe.Recipe`."""
+    recipe = (atlas or shipped()).recipe
+    ratio, depth = sensor.wall_thickness / sensor.inner_radius, sensor.depth / sensor.inner_radius
+    gas = sensor.ambient_pressure / sensor.shear_modulus
+    reasons = [
+        (sensor.law is not None, "the resin has a law of its own, not the neo-Hookean one"),
+        (sensor.poisson_ratio != recipe.poisson_ratio, f"Poisson ratio {sensor.poisson_ratio:g}, not {recipe.poisson_ratio:g}"),
+        (sensor.flange is not None, "the flange is held as printed, not the base plane"),
+        (not recipe.thinnest * (1 - 1e-9) <= ratio <= recipe.thickest * (1 + 1e-9),
+         f"wall {ratio:.3g} R0, not {recipe.thinnest:g} to {recipe.thickest:g}"),
+        (depth > recipe.deepest * (1 + 1e-9), f"depth {depth:.3g} R0, more than {recipe.deepest:g}"),
+        (gas > recipe.stiffest_gas, f"ambient pressure {gas:.3g} mu, more than {recipe.stiffest_gas:g}"),
+    ]  # fmt: skip
+    return next((why for applies, why in reasons if applies), None)
+
+
+def batch_of(sensor: Sensor, driving_pressures: Array) -> Batch:
+    """A sensor at several driving pressures (MPa) as a batch."""
+    n = np.ones(len(driving_pressures))
+    return Batch(
+        n * sensor.inner_radius, n * sensor.wall_thickness, n * sensor.shear_modulus, n * sensor.ambient_pressure,
+        n * sensor.dead_volume, np.asarray(driving_pressures, float), n * sensor.depth, n * sensor.plate_radius,
+        n * sensor.gauge_limit, n * (_NO_LIMIT if sensor.break_stretch is None else sensor.break_stretch),
+    )  # fmt: skip
+
+
+def atlas_result(sensor: Sensor, driving_pressures: Array) -> tuple[Result, str | None]:
+    """What the atlas says at driving pressures (MPa, ascending), and why it cannot answer in full, or None.
+
+    The sensor must lie in the box (`outside_atlas`). Raises BeyondLimitError beyond the limit point.
+    """
+    batch = batch_of(sensor, driving_pressures)
+    slices = shipped().slices(batch.wall_ratio[:1])
+    limit = float(slices.limit_pressure[0]) * sensor.shear_modulus
+    for pressure in driving_pressures:
+        if pressure >= limit:
+            raise BeyondLimitError(float(pressure), limit, "it lies beyond the limit point")
+    response = respond(batch, sensor.steps)
+    press = Press(batch, slices, np.zeros(len(batch), dtype=np.intp))
+    track = press.march(
+        np.linspace(0.0, 1.0, sensor.steps + 1) * (sensor.depth / sensor.inner_radius) * np.ones((len(batch), 1))
+    )
+    ends = [int(end) for end in response.ends]
+    states = tuple(_state(sensor, press, track, i, ends[i], float(response.range_end[i])) for i in range(len(batch)))
+    why = None
+    if OUTSIDE in ends:
+        why = "the press leaves the states that the atlas knows"
+    elif EDGE in ends:
+        why = "the contact reaches the plate's edge"
+    curve, point, torn = _inflation(sensor, slices)
+    return Result(point, Limits(limit, torn, sensor.gauge_limit), curve, states), why
+
+
+def _state(sensor: Sensor, press: Press, track: Track, i: int, end: int, range_end: float) -> State:
+    length, mu = sensor.inner_radius, sensor.shear_modulus
+    known = int(np.argmin(track.ok[i])) if not track.ok[i].all() else track.ok.shape[1]
+    one = track.each(lambda part: part[i : i + 1, :known])
+    row = press.rows(np.array([i]))
+    field = {name: row.field(name, one)[0] for name in press.slices.fields}
+    depth = (press.apex[i] - one.height[0]) * length
+    range_end = range_end if np.isfinite(range_end) else 0.0
+    force, rise = one.point.force[0] * mu * length**2, (one.point.pressure[0] - press.pressure[i]) * mu
+    shown = _curve(row, range_end / length, sensor.steps)
+    return State(
+        driving_pressure=float(press.batch.driving_pressure[i]), apex_inner=float(field["inner_apex"][0]) * length,
+        apex_outer=float(press.apex[i]) * length, cavity_volume=float(row.volume(row.free)[0]) * length**3,
+        range_end=range_end,
+        figures=figures(shown[0] * length, shown[1] * mu * length**2, shown[2] * mu / KPA) if range_end > 0 else None,
+        indentation=depth, force=force, pressure_rise=rise,
+        contact_radius=np.maximum(field["contact_radius"], 0.0) * length, max_stretch=field["stretch"],
+        events=tuple(_events(sensor, depth, field, end, range_end)), max_von_mises=field["von_mises"] * mu,
+    )  # fmt: skip
+
+
+def _curve(row: Press, end: float, steps: int) -> tuple[Array, Array, Array]:
+    grid = np.linspace(0.0, end, steps + 1)
+    track = row.march(grid[None, :])
+    return grid, track.point.force[0], track.point.pressure[0] - row.pressure[0]
+
+
+def _events(sensor: Sensor, depth: Array, field: dict[str, Array], end: int, range_end: float) -> list[Event]:
+    """What ends the range, and the warnings on the way."""
+    found = [] if end == DEPTH else [Event(ENDS[end], range_end, True, _DETAIL.get(end, ENDS[end]))]
+    wall = sensor.wall_thickness / sensor.inner_radius
+    for kind, name, level in (("creasing", "fold", CREASE), ("wall below the base plane", "overhang", OVERHANG * wall)):
+        values = field[name]
+        points = [Point(float(x), float(y)) for x, y in zip(depth, values, strict=True)]
+        pairs = zip([points[0], *points], points, strict=False)
+        where = next((at for a, b in pairs if (at := crossing(a, b, level)) is not None), None)
+        if where is not None:
+            found.append(Event(kind, where, False, DETAIL["crease" if kind == "creasing" else "overhang"]))
+    return sorted(found, key=lambda event: event.indentation)
+
+
+def _inflation(sensor: Sensor, slices: Slices) -> tuple[InflationCurve, LimitPoint, float | None]:
+    """Free inflation to a little past the limit point, that point, and the pressure at the break strain."""
+    length, mu = sensor.inner_radius, sensor.shear_modulus
+    nu = np.concatenate([np.linspace(0.0, 1.0, 91), np.linspace(1.0, shipped().recipe.highest_volume, 7)[1:]])
+    k = np.zeros(nu.size, dtype=np.intp)
+    apex = slices.free_apex(k, nu)[:, 0]
+    inner, stretch = slices.field("inner_apex", k, nu, apex), slices.field("stretch", k, nu, apex)
+    pressure = slices.point(k, nu, apex).pressure * mu
+    volume = (REST_VOLUME + nu * slices.reach(k)) * length**3
+    top = 90
+    point = LimitPoint(
+        float(inner[top]) * length, float(apex[top]) * length, float(slices.limit_pressure[0]) * mu,
+        float(apex[top] - inner[top]) * length / sensor.wall_thickness,
+    )  # fmt: skip
+    torn = None
+    if sensor.break_stretch is not None:
+        over = np.flatnonzero(stretch[: top + 1] >= sensor.break_stretch)
+        if over.size:
+            j = max(int(over[0]), 1)
+            torn = float(np.interp(sensor.break_stretch, stretch[j - 1 : j + 1], pressure[j - 1 : j + 1]))
+    return InflationCurve(inner * length, apex * length, volume, pressure), point, torn
