@@ -62,14 +62,23 @@ def load_scene(name: str, assignments: list[str] | None = None, library: Library
     shelves = library or Library.default()
     path = shelves.design_file(name)
     content = override(read_toml(path), assignments or [], Design)
-    design = validate(Design, content, str(path))
+    return _resolved(path.stem, str(path), validate(Design, content, str(path)), shelves)
 
+
+def default_scene(assignments: list[str] | None = None, library: Library | None = None) -> Scene:
+    """The design of all defaults with overrides applied."""
+    where = "the default design"
+    design = validate(Design, override({}, assignments or [], Design), where)
+    return _resolved("default", where, design, library or Library.default())
+
+
+def _resolved(name: str, where: str, design: Design, shelves: Library) -> Scene:
     def find(kind: str, table: str, key: str) -> Any:
         chosen = getattr(getattr(design, table), key)
-        return shelves.load(kind, chosen, asked_by=f"{path}: {table}.{key}")
+        return shelves.load(kind, chosen, asked_by=f"{where}: {table}.{key}")
 
     scene = Scene(
-        name=path.stem, where=str(path), design=design,
+        name=name, where=where, design=design,
         membrane_material=find("materials", "membrane", "material"),
         connector_material=find("materials", "connector", "material"),
         printer=find("printers", "print", "profile"),

@@ -1,5 +1,6 @@
-"""The command line: with the studio, the only part that talks to a person."""
+"""The command line. Importing a module of commands registers them with the app."""
 
+from pneutouch.cli import select, sweep
 from pneutouch.cli.app import run
 
-__all__ = ["run"]
+__all__ = ["run", "select", "sweep"]

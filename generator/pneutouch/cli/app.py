@@ -27,7 +27,14 @@ SetOption = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="TABLE.KEY=VALUE", help="Override a field of the design; may be repeated."),
 ]
-ModelOption = Annotated[str, typer.Option("--model", help="Rung of the ladder of models: membrane or solid.")]
+ModelOption = Annotated[
+    str | None,
+    typer.Option("--model", help="Rung of the ladder of models: membrane, atlas, solid or auto.", show_default="solid"),
+]
+ToleranceOption = Annotated[
+    str | None,
+    typer.Option("--tolerance", metavar="SHARE", help="Numerical error that --model auto must meet, such as 2%."),
+]
 ClosureOption = Annotated[
     str, typer.Option("--closure", help="Contact closure of the membrane: variational or printed.")
 ]
@@ -39,7 +46,7 @@ OutOption = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder th
 
 
 @contextmanager
-def _reporting() -> Iterator[None]:
+def reporting() -> Iterator[None]:
     """Turn errors into one message on stderr and the exit code of design section 4."""
     try:
         yield
@@ -79,37 +86,37 @@ def main(
 
 @app.command()
 def build(
-    design: DesignArgument, set_: SetOption = None, model: ModelOption = "solid",
+    design: DesignArgument, set_: SetOption = None, model: ModelOption = None, tolerance: ToleranceOption = None,
     closure: ClosureOption = "variational", clamp: ClampOption = "base", out: OutOption = Path("outputs"), json: JsonOption = False,
 ) -> None:  # fmt: skip
     """Build everything: print files, prediction, datasheet."""
-    with _reporting():
+    with reporting():
         from pneutouch.pipeline.evaluate import evaluate
         from pneutouch.pipeline.files import check_writable
 
-        evaluation = evaluate(design, set_, model=model, closure=closure, clamp=clamp)
+        evaluation = evaluate(design, set_, closure=closure, clamp=clamp, **_rung(model, tolerance))
         check_writable(out / evaluation.scene.name)
         folder = _build_with_progress(evaluation, out)
         for finding in evaluation.findings:
             typer.echo(f"{finding.severity}: {finding.rule}: {finding.message}; {finding.fix}", err=True)
         if json:
-            _print_json({"design": evaluation.scene.name, "folder": str(folder)})
+            print_json({"design": evaluation.scene.name, "folder": str(folder)})
         else:
             typer.echo(str(folder))
 
 
 @app.command()
 def predict(
-    design: DesignArgument, set_: SetOption = None, model: ModelOption = "solid",
+    design: DesignArgument, set_: SetOption = None, model: ModelOption = None, tolerance: ToleranceOption = None,
     closure: ClosureOption = "variational", clamp: ClampOption = "base", json: JsonOption = False,
 ) -> None:  # fmt: skip
     """Predict the figures alone."""
-    with _reporting():
+    with reporting():
         from pneutouch.pipeline.evaluate import evaluate
 
-        document = evaluate(design, set_, model=model, closure=closure, clamp=clamp).prediction.document()
+        document = evaluate(design, set_, closure=closure, clamp=clamp, **_rung(model, tolerance)).prediction.document()
         if json:
-            _print_json(document)
+            print_json(document)
         else:
             from pneutouch.cli.text import prediction_text
 
@@ -119,13 +126,13 @@ def predict(
 @app.command()
 def check(design: DesignArgument, set_: SetOption = None, json: JsonOption = False) -> None:
     """Check printability and mechanical limits; exit 1 where a rule is broken."""
-    with _reporting():
+    with reporting():
         from pneutouch.pipeline.evaluate import evaluate
 
         findings = evaluate(design, set_).findings
         broken = any(finding.severity == "error" for finding in findings)
         if json:
-            _print_json({"design": design, "passed": not broken, "findings": [f.document() for f in findings]})
+            print_json({"design": design, "passed": not broken, "findings": [f.document() for f in findings]})
         else:
             from pneutouch.cli.text import findings_text
 
@@ -140,12 +147,12 @@ def list_(
     json: JsonOption = False,
 ) -> None:
     """List designs, materials, printers and parts."""
-    with _reporting():
+    with reporting():
         from pneutouch.cli.text import listing, listing_text
 
         content = listing(kind)
         if json:
-            _print_json(content)
+            print_json(content)
         else:
             typer.echo(listing_text(content))
 
@@ -156,13 +163,28 @@ def new(
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder of the design file.")] = Path("designs"),
 ) -> None:
     """Write a commented design file."""
-    with _reporting():
+    with reporting():
         from pneutouch.pipeline.new import new_design
 
         typer.echo(str(new_design(name, out)))
 
 
-def _print_json(document: Any) -> None:
+def _rung(model: str | None, tolerance: str | None) -> dict[str, Any]:
+    """The rung asked for; a tolerance alone asks for the cheapest that meets it."""
+    from pneutouch.errors import InputError
+    from pneutouch.mechanics.ladder import DEFAULT_TOLERANCE, parse_tolerance
+
+    if tolerance is None:
+        return {"model": model or "solid", "tolerance": DEFAULT_TOLERANCE}
+    if model not in (None, "auto"):
+        raise InputError(
+            f"--tolerance {tolerance} with --model {model}: a tolerance is for --model auto; give one of both"
+        )
+    return {"model": "auto", "tolerance": parse_tolerance(tolerance)}
+
+
+def print_json(document: Any) -> None:
+    """Print a document as JSON on stdout."""
     from pneutouch.pipeline.files import json_bytes
 
     typer.echo(json_bytes(document).decode(), nl=False)

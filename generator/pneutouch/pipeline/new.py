@@ -13,6 +13,11 @@ from pneutouch.spec.template import design_template
 
 def new_design(name: str, folder: Path) -> Path:
     """Write ``folder/name.toml`` with every key, its default, unit, bounds and help; never over a file."""
+    return write_design(name, folder, design_template(name))
+
+
+def check_name(name: str, folder: Path) -> Path:
+    """The file of a new design. Raises InputError for a bad name, and for one that would hide another design."""
     if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]*", name):
         raise InputError(f"NAME = {name!r}: use letters, digits, - and _, starting with a letter or digit")
     path = folder / f"{name}.toml"
@@ -21,6 +26,12 @@ def new_design(name: str, folder: Path) -> Path:
         raise InputError(
             f"NAME = {name!r}: {known} is a design of this name, which the new file would hide; give another name"
         )
+    return path
+
+
+def write_design(name: str, folder: Path, text: str) -> Path:
+    """Write the text of a design as ``folder/name.toml``; never over a file."""
+    path = check_name(name, folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)
@@ -30,5 +41,5 @@ def new_design(name: str, folder: Path) -> Path:
     except OSError as error:
         raise InputError(f"{path}: {error.strerror}; give a folder you may write to with --out") from None
     with os.fdopen(handle, "w", encoding="utf-8") as file:
-        file.write(design_template(name))
+        file.write(text)
     return path

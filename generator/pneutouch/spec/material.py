@@ -15,6 +15,7 @@ class Measured(Table):
     sensitivity_22kPa_kPa_per_N: Quantity  # noqa: N815
     hysteresis_percent: Quantity
     repeatability_kPa_per_N: Quantity  # noqa: N815
+    sensitivity_change_one_year_percent: Quantity | None = None
 
 
 class HyperelasticLaw(Table):

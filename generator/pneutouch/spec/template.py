@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
+import datetime
 import textwrap
+from collections.abc import Mapping
 from typing import Any
 
 from pneutouch.spec.design import Design
 from pneutouch.spec.fields import Declaration, declarations, table_of
 
 
-def design_template(title: str) -> str:
-    """Return a design file with every table and key, its default, unit, bounds and help."""
-    blocks = [f"# {title}: a pneutouch design. Every key may be left out; shown are the defaults."]
+def design_template(title: str, values: Mapping[str, Mapping[str, Any]] | None = None, note: str | None = None) -> str:
+    """Return a design file with every table and key, its default, unit, bounds and help.
+
+    ``values`` by table and key stand in place of defaults; ``note`` in place of the head's second sentence.
+    """
+    chosen = values or {}
+    blocks = [f"# {title}: a pneutouch design. {note or 'Every key may be left out; shown are the defaults.'}"]
     for key in Design.model_fields:
         model = table_of(Design, key)
         assert model is not None
         lines = [f"[{key}]"]
         for entry in declarations(model):
             default = title if (key, entry.key) == ("document", "title") else entry.default
+            default = chosen.get(key, {}).get(entry.key, default)
             lines += _entry(entry, default)
         blocks.append("\n".join(lines))
     return "\n\n".join(blocks) + "\n"
@@ -37,4 +44,6 @@ def _toml(value: Any) -> str:
         return f'"{escaped}"'
     if isinstance(value, list):
         return "[" + ", ".join(_toml(item) for item in value) + "]"
+    if isinstance(value, datetime.date):
+        return value.isoformat()
     return repr(value)

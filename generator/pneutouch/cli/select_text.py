@@ -1,0 +1,80 @@
+"""A selection as text for people."""
+
+from __future__ import annotations
+
+from pneutouch.cli.text import columns
+from pneutouch.mechanics.atlas.respond import DEPTH, ENDS
+from pneutouch.pipeline.select import Selection
+from pneutouch.pipeline.select_document import would_need
+from pneutouch.selection import Choice
+from pneutouch.units import KPA
+
+_HEAD = [
+    "",
+    "resin",
+    "R0 mm",
+    "t0 mm",
+    "kPa",
+    "S kPa/N",
+    "U (k=2)",
+    "range N",
+    "ends with",
+    "S 0 kPa..rated",
+    "rated kPa",
+    "binds",
+    "solid S",
+]
+
+
+def selection_text(selection: Selection) -> str:
+    """Ranked designs, or why there are none."""
+    answer = selection.answer
+    left = [f"left out: {name}: {why}" for name, why in selection.left_out.items()]
+    if answer.designs:
+        seen: set[str] = set()
+        rows = []
+        for rank, choice in enumerate(answer.designs):
+            solid = f"{selection.confirmed[rank].sensitivity:.3f}" if rank < len(selection.confirmed) else "-"
+            label = f"{rank + 1}" + (" runner-up" if choice.resin.name in seen else "")
+            seen.add(choice.resin.name)
+            rows.append([label, *_row(choice), solid])
+        text = columns(_HEAD, rows)
+        return "\n".join(
+            [
+                f"{len(answer.designs)} designs of {answer.candidates} candidates, on {selection.base.where}",
+                "",
+                text,
+                "",
+                *left,
+            ]
+        ).rstrip()
+    lines = ["no design meets the target"]
+    if answer.nearest is not None:
+        broken = ", ".join(f"{name} by {-100 * room:.0f} %" for name, room in answer.nearest.room.items() if room < 0)
+        lines += [
+            "",
+            "nearest:",
+            columns(_HEAD[:-1], [["", *_row(answer.nearest)]]),
+            f"it misses: {broken or 'nothing once rounded'}",
+        ]
+    lines += [
+        "",
+        *(
+            f"giving up {way.wish} alone would do: {would_need(selection, way)} ({way.best.resin.name})"
+            for way in answer.ways
+        ),
+    ]
+    if not answer.ways:
+        lines.append("no single wish given up would let a design in")
+    return "\n".join([*lines, *left]).rstrip()
+
+
+def _row(choice: Choice) -> list[str]:
+    pool = choice.pool
+    end = int(pool.response.ends[0])
+    return [
+        choice.resin.name, f"{pool.radius[0]:.2f}", f"{pool.wall[0]:.2f}", f"{pool.pressure[0] / KPA:.2f}",
+        f"{pool.response.lines.sensitivity[0]:.3f}", f"{100 * choice.expanded:.0f} %", f"0-{pool.force[0]:.2f}",
+        f"{'depth' if end == DEPTH else ENDS[end]}", f"{choice.span[0]:.2f}..{choice.span[1]:.2f}", f"{choice.rated / KPA:.1f}",
+        f"{choice.binding} ({100 * choice.room[choice.binding]:+.0f} %)",
+    ]  # fmt: skip

@@ -1,0 +1,229 @@
+"""A target to designs: resolves its names, searches, confirms the best by the solid, writes the chosen one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from pneutouch.catalogue import Library, Scene, default_scene, load_scene
+from pneutouch.errors import InputError, PneutouchError
+from pneutouch.mechanics.atlas.press import Batch
+from pneutouch.mechanics.atlas.table import shipped
+from pneutouch.mechanics.ladder import NUMERICAL
+from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.uncertainty import ModelErrors, budget, model_errors
+from pneutouch.mechanics.uncertainty.source import FIGURES, SENSITIVITY
+from pneutouch.meridian.segments import Array
+from pneutouch.parts import assemble
+from pneutouch.pipeline.evaluate import sensor_of
+from pneutouch.pipeline.table_s1 import is_near_paper
+from pneutouch.selection import Answer, Choice, Problem, Resin, choose
+from pneutouch.spec.design import Design
+from pneutouch.spec.material import Material
+from pneutouch.spec.printer import Printer
+from pneutouch.spec.read import read_toml, validate
+from pneutouch.spec.target import Target
+from pneutouch.units import KPA
+
+_CONFIRMED = 3
+"""Designs that the solid is asked about."""
+_DEAD_VOLUMES = 8
+"""Radii at which the connector is drawn for its dead volume; between them it is straight."""
+
+
+@dataclass(frozen=True)
+class Confirmation:
+    """What the solid says of a design: sensitivity (kPa/N) and whether it lies within the stated uncertainty."""
+
+    sensitivity: float
+    within: bool
+
+
+@dataclass(frozen=True)
+class Selection:
+    """An answer with everything needed to show, check and write it. left_out: resins and why."""
+
+    target: Target
+    base: Scene
+    sensor: Sensor
+    problem: Problem
+    answer: Answer
+    left_out: dict[str, str]
+    confirmed: tuple[Confirmation, ...]
+
+    def assignments(self, choice: Choice) -> list[str]:
+        """What turns the base design into a choice, as ``table.key=value``."""
+        pressure = float(choice.pool.pressure[0]) / KPA
+        pressures = sorted({0.0, round(pressure, 6)})
+        found = [
+            f"membrane.material={choice.resin.name}",
+            f"membrane.inner_radius_mm={float(choice.pool.radius[0]):.6g}",
+            f"membrane.wall_thickness_mm={float(choice.pool.wall[0]):.6g}",
+            f"pneumatics.driving_pressures_kPa={pressures}",
+        ]
+        return found + self._setting
+
+    @cached_property
+    def _setting(self) -> list[str]:
+        setting = self.target.setting
+        values = {
+            "print.profile": setting.profile, "pneumatics.tube_length_mm": setting.tube_length_mm,
+            "pneumatics.dead_volume_mL": setting.dead_volume_mL,
+        }  # fmt: skip
+        return [f"{key}={value}" for key, value in values.items() if value is not None]
+
+
+def select(target: Target, where: str, library: Library | None = None) -> Selection:
+    """Answer a target. Raises InputError where it names what there is not; ``where`` names the file in messages."""
+    shelves = library or Library.default()
+    scene = _base(target, where, shelves)
+    sensor = sensor_of(assemble(scene))
+    resins, left_out = _resins(target, where, scene, sensor, shelves)
+    problem = _problem(target, scene, sensor, resins)
+    answer = choose(
+        problem, (target.weights.robustness, target.weights.tunability), _uncertainty(scene, sensor, shelves)
+    )
+    found = Selection(target, scene, sensor, problem, answer, left_out, ())
+    return replace(found, confirmed=tuple(_confirm(found, choice) for choice in answer.designs[:_CONFIRMED]))
+
+
+def _base(target: Target, where: str, library: Library) -> Scene:
+    """The scene that gives everything the target does not; its own dome is replaced by the candidates'."""
+    setting, given = target.setting, target.given
+    values = {
+        "print.profile": setting.profile, "pneumatics.tube_length_mm": setting.tube_length_mm,
+        "pneumatics.dead_volume_mL": setting.dead_volume_mL, "membrane.inner_radius_mm": given.inner_radius_mm,
+        "membrane.wall_thickness_mm": given.wall_thickness_mm,
+    }  # fmt: skip
+    changes = [f"{key}={value}" for key, value in values.items() if value is not None]
+    changes.append(f"membrane.material={_some_resin(target, where, library)}")
+    try:
+        return load_scene(setting.base, changes, library) if setting.base else default_scene(changes, library)
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
+
+
+def _some_resin(target: Target, where: str, library: Library) -> str:
+    """A resin that the base can be drawn with: the first of those allowed that its printer runs, else simply the first."""
+    setting = target.setting
+    profile = setting.profile
+    if profile is None:
+        base = library.design_file(setting.base) if setting.base else None
+        design = validate(Design, read_toml(base), str(base)) if base else Design()
+        profile = design.print.profile
+    printer: Printer = library.load("printers", profile, asked_by=f"{where}: setting.profile")
+    names = target.given.materials or sorted(library.shelf("materials"))
+    loaded = {name: library.load("materials", name, asked_by=f"{where}: given.materials") for name in names}
+    runs = [name for name, m in loaded.items() if m.kind == "elastomer" and printer.mode_for(m) is not None]
+    if not runs:
+        raise InputError(
+            f"{where}: the {printer.title} runs none of {', '.join(names)}; give other materials or profile"
+        )
+    return runs[0]
+
+
+def _resins(
+    target: Target, where: str, scene: Scene, sensor: Sensor, library: Library
+) -> tuple[tuple[Resin, ...], dict[str, str]]:
+    """Resins the printer runs and the atlas knows, and why the others are left out."""
+    known = library.all("materials", Material)
+    names = target.given.materials or sorted(name for name, m in known.items() if m.kind == "elastomer")
+    recipe, resins, out = shipped().recipe, [], {}
+    for name in names:
+        material = library.load("materials", name, asked_by=f"{where}: given.materials")
+        if material.kind != "elastomer":
+            raise InputError(f"{where}: given.materials: {material.label} is {material.kind}; it must be an elastomer")
+        own = material_sensor(material)
+        if scene.printer.mode_for(material) is None:
+            out[name] = f"the {scene.printer.title} cannot run it"
+        elif own.law is not None or own.poisson_ratio != recipe.poisson_ratio:
+            out[name] = "the atlas knows neither its law nor its Poisson ratio"
+        elif sensor.ambient_pressure > recipe.stiffest_gas * own.shear_modulus:
+            out[name] = "it is too soft for the atlas in so high an ambient pressure"
+        else:
+            resins.append(Resin(name, material, own.shear_modulus, own.break_stretch or np.inf))
+    return tuple(resins), out
+
+
+def _problem(target: Target, scene: Scene, sensor: Sensor, resins: tuple[Resin, ...]) -> Problem:
+    wanted, given = target.target, target.given
+    feature = scene.printer.smallest.wall("elastomer")
+    return Problem(
+        resins=resins, sensitivity=wanted.sensitivity_kPa_per_N, tolerance=wanted.tolerance_percent / 100,
+        driving_pressure=None if wanted.driving_pressure_kPa is None else wanted.driving_pressure_kPa * KPA,
+        force_range=wanted.force_range_N, stiffness=(wanted.stiffness_least_N_per_mm, wanted.stiffness_most_N_per_mm),
+        max_diameter=wanted.max_diameter_mm, inner_radius=given.inner_radius_mm, wall_thickness=given.wall_thickness_mm,
+        least_wall=feature.least or feature.recommended, ambient_pressure=sensor.ambient_pressure,
+        dead_volume=_dead_volume(scene, sensor), plate_radius=sensor.plate_radius, gauge_limit=sensor.gauge_limit,
+        depth_share=min(sensor.depth / sensor.inner_radius, shipped().recipe.deepest), steps=sensor.steps,
+        recipe=shipped().recipe,
+    )  # fmt: skip
+
+
+def _dead_volume(scene: Scene, sensor: Sensor) -> Callable[[Array], Array]:
+    """Dead volume (mm3) over the inner radius: drawn at a few radii where the connector's channel follows it."""
+    if scene.design.pneumatics.dead_volume_mL is not None:
+        return lambda radius: np.full_like(radius, sensor.dead_volume)
+    radii = np.geomspace(2.0, 60.0, _DEAD_VOLUMES)
+    known = [(radius, volume) for radius in radii if (volume := _drawn(scene, float(radius))) is not None]
+    if not known:
+        return lambda radius: np.full_like(radius, sensor.dead_volume)
+    at, volumes = np.array(known).T
+    return lambda radius: np.interp(radius, at, volumes)
+
+
+def _drawn(scene: Scene, radius: float) -> float | None:
+    """Dead volume of the scene's connector on another dome, or None where it cannot be drawn."""
+    membrane = scene.design.membrane.model_copy(
+        update={"inner_radius_mm": radius, "wall_thickness_mm": 0.15 * radius}
+    )  # fmt: skip
+    try:
+        return assemble(replace(scene, design=scene.design.model_copy(update={"membrane": membrane}))).dead_volume
+    except PneutouchError:
+        return None
+
+
+def _uncertainty(scene: Scene, sensor: Sensor, library: Library) -> Callable[[Resin, Batch], Array]:
+    materials = library.all("materials", Material)
+    known = {
+        name: model_errors(material, materials.values()) for name, material in materials.items() if material.measured
+    }
+
+    def relative(resin: Resin, batch: Batch) -> Array:
+        errors = known.get(resin.name) or ModelErrors(pool=next(iter(known.values())).pool if known else ())
+        near = np.array([is_near_paper(_like(sensor, batch, i)) for i in range(len(batch))])
+        found = budget(
+            batch, resin.material, scene.printer, near_paper=near, errors=errors,
+            numerical={FIGURES[SENSITIVITY]: NUMERICAL["atlas"]},
+        )  # fmt: skip
+        return np.asarray(found.expanded[SENSITIVITY])
+
+    return relative
+
+
+def _like(sensor: Sensor, batch: Batch, i: int) -> Sensor:
+    return replace(
+        sensor, inner_radius=float(batch.inner_radius[i]), wall_thickness=float(batch.wall_thickness[i]),
+        dead_volume=float(batch.dead_volume[i]), flange=None,
+    )  # fmt: skip
+
+
+def _confirm(selection: Selection, choice: Choice) -> Confirmation:
+    """The solid's sensitivity beside the atlas's."""
+    from pneutouch.mechanics.solid_states import solid_result
+
+    batch = selection.problem.batch(choice.pool.resin, choice.pool.radius, choice.pool.wall, choice.pool.pressure)
+    sensor = replace(
+        _like(selection.sensor, batch, 0), shear_modulus=choice.resin.shear_modulus, depth=float(batch.depth[0]),
+        break_stretch=None if np.isinf(choice.resin.break_stretch) else choice.resin.break_stretch, law=None,
+        poisson_ratio=selection.problem.recipe.poisson_ratio,
+    )  # fmt: skip
+    figures = solid_result(sensor, choice.pool.pressure).states[0].figures
+    if figures is None:
+        return Confirmation(float("nan"), False)
+    stated = float(choice.pool.response.lines.sensitivity[0])
+    return Confirmation(figures.sensitivity, bool(abs(np.log(figures.sensitivity / stated)) <= choice.expanded))

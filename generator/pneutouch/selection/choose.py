@@ -1,0 +1,194 @@
+"""From candidates to an answer: the few best of each resin, or what stands in the way."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneutouch.mechanics.atlas.press import Batch
+from pneutouch.mechanics.atlas.respond import respond
+from pneutouch.meridian.segments import Array
+from pneutouch.selection.pool import WISHES, Pool, evaluated, margins
+from pneutouch.selection.problem import RATED_SHARE, Problem, Resin
+from pneutouch.selection.search import search
+
+_EACH = 3
+"""Candidates of one resin that are looked at closely."""
+_APART = 1.1
+"""Candidates of one resin must differ by this factor in wall ratio or driving pressure to count as two."""
+_DIGITS = 2
+"""Sizes are given to a hundredth of a millimetre, below what any of the printers resolves."""
+
+_UNKNOWN = -1.0e9
+
+Uncertainty = Callable[[Resin, Batch], Array]
+"""Relative expanded uncertainty of the sensitivity of sensors of one resin, (n,)."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One candidate with all that it is judged by.
+
+    room: margins by name. binding: the smallest but the sensitivity's. expanded: relative expanded uncertainty of the
+    sensitivity. span: sensitivities at no pressure and at the rated one. rated: that pressure, MPa. cost: what the
+    ranking sorts by, less is better.
+    """
+
+    resin: Resin
+    pool: Pool
+    room: dict[str, float]
+    expanded: float
+    span: tuple[float, float]
+    rated: float
+    cost: float
+
+    @property
+    def binding(self) -> str:
+        """The limit or wish with the least room; the sensitivity is met exactly and does not count."""
+        return min((name for name in self.room if name != "sensitivity"), key=lambda name: self.room[name])
+
+
+@dataclass(frozen=True)
+class Way:
+    """A wish to give up and the best that can then be had of it."""
+
+    wish: str
+    best: Choice
+
+
+@dataclass(frozen=True)
+class Answer:
+    """designs: the best of each resin first, in order of cost, then the runners-up in order of cost.
+
+    Without designs: the candidate nearest to the target, and which single wish to give up for a design.
+    """
+
+    designs: list[Choice]
+    nearest: Choice | None
+    ways: list[Way]
+    candidates: int
+
+
+def choose(problem: Problem, weights: tuple[float, float], uncertainty: Uncertainty) -> Answer:
+    """Search, keep what meets every limit, and rank it; weights on robustness and on tunability."""
+    pool = search(problem) if problem.resins else None
+    if pool is None or pool.resin.size == 0:
+        return Answer([], None, [], 0)
+    room = margins(problem, pool)
+    fits = np.all([margin >= 0.0 for margin in room.values()], axis=0)
+    rows = _shortlist(pool, room, fits)
+    if rows.size:
+        close = _rounded(problem, pool.take(rows))
+        judged = _judged(problem, close, weights, uncertainty)
+        good = [choice for choice in judged if min(choice.room.values()) >= 0.0]
+        if good:
+            return Answer(_ranked(good), None, [], pool.resin.size)
+    return _impossible(problem, pool, room, weights, uncertainty)
+
+
+def _room(room: dict[str, Array]) -> Array:
+    """The least margin but the sensitivity's, no more than 1."""
+    rest = [margin for name, margin in room.items() if name != "sensitivity"]
+    return np.asarray(np.minimum(np.min(rest, axis=0), 1.0))
+
+
+def _shortlist(pool: Pool, room: dict[str, Array], fits: NDArray[np.bool_]) -> NDArray[np.intp]:
+    """For each resin a few candidates that are not nearly the same, those with the most room first."""
+    least = _room(room) + 0.5 * room.get("sensitivity", np.zeros_like(pool.radius))
+    chosen: list[int] = []
+    for resin in np.unique(pool.resin[fits]):
+        rows = np.flatnonzero(fits & (pool.resin == resin))
+        mine: list[int] = []
+        for row in rows[np.argsort(-least[rows], kind="stable")]:
+            if all(_differ(pool, row, other) for other in mine):
+                mine.append(int(row))
+            if len(mine) == _EACH:
+                break
+        chosen += mine
+    return np.array(chosen, dtype=np.intp)
+
+
+def _differ(pool: Pool, a: int, b: int) -> bool:
+    ratio = (pool.wall[a] / pool.radius[a]) / (pool.wall[b] / pool.radius[b])
+    high, low = max(pool.pressure[a], pool.pressure[b]), min(pool.pressure[a], pool.pressure[b])
+    return bool(max(ratio, 1 / ratio) >= _APART or high > _APART * low + 1e-3)
+
+
+def _rounded(problem: Problem, pool: Pool) -> Pool:
+    """The same at sizes that can be written down, still inside the box and the room; what was given stays as given."""
+    unit, box = 10.0**-_DIGITS, problem.recipe
+    radius = pool.radius if problem.inner_radius is not None else np.floor(pool.radius / unit) * unit
+    wall = pool.wall
+    if problem.wall_thickness is None:
+        low = np.maximum(box.thinnest * radius, problem.least_wall)
+        wall = np.clip(np.round(wall / unit), np.ceil(low / unit - 1e-9), np.floor(box.thickest * radius / unit)) * unit
+    radius, wall = np.round(radius, _DIGITS + 4), np.round(wall, _DIGITS + 4)
+    pressure = pool.pressure if problem.driving_pressure is not None else np.round(pool.pressure, 4)
+    return evaluated(problem, pool.resin, radius, wall, pressure)
+
+
+def _judged(problem: Problem, pool: Pool, weights: tuple[float, float], uncertainty: Uncertainty) -> list[Choice]:
+    room = margins(problem, pool)
+    least = _room(room)
+    rated, span = _span(problem, pool)
+    expanded = np.full(pool.radius.size, np.nan)
+    for number in np.unique(pool.resin):
+        rows = pool.resin == number
+        part = pool.take(rows)
+        batch = problem.batch(part.resin, part.radius, part.wall, part.pressure)
+        expanded[rows] = uncertainty(problem.resins[int(number)], batch)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        moves = np.abs(np.log(span[1] / span[0]))
+    cost = weights[0] * np.nan_to_num(expanded, nan=1.0) - weights[1] * np.nan_to_num(moves) - 0.1 * least
+    return [
+        Choice(
+            problem.resins[int(pool.resin[i])], pool.take(np.array([i])), {name: float(m[i]) for name, m in room.items()},
+            float(expanded[i]), (float(span[0][i]), float(span[1][i])), float(rated[i]), float(cost[i]),
+        )
+        for i in range(pool.radius.size)
+    ]  # fmt: skip
+
+
+def _span(problem: Problem, pool: Pool) -> tuple[Array, tuple[Array, Array]]:
+    """The rated driving pressure, and the sensitivities at none and at that one."""
+    rated = RATED_SHARE * np.fmin(pool.response.limit_pressure, problem.gauge_limit)
+    both = [
+        respond(problem.batch(pool.resin, pool.radius, pool.wall, pressure), problem.steps)
+        for pressure in (np.zeros_like(rated), rated)
+    ]
+    return rated, (both[0].lines.sensitivity, both[1].lines.sensitivity)
+
+
+def _ranked(choices: list[Choice]) -> list[Choice]:
+    ordered = sorted(choices, key=lambda choice: (choice.cost, choice.resin.name))
+    first: dict[str, Choice] = {}
+    for choice in ordered:
+        first.setdefault(choice.resin.name, choice)
+    best = list(first.values())
+    return best + [choice for choice in ordered if choice not in best]
+
+
+def _impossible(
+    problem: Problem, pool: Pool, room: dict[str, Array], weights: tuple[float, float], uncertainty: Uncertainty
+) -> Answer:
+    """The candidate that breaks the least, and each wish whose loss would let one in."""
+    every = np.array(list(room.values()))
+    worst = np.where(np.isneginf(every), _UNKNOWN, every).min(axis=0)
+    nearest = int(np.argmax(worst))
+
+    def close(row: int) -> Choice:
+        return _judged(problem, _rounded(problem, pool.take(np.array([row]))), weights, uncertainty)[0]
+
+    ways = []
+    for wish in WISHES:
+        if wish not in room:
+            continue
+        rest = np.all([margin >= 0.0 for name, margin in room.items() if name != wish], axis=0)
+        if rest.any():
+            row = int(np.flatnonzero(rest)[np.argmax(room[wish][rest])])
+            ways.append(Way(wish, close(row)))
+    known = bool(worst[nearest] > _UNKNOWN)
+    return Answer([], close(nearest) if known else None, ways, pool.resin.size)

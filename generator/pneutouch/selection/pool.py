@@ -1,0 +1,100 @@
+"""Candidates with their predicted figures, and how far each is inside or outside every limit."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneutouch.mechanics.atlas.respond import OUTSIDE, Response, respond
+from pneutouch.meridian.segments import Array
+from pneutouch.selection.problem import RATED_SHARE, Problem
+
+WISHES = ("sensitivity", "force range", "stiffness", "outer diameter")
+"""What a user asks for and may give up."""
+
+
+class Pool(NamedTuple):
+    """Candidates, (n,) each: number of the resin, mm, MPa, and the response."""
+
+    resin: Array
+    radius: Array
+    wall: Array
+    pressure: Array
+    response: Response
+
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Pool:
+        """Some of the candidates."""
+        return Pool(self.resin[rows], self.radius[rows], self.wall[rows], self.pressure[rows], self.response.take(rows))
+
+    @property
+    def force(self) -> Array:
+        """Force that the range reaches: at its end, or where the slope has halved before."""
+        lines = self.response.lines
+        return np.fmin(lines.force_high, lines.saturation_force)
+
+
+def evaluated(problem: Problem, resin: Array, radius: Array, wall: Array, pressure: Array) -> Pool:
+    """Candidates with their responses from the atlas."""
+    batch = problem.batch(resin, radius, wall, pressure)
+    return Pool(resin, radius, wall, pressure, respond(batch, problem.steps))
+
+
+def joined(pools: list[Pool]) -> Pool:
+    """Several pools as one."""
+    resin, radius, wall, pressure = (
+        np.concatenate(column) for column in zip(*((p.resin, p.radius, p.wall, p.pressure) for p in pools), strict=True)
+    )
+    return Pool(resin, radius, wall, pressure, Response.join([pool.response for pool in pools]))
+
+
+def margins(problem: Problem, pool: Pool) -> dict[str, Array]:
+    """Relative room to each limit, (n,) each: negative where it is broken, -inf where nothing can be said.
+
+    Wishes: sensitivity (1 on the spot, 0 at the tolerance), force range, stiffness, outer diameter. Limits: limit point
+    (to RATED_SHARE of it), break strain, gauge range (at the force wanted), printable wall.
+    """
+    lines, found = pool.response.lines, {}
+    if problem.sensitivity is not None:
+        found["sensitivity"] = 1.0 - np.abs(lines.sensitivity / problem.sensitivity - 1.0) / problem.tolerance
+    if problem.force_range is not None:
+        found["force range"] = pool.force / problem.force_range - 1.0
+    least, most = problem.stiffness
+    if least is not None or most is not None:
+        with np.errstate(divide="ignore"):
+            found["stiffness"] = np.minimum(
+                np.inf if least is None else lines.stiffness / least - 1.0,
+                np.inf if most is None else most / lines.stiffness - 1.0,
+            )
+    if problem.max_diameter is not None:
+        found["outer diameter"] = problem.max_diameter / (2.0 * (pool.radius + pool.wall)) - 1.0
+    found |= _limits(problem, pool)
+    known = np.isfinite(lines.sensitivity) & (pool.response.ends != OUTSIDE)
+    return {
+        name: np.where(known & np.isfinite(margin) | (known & (margin > 0)), margin, -np.inf)
+        for name, margin in found.items()
+    }
+
+
+def _limits(problem: Problem, pool: Pool) -> dict[str, Array]:
+    strain = np.array([resin.break_stretch for resin in problem.resins])[pool.resin.astype(np.intp)] - 1.0
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return {
+            "limit point": RATED_SHARE * pool.response.limit_pressure / pool.pressure - 1.0,
+            "break strain": strain / (pool.response.max_stretch - 1.0) - 1.0,
+            "gauge range": (problem.gauge_limit - pool.pressure) / _rise(problem, pool) - 1.0,
+            "printable wall": pool.wall / problem.least_wall - 1.0 + 1e-9,
+        }
+
+
+def _rise(problem: Problem, pool: Pool) -> Array:
+    """Pressure rise at the force wanted, or at the end of the range where that comes first; none without a wish."""
+    force, rise = pool.response.force, pool.response.rise
+    if problem.force_range is None:
+        return np.zeros(force.shape[0])
+    after = np.clip((force < problem.force_range).sum(axis=1), 1, force.shape[1] - 1)
+    rows = np.arange(force.shape[0])
+    low, high = force[rows, after - 1], force[rows, after]
+    share = np.clip((problem.force_range - low) / (high - low), 0.0, 1.0)
+    return np.asarray(rise[rows, after - 1] + share * (rise[rows, after] - rise[rows, after - 1]))

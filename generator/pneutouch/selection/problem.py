@@ -1,0 +1,71 @@
+"""The search in numbers: resins, bounds, what is wanted. mm, N, MPa; sensitivities in kPa/N."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from pneutouch.mechanics.atlas.press import Batch
+from pneutouch.mechanics.atlas.recipe import Recipe
+from pneutouch.meridian.segments import Array
+from pneutouch.spec.material import Material
+
+RATED_SHARE = 0.9
+"""Share of the limit pressure that a sensor is rated at: the dome grows fast near the limit point."""
+
+_SMALLEST, _LARGEST = 2.0, 60.0
+"""Inner radii that are searched where none is given, mm."""
+
+
+@dataclass(frozen=True)
+class Resin:
+    """A resin as the atlas needs it."""
+
+    name: str
+    material: Material
+    shear_modulus: float
+    break_stretch: float
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What is wanted of a sensor and what is settled; None where free. depth_share: plate travel over R0."""
+
+    resins: tuple[Resin, ...]
+    sensitivity: float | None
+    tolerance: float
+    driving_pressure: float | None
+    force_range: float | None
+    stiffness: tuple[float | None, float | None]
+    max_diameter: float | None
+    inner_radius: float | None
+    wall_thickness: float | None
+    least_wall: float
+    ambient_pressure: float
+    dead_volume: Callable[[Array], Array]
+    plate_radius: float
+    gauge_limit: float
+    depth_share: float
+    steps: int
+    recipe: Recipe
+
+    def batch(self, resin: Array, radius: Array, wall: Array, pressure: Array) -> Batch:
+        """Candidates as sensors; resin (n,) numbers, radius and wall (n,) mm, pressure (n,) MPa."""
+        index = resin.astype(np.intp)
+        ones = np.ones(radius.size)
+        return Batch(
+            radius, wall, np.array([r.shear_modulus for r in self.resins])[index], ones * self.ambient_pressure,
+            self.dead_volume(radius), pressure, radius * self.depth_share, ones * self.plate_radius,
+            ones * self.gauge_limit, np.array([r.break_stretch for r in self.resins])[index],
+        )  # fmt: skip
+
+    def radii(self, ratio: Array) -> tuple[Array, Array]:
+        """Least and greatest inner radius for wall ratios: by the printer's least wall and by the room."""
+        if self.inner_radius is not None:
+            fixed = np.full_like(ratio, self.inner_radius)
+            return fixed, fixed
+        low = np.maximum(self.least_wall / ratio, _SMALLEST)
+        room = _LARGEST if self.max_diameter is None else 0.5 * self.max_diameter
+        return low, np.minimum(room / (1.0 + ratio), _LARGEST)

@@ -1,0 +1,104 @@
+"""A target: what a sensor shall do, what is given, and what matters more. One TOML, or the flags of ``select``."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from pneutouch.spec.fields import Table, number
+
+Names = Annotated[list[str], Field(min_length=1, max_length=50)]
+
+
+class Wanted(Table):
+    """[target]: what the sensor shall do. Whatever is left out is free."""
+
+    sensitivity_kPa_per_N: float | None = number(  # noqa: N815
+        None, unit="kPa/N", low=1e-4, high=1e4, help="Slope of pressure rise over contact force."
+    )
+    tolerance_percent: float = number(5.0, unit="%", low=0.01, high=100, help="How far the sensitivity may be off.")
+    driving_pressure_kPa: float | None = number(  # noqa: N815
+        None, unit="kPa", low=0, high=1000, help="Gauge pressure before contact at which that holds; left out: free."
+    )
+    force_range_N: float | None = number(  # noqa: N815
+        None, unit="N", low=1e-4, high=1e5, help="Contact force that the range must reach."
+    )
+    stiffness_least_N_per_mm: float | None = number(  # noqa: N815
+        None, unit="N/mm", low=1e-6, high=1e5, help="Least mean stiffness over the range."
+    )
+    stiffness_most_N_per_mm: float | None = number(  # noqa: N815
+        None, unit="N/mm", low=1e-6, high=1e5, help="Greatest mean stiffness over the range."
+    )
+    max_diameter_mm: float | None = number(
+        None, unit="mm", low=2, high=300, help="Greatest outer diameter of the unloaded dome, 2 (R0 + t0)."
+    )
+
+    @model_validator(mode="after")
+    def _says_something(self) -> Wanted:
+        least, most = self.stiffness_least_N_per_mm, self.stiffness_most_N_per_mm
+        if least is not None and most is not None and least > most:
+            raise ValueError(
+                f"stiffness_least_N_per_mm = {least:g} and stiffness_most_N_per_mm = {most:g} contradict each other; "
+                f"the least must not exceed the most"
+            )
+        if all(v is None for v in (self.sensitivity_kPa_per_N, self.force_range_N, least, most)):
+            raise ValueError("give at least one of sensitivity_kPa_per_N, force_range_N and a stiffness")
+        return self
+
+
+class Given(Table):
+    """[given]: what is settled already; the rest is solved for."""
+
+    inner_radius_mm: float | None = number(None, unit="mm", low=1, high=100, help="Inner radius R0 of the dome.")
+    wall_thickness_mm: float | None = number(None, unit="mm", low=0.05, high=50, help="Wall thickness t0 of the dome.")
+    materials: Names | None = Field(default=None, description="Resins to choose from; left out: all the printer runs.")
+
+    @model_validator(mode="after")
+    def _wall_below_radius(self) -> Given:
+        radius, wall = self.inner_radius_mm, self.wall_thickness_mm
+        if radius is not None and wall is not None and wall >= radius:
+            raise ValueError(f"wall_thickness_mm = {wall:g} must be less than inner_radius_mm = {radius:g}")
+        return self
+
+
+class Setting(Table):
+    """[setting]: the design that gives everything else: connector, tube, plate, ambient pressure, printer."""
+
+    base: str | None = Field(
+        default=None, min_length=1, description="Name or path of a design; left out: the defaults."
+    )
+    profile: str | None = Field(default=None, min_length=1, description="Printer of the membrane.")
+    tube_length_mm: float | None = number(None, unit="mm", low=0, high=20000, help="Tube to the pressure sensor.")
+    dead_volume_mL: float | None = number(  # noqa: N815
+        None, unit="mL", low=0, high=1000, help="Total gas volume behind the cavity; left out: computed."
+    )
+
+
+class Weights(Table):
+    """[weights]: what matters between designs that all meet the target."""
+
+    robustness: float = number(1.0, unit="", low=0, high=100, help="On a small uncertainty of the sensitivity.")
+    tunability: float = number(
+        0.0, unit="", low=0, high=100, help="On a sensitivity that moves with the driving pressure."
+    )
+
+
+class Target(Table):
+    """A whole target file."""
+
+    target: Wanted
+    given: Given = Given()
+    setting: Setting = Setting()
+    weights: Weights = Weights()
+
+    @model_validator(mode="after")
+    def _fits(self) -> Target:
+        room, radius = self.target.max_diameter_mm, self.given.inner_radius_mm
+        wall = self.given.wall_thickness_mm or 0.0
+        if room is not None and radius is not None and 2 * (radius + wall) > room:
+            raise ValueError(
+                f"target.max_diameter_mm = {room:g} and given.inner_radius_mm = {radius:g} contradict each other: "
+                f"the dome alone is {2 * (radius + wall):g} mm wide"
+            )
+        return self
