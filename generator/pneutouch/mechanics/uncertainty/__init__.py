@@ -1,0 +1,15 @@
+"""How sure a prediction is: stated sources, their shares, expanded uncertainties with k = 2 (JCGM 100)."""
+
+from pneutouch.mechanics.uncertainty.batches import batch_of
+from pneutouch.mechanics.uncertainty.budget import budget
+from pneutouch.mechanics.uncertainty.document import document, gas_text, shares, text
+from pneutouch.mechanics.uncertainty.gas_notes import GasNotes, gas_notes
+from pneutouch.mechanics.uncertainty.monte_carlo import monte_carlo
+from pneutouch.mechanics.uncertainty.propagate import COVERAGE, Budget
+from pneutouch.mechanics.uncertainty.source import FIGURES, INPUTS, Source
+from pneutouch.mechanics.uncertainty.sources.model import ModelErrors, model_errors
+
+__all__ = [
+    "COVERAGE", "FIGURES", "INPUTS", "Budget", "GasNotes", "ModelErrors", "Source", "batch_of", "budget", "document",
+    "gas_notes", "gas_text", "model_errors", "monte_carlo", "shares", "text",
+]  # fmt: skip

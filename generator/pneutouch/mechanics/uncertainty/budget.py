@@ -1,0 +1,39 @@
+"""The one entry: sensors, resin and printer to a budget."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneutouch.mechanics.atlas.press import Batch
+from pneutouch.mechanics.uncertainty.propagate import Budget, propagate
+from pneutouch.mechanics.uncertainty.sources import sources
+from pneutouch.mechanics.uncertainty.sources.model import ModelErrors
+from pneutouch.spec.material import Material
+from pneutouch.spec.printer import Printer
+
+
+def budget(
+    batch: Batch, material: Material, printer: Printer, *,
+    near_paper: NDArray[np.bool_] | bool, errors: ModelErrors, numerical: Mapping[str, float], aged: bool = True,
+) -> Budget:  # fmt: skip
+    """How sure the figures of n sensors are that share a resin and a printer.
+
+    Args:
+        batch: The sensors, mm, MPa, mm3; see `batch_of`.
+        material: Their resin; must have a shear modulus.
+        printer: Who prints them.
+        near_paper: Which of them the model's error on the paper's sensor speaks for, one flag or (n,).
+        errors: The model's relative errors against Table S1; see `model_errors`.
+        numerical: Greatest relative errors of discretisation and interpolation by figure (`FIGURES`).
+        aged: Whether the sensor may be up to a year old; else it is fresh.
+
+    Raises:
+        InputError: ``numerical`` names a figure that there is not.
+    """
+    found = sources(
+        batch, material, printer, near_paper=near_paper, errors=errors, numerical=numerical, aged=aged
+    )  # fmt: skip
+    return propagate(batch, found)

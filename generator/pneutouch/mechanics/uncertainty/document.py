@@ -1,0 +1,129 @@
+"""A budget as it leaves the program: the document of one sensor, and sentences for its datasheet."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from pneutouch.mechanics.atlas.press import Batch
+from pneutouch.mechanics.uncertainty.gas_notes import ADIABATIC, ROOM, gas_notes
+from pneutouch.mechanics.uncertainty.propagate import COVERAGE, Budget
+from pneutouch.mechanics.uncertainty.source import FIGURES, INPUTS, SENSITIVITY
+
+_FEW = 10.0
+"""Below as many degrees of freedom k = 2 covers clearly less than 95 % (JCGM 100, G.6.4)."""
+
+_LEAST_SHARE = 5e-4
+
+_UNCOUNTED = (
+    "not in the budget, because no number is known: the model's error in figures other than the sensitivity, creep and "
+    "temperature of the resin, misalignment, friction, the scatter of the break strain"
+)
+
+
+def document(
+    budget: Budget, row: int = 0, values: Mapping[str, float] | None = None, notes: tuple[str, ...] = ()
+) -> dict[str, Any]:
+    """Figures, sources and notes of sensor ``row``.
+
+    Args:
+        budget: What `budget` gave.
+        row: Which of its sensors.
+        values: The figures as another rung has them, by name, with the budget's relative uncertainty; the atlas's else.
+        notes: More notes, such as `gas_text`.
+
+    Returns:
+        A dict of plain numbers, texts and lists. A figure that the atlas does not have is left out; without any the
+        notes say so.
+    """
+    known = [i for i in range(len(FIGURES)) if np.isfinite(budget.standard[i, row])]
+    given = values or {}
+    return {
+        "coverage_factor": COVERAGE,
+        "figures": {FIGURES[i]: _figure(budget, i, row, given.get(FIGURES[i])) for i in known},
+        "sources": [s.document(row) for s in budget.sources if s.counts[:, row].any()],
+        "elasticities": {
+            FIGURES[i]: dict(zip(INPUTS, budget.derivatives.elasticities[:, i, row].tolist(), strict=True))
+            for i in known
+        },
+        "notes": [*_notes(budget, row), *notes],
+    }
+
+
+def _figure(budget: Budget, figure: int, row: int, given: float | None) -> dict[str, Any]:
+    value = float(budget.values[figure, row]) if given is None else given
+    width = float(budget.expanded[figure, row])
+    freedom = float(budget.freedom[figure, row])
+    return {
+        "value": value,
+        "expanded_uncertainty": value * float(np.sinh(width)),
+        "low": value * float(np.exp(-width)),
+        "high": value * float(np.exp(width)),
+        "standard_uncertainty_relative": 0.5 * width,
+        "degrees_of_freedom": freedom if np.isfinite(freedom) else None,
+        "nonlinear": bool(budget.nonlinear[figure, row]),
+        "shares": shares(budget, FIGURES[figure], row),
+    }
+
+
+def shares(budget: Budget, figure: str, row: int = 0) -> dict[str, float]:
+    """Shares of the variance of a figure by source, greatest first; sources of one name added, tiny ones left out."""
+    found: dict[str, float] = {}
+    for source, share in zip(budget.sources, budget.shares[:, FIGURES.index(figure), row], strict=True):
+        found[source.name] = found.get(source.name, 0.0) + float(share)
+    kept = {name: share for name, share in found.items() if share > _LEAST_SHARE}
+    total = sum(kept.values())
+    return {name: share / total for name, share in sorted(kept.items(), key=lambda item: (-item[1], item[0]))}
+
+
+def _notes(budget: Budget, row: int) -> list[str]:
+    if not np.isfinite(budget.standard[SENSITIVITY, row]):
+        return ["the sensor is outside the atlas or beyond its limit point: no uncertainty can be given"]
+    found = []
+    bent = [name for name, flag in zip(FIGURES, budget.nonlinear[:, row], strict=True) if flag]
+    if bent:
+        found.append(
+            f"nonlinear within the uncertainties: {', '.join(bent)}: near the limit point, or because another event ends "
+            "the range. Their uncertainty is taken over the inputs' whole spread"
+        )
+    if budget.doubtful[row]:
+        found.append("within its uncertainties the sensor may be beyond its limit point, or leaves the atlas")
+    few = [
+        f"{name} ({freedom:.2g})"
+        for name, freedom in zip(FIGURES, budget.freedom[:, row], strict=True)
+        if freedom < _FEW
+    ]
+    if few:
+        found.append(f"k = {COVERAGE:g} covers less than 95 % with few degrees of freedom: {', '.join(few)}")
+    return [*found, _UNCOUNTED]
+
+
+def text(budget: Budget, row: int = 0) -> str:
+    """One or two sentences for a datasheet: the expanded uncertainty of the sensitivity, and what to measure first."""
+    width = float(budget.expanded[SENSITIVITY, row])
+    if not np.isfinite(width):
+        return "The uncertainty of the sensitivity is not known: the sensor is outside the atlas."
+    parts = shares(budget, FIGURES[SENSITIVITY], row)
+    first = ", then ".join(f"{name} ({share:.0%} of the variance)" for name, share in list(parts.items())[:2])
+    assumed = [s.name for s in budget.sources if not s.known and s.name in parts and parts[s.name] >= 0.1]
+    said = f" Assumed, not known: {', '.join(assumed)}." if assumed else ""
+    interval = f"{np.exp(-width) - 1:+.0%} to {np.exp(width) - 1:+.0%}"
+    return f"Expanded uncertainty of the sensitivity (k = {COVERAGE:g}): {interval}; measure first: {first}.{said}"
+
+
+def gas_text(batch: Batch) -> list[tuple[str, ...]]:
+    """Notes on the air of n sensors, one tuple each; empty where the atlas has no state."""
+    found = gas_notes(batch)
+    return [
+        (
+            f"sealed and untouched, the pressure moves by {rise:.2g} kPa/K at {ROOM - 273.15:g} C, which reads as "
+            f"{force:.2g} N/K; the wall leaves {give:.0%} of what a rigid cavity would show",
+            f"pressed so fast that the air is adiabatic (p V^{ADIABATIC:g}) the sensitivity is {fast:.2f} times the "
+            "isothermal one given here",
+        )
+        if np.isfinite([rise, force, give, fast]).all()
+        else ()
+        for rise, force, give, fast in zip(*found, strict=True)
+    ]

@@ -1,0 +1,85 @@
+"""The same sources sampled through the same atlas: the check of `propagate` (JCGM 101)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pneutouch.mechanics.atlas.press import Batch
+from pneutouch.mechanics.uncertainty.neighbours import log_figures, moved
+from pneutouch.mechanics.uncertainty.source import DEAD, FIGURE, FIGURES, INPUTS, Source
+from pneutouch.meridian.segments import Array
+
+_COVERED = 0.9545
+"""Share of a normal distribution within two standard deviations."""
+
+_GRAIN = 5e-4
+"""Wall ratios are rounded to this, relative: the atlas is cut once a ratio, and walls are not known to a hundredth of that."""
+
+
+@dataclass(frozen=True)
+class Sampled:
+    """Figures of one sensor over the samples.
+
+    Attributes:
+        standard: Standard deviation of ln figure, (figures,).
+        half_width: Half of the probabilistically symmetric 95.45 % interval of ln figure, (figures,).
+        low: Its lower end, in the figure's unit, (figures,).
+        high: Its upper end, (figures,).
+        lost: Share of samples without the figure (beyond the limit point or outside the atlas), (figures,).
+    """
+
+    standard: Array
+    half_width: Array
+    low: Array
+    high: Array
+    lost: Array
+
+
+def monte_carlo(batch: Batch, sources: Sequence[Source], row: int = 0, count: int = 20_000, seed: int = 1) -> Sampled:
+    """Sample the sources of sensor ``row``; the same seed gives the same samples.
+
+    Figures that the same sources count for are read off the same samples.
+    """
+    logs = np.empty((len(FIGURES), count))
+    groups: dict[tuple[bool, ...], list[int]] = {}
+    for figure in range(len(FIGURES)):
+        through = tuple(bool(s.counts[figure, row]) for s in sources if s.acts_on != FIGURE)
+        groups.setdefault(through, []).append(figure)
+    for figures in groups.values():
+        logs[figures] = _through_model(batch, sources, row, count, seed, figures[0])[figures]
+    draw = np.random.default_rng([seed, 1])
+    for source in sources:
+        factor = source.sample(row, count, draw)
+        if source.acts_on == FIGURE:
+            logs += np.where(source.counts[:, row, None], np.log(np.maximum(factor, np.finfo(float).tiny)), 0.0)
+    return _summary(logs)
+
+
+def _through_model(
+    batch: Batch, sources: Sequence[Source], row: int, count: int, seed: int, figure: int
+) -> Array:  # fmt: skip
+    """Logarithms of all figures, (figures, count), under the sources on inputs that count for one figure."""
+    many = batch.take(np.full(count, row))
+    draw = np.random.default_rng([seed, 0])
+    for source in sources:
+        if source.acts_on == FIGURE:
+            continue
+        by = source.sample(row, count, draw)
+        if source.counts[figure, row]:
+            many = moved(many, source.acts_on, by if source.acts_on == INPUTS[DEAD] else np.log(by))
+    grain = _GRAIN * float(batch.wall_ratio[row])
+    ratio = grain * np.round(many.wall_ratio / grain)
+    return log_figures(replace(many, wall_thickness=ratio * many.inner_radius))
+
+
+def _summary(logs: Array) -> Sampled:
+    lost = np.isnan(logs).mean(axis=1)
+    standard, low, high = (np.full(len(logs), np.nan) for _ in range(3))
+    some = lost < 1.0
+    standard[some] = np.nanstd(logs[some], axis=1)
+    tails = [0.5 * (1.0 - _COVERED), 0.5 * (1.0 + _COVERED)]
+    low[some], high[some] = np.nanquantile(logs[some], tails, axis=1)
+    return Sampled(standard, 0.5 * (high - low), np.exp(low), np.exp(high), lost)

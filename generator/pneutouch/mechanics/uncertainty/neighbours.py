@@ -1,0 +1,72 @@
+"""A batch with its inputs moved, and the figures of all that, in one call of the atlas."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+
+from pneutouch.mechanics.atlas.press import Batch
+from pneutouch.mechanics.atlas.respond import respond
+from pneutouch.mechanics.atlas.table import REST_VOLUME, Atlas, shipped
+from pneutouch.mechanics.uncertainty.source import DEAD, FIGURES, INPUTS
+from pneutouch.meridian.segments import Array
+from pneutouch.units import KPA
+
+_MARGIN = 0.001
+"""How far inside the surveyed data (`Recipe.beyond`) the neighbourhood of the box stays, in R0."""
+
+
+@cache
+def neighbourhood() -> Atlas:
+    """The shipped atlas with its box opened to nearly all the data it holds.
+
+    A sensor pressed to three quarters of R0 lies on the edge of the box, where a smaller radius with the same travel is
+    outside. The survey went on to `Recipe.beyond` and to walls outside the box, so that its neighbours can be asked for.
+    """
+    known = shipped()
+    recipe, walls = known.recipe, known.recipe.wall_ratios
+    open_ = replace(
+        recipe, thinnest=float(walls[0]), thickest=float(walls[-1]), margin=1.0, deepest=recipe.beyond - _MARGIN
+    )
+    return Atlas(known._tables, open_)
+
+
+def moved(batch: Batch, name: str, by: Array) -> Batch:
+    """The batch with one input moved, (n,): times exp(by); the dead volume plus ``by`` mm3.
+
+    At least half of the unloaded cavity stays: a deviation of some 0.1 mL is more than a tiny sensor holds.
+    """
+    value = getattr(batch, name)
+    if name != INPUTS[DEAD]:
+        return replace(batch, **{name: value * np.exp(by)})
+    least = np.minimum(value, -0.5 * REST_VOLUME * batch.inner_radius**3)
+    return replace(batch, dead_volume=np.maximum(value + by, least))
+
+
+def joined(batches: list[Batch]) -> Batch:
+    """Batches one after the other."""
+    return Batch(*(np.concatenate([getattr(b, field) for b in batches]) for field in Batch.__dataclass_fields__))
+
+
+def unit_step(batch: Batch) -> Array:
+    """What a step of one means for each input, (inputs, n): its own size; of the dead volume all the gas, mm3."""
+    steps = np.ones((len(INPUTS), len(batch)))
+    steps[DEAD] = REST_VOLUME * batch.inner_radius**3 + np.maximum(batch.dead_volume, 0.0)
+    return steps
+
+
+def log_figures(batch: Batch) -> Array:
+    """Natural logarithms of the figures, (figures, n); NaN where there is none. Units as `FIGURES` say."""
+    # In order of the wall ratio, because the atlas cuts its tables once for each ratio of a chunk.
+    order = np.argsort(batch.wall_ratio, kind="stable")
+    found = respond(batch.take(order), atlas=neighbourhood())
+    figures = np.empty((len(FIGURES), len(batch)))
+    figures[:, order] = [
+        found.lines.sensitivity, found.limit_pressure / KPA, found.lines.stiffness, found.lines.force_high,
+        found.range_end, found.apex_outer,
+    ]  # fmt: skip
+    with np.errstate(invalid="ignore", divide="ignore"):
+        logs = np.log(figures)
+    return np.where(np.isfinite(logs), logs, np.nan)

@@ -1,0 +1,120 @@
+"""From sources and derivatives to combined uncertainties and the share of each source (JCGM 100, 5.1)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneutouch.mechanics.atlas.press import Batch
+from pneutouch.mechanics.uncertainty.derivatives import Derivatives, derivatives
+from pneutouch.mechanics.uncertainty.source import FIGURE, FIGURES, INPUTS, Source
+from pneutouch.meridian.segments import Array
+
+COVERAGE = 2.0
+"""k: about 95 % where many sources of one size add up."""
+
+_NORMAL = 3.0
+"""Kurtosis of a normal distribution."""
+
+_BENT = 0.05
+
+_NOTHING = 1e-6
+"""Relative standard uncertainties below this are rounding: the figure is exact under the sources given."""
+
+
+@dataclass(frozen=True)
+class Budget:
+    """Uncertainties of the figures of n sensors.
+
+    Everything is reckoned in natural logarithms: a figure lies between value / exp(k u) and value * exp(k u). For small u
+    that is value +- k u value; for wide ones it keeps positive quantities positive.
+
+    Attributes:
+        sources: The sources, in the order of the first axis of ``variances``.
+        derivatives: Figures, elasticities, nonlinearities.
+        variances: Of the logarithm, by source, (sources, figures, n).
+        linear: Combined standard uncertainty by the derivatives alone, (figures, n).
+        freedom: Effective degrees of freedom (Welch-Satterthwaite, JCGM 100, G.4.1), (figures, n).
+    """
+
+    sources: tuple[Source, ...]
+    derivatives: Derivatives
+    variances: Array
+    linear: Array
+    freedom: Array
+
+    @property
+    def values(self) -> Array:
+        """The figures as the atlas has them, (figures, n), in the units of `FIGURES`; NaN where it has none."""
+        return np.asarray(np.exp(self.derivatives.logs))
+
+    @property
+    def standard(self) -> Array:
+        """Combined standard uncertainty of the logarithm, that is relative, (figures, n); NaN without a figure."""
+        combined = np.sqrt(self.variances.sum(axis=0))
+        return np.where(np.isfinite(self.derivatives.logs), combined, np.nan)
+
+    @property
+    def expanded(self) -> Array:
+        """Expanded uncertainty k u of the logarithm, (figures, n)."""
+        return COVERAGE * self.standard
+
+    @property
+    def shares(self) -> Array:
+        """Shares of the variance by source, (sources, figures, n): they sum to 1, or are 0 for an exact figure."""
+        total = self.variances.sum(axis=0)
+        exact = total <= _NOTHING**2
+        return np.asarray(np.where(exact, 0.0, self.variances / np.where(exact, 1.0, total)))
+
+    @property
+    def nonlinear(self) -> NDArray[np.bool_]:
+        """Figures whose uncertainty differs from the derivatives' alone by more than 5 %, (figures, n).
+
+        There the response bends within the spread of an input, mostly because another event ends the range; the figure's
+        distribution is not normal, and k = 2 need not cover 95 %.
+        """
+        combined = self.standard
+        with np.errstate(invalid="ignore"):
+            return np.asarray((np.abs(combined - self.linear) > _BENT * combined) & (combined > _NOTHING))
+
+    @property
+    def doubtful(self) -> NDArray[np.bool_]:
+        """Sensors that within their uncertainty leave the atlas or pass their limit point, (n,)."""
+        return np.asarray(self.derivatives.one_sided.any(axis=0))
+
+
+def propagate(batch: Batch, sources: list[Source]) -> Budget:
+    """Combine the sources of n sensors through the atlas; they are taken as independent of one another."""
+    found = derivatives(batch, *_by_input(batch, sources))
+    variances = _variances(sources, found.slopes)
+    linear = np.sqrt(_variances(sources, found.local).sum(axis=0))
+    freedom = np.array([source.freedom for source in sources])
+    total = variances.sum(axis=0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        effective = total**2 / (variances**2 / freedom[:, None, None]).sum(axis=0)
+    return Budget(tuple(sources), found, variances, linear, np.where(np.isnan(effective), np.inf, effective))
+
+
+def _variances(sources: list[Source], slopes: Array) -> Array:
+    """Of the logarithms, (sources, figures, n)."""
+    return np.stack([
+        np.where(s.counts, ((1.0 if s.acts_on == FIGURE else slopes[INPUTS.index(s.acts_on)]) * s.standard) ** 2, 0.0)
+        for s in sources
+    ])  # fmt: skip
+
+
+def _by_input(batch: Batch, sources: list[Source]) -> tuple[Array, Array]:
+    """Of each input: standard uncertainty as it counts for each figure (inputs, figures, n), and kurtosis (inputs, n)."""
+    size = len(batch)
+    second = np.zeros((len(INPUTS), len(FIGURES), size))
+    every, fourth = np.zeros((len(INPUTS), size)), np.zeros((len(INPUTS), size))
+    for source in sources:
+        if source.acts_on != FIGURE:
+            i = INPUTS.index(source.acts_on)
+            second[i] += np.where(source.counts, source.standard**2, 0.0)
+            every[i] += source.standard**2
+            fourth[i] += (source.kurtosis - _NORMAL) * source.standard**4
+    root = np.sqrt(second)
+    return root, _NORMAL + fourth / np.where(every > 0, every**2, 1.0)

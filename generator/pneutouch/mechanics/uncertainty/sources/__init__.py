@@ -1,0 +1,33 @@
+"""Every source of uncertainty of n sensors that share a resin and a printer."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneutouch.mechanics.atlas.press import Batch
+from pneutouch.mechanics.uncertainty.source import Source
+from pneutouch.mechanics.uncertainty.sources.build import build_sources
+from pneutouch.mechanics.uncertainty.sources.model import ModelErrors, model_sources, numerical_sources
+from pneutouch.mechanics.uncertainty.sources.modulus import ageing_sources, modulus_sources
+from pneutouch.spec.material import Material
+from pneutouch.spec.printer import Printer
+
+
+def sources(
+    batch: Batch, material: Material, printer: Printer, *,
+    near_paper: NDArray[np.bool_] | bool, errors: ModelErrors, numerical: Mapping[str, float], aged: bool = True,
+) -> list[Source]:  # fmt: skip
+    """Sources that count for at least one figure of one sensor; see `budget` for the arguments."""
+    size = len(batch)
+    near = np.broadcast_to(np.asarray(near_paper, dtype=bool), size)
+    found = [
+        *modulus_sources(material, near & bool(errors.own)),
+        *build_sources(batch, printer),
+        *(ageing_sources(material, size) if aged else []),
+        *model_sources(near, errors),
+        *numerical_sources(size, numerical),
+    ]
+    return [source for source in found if source.counts.any()]

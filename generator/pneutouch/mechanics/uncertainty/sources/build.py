@@ -1,0 +1,70 @@
+"""How sure the print and its surroundings are: wall, radius, air behind the cavity, weather, driving pressure."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pneutouch.mechanics.atlas.press import Batch
+from pneutouch.mechanics.uncertainty.source import Distribution, Source, counting
+from pneutouch.meridian.segments import Array
+from pneutouch.spec.printer import Printer
+from pneutouch.units import KPA
+
+BORE, BORE_TOLERANCE = 2.5, 0.1
+"""Bore of a 4 mm tube (SMC TU0425) and its tolerance, mm. Only outer diameters have a published one, +-0.1 mm for nylon
+(SMC KQ2 precautions); that the bore keeps the same is an assumption."""
+
+UNSTATED_VOLUME = 100.0
+"""Air in fitting and gauge that a stated dead volume may have missed, mm3: an assumption, 20 mm of a 2.5 mm bore."""
+
+WEATHER = 4.5 * KPA
+"""Sea level pressure typically stays within 960 and 1050 mbar (San Francisco State University, Geosciences, course M301,
+Atmospheric Pressure)."""
+
+GAUGE = 0.02
+"""Temperature characteristic of the SMC PSE543, +-2 % of its range (paper, Supplement C)."""
+
+_LIMITS = 3.0
+"""Standard deviations within which limits that hold nearly always are read (JCGM 100, 4.3.5)."""
+
+_ROOT = np.sqrt(3.0)
+
+
+def build_sources(batch: Batch, printer: Printer) -> list[Source]:
+    """Sources on dimensions, dead volume, ambient and driving pressure of n sensors from one printer."""
+    accuracy = printer.accuracy_mm.nominal
+    said = (
+        f"{printer.title}, +-{accuracy:g} mm, even between its bounds (JCGM 100, 4.3.7): {printer.accuracy_mm.source}"
+    )
+    bore = 2.0 * BORE_TOLERANCE / BORE
+
+    def source(name: str, acts_on: str, standard: Array, shape: Distribution, origin: str, known: bool) -> Source:
+        return Source(name, acts_on, standard, shape, counting(len(batch)), origin, known)
+
+    return [
+        source("wall thickness", "wall_thickness", accuracy / _ROOT / batch.wall_thickness, "rectangular", said, True),
+        source(
+            "inner radius", "inner_radius", 0.5 * accuracy / _ROOT / batch.inner_radius, "rectangular",
+            f"half of the diameter's: {said}", True,
+        ),
+        source(
+            "tube bore", "dead_volume", bore / _ROOT * np.abs(batch.dead_volume), "rectangular",
+            f"assumed: bore {BORE:g} +-{BORE_TOLERANCE:g} mm, so the volume +-{bore:.0%}; SMC states outer diameters only",
+            False,
+        ),
+        source(
+            "fitting and gauge", "dead_volume", np.full(len(batch), UNSTATED_VOLUME / _ROOT), "rectangular",
+            f"assumed: up to {UNSTATED_VOLUME * 1e-3:g} mL of air that the stated dead volume does not hold", False,
+        ),
+        source(
+            "weather", "ambient_pressure", WEATHER / _LIMITS / batch.ambient_pressure, "normal",
+            "960 to 1050 mbar at sea level (San Francisco State University, Geosciences M301), read as three standard "
+            "deviations either way; the height of the place is not in it",
+            True,
+        ),
+        source(
+            "driving pressure", "driving_pressure", np.full(len(batch), GAUGE / _ROOT), "rectangular",
+            "SMC PSE543, +-2 % (paper, Supplement C); assumed to be of the reading, the gauge being zeroed when vented",
+            False,
+        ),
+    ]  # fmt: skip

@@ -1,0 +1,142 @@
+"""How sure the shear modulus is: between prints, between laboratories, and as the resin ages."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneutouch.mechanics.uncertainty.hardness import logarithmic_change, logarithmic_slope, shore_a
+from pneutouch.mechanics.uncertainty.source import SENSITIVITY, Source, counting
+from pneutouch.meridian.segments import Array
+from pneutouch.spec.material import Material
+from pneutouch.spec.quantity import Quantity
+
+ASSUMED_FACTOR = 2.7
+"""High over low of a modulus for which no independent value is known: an assumption, taken from the four estimates of
+relaxed Agilus30, 0.10 to 0.27 MPa (see `Agilus30.toml`)."""
+
+ASSUMED_HARDNESS_SPREAD = 1.64
+"""Shore A, where a resin's own is not known: root mean square of the seven of the paper's Table 1."""
+
+ASSUMED_HARDNESS_CHANGE = 2.88
+"""Shore A in a year, where a resin's own is not known: root mean square of the seven of the paper's Table 1."""
+
+ASSUMED_AGEING = 0.24
+"""Relative change of sensitivity in a year, where a resin's own is not known: root mean square of the paper's three
+(14.8, 17.0 and 34.9 %, Supplement E)."""
+
+_READINGS = 20
+"""Readings behind a hardness spread of the paper's Table 1 (Supplement A)."""
+
+_ELASTIC = 3.0
+"""E over the shear modulus of an incompressible solid."""
+
+_GENT = "Gent 1958, d ln E/dS"
+
+
+def _filled(value: float, size: int) -> Array:
+    return np.full(size, value)
+
+
+def modulus_sources(material: Material, validated: NDArray[np.bool_]) -> list[Source]:
+    """Sources on the shear modulus of n sensors in one resin.
+
+    ``validated``, (n,), says where the model's error on a sensor was measured in this resin: that error contains the
+    error of the published modulus, so the published range does not count there for the sensitivity.
+    """
+    modulus = material.shear_modulus_MPa
+    assert modulus is not None
+    size = validated.size
+    if modulus.spread is not None:
+        return [Source(
+            "modulus as measured", "shear_modulus", _filled(modulus.spread / modulus.nominal, size), "lognormal",
+            counting(size), f"spread of the shear modulus, {modulus.source}; the scatter between prints is in it", True,
+        )]  # fmt: skip
+    return [_published(modulus, validated), _between_prints(material, size)]
+
+
+def _published(modulus: Quantity, validated: NDArray[np.bool_]) -> Source:
+    known = modulus.low is not None and modulus.high is not None
+    factor = modulus.most / modulus.least if known else ASSUMED_FACTOR
+    # Twelve is the square of a rectangle's width over its variance; the width is kept although the value need not be its
+    # middle (JCGM 100, 4.3.8).
+    standard = np.log(factor) / np.sqrt(12.0)
+    counts = counting(validated.size)
+    counts[SENSITIVITY] = ~validated
+    origin = (
+        f"range {modulus.least:g} to {modulus.most:g} MPa: {modulus.source}"
+        if known
+        else f"no independent value known; assumed a factor of {factor:g} from end to end, as published for Agilus30"
+    )
+    if validated.any():
+        origin += "; near the paper's sensor not counted for the sensitivity, whose model error holds it"
+    return Source(
+        "published modulus",
+        "shear_modulus",
+        _filled(standard, validated.size),
+        "log-rectangular",
+        counts,
+        origin,
+        known,
+    )
+
+
+def _hardness(material: Material) -> tuple[float, bool]:
+    if material.shore_a is not None:
+        return material.shore_a.nominal, True
+    assert material.shear_modulus_MPa is not None
+    return shore_a(_ELASTIC * material.shear_modulus_MPa.nominal), False
+
+
+def _between_prints(material: Material, size: int) -> Source:
+    shore, read = _hardness(material)
+    given = material.shore_a.spread if material.shore_a is not None else None
+    known = read and given is not None
+    spread = ASSUMED_HARDNESS_SPREAD if given is None else given
+    origin = f"{_GENT}, at Shore A {shore:.3g} with a standard deviation of {spread:.3g}: " + (
+        material.shore_a.source
+        if known and material.shore_a is not None
+        else "assumed, as the seven resins of the paper's Table 1"
+    )
+    return Source(
+        "modulus between prints", "shear_modulus", _filled(logarithmic_slope(shore) * spread, size), "lognormal",
+        counting(size), origin, known, _READINGS - 1 if known else np.inf,
+    )  # fmt: skip
+
+
+def ageing_sources(material: Material, size: int) -> list[Source]:
+    """What a year in light and air does: to the modulus by the hardness, to the sensitivity as it was measured.
+
+    The age at use is taken as anything from fresh to a year. A deviation even over 0 to c has the mean square c^2/3 about
+    the fresh value, that of a rectangle of half-width c: the drift is not corrected for but enters whole (JCGM 100, F.2.4.5).
+    """
+    return [_ageing_by_hardness(material, size), _ageing_of_sensitivity(material, size)]
+
+
+def _ageing_by_hardness(material: Material, size: int) -> Source:
+    shore, _ = _hardness(material)
+    aged = material.shore_a_one_year
+    known = aged is not None and material.shore_a is not None
+    after = aged.nominal if aged is not None and known else shore + ASSUMED_HARDNESS_CHANGE
+    change = logarithmic_change(shore, after)
+    origin = f"{_GENT}: Shore A {shore:.3g} to {after:.3g} in a year, modulus {np.expm1(change):+.0%}; " + (
+        aged.source if aged is not None and known else "change assumed, as the seven resins of the paper's Table 1"
+    )
+    return Source(
+        "ageing of the modulus", "shear_modulus", _filled(abs(change) / np.sqrt(3.0), size), "log-rectangular",
+        counting(size, without=(SENSITIVITY,)), origin, known,
+    )  # fmt: skip
+
+
+def _ageing_of_sensitivity(material: Material, size: int) -> Source:
+    given = material.measured.sensitivity_change_one_year_percent if material.measured is not None else None
+    change = ASSUMED_AGEING if given is None else given.nominal / 100
+    origin = (
+        "assumed, root mean square of the three resins measured in the paper, Supplement E"
+        if given is None
+        else given.source
+    )
+    return Source(
+        "ageing", "figure", _filled(change / np.sqrt(3.0), size), "rectangular", counting(size, only=(SENSITIVITY,)),
+        f"sensitivity {change:.1%} off after a year: {origin}", given is not None,
+    )  # fmt: skip
