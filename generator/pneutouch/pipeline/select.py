@@ -118,6 +118,9 @@ def _some_resin(target: Target, where: str, library: Library) -> str:
     printer: Printer = library.load("printers", profile, asked_by=f"{where}: setting.profile")
     names = target.given.materials or sorted(library.shelf("materials"))
     loaded = {name: library.load("materials", name, asked_by=f"{where}: given.materials") for name in names}
+    for name in target.given.materials or []:
+        if loaded[name].kind != "elastomer":
+            raise InputError(f"{where}: given.materials: {name} is {loaded[name].kind}; it must be an elastomer")
     runs = [name for name, m in loaded.items() if m.kind == "elastomer" and printer.mode_for(m) is not None]
     if not runs:
         raise InputError(
@@ -135,8 +138,6 @@ def _resins(
     recipe, resins, out = shipped().recipe, [], {}
     for name in names:
         material = library.load("materials", name, asked_by=f"{where}: given.materials")
-        if material.kind != "elastomer":
-            raise InputError(f"{where}: given.materials: {material.label} is {material.kind}; it must be an elastomer")
         own = material_sensor(material)
         if scene.printer.mode_for(material) is None:
             out[name] = f"the {scene.printer.title} cannot run it"

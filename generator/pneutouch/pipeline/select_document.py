@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from pneutouch.errors import InputError
 from pneutouch.mechanics.atlas.respond import ENDS
 from pneutouch.pipeline.new import write_design
@@ -65,7 +67,7 @@ def _choice(selection: Selection, choice: Choice, solid: Confirmation | None) ->
         "limit_point_kPa": float(pool.response.limit_pressure[0]) / KPA,
         "rated_pressure_kPa": choice.rated / KPA,
         "sensitivity_at_0kPa_and_rated_kPa_per_N": list(choice.span),
-        "margins": choice.room,
+        "margins": {name: room if np.isfinite(room) else None for name, room in choice.room.items()},
         "binding": choice.binding,
         "model": "atlas",
         "solid": None if solid is None else {

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pneutouch.mechanics.atlas.respond import OUTSIDE, Response, respond
+from pneutouch.mechanics.atlas.respond import BREAK, OUTSIDE, Response, respond
 from pneutouch.meridian.segments import Array
 from pneutouch.selection.problem import RATED_SHARE, Problem
 
@@ -80,9 +80,11 @@ def margins(problem: Problem, pool: Pool) -> dict[str, Array]:
 def _limits(problem: Problem, pool: Pool) -> dict[str, Array]:
     strain = np.array([resin.break_stretch for resin in problem.resins])[pool.resin.astype(np.intp)] - 1.0
     with np.errstate(divide="ignore", invalid="ignore"):
+        torn = strain / (pool.response.max_stretch - 1.0) - 1.0
         return {
             "limit point": RATED_SHARE * pool.response.limit_pressure / pool.pressure - 1.0,
-            "break strain": strain / (pool.response.max_stretch - 1.0) - 1.0,
+            # A range that ends by the break strain ends on it, to the rounding of that end.
+            "break strain": np.where(pool.response.ends == BREAK, np.maximum(torn, 0.0), torn),
             "gauge range": (problem.gauge_limit - pool.pressure) / _rise(problem, pool) - 1.0,
             "printable wall": pool.wall / problem.least_wall - 1.0 + 1e-9,
         }

@@ -1,0 +1,129 @@
+"""``pneutouch select`` as a user meets it."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+
+import pytest
+from typer.testing import CliRunner
+
+from pneutouch.cli.app import app
+
+ASKED = ["select", "--sensitivity", "1.9", "--at", "12", "--force-range", "15", "--max-diameter", "25"]
+
+
+def run(*arguments: str):
+    return CliRunner().invoke(app, list(arguments))
+
+
+def test_json_lists_ranked_designs_with_uncertainty_and_margins():
+    result = run(*ASKED, "--json")
+    assert result.exit_code == 0
+    said = json.loads(result.stdout)
+    assert said["met"] is True
+    assert [d["rank"] for d in said["designs"]] == list(range(1, len(said["designs"]) + 1))
+    for design in said["designs"]:
+        assert design["expanded_uncertainty_kPa_per_N"] > 0
+        assert design["binding"] in design["margins"]
+        assert min(room for room in design["margins"].values() if room is not None) >= 0
+    assert all(d["solid"]["within_expanded_uncertainty"] for d in said["designs"][:3])
+    assert said["left_out"] == {"Agilus30": "the Stratasys Objet260 Connex cannot run it"}
+
+
+def test_a_written_design_can_be_predicted(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result = run(*ASKED, "--write", "mine", "--json")
+    assert result.exit_code == 0
+    written = json.loads(result.stdout)
+    assert written["written"] == "designs/mine.toml"
+    said = json.loads(run("predict", "mine", "--json").stdout)
+    state = next(s for s in said["states"] if s["driving_pressure_kPa"] == 12.0)
+    first = written["designs"][0]
+    assert state["sensitivity_kPa_per_N"] == pytest.approx(first["sensitivity_kPa_per_N"], rel=0.012)
+    assert run(*ASKED, "--write", "mine").exit_code == 2
+
+
+def test_text_names_resins_and_what_binds():
+    said = run(*ASKED).stdout
+    assert "TangoPlus" in said
+    assert "binds" in said
+    assert "left out: Agilus30" in said
+
+
+def test_an_impossible_target_exits_1_and_says_what_to_give_up():
+    result = run(*ASKED[:-3], "150", "--max-diameter", "25")
+    assert result.exit_code == 1
+    assert "no design meets the target" in result.stdout
+    assert "giving up force range alone would do" in result.stdout
+
+
+def test_a_target_file_with_flags_over_it(tmp_path):
+    path = tmp_path / "target.toml"
+    path.write_text(
+        '[target]\nsensitivity_kPa_per_N = 1.0\ndriving_pressure_kPa = 12\n[given]\nmaterials = ["FLX9940"]\n'
+    )
+    said = json.loads(run("select", str(path), "--sensitivity", "1.9", "--json").stdout)
+    assert said["target"]["target"]["sensitivity_kPa_per_N"] == 1.9
+    assert {d["material"] for d in said["designs"]} == {"FLX9940"}
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        ("[target]\n", "give at least one of sensitivity_kPa_per_N"),
+        ("[target]\nsensitivity_kPa_per_N = -1\n", "target.sensitivity_kPa_per_N = -1"),
+        ("[target]\nsensitvity_kPa_per_N = 1\n", "Did you mean sensitivity_kPa_per_N"),
+        (
+            "[target]\nsensitivity_kPa_per_N = 1\nstiffness_least_N_per_mm = 3\nstiffness_most_N_per_mm = 2\n",
+            "contradict each other",
+        ),
+        (
+            "[target]\nsensitivity_kPa_per_N = 1\nmax_diameter_mm = 15\n[given]\ninner_radius_mm = 9\n",
+            "contradict each other",
+        ),
+        ("[target]\nsensitivity_kPa_per_N = 1\n[given]\nmaterials = []\n", "given.materials"),
+        ("target = 3\n", "target"),
+    ],
+)  # fmt: skip
+def test_a_bad_target_file_is_named_with_its_key(tmp_path, content, said):
+    path = tmp_path / "bad.toml"
+    path.write_text(content)
+    result = run("select", str(path))
+    assert result.exit_code == 2
+    assert said in result.stderr
+    assert "bad.toml" in result.stderr
+    assert "Traceback" not in result.output
+
+
+@pytest.mark.parametrize(
+    ("extra", "said"),
+    [
+        (["--tolerance", "0"], "--tolerance 0"),
+        (["--tolerance", "much"], "--tolerance much"),
+        (["--material", "Tango"], "given.materials"),
+        (["--pick", "99"], "--pick 99"),
+        (["--write", "bad name"], "NAME"),
+    ],
+)
+def test_bad_flags_exit_2(extra, said):
+    result = run(*ASKED, *extra)
+    assert result.exit_code == 2
+    assert said in result.stderr
+
+
+def test_no_wish_at_all_is_said():
+    result = run("select")
+    assert result.exit_code == 2
+    assert "say what the sensor shall do" in result.stderr
+
+
+def test_no_kernel_is_loaded():
+    code = (
+        "import sys; from typer.testing import CliRunner; from pneutouch.cli.app import app; "
+        f"assert CliRunner().invoke(app, {[*ASKED, '--json']!r}).exit_code == 0; "
+        "print([m for m in ('cadquery', 'trimesh', 'matplotlib', 'xarray', 'lib3mf') if m in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"

@@ -1,0 +1,24 @@
+"""Targets that several tests share."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pneutouch.pipeline.select import Selection, select
+from pneutouch.spec.target import Given, Setting, Target, Wanted, Weights
+
+FINGERTIP = {
+    "sensitivity_kPa_per_N": 1.9, "driving_pressure_kPa": 12.0, "force_range_N": 15.0, "max_diameter_mm": 25.0,
+}  # fmt: skip
+"""The first thing people ask for."""
+
+
+def target(wanted: dict[str, Any], **tables: dict[str, Any]) -> Target:
+    return Target(
+        target=Wanted(**wanted), given=Given(**tables.get("given", {})), setting=Setting(**tables.get("setting", {})),
+        weights=Weights(**tables.get("weights", {})),
+    )  # fmt: skip
+
+
+def answer(wanted: dict[str, Any], **tables: dict[str, Any]) -> Selection:
+    return select(target(wanted, **tables), "test")

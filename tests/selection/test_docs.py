@@ -1,0 +1,32 @@
+"""The commands of docs/select.md run, and its example file is the README's target."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tomllib
+
+import pytest
+
+from tests.conftest import ROOT
+from tests.selection.targets import FINGERTIP
+
+TEXT = (ROOT / "docs" / "select.md").read_text(encoding="utf-8")
+COMMANDS = [line for block in re.findall(r"```sh\n(.*?)```", TEXT, re.DOTALL) for line in block.splitlines()]
+
+
+@pytest.mark.parametrize("line", COMMANDS)
+def test_command_runs(line, tmp_path):
+    shutil.copytree(ROOT / "docs" / "examples", tmp_path / "docs" / "examples")
+    done = subprocess.run(
+        [sys.executable, "-m", "pneutouch", *shlex.split(line)[1:]], cwd=tmp_path, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+
+
+def test_the_example_asks_for_the_fingertip():
+    example = tomllib.loads((ROOT / "docs" / "examples" / "fingertip.toml").read_text())
+    assert {key: example["target"][key] for key in FINGERTIP} == FINGERTIP

@@ -1,0 +1,71 @@
+"""A target that cannot be met: what is nearest, and which wish to give up, checked by giving it up."""
+
+from __future__ import annotations
+
+import pytest
+
+from pneutouch.errors import InputError
+from pneutouch.pipeline.select_document import document
+from tests.selection.targets import FINGERTIP, answer
+
+KEYS = {
+    "sensitivity": "sensitivity_kPa_per_N", "force range": "force_range_N", "outer diameter": "max_diameter_mm",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "wanted",
+    [
+        {**FINGERTIP, "force_range_N": 150.0},
+        {**FINGERTIP, "sensitivity_kPa_per_N": 20.0},
+        {**FINGERTIP, "max_diameter_mm": 12.0},
+    ],
+    ids=["force", "sensitivity", "diameter"],
+)
+def test_the_wish_said_to_be_in_the_way_is(wanted):
+    found = answer(wanted)
+    assert not found.answer.designs
+    assert found.answer.ways
+    for way in found.answer.ways:
+        rest = {key: value for key, value in wanted.items() if key != KEYS[way.wish]}
+        if set(rest) & {"sensitivity_kPa_per_N", "force_range_N"}:
+            assert answer(rest).answer.designs, f"{way.wish} given up, and still nothing"
+
+
+def test_what_a_wish_would_need_is_enough():
+    wanted = {**FINGERTIP, "force_range_N": 150.0}
+    way = next(way for way in answer(wanted).answer.ways if way.wish == "force range")
+    reached = float(way.best.pool.force[0])
+    assert answer({**wanted, "force_range_N": 0.95 * reached}).answer.designs
+    assert reached < 150.0
+
+
+def test_the_nearest_breaks_no_limit_but_wishes():
+    found = answer({**FINGERTIP, "force_range_N": 150.0}).answer
+    assert found.nearest is not None
+    broken = {name for name, room in found.nearest.room.items() if room < 0}
+    assert broken
+    assert broken <= {"sensitivity", "force range", "stiffness", "outer diameter"}
+
+
+def test_the_document_says_so():
+    said = document(answer({**FINGERTIP, "force_range_N": 150.0}))
+    assert said["met"] is False
+    assert said["designs"] == []
+    assert "150" in next(way["would_need"] for way in said["give_up"] if way["wish"] == "force range")
+    assert said["nearest"]["margins"]["force range"] < 0
+
+
+@pytest.mark.parametrize(
+    ("tables", "said"),
+    [
+        ({"given": {"materials": ["TangoPlus", "Tangoplus2"]}}, "given.materials"),
+        ({"given": {"materials": ["VeroClear"]}}, "must be an elastomer"),
+        ({"given": {"materials": ["Agilus30"]}}, "runs none of Agilus30"),
+        ({"setting": {"profile": "objet"}}, "setting.profile"),
+        ({"setting": {"base": "no-such-design"}}, "no such design"),
+    ],
+)
+def test_what_there_is_not_is_named(tables, said):
+    with pytest.raises(InputError, match=said):
+        answer(FINGERTIP, **tables)
