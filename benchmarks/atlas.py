@@ -35,7 +35,7 @@ def _sheet(wall_ratio: float, folder: Path) -> Sheet:
 
 
 def main() -> None:
-    folder = WORK / f"{RECIPE.fingerprint()}-{solid_fingerprint()}"
+    folder = WORK / f"{RECIPE.survey_fingerprint()}-{solid_fingerprint()}"
     folder.mkdir(parents=True, exist_ok=True)
     walls = [float(wall) for wall in RECIPE.wall_ratios]
     with Progress() as bar, ProcessPoolExecutor(os.cpu_count()) as pool:

@@ -4,19 +4,25 @@ from __future__ import annotations
 
 import statistics
 import time
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from benchmarks.answer import Answer, membrane_answer, solid_answer, solid_limit
+from benchmarks.rungs import (
+    ATLAS,
+    AUTO,
+    RUNG_METHODS,
+    atlas_answer,
+    atlas_limit,
+    auto_answer,
+    seconds_at_once,
+    why_no_answer,
+)
 from benchmarks.scenes import SCENES, Scene
-from pneutouch.mechanics.events import range_end
+from pneutouch.mechanics.atlas_states import outside_atlas
 from pneutouch.mechanics.limits import limit_point
-from pneutouch.mechanics.membrane import membrane_states
-from pneutouch.mechanics.response import figures
-from pneutouch.mechanics.solid import Press, Solid, dome, indent, inflate, state_at
-from pneutouch.mechanics.solid_states import _curve, _events
 from pneutouch.meridian.segments import Array
 from pneutouch.units import KPA
 
@@ -29,66 +35,18 @@ MESHES: dict[str, tuple[int | None, int | None]] = {
 }  # fmt: skip
 """The default is 24 to 48 cells along the arc and one or two across, by the wall ratio."""
 
-METHODS = ("membrane variational", "membrane printed", *MESHES)
+METHODS = ("membrane variational", "membrane printed", *RUNG_METHODS, *MESHES)
 _RUNS = 3
-_FINE_STEPS = 140
-"""Steps of the membrane's curve where it is read between the 14 that are timed."""
-
 _SHY = 0.98
 """Finer meshes fold a little earlier: what comes so near an event of a coarser one is not computed."""
 
 
-@dataclass(frozen=True)
-class Answer:
-    """What a method says of a scene: mm, MPa, N. ``curve`` gives force and rise at indentations up to ``end``."""
-
-    apex: float
-    end: float
-    ends: str
-    curve: Callable[[Array], tuple[Array, Array]]
-
-    def sensitivity(self, grid: Array) -> float:
-        """Slope of rise over force on a grid of indentations, kPa/N."""
-        force, rise = self.curve(grid)
-        found = figures(grid, force, rise / KPA)
-        return np.nan if found is None else found.sensitivity
-
-
-def solid_answer(scene: Scene, arc: int | None, through: int | None, depth: float | None = None) -> Answer:
-    """Study 1 to the driving pressure and study 2 in 14 steps, mesh and all; ``depth`` (mm) may stop it short."""
-    s = scene.sensor
-    solid = Solid(dome(s.inner_radius, s.wall_thickness, arc=arc, through=through), s.material)
-    free = state_at(solid, scene.pressure)
-    press = Press(depth or s.depth, s.steps, 2 * s.plate_radius, s.ambient_pressure, s.dead_volume, s.gauge_limit)
-    found = indent(solid, free, press)
-    happened = _events(found)
-    end = min(range_end(happened, press.depth), found.path[-1].indentation)
-    ends = next((event.kind for event in happened if event.ends_range), "depth")
-    return Answer(free.inner_apex, end, ends, lambda grid: _curve(found.path, grid))
-
-
-def membrane_answer(scene: Scene, closure: str) -> Answer:
-    """The same work by the membrane."""
-    pressures = np.array([scene.pressure])
-    (state,) = membrane_states(scene.sensor, pressures, closure)
-    ends = next((event.kind for event in state.events if event.ends_range), "depth")
-
-    def curve(grid: Array) -> tuple[Array, Array]:
-        (fine,) = membrane_states(replace(scene.sensor, steps=_FINE_STEPS), pressures, closure)
-        return np.interp(grid, fine.indentation, fine.force), np.interp(grid, fine.indentation, fine.pressure_rise)
-
-    return Answer(state.apex_inner, state.range_end, ends, curve)
-
-
-def solid_limit(scene: Scene, arc: int | None, through: int | None) -> float:
-    """Limit pressure, MPa; nan where there is none."""
-    s = scene.sensor
-    run = inflate(Solid(dome(s.inner_radius, s.wall_thickness, arc=arc, through=through), s.material), past_limit=1.0)
-    return np.nan if run.limit is None else run.limit.pressure
-
-
-def run(method: str, scene: Scene) -> Answer:
-    """One method on one scene."""
+def run(method: str, scene: Scene) -> Answer | None:
+    """One method on one scene; None where it has no answer."""
+    if method == ATLAS:
+        return atlas_answer(scene)
+    if method == AUTO:
+        return auto_answer(scene)[0]
     if method in MESHES:
         return solid_answer(scene, *MESHES[method])
     return membrane_answer(scene, method.split()[1])
@@ -96,6 +54,10 @@ def run(method: str, scene: Scene) -> Answer:
 
 def limit(method: str, scene: Scene) -> float:
     """One method's limit pressure, MPa."""
+    if method == ATLAS or (method == AUTO and auto_answer(scene)[1] == ATLAS):
+        return atlas_limit(scene)
+    if method == AUTO:
+        return solid_limit(scene, None, None)
     if method in MESHES:
         return solid_limit(scene, *MESHES[method])
     return limit_point(scene.sensor).driving_pressure
@@ -179,6 +141,19 @@ def compare(method: str, scene: Scene, answer: Answer, truth: Reference) -> dict
     return {key: None if isinstance(value, float) and np.isnan(value) else value for key, value in row.items()}
 
 
+FIGURES = (
+    "range_end_mm", "ends", "compared_to_mm", "range_share", "sensitivity_kPa_per_N", "own_sensitivity_kPa_per_N",
+    "sensitivity_error", "force_error", "apex_error", "limit_error",
+)  # fmt: skip
+
+
+def rung(method: str, scene: Scene) -> dict[str, str]:
+    """What is to be told of a rung on a scene: why it has no answer, or which one was chosen."""
+    if method == ATLAS and atlas_answer(scene) is None:
+        return {"no_answer": why_no_answer(scene)}
+    return {"rung": auto_answer(scene)[1]} if method == AUTO else {}
+
+
 def describe(scene: Scene, truth: Reference) -> dict[str, Any]:
     """A scene, its reference and the reference's own errors."""
     s = scene.sensor
@@ -207,7 +182,7 @@ def measure(scenes: tuple[Scene, ...] = SCENES) -> dict[str, Any]:
     truths = {scene.name: reference(scene) for scene in scenes}
     rows = []
     for scene in scenes:
-        answers: dict[str, Answer] = {}
+        answers: dict[str, Answer | None] = {}
         seconds: dict[str, list[float]] = {method: [] for method in METHODS}
         for _ in range(_RUNS):
             for method in METHODS:
@@ -215,10 +190,13 @@ def measure(scenes: tuple[Scene, ...] = SCENES) -> dict[str, Any]:
                 answers[method] = run(method, scene)
                 seconds[method].append(time.process_time() - start)
         for method, answer in answers.items():
-            row = compare(method, scene, answer, truths[scene.name])
-            rows.append({**row, "processor_s": statistics.median(seconds[method])})
+            blank = {"method": method, "scene": scene.name, **dict.fromkeys(FIGURES), "processor_s": None}
+            taken = {"processor_s": statistics.median(seconds[method])}
+            row = blank if answer is None else {**compare(method, scene, answer, truths[scene.name]), **taken}
+            rows.append({**row, **rung(method, scene)})
     return {
         "refinements": [list(r) for r in REFINEMENTS],
         "scenes": [describe(scene, truths[scene.name]) for scene in scenes],
         "rows": rows,
+        "atlas_at_once_s": statistics.median(seconds_at_once(s) for s in scenes if outside_atlas(s.sensor) is None),
     }

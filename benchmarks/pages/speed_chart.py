@@ -6,6 +6,7 @@ import statistics
 from typing import TYPE_CHECKING, Any
 
 from benchmarks.peers import WITHIN
+from benchmarks.rungs import AT_ONCE, ATLAS, RUNG_METHODS
 from benchmarks.speed_accuracy import METHODS
 from pneutouch.report.style import ACCENT, FAINT, INK, LINES, MARKERS, MUTED, figure, svg
 
@@ -19,8 +20,8 @@ CUT = 0.8
 
 
 def of(rows: list[dict[str, Any]], method: str) -> list[dict[str, Any]]:
-    """The rows of one method."""
-    return [row for row in rows if row["method"] == method]
+    """The rows in which a method has an answer."""
+    return [row for row in rows if row["method"] == method and row["processor_s"] is not None]
 
 
 def sizes(rows: list[dict[str, Any]], key: str) -> list[float]:
@@ -58,18 +59,19 @@ def _sensitivity_panel(ax: Axes, data: dict[str, Any]) -> None:
         errors = [100 * e for e in sizes(rows, "sensitivity_error")]
         cost = 1e3 * statistics.median(row["processor_s"] for row in rows)
         middle, worst = statistics.median(errors), max(errors)
-        membrane, chosen = method.startswith("membrane"), method == DEFAULT
-        marker = MARKERS[2] if membrane else (MARKERS[3] if chosen else MARKERS[0])
-        colour = MUTED if membrane else (ACCENT if chosen else INK)
+        membrane, chosen, table = method.startswith("membrane"), method == DEFAULT, method in RUNG_METHODS
+        marker = MARKERS[2] if membrane else (MARKERS[3] if chosen else MARKERS[1 if table else 0])
+        colour = MUTED if membrane else (ACCENT if chosen or table else INK)
         cut = sum(row["range_share"] < CUT for row in rows) > len(rows) // 4
         ax.plot([cost, cost], [middle, worst], color=colour, lw=0.8, zorder=2)
         ax.plot(cost, worst, marker="_", color=colour, ms=5, zorder=2)
         face = "white" if cut and not membrane else colour
         ax.plot(cost, middle, marker=marker, color=colour, mfc=face, ms=6 if chosen else 4, ls="", zorder=3)
         label = method.replace("membrane ", "").replace("solid ", "").replace(" x ", "×")
-        if membrane:
+        if membrane or table:
+            up = 0 if membrane else (4 if method == ATLAS else -5)  # the two stand at nearly one cost
             ax.annotate(
-                label, (cost, middle), xytext=(6, 0), textcoords="offset points", va="center", fontsize=6, color=colour
+                label, (cost, middle), xytext=(6, up), textcoords="offset points", va="center", fontsize=6, color=colour
             )
         else:
             aside = 6 if method.endswith(" 24 x 1") else 0  # it stands beside 16 x 1
@@ -77,7 +79,12 @@ def _sensitivity_panel(ax: Axes, data: dict[str, Any]) -> None:
                         fontsize=6, color=colour)  # fmt: skip
         if not cut or membrane:
             points.append((cost, middle))
-    _front_line(ax, points)
+    errors = [100 * e for e in sizes(of(data["rows"], ATLAS), "sensitivity_error")]
+    many = 1e3 * data["atlas_at_once_s"], statistics.median(errors)
+    ax.plot(*many, marker=MARKERS[1], color=ACCENT, mfc="white", ls="", ms=4, zorder=3)
+    ax.annotate(f"atlas,\n{AT_ONCE:,} at once", many, xytext=(0, 6), textcoords="offset points", ha="left",
+                fontsize=6, color=ACCENT)  # fmt: skip
+    _front_line(ax, [*points, many])
     ax.legend(loc="upper right", fontsize=6)
     ax.axhline(100 * SENSITIVITY_TARGET, color=MUTED, lw=0.5)
     ax.text(

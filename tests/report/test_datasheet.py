@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pypdfium2
 import pytest
 
 SECTIONS = [
-    "Performance", "Absolute maximum ratings", "Operating conditions", "What limits the driving pressure", "Environment",
+    "Performance", "How sure", "Absolute maximum ratings", "Operating conditions", "What limits the driving pressure", "Environment",
     "Mechanical drawing", "Material and print", "Reliability", "Ordering code", "How to measure it", "Handling",
     "Assumptions of the prediction", "Definitions", "Revisions",
 ]  # fmt: skip
@@ -39,7 +40,7 @@ def test_page_is_self_contained_and_holds_the_3d_view(html):
     assert "<iframe" in html
     assert "THREE" in html
     assert "url(data:font/otf;base64," in html
-    assert html.count("<svg") == 6
+    assert html.count("<svg") == 9
 
 
 def test_sheet_states_the_predicted_figures(built, html, pdf_text):
@@ -71,12 +72,70 @@ def test_published_measurements_stand_beside_the_prediction_only_for_the_papers_
     assert "2.417" not in other
 
 
-def test_zero_drift_is_that_of_the_gas_in_a_dome_that_yields(evaluated):
-    """By brute force: the volume at which the warmed gas and the dome's own curve balance."""
-    from pneutouch.report import Sheet
+def test_intervals_on_the_sheet_are_those_of_the_budget(built, html, pdf_text):
+    states = json.loads((built("paper-dome") / "prediction.json").read_text())["states"]
+    text = "\n".join(pdf_text)
+    for state in (states[0], states[-1]):
+        for figure in state["uncertainty"]["figures"].values():
+            if figure["expanded_uncertainty"] > 0:
+                said = f"{figure['low']:#.3g} to {figure['high']:#.3g}"
+                assert said in html
+                assert said in text
+    assert "ageing (66% of the variance)" in html
+    for source in states[-1]["uncertainty"]["sources"]:
+        assert source["standard_uncertainty"] == 0 or source["name"] in text
+
+
+def test_the_air_on_the_sheet_is_computed_and_no_longer_a_fixed_factor(evaluated, html):
+    from pneutouch.mechanics.uncertainty import batch_of, gas_notes
 
     evaluation = evaluated("paper-dome")
-    sheet = Sheet(evaluation.scene, evaluation.assembly, evaluation.prediction, [], "", {})
+    gas = gas_notes(batch_of(evaluation.sensor, [s.driving_pressure for s in evaluation.prediction.states]))
+    for numbers, unit in (
+        (gas.by_temperature, "kPa/K"), (gas.force_by_temperature, "N/K"), (gas.fast_over_slow, "times")
+    ):  # fmt: skip
+        assert f"{numbers[0]:.2f} and {numbers[-1]:.2f} {unit}" in html
+    assert "1.4 times" not in html
+
+
+def test_model_and_why_it_was_taken_stand_on_the_sheet(evaluated):
+    from pneutouch.pipeline import evaluate
+    from pneutouch.report.certainty import how_sure
+
+    chosen = evaluate("paper-dome", model="auto", tolerance=0.02)
+    rung = dict(how_sure(chosen.prediction, chosen.uncertainty)["rung"])
+    assert rung["Model"] == "atlas"
+    assert rung["Numerical error"] == "within 1.6% in sensitivity"
+    assert "passed over membrane" in rung["Why this model"]
+    asked = evaluated("paper-dome", model="atlas")
+    assert "asked for" in dict(how_sure(asked.prediction, asked.uncertainty)["rung"])["Why this model"]
+
+
+def test_without_the_solid_the_sheet_says_where_shapes_come_from(evaluated, tmp_path):
+    from pneutouch.pipeline import build
+
+    page = (build(evaluated("fingertip-dome", model="atlas"), tmp_path) / "datasheet.html").read_text(encoding="utf-8")
+    assert "build with --model solid" in page
+    assert "greatest principal stretch; thin" not in page
+    assert page.count("<svg") == 8
+
+
+def test_a_sensor_outside_the_atlas_says_so_on_its_sheet(tmp_path):
+    from pneutouch.pipeline import build, evaluate
+
+    evaluation = evaluate("fingertip-dome", ["pneumatics.driving_pressures_kPa=[10]"], clamp="flange")
+    page = (build(evaluation, tmp_path) / "datasheet.html").read_text(encoding="utf-8")
+    assert "No interval is given: the sensor is outside the atlas: the flange is held as printed" in page
+    assert "Trade-off and tuning charts are not drawn: the sensor is outside the atlas" in page
+    assert "drawn by the solid" in page
+    assert page.count("<svg") == 6
+
+
+def test_zero_drift_is_that_of_the_gas_in_a_dome_that_yields(evaluated):
+    """By brute force: the volume at which the warmed gas and the dome's own curve balance."""
+    from pneutouch.report.environment import zero_drift
+
+    evaluation = evaluated("paper-dome")
     state, curve = evaluation.prediction.states[3], evaluation.prediction.inflation
     volume = np.linspace(0.9 * state.cavity_volume, 1.1 * state.cavity_volume, 200001)
     dome = np.interp(volume, curve.volume, curve.pressure) + 0.101325
@@ -84,8 +143,9 @@ def test_zero_drift_is_that_of_the_gas_in_a_dome_that_yields(evaluated):
     warmed = volume[np.argmin(np.abs(dome - content * (1 + 2 / 293.15) / volume))]
     before = volume[np.argmin(np.abs(dome - content / volume))]
     rise = np.interp(warmed, volume, dome) - np.interp(before, volume, dome)
-    assert sheet.zero_drift(state) == pytest.approx(1e3 * rise / 2, rel=0.1)
-    assert sheet.zero_drift(state) < 0.5 * 123.3 / 293.15
+    drift = zero_drift(evaluation.scene, evaluation.prediction, state)
+    assert drift == pytest.approx(1e3 * rise / 2, rel=0.1)
+    assert drift < 0.5 * 123.3 / 293.15
 
 
 def test_rating_stays_below_the_limit_that_binds(evaluated, built):
@@ -104,7 +164,44 @@ def test_a_resin_that_cannot_be_solved_does_not_stop_the_sheet(evaluated, librar
 
     monkeypatch.setattr(variants, "predict", fail)
     materials = library.all("materials", Material)
-    assert variants.resin_curves(evaluated("paper-dome").sensor, materials, 0.02, "solid", None) == {}
+    outside = replace(evaluated("paper-dome").sensor, flange=(3.0, 1.5))
+    assert variants.resin_curves(outside, materials, 0.02, "solid", None) == {}
+
+
+def test_resins_are_compared_by_the_atlas_as_respond_has_them(evaluated, library):
+    from pneutouch.mechanics.atlas.respond import respond
+    from pneutouch.mechanics.uncertainty import batch_of
+    from pneutouch.report.variants import drawn_by, in_resin, resin_curves
+    from pneutouch.spec.material import Material
+
+    sensor, materials = evaluated("paper-dome").sensor, library.all("materials", Material)
+    elastic = {name: m for name, m in materials.items() if m.kind == "elastomer"}
+    found = resin_curves(sensor, materials, 0.022, "solid", None)
+    assert set(found) == {m.title for m in elastic.values()}
+    assert drawn_by(found) == "drawn by the atlas"
+    for material in elastic.values():
+        pressure, sensitivity, rung = found[material.title]
+        assert rung == "atlas"
+        assert pressure[0] == 0
+        assert pressure[-1] == pytest.approx(22)
+        own = respond(batch_of(in_resin(sensor, material), (1e-3 * pressure).tolist()), sensor.steps)
+        np.testing.assert_allclose(sensitivity, own.lines.sensitivity, rtol=1e-3)
+
+
+def test_a_resin_outside_the_atlas_is_drawn_by_the_solid_and_the_caption_says_so(evaluated, library):
+    from pneutouch.report.variants import drawn_by, resin_curves
+    from pneutouch.spec.material import Material
+
+    tango, hard = (library.load("materials", name) for name in ("TangoPlus", "FLX9960"))
+    assert isinstance(tango, Material)
+    odd = hard.model_copy(update={"poisson_ratio": hard.poisson_ratio.model_copy(update={"value": 0.48})})
+    sensor = evaluated("paper-dome").sensor
+    found = resin_curves(sensor, {"a": tango, "b": odd}, 0.02, "solid", None)
+    assert [curve.rung for curve in found.values()] == ["atlas", "solid"]
+    assert drawn_by(found) == "drawn by the atlas, FLX9960-DM by the solid"
+    same = resin_curves(sensor, {"b": hard}, 0.02, "solid", None)["FLX9960-DM"]
+    near = np.interp(found["FLX9960-DM"].pressure, same.pressure, same.sensitivity)
+    np.testing.assert_allclose(found["FLX9960-DM"].sensitivity, near, rtol=0.02)
 
 
 def test_pdf_is_a_few_a4_pages_with_text_on_each(built):

@@ -108,13 +108,19 @@ def build(
 @app.command()
 def predict(
     design: DesignArgument, set_: SetOption = None, model: ModelOption = None, tolerance: ToleranceOption = None,
-    closure: ClosureOption = "variational", clamp: ClampOption = "base", json: JsonOption = False,
+    closure: ClosureOption = "variational", clamp: ClampOption = "base",
+    monte_carlo: Annotated[
+        int, typer.Option(metavar="N", min=0, max=1_000_000, help="Check the uncertainty by N samples; about 0.1 s for 1000 a state.")
+    ] = 0,
+    json: JsonOption = False,
 ) -> None:  # fmt: skip
-    """Predict the figures alone."""
+    """Predict the figures alone, and how sure they are."""
     with reporting():
         from pneutouch.pipeline.evaluate import evaluate
+        from pneutouch.pipeline.uncertainty import prediction_document
 
-        document = evaluate(design, set_, closure=closure, clamp=clamp, **_rung(model, tolerance)).prediction.document()
+        evaluation = evaluate(design, set_, closure=closure, clamp=clamp, **_rung(model, tolerance))
+        document = prediction_document(evaluation, monte_carlo)
         if json:
             print_json(document)
         else:

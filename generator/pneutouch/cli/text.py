@@ -19,16 +19,19 @@ _GROUPS = {
 
 
 def prediction_text(document: dict[str, Any]) -> str:
-    """The prediction as a table, with limits, events and the model's error."""
+    """The prediction as a table, with limits, events, the interval of the sensitivity and the model's error."""
     point, limits = document["limit_point"], document["limits"]
-    head = ["kPa", "apex in mm", "apex out mm", "S kPa/N", "R2", "N/mm", "range N", "range ends at"]
+    sampled = any("monte_carlo" in state["uncertainty"] for state in document["states"])
+    head = ["kPa", "apex in mm", "apex out mm", "S kPa/N", "interval (k = 2)", *(["sampled"] if sampled else []),
+            "R2", "N/mm", "range N", "range ends at"]  # fmt: skip
     rows = []
     for state in document["states"]:
         ends = [event["kind"] for event in state["events"] if event["ends_range"]]
-        force = state["force_range_N"]
+        force, sure = state["force_range_N"], state["uncertainty"]
         rows.append([
             f"{state['driving_pressure_kPa']:g}", f"{state['apex_height_inner_mm']:.3f}", f"{state['apex_height_outer_mm']:.3f}",
-            _optional(state["sensitivity_kPa_per_N"], ".3f"), _optional(state["r_squared"], ".4f"),
+            _optional(state["sensitivity_kPa_per_N"], ".3f"), _interval(sure),
+            *([_interval(sure.get("monte_carlo", {}))] if sampled else []), _optional(state["r_squared"], ".4f"),
             _optional(state["stiffness_N_per_mm"], ".3f"), "-" if force is None else f"0-{force[1]:.2f}",
             f"{ends[0] if ends else 'depth'}, {state['range_end_mm']:.2f} mm",
         ])  # fmt: skip
@@ -45,7 +48,22 @@ def prediction_text(document: dict[str, Any]) -> str:
         reach,
         "", columns(head, rows), "",
         f"error in sensitivity {far}: {error['sensitivity_basis']}",
+        *_how_sure(document["states"]),
     ])  # fmt: skip
+
+
+def _interval(sure: dict[str, Any]) -> str:
+    """The interval of the sensitivity in a document of uncertainty, or a dash."""
+    figure = sure.get("figures", {}).get("sensitivity_kPa_per_N")
+    return "-" if figure is None else f"{figure['low']:.2f} to {figure['high']:.2f}"
+
+
+def _how_sure(states: list[dict[str, Any]]) -> list[str]:
+    """What to measure first, at the highest driving pressure; or why nothing is known."""
+    last = states[-1]
+    if "unknown" in last["uncertainty"]:
+        return [f"uncertainty not known: {last['uncertainty']['unknown']}"]
+    return [f"at {last['driving_pressure_kPa']:g} kPa: {last['uncertainty']['summary']}"]
 
 
 def findings_text(findings: list[dict[str, Any]]) -> str:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from pneutouch.errors import BeyondLimitError
 from pneutouch.mechanics.atlas.press import Batch, Press, Track
+from pneutouch.mechanics.atlas.recipe import FIELDS
 from pneutouch.mechanics.atlas.respond import BREAK, BUCKLING, DEPTH, EDGE, ENDS, GAUGE, OUTSIDE, respond
 from pneutouch.mechanics.atlas.table import REST_VOLUME, Atlas, Slices, shipped
 from pneutouch.mechanics.events import Event
@@ -53,8 +56,23 @@ def batch_of(sensor: Sensor, driving_pressures: Array) -> Batch:
     )  # fmt: skip
 
 
-def atlas_result(sensor: Sensor, driving_pressures: Array) -> tuple[Result, str | None]:
-    """What the atlas says at driving pressures (MPa, ascending), and why it cannot answer in full, or None.
+class Lack(NamedTuple):
+    """What an answer lacks: why, and whether it is no answer at all."""
+
+    why: str
+    fatal: bool
+
+
+_LACKS = {
+    OUTSIDE: Lack("the press leaves the states that the atlas knows", True),
+    EDGE: Lack("the contact reaches the plate's edge", True),
+    BUCKLING: Lack("the wall buckles in the press, which the solid places more exactly", False),
+    BREAK: Lack("the break strain is reached in the press, which the solid places more exactly", False),
+}
+
+
+def atlas_result(sensor: Sensor, driving_pressures: Array) -> tuple[Result, Lack | None]:
+    """What the atlas says at driving pressures (MPa, ascending), and what the answer lacks, or None.
 
     The sensor must lie in the box (`outside_atlas`). Raises BeyondLimitError beyond the limit point.
     """
@@ -71,13 +89,9 @@ def atlas_result(sensor: Sensor, driving_pressures: Array) -> tuple[Result, str 
     )
     ends = [int(end) for end in response.ends]
     states = tuple(_state(sensor, press, track, i, ends[i], float(response.range_end[i])) for i in range(len(batch)))
-    why = None
-    if OUTSIDE in ends:
-        why = "the press leaves the states that the atlas knows"
-    elif EDGE in ends:
-        why = "the contact reaches the plate's edge"
+    lack = next((reason for end, reason in _LACKS.items() if end in ends), None)
     curve, point, torn = _inflation(sensor, slices)
-    return Result(point, Limits(limit, torn, sensor.gauge_limit), curve, states), why
+    return Result(point, Limits(limit, torn, sensor.gauge_limit), curve, states), lack
 
 
 def _state(sensor: Sensor, press: Press, track: Track, i: int, end: int, range_end: float) -> State:
@@ -85,7 +99,7 @@ def _state(sensor: Sensor, press: Press, track: Track, i: int, end: int, range_e
     known = int(np.argmin(track.ok[i])) if not track.ok[i].all() else track.ok.shape[1]
     one = track.each(lambda part: part[i : i + 1, :known])
     row = press.rows(np.array([i]))
-    field = {name: row.field(name, one)[0] for name in press.slices.fields}
+    field = {name: row.field(name, one)[0] for name in FIELDS}
     depth = (press.apex[i] - one.height[0]) * length
     range_end = range_end if np.isfinite(range_end) else 0.0
     force, rise = one.point.force[0] * mu * length**2, (one.point.pressure[0] - press.pressure[i]) * mu

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from pneutouch.mechanics.prediction import Prediction, Result
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.meridian.segments import Array
 from pneutouch.units import KPA, ML
+
+if TYPE_CHECKING:
+    from pneutouch.mechanics.atlas_states import Lack
 
 Error = dict[str, Any]
 
@@ -45,7 +48,7 @@ _CLAMPED_FLANGE = "flange clamped on the faces that the connector holds, its top
 
 _COMMON_ASSUMPTIONS = (
     "rigid, flat, frictionless plate",
-    "ideal gas at constant temperature (Boyle); fast contact is stiffer, up to 1.4 times for adiabatic air",
+    "ideal gas at constant temperature (Boyle): slow contact; how far adiabatic air differs follows from wall and gas",
     "elastic wall: no rate, relaxation or temperature dependence of the resin",
 )
 
@@ -92,8 +95,8 @@ def _found(
     """The rung that answered, its answer, and why it was taken where it was not asked for by name."""
     if model != "auto":
         found, lacking = _asked(model, sensor, pressures, closure)
-        if lacking is not None:
-            raise InputError(f"--model {model}: {lacking}; take --model auto or solid")
+        if lacking is not None and lacking.fatal:
+            raise InputError(f"--model {model}: {lacking.why}; take --model auto or solid")
         return model, found, None
     way = climb(sensor, tolerance)
     passed = list(way.passed)
@@ -101,12 +104,12 @@ def _found(
         found, lacking = _asked(rung, sensor, pressures, closure)
         if lacking is None:
             break
-        passed.append(f"{rung}: {lacking}")
+        passed.append(f"{rung}: {lacking.why}")
     why = f"the cheapest whose stated error, {NUMERICAL[rung]:.1%} in sensitivity, meets {tolerance:.1%}"
     return rung, found, "; ".join([why, *(f"passed over {text}" for text in passed)])
 
 
-def _asked(rung: str, sensor: Sensor, pressures: Array, closure: str) -> tuple[Result, str | None]:
+def _asked(rung: str, sensor: Sensor, pressures: Array, closure: str) -> tuple[Result, Lack | None]:
     """One rung's answer, and what it lacks."""
     if rung == "membrane":
         return membrane_result(sensor, pressures, closure), None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.metadata
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,9 +16,11 @@ from pneutouch.export.step import step
 from pneutouch.export.threemf import threemf
 from pneutouch.pipeline.evaluate import Evaluation
 from pneutouch.pipeline.files import MANIFEST, check_writable, digest, json_bytes, write_folder
+from pneutouch.pipeline.uncertainty import prediction_document, unknown
 from pneutouch.report import Sheet, datasheet, print_sheet
 from pneutouch.spec.design import Design
 from pneutouch.spec.material import Material
+from pneutouch.units import KPA
 
 Progress = Callable[[str], None]
 
@@ -39,7 +42,7 @@ def build(evaluation: Evaluation, out: Path, progress: Progress = lambda step: N
     refuse(evaluation)
     progress("meshes")
     bodies = tuple(body.moved(assembly.print_offset) for body in assembly.bodies)
-    files: dict[str, bytes] = {"prediction.json": json_bytes(evaluation.prediction.document())}
+    files: dict[str, bytes] = {"prediction.json": json_bytes(prediction_document(evaluation))}
     progress("3MF")
     files[f"{scene.name}.3mf"] = threemf(scene.name, bodies, _metadata(evaluation))
     progress("STL")
@@ -49,15 +52,31 @@ def build(evaluation: Evaluation, out: Path, progress: Progress = lambda step: N
     progress("STEP")
     files[f"{scene.name}.step"] = step(scene.name, assembly.solids, assembly.print_offset)
     progress("datasheet")
-    sheet = Sheet(
-        scene, assembly, evaluation.prediction, evaluation.findings, input_hash(evaluation), _resins(evaluation)
-    )
+    sheet = _sheet(evaluation)
     files |= datasheet(sheet, evaluation.sensor, viewer_html(bodies))
     files["print-sheet.md"] = print_sheet(sheet).encode()
     progress("files")
     files[MANIFEST] = json_bytes(_manifest(evaluation, bodies, files))
     write_folder(folder, files)
     return folder
+
+
+def _sheet(evaluation: Evaluation) -> Sheet:
+    """What the datasheet is made from; the air and the charts only where the atlas knows the sensor."""
+    prediction, sensor = evaluation.prediction, evaluation.sensor
+    sheet = Sheet(
+        evaluation.scene, evaluation.assembly, prediction, evaluation.findings, input_hash(evaluation),
+        _resins(evaluation), evaluation.uncertainty,
+    )  # fmt: skip
+    if unknown(sensor, prediction.model) is not None:
+        return sheet
+    # Through the atlas these load scipy, which a prediction by the membrane must not pay for.
+    from pneutouch.pipeline.design_charts import air, tradeoff, tuning
+
+    tuned = tuning(evaluation, sheet.rated_pressure() * KPA)
+    if tuned is not None:
+        tuned = replace(tuned, published=tuple(sheet.published().items()))
+    return replace(sheet, gas=air(evaluation), tradeoff=tradeoff(evaluation), tuning=tuned)
 
 
 def refuse(evaluation: Evaluation) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -36,6 +37,13 @@ class Evaluation:
     def findings(self) -> list[Finding]:
         """What the rules say."""
         return check(self.assembly, self.prediction)
+
+    @cached_property
+    def uncertainty(self) -> tuple[dict[str, Any], ...]:
+        """How sure the figures of each state are; a sweep that does not ask does not pay."""
+        from pneutouch.pipeline.uncertainty import documents
+
+        return documents(self)
 
 
 def evaluate(

@@ -10,6 +10,7 @@ import numpy as np
 from pneutouch.mechanics import Prediction, Sensor, State
 from pneutouch.meridian.segments import Array
 from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MARKERS, MUTED, figure, label_ends, svg
+from pneutouch.report.variants import ResinCurve
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
@@ -62,7 +63,10 @@ def _mark_limits(ax: Axes, sensor: Sensor, prediction: Prediction) -> None:
         rising = slice(0, int(np.argmax(p)) + 1)
         height = float(np.interp(torn / KPA, p[rising], curve.apex_inner[rising]))
         ax.plot(height, torn / KPA, "X", color=INK, ms=5)
-        ax.annotate("break strain", (height, torn / KPA), xytext=(7, -3), textcoords="offset points", fontsize=6.5)
+        ax.annotate(
+            "break strain", (height, torn / KPA), xytext=(0, -7), textcoords="offset points", ha="center", va="top",
+            fontsize=6.5,
+        )  # fmt: skip
 
 
 def shapes(prediction: Prediction) -> str:
@@ -130,16 +134,16 @@ def _plot_states(ax: Axes, prediction: Prediction, curve: Callable[[State], tupl
     ax.legend(title="driving pressure", title_fontsize=7, loc="upper left", handlelength=3)
 
 
-def sensitivities(curves: dict[str, tuple[Array, Array]], chosen: str, published: dict[float, float]) -> str:
+def sensitivities(curves: dict[str, ResinCurve], chosen: str, published: dict[float, float]) -> str:
     """Sensitivity over driving pressure for every resin, the chosen one picked out.
 
-    ``curves`` maps a label to driving pressures and sensitivities (kPa, kPa/N); ``published`` maps driving
-    pressures to measured sensitivities of this very sensor, where there are any.
+    ``curves`` are by label; ``published`` maps driving pressures (kPa) to measured sensitivities (kPa/N) of this very
+    sensor, where there are any.
     """
     with figure(*SIZE) as drawn:
         ax = drawn.add_subplot()
         ends = []
-        for k, (label, (pressures, values)) in enumerate(curves.items()):
+        for k, (label, (pressures, values, _)) in enumerate(curves.items()):
             mine = label == chosen
             look: dict[str, Any] = {
                 "color": ACCENT if mine else MUTED,
@@ -148,18 +152,18 @@ def sensitivities(curves: dict[str, tuple[Array, Array]], chosen: str, published
             }
             ax.plot(pressures, values, zorder=3 if mine else 2, **look)
             style = {"fontsize": 6.5, "color": INK, **BOLD} if mine else {"fontsize": 6.5, "color": MUTED}
-            ends.append((float(values[-1]), label, style))
+            ends.append((float(pressures[-1]), float(values[-1]), label, style))
         if published:
             ax.plot(list(published), list(published.values()), "D", color=INK, mfc="white", ms=4.5, zorder=5,
                     label="published measurement")  # fmt: skip
             ax.legend(loc="lower left")
-        right = max(float(pressures[-1]) for pressures, _ in curves.values())
-        highest = max([float(np.max(values)) for _, values in curves.values()] + list(published.values()))
+        right = max(float(pressures[-1]) for pressures, *_ in curves.values())
+        highest = max([float(np.max(values)) for _, values, _ in curves.values()] + list(published.values()))
         ax.set(
             xlabel="driving pressure  (kPa)",
             ylabel="sensitivity  (kPa/N)",
             xlim=(0, 1.02 * right),
             ylim=(0, 1.1 * highest),
         )
-        label_ends(ax, ends, right, 0.062 * 1.1 * highest)
+        label_ends(ax, ends)
         return svg(drawn)

@@ -12,11 +12,15 @@ from typing import Any
 from pneutouch.export.scene import cut_open
 from pneutouch.mechanics import Sensor
 from pneutouch.report import curves
+from pneutouch.report.certainty import ends, shares
 from pneutouch.report.drawing import section_drawing
 from pneutouch.report.picture import picture
+from pneutouch.report.shares import share_bars
 from pneutouch.report.sheet import Sheet
 from pneutouch.report.style import FONTS
-from pneutouch.report.variants import resin_curves
+from pneutouch.report.tradeoff import tradeoff_chart
+from pneutouch.report.tuning import tuning_chart
+from pneutouch.report.variants import ResinCurve, drawn_by, resin_curves
 from pneutouch.units import KPA
 
 TEMPLATES = Path(__file__).parent / "templates"
@@ -30,8 +34,13 @@ _LEAST_SPAN = 22 * KPA
 
 def datasheet(sheet: Sheet, sensor: Sensor, viewer: str) -> dict[str, bytes]:
     """``datasheet.html`` and ``datasheet.pdf``; ``viewer`` is the page of the 3D view."""
-    content = sheet.content()
-    figures = _figures(sheet, sensor)
+    highest = max(sheet.prediction.states[-1].driving_pressure, _LEAST_SPAN)
+    resins = resin_curves(sensor, sheet.resins, highest, sheet.prediction.model, sheet.prediction.closure)
+    figures = _figures(sheet, resins, sensor)
+    content = {**sheet.content(), "figures": sorted(figures)}
+    content["captions"]["sensitivity"] = (
+        f"Sensitivity over driving pressure for each resin in this geometry, this design picked out; {drawn_by(resins)}."
+    )
     bodies = tuple(cut_open(solid.mesh(sheet.scene.mesh_tolerance / 6)) for solid in sheet.assembly.solids)
     return {
         "datasheet.html": _html(content, figures, viewer).encode(),
@@ -39,20 +48,26 @@ def datasheet(sheet: Sheet, sensor: Sensor, viewer: str) -> dict[str, bytes]:
     }
 
 
-def _figures(sheet: Sheet, sensor: Sensor) -> dict[str, str]:
-    """The figures as SVG by name."""
+def _figures(sheet: Sheet, resins: dict[str, ResinCurve], sensor: Sensor) -> dict[str, str]:
+    """The figures as SVG by name; those without data are left out."""
     prediction, chosen = sheet.prediction, sheet.scene.membrane_material.title
-    highest = max(prediction.states[-1].driving_pressure, _LEAST_SPAN)
-    resins = resin_curves(sensor, sheet.resins, highest, prediction.model, prediction.closure)
-    deformed = {"shapes": curves.shapes(prediction)} if prediction.states[0].shapes else {}
-    return {
-        **deformed,
+    found = {
         "drawing": section_drawing(sheet.assembly),
         "inflation": curves.inflation(sensor, prediction),
         "sensitivity": curves.sensitivities(resins, chosen, sheet.published()),
         "response": curves.response(prediction),
         "indentation": curves.indentation(prediction),
     }
+    known = ends(prediction, sheet.uncertainty)
+    if known:
+        found["shares"] = share_bars(shares(known))
+    if sheet.tradeoff is not None:
+        found["tradeoff"] = tradeoff_chart(sheet.tradeoff, curves.SIZE)
+    if sheet.tuning is not None:
+        found["tuning"] = tuning_chart(sheet.tuning, curves.SIZE)
+    if prediction.states[0].shapes:
+        found["shapes"] = curves.shapes(prediction)
+    return found
 
 
 def _html(content: dict[str, Any], figures: dict[str, str], viewer: str) -> str:

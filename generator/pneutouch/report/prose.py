@@ -28,12 +28,28 @@ HANDLING = (
 
 DEFINITIONS = (
     ["Sensitivity S", "kPa/N; slope of the least-squares line of pressure rise over force, at a stated driving pressure, dead volume and range"],
+    ["k = 2", "interval of a figure: value over and times e to the twofold standard uncertainty (JCGM 100); about 95 % where many sources add up"],
     ["Force range", "from first contact to the first event that ends the range, or to the stated depth"],
     ["Non-linearity", "greatest distance from that line over the full-scale pressure rise"],
     ["Stiffness", "mean slope of force over indentation in the range"],
     ["Apex height", "above the base plane; inside and outside differ by the thinned wall"],
     ["Limit point", "greatest driving pressure of the inflation curve; beyond it the dome snaps"],
 )  # fmt: skip
+
+TUNING = (
+    "Tuning: sensitivity of this design from no driving pressure to its rated one, by the atlas, with its k = 2 interval "
+    "(grey); circles: the predicted states."
+)
+SHAPES = "Half sections of the deformed wall, shaded by the greatest principal stretch; thin outlines at rest."
+NO_SHAPES = "Half sections of the deformed wall are drawn by the solid alone: build with --model solid."
+
+
+def tradeoff(pressure: float, dead_volume: float) -> str:
+    """Caption of the trade-off chart; kPa and mL."""
+    return (
+        f"Trade-off at {pressure:g} kPa: the greatest force range that goes with each sensitivity, one line a resin of this "
+        f"printer with the sensitivities it reaches, wall and radius free to 60 mm, {dead_volume:.3g} mL dead volume, by the atlas; no line crosses a limit."
+    )
 
 
 def description(scene: Scene) -> str:

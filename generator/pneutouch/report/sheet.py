@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
-
-import numpy as np
+from typing import TYPE_CHECKING, Any
 
 from pneutouch import __version__
 from pneutouch.catalogue import Scene
@@ -16,17 +14,35 @@ from pneutouch.parts import Assembly
 from pneutouch.printability import Finding
 from pneutouch.printability.rules.driving import RATED_SHARE
 from pneutouch.report import ordering, prose
+from pneutouch.report.certainty import how_sure, interval
+from pneutouch.report.environment import NOT_TESTED, environment
+from pneutouch.report.tradeoff import TradeOff
+from pneutouch.report.tuning import Tuning
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA, ML
 
+if TYPE_CHECKING:
+    from pneutouch.mechanics.uncertainty import GasNotes
+
 DASH = "–"
-NOT_TESTED = "not tested"
-_ROOM_TEMPERATURE = 293.15
 
 
 @dataclass(frozen=True)
 class Sheet:
-    """Everything a datasheet is made from; ``resins`` are the materials to compare with."""
+    """Everything a datasheet is made from.
+
+    Attributes:
+        scene: The design with its names resolved.
+        assembly: Its bodies.
+        prediction: Its figures.
+        findings: What the print rules say.
+        input_hash: Of everything the sheet follows from.
+        resins: Materials to compare with.
+        uncertainty: One document a state, as `Evaluation.uncertainty`.
+        gas: What the air does, one entry a state; None where the atlas does not know.
+        tradeoff: What the design is set in; None where the atlas does not know.
+        tuning: Its sensitivity over the driving pressure; None where the atlas does not know.
+    """
 
     scene: Scene
     assembly: Assembly
@@ -34,6 +50,10 @@ class Sheet:
     findings: list[Finding]
     input_hash: str
     resins: dict[str, Material]
+    uncertainty: tuple[dict[str, Any], ...]
+    gas: GasNotes | None = None
+    tradeoff: TradeOff | None = None
+    tuning: Tuning | None = None
 
     def content(self) -> dict[str, Any]:
         """The sections of the sheet; every leaf is text, ready to be printed."""
@@ -54,9 +74,10 @@ class Sheet:
             "operating": self.operating(),
             "performance": self.performance(),
             "model_error": self.model_error(),
-            "has_shapes": bool(self.prediction.states[0].shapes),
+            "how_sure": how_sure(self.prediction, self.uncertainty),
+            "captions": self.captions(),
             "limits": self.limits(),
-            "environment": self.environment(),
+            "environment": environment(self.scene, self.prediction, self.gas),
             "reliability": [[what, NOT_TESTED] for what in prose.RELIABILITY],
             "bodies": self.bodies(),
             "printing": prose.printing(self.scene),
@@ -76,11 +97,9 @@ class Sheet:
         limits = self.prediction.limits
         mass = sum(solid.mass for solid in self.assembly.solids)
         wide = 2 * self.assembly.layout.plate_radius
-        error = self.prediction.error_estimate["sensitivity_relative"]
-        sure = "model error unknown" if error is None else f"model error up to {error:.0%}"
         return [
-            ["Sensitivity", _sensitivity(first), "kPa/N", f"at {first.driving_pressure / KPA:g} kPa; {sure}"],
-            ["Sensitivity", _sensitivity(last), "kPa/N", f"at {last.driving_pressure / KPA:g} kPa; {sure}"],
+            ["Sensitivity", _sensitivity(first), "kPa/N", self._sure(0)],
+            ["Sensitivity", _sensitivity(last), "kPa/N", self._sure(-1)],
             ["Force range", _range(last), "N", f"at {last.driving_pressure / KPA:g} kPa"],
             [
                 "Max. driving pressure",
@@ -91,6 +110,23 @@ class Sheet:
             ["Dead volume", f"{self.prediction.dead_volume / ML:.2f}", "mL", "behind the cavity"],
             ["Size", f"Ø{wide:.1f}", "mm", f"{mass:.1f} g without tube"],
         ]
+
+    def _sure(self, k: int) -> str:
+        """Condition and interval of a state's sensitivity."""
+        width = interval(self.uncertainty[k])
+        said = f"{width} (k = 2)" if width else "interval not known, see How sure"
+        return f"at {self.prediction.states[k].driving_pressure / KPA:g} kPa; {said}"
+
+    def captions(self) -> dict[str, str]:
+        """Captions of the figures that depend on the prediction, and words in the place of those left out."""
+        why = next((document["unknown"] for document in self.uncertainty if "unknown" in document), "no figures there")
+        absent = f"Trade-off and tuning charts are not drawn: {why}."
+        chart = self.tradeoff
+        return {
+            "tradeoff": absent if chart is None else prose.tradeoff(chart.pressure, self.prediction.dead_volume / ML),
+            "tuning": "" if self.tuning is None else prose.TUNING,
+            "shapes": prose.SHAPES if self.prediction.states[0].shapes else prose.NO_SHAPES,
+        }
 
     def ratings(self) -> list[list[str]]:
         """Absolute maximum ratings: quantity, value, unit, basis."""
@@ -136,11 +172,11 @@ class Sheet:
         return [
             [
                 f"{s.driving_pressure / KPA:g}", f"{s.apex_inner:.2f}", f"{s.apex_outer:.2f}", _sensitivity(s),
-                self._published(s.driving_pressure / KPA), f"{s.figures.r_squared:.4f}" if s.figures else DASH,
+                interval(sure) or DASH, self._published(s.driving_pressure / KPA), f"{s.figures.r_squared:.4f}" if s.figures else DASH,
                 f"{100 * s.figures.nonlinearity:.1f}" if s.figures else DASH,
                 f"{s.figures.stiffness:.2f}" if s.figures else DASH, _range(s), _ends(s),
             ]
-            for s in self.prediction.states
+            for s, sure in zip(self.prediction.states, self.uncertainty, strict=True)
         ]  # fmt: skip
 
     def is_paper_sensor(self) -> bool:
@@ -180,38 +216,6 @@ class Sheet:
             ["gauge range", f"{limits.gauge / KPA:g}", "pressure sensor of ±100 kPa"],
         ]  # fmt: skip
         return [[*row, "binds" if row[0] == limits.binding else ""] for row in rows]
-
-    def environment(self) -> list[list[str]]:
-        """Temperature, humidity and ageing, calculated or quoted, never guessed."""
-        state, material = self.prediction.states[0], self.scene.membrane_material
-        drift = self.zero_drift(state)
-        at = f"at {state.driving_pressure / KPA:g} kPa, 20 °C"
-        rows = [["Zero drift of the sealed gas", f"{drift:.2f} kPa/K", f"ideal gas in the yielding dome {at}"]]
-        if state.figures is not None:
-            rows.append(
-                [
-                    "the same as force",
-                    f"{drift / state.figures.sensitivity:.2f} N/K",
-                    "drift over the predicted sensitivity",
-                ]
-            )
-        rows.append(["Fast contact", "up to 1.4 times", "gas stiffness, adiabatic against isothermal air"])
-        if material.shore_a and material.shore_a_one_year:
-            text = f"Shore A {material.shore_a.text()} to {material.shore_a_one_year.text()}"
-            rows.append(["Ageing, one year in light and air", text, "paper, Table 1"])
-        rows.append(["Humidity, oils, ozone, UV", NOT_TESTED, ""])
-        return rows
-
-    def zero_drift(self, state: State) -> float:
-        """Pressure change of the shut-in gas by temperature without contact, kPa/K.
-
-        The dome yields as the gas warms: dp/dT = (p_abs/T) k/(k + p_abs/V), k = dp/dV of the dome and V the gas.
-        """
-        curve = self.prediction.inflation
-        slope = float(np.interp(state.cavity_volume, curve.volume, np.gradient(curve.pressure, curve.volume)))
-        absolute = self.scene.design.pneumatics.ambient_pressure_kPa * KPA + state.driving_pressure
-        gas = absolute / (state.cavity_volume + self.prediction.dead_volume)
-        return absolute / _ROOM_TEMPERATURE * slope / (slope + gas) / KPA
 
     def bodies(self) -> list[list[str]]:
         """Material and print of each body."""

@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
+    from matplotlib.patheffects import AbstractPathEffect
 
 FONTS = Path(__file__).parent / "fonts"
 BOLD: dict[str, Any] = {"family": "Inter Semi Bold", "weight": 600}
@@ -54,15 +56,66 @@ def svg(drawn: Figure) -> str:
     return text[text.index("<svg") :]
 
 
-def label_ends(ax: Axes, ends: list[tuple[float, str, dict[str, Any]]], x: float, gap: float) -> None:
-    """Write labels to the right of ``x`` at heights as near to their curves' ends as ``gap`` (data) allows."""
-    placed: list[float] = []
-    for height, _, _ in sorted(ends, key=lambda end: end[0]):
-        placed.append(height if not placed else max(height, placed[-1] + gap))
-    shift = sum(p - e[0] for p, e in zip(placed, sorted(ends, key=lambda e: e[0]), strict=True)) / max(len(ends), 1)
-    for y, (height, text, look) in zip(placed, sorted(ends, key=lambda end: end[0]), strict=True):
-        ax.annotate(
-            text, (x, height), xytext=(x + 0.05 * (ax.get_xlim()[1] - ax.get_xlim()[0]), y - shift),
-            va="center", annotation_clip=False,
-            arrowprops={"arrowstyle": "-", "lw": 0.4, "color": MUTED, "relpos": (0, 0.5), "shrinkA": 2, "shrinkB": 1}, **look,
-        )  # fmt: skip
+Label = tuple[float, float, str, dict[str, Any]]
+"""x, y (data), text and look of a label."""
+
+
+def label_ends(ax: Axes, ends: list[Label], gap: float = 0.062) -> None:
+    """Write labels right of the axes, as near to their curves' ends as ``gap`` (share of the height) allows.
+
+    Call it once the limits and scales of the axes stand.
+    """
+    for (x, y, text, look), (_, height) in zip(ends, _spread(ax, ends, gap), strict=True):
+        _labelled(ax, (x, y), text, (1.04, height), "left", look)
+
+
+def label_points(ax: Axes, points: list[Label], shift: tuple[float, float], gap: float = 0.055) -> None:
+    """Write labels beside points, ``shift`` away (shares of width and height), at least ``gap`` apart in height.
+
+    Call it once the limits and scales of the axes stand.
+    """
+    for (x, y, text, look), (across, height) in zip(points, _spread(ax, points, gap), strict=True):
+        side = "left" if shift[0] > 0 else "right"
+        _labelled(ax, (x, y), text, (across + shift[0], height + shift[1]), side, look)
+
+
+def _spread(ax: Axes, labels: list[Label], gap: float) -> list[tuple[float, float]]:
+    """Places in shares of the axes: heights moved apart to ``gap``, in the middle where the points' own are."""
+    to_axes = ax.transData + ax.transAxes.inverted()
+    own = [tuple(map(float, to_axes.transform((x, y)))) for x, y, *_ in labels]
+    order = sorted(range(len(own)), key=lambda k: (own[k][1], k))
+    placed: dict[int, float] = {}
+    for before, k in zip([None, *order], order, strict=False):
+        placed[k] = own[k][1] if before is None else max(own[k][1], placed[before] + gap)
+    shift = sum(placed[k] - own[k][1] for k in order) / max(len(order), 1)
+    return [(own[k][0], placed[k] - shift) for k in range(len(own))]
+
+
+def _labelled(
+    ax: Axes, at: tuple[float, float], text: str, place: tuple[float, float], side: str, look: dict[str, Any]
+) -> None:
+    """One label with a hair line to its point."""
+    ax.annotate(
+        text, at, xytext=place, textcoords="axes fraction", ha=side, va="center", annotation_clip=False, zorder=5,
+        path_effects=halo(), arrowprops={
+            "arrowstyle": "-", "lw": 0.4, "color": MUTED, "relpos": (0 if side == "left" else 1, 0.5), "shrinkA": 2, "shrinkB": 1,
+        },
+        **look,
+    )  # fmt: skip
+
+
+def halo() -> list[AbstractPathEffect]:
+    """A white rim around letters that may stand on lines."""
+    from matplotlib.patheffects import withStroke
+
+    return [withStroke(linewidth=1.8, foreground="white")]
+
+
+def plain_ticks(axis: Axis) -> None:
+    """Ticks of a logarithmic axis as plain numbers at 1, 2 and 5 of each decade; at 1 alone where they are many."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    low, high = axis.get_view_interval()
+    axis.set_major_locator(LogLocator(10, (1.0, 2.0, 5.0) if high < 300 * low else (1.0,)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())

@@ -7,28 +7,23 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import solve_triangular
 
-from pneutouch.mechanics.atlas.recipe import FIELDS, Axes, Recipe, axes
+from pneutouch.mechanics.atlas.recipe import STORED, Axes, Recipe, axes, flattened
 from pneutouch.mechanics.atlas.spline import Axis, roughness
 from pneutouch.mechanics.atlas.survey import Survey
 from pneutouch.meridian.segments import Array
 
 _SMOOTH = 1.0e-5
 """Weight of the coefficients' roughness: decides only where no state supports them."""
-_ALIKE = 1.0e-3
+_ALIKE = 1.0e-5
 """Weight of a coefficient's distance from the mean of its neighbours over the wall ratio, likewise."""
 _SETTLING = 200
 _FLOOR = 0.15
 """Pressures and forces below this share of the limit pressure are fitted to absolute, above it to relative error."""
 
-MOST = {
-    "contact_radius": np.inf,
-    "stretch": 6.0,
-    "von_mises": 12.0,
-    "overhang": np.inf,
-    "fold": 6.0,
-    "inner_apex": np.inf,
-}
-"""Where a face turns over at the tip of a crease, strains are immense and mean nothing: cut before they are fitted."""
+_TYPES = {"inner_apex": np.float32}
+"""Half precision is enough for the other fields: a step of it moves a stretch by less than a thousandth."""
+_AT_CONTACT = 4.0
+"""Weight of the fields of the free dome, from which the limits of driving are read."""
 
 
 @dataclass(frozen=True)
@@ -87,13 +82,12 @@ def fit_sheet(survey: Survey, recipe: Recipe) -> Sheet:
         [rows * (unit * scale)[:, None] for (rows, _, _), scale in zip(found, scales, strict=True)],
         [(wanted * scale)[:, None] for (_, wanted, _), scale in zip(found, scales, strict=True)], smooth / _FLOOR,
     )  # fmt: skip
-    wanted = np.stack(
-        [np.minimum(field, MOST[name]) for name, field in zip(FIELDS, survey.fields, strict=True)], axis=1
-    )
+    weight = np.where(w > 0.0, 1.0, _AT_CONTACT)[:, None]
+    wanted = np.stack([flattened(name, field) for name, field in zip(STORED, survey.fields, strict=True)], axis=1)
     support = np.zeros((way.volume.cells, way.depth.cells))
     support[way.volume.basis(nu)[0], way.depth.basis(w)[0]] = 1.0
     return Sheet(
-        survey.limit_volume, unit, apex, potential, _system([value], [wanted], smooth), _grown(support),
+        survey.limit_volume, unit, apex, potential, _system([value * weight], [wanted * weight], smooth), _grown(support),
         survey.fold_from, survey.fold_volume,
     )  # fmt: skip
 
@@ -133,7 +127,9 @@ def _system(rows: list[Array], values: list[Array], smooth: Array) -> System:
 def join(sheets: list[Sheet], recipe: Recipe) -> dict[str, Array]:
     """The tables of the atlas: splines over the logarithm of the wall ratio through every sheet's coefficients."""
     wall, shape = axes(recipe).wall, (-1, axes(recipe).volume.size, axes(recipe).depth.size)
-    through = np.linalg.inv(wall.rows(np.log(recipe.wall_ratios)))
+    # Not-a-knot: no jump of the third derivative at the first and the last inner knot.
+    square = np.concatenate([wall.rows(np.log(recipe.wall_ratios)), roughness(wall.size, 4)[[0, -1]]])
+    through = np.linalg.inv(square)[:, : recipe.walls]
     unit = np.array([sheet.limit_pressure for sheet in sheets])
     potential = unit[:, None] * _settled([sheet.potential for sheet in sheets])[..., 0]
     fields = _settled([sheet.fields for sheet in sheets])
@@ -146,8 +142,11 @@ def join(sheets: list[Sheet], recipe: Recipe) -> dict[str, Array]:
 
     return {
         **{name: along(stacked(name)) for name in ("limit_volume", "limit_pressure", "apex")},
-        "potential": along(potential).reshape(shape),
-        **{name: along(fields[..., k]).reshape(shape).astype(np.float32) for k, name in enumerate(FIELDS)},
+        "potential": along(potential).reshape(shape).astype(np.float32),
+        **{
+            name: along(fields[..., k]).reshape(shape).astype(_TYPES.get(name, np.float16))
+            for k, name in enumerate(STORED)
+        },
         **{name: stacked(name) for name in ("fold_from", "fold_volume")},
         "support": stacked("support").astype(bool),
     }

@@ -90,7 +90,7 @@ class Press:
         self.pressure = batch.driving_pressure / mu
         self.ambient = batch.ambient_pressure / mu
         self.dead = batch.dead_volume / radius**3
-        self.reach = slices.reach(k)
+        self.reach, self.limit = slices.reach(k), slices.limit_pressure[k]
         self.free = _inflated(slices, k, self.pressure)
         self.apex = slices.free_apex(k, self.free)[:, 0]
         room = self.volume(self.free) + self.dead
@@ -104,7 +104,7 @@ class Press:
         """Some of the sensors, inflated states kept."""
         part = object.__new__(Press)
         part.batch, part.slices, part.k = self.batch.take(rows), self.slices, self.k[rows]
-        for name in ("pressure", "ambient", "dead", "reach", "free", "apex", "content"):
+        for name in ("pressure", "ambient", "dead", "reach", "limit", "free", "apex", "content"):
             setattr(part, name, getattr(self, name)[rows])
         return part
 

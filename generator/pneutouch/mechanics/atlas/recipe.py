@@ -12,6 +12,8 @@ import numpy as np
 from pneutouch.mechanics.atlas.spline import Axis
 from pneutouch.meridian.segments import Array
 
+_HOLDING = ("degree", "volume_cells", "volume_stretch", "depth_cells")
+
 
 @dataclass(frozen=True)
 class Recipe:
@@ -41,8 +43,8 @@ class Recipe:
     first_pressures: tuple[float, ...] = (0.0, 0.05)
     folds: int = 46
     degree: int = 4
-    volume_cells: int = 40
-    volume_stretch: float = 0.3
+    volume_cells: int = 46
+    volume_stretch: float = 0.5
     depth_cells: int = 30
     depth_stretch: float = 0.1
 
@@ -80,9 +82,10 @@ class Recipe:
         fields: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in content.items()}
         return cls(**fields)
 
-    def fingerprint(self) -> str:
-        """Tells recipes apart."""
-        return hashlib.sha256(self.text().encode()).hexdigest()[:16]
+    def survey_fingerprint(self) -> str:
+        """Tells apart recipes that ask the solid for other states; how the answers are held does not count."""
+        content = {key: value for key, value in asdict(self).items() if key not in _HOLDING}
+        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
 
 
 class Axes(NamedTuple):
@@ -94,10 +97,10 @@ class Axes(NamedTuple):
 
 
 def axes(recipe: Recipe) -> Axes:
-    """The directions of a recipe; walls in their logarithm, cubic, with as many coefficients as surveys."""
+    """The directions of a recipe; walls in their logarithm, cubic, knots on the surveys."""
     walls = recipe.wall_ratios
     return Axes(
-        Axis(float(np.log(walls[0])), float(np.log(walls[-1])), recipe.walls - 3, 3),
+        Axis(float(np.log(walls[0])), float(np.log(walls[-1])), recipe.walls - 1, 3),
         Axis(recipe.lowest_volume, recipe.highest_volume, recipe.volume_cells, recipe.degree, recipe.volume_stretch),
         Axis(0.0, recipe.beyond, recipe.depth_cells, recipe.degree, recipe.depth_stretch),
     )
@@ -106,4 +109,33 @@ def axes(recipe: Recipe) -> Axes:
 RECIPE = Recipe()
 
 FIELDS = ("contact_radius", "stretch", "von_mises", "overhang", "fold", "inner_apex")
-"""What is tabulated beside the potential: see `solid.PressState`; lengths in R0, stresses in mu."""
+"""What can be asked for beside the potential: see `solid.PressState`; lengths in R0, stresses in mu."""
+
+STRETCHES = tuple(f"stretch_{face}_{part}" for face in ("inner", "outer") for part in ("low", "middle", "high"))
+"""The greatest stretch by face and third of the arc, each smooth where the greatest of all has kinks."""
+
+STORED = (*STRETCHES, "contact_radius", "von_mises", "overhang", "fold", "inner_apex")
+"""What is tabulated."""
+
+
+def parts(name: str) -> tuple[str, ...]:
+    """The tables a field is the greatest of."""
+    return STRETCHES if name == "stretch" else (name,)
+
+
+_SATURATING = (*STRETCHES, "von_mises", "fold")
+_HALF = 2.0
+_MOST = 0.9
+
+
+def flattened(name: str, values: Array) -> Array:
+    """A field as it is tabulated: where a face turns over at the tip of a crease, strains are immense and mean nothing."""
+    return values / (values + _HALF) if name in _SATURATING else values
+
+
+def unflattened(name: str, values: Array) -> Array:
+    """A field from its table; what is immense is cut at eighteen."""
+    if name not in _SATURATING:
+        return values
+    share = np.clip(values, 0.0, _MOST)
+    return np.asarray(_HALF * share / (1.0 - share))

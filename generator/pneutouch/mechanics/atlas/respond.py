@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import fields
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from pneutouch.mechanics.atlas.press import Batch, Flags, Press, Track
 from pneutouch.mechanics.atlas.spline import Index
-from pneutouch.mechanics.atlas.table import Atlas, shipped
+from pneutouch.mechanics.atlas.table import REST_VOLUME, Atlas, shipped
 from pneutouch.mechanics.response import Lines, lines
 from pneutouch.meridian.segments import Array
 from pneutouch.units import KPA
@@ -21,8 +22,8 @@ DEPTH, EDGE, GAUGE, BREAK, BUCKLING, OUTSIDE = range(len(ENDS))
 
 _CHUNK = 1000
 _FIELDS = ("stretch", "contact_radius")
-_ROUNDS = 12
-_WITHIN = 1.0e-4
+_ROUNDS = 14
+_WITHIN = 2.0e-5
 
 
 class Response(NamedTuple):
@@ -58,15 +59,26 @@ class Response(NamedTuple):
 
 
 def inside(batch: Batch, atlas: Atlas) -> Flags:
-    """Whether the atlas speaks for sensors: wall, depth and stiffness of the gas. The rest of its box is in `box`."""
-    recipe = atlas.recipe
-    wall, depth = batch.wall_ratio, batch.depth / batch.inner_radius
-    gas = batch.ambient_pressure / batch.shear_modulus
-    slack = 1e-9
+    """Whether the atlas speaks for sensors: wall, depth, stiffness of the gas, no suction; what is negative or NaN is none.
+
+    A dead volume may be negative as a deviation of a small one; half of the unloaded cavity must be left.
+    """
+    recipe, size, slack = atlas.recipe, batch.inner_radius, 1e-9
     return np.asarray(
-        (wall >= recipe.thinnest * (1 - slack)) & (wall <= recipe.thickest * (1 + slack))
-        & (depth <= recipe.deepest * (1 + slack)) & (gas <= recipe.stiffest_gas)
+        (size > 0.0) & (batch.shear_modulus > 0.0) & (batch.depth > 0.0) & (batch.plate_radius > 0.0)
+        & (batch.ambient_pressure >= 0.0) & (batch.dead_volume >= -0.5 * REST_VOLUME * size**3) & (batch.driving_pressure >= 0.0)
+        & (batch.wall_thickness >= recipe.thinnest * (1 - slack) * size)
+        & (batch.wall_thickness <= recipe.thickest * (1 + slack) * size)
+        & (batch.depth <= recipe.deepest * (1 + slack) * size)
+        & (batch.ambient_pressure <= recipe.stiffest_gas * batch.shear_modulus)
+        & ~np.isnan(batch.gauge_limit) & ~np.isnan(batch.break_stretch)
     )  # fmt: skip
+
+
+def _harmless(batch: Batch, good: Flags, atlas: Atlas) -> Batch:
+    """The batch with a plain sensor in place of what is none, so that no NaN or overflow reaches the others' loops."""
+    plain = Batch(*(np.array(x) for x in (1.0, atlas.recipe.thickest, 1.0, 0.0, 0.0, 0.0, 0.1, np.inf, np.inf, np.inf)))
+    return Batch(*(np.where(good, getattr(batch, f.name), getattr(plain, f.name)) for f in fields(Batch)))
 
 
 def respond(batch: Batch, steps: int = 14, atlas: Atlas | None = None) -> Response:
@@ -80,7 +92,8 @@ def respond(batch: Batch, steps: int = 14, atlas: Atlas | None = None) -> Respon
 
 def _respond(batch: Batch, steps: int, atlas: Atlas) -> Response:
     good = inside(batch, atlas)
-    walls, k = np.unique(np.where(good, batch.wall_ratio, atlas.recipe.thickest), return_inverse=True)
+    batch = _harmless(batch, good, atlas)
+    walls, k = np.unique(batch.wall_ratio, return_inverse=True)
     slices = atlas.slices(walls, _FIELDS)
     limit = slices.limit_pressure[k] * batch.shear_modulus
     press = Press(batch, slices, k)
@@ -115,7 +128,7 @@ def _respond(batch: Batch, steps: int, atlas: Atlas) -> Response:
 def _margins(press: Press, track: Track) -> Array:
     """What turns positive where a range ends, in the order of `ENDS` from EDGE to BREAK; (3, n, m)."""
     batch = press.batch
-    gauge = track.point.pressure - (batch.gauge_limit / batch.shear_modulus)[:, None]
+    gauge = (track.point.pressure - (batch.gauge_limit / batch.shear_modulus)[:, None]) / press.limit[:, None]
     edge = press.field("contact_radius", track) - press.flat_radius[:, None]
     tear = press.field("stretch", track) - batch.break_stretch[:, None]
     return np.stack([edge, gauge, tear])
@@ -148,7 +161,7 @@ def _closed_in(press: Press, nu: Array, low: Array, high: Array) -> tuple[Array,
     for _ in range(_ROUNDS):
         with np.errstate(invalid="ignore"):
             share = before / (before - after)
-        share = np.where(np.isfinite(after), np.clip(share, 0.02, 0.98), 0.5)
+        share = np.where(np.isfinite(before) & np.isfinite(after), np.clip(share, 0.02, 0.98), 0.5)
         middle = low + share * (high - low)
         worst, reason, found = _worst(press, nu, middle)
         over = worst > 0.0

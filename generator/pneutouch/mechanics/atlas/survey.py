@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pneutouch.mechanics.atlas.recipe import FIELDS, Recipe
+from pneutouch.mechanics.atlas.recipe import STORED, STRETCHES, Recipe
 from pneutouch.mechanics.atlas.surveyor import Equilibrium, Pressed, Surveyor
 from pneutouch.meridian.segments import Array
 
@@ -23,7 +23,7 @@ class Survey:
     """Everything asked of one wall ratio.
 
     free_volume, free_apex: the free inflation curve from nu = 0 on, (n,). limit_volume, limit_pressure: the limit point.
-    volume, height, energy, pressure, force, stiffness (dp/dV at a fixed plate): (m,). fields: (len(FIELDS), m).
+    volume, height, energy, pressure, force, stiffness (dp/dV at a fixed plate): (m,). fields: (len(STORED), m).
     """
 
     wall_ratio: float
@@ -128,12 +128,12 @@ def _gathered(surveyor: Surveyor, found: list[Equilibrium], fold_from: float, fo
         assert touch is not None
         peak = surveyor.probe.peak(x)
         values = {
+            **dict(zip(STRETCHES, surveyor.probe.stretch_by_zone(x), strict=True)),
             "contact_radius": solid.contact.footprint(x, touch).radius,
-            "stretch": peak.stretch, "von_mises": peak.von_mises, "fold": peak.fold,
-            "inner_apex": float(x[inner, 1]),
+            "von_mises": peak.von_mises, "fold": peak.fold, "inner_apex": float(x[inner, 1]),
             "overhang": float((solid.rest[:, 1].min() - x[:, 1]).max()),
         }  # fmt: skip
-        return [values[name] for name in FIELDS]
+        return [values[name] for name in STORED]
 
     return Survey(
         solid.wall, surveyor.limit.volume, surveyor.limit.pressure,

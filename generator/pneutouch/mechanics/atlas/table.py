@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pneutouch.mechanics.atlas.recipe import FIELDS, Axes, Recipe, axes
+from pneutouch.mechanics.atlas.recipe import FIELDS, Axes, Recipe, axes, parts, unflattened
 from pneutouch.mechanics.atlas.spline import Index
 from pneutouch.meridian.segments import Array
 
@@ -44,7 +44,7 @@ class Point(NamedTuple):
 @dataclass(frozen=True)
 class Slices:
     """The tables cut at wall ratios: limit_volume, limit_pressure (k,), apex (k, volume), potential (k, volume, depth),
-    support (k, volume cells, depth cells), fields (k, fields, volume, depth). rest_apex: outer height of the unloaded dome;
+    support (k, volume cells, depth cells), fields: tables (k, volume, depth) by name. rest_apex: outer height of the unloaded dome;
     fold_from, fold_volume (k,), (k, folds): the buckling edge, see `survey._fold`."""
 
     way: Axes
@@ -105,8 +105,13 @@ class Slices:
         """A tabulated field (see `recipe.FIELDS`) at volumes nu and plate heights, (n,)."""
         cell, by_nu = self.way.volume.basis(nu)
         depth, by_w = self.way.depth.basis(self._apex(k, cell, by_nu)[:, 0] - height)
-        found: Array = _contract(self.fields[name], k, cell, depth, by_nu[:, :1], by_w[:, :1])[:, 0, 0]
-        return found
+        weight = (by_nu[:, 0, :, None] * by_w[:, 0, None, :]).reshape(nu.size, -1)
+        rows, columns = self.way.volume.size, self.way.depth.size
+        side = np.arange(self.way.depth.degree + 1)
+        offsets = (side[:, None] * columns + side).ravel()
+        where = ((k * rows + cell) * columns + depth)[:, None] + offsets
+        found = [unflattened(part, (self.fields[part].ravel()[where] * weight).sum(axis=1)) for part in parts(name)]
+        return np.asarray(np.max(found, axis=0))
 
 
 def _contract(table: Array, k: Index, cell: Index, depth: Index, by_nu: Array, by_w: Array) -> Array:
@@ -117,12 +122,16 @@ def _contract(table: Array, k: Index, cell: Index, depth: Index, by_nu: Array, b
 
 
 class Atlas:
-    """The tables over all wall ratios. ``error`` says how far they were found from the solid (see `Recorded`)."""
+    """The tables over all wall ratios, and the recipe they were made by."""
 
     def __init__(self, tables: dict[str, Array], recipe: Recipe) -> None:
         self.recipe = recipe
         self._tables = tables
         self._way = axes(recipe)
+
+    def boxed(self, recipe: Recipe) -> Atlas:
+        """The same tables with the box of another recipe; its coordinates must be the same."""
+        return Atlas(self._tables, recipe)
 
     def slices(self, wall_ratio: Array, names: tuple[str, ...] = FIELDS) -> Slices:
         """The tables at wall ratios inside the box, (k,), with the named fields."""
@@ -149,7 +158,7 @@ class Atlas:
         return Slices(
             self._way, cut("limit_volume"), cut("limit_pressure"), cut("apex"), cut("potential"),
             support[below] & support[below + 1], 1.0 + wall_ratio, between("fold_from")[:, 0], between("fold_volume"),
-            self.recipe.fold_depths, {name: cut(name) for name in names},
+            self.recipe.fold_depths, {part: cut(part) for name in names for part in parts(name)},
         )  # fmt: skip
 
 
@@ -158,4 +167,6 @@ def shipped() -> Atlas:
     """The atlas that comes with the package."""
     with np.load(SHIPPED) as file:
         recipe = Recipe.from_text(str(file["recipe"]))
-        return Atlas({name: file[name] for name in file.files}, recipe)
+        numbers = {name: file[name] for name in file.files if name not in ("recipe", "solid")}
+    # In double precision at once: products with half precision are slow.
+    return Atlas({name: table.astype(np.float64) for name, table in numbers.items()}, recipe)

@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 #: Within this many wall thicknesses of a clamped node the elastic stress is singular and says nothing; left out.
 CLAMP_REACH = 0.5
 _TURNED_OVER = 1.0e-4
+_SEARCH = 41
 
 
 @dataclass(frozen=True)
@@ -33,26 +34,54 @@ class Peak:
 
 
 class Probe:
-    """Evaluates strains on the faces eta = +-1 at Gauss stations along the arc, of every cell."""
+    """Evaluates strains on the faces eta = +-1 of every cell: at Gauss stations along the arc that are far enough from
+    the clamp, and exactly where far enough begins, so that no station comes and goes with the wall."""
 
     def __init__(self, solid: Solid) -> None:
         self._solid = solid
+        rest, cells = solid.rest, solid.mesh.cells
         stations = np.polynomial.legendre.leggauss(3)[0]
         points = np.stack([np.tile(stations, 2), np.repeat([-1.0, 1.0], 3)], axis=1)
-        b, _, position = strain_operator(solid.rest, solid.mesh.cells, points)
-        held = solid.rest[solid.mesh.clamped]
+        b, _, position = strain_operator(rest, cells, points)
         flat = position.reshape(-1, 2)
-        far = np.ones(flat.shape[0], dtype=bool)
-        if held.size:
-            far = np.hypot(*(flat[:, None, :] - held[None, :, :]).T).min(axis=0) > CLAMP_REACH * solid.wall
+        self._far = self._distance(flat) > CLAMP_REACH * solid.wall
         self._b = b.reshape(b.shape[0], -1, b.shape[-1])
-        self._far = far
-        self._centre = strain_operator(solid.rest, solid.mesh.cells, np.zeros((1, 2)))[0][:, 0]
+        edges = self._edges()
+        self._edge_cells = np.array([cell for cell, _ in edges], dtype=np.intp)
+        extra = [strain_operator(rest, cells[[cell]], point[None, :]) for cell, point in edges]
+        self._edge_b = np.array([found[0][0, 0] for found in extra]).reshape(len(edges), 5, b.shape[-1])
+        places = np.concatenate([flat[self._far], *(found[2][0] for found in extra)])
+        outer = np.concatenate([np.tile(points[:, 1] > 0.0, b.shape[0])[self._far], [p[1] > 0.0 for _, p in edges]])
+        third = np.clip(np.arctan2(places[:, 1], places[:, 0]) / (np.pi / 6.0), 0, 2).astype(np.intp)
+        self._zone = third + 3 * outer.astype(np.intp)
+        self._centre = strain_operator(rest, cells, np.zeros((1, 2)))[0][:, 0]
+
+    def _distance(self, points: Array) -> Array:
+        """Distance of points (n, 2) at rest from the nearest clamped node."""
+        held = self._solid.rest[self._solid.mesh.clamped]
+        if held.size == 0:
+            return np.full(points.shape[0], np.inf)
+        return np.asarray(np.hypot(*(points[:, None, :] - held[None, :, :]).T).min(axis=0))
+
+    def _edges(self) -> list[tuple[int, Array]]:
+        """Cells and local points on their faces where the distance from the clamp passes the reach."""
+        along = np.linspace(-1.0, 1.0, _SEARCH)
+        reach = CLAMP_REACH * self._solid.wall
+        found = []
+        for face in (-1.0, 1.0):
+            local = np.stack([along, np.full_like(along, face)], axis=1)
+            place = strain_operator(self._solid.rest, self._solid.mesh.cells, local)[2]
+            beyond = self._distance(place.reshape(-1, 2)).reshape(place.shape[:2]) - reach
+            for cell, k in zip(*np.nonzero(beyond[:, :-1] * beyond[:, 1:] < 0.0), strict=True):
+                share = beyond[cell, k] / (beyond[cell, k] - beyond[cell, k + 1])
+                found.append((int(cell), np.array([along[k] + share * (along[1] - along[0]), face])))
+        return found
 
     def principal(self, x: Array) -> tuple[Array, Array]:
         """Principal stretches and deviator-carrying stresses lambda dW/dlambda / J (MPa), (3, n_points) each."""
-        cells = self._solid.mesh.cells
-        f = np.matmul(self._b, x[cells].reshape(cells.shape[0], -1, 1)).reshape(-1, 5)[self._far]
+        nodes = x[self._solid.mesh.cells].reshape(self._solid.mesh.cells.shape[0], -1, 1)
+        f = np.matmul(self._b, nodes).reshape(-1, 5)[self._far]
+        f = np.concatenate([f, np.matmul(self._edge_b, nodes[self._edge_cells])[..., 0]])
         # At the tip of a crease a face can turn over between sound integration points: shown as an immense fold.
         j = np.maximum(f[:, 0] * f[:, 3] - f[:, 1] * f[:, 2], _TURNED_OVER)
         a, h = np.maximum((f[:, :4] ** 2).sum(axis=1), 2.0 * j), np.maximum(f[:, 4], _TURNED_OVER)
@@ -64,6 +93,11 @@ class Probe:
             [2.0 * jet[1] * stretch[0] ** 2 + common, 2.0 * jet[1] * stretch[1] ** 2 + common, h * jet[3]]
         )
         return stretch, stress / (j * h)
+
+    def stretch_by_zone(self, x: Array) -> Array:
+        """Greatest principal stretch on each face and third of the arc, inner face first, from the base up; (6,)."""
+        greatest = self.principal(x)[0].max(axis=0)
+        return np.array([greatest[self._zone == zone].max(initial=0.0) for zone in range(6)])
 
     def cell_stretch(self, x: Array) -> Array:
         """Greatest principal stretch at the centre of every cell (n_cells,) for nondimensional positions x."""

@@ -30,7 +30,7 @@ def neighbourhood() -> Atlas:
     open_ = replace(
         recipe, thinnest=float(walls[0]), thickest=float(walls[-1]), margin=1.0, deepest=recipe.beyond - _MARGIN
     )
-    return Atlas(known._tables, open_)
+    return known.boxed(open_)
 
 
 def moved(batch: Batch, name: str, by: Array) -> Batch:

@@ -1,0 +1,69 @@
+"""What a method says of a scene, in one form for all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from benchmarks.scenes import Scene
+from pneutouch.mechanics.events import range_end
+from pneutouch.mechanics.membrane import membrane_states
+from pneutouch.mechanics.response import figures
+from pneutouch.mechanics.solid import Press, Solid, dome, indent, inflate, state_at
+from pneutouch.mechanics.solid_states import _curve, _events
+from pneutouch.meridian.segments import Array
+from pneutouch.units import KPA
+
+_FINE_STEPS = 140
+"""Steps of the membrane's curve where it is read between the 14 that are timed."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a method says of a scene: mm, MPa, N. ``curve`` gives force and rise at indentations up to ``end``."""
+
+    apex: float
+    end: float
+    ends: str
+    curve: Callable[[Array], tuple[Array, Array]]
+
+    def sensitivity(self, grid: Array) -> float:
+        """Slope of rise over force on a grid of indentations, kPa/N."""
+        force, rise = self.curve(grid)
+        found = figures(grid, force, rise / KPA)
+        return np.nan if found is None else found.sensitivity
+
+
+def solid_answer(scene: Scene, arc: int | None, through: int | None, depth: float | None = None) -> Answer:
+    """Study 1 to the driving pressure and study 2 in 14 steps, mesh and all; ``depth`` (mm) may stop it short."""
+    s = scene.sensor
+    solid = Solid(dome(s.inner_radius, s.wall_thickness, arc=arc, through=through), s.material)
+    free = state_at(solid, scene.pressure)
+    press = Press(depth or s.depth, s.steps, 2 * s.plate_radius, s.ambient_pressure, s.dead_volume, s.gauge_limit)
+    found = indent(solid, free, press)
+    happened = _events(found)
+    end = min(range_end(happened, press.depth), found.path[-1].indentation)
+    ends = next((event.kind for event in happened if event.ends_range), "depth")
+    return Answer(free.inner_apex, end, ends, lambda grid: _curve(found.path, grid))
+
+
+def membrane_answer(scene: Scene, closure: str) -> Answer:
+    """The same work by the membrane."""
+    pressures = np.array([scene.pressure])
+    (state,) = membrane_states(scene.sensor, pressures, closure)
+    ends = next((event.kind for event in state.events if event.ends_range), "depth")
+
+    def curve(grid: Array) -> tuple[Array, Array]:
+        (fine,) = membrane_states(replace(scene.sensor, steps=_FINE_STEPS), pressures, closure)
+        return np.interp(grid, fine.indentation, fine.force), np.interp(grid, fine.indentation, fine.pressure_rise)
+
+    return Answer(state.apex_inner, state.range_end, ends, curve)
+
+
+def solid_limit(scene: Scene, arc: int | None, through: int | None) -> float:
+    """Limit pressure, MPa; nan where there is none."""
+    s = scene.sensor
+    run = inflate(Solid(dome(s.inner_radius, s.wall_thickness, arc=arc, through=through), s.material), past_limit=1.0)
+    return np.nan if run.limit is None else run.limit.pressure

@@ -1,0 +1,200 @@
+"""Write docs/atlas.md with its map of errors: ``python -m benchmarks.atlas_page`` (minutes, every core)."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchmarks.atlas_presses import Gap, compare_all, random_cases
+from pneutouch.mechanics.atlas.recipe import RECIPE, axes
+from pneutouch.mechanics.atlas.table import SHIPPED
+from pneutouch.meridian.segments import Array
+from pneutouch.report.style import INK, figure, svg
+
+DOCS = Path(__file__).resolve().parents[1] / "docs"
+COUNT, SEED = 2000, 2000
+KEYS = ("wall", "share", "ambient", "dead", "depth")
+ERRORS = {
+    "force": "force at the worst state of a press, over its greatest force",
+    "pressure": "pressure at the worst state of a press, over its greatest rise",
+    "gauge": "the same, over its greatest gauge pressure",
+    "common": "sensitivity over the common range",
+    "own": "sensitivity over each one's own range",
+    "limit": "limit pressure",
+}
+LEVELS = (0.001, 0.002, 0.005)
+_DIGITS = 4
+
+
+def measure() -> dict[str, Any]:
+    """Errors of random presses, as columns; the presses of `make check-slow`."""
+    os.environ["OMP_NUM_THREADS"] = "1"
+    gaps = [gap for gap in compare_all(random_cases(COUNT, SEED), os.cpu_count() or 1) if gap is not None]
+
+    def column(values: list[float]) -> list[float]:
+        return [float(f"{value:.{_DIGITS}g}") for value in values]
+
+    return {
+        "asked": COUNT, **{key: column([getattr(gap.case, key) for gap in gaps]) for key in KEYS},
+        **{name: column([getattr(gap, name) for gap in gaps]) for name in ERRORS},
+        "end_off": column([gap.positions[1] - gap.positions[0] for gap in gaps]),
+        "states": {name: _states(gaps, f"every_{name}") for name in ("force", "pressure")},
+        "ends": dict(Counter(" / ".join(gap.ends) for gap in gaps).most_common()),
+    }  # fmt: skip
+
+
+def _states(gaps: list[Gap], name: str) -> list[float]:
+    """Count, median, 99th percentile and greatest over all states of all presses."""
+    errors = np.concatenate([getattr(gap, name) for gap in gaps])
+    return [float(errors.size), *(float(f"{x:.{_DIGITS}g}") for x in np.quantile(errors, [0.5, 0.99, 1.0]))]
+
+
+def page(data: dict[str, Any]) -> str:
+    """The whole page from stored numbers."""
+    return "\n".join([*_what(), *_made(), *_accuracy(data), *_worst(data), *_outside()])
+
+
+def _what() -> list[str]:
+    way = axes(RECIPE)
+    return [
+        "# The atlas", "",
+        "The atlas is the finite element `solid` tabulated once: the same answers in a small part of its time, inside a stated box. "
+        "`pneutouch predict DESIGN --model atlas` asks for it; `--model auto` takes it where its stated error meets the tolerance.", "",
+        "## What it holds", "",
+        "For a wall that is neo-Hookean, everything scales with the shear modulus mu and the inner radius R0. What is left of a dome "
+        "under a plate is its elastic energy E(t0/R0, V, h): wall ratio, cavity volume, plate height. Pressure and force are its slopes,",
+        "", "    p = dE/dV,   F = -dE/dh,", "",
+        "so the two always belong together: no work is won on a round trip. Gas, dead volume, ambient pressure, modulus and size are "
+        "not in the table. They enter afterwards and exactly, by Boyle's law: (p + pa)(V + Vd) stays what it was at first contact.", "",
+        "| coordinate | meaning | box | coefficients |", "|---|---|---|---|",
+        f"| t0/R0 | wall ratio, in its logarithm | {RECIPE.thinnest:g} to {RECIPE.thickest:g} | {way.wall.size}, cubic |",
+        f"| nu | volume above the unloaded one over its way to the limit point | {RECIPE.lowest_volume:g} to {RECIPE.highest_volume:g} | "
+        f"{way.volume.size}, degree {RECIPE.degree} |",
+        f"| w | plate below the free apex at that volume, over R0 | 0 to {RECIPE.deepest:g} of travel | "
+        f"{way.depth.size}, degree {RECIPE.degree} |",
+        "",
+        f"Ambient pressure up to {RECIPE.stiffest_gas:g} mu, any dead volume, Poisson ratio {RECIPE.poisson_ratio:g}, base clamped, any "
+        "driving pressure below the limit point. Beside the energy it holds what events are read from: contact radius, greatest stretch "
+        "and stress, the fold of a face, the overhang, the inner apex.", "",
+    ]  # fmt: skip
+
+
+def _made() -> list[str]:
+    return [
+        "## How it is made", "",
+        f"`make atlas` asks the solid at its default mesh for {RECIPE.walls} walls, a little beyond the box: volume and plate height are "
+        "held, energy, pressure, force and their derivatives are kept, on every state that some trapped gas can hold stably. Presses with "
+        "trapped gas line the edge at zero pressure and find where the wall buckles. One energy in B-splines is fitted to all of them by "
+        f"least squares. It takes minutes on two cores and writes `atlas.npz` ({SHIPPED.stat().st_size / 1e6:.1f} MB); a stopped run goes on "
+        "where it was. The file carries a fingerprint of the solid's answers, and a test fails when the solid no longer gives them.", "",
+    ]  # fmt: skip
+
+
+def _row(name: str, words: str, data: dict[str, Any]) -> str:
+    errors = np.abs(np.array(data[name]))
+    middle, most, worst = np.quantile(errors, [0.5, 0.99, 1.0])
+    return f"| {words} | {middle:.3%} | {most:.2%} | {worst:.2%} | {(errors > LEVELS[-1]).sum()} |"
+
+
+def _accuracy(data: dict[str, Any]) -> list[str]:
+    off = np.abs(np.array(data["end_off"]))
+    same = sum(count for kinds, count in data["ends"].items() if len(set(kinds.split(" / "))) == 1)
+    count = len(data["wall"])
+    states = [
+        f"| {name} at every one of {values[0]:,.0f} states, over the press's greatest | {values[1]:.3%} | {values[2]:.2%} | {values[3]:.2%} | |"
+        for name, values in data["states"].items()
+    ]
+    return [
+        "## How near it is to the solid", "",
+        f"{data['asked']:,} random presses in the box that took no part in making it, by both: walls and gas stiffness even in their "
+        f"logarithm, driving pressure 0 to 97 % of the limit, dead volume 0 to several R0^3, depth 0.2 to 0.75 R0, some with a gauge limit "
+        f"or a break strain ({count:,} have a range to compare). `make check-slow` presses them again and prints these figures.", "",
+        "| error | median | 99 of 100 | greatest | above 0.5 % |", "|---|---|---|---|---|",
+        *(_row(name, words, data) for name, words in ERRORS.items()), *states, "",
+        f"What ends the range is the same in {same:,} of {count:,} presses; where, differs by at most {off.max():.4f} R0 (the solid itself "
+        "locates a jump to 0.0005 R0). On top comes the solid's own error against a refined mesh, see [accuracy](accuracy.md).", "",
+    ]  # fmt: skip
+
+
+def _worst(data: dict[str, Any]) -> list[str]:
+    order = np.argsort(-np.abs(np.array(data["force"])))[:6]
+    rows = [
+        f"| {data['wall'][i]:.3f} | {data['share'][i]:.0%} | {data['ambient'][i]:.2g} | {data['dead'][i]:.2g} | {data['depth'][i]:.2f} | "
+        f"{data['force'][i]:.2%} | {data['pressure'][i]:.2%} | {data['common'][i]:+.2%} |"
+        for i in order
+    ]
+    return [
+        "## Where it is worst, and why", "",
+        "![Greatest error in force over wall ratio and driving pressure, and over wall ratio and depth](atlas.svg)", "",
+        "- **No pressure.** Pressure in the cavity is what makes a thin dome round under its plate. Without it the force of the solid "
+        "itself is wavy as the contact's edge walks over the elements one by one: at t0/R0 = 0.06 by up to 0.6 % of full scale "
+        "against a mesh twice as fine, at 0.2 by 0.3 %. The atlas goes smoothly through the waves.",
+        "- **Shortly before buckling.** The stiffness runs to zero along an edge that lies elsewhere for every wall. Between two walls "
+        "of the survey the table sees it only as a bend.",
+        "- **Just below the limit point.** The free pressure is flat there: a small error in pressure is a large one in volume.", "",
+        "The six worst in force:", "",
+        "| t0/R0 | driving, of the limit | ambient/mu | dead volume/R0^3 | depth/R0 | force | pressure | sensitivity |",
+        "|---|---|---|---|---|---|---|---|", *rows, "",
+    ]  # fmt: skip
+
+
+def _outside() -> list[str]:
+    return [
+        "## What lies outside", "",
+        "Another law or Poisson ratio, a flange held as printed, walls or depths outside the box, very soft resin in high ambient "
+        "pressure, a press that leaves the tabulated states, a contact that reaches the plate's edge (the edge's own shape is not in the "
+        "table). The atlas then gives no figures and says which of these it was; `--model auto` goes on to the solid and tells so under "
+        "`error_estimate`. It also leaves ranges to the solid that end by buckling or at the break strain: the atlas answers those "
+        "when asked by name, but the solid places the end more exactly. The deformed shapes of the wall come from the solid alone.", "",
+    ]  # fmt: skip
+
+
+def draw(data: dict[str, Any]) -> str:
+    """Greatest error in force in each cell of two maps, darker for more."""
+    from matplotlib.colors import BoundaryNorm, ListedColormap
+
+    wall, error = np.array(data["wall"]), 100 * np.abs(np.array(data["force"]))
+    edges = np.geomspace(RECIPE.thinnest, RECIPE.thickest, 13)
+    bounds = [0.0, *(100 * level for level in LEVELS), max(1.0, float(error.max()))]
+    norm, shades = BoundaryNorm(bounds, 4), ListedColormap(["#F1F4F6", "#B9C3CB", "#6C7A86", INK])
+    with figure(178, 78) as drawn:
+        axes = drawn.subplots(1, 2)
+        for ax, key, steps, label in zip(
+            axes, ("share", "depth"), (np.linspace(0.0, 0.97, 11), np.linspace(0.2, 0.75, 12)),
+            ("driving pressure / limit  (-)", "depth / R0  (-)"), strict=True,
+        ):  # fmt: skip
+            mesh = ax.pcolormesh(
+                edges, steps, _greatest(wall, np.array(data[key]), error, edges, steps), norm=norm, cmap=shades
+            )
+            ax.set(xscale="log", xlabel="wall / R0  (-)", ylabel=label)
+            ax.set_xticks([0.06, 0.1, 0.15, 0.2, 0.3], ["0.06", "0.1", "0.15", "0.2", "0.3"])
+            ax.minorticks_off()
+        bar = drawn.colorbar(mesh, ax=axes, ticks=bounds, spacing="uniform")
+        bar.set_label("greatest error in force, of full scale  (%)")
+        bar.ax.set_yticklabels([f"{bound:g}" for bound in (*bounds[:-1], round(bounds[-1], 1))])
+        return svg(drawn)
+
+
+def _greatest(x: Array, y: Array, error: Array, x_edges: Array, y_edges: Array) -> Array:
+    """The greatest error in each cell (rows: y), NaN where there is none."""
+    i = np.clip(np.searchsorted(x_edges, x, side="right") - 1, 0, x_edges.size - 2)
+    k = np.clip(np.searchsorted(y_edges, y, side="right") - 1, 0, y_edges.size - 2)
+    found = np.full((y_edges.size - 1, x_edges.size - 1), -1.0)
+    np.maximum.at(found, (k, i), error)
+    return np.where(found < 0.0, np.nan, found)
+
+
+def main() -> None:
+    data = measure()
+    for name, text in (("atlas.json", json.dumps(data) + "\n"), ("atlas.svg", draw(data)), ("atlas.md", page(data))):
+        (DOCS / name).write_text(text, encoding="utf-8")
+        print(f"wrote docs/{name}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,158 @@
+"""Random presses inside the atlas's box, pressed by the solid and by the atlas alike; everything in units of R0 and mu."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from multiprocessing import get_context
+from typing import NamedTuple
+
+import numpy as np
+
+from pneutouch.mechanics.atlas.press import Batch
+from pneutouch.mechanics.atlas.press import Press as Lookup
+from pneutouch.mechanics.atlas.respond import ENDS, respond
+from pneutouch.mechanics.atlas.table import shipped
+from pneutouch.mechanics.events import range_end
+from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.response import figures
+from pneutouch.mechanics.solid import Press, Solid, dome, indent, inflate, state_at
+from pneutouch.mechanics.solid_states import _curve, _events
+from pneutouch.meridian.segments import Array
+from pneutouch.units import KPA
+
+STEPS = 14
+POISSON = 0.49
+_SHORTEST = 0.05
+"""A range of less of R0 is a few of the solid's contact elements: a slope over it is no figure."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """One dome and one press: t0/R0, share of the limit pressure, ambient/mu, dead volume/R0^3, depth/R0, and what may
+    end the range early: gauge limit/mu and stretch at break, both infinite for none."""
+
+    wall: float
+    share: float
+    ambient: float
+    dead: float
+    depth: float
+    gauge: float = np.inf
+    tear: float = np.inf
+
+    def batch(self, limit: float) -> Batch:
+        """The same for the atlas, driven to a share of a limit pressure."""
+        values = (
+            1.0, self.wall, 1.0, self.ambient, self.dead, self.share * limit, self.depth, np.inf, self.gauge, self.tear,
+        )  # fmt: skip
+        return Batch(*(np.array([value]) for value in values))
+
+
+@dataclass(frozen=True)
+class Gap:
+    """How far the atlas is from the solid over one press.
+
+    force, pressure: greatest difference over the common range, over the solid's greatest force and greatest pressure
+    rise there; gauge: the same difference of pressures over the greatest gauge pressure. every_force, every_pressure: at
+    each state. common, own: relative difference of the sensitivities over the common range and over each one's own.
+    ends: (solid's, atlas's) reason; positions: (solid's, atlas's) end of the range in R0.
+    """
+
+    case: Case
+    force: float
+    pressure: float
+    gauge: float
+    every_force: Array
+    every_pressure: Array
+    common: float
+    own: float
+    ends: tuple[str, str]
+    positions: tuple[float, float]
+    limit: float
+
+
+def random_cases(count: int, seed: int) -> list[Case]:
+    """Walls and gas stiffness even in their logarithm, a quarter of the domes without pressure or dead volume, a quarter
+    each with a gauge limit or a break strain within reach."""
+    rng = np.random.default_rng(seed)
+    found = []
+    for _ in range(count):
+        wall = float(np.exp(rng.uniform(np.log(0.06), np.log(0.35))))
+        share = 0.0 if rng.random() < 0.25 else rng.uniform(0.0, 0.97)
+        ambient = float(np.exp(rng.uniform(np.log(0.01), np.log(3.0))))
+        dead = 0.0 if rng.random() < 0.25 else float(rng.exponential(2.0))
+        event = rng.random()
+        gauge = wall * (1.5 * share + rng.uniform(0.2, 3.0)) if event < 0.25 else np.inf
+        # A free dome stretches by about 0.7 share^2; a tear before contact would leave nothing to compare.
+        tear = 1.05 + 0.75 * share**2 + rng.uniform(0.0, 0.6) if event > 0.75 else np.inf
+        found.append(Case(wall, share, ambient, dead, rng.uniform(0.2, 0.75), gauge, tear))
+    return found
+
+
+def compare(case: Case) -> Gap | None:
+    """Press once by both; None where the range ends nearly at once, in which there is nothing to compare."""
+    solid = Solid(dome(1.0, case.wall), neo_hookean(1.0, POISSON))
+    run = inflate(solid, past_limit=1.0)
+    assert run.limit is not None
+    free = state_at(solid, case.share * run.limit.pressure, run)
+    press = Press(case.depth, STEPS, None, case.ambient, case.dead, case.gauge, case.tear - 1.0)
+    found = indent(solid, free, press)
+    happened = _events(found)
+    end = min(range_end(happened, case.depth), found.path[-1].indentation)
+    ends = next((event.kind for event in happened if event.ends_range), ENDS[0])
+    batch = case.batch(run.limit.pressure)
+    said = respond(batch, STEPS)
+    mine = float(said.range_end[0])
+    names, limit = (ends, ENDS[int(said.ends[0])]), float(said.limit_pressure[0]) / run.limit.pressure - 1.0
+    common = min(end, mine)
+    if not common > _SHORTEST:
+        return None
+    lookup = Lookup(batch, shipped().slices(batch.wall_ratio), np.zeros(1, dtype=np.intp))
+    grid, whole = (np.linspace(0.0, reach, STEPS + 1) for reach in (common, end))
+    theirs, full = figures(grid, *_curve(found.path, grid)), figures(whole, *_curve(found.path, whole))
+    ours = figures(grid, *_looked_up(lookup, grid))
+    assert ours is not None and theirs is not None and full is not None
+    travel = np.maximum([s.indentation for s in found.path if s.indentation <= common * (1 + 1e-9)], 0.0)
+    if travel.size < 3:  # the range ends within the solid's first step: between its states then, on its own slopes
+        travel = grid
+    force, rise = _differences(lookup, travel, _curve(found.path, travel))
+    return Gap(
+        case, force.error, rise.error, rise.error * rise.scale / (free.pressure + rise.scale), force.every, rise.every,
+        ours.sensitivity / theirs.sensitivity - 1.0, KPA * float(said.lines.sensitivity[0]) / full.sensitivity - 1.0,
+        names, (end, mine), limit,
+    )  # fmt: skip
+
+
+class _Difference(NamedTuple):
+    """Differences over the greatest value, at every state and the greatest of them."""
+
+    every: Array
+    scale: float
+
+    @property
+    def error(self) -> float:
+        return float(self.every.max())
+
+
+def _differences(lookup: Lookup, travel: Array, theirs: tuple[Array, Array]) -> tuple[_Difference, _Difference]:
+    """Of force and pressure rise at plate travels."""
+    one, other = (
+        _Difference(np.abs(a - b) / b.max(), float(b.max()))
+        for a, b in zip(_looked_up(lookup, travel), theirs, strict=True)
+    )
+    return one, other
+
+
+def _looked_up(lookup: Lookup, travel: Array) -> tuple[Array, Array]:
+    """Force and pressure rise of the atlas at plate travels."""
+    track = lookup.march(travel[None, :])
+    return track.point.force[0], track.point.pressure[0] - lookup.pressure[0]
+
+
+def compare_all(cases: Iterable[Case], workers: int) -> list[Gap | None]:
+    """All cases, in their order, by processes of their own."""
+    if workers == 1:
+        return [compare(case) for case in cases]
+    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+        return list(pool.map(compare, cases, chunksize=20))

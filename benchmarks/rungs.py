@@ -1,0 +1,78 @@
+"""The rungs above the plain methods on the scenes: the atlas, and the ladder's own choice."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+
+import numpy as np
+
+from benchmarks.answer import Answer, solid_answer
+from benchmarks.scenes import Scene
+from pneutouch.mechanics.atlas.press import Press
+from pneutouch.mechanics.atlas.respond import BREAK, BUCKLING, EDGE, ENDS, OUTSIDE, respond
+from pneutouch.mechanics.atlas.table import Slices, shipped
+from pneutouch.mechanics.atlas_states import batch_of, outside_atlas
+from pneutouch.mechanics.ladder import DEFAULT_TOLERANCE, climb
+from pneutouch.meridian.segments import Array
+
+ATLAS, AUTO = "atlas", f"auto at {DEFAULT_TOLERANCE:.0%}"
+RUNG_METHODS = (ATLAS, AUTO)
+AT_ONCE = 1000
+_LEFT_TO_THE_SOLID = (ENDS[BUCKLING], ENDS[BREAK])
+
+
+def atlas_answer(scene: Scene) -> Answer | None:
+    """The scene looked up as one sensor alone; None where the atlas does not speak for it."""
+    if outside_atlas(scene.sensor) is not None:
+        return None
+    s, batch = scene.sensor, batch_of(scene.sensor, np.array([scene.pressure]))
+    found = respond(batch, s.steps)
+    if int(found.ends[0]) in (OUTSIDE, EDGE) or np.isnan(found.range_end[0]):
+        return None
+    slices = shipped().slices(batch.wall_ratio, ("inner_apex",))
+    press = Press(batch, slices, np.zeros(1, dtype=np.intp))
+    unit = s.shear_modulus * s.inner_radius**2
+
+    def curve(grid: Array) -> tuple[Array, Array]:
+        point = press.march(grid[None, :] / s.inner_radius).point
+        return point.force[0] * unit, (point.pressure[0] - press.pressure[0]) * s.shear_modulus
+
+    return Answer(
+        _inner_apex(slices, press) * s.inner_radius, float(found.range_end[0]), ENDS[int(found.ends[0])], curve
+    )
+
+
+def _inner_apex(slices: Slices, press: Press) -> float:
+    return float(slices.field("inner_apex", press.k, press.free, press.apex)[0])
+
+
+def atlas_limit(scene: Scene) -> float:
+    """Limit pressure, MPa."""
+    s = scene.sensor
+    ratio = np.array([s.wall_thickness / s.inner_radius])
+    return float(shipped().slices(ratio, ()).limit_pressure[0]) * s.shear_modulus
+
+
+def auto_answer(scene: Scene) -> tuple[Answer, str]:
+    """The answer of the cheapest rung that states the default tolerance, and which it was."""
+    if ATLAS in climb(scene.sensor, DEFAULT_TOLERANCE).rungs:
+        answer = atlas_answer(scene)
+        if answer is not None and answer.ends not in _LEFT_TO_THE_SOLID:
+            return answer, ATLAS
+    return solid_answer(scene, None, None), "solid"
+
+
+def seconds_at_once(scene: Scene, count: int = AT_ONCE) -> float:
+    """Processor time of the atlas for one of many sensors in one call, all with walls of their own."""
+    s = scene.sensor
+    batch = batch_of(s, np.full(count, scene.pressure))
+    batch = replace(batch, wall_thickness=s.wall_thickness * np.linspace(0.99, 1.01, count))
+    start = time.process_time()
+    respond(batch, s.steps)
+    return (time.process_time() - start) / count
+
+
+def why_no_answer(scene: Scene) -> str:
+    """What keeps the atlas from a scene."""
+    return outside_atlas(scene.sensor) or "the press leaves its states"

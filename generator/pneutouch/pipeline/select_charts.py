@@ -1,0 +1,118 @@
+"""The charts of a selection: what its target costs, and how far the chosen design can be tuned."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from pneutouch.catalogue import Library
+from pneutouch.errors import InputError
+from pneutouch.mechanics import Sensor
+from pneutouch.pipeline.select import Selection
+from pneutouch.pipeline.tuning import curve, interval
+from pneutouch.report.tradeoff import Spot, TradeOff, tradeoff_chart
+from pneutouch.report.tuning import Tuning, tuning_chart
+from pneutouch.selection import Choice
+from pneutouch.selection.front import front
+from pneutouch.spec.material import Material
+from pneutouch.units import KPA
+
+_SIZE = (130.0, 90.0)
+"""Width and height of a chart, mm."""
+
+_DESIGNS = 5
+"""Designs marked on the trade-off, and resins drawn beside the chosen one on the tuning chart."""
+
+
+def write_charts(selection: Selection, folder: Path, library: Library | None = None) -> list[Path]:
+    """Write ``trade-off.svg``, and ``tuning.svg`` where there is a design; returns what was written.
+
+    Raises InputError where the folder cannot be written.
+    """
+    charts = {"trade-off.svg": tradeoff_chart(tradeoff(selection), _SIZE)}
+    found = tuning(selection, library or Library.default())
+    if found is not None:
+        charts["tuning.svg"] = tuning_chart(found, _SIZE)
+    return [_write(folder / name, text) for name, text in charts.items()]
+
+
+def tradeoff(selection: Selection) -> TradeOff:
+    """Fronts at the target's driving pressure, the best design's where that is free; its window and the designs in it."""
+    problem, designs = selection.problem, _best(selection)
+    pressure = problem.driving_pressure
+    if pressure is None:
+        pressure = float(designs[0].pool.pressure[0]) if designs else 0.0
+    wanted = problem.sensitivity
+    return TradeOff(
+        tuple(front(replace(problem, driving_pressure=pressure))), pressure / KPA, (problem.gauge_limit - pressure) / KPA,
+        tuple(_spot(rank, choice) for rank, choice in enumerate(designs, start=1)),
+        None if wanted is None else (wanted * (1 - problem.tolerance), wanted * (1 + problem.tolerance)),
+        problem.force_range,
+    )  # fmt: skip
+
+
+def tuning(selection: Selection, library: Library) -> Tuning | None:
+    """The best design's curve to its rated pressure, and those of the best designs in other resins as far."""
+    designs = _best(selection)
+    if not designs:
+        return None
+    chosen, material = designs[0], designs[0].resin.material
+    drawn = curve(sensor_of(selection, chosen), chosen.rated, material.title)
+    if drawn is None:
+        return None
+    low, high = interval(
+        sensor_of(selection, chosen), drawn, material, list(library.all("materials", Material).values()),
+        selection.base.printer, "atlas",
+    )  # fmt: skip
+    others = (
+        curve(sensor_of(selection, choice), min(choice.rated, chosen.rated), choice.resin.material.title)
+        for choice in designs[1:]
+    )
+    working = {float(chosen.pool.pressure[0]) / KPA: float(chosen.pool.response.lines.sensitivity[0])}
+    return Tuning(drawn, low, high, working, tuple(other for other in others if other is not None))
+
+
+def sensor_of(selection: Selection, choice: Choice) -> Sensor:
+    """A choice as a sensor, in everything else the selection's."""
+    pool, resin = choice.pool, choice.resin
+    batch = selection.problem.batch(pool.resin, pool.radius, pool.wall, pool.pressure)
+    return replace(
+        selection.sensor, inner_radius=float(pool.radius[0]), wall_thickness=float(pool.wall[0]), law=None, flange=None,
+        dead_volume=float(batch.dead_volume[0]), depth=float(batch.depth[0]), shear_modulus=resin.shear_modulus,
+        poisson_ratio=selection.problem.recipe.poisson_ratio,
+        break_stretch=None if np.isinf(resin.break_stretch) else resin.break_stretch,
+    )  # fmt: skip
+
+
+def _best(selection: Selection) -> list[Choice]:
+    """The best design of each resin, best resin first."""
+    first: dict[str, Choice] = {}
+    for choice in selection.answer.designs:
+        first.setdefault(choice.resin.name, choice)
+    return list(first.values())[:_DESIGNS]
+
+
+def _spot(rank: int, choice: Choice) -> Spot:
+    title, force = choice.resin.material.title, float(choice.pool.force[0])
+    return Spot(title, f"{rank}  {title}, {force:.3g} N", float(choice.pool.response.lines.sensitivity[0]), force)
+
+
+def _write(path: Path, text: str) -> Path:
+    """Write a file beside its place and rename it into it."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, beside = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+        try:
+            with os.fdopen(handle, "w", encoding="utf-8") as file:
+                file.write(text)
+            Path(beside).chmod(0o644)
+            Path(beside).replace(path)
+        finally:
+            Path(beside).unlink(missing_ok=True)
+    except OSError as error:
+        raise InputError(f"--charts: {path}: {error.strerror}; give a folder you may write to") from None
+    return path

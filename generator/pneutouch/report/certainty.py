@@ -1,0 +1,115 @@
+"""The section "How sure" of a datasheet: intervals, sources and the rung, as plain data."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pneutouch.mechanics import Prediction
+from pneutouch.mechanics.ladder import NUMERICAL
+from pneutouch.units import KPA
+
+Document = dict[str, Any]
+
+SENSITIVITY = "sensitivity_kPa_per_N"
+
+_FIGURES = {
+    SENSITIVITY: ("Sensitivity", "kPa/N"), "limit_pressure_kPa": ("Limit pressure", "kPa"),
+    "stiffness_N_per_mm": ("Stiffness", "N/mm"), "force_at_range_end_N": ("Force at the range's end", "N"),
+    "range_end_mm": ("Range ends at", "mm"), "apex_height_outer_mm": ("Apex height, outside", "mm"),
+}  # fmt: skip
+
+_INPUTS = {
+    "shear_modulus": "shear modulus", "wall_thickness": "wall", "inner_radius": "inner radius",
+    "dead_volume": "dead volume", "ambient_pressure": "ambient pressure", "driving_pressure": "driving pressure",
+}  # fmt: skip
+
+
+def ends(prediction: Prediction, documents: tuple[Document, ...]) -> dict[str, Document]:
+    """Documents of the lowest and the highest driving pressure, by label; those of which something is known."""
+    pairs = list(zip(prediction.states, documents, strict=True))
+    chosen = pairs[:1] + pairs[1:][-1:]
+    return {f"{s.driving_pressure / KPA:g} kPa": d for s, d in chosen if SENSITIVITY in d.get("figures", {})}
+
+
+def interval(document: Document, figure: str = SENSITIVITY) -> str:
+    """The k = 2 interval of a figure, such as ``1.57 to 2.38``; empty where it is not known."""
+    found = document.get("figures", {}).get(figure)
+    return "" if found is None else f"{_digits(found['low'])} to {_digits(found['high'])}"
+
+
+def shares(found: dict[str, Document]) -> dict[str, dict[str, float]]:
+    """Shares of the variance of the sensitivity by label of the driving pressure."""
+    return {label: document["figures"][SENSITIVITY]["shares"] for label, document in found.items()}
+
+
+def how_sure(prediction: Prediction, documents: tuple[Document, ...]) -> dict[str, Any]:
+    """Everything that the section says; every leaf is text or a flag."""
+    found = ends(prediction, documents)
+    why = next((document["unknown"] for document in documents if "unknown" in document), None)
+    last = list(found.values())[-1] if found else {}
+    return {
+        "known": bool(found),
+        "why": why or "no interval of the sensitivity can be given: the atlas has no state at these driving pressures",
+        "summary": _summary(found),
+        "head": ["Figure", "Unit", *(cell for label in found for cell in (f"at {label}", "k = 2"))],
+        "figures": _figures(found),
+        "sources": [_source(source) for source in last.get("sources", []) if source["standard_uncertainty"] > 0],
+        "notes": [_plain(f"{note}.") for note in last.get("notes", [])],
+        "rung": _rung(prediction),
+    }
+
+
+def _summary(found: dict[str, Document]) -> list[str]:
+    """What to measure first, one line for driving pressures at which the same is to be said."""
+    said: dict[str, list[str]] = {}
+    for label, document in found.items():
+        said.setdefault(document["summary"], []).append(label)
+    return [f"At {' and '.join(labels)}: {text[0].lower() + text[1:]}" for text, labels in said.items()]
+
+
+def _plain(text: str) -> str:
+    """Figures by the names that the sheet gives them."""
+    for name, (title, _) in _FIGURES.items():
+        text = text.replace(name, title.lower())
+    return text.replace("+-", "±")
+
+
+def _figures(found: dict[str, Document]) -> list[list[str]]:
+    rows = []
+    for name, (title, unit) in _FIGURES.items():
+        cells = []
+        for document in found.values():
+            figure = document["figures"].get(name)
+            cells += ["–", ""] if figure is None else [_digits(figure["value"]), _width(document, name)]
+        rows.append([title, unit, *cells])
+    return rows
+
+
+def _width(document: Document, name: str) -> str:
+    """The interval; a figure under which no source has an effect is as it was stated."""
+    figure = document["figures"][name]
+    return interval(document, name) if figure["expanded_uncertainty"] > 0 else "as stated"
+
+
+def _source(source: dict[str, Any]) -> list[str]:
+    """Name, standard uncertainty, what it acts on, known or assumed, where from."""
+    size = source["standard_uncertainty"]
+    value = f"{size:.2g} mL" if source["unit"] == "mL" else f"{100 * size:.2g} %"
+    figures = [_FIGURES[name][0].lower() for name in source["figures"]]
+    acts_on = _INPUTS.get(source["acts_on"], ", ".join(figures))
+    return [source["name"], value, acts_on, "known" if source["known"] else "assumed", _plain(source["origin"])]
+
+
+def _rung(prediction: Prediction) -> list[list[str]]:
+    """Which model gave the figures, how exactly it solves its equations, and why it was taken."""
+    error = prediction.error_estimate
+    exact = f"within {NUMERICAL[prediction.model]:.1%} in sensitivity" if prediction.model != "membrane" else (
+        f"up to {1 + NUMERICAL['membrane']:.0f} times off the solid's sensitivity"
+    )  # fmt: skip
+    why = error.get("rung", "asked for by name, or the default")
+    return [["Model", prediction.model], ["Numerical error", exact], ["Why this model", why]]
+
+
+def _digits(value: float) -> str:
+    """Three significant digits without an exponent."""
+    return f"{value:.0f}" if abs(value) >= 100 else f"{value:#.3g}"

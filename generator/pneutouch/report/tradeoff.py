@@ -1,0 +1,123 @@
+"""The trade-off chart: what sensitivity costs in force range, resin by resin."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MUTED, Label, figure, label_points, plain_ticks, svg
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from pneutouch.selection.front import Front
+
+
+class Spot(NamedTuple):
+    """A design on the chart: title of its resin, what to call it, kPa/N and N."""
+
+    resin: str
+    label: str
+    sensitivity: float
+    force: float
+
+
+@dataclass(frozen=True)
+class TradeOff:
+    """Fronts at one driving pressure.
+
+    Attributes:
+        fronts: One a resin; empty ones are left out.
+        pressure: Driving pressure, kPa.
+        gauge: Pressure rise that the pressure sensor has left, kPa.
+        window: Least and greatest sensitivity wanted (kPa/N), None where free.
+        force: Least force range wanted, N; None where free.
+        spots: Designs, the first picked out.
+    """
+
+    fronts: tuple[Front, ...]
+    pressure: float
+    gauge: float
+    spots: tuple[Spot, ...]
+    window: tuple[float, float] | None = None
+    force: float | None = None
+
+    @property
+    def known(self) -> tuple[Front, ...]:
+        """The fronts with a line to draw."""
+        return tuple(front for front in self.fronts if front.sensitivity.size > 1)
+
+
+def tradeoff_chart(tradeoff: TradeOff, size: tuple[float, float]) -> str:
+    """Greatest force range over sensitivity, both logarithmic, as SVG; ``size`` is width and height in mm."""
+    chosen = tradeoff.spots[0].resin if tradeoff.spots else ""
+    with figure(*size) as drawn:
+        ax = drawn.add_subplot()
+        ax.set(
+            xscale="log", yscale="log", xlabel=f"sensitivity at {tradeoff.pressure:g} kPa  (kPa/N)",
+            ylabel="greatest force range  (N)", **_limits(tradeoff),
+        )  # fmt: skip
+        _window(ax, tradeoff)
+        _gauge(ax, tradeoff)
+        starts: list[Label] = []
+        for k, front in enumerate(tradeoff.known):
+            s, force, title = front.sensitivity, front.force, front.resin.material.title
+            mine = title == chosen
+            ax.plot(
+                s, force, color=ACCENT if mine else INK, lw=2.0 if mine else 0.8, zorder=4 if mine else 3,
+                ls=LINES[0] if mine else LINES[k % len(LINES)],
+            )  # fmt: skip
+            ax.plot(s[0], force[0], "o", color=ACCENT if mine else INK, ms=2.2, zorder=4)
+            look = {"fontsize": 6.5, "color": INK, **BOLD} if mine else {"fontsize": 6.5, "color": INK}
+            starts.append((float(s[0]), float(force[0]), f"{title}  {s[0]:.2g} to {s[-1]:.2g}", look))
+        label_points(ax, starts, (0.06, 0.05))
+        _spots(ax, tradeoff.spots)
+        for axis in (ax.xaxis, ax.yaxis):
+            plain_ticks(axis)
+        return svg(drawn)
+
+
+def _spots(ax: Axes, spots: tuple[Spot, ...]) -> None:
+    labels: list[Label] = []
+    for k, (_, label, sensitivity, force) in enumerate(spots):
+        ax.plot(sensitivity, force, "o", color=INK, mfc=INK if k == 0 else "white", ms=4.5, zorder=6 + (k == 0))
+        look = {"fontsize": 6.5, "color": INK, **(BOLD if k == 0 else {})}
+        labels.append((sensitivity, force, label, look))
+    label_points(ax, labels, (-0.08, -0.1))
+
+
+def _limits(tradeoff: TradeOff) -> dict[str, tuple[float, float]]:
+    """Limits that hold the fronts, the designs and the window, with a margin; the labels need it at the top."""
+    x = [float(value) for front in tradeoff.known for value in front.sensitivity]
+    y = [float(value) for front in tradeoff.known for value in front.force]
+    x += [spot.sensitivity for spot in tradeoff.spots] + list(tradeoff.window or ())
+    y += [spot.force for spot in tradeoff.spots] + ([] if tradeoff.force is None else [tradeoff.force])
+    return {"xlim": (min(x, default=0.1) / 1.3, max(x, default=10.0) * 1.3),
+            "ylim": (min(y, default=0.1) / 1.4, max(y, default=10.0) * 2.0)}  # fmt: skip
+
+
+def _window(ax: Axes, tradeoff: TradeOff) -> None:
+    """The target's window: from its least to its greatest sensitivity, upwards of its force range."""
+    if tradeoff.window is None and tradeoff.force is None:
+        return
+    from matplotlib.patches import Rectangle
+
+    low, high = tradeoff.window or ax.get_xlim()
+    least, top = tradeoff.force or ax.get_ylim()[0], ax.get_ylim()[1]
+    ax.add_patch(
+        Rectangle(
+            (low, least), high - low, top - least, fc=FAINT, alpha=0.6, ec=INK, lw=0.6, zorder=1, gid="target-window"
+        )
+    )
+    middle = (low * high) ** 0.5
+    ax.annotate("target", (middle, top), xytext=(0, 2), textcoords="offset points", ha="center", fontsize=6.5, **BOLD)
+
+
+def _gauge(ax: Axes, tradeoff: TradeOff) -> None:
+    """Where the cavity pressure reaches the end of the pressure sensor's range: no design is beyond."""
+    low, high = ax.get_xlim()
+    ax.plot([low, high], [tradeoff.gauge / low, tradeoff.gauge / high], color=FAINT, lw=5, zorder=2)
+    ax.text(
+        0.02, 0.03, f"grey band: end of the gauge's range,\nforce × sensitivity = {tradeoff.gauge:g} kPa",
+        transform=ax.transAxes, fontsize=6.5, color=MUTED, va="bottom",
+    )  # fmt: skip

@@ -1,0 +1,101 @@
+"""The tuning chart: how far the driving pressure moves the sensitivity, and how sure that is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from pneutouch.meridian.segments import Array
+from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MUTED, Label, figure, halo, label_ends, svg
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+class TuningCurve(NamedTuple):
+    """Sensitivity (kPa/N) over driving pressure (kPa), (n,) each."""
+
+    label: str
+    pressure: Array
+    sensitivity: Array
+
+
+@dataclass(frozen=True)
+class Tuning:
+    """One design's curve from no pressure to its rated one.
+
+    Attributes:
+        chosen: The curve.
+        low: Lower end of its k = 2 interval, kPa/N, (n,).
+        high: Upper end, (n,).
+        working: Driving pressures it is meant for and the sensitivities there, kPa to kPa/N.
+        others: Designs to compare with.
+        published: Measured sensitivities of this very sensor, kPa to kPa/N.
+    """
+
+    chosen: TuningCurve
+    low: Array
+    high: Array
+    working: dict[float, float]
+    others: tuple[TuningCurve, ...] = ()
+    published: tuple[tuple[float, float], ...] = ()
+
+
+def tuning_chart(tuning: Tuning, size: tuple[float, float]) -> str:
+    """Sensitivity over driving pressure with its band, as SVG; ``size`` is width and height in mm."""
+    chosen = tuning.chosen
+    with figure(*size) as drawn:
+        ax = drawn.add_subplot()
+        ax.fill_between(chosen.pressure, tuning.low, tuning.high, fc=FAINT, alpha=0.55, ec="none", zorder=1)
+        for edge in (tuning.low, tuning.high):
+            ax.plot(chosen.pressure, edge, color=MUTED, lw=0.6, zorder=2)
+        ends: list[Label] = [(
+            float(chosen.pressure[-1]), float(chosen.sensitivity[-1]), chosen.label,
+            {"fontsize": 6.5, "color": INK, **BOLD},
+        )]  # fmt: skip
+        for k, other in enumerate(tuning.others):
+            ax.plot(other.pressure, other.sensitivity, color=INK, lw=0.7, ls=LINES[1 + k % 4], zorder=3)
+            at = float(other.pressure[-1]), float(other.sensitivity[-1])
+            ends.append((*at, other.label, {"fontsize": 6.5, "color": MUTED}))
+        ax.plot(chosen.pressure, chosen.sensitivity, color=ACCENT, lw=2.0, zorder=4)
+        if tuning.published:
+            ax.plot(*np.array(tuning.published).T, "D", color=INK, mfc="white", ms=4.5, zorder=6, clip_on=False)
+        most = [float(tuning.high.max()), *(float(other.sensitivity.max()) for other in tuning.others)]
+        top = 1.12 * max(most + [value for _, value in tuning.published])
+        ax.set(
+            xlabel="driving pressure  (kPa)", ylabel="sensitivity  (kPa/N)", ylim=(0, top),
+            xlim=(0, float(max(chosen.pressure[-1], *tuning.working))),
+        )  # fmt: skip
+        _mark(ax, tuning)
+        if tuning.others:
+            label_ends(ax, ends)
+        return svg(drawn)
+
+
+def _mark(ax: Axes, tuning: Tuning) -> None:
+    """The working pressures on the curve, and words for the band and the diamonds where they stand."""
+    for pressure, value in tuning.working.items():
+        ax.plot([pressure, pressure], [0, value], color=INK, lw=0.6, ls=LINES[4], zorder=2)
+        ax.plot(pressure, value, "o", color=INK, mfc="white", ms=4.5, zorder=5, clip_on=False)
+    last, value = list(tuning.working.items())[-1]
+    side = -1 if last > 0.5 * ax.get_xlim()[1] else 1
+    ax.annotate(
+        f"{value:.2f} kPa/N\nat {last:g} kPa", (last, 0.0), xytext=(4 * side, 5), textcoords="offset points", va="bottom",
+        ha="right" if side < 0 else "left", fontsize=6.5,
+    )  # fmt: skip
+    ax.annotate(
+        "k = 2", (tuning.chosen.pressure[-1], tuning.high[-1]), xytext=(-4, -3), textcoords="offset points", va="top",
+        ha="right", fontsize=6.5, color=INK,
+    )  # fmt: skip
+    if tuning.published:
+        ax.annotate(
+            "published measurement",
+            tuning.published[0],
+            xytext=(7, 2),
+            textcoords="offset points",
+            va="bottom",
+            fontsize=6.5,
+            path_effects=halo(),
+        )

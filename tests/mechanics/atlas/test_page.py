@@ -1,0 +1,65 @@
+"""docs/atlas.md is made of its stored numbers, and those are what both say today."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from benchmarks import atlas_page
+from benchmarks.atlas_presses import compare, random_cases
+from benchmarks.rungs import ATLAS, AUTO, atlas_answer, atlas_limit, auto_answer, why_no_answer
+from benchmarks.scenes import SCENES
+from benchmarks.speed_accuracy import limit, run
+
+
+@pytest.fixture(scope="module")
+def stored():
+    return json.loads((atlas_page.DOCS / "atlas.json").read_text(encoding="utf-8"))
+
+
+def test_the_page_is_made_of_the_stored_numbers(stored):
+    assert (atlas_page.DOCS / "atlas.md").read_text(encoding="utf-8") == atlas_page.page(stored)
+    assert "(atlas.svg)" in atlas_page.page(stored) and (atlas_page.DOCS / "atlas.svg").is_file()
+
+
+def test_stored_errors_are_what_both_say_today(stored):
+    cases = random_cases(stored["asked"], atlas_page.SEED)
+    for number in (3, len(cases) // 3, len(cases) - 2):
+        gap = compare(cases[number])
+        assert gap is not None
+        row = int(np.argmin(np.abs(np.array(stored["wall"]) - cases[number].wall)))
+        assert stored["depth"][row] == pytest.approx(cases[number].depth, rel=1e-3)
+        assert stored["force"][row] == pytest.approx(gap.force, abs=2e-5)
+        assert stored["common"][row] == pytest.approx(gap.common, abs=2e-5)
+
+
+def test_a_map_cell_holds_the_greatest_of_its_errors():
+    x, y, error = np.array([0.1, 0.2, 0.9]), np.array([0.1, 0.3, 0.9]), np.array([1.0, 3.0, 2.0])
+    edges = np.array([0.0, 0.5, 1.0])
+    cells = atlas_page._greatest(x, y, error, edges, edges)
+    assert cells[0, 0] == 3.0 and cells[1, 1] == 2.0
+    assert np.isnan(cells[0, 1]) and np.isnan(cells[1, 0])
+
+
+def test_scenes_in_the_box_are_answered_near_the_solid_and_the_others_are_left_to_it():
+    inside = [scene for scene in SCENES if atlas_answer(scene) is not None]
+    assert 8 <= len(inside) < len(SCENES)
+    assert sum(auto_answer(scene)[1] == ATLAS for scene in SCENES) >= 5
+    for scene in SCENES:
+        answer, rung = auto_answer(scene)
+        looked_up = scene in inside and atlas_answer(scene).ends in ("depth", "gauge range")
+        assert rung == (ATLAS if looked_up else "solid") and answer.end > 0.0
+    for scene in inside[1::3]:
+        ours, theirs = run(ATLAS, scene), run("solid default", scene)
+        grid = np.linspace(0.0, min(ours.end, theirs.end), 15)
+        assert ours.sensitivity(grid) == pytest.approx(theirs.sensitivity(grid), rel=5e-3)
+        assert ours.apex == pytest.approx(theirs.apex, rel=1e-3)
+        for top in (limit(AUTO, scene), atlas_limit(scene)):
+            assert top == pytest.approx(limit("solid default", scene), rel=5e-4)
+
+
+def test_every_scene_outside_says_why():
+    reasons = [why_no_answer(scene) for scene in SCENES if atlas_answer(scene) is None]
+    assert any("law" in reason for reason in reasons) and any("wall" in reason for reason in reasons)
+    assert any("Poisson" in reason for reason in reasons)

@@ -1,0 +1,186 @@
+"""The ladder: which rung answers at which tolerance, why, and what it says of itself."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pneutouch.errors import BeyondLimitError, InputError
+from pneutouch.mechanics import Sensor, predict
+from pneutouch.mechanics.ladder import NUMERICAL, RUNGS, climb, parse_tolerance
+from pneutouch.units import KPA, ML
+
+PAPER = Sensor(
+    inner_radius=9.25, wall_thickness=1.5, shear_modulus=0.17, poisson_ratio=0.49, ambient_pressure=0.101325,
+    dead_volume=0.0, plate_radius=15.0, depth=4.5, steps=14, break_stretch=None, gauge_limit=0.1,
+)  # fmt: skip
+
+OUTSIDE = {
+    "law": ({"law": ("mooney-rivlin", (0.07, 0.015))}, "law of its own"),
+    "Poisson ratio": ({"poisson_ratio": 0.48}, "Poisson ratio 0.48"),
+    "flange": ({"flange": (2.25, 2.25)}, "flange"),
+    "thin wall": ({"wall_thickness": 0.05 * 9.25}, r"wall 0\.05 R0"),
+    "thick wall": ({"wall_thickness": 0.4 * 9.25}, r"wall 0\.4 R0"),
+    "depth": ({"depth": 0.76 * 9.25}, r"depth 0\.76 R0"),
+    "soft resin in air": ({"shear_modulus": 0.03}, "ambient pressure"),
+}
+
+
+def said(prediction):
+    return prediction.error_estimate["rung"]
+
+
+@pytest.mark.parametrize(
+    ("text", "value"), [("2%", 0.02), ("0.02", 0.02), (" 1.6 % ", 0.016), ("150%", 1.5), ("5", 5.0)]
+)
+def test_tolerances_are_read_as_shares(text, value):
+    assert parse_tolerance(text) == pytest.approx(value, rel=1e-12)
+
+
+@pytest.mark.parametrize("text", ["", "%", "two", "0", "-1%", "nan", "inf", "2%%", "0%", "1e9"])
+def test_what_is_no_tolerance_is_refused_in_words(text):
+    with pytest.raises(InputError, match="--tolerance"):
+        parse_tolerance(text)
+
+
+@given(st.floats(1e-6, 99.0))
+def test_a_percentage_and_its_share_are_the_same(value):
+    assert parse_tolerance(f"{100 * value!r}%") == pytest.approx(parse_tolerance(repr(value)), rel=1e-12)
+
+
+def test_stated_errors_fall_as_the_rungs_get_dearer():
+    errors = [NUMERICAL[rung] for rung in RUNGS]
+    assert errors == sorted(errors, reverse=True) and len(set(errors)) == len(errors)
+
+
+@given(st.floats(min(NUMERICAL.values()), 50.0))
+def test_every_rung_on_the_way_meets_the_tolerance_and_the_rest_say_why_not(tolerance):
+    way = climb(PAPER, tolerance)
+    assert way.rungs[-1] == "solid"
+    assert all(NUMERICAL[rung] <= tolerance for rung in way.rungs)
+    assert list(way.rungs) == [rung for rung in RUNGS if rung in way.rungs]
+    assert {line.split(":")[0] for line in way.passed} == set(RUNGS) - set(way.rungs)
+
+
+def test_at_two_percent_the_atlas_answers_and_names_both_parts_of_its_error():
+    found = predict("x", PAPER, [0.0, 0.022], model="auto", tolerance=0.02)
+    assert found.model == "atlas"
+    assert "meets 2.0%" in said(found) and "passed over membrane" in said(found)
+    assert found.error_estimate["sensitivity_tabulation_relative"] == pytest.approx(0.005)
+    assert found.error_estimate["sensitivity_discretisation_relative"] == pytest.approx(0.011)
+
+
+def test_at_one_point_two_percent_the_solid_answers():
+    found = predict("x", PAPER, [0.022], model="auto", tolerance=0.012)
+    assert found.model == "solid"
+    assert "atlas: its stated error of 1.6% is more than 1.2%" in said(found)
+
+
+@pytest.mark.parametrize("tolerance", [0.0109, 1e-6, 0.0, -1.0, float("nan")])
+def test_below_what_the_solid_can_state_is_an_error(tolerance):
+    with pytest.raises(InputError, match=r"the best is the solid's 1\.1%"):
+        predict("x", PAPER, [0.0], model="auto", tolerance=tolerance)
+
+
+def test_a_tolerance_of_many_times_takes_the_membrane():
+    found = predict("x", PAPER, [0.0], model="auto", tolerance=20.0)
+    assert found.model == "membrane" and "20" in said(found)
+
+
+@pytest.mark.parametrize("case", OUTSIDE)
+def test_outside_its_box_the_atlas_is_passed_over_and_the_reason_told(case):
+    changes, reason = OUTSIDE[case]
+    sensor = replace(PAPER, **changes)
+    way = climb(sensor, 0.02)
+    (line,) = [text for text in way.passed if text.startswith("atlas")]
+    assert way.rungs == ("solid",) and re.search(reason, line)
+    with pytest.raises(InputError, match=reason):
+        predict("x", sensor, [0.0], model="atlas")
+
+
+@pytest.mark.parametrize("case", ["law", "flange", "depth", "soft resin in air"])
+def test_auto_falls_through_to_the_solid(case):
+    changes, _ = OUTSIDE[case]
+    found = predict("x", replace(PAPER, steps=4, **changes), [0.0], model="auto", tolerance=0.02)
+    assert found.model == "solid" and "passed over atlas" in said(found)
+
+
+def test_a_contact_that_reaches_the_plates_edge_goes_to_the_solid():
+    small = replace(PAPER, plate_radius=3.0)
+    found = predict("x", small, [0.022], model="auto", tolerance=0.02)
+    assert found.model == "solid" and "the contact reaches the plate's edge" in said(found)
+    with pytest.raises(InputError, match=r"edge.*--model auto or solid"):
+        predict("x", small, [0.022], model="atlas")
+
+
+@pytest.mark.parametrize(("changes", "pressure", "word"), [
+    ({"shear_modulus": 1.64, "depth": 6.9375}, 0.0, "buckles"), ({"break_stretch": 1.35, "depth": 6.9375}, 0.022, "break strain"),
+])  # fmt: skip
+def test_a_range_that_ends_by_buckling_or_tearing_is_left_to_the_solid_unless_the_atlas_is_asked(
+    changes, pressure, word
+):
+    sensor = replace(PAPER, **changes)
+    auto, asked = (predict("x", sensor, [pressure], model=model) for model in ("auto", "atlas"))
+    assert auto.model == "solid" and word in said(auto)
+    assert asked.model == "atlas" and asked.states[0].figures is not None
+
+
+def test_a_press_that_leaves_the_known_states_goes_to_the_solid(monkeypatch):
+    """Nothing but the support of the states is taken away here, as at an edge that the survey did not reach."""
+    from pneutouch.mechanics.atlas.table import Atlas
+
+    slices = Atlas.slices
+
+    def shallow(self, *words):
+        cut = slices(self, *words)
+        support = cut.support.copy()
+        support[:, :, 6:] = False
+        return replace(cut, support=support)
+
+    monkeypatch.setattr(Atlas, "slices", shallow)
+    found = predict("x", PAPER, [0.022], model="auto", tolerance=0.02)
+    assert found.model == "solid" and "leaves the states that the atlas knows" in said(found)
+
+
+def test_auto_is_the_rung_it_names():
+    auto, atlas = (predict("x", PAPER, [0.012, 0.022], model=m) for m in ("auto", "atlas"))
+    assert [s.figures for s in auto.states] == [s.figures for s in atlas.states]
+    assert "rung" not in atlas.error_estimate
+    assert auto.assumptions == atlas.assumptions
+
+
+def test_beyond_the_limit_point_every_rung_says_so_with_nearly_the_same_limit():
+    limits = []
+    for model in ("atlas", "auto", "solid"):
+        with pytest.raises(BeyondLimitError) as caught:
+            predict("x", PAPER, [0.0, 0.0405], model=model)
+        limits.append(caught.value.limit)
+    assert limits == pytest.approx([limits[2]] * 3, rel=5e-4)
+    assert limits[2] / KPA == pytest.approx(39.6, abs=0.1)
+
+
+def test_gas_of_a_dead_volume_in_millilitres_is_stated():
+    found = predict("x", replace(PAPER, dead_volume=2 * ML), [0.0], model="auto")
+    assert "dead volume 2 mL" in found.assumptions[-1]
+
+
+def test_the_command_line_takes_a_tolerance(command, root):
+    words = ["predict", "paper-dome", "--set", "indentation.depth_mm=4.5", "--json"]
+    result = command(*words, "--tolerance", "2%", cwd=root)
+    assert result.returncode == 0, result.stderr
+    document = json.loads(result.stdout)
+    assert document["model"] == "atlas" and "meets 2.0%" in document["error_estimate"]["rung"]
+
+
+@pytest.mark.parametrize("words", [
+    ["--tolerance", "two"], ["--tolerance", "-2%"], ["--tolerance", "0.5%"], ["--tolerance", "2%", "--model", "solid"],
+])  # fmt: skip
+def test_bad_tolerances_exit_2_in_one_line(command, root, words):
+    result = command("predict", "paper-dome", *words, "--json", cwd=root)
+    assert result.returncode == 2 and result.stdout == ""
+    assert "--tolerance" in result.stderr and "Traceback" not in result.stderr

@@ -1,0 +1,155 @@
+"""The trade-off, tuning and share charts: data as the atlas and the budget have them, the window where the target says."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from pneutouch.errors import InputError
+from pneutouch.mechanics.atlas.respond import respond
+from pneutouch.mechanics.uncertainty import batch_of
+from pneutouch.pipeline.design_charts import tradeoff, tuning
+from pneutouch.pipeline.select import select
+from pneutouch.pipeline.select_charts import sensor_of, write_charts
+from pneutouch.pipeline.select_charts import tradeoff as selected_tradeoff
+from pneutouch.pipeline.select_charts import tuning as selected_tuning
+from pneutouch.report.certainty import SENSITIVITY, ends, shares
+from pneutouch.report.shares import OTHERS, ranked, share_bars
+from pneutouch.report.tradeoff import tradeoff_chart
+from pneutouch.report.tuning import tuning_chart
+from pneutouch.spec.target import Target
+from pneutouch.units import KPA
+
+SIZE = (86.0, 62.0)
+TARGET = {
+    "target": {"sensitivity_kPa_per_N": 1.5, "tolerance_percent": 5, "driving_pressure_kPa": 20, "force_range_N": 20},
+    "given": {"materials": ["TangoPlus", "FLX9960"]}, "setting": {"base": "paper-dome"},
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def selection(library):
+    return select(Target.model_validate(TARGET), "test", library)
+
+
+@pytest.fixture
+def axes(monkeypatch):
+    """The axes of every figure saved."""
+    seen = []
+    original = Figure.savefig
+
+    def record(self, *words, **options):
+        seen.extend(self.axes)
+        return original(self, *words, **options)
+
+    monkeypatch.setattr(Figure, "savefig", record)
+    return seen
+
+
+def test_the_window_stands_where_the_target_says(selection, axes):
+    tradeoff_chart(selected_tradeoff(selection), SIZE)
+    (window,) = [patch for patch in axes[0].patches if patch.get_gid() == "target-window"]
+    assert window.get_x() == pytest.approx(1.5 * 0.95)
+    assert window.get_x() + window.get_width() == pytest.approx(1.5 * 1.05)
+    assert window.get_y() == pytest.approx(20)
+    assert window.get_y() + window.get_height() == pytest.approx(axes[0].get_ylim()[1])
+
+
+def test_fronts_are_respond_s_and_the_designs_lie_on_or_below_them(selection):
+    found = selected_tradeoff(selection)
+    assert found.pressure == pytest.approx(20)
+    assert [front.resin.name for front in found.known] == ["TangoPlus", "FLX9960"]
+    for number, front in enumerate(found.known):
+        # A batch closes in on the ends of its ranges together, so that a sensor's range depends on it a little.
+        ones = np.ones_like(front.radius)
+        batch = selection.problem.batch(number * ones, front.radius, front.wall, 0.02 * ones)
+        own = respond(batch, selection.problem.steps).lines
+        np.testing.assert_allclose(own.sensitivity, front.sensitivity, rtol=1e-3)
+        np.testing.assert_allclose(np.fmin(own.force_high, own.saturation_force), front.force, rtol=1e-3)
+    by_title = {front.resin.material.title: front for front in found.known}
+    for spot in found.spots:
+        front = by_title[spot.resin]
+        assert spot.force <= 1.03 * np.interp(spot.sensitivity, front.sensitivity, front.force)
+        assert spot.sensitivity == pytest.approx(1.5, rel=0.05)
+
+
+def test_the_band_at_the_working_pressure_is_the_choice_s_own(selection, library):
+    found, best = selected_tuning(selection, library), selection.answer.designs[0]
+    (pressure, value), *rest = found.working.items()
+    assert not rest
+    assert pressure == pytest.approx(20)
+    assert np.interp(pressure, found.chosen.pressure, found.chosen.sensitivity) == pytest.approx(value, rel=1e-3)
+    width = np.interp(pressure, found.chosen.pressure, np.log(found.high / found.low)) / 2
+    assert width == pytest.approx(best.expanded, rel=0.03)
+    assert found.chosen.pressure[-1] == pytest.approx(best.rated / KPA, rel=1e-3)
+
+
+def test_tuning_curves_are_respond_s(selection, library):
+    found, best = selected_tuning(selection, library), selection.answer.designs[0]
+    sensor = sensor_of(selection, best)
+    own = respond(batch_of(sensor, (found.chosen.pressure * KPA).tolist()), sensor.steps).lines.sensitivity
+    np.testing.assert_allclose(found.chosen.sensitivity, own, rtol=1e-3)
+    assert {other.label for other in found.others} == {"TangoPlus", "FLX9960-DM"} - {found.chosen.label}
+
+
+def test_charts_of_a_selection_are_written_whole_and_repeat(selection, library, tmp_path):
+    for folder in ("a", "b"):
+        paths = write_charts(selection, tmp_path / folder, library)
+        assert [path.name for path in paths] == ["trade-off.svg", "tuning.svg"]
+        assert sorted(path.name for path in (tmp_path / folder).iterdir()) == ["trade-off.svg", "tuning.svg"]
+    for name in ("trade-off.svg", "tuning.svg"):
+        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
+    (tmp_path / "file").write_text("x")
+    with pytest.raises(InputError, match="--charts"):
+        write_charts(selection, tmp_path / "file", library)
+
+
+def test_a_target_out_of_reach_still_shows_the_fronts_and_the_window(library, tmp_path, axes):
+    far = {**TARGET, "target": {**TARGET["target"], "sensitivity_kPa_per_N": 500}}
+    selection = select(Target.model_validate(far), "test", library)
+    assert not selection.answer.designs
+    assert [path.name for path in write_charts(selection, tmp_path, library)] == ["trade-off.svg"]
+    assert axes[0].get_xlim()[1] > 500
+
+
+def test_a_design_s_charts_mark_the_design_at_its_own_figures(evaluated):
+    evaluation = evaluated("paper-dome", model="atlas")
+    last = evaluation.prediction.states[-1]
+    (spot,) = tradeoff(evaluation).spots
+    assert (spot.sensitivity, spot.force) == pytest.approx((last.figures.sensitivity, last.figures.force_range[1]))
+    runs = {front.resin.name for front in tradeoff(evaluation).fronts}
+    assert "Agilus30" not in runs
+    assert {"TangoPlus", "FLX9995"} <= runs
+    found = tuning(evaluation, 0.0356)
+    assert list(found.working) == pytest.approx([0, 5, 12, 22])
+    for (pressure, value), said in zip(found.working.items(), evaluation.uncertainty, strict=True):
+        assert np.interp(pressure, found.chosen.pressure, found.chosen.sensitivity) == pytest.approx(value, rel=1e-3)
+        own = said["figures"][SENSITIVITY]
+        assert np.interp(pressure, found.chosen.pressure, found.low) == pytest.approx(own["low"], rel=0.01)
+        assert np.interp(pressure, found.chosen.pressure, found.high) == pytest.approx(own["high"], rel=0.01)
+
+
+def test_axes_of_the_charts_carry_quantities_and_units(evaluated, axes):
+    evaluation = evaluated("paper-dome", model="atlas")
+    tuning_chart(replace(tuning(evaluation, 0.03), published=((0.0, 2.547),)), SIZE)
+    tradeoff_chart(tradeoff(evaluation), SIZE)
+    assert len(axes) == 2
+    for ax in axes:
+        assert all(re.search(r"\w+  \((kPa|N|kPa/N)\)$", label) for label in (ax.get_xlabel(), ax.get_ylabel()))
+
+
+def test_share_bars_add_up_and_are_as_long_as_the_shares(evaluated, axes):
+    evaluation = evaluated("paper-dome", model="atlas")
+    found = shares(ends(evaluation.prediction, evaluation.uncertainty))
+    assert list(found) == ["0 kPa", "22 kPa"]
+    rows = ranked(list(found.values()))
+    assert next(iter(rows)) == "ageing"
+    assert OTHERS in rows
+    np.testing.assert_allclose(np.sum(list(rows.values()), axis=0), 1.0, atol=1e-4)
+    share_bars(found)
+    lengths = [bar.get_width() for bar in axes[0].patches]
+    np.testing.assert_allclose(lengths, 100 * np.concatenate(list(rows.values())))
