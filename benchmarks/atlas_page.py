@@ -78,7 +78,7 @@ def _what() -> list[str]:
         f"| w | plate below the free apex at that volume, over R0 | 0 to {RECIPE.deepest:g} of travel | "
         f"{way.depth.size}, degree {RECIPE.degree} |",
         "",
-        f"Ambient pressure up to {RECIPE.stiffest_gas:g} mu, any dead volume, Poisson ratio {RECIPE.poisson_ratio:g}, base clamped, any "
+        f"Ambient pressure up to {RECIPE.stiffest:g} mu, any dead volume, Poisson ratio {RECIPE.poisson_ratio:g}, base clamped, any "
         "driving pressure below the limit point. Beside the energy it holds what events are read from: contact radius, greatest stretch "
         "and stress, the fold of a face, the overhang, the inner apex.", "",
     ]  # fmt: skip

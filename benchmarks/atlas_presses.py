@@ -12,6 +12,7 @@ import numpy as np
 
 from pneutouch.mechanics.atlas.press import Batch
 from pneutouch.mechanics.atlas.press import Press as Lookup
+from pneutouch.mechanics.atlas.recipe import RECIPE
 from pneutouch.mechanics.atlas.respond import ENDS, respond
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.events import range_end
@@ -56,7 +57,7 @@ class Gap:
     force, pressure: greatest difference over the common range, over the solid's greatest force and greatest pressure
     rise there; gauge: the same difference of pressures over the greatest gauge pressure. every_force, every_pressure: at
     each state. common, own: relative difference of the sensitivities over the common range and over each one's own.
-    ends: (solid's, atlas's) reason; positions: (solid's, atlas's) end of the range in R0.
+    near: the atlas says that the wall would soon buckle. ends: (solid's, atlas's) reason; positions: (solid's, atlas's) end of the range in R0.
     """
 
     case: Case
@@ -70,6 +71,12 @@ class Gap:
     ends: tuple[str, str]
     positions: tuple[float, float]
     limit: float
+    near: bool
+
+    @property
+    def inside(self) -> bool:
+        """Whether the press keeps away from the edge where walls buckle, at which the box ends."""
+        return not self.near and "inward buckling" not in self.ends and "no equilibrium found" not in self.ends
 
 
 def random_cases(count: int, seed: int) -> list[Case]:
@@ -80,12 +87,13 @@ def random_cases(count: int, seed: int) -> list[Case]:
     for _ in range(count):
         wall = float(np.exp(rng.uniform(np.log(0.06), np.log(0.35))))
         share = 0.0 if rng.random() < 0.25 else rng.uniform(0.0, 0.97)
-        ambient = float(np.exp(rng.uniform(np.log(0.01), np.log(3.0))))
+        ambient = float(np.exp(rng.uniform(np.log(0.01), np.log(RECIPE.stiffest))))
         dead = 0.0 if rng.random() < 0.25 else float(rng.exponential(2.0))
         event = rng.random()
         gauge = wall * (1.5 * share + rng.uniform(0.2, 3.0)) if event < 0.25 else np.inf
         # A free dome stretches by about 0.7 share^2; a tear before contact would leave nothing to compare.
-        tear = 1.05 + 0.75 * share**2 + rng.uniform(0.0, 0.6) if event > 0.75 else np.inf
+        # No printed rubber of the catalogue tears below 1.35.
+        tear = 1.3 + 0.75 * share**2 + rng.uniform(0.0, 0.6) if event > 0.75 else np.inf
         found.append(Case(wall, share, ambient, dead, rng.uniform(0.2, 0.75), gauge, tear))
     return found
 
@@ -120,7 +128,7 @@ def compare(case: Case) -> Gap | None:
     return Gap(
         case, force.error, rise.error, rise.error * rise.scale / (free.pressure + rise.scale), force.every, rise.every,
         ours.sensitivity / theirs.sensitivity - 1.0, KPA * float(said.lines.sensitivity[0]) / full.sensitivity - 1.0,
-        names, (end, mine), limit,
+        names, (end, mine), limit, bool(said.near_buckling[0]),
     )  # fmt: skip
 
 

@@ -58,9 +58,13 @@ def auto_answer(scene: Scene) -> tuple[Answer, str]:
     """The answer of the cheapest rung that states the default tolerance, and which it was."""
     if ATLAS in climb(scene.sensor, DEFAULT_TOLERANCE).rungs:
         answer = atlas_answer(scene)
-        if answer is not None and answer.ends not in _LEFT_TO_THE_SOLID:
+        if answer is not None and answer.ends not in _LEFT_TO_THE_SOLID and not _near_buckling(scene):
             return answer, ATLAS
     return solid_answer(scene, None, None), "solid"
+
+
+def _near_buckling(scene: Scene) -> bool:
+    return bool(respond(batch_of(scene.sensor, np.array([scene.pressure])), scene.sensor.steps).near_buckling[0])
 
 
 def seconds_at_once(scene: Scene, count: int = AT_ONCE) -> float:

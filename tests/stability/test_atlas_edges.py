@@ -29,7 +29,7 @@ def silent(found: Response, row: int) -> bool:
 
 OUT = {
     "wall too thin": {"wall_thickness": 0.059}, "wall too thick": {"wall_thickness": 0.351}, "paper-thin": {"wall_thickness": 1e-4},
-    "solid ball": {"wall_thickness": 5.0}, "too deep": {"depth": 0.76}, "gas too stiff": {"ambient_pressure": 3.1},
+    "solid ball": {"wall_thickness": 5.0}, "too deep": {"depth": 0.76}, "gas too stiff": {"ambient_pressure": 1.1},
 }  # fmt: skip
 
 
@@ -78,7 +78,7 @@ def test_a_gauge_that_is_full_before_contact_leaves_no_range():
 
 
 @pytest.mark.parametrize("wall", [0.06, 0.35])
-@pytest.mark.parametrize("ambient", [0.0, 1e-9, 3.0])
+@pytest.mark.parametrize("ambient", [0.0, 1e-9, 1.0])
 @pytest.mark.parametrize("dead", [0.0, 1e9])
 @pytest.mark.parametrize("share", [0.0, 0.5, 0.97])
 def test_the_corners_of_the_box_have_answers(wall, ambient, dead, share):

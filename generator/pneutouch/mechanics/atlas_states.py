@@ -9,7 +9,7 @@ import numpy as np
 from pneutouch.errors import BeyondLimitError
 from pneutouch.mechanics.atlas.press import Batch, Press, Track
 from pneutouch.mechanics.atlas.recipe import FIELDS
-from pneutouch.mechanics.atlas.respond import BREAK, BUCKLING, DEPTH, EDGE, ENDS, GAUGE, OUTSIDE, respond
+from pneutouch.mechanics.atlas.respond import BREAK, BUCKLING, DEPTH, EDGE, ENDS, GAUGE, NEAR, OUTSIDE, respond
 from pneutouch.mechanics.atlas.table import REST_VOLUME, Atlas, Slices, shipped
 from pneutouch.mechanics.events import Event
 from pneutouch.mechanics.limits import LimitPoint, Limits
@@ -41,7 +41,7 @@ def outside_atlas(sensor: Sensor, atlas: Atlas | None = None) -> str | None:
         (not recipe.thinnest * (1 - 1e-9) <= ratio <= recipe.thickest * (1 + 1e-9),
          f"wall {ratio:.3g} R0, not {recipe.thinnest:g} to {recipe.thickest:g}"),
         (depth > recipe.deepest * (1 + 1e-9), f"depth {depth:.3g} R0, more than {recipe.deepest:g}"),
-        (gas > recipe.stiffest_gas, f"ambient pressure {gas:.3g} mu, more than {recipe.stiffest_gas:g}"),
+        (gas > recipe.stiffest, f"ambient pressure {gas:.3g} mu, more than {recipe.stiffest:g}"),
     ]  # fmt: skip
     return next((why for applies, why in reasons if applies), None)
 
@@ -90,6 +90,8 @@ def atlas_result(sensor: Sensor, driving_pressures: Array) -> tuple[Result, Lack
     ends = [int(end) for end in response.ends]
     states = tuple(_state(sensor, press, track, i, ends[i], float(response.range_end[i])) for i in range(len(batch)))
     lack = next((reason for end, reason in _LACKS.items() if end in ends), None)
+    if lack is None and response.near_buckling.any():
+        lack = Lack(f"the wall would buckle within {NEAR:g} R0 more of travel, where the table is less sure", False)
     curve, point, torn = _inflation(sensor, slices)
     return Result(point, Limits(limit, torn, sensor.gauge_limit), curve, states), lack
 

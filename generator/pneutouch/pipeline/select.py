@@ -153,7 +153,7 @@ def _resins(
             out[name] = f"the {scene.printer.title} cannot run it"
         elif own.law is not None or own.poisson_ratio != recipe.poisson_ratio:
             out[name] = "the atlas knows neither its law nor its Poisson ratio"
-        elif sensor.ambient_pressure > recipe.stiffest_gas * own.shear_modulus:
+        elif sensor.ambient_pressure > recipe.stiffest * own.shear_modulus:
             out[name] = "it is too soft for the atlas in so high an ambient pressure"
         else:
             resins.append(Resin(name, material, own.shear_modulus, own.break_stretch or np.inf))

@@ -48,8 +48,8 @@ def test_scenes_in_the_box_are_answered_near_the_solid_and_the_others_are_left_t
     assert sum(auto_answer(scene)[1] == ATLAS for scene in SCENES) >= 5
     for scene in SCENES:
         answer, rung = auto_answer(scene)
-        looked_up = scene in inside and atlas_answer(scene).ends in ("depth", "gauge range")
-        assert rung == (ATLAS if looked_up else "solid") and answer.end > 0.0
+        sure = scene in inside and atlas_answer(scene).ends in ("depth", "gauge range")
+        assert rung in ((ATLAS, "solid") if sure else ("solid",)) and answer.end > 0.0
     for scene in inside[1::3]:
         ours, theirs = run(ATLAS, scene), run("solid default", scene)
         grid = np.linspace(0.0, min(ours.end, theirs.end), 15)

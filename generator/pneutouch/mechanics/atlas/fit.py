@@ -23,7 +23,7 @@ _FLOOR = 0.15
 _TYPES = {"inner_apex": np.float32}
 """Half precision is enough for the other fields: a step of it moves a stretch by less than a thousandth."""
 _AT_CONTACT = 4.0
-"""Weight of the fields of the free dome, from which the limits of driving are read."""
+"""Weight of the free dome: its fields tell the limits of driving, and no force is the force at first contact."""
 
 
 @dataclass(frozen=True)
@@ -77,6 +77,7 @@ def fit_sheet(survey: Survey, recipe: Recipe) -> Sheet:
     unit = survey.limit_pressure
     found = [(value, survey.energy, 0.1 * _FLOOR), (pressure, survey.pressure, _FLOOR), (force, survey.force, _FLOOR)]
     scales = [1.0 / (floor * unit + np.abs(wanted)) for _, wanted, floor in found]
+    scales[2] = scales[2] * np.where(w > 0.0, 1.0, _AT_CONTACT)
     smooth = _smoothness(way)
     potential = _system(
         [rows * (unit * scale)[:, None] for (rows, _, _), scale in zip(found, scales, strict=True)],

@@ -12,7 +12,7 @@ import numpy as np
 from pneutouch.mechanics.atlas.spline import Axis
 from pneutouch.meridian.segments import Array
 
-_HOLDING = ("degree", "volume_cells", "volume_stretch", "depth_cells")
+_HOLDING = ("stiffest", "degree", "volume_cells", "volume_stretch", "depth_cells")
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class Recipe:
     how far the plate is below the free apex at that volume. A press with trapped gas leaves nu = 0 downwards where the
     cavity is squeezed below its unloaded volume. ambients, first_pressures: presses with trapped
     gas from these ambient pressures (in mu; 0: vented) and shares of the limit pressure, which line the edge at zero
-    pressure. stiffest_gas: greatest ambient pressure over mu. deepest: greatest plate travel;
+    pressure. stiffest_gas: greatest ambient pressure over mu that is asked about; stiffest: that is inside the box. deepest: greatest plate travel;
     states are asked for to ``beyond``, so that the edge of the box is not the edge of the data.
     """
 
@@ -36,6 +36,7 @@ class Recipe:
     highest_volume: float = 1.06
     deepest: float = 0.75
     stiffest_gas: float = 3.0
+    stiffest: float = 1.0
     beyond: float = 0.80
     volumes: int = 68
     depths: int = 60

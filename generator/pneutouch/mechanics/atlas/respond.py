@@ -20,6 +20,7 @@ ENDS = ("depth", "plate edge", "gauge range", "break strain", "inward buckling",
 """What may end a range; in a `Response` by number. The first is no event: the whole travel was used."""
 DEPTH, EDGE, GAUGE, BREAK, BUCKLING, OUTSIDE = range(len(ENDS))
 
+NEAR = 0.03
 _CHUNK = 1000
 _FIELDS = ("stretch", "contact_radius")
 _ROUNDS = 14
@@ -29,13 +30,15 @@ _WITHIN = 2.0e-5
 class Response(NamedTuple):
     """Answers for n sensors; (n,) or (n, m) arrays in mm, N, MPa, sensitivities in kPa/N.
 
-    ends: number in `ENDS`. range_end: mm of indentation. limit_pressure: of the limit point. Curves reach from first
+    ends: number in `ENDS`. near_buckling: the wall would buckle within NEAR more of travel, so close to the edge of the
+    tabulated states that they are less sure. range_end: mm of indentation. limit_pressure: of the limit point. Curves reach from first
     contact to range_end in equal steps. max_stretch: over the range, the free state included. Rows that cannot be
     (beyond the limit point, outside the box) are NaN throughout.
     """
 
     lines: Lines
     ends: NDArray[np.intp]
+    near_buckling: Flags
     range_end: Array
     limit_pressure: Array
     apex_outer: Array
@@ -70,7 +73,7 @@ def inside(batch: Batch, atlas: Atlas) -> Flags:
         & (batch.wall_thickness >= recipe.thinnest * (1 - slack) * size)
         & (batch.wall_thickness <= recipe.thickest * (1 + slack) * size)
         & (batch.depth <= recipe.deepest * (1 + slack) * size)
-        & (batch.ambient_pressure <= recipe.stiffest_gas * batch.shear_modulus)
+        & (batch.ambient_pressure <= recipe.stiffest * batch.shear_modulus)
         & ~np.isnan(batch.gauge_limit) & ~np.isnan(batch.break_stretch)
     )  # fmt: skip
 
@@ -117,12 +120,20 @@ def _respond(batch: Batch, steps: int, atlas: Atlas) -> Response:
         array[hopeless] = np.nan
     stretch = press.field("stretch", track).max(axis=1)
     return Response(
-        lines(indentation, force, rise / KPA), np.where(good, ends, OUTSIDE),
+        lines(indentation, force, rise / KPA), np.where(good, ends, OUTSIDE), good & _near(press, track),
         np.where(hopeless, np.nan, end * batch.inner_radius), np.where(good, limit, np.nan),
         np.where(hopeless, np.nan, press.apex * batch.inner_radius),
         np.where(hopeless, np.nan, press.volume(press.free) * batch.inner_radius**3),
         np.where(hopeless, np.nan, stretch), indentation, force, rise,
     )  # fmt: skip
+
+
+def _near(press: Press, track: Track) -> Flags:
+    """Whether a press would buckle within NEAR of travel beyond its end, gone on straight."""
+    margin = np.where(track.margin[:, -1] > 0, track.margin[:, -1], 1.0)
+    rate = track.point.by_height[:, -1] / margin / press.reach
+    nu, height = track.nu[:, -1] + NEAR * rate, track.height[:, -1] - NEAR
+    return np.asarray(press.slices.folded(press.k, nu, height) | (track.margin[:, -1] <= 0))
 
 
 def _margins(press: Press, track: Track) -> Array:

@@ -86,10 +86,11 @@ class Slices:
         along = jet[:, 2, 0] + 2 * jet[:, 1, 1] * rise + jet[:, 0, 2] * rise**2 + force * bend
         return Point(
             (jet[:, 1, 0] + force * rise) / reach, force, along / reach**2, -mixed, -jet[:, 0, 2],
-            self.support[k, cell, depth], self._folded(k, nu, height),
+            self.support[k, cell, depth], self.folded(k, nu, height),
         )  # fmt: skip
 
-    def _folded(self, k: Index, nu: Array, height: Array) -> NDArray[np.bool_]:
+    def folded(self, k: Index, nu: Array, height: Array) -> NDArray[np.bool_]:
+        """Whether the wall has buckled before volumes nu and plate heights, (n,)."""
         depth = self.rest_apex[k] - height
         deep = depth > self.fold_from[k]
         if not deep.any():
