@@ -17,7 +17,7 @@ from pneutouch.meridian.segments import Array
 from pneutouch.report.style import INK, figure, svg
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
-COUNT, SEED = 2000, 2000
+COUNT, SEED = 500, 2000
 KEYS = ("wall", "share", "ambient", "dead", "depth")
 ERRORS = {
     "force": "force at the worst state of a press, over its greatest force",

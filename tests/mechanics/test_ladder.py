@@ -71,14 +71,14 @@ def test_at_two_percent_the_atlas_answers_and_names_both_parts_of_its_error():
     found = predict("x", PAPER, [0.0, 0.022], model="auto", tolerance=0.02)
     assert found.model == "atlas"
     assert "meets 2.0%" in said(found) and "passed over membrane" in said(found)
-    assert found.error_estimate["sensitivity_tabulation_relative"] == pytest.approx(0.005)
+    assert found.error_estimate["sensitivity_tabulation_relative"] == pytest.approx(0.0075)
     assert found.error_estimate["sensitivity_discretisation_relative"] == pytest.approx(0.011)
 
 
 def test_at_one_point_two_percent_the_solid_answers():
     found = predict("x", PAPER, [0.022], model="auto", tolerance=0.012)
     assert found.model == "solid"
-    assert "atlas: its stated error of 1.6% is more than 1.2%" in said(found)
+    assert "atlas: its stated error of 1.9% is more than 1.2%" in said(found)
 
 
 @pytest.mark.parametrize("tolerance", [0.0109, 1e-6, 0.0, -1.0, float("nan")])

@@ -27,7 +27,7 @@ def random_batch(count: int, seed: int, deepest: float = 0.7) -> Batch:
     share = np.where(rng.random(count) < 0.3, 0.0, rng.uniform(0.0, 0.95, count))
     dead = np.where(rng.random(count) < 0.3, 0.0, rng.exponential(1.5, count))
     return Batch(
-        radius, wall * radius, mu, mu * np.exp(rng.uniform(np.log(0.01), np.log(2.9), count)), dead * radius**3,
+        radius, wall * radius, mu, mu * np.exp(rng.uniform(np.log(0.01), np.log(0.99), count)), dead * radius**3,
         share * limit, rng.uniform(0.2, deepest, count) * radius, np.full(count, np.inf), np.full(count, np.inf),
         np.full(count, np.inf),
     )  # fmt: skip
