@@ -22,6 +22,7 @@ _LONGEST = 0.05
 _LAST_STEP = 1.0e-4
 """Longest step of a solution in nu, and the step after which none is needed."""
 _CLOSE = 1.0e-9
+_NO_TRAVEL = 1.0e-9
 _INFLATING = 40
 _BELOW_REST = 0.01
 """The table's pressure at rest is zero to its error only: the root may lie that little below."""
@@ -147,7 +148,9 @@ class Press:
             with np.errstate(invalid="ignore", divide="ignore"):
                 bend = np.where(ok & (travel > 0) & (len(columns) > 1), (now - rate) / travel, 0.0)
             nu, rate, before = np.where(ok, found.nu, nu), np.where(ok, now, 0.0), column
-            columns.append((found.nu, height, *found.point, found.margin, ok))
+            # The plate at the free apex presses on nothing, whatever the table's error leaves there.
+            point = found.point._replace(force=np.where(column > _NO_TRAVEL, found.point.force, 0.0))
+            columns.append((found.nu, height, *point, found.margin, ok))
         stacked = [np.stack(part, axis=1) for part in zip(*columns, strict=True)]
         return Track(stacked[0], stacked[1], Point(*stacked[2:-2]), stacked[-2], stacked[-1])
 
