@@ -28,7 +28,12 @@ def neighbourhood() -> Atlas:
     known = shipped()
     recipe, walls = known.recipe, known.recipe.wall_ratios
     open_ = replace(
-        recipe, thinnest=float(walls[0]), thickest=float(walls[-1]), margin=1.0, deepest=recipe.beyond - _MARGIN
+        recipe,
+        thinnest=float(walls[0]),
+        thickest=float(walls[-1]),
+        margin=1.0,
+        deepest=recipe.beyond - _MARGIN,
+        stiffest=recipe.stiffest_gas,
     )
     return known.boxed(open_)
 
