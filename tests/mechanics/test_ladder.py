@@ -184,3 +184,11 @@ def test_bad_tolerances_exit_2_in_one_line(command, root, words):
     result = command("predict", "paper-dome", *words, "--json", cwd=root)
     assert result.returncode == 2 and result.stdout == ""
     assert "--tolerance" in result.stderr and "Traceback" not in result.stderr
+
+
+def test_the_atlas_asked_by_name_says_what_its_answer_lacks():
+    """A wall that buckles lies at the edge of the table; asked for it, the atlas answers and says so."""
+    hard = replace(PAPER, shear_modulus=0.91, depth=0.75 * 9.25)
+    found = predict("", hard, [0.0], model="atlas")
+    assert [e.kind for e in found.states[0].events if e.ends_range] == ["inward buckling"]
+    assert "buckles" in said(found)

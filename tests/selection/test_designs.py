@@ -140,3 +140,18 @@ def test_predict_and_select_speak_of_one_sensor(fingertip, tmp_path):
     state = predict("", found.sensor, [float(choice.pool.pressure[0])], model="atlas").states[0]
     assert state.figures.sensitivity == pytest.approx(float(choice.pool.response.lines.sensitivity[0]), rel=2e-3)
     assert state.driving_pressure / KPA == pytest.approx(12.0)
+
+
+def test_a_depth_stated_in_the_base_follows_the_size_into_the_design(tmp_path):
+    """What is predicted for a choice is what its design file is predicted as, whatever the base says of the depth."""
+    base = tmp_path / "base.toml"
+    base.write_text(
+        "[membrane]\ninner_radius_mm = 9.25\n[indentation]\ndepth_mm = 4.625\n[pneumatics]\ndead_volume_mL = 1.0\n"
+    )
+    selection = answer(
+        FINGERTIP | {"force_range_N": 5.0}, setting={"base": str(base)}, given={"materials": ["FLX9940"]}
+    )
+    choice = selection.answer.designs[0]
+    state = evaluate(str(base), selection.assignments(choice), model="atlas").prediction.states[-1]
+    assert state.indentation[-1] == pytest.approx(0.5 * float(choice.pool.radius[0]), rel=1e-6)
+    assert state.figures.sensitivity == pytest.approx(float(choice.pool.response.lines.sensitivity[0]), rel=2e-3)

@@ -97,7 +97,7 @@ def _found(
         found, lacking = _asked(model, sensor, pressures, closure)
         if lacking is not None and lacking.fatal:
             raise InputError(f"--model {model}: {lacking.why}; take --model auto or solid")
-        return model, found, None
+        return model, found, None if lacking is None else f"asked for by name, although {lacking.why}"
     way = climb(sensor, tolerance)
     passed = list(way.passed)
     for rung in way.rungs:

@@ -65,6 +65,9 @@ class Selection:
             f"membrane.wall_thickness_mm={float(choice.pool.wall[0]):.6g}",
             f"pneumatics.driving_pressures_kPa={pressures}",
         ]
+        if self.base.design.indentation.depth_mm is not None:
+            # A depth in millimetres belongs to the base's own dome: it goes with the radius.
+            found.append(f"indentation.depth_mm={self.problem.depth_share * float(choice.pool.radius[0]):.8g}")
         return found + self._setting
 
     def sensor_of(self, choice: Choice) -> Sensor:
