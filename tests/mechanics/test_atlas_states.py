@@ -10,8 +10,9 @@ from scipy.interpolate import CubicSpline
 
 from pneutouch.errors import BeyondLimitError
 from pneutouch.mechanics import Sensor, predict
+from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.atlas.respond import respond
-from pneutouch.mechanics.atlas_states import atlas_result, batch_of, outside_atlas
+from pneutouch.mechanics.atlas_states import atlas_result, outside_atlas
 from pneutouch.mechanics.solid_states import solid_result
 
 SENSOR = Sensor(

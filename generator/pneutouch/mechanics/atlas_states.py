@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from pneutouch.errors import BeyondLimitError
-from pneutouch.mechanics.atlas.press import Batch, Press, Track
+from pneutouch.mechanics.atlas.batches import batch_of
+from pneutouch.mechanics.atlas.press import Press, Track
 from pneutouch.mechanics.atlas.recipe import FIELDS
 from pneutouch.mechanics.atlas.respond import BREAK, BUCKLING, DEPTH, EDGE, ENDS, GAUGE, NEAR, OUTSIDE, respond
 from pneutouch.mechanics.atlas.table import REST_VOLUME, Atlas, Slices, shipped
@@ -25,8 +26,6 @@ _DETAIL = {
     EDGE: DETAIL["plate_rim"], GAUGE: DETAIL["gauge_range"], BREAK: DETAIL["break"],
     BUCKLING: "the wall buckles inward under the plate, or its gas no longer holds it",
 }  # fmt: skip
-_NO_LIMIT = 1.0e9
-"""A stretch no wall reaches: no break strain is known."""
 
 
 def outside_atlas(sensor: Sensor, atlas: Atlas | None = None) -> str | None:
@@ -44,16 +43,6 @@ def outside_atlas(sensor: Sensor, atlas: Atlas | None = None) -> str | None:
         (gas > recipe.stiffest, f"ambient pressure {gas:.3g} mu, more than {recipe.stiffest:g}"),
     ]  # fmt: skip
     return next((why for applies, why in reasons if applies), None)
-
-
-def batch_of(sensor: Sensor, driving_pressures: Array) -> Batch:
-    """A sensor at several driving pressures (MPa) as a batch."""
-    n = np.ones(len(driving_pressures))
-    return Batch(
-        n * sensor.inner_radius, n * sensor.wall_thickness, n * sensor.shear_modulus, n * sensor.ambient_pressure,
-        n * sensor.dead_volume, np.asarray(driving_pressures, float), n * sensor.depth, n * sensor.plate_radius,
-        n * sensor.gauge_limit, n * (_NO_LIMIT if sensor.break_stretch is None else sensor.break_stretch),
-    )  # fmt: skip
 
 
 class Lack(NamedTuple):

@@ -9,6 +9,9 @@ import numpy as np
 from pneutouch.mechanics.inflation import LIMIT_HEIGHT, LIMIT_PRESSURE, pressure, thickness_stretch
 from pneutouch.mechanics.sensor import Sensor
 
+RATED_SHARE = 0.9
+"""Share of the binding limit that a sensor is rated at, and warned above: the dome grows fast near the limit point."""
+
 
 @dataclass(frozen=True, slots=True)
 class LimitPoint:

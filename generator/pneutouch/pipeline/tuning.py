@@ -8,10 +8,10 @@ import numpy as np
 
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.atlas.respond import OUTSIDE, respond
+from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.mechanics.uncertainty import FIGURES, batch_of
 from pneutouch.meridian.segments import Array
 from pneutouch.pipeline.uncertainty import known
-from pneutouch.printability.rules.driving import RATED_SHARE
 from pneutouch.report.tuning import TuningCurve
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer

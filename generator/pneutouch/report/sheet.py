@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 from pneutouch import __version__
 from pneutouch.catalogue import Scene
 from pneutouch.mechanics import Prediction
+from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.mechanics.prediction import State
 from pneutouch.parts import Assembly
 from pneutouch.printability import Finding
-from pneutouch.printability.rules.driving import RATED_SHARE
 from pneutouch.report import ordering, prose
 from pneutouch.report.certainty import how_sure, interval
 from pneutouch.report.environment import NOT_TESTED, environment

@@ -63,9 +63,10 @@ def resin_curves(
 
 def _by_atlas(variants: dict[str, Sensor], highest: float) -> dict[str, ResinCurve]:
     """Curves of the resins that the atlas knows, all in one call; without points that it does not."""
+    from pneutouch.mechanics.atlas.batches import batch_of
     from pneutouch.mechanics.atlas.respond import EDGE, OUTSIDE, respond
     from pneutouch.mechanics.atlas.table import shipped
-    from pneutouch.mechanics.atlas_states import batch_of, outside_atlas
+    from pneutouch.mechanics.atlas_states import outside_atlas
     from pneutouch.mechanics.uncertainty.neighbours import joined
 
     inside = {title: variant for title, variant in variants.items() if outside_atlas(variant) is None}

@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from pneutouch.mechanics.atlas.press import Batch
 from pneutouch.mechanics.atlas.respond import respond
+from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.meridian.segments import Array
 from pneutouch.selection.pool import WISHES, Pool, evaluated, margins
-from pneutouch.selection.problem import RATED_SHARE, Problem, Resin
+from pneutouch.selection.problem import Problem, Resin
 from pneutouch.selection.search import search
 
 _EACH = 3

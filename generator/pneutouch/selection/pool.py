@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneutouch.mechanics.atlas.respond import BREAK, OUTSIDE, Response, respond
+from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.meridian.segments import Array
-from pneutouch.selection.problem import RATED_SHARE, Problem
+from pneutouch.selection.problem import Problem
 
 WISHES = ("sensitivity", "force range", "stiffness", "outer diameter")
 """What a user asks for and may give up."""

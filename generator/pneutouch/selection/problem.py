@@ -12,9 +12,6 @@ from pneutouch.mechanics.atlas.recipe import Recipe
 from pneutouch.meridian.segments import Array
 from pneutouch.spec.material import Material
 
-RATED_SHARE = 0.9
-"""Share of the limit pressure that a sensor is rated at: the dome grows fast near the limit point."""
-
 _SMALLEST, _LARGEST = 2.0, 60.0
 """Inner radii that are searched where none is given, mm."""
 

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.mechanics.atlas.table import shipped
+from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.meridian.segments import Array
 from pneutouch.selection.pool import Pool, evaluated, joined
-from pneutouch.selection.problem import RATED_SHARE, Problem
+from pneutouch.selection.problem import Problem
 
 _RADII, _RATIOS, _PRESSURES = 8, 14, 6
 """Points of the scan in each free direction; the last free one, along which the sensitivity is met, gets `_LINE`."""

@@ -9,9 +9,9 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 from pneutouch.mechanics import Sensor
+from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.atlas.respond import ENDS, respond
 from pneutouch.mechanics.atlas.table import shipped
-from pneutouch.mechanics.atlas_states import batch_of
 from pneutouch.mechanics.events import range_end
 from pneutouch.mechanics.exact_membrane import RISING_BRANCH
 from pneutouch.mechanics.laws import neo_hookean

@@ -21,6 +21,7 @@ ENDS = ("depth", "plate edge", "gauge range", "break strain", "inward buckling",
 DEPTH, EDGE, GAUGE, BREAK, BUCKLING, OUTSIDE = range(len(ENDS))
 
 NEAR = 0.03
+"""Travel in R0 before buckling at which the table is less sure: the stiffness falls there faster than it resolves."""
 _CHUNK = 1000
 _FIELDS = ("stretch", "contact_radius")
 _ROUNDS = 14
@@ -31,8 +32,8 @@ class Response(NamedTuple):
     """Answers for n sensors; (n,) or (n, m) arrays in mm, N, MPa, sensitivities in kPa/N.
 
     ends: number in `ENDS`. near_buckling: the wall would buckle within NEAR more of travel, so close to the edge of the
-    tabulated states that they are less sure. range_end: mm of indentation. limit_pressure: of the limit point. Curves reach from first
-    contact to range_end in equal steps. max_stretch: over the range, the free state included. Rows that cannot be
+    tabulated states that they are less sure. range_end: mm of indentation. limit_pressure: of the limit point. Curves
+    reach from first contact to range_end in equal steps. max_stretch: over the range, the free state included. Rows that cannot be
     (beyond the limit point, outside the box) are NaN throughout.
     """
 

@@ -124,6 +124,7 @@ def _gathered(surveyor: Surveyor, found: list[Equilibrium], fold_from: float, fo
     inner = solid.mesh.inner[-1, 1]
 
     def fields(node: Equilibrium) -> list[float]:
+        """One state's `STORED` fields, in their order."""
         x, touch = node.state.x, node.state.touch
         assert touch is not None
         peak = surveyor.probe.peak(x)

@@ -1,6 +1,6 @@
 """How sure a prediction is: stated sources, their shares, expanded uncertainties with k = 2 (JCGM 100)."""
 
-from pneutouch.mechanics.uncertainty.batches import batch_of
+from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.uncertainty.budget import budget
 from pneutouch.mechanics.uncertainty.document import document, gas_text, shares, text
 from pneutouch.mechanics.uncertainty.gas_notes import GasNotes, gas_notes

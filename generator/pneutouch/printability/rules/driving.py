@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from pneutouch.mechanics import Prediction
+from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.parts import Assembly
 from pneutouch.printability.finding import Finding
 from pneutouch.units import KPA
-
-RATED_SHARE = 0.9
-"""Share of the binding limit that a sensor is rated at, and warned above: the dome grows fast near the limit point."""
 
 _SOURCES = {
     "limit point": "paper, section 4-A: the valid range ends at the maximum driving pressure",

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneutouch.errors import InputError
+from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.mechanics.uncertainty.batches import batch_of
 from pneutouch.mechanics.uncertainty.neighbours import joined
 from pneutouch.mechanics.uncertainty.source import FIGURE, FIGURES, SENSITIVITY, Source, counting
 from pneutouch.meridian.segments import Array

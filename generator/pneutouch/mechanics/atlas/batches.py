@@ -8,9 +8,10 @@ import numpy as np
 
 from pneutouch.mechanics.atlas.press import Batch
 from pneutouch.mechanics.sensor import Sensor
+from pneutouch.meridian.segments import Array
 
 
-def batch_of(sensor: Sensor, driving_pressures: Sequence[float]) -> Batch:
+def batch_of(sensor: Sensor, driving_pressures: Sequence[float] | Array) -> Batch:
     """One sensor at n driving pressures (MPa).
 
     Its own law, Poisson ratio and flange are left aside: the atlas is neo-Hookean, at 0.49, clamped at the base.
