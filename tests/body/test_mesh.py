@@ -147,7 +147,7 @@ def test_blind_and_through_bores_take_out_their_volume(library):
     plate = Meridian((
         Line((0, 0), (20, 0), "low"), Line((20, 0), (20, 6), "edge"), Line((20, 6), (0, 6), "high")
     ))  # fmt: skip
-    bores = (Bore(10, 0, 1.7, 0, 6), Bore(-10, 0, 1.0, 0, 4, blind=True))
+    bores = (Bore(10, 0, 1.7, 0, 6), Bore(-10, 0, 1.0, 0, 4, closed="high"))
     solid = Solid("plate", "connector", material, plate, bores)
     body = solid.mesh(0.02)
     assert body.is_closed()

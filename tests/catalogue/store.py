@@ -7,33 +7,47 @@ import json
 from pathlib import Path
 from typing import Any
 
-from pneutouch.catalogue import Library
+from pneutouch.catalogue import Library, load_scene
+from pneutouch.parts import Assembly, assemble
 from pneutouch.pipeline import evaluate
 
 ROOT = Path(__file__).resolve().parents[2]
 STORED = Path(__file__).with_name("stored.json")
 KINDS = {"port": "ports", "seat": "seats", "mount": "mounts"}
+BASE = "stiff-dome"
+"""A design whose bodies one machine prints, so that every seat can be made."""
+
+SMALL = ("membrane.inner_radius_mm=8", "membrane.wall_thickness_mm=1.2")
+"""A dome that every seat, port and mount has room for."""
 
 
-def cases(library: Library) -> list[tuple[str, dict[str, str]]]:
-    """Every design with every combination of parts."""
-    combinations = itertools.product(*(library.shelf(kind) for kind in KINDS.values()))
-    parts = [dict(zip(KINDS, combination, strict=True)) for combination in combinations]
-    return [(design, chosen) for design in library.shelf("designs") for chosen in parts]
+def combinations(library: Library) -> list[tuple[str, str, str]]:
+    """Every port with every seat and every mount."""
+    return list(itertools.product(*(library.shelf(kind) for kind in KINDS.values())))
 
 
-def label(design: str, parts: dict[str, str]) -> str:
-    return " ".join([design, *parts.values()])
+def assembled(library: Library, parts: tuple[str, str, str], *more: str) -> Assembly:
+    """The base design with a combination of parts and further overrides."""
+    chosen = [f"connector.{key}={value}" for key, value in zip(KINDS, parts, strict=True)]
+    return assemble(load_scene(BASE, [*chosen, *more], library))
 
 
-def figures(library: Library, design: str, parts: dict[str, str]) -> dict[str, Any]:
-    """Volumes and figures of one case, rounded to what should never change unnoticed."""
-    evaluation = evaluate(design, [f"connector.{key}={value}" for key, value in parts.items()], library=library)
+def shape_figures(assembly: Assembly) -> dict[str, Any]:
+    """Volumes and triangles of an assembly, rounded to what should never change unnoticed."""
+    return {
+        "volume_mm3": {solid.name: round(solid.volume, 4) for solid in assembly.solids},
+        "mesh_volume_mm3": {body.name: round(body.volume, 3) for body in assembly.bodies},
+        "triangles": {body.name: len(body.triangles) for body in assembly.bodies},
+        "internal_volume_mm3": round(assembly.internal_volume, 4),
+    }
+
+
+def design_figures(library: Library, design: str) -> dict[str, Any]:
+    """Figures and findings of a design as it is shipped."""
+    evaluation = evaluate(design, library=library)
     prediction = evaluation.prediction
     return {
-        "volume_mm3": {solid.name: round(solid.volume, 4) for solid in evaluation.assembly.solids},
-        "mesh_volume_mm3": {body.name: round(body.volume, 3) for body in evaluation.assembly.bodies},
-        "triangles": {body.name: len(body.triangles) for body in evaluation.assembly.bodies},
+        **shape_figures(evaluation.assembly),
         "dead_volume_mm3": round(evaluation.assembly.dead_volume, 4),
         "limit_point_kPa": round(1e3 * prediction.limit_point.driving_pressure, 5),
         "sensitivity_kPa_per_N": [round(state.figures.sensitivity, 5) for state in prediction.states],
@@ -44,5 +58,8 @@ def figures(library: Library, design: str, parts: dict[str, str]) -> dict[str, A
 
 if __name__ == "__main__":
     shelves = Library((ROOT,))
-    content = {label(*case): figures(shelves, *case) for case in cases(shelves)}
+    content = {
+        "designs": {design: design_figures(shelves, design) for design in shelves.shelf("designs")},
+        "parts": {" ".join(parts): shape_figures(assembled(shelves, parts, *SMALL)) for parts in combinations(shelves)},
+    }
     STORED.write_text(json.dumps(content, indent=1, sort_keys=True) + "\n", encoding="utf-8")

@@ -7,23 +7,35 @@ import json
 import pytest
 
 from pneutouch.catalogue import Library
-from tests.catalogue.store import ROOT, STORED, cases, figures, label
+from tests.catalogue.store import ROOT, SMALL, STORED, assembled, combinations, design_figures, shape_figures
 
 LIBRARY = Library((ROOT,))
 EXPECTED = json.loads(STORED.read_text(encoding="utf-8"))
-CASES = cases(LIBRARY)
+PARTS = combinations(LIBRARY)
+SHAPES = ("volume_mm3", "mesh_volume_mm3")
+
+
+def compare_shapes(found, expected):
+    assert found["triangles"] == expected["triangles"]
+    assert found["internal_volume_mm3"] == pytest.approx(expected["internal_volume_mm3"], rel=1e-6)
+    for key in SHAPES:
+        assert found[key] == pytest.approx(expected[key], rel=1e-6)
 
 
 def test_stored_figures_cover_exactly_what_is_registered():
-    assert set(EXPECTED) == {label(*case) for case in CASES}
+    assert set(EXPECTED["designs"]) == set(LIBRARY.shelf("designs"))
+    assert set(EXPECTED["parts"]) == {" ".join(parts) for parts in PARTS}
 
 
-@pytest.mark.parametrize(("design", "parts"), CASES, ids=[label(*case) for case in CASES])
-def test_figures_are_the_stored_ones(design, parts):
-    found, expected = figures(LIBRARY, design, parts), EXPECTED[label(design, parts)]
+@pytest.mark.parametrize("design", LIBRARY.shelf("designs"))
+def test_figures_of_designs_are_the_stored_ones(design):
+    found, expected = design_figures(LIBRARY, design), EXPECTED["designs"][design]
     assert found["findings"] == expected["findings"]
-    assert found["triangles"] == expected["triangles"]
-    for key in ("volume_mm3", "mesh_volume_mm3"):
-        assert found[key] == pytest.approx(expected[key], rel=1e-6)
+    compare_shapes(found, expected)
     for key in ("dead_volume_mm3", "limit_point_kPa", "sensitivity_kPa_per_N", "force_range_N"):
         assert found[key] == pytest.approx(expected[key], rel=2e-4)
+
+
+@pytest.mark.parametrize("parts", PARTS, ids=" ".join)
+def test_figures_of_parts_are_the_stored_ones(parts):
+    compare_shapes(shape_figures(assembled(LIBRARY, parts, *SMALL)), EXPECTED["parts"][" ".join(parts)])

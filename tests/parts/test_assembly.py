@@ -13,18 +13,17 @@ from hypothesis import strategies as st
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.parts import assemble
-from pneutouch.parts.connector import SEAT
 from pneutouch.parts.membrane import HELD
 from pneutouch.printability.rules.contact_faces import overlap_volume, shared_area
+from tests.catalogue.store import BASE, SMALL, assembled, combinations
 from tests.conftest import ROOT
 
 LIBRARY = Library((ROOT,))
 DESIGNS = sorted(LIBRARY.shelf("designs"))
-PARTS = list(itertools.product(*(sorted(LIBRARY.shelf(kind)) for kind in ("ports", "seats", "mounts"))))
+PARTS = combinations(LIBRARY)
 
 
 def check_bodies(assembly):
-    membrane, connector = assembly.bodies
     tolerance = assembly.scene.mesh_tolerance
     for body, solid in zip(assembly.bodies, assembly.solids, strict=True):
         assert body.is_closed()
@@ -32,9 +31,10 @@ def check_bodies(assembly):
         assert body.volume == pytest.approx(solid.volume, rel=1e-3)
         assert assembly.deviation(body) <= tolerance
         assert (body.bounds[0] + assembly.print_offset).min() > 0
-    assert overlap_volume(membrane, connector) == 0.0
-    seat = sum(piece.area() for piece in assembly.solids[1].meridian.tagged(SEAT))
-    assert shared_area(membrane, connector) == pytest.approx(seat, rel=1e-3)
+    for one, other in itertools.combinations(assembly.bodies, 2):
+        assert overlap_volume(one, other) < 1e-9
+    if assembly.seat_area:
+        assert shared_area(*assembly.bodies[:2]) == pytest.approx(assembly.seat_area, rel=1e-3)
 
 
 @pytest.mark.parametrize("name", DESIGNS)
@@ -42,22 +42,30 @@ def test_every_design_has_sound_bodies(name):
     check_bodies(assemble(load_scene(name, [], LIBRARY)))
 
 
-@pytest.mark.parametrize(("port", "seat", "mount"), PARTS)
-def test_every_combination_of_parts_has_sound_bodies(port, seat, mount):
-    chosen = [f"connector.port={port}", f"connector.seat={seat}", f"connector.mount={mount}"]
-    check_bodies(assemble(load_scene("paper-dome", chosen, LIBRARY)))
+@pytest.mark.parametrize("parts", PARTS, ids=" ".join)
+def test_every_combination_of_parts_has_sound_bodies(parts):
+    check_bodies(assembled(LIBRARY, parts, *SMALL))
 
 
-@settings(max_examples=25)
-@given(st.floats(1, 70), st.floats(0.05, 0.6), st.sampled_from([part[2] for part in PARTS]))
-def test_any_size_gives_sound_bodies_or_says_that_it_is_too_small(radius, share, mount):
+def test_a_plug_that_does_not_pass_through_the_sleeve_is_refused():
+    parts = ("barb-4x2.5", "one-piece", "finger-16")
+    with pytest.raises(
+        InputError, match=r"9\.25: too large for connector\.mount = 'finger-16': the plug, which goes in"
+    ):
+        assembled(LIBRARY, parts)
+    assembled(LIBRARY, parts, *SMALL)
+
+
+@settings(max_examples=60)
+@given(st.floats(1, 70), st.floats(0.05, 0.6), st.sampled_from(PARTS))
+def test_any_size_gives_sound_bodies_or_says_what_there_is_no_room_for(radius, share, parts):
     wall = max(share * radius, 0.05)
-    sizes = [f"membrane.inner_radius_mm={radius}", f"membrane.wall_thickness_mm={wall}", f"connector.mount={mount}"]
-    scene = load_scene("paper-dome", sizes, LIBRARY)
     try:
-        assembly = assemble(scene)
+        assembly = assembled(
+            LIBRARY, parts, f"membrane.inner_radius_mm={radius}", f"membrane.wall_thickness_mm={wall}"
+        )  # fmt: skip
     except InputError as error:
-        assert "too small" in str(error)
+        assert "too small for" in str(error) or "too large for" in str(error)
         return
     check_bodies(assembly)
 
@@ -76,15 +84,13 @@ def test_fit_clearance_follows_the_print_profiles():
     assert ours.clearance == pytest.approx(0.2)
 
 
-def test_cavity_and_dead_volume_are_exact():
+def test_cavity_and_internal_volume_are_exact():
     assembly = assemble(load_scene("long-tube", [], LIBRARY))
     assert assembly.cavity_volume == pytest.approx(2 / 3 * math.pi * 9.25**3, rel=1e-12)
     layout, port = assembly.layout, assembly.scene.port
     channel = math.pi * layout.channel_radius**2 * -layout.plate_low
     bore = math.pi * (0.5 * port.bore_diameter) ** 2 * (port.stem_length + port.barb_length)
-    assert assembly.channel_volume == pytest.approx(channel + bore, rel=1e-12)
-    assert assembly.tube_volume == pytest.approx(math.pi / 4 * 2.5**2 * 1000, rel=1e-12)
-    assert assembly.dead_volume == pytest.approx(assembly.channel_volume + assembly.tube_volume)
+    assert assembly.internal_volume == pytest.approx(channel + bore, rel=1e-12)
 
 
 def test_a_stated_dead_volume_is_taken_as_the_total():
@@ -108,12 +114,61 @@ def test_channel_is_open_from_the_cavity_to_the_port():
 
 def test_mounting_holes_lie_on_a_whole_millimetre_circle_and_clear_the_seat():
     for mount in sorted(LIBRARY.shelf("mounts")):
-        assembly = assemble(load_scene("paper-dome", [f"connector.mount={mount}"], LIBRARY))
+        assembly = assembled(LIBRARY, ("barb-4x2.5", "glued-flange", mount))
         layout = assembly.layout
         assert 2 * layout.bolt_circle_radius == pytest.approx(round(2 * layout.bolt_circle_radius))
         for bore in assembly.solids[1].bores:
             assert math.hypot(bore.x, bore.y) == pytest.approx(layout.bolt_circle_radius)
-            if not bore.blind:
+            if not bore.closed:
                 assert layout.bolt_circle_radius - bore.radius > layout.ring_radius
             else:
                 assert bore.high < layout.plate_high
+
+
+def test_holes_are_drawn_wider_by_what_the_printer_makes_them_smaller():
+    bores = {
+        profile: assemble(load_scene("paper-dome", ["connector.material=" + material, f"print.connector_profile={profile}"], LIBRARY))
+        .solid("connector").bores[0].radius
+        for profile, material in (("abs-filament", "ABS"), ("objet260-connex", "VeroClear"))
+    }  # fmt: skip
+    printers = {name: LIBRARY.load("printers", name).hole_undersize_mm.nominal for name in bores}
+    assert printers["abs-filament"] > printers["objet260-connex"]
+    for name, radius in bores.items():
+        assert 2 * radius == pytest.approx(3.4 + printers[name])
+
+
+def test_a_membrane_grown_onto_its_connector_shares_three_faces_with_it():
+    assembly = assembled(LIBRARY, ("barb-4x2.5", "one-piece", "plain"))
+    held = sum(piece.area() for piece in assembly.solids[0].meridian.tagged(HELD))
+    assert assembly.seat_area == pytest.approx(held, rel=1e-12)
+    assert shared_area(*assembly.bodies[:2]) == pytest.approx(held, rel=1e-3)
+    assert assembly.job("membrane") == assembly.job("connector") != assembly.job("plug")
+
+
+def test_a_clamping_ring_rests_on_the_flange_and_closes_by_the_squeeze():
+    assembly = assembled(LIBRARY, ("barb-4x2.5", "clamped-flange-M2", "plain"))
+    seat, ring, layout = assembly.scene.seat, assembly.solid("ring"), assembly.layout
+    assert ring.meridian.tagged("clamp face")[0].start[1] == 0.0
+    skirt = min(piece.bounds()[2] for piece in ring.meridian.pieces)
+    assert skirt - layout.plate_high == pytest.approx(seat.squeeze * layout.flange_thickness)
+    assert len(ring.bores) == seat.screw_count
+    places = [[(round(b.x, 9), round(b.y, 9)) for b in solid.bores] for solid in (ring, assembly.solid("connector"))]
+    assert places[0] == places[1]
+
+
+@pytest.mark.parametrize(("setting", "words"), [
+    ("connector.seat=one-piece", ["connector.seat = 'one-piece'", "print.connector_profile = 'abs-filament'", "'objet260-connex'"]),
+    ("pneumatics.tube=6x4", ["pneumatics.tube = '6x4'", "barb-4x2.5 takes 4x2.5"]),
+    ("pneumatics.tube=5x3", ["pneumatics.tube = '5x3'", "no such name among the tubes"]),
+    ("connector.port=barb-4.2x2.5", ["no such name among the ports", "Did you mean barb-4x2.5"]),
+])  # fmt: skip
+def test_parts_that_do_not_go_together_are_refused(setting, words):
+    with pytest.raises(InputError) as error:
+        assemble(load_scene("paper-dome", [setting], LIBRARY))
+    assert all(word in str(error.value) for word in words), str(error.value)
+
+
+def test_a_port_larger_than_the_body_is_refused():
+    small = ["membrane.inner_radius_mm=4", "membrane.wall_thickness_mm=0.6", "connector.mount=plain"]
+    with pytest.raises(InputError, match=r"inner_radius_mm = 4: too small for the port on the plug: radius"):
+        assemble(load_scene(BASE, [*small, "connector.seat=one-piece", "connector.port=thread-M5"], LIBRARY))

@@ -1,6 +1,7 @@
 """Solids and their meshes: a closed mesh with a material and a role."""
 
 from pneutouch.body.mesh import Body
-from pneutouch.body.solid import Bore, Solid
+from pneutouch.body.shapes import Bore, Feature, Frame, Prism, Turned, crossing
+from pneutouch.body.solid import Solid
 
-__all__ = ["Body", "Bore", "Solid"]
+__all__ = ["Body", "Bore", "Feature", "Frame", "Prism", "Solid", "Turned", "crossing"]

@@ -56,6 +56,10 @@ class Body:
         """The body shifted by ``offset`` (3,), mm."""
         return replace(self, vertices=self.vertices + offset)
 
+    def turned_over(self) -> Body:
+        """The body turned by half a turn about the x axis."""
+        return replace(self, vertices=self.vertices * np.array([1.0, -1.0, -1.0]))
+
     def surface_points(self, parts: int = 4) -> NDArray[np.float64]:
         """Points spread over every triangle, edges and corners included, for measuring deviation."""
         grid = [(i, j) for i in range(parts + 1) for j in range(parts + 1 - i)]

@@ -8,7 +8,9 @@ with the same rings get the same triangles there.
 
 from __future__ import annotations
 
+import itertools
 import math
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +27,10 @@ def circle_count(radius: float, error: float, lean: float = 1.0) -> int:
         return 1
     # widen() moves a vertex out by r theta^2/12 to leading order, theta being the angle between vertices.
     needed = 2 * math.pi * math.sqrt(radius * lean / (12 * error))
-    return max(8, 4 * math.ceil(needed / 4))
+    count = max(8, 4 * math.ceil(needed / 4))
+    while radius * lean * (widen(count) - 1) > error:
+        count += 4
+    return count
 
 
 def widen(count: int) -> float:
@@ -36,15 +41,31 @@ def widen(count: int) -> float:
     return math.sqrt(angle / math.sin(angle))
 
 
-def revolve(meridian: Meridian, tolerance: float) -> tuple[Vertices, Triangles]:
-    """Mesh a solid of revolution: vertices (n, 3) in mm, triangles (m, 3) facing outwards.
+@dataclass(frozen=True)
+class Rings:
+    """A revolved meridian before its strips are put together.
+
+    ``starts`` and ``counts`` say where a ring's vertices lie; ``pairs`` are the two rings of each strip, in the order
+    of the meridian, and ``strips`` their triangles.
+    """
+
+    rings: list[Ring]
+    counts: list[int]
+    starts: list[int]
+    vertices: Vertices
+    pairs: list[tuple[int, int]]
+    strips: list[Triangles]
+
+
+def revolve_rings(meridian: Meridian, tolerance: float) -> Rings:
+    """Mesh a solid of revolution strip by strip.
 
     Half of ``tolerance`` (mm) goes to the meridian's chords and half to the circles'.
     """
     error = 0.5 * tolerance
     rings = sample(meridian, error)
     counts = [circle_count(ring.radius, error, ring.lean) for ring in rings]
-    offsets = np.concatenate([[0], np.cumsum(counts)])
+    starts = [0, *itertools.accumulate(counts)][:-1]
     vertices = np.concatenate([_ring_points(r, n) for r, n in zip(rings, counts, strict=True)])
     pairs = [(k, k + 1) for k in range(len(rings) - 1)]
     if meridian.is_ring:
@@ -54,9 +75,15 @@ def revolve(meridian: Meridian, tolerance: float) -> tuple[Vertices, Triangles]:
         # Always zip from the smaller ring, so that a face comes out the same whichever way it is walked.
         swap = (rings[a].radius, rings[a].height) > (rings[b].radius, rings[b].height)
         one, other = (b, a) if swap else (a, b)
-        strip = _zip(int(offsets[one]), counts[one], int(offsets[other]), counts[other])
+        strip = _zip(starts[one], counts[one], starts[other], counts[other])
         strips.append(strip[:, ::-1] if swap else strip)
-    return vertices, np.concatenate(strips)
+    return Rings(rings, counts, starts, vertices, pairs, strips)
+
+
+def revolve(meridian: Meridian, tolerance: float) -> tuple[Vertices, Triangles]:
+    """Mesh a solid of revolution within ``tolerance`` mm: vertices (n, 3) in mm, triangles (m, 3) facing outwards."""
+    made = revolve_rings(meridian, tolerance)
+    return made.vertices, np.concatenate(made.strips)
 
 
 def _ring_points(ring: Ring, count: int) -> Vertices:

@@ -1,62 +1,52 @@
-"""The exact solid: a revolved meridian with straight bores, a material and a role."""
+"""The exact solid: a turned body or a prism with what is added to it and cut from it, a material and a role."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
+from pneutouch.body.drill import drilled
 from pneutouch.body.mesh import Body
-from pneutouch.body.revolve import Triangles, Vertices, circle_count, revolve, widen
+from pneutouch.body.revolve import Triangles, Vertices, revolve_rings
+from pneutouch.body.shapes import Bore, Feature, Prism, Shape
 from pneutouch.meridian import Meridian
 from pneutouch.meridian.segments import Array
 from pneutouch.spec.material import Material
 from pneutouch.units import grams
 
 
-@dataclass(frozen=True, slots=True)
-class Bore:
-    """A round hole along z: centre (x, y), radius, and the two faces it runs between, mm."""
-
-    x: float
-    y: float
-    radius: float
-    low: float
-    high: float
-    blind: bool = False
-
-    @property
-    def volume(self) -> float:
-        """Volume removed, mm3."""
-        return math.pi * self.radius**2 * (self.high - self.low)
-
-    def distance(self, points: Array) -> Array:
-        """Distances, shape (n,), of (n, 3) points from the bore's wall and, if blind, its bottom."""
-        radial = np.hypot(points[:, 0] - self.x, points[:, 1] - self.y) - self.radius
-        axial = np.maximum(np.maximum(self.low - points[:, 2], points[:, 2] - self.high), 0.0)
-        wall: Array = np.hypot(radial, axial)
-        if not self.blind:
-            return wall
-        bottom: Array = np.hypot(np.maximum(radial, 0.0), points[:, 2] - self.high)
-        return np.minimum(wall, bottom)
-
-
 @dataclass(frozen=True)
 class Solid:
-    """One body as designed, exact. ``role`` is what it does: membrane or connector."""
+    """One body as designed, exact. ``role`` is what it does: membrane, connector, ring, plug, coupon ...
+
+    ``base`` is a meridian about the z axis or a prism. ``adds`` are joined to it first; ``bores`` and ``cuts`` are
+    taken away then. Bores lie wholly inside the solid and apart from one another.
+    """
 
     name: str
     role: str
     material: Material
-    meridian: Meridian
+    base: Meridian | Prism
     bores: tuple[Bore, ...] = ()
+    adds: tuple[Feature, ...] = ()
+    cuts: tuple[Feature, ...] = ()
+
+    @property
+    def meridian(self) -> Meridian:
+        """The base of a turned body. Raises TypeError for a prism."""
+        if not isinstance(self.base, Meridian):
+            raise TypeError(f"{self.name} is not a turned body")
+        return self.base
 
     @cached_property
     def volume(self) -> float:
-        """Exact volume, mm3; bores lie wholly inside the revolved solid and apart from one another."""
-        return self.meridian.volume() - sum(bore.volume for bore in self.bores)
+        """Exact volume, mm3."""
+        added = sum(feature.net for feature in self.adds)
+        cut = sum(feature.net for feature in self.cuts) + sum(bore.volume() for bore in self.bores)
+        return self.base.volume() + added - cut
 
     @property
     def mass(self) -> float:
@@ -64,31 +54,44 @@ class Solid:
         return grams(self.volume, self.material.density_g_per_cm3.nominal)
 
     def distance(self, points: Array) -> Array:
-        """Distances, shape (n,), of (n, 3) points in mm from the exact surface."""
-        gaps = [self.meridian.distance(points), *(bore.distance(points) for bore in self.bores)]
-        nearest: Array = np.min(gaps, axis=0)
+        """Distances, shape (n,), of (n, 3) points in mm from the exact surfaces that bound the solid."""
+        shapes = [self.base, *self.bores, *(feature.shape for feature in (*self.adds, *self.cuts))]
+        nearest: Array = np.min([shape.distance(points) for shape in shapes], axis=0)
         return nearest
 
     def mesh(self, tolerance: float) -> Body:
         """The print mesh, within ``tolerance`` mm of the exact surface."""
-        vertices, triangles = revolve(self.meridian, tolerance)
-        if self.bores:
-            vertices, triangles = _drill(vertices, triangles, self.bores, tolerance)
+        (vertices, triangles), bores = self._drilled(tolerance)
+        tools: list[Shape] = [*bores, *(feature.shape for feature in self.cuts)]
+        if self.adds or tools:
+            parts = [feature.shape.mesh(tolerance) for feature in self.adds]
+            vertices, triangles = _combined((vertices, triangles), parts, [tool.mesh(tolerance) for tool in tools])
         return Body(self.name, self.role, self.material, vertices, triangles)
 
+    def _drilled(self, tolerance: float) -> tuple[tuple[Vertices, Triangles], tuple[Bore, ...]]:
+        """The mesh of the base, and the bores that still have to be cut; most are built into flat faces."""
+        if not isinstance(self.base, Meridian):
+            return self.base.mesh(tolerance), self.bores
+        rings = revolve_rings(self.base, tolerance)
+        built = drilled(rings, self.bores, tolerance) if self.bores else None
+        if built is not None:
+            return built, ()
+        return (rings.vertices, np.concatenate(rings.strips)), self.bores
 
-def _drill(
-    vertices: Vertices, triangles: Triangles, bores: tuple[Bore, ...], tolerance: float
+
+def _combined(
+    base: tuple[Vertices, Triangles], adds: list[tuple[Vertices, Triangles]], cuts: list[tuple[Vertices, Triangles]]
 ) -> tuple[Vertices, Triangles]:
-    """Cut the bores in one batch; a bore reaches past its open faces so that no two faces coincide."""
+    """Join and cut in one batch each."""
     from manifold3d import Manifold, Mesh64, OpType
 
-    blank = Manifold(Mesh64(vertices, triangles.astype(np.uint64)))
-    tools = []
-    for bore in bores:
-        count = circle_count(bore.radius, tolerance)
-        height = bore.high - bore.low + (1.0 if bore.blind else 2.0)
-        drill = Manifold.cylinder(height, bore.radius * widen(count), circular_segments=count)
-        tools.append(drill.translate((bore.x, bore.y, bore.low - 1.0)))
-    cut = Manifold.batch_boolean([blank, *tools], OpType.Subtract).to_mesh64()
-    return np.array(cut.vert_properties[:, :3], order="C"), cut.tri_verts.astype(np.int64)
+    def manifold(mesh: tuple[Vertices, Triangles]) -> Any:
+        return Manifold(Mesh64(mesh[0], mesh[1].astype(np.uint64)))
+
+    whole = manifold(base)
+    if adds:
+        whole = Manifold.batch_boolean([whole, *map(manifold, adds)], OpType.Add)
+    if cuts:
+        whole = Manifold.batch_boolean([whole, *map(manifold, cuts)], OpType.Subtract)
+    mesh = whole.to_mesh64()
+    return np.array(mesh.vert_properties[:, :3], order="C"), mesh.tri_verts.astype(np.int64)

@@ -5,6 +5,7 @@ Files in the working folder come before the shipped ones, so a lab's own printer
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -14,7 +15,7 @@ from pydantic import BaseModel
 from pneutouch.errors import InputError, nearest
 from pneutouch.spec.design import Design
 from pneutouch.spec.material import Material
-from pneutouch.spec.part import Barb, BoltCircle, GluedFlange
+from pneutouch.spec.part import MOUNTS, PORTS, SEATS, Tube
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import read_toml, validate
 
@@ -26,20 +27,31 @@ _CHECKOUT = _PACKAGE.parents[1]
 
 @dataclass(frozen=True, slots=True)
 class Kind:
-    """One shelf: the model of its files and the folder they lie in."""
+    """One shelf: the model of its files, or one a family, and the folder they lie in."""
 
-    model: type[BaseModel]
+    model: type[BaseModel] | Mapping[str, type[BaseModel]]
     folder: str
     part: bool = False
+
+    def validate(self, content: dict[str, Any], where: str) -> BaseModel:
+        """Validate a file's content. Raises InputError that names the key."""
+        if not isinstance(self.model, Mapping):
+            return validate(self.model, content, where)
+        family = content.get("family")
+        if not isinstance(family, str) or family not in self.model:
+            known = nearest(str(family), self.model)
+            raise InputError(f"{where}: family = {family!r}: unknown.{known}")
+        return validate(self.model[family], content, where)
 
 
 KINDS: dict[str, Kind] = {
     "designs": Kind(Design, "designs"),
     "materials": Kind(Material, "printprofiles/materials"),
     "printers": Kind(Printer, "printprofiles"),
-    "ports": Kind(Barb, "parts/ports", part=True),
-    "seats": Kind(GluedFlange, "parts/seats", part=True),
-    "mounts": Kind(BoltCircle, "parts/mounts", part=True),
+    "tubes": Kind(Tube, "parts/tubes", part=True),
+    "ports": Kind(PORTS, "parts/ports", part=True),
+    "seats": Kind(SEATS, "parts/seats", part=True),
+    "mounts": Kind(MOUNTS, "parts/mounts", part=True),
 }
 
 
@@ -78,7 +90,7 @@ class Library:
             head = f"{asked_by} = {name!r}: " if asked_by else f"{name}: "
             raise InputError(f"{head}no such name among the {kind}.{nearest(name, shelf)}")
         path = shelf[name]
-        return validate(KINDS[kind].model, read_toml(path), str(path))
+        return KINDS[kind].validate(read_toml(path), str(path))
 
     def all(self, kind: str, model: type[Model]) -> dict[str, Model]:
         """Load everything of one kind; ``model`` is the kind's model, for the type checker."""

@@ -10,7 +10,7 @@ from pneutouch.errors import InputError
 from pneutouch.spec.design import Design
 from pneutouch.spec.fields import Kind
 from pneutouch.spec.material import Material
-from pneutouch.spec.part import Barb, BoltCircle, GluedFlange
+from pneutouch.spec.part import AnyMount, AnySeat, OnePiece, Port, Tube
 from pneutouch.spec.printer import Mode, Printer
 from pneutouch.spec.read import override, read_toml, validate
 
@@ -26,19 +26,27 @@ class Scene:
     connector_material: Material
     printer: Printer
     connector_printer: Printer
-    port: Barb
-    seat: GluedFlange
-    mount: BoltCircle
+    tube: Tube
+    port: Port
+    seat: AnySeat
+    mount: AnyMount
 
     @property
     def membrane_mode(self) -> Mode:
         """Print mode of the membrane; load_scene has made sure that there is one."""
+        if isinstance(self.seat, OnePiece):
+            return _mode(self.printer, self.membrane_material, self.connector_material)
         return _mode(self.printer, self.membrane_material)
 
     @property
     def connector_mode(self) -> Mode:
-        """Print mode of the connector."""
-        return _mode(self.connector_printer, self.connector_material)
+        """Print mode of the connector; that of the membrane where both grow in one print."""
+        return self.membrane_mode if isinstance(self.seat, OnePiece) else _mode(self.connector_printer, self.connector_material)
+
+    @property
+    def hole_undersize(self) -> float:
+        """By how much the connector's printer makes holes too small, mm in diameter; fits are drawn wider by it."""
+        return self.connector_printer.hole_undersize_mm.nominal
 
     @property
     def mesh_tolerance(self) -> float:
@@ -83,19 +91,41 @@ def _resolved(name: str, where: str, design: Design, shelves: Library) -> Scene:
         connector_material=find("materials", "connector", "material"),
         printer=find("printers", "print", "profile"),
         connector_printer=find("printers", "print", "connector_profile"),
+        tube=_tube(design, where, shelves),
         port=find("ports", "connector", "port"),
         seat=find("seats", "connector", "seat"),
         mount=find("mounts", "connector", "mount"),
     )  # fmt: skip
+    check_scene(scene)
+    return scene
+
+
+def check_scene(scene: Scene) -> None:
+    """What must hold between the parts of a scene. Raises InputError that names ``scene.where`` and the key."""
     _check_kind(scene, "membrane.material", scene.membrane_material, "elastomer")
     _check_kind(scene, "connector.material", scene.connector_material, "rigid")
     _check_runs(scene, "print.profile", scene.printer, scene.membrane_material)
     _check_runs(scene, "print.connector_profile", scene.connector_printer, scene.connector_material)
-    return scene
+    _check_one_piece(scene)
 
 
-def _mode(printer: Printer, material: Material) -> Mode:
-    mode = printer.mode_for(material)
+def _tube(design: Design, where: str, shelves: Library) -> Tube:
+    """The tube that the design names, else the usual one of its port. Raises InputError where it does not fit."""
+    port = shelves.load("ports", design.connector.port, asked_by=f"{where}: connector.port")
+    name = design.pneumatics.tube
+    if name is not None:
+        shelves.load("tubes", name, asked_by=f"{where}: pneumatics.tube")
+        if name not in port.tubes:
+            raise InputError(
+                f"{where}: pneumatics.tube = {name!r}: the port {design.connector.port} takes {', '.join(port.tubes)}; "
+                "give one of these, or another connector.port"
+            )
+    found: Tube = shelves.load("tubes", name or port.tubes[0], asked_by=f"{where}: tubes of connector.port")
+    return found
+
+
+def _mode(printer: Printer, *materials: Material) -> Mode:
+    mode = printer.mode_for(*materials)
     assert mode is not None
     return mode
 
@@ -112,4 +142,21 @@ def _check_runs(scene: Scene, key: str, printer: Printer, material: Material) ->
         raise InputError(
             f"{scene.where}: {key} = {value!r}: the {printer.title} cannot run {material.label}; "
             f"it runs {', '.join(printer.resins)}, {printer.resins_at_once} at once"
+        )
+
+
+def _check_one_piece(scene: Scene) -> None:
+    """A membrane grown onto its connector needs one machine that holds both."""
+    if not isinstance(scene.seat, OnePiece):
+        return
+    chosen, head = scene.design.print, f"{scene.where}: connector.seat = {scene.design.connector.seat!r}: "
+    if chosen.profile != chosen.connector_profile:
+        raise InputError(
+            f"{head}both bodies grow in one print, so print.connector_profile = {chosen.connector_profile!r} must be "
+            f"{chosen.profile!r}, as print.profile"
+        )
+    if scene.printer.mode_for(scene.membrane_material, scene.connector_material) is None:
+        raise InputError(
+            f"{head}the {scene.printer.title} cannot print {scene.membrane_material.label} and "
+            f"{scene.connector_material.label} together; it holds {scene.printer.resins_at_once} of {', '.join(scene.printer.resins)}"
         )

@@ -6,9 +6,10 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pneutouch.body import Bore, Solid
+from pneutouch.body import Bore, Frame, Prism, Solid, Turned
+from pneutouch.body.shapes import Shape
 from pneutouch.export.step_text import canonical
-from pneutouch.meridian import Arc, Segment
+from pneutouch.meridian import Arc, Meridian, Segment
 from pneutouch.meridian.segments import Array
 
 if TYPE_CHECKING:
@@ -17,16 +18,12 @@ if TYPE_CHECKING:
 
 def exact_solid(solid: Solid) -> cq.Solid:
     """The solid as a boundary representation, in the design frame, mm."""
-    import cadquery as cq
-
-    edges = [_edge(piece) for piece in solid.meridian.pieces]
-    first, last = solid.meridian.start, solid.meridian.end
-    if not solid.meridian.is_ring:
-        edges.append(cq.Edge.makeLine(cq.Vector(0, 0, last[1]), cq.Vector(0, 0, first[1])))
-    face = cq.Face.makeFromWires(cq.Wire.assembleEdges(edges))
-    body = cq.Solid.revolve(face, 360.0, cq.Vector(0, 0, 0), cq.Vector(0, 0, 1))
-    cut = body.cut(*[_drill(bore) for bore in solid.bores]) if solid.bores else body
-    return cut.Solids()[0] if hasattr(cut, "Solids") else cut
+    body = _turned(Turned(solid.base)) if isinstance(solid.base, Meridian) else _prism(solid.base)
+    if solid.adds:
+        body = body.fuse(*[_shape(feature.shape) for feature in solid.adds]).clean()
+    tools = [*map(_drill, solid.bores), *(_shape(feature.shape) for feature in solid.cuts)]
+    whole = body.cut(*tools) if tools else body
+    return whole.Solids()[0] if hasattr(whole, "Solids") else whole
 
 
 def step(name: str, solids: tuple[Solid, ...], offset: Array) -> bytes:
@@ -45,10 +42,48 @@ def step(name: str, solids: tuple[Solid, ...], offset: Array) -> bytes:
     return canonical(text).encode()
 
 
-def _edge(piece: Segment) -> cq.Edge:
+def _shape(shape: Shape) -> cq.Solid:
+    if isinstance(shape, Turned):
+        return _turned(shape)
+    if isinstance(shape, Prism):
+        return _prism(shape)
+    assert isinstance(shape, Bore)
+    return _drill(shape)
+
+
+def _turned(shape: Turned) -> cq.Solid:
+    import cadquery as cq
+
+    meridian = shape.meridian
+    edges = [_edge(piece) for piece in meridian.pieces]
+    if not meridian.is_ring:
+        edges.append(cq.Edge.makeLine(cq.Vector(0, 0, meridian.end[1]), cq.Vector(0, 0, meridian.start[1])))
+    face = cq.Face.makeFromWires(cq.Wire.assembleEdges(edges))
+    body = cq.Solid.revolve(face, 360.0, cq.Vector(0, 0, 0), cq.Vector(0, 0, 1))
+    return body if shape.frame == Frame() else body.moved(_location(shape.frame))
+
+
+def _prism(shape: Prism) -> cq.Solid:
+    import cadquery as cq
+
+    wire = cq.Wire.assembleEdges([_edge(piece, flat=True) for piece in shape.outline])
+    body = cq.Solid.extrudeLinear(wire, [], cq.Vector(0, 0, shape.high - shape.low))
+    return body.moved(_location(shape.frame) * cq.Location(cq.Vector(0, 0, shape.low)))
+
+
+def _location(frame: Frame) -> cq.Location:
+    import cadquery as cq
+
+    return cq.Location(cq.Plane(origin=frame.origin, xDir=frame.across, normal=frame.axis))
+
+
+def _edge(piece: Segment, flat: bool = False) -> cq.Edge:
+    """An edge of a meridian in the (x, z) plane, or of an outline in the (x, y) plane."""
     import cadquery as cq
 
     def vector(point: tuple[float, float]) -> cq.Vector:
+        if flat:
+            return cq.Vector(point[0], point[1], 0.0)
         return cq.Vector(max(point[0], 0.0) if point[0] > 1e-9 else 0.0, 0.0, point[1])
 
     if isinstance(piece, Arc):
@@ -59,7 +94,6 @@ def _edge(piece: Segment) -> cq.Edge:
 def _drill(bore: Bore) -> cq.Solid:
     import cadquery as cq
 
-    past = 0.0 if bore.blind else 1.0
-    return cq.Solid.makeCylinder(
-        bore.radius, bore.high - bore.low + 1.0 + past, cq.Vector(bore.x, bore.y, bore.low - 1.0), cq.Vector(0, 0, 1)
-    )
+    low = bore.low if bore.closed == "low" else bore.low - 1.0
+    high = bore.high if bore.closed == "high" else bore.high + 1.0
+    return cq.Solid.makeCylinder(bore.radius, high - low, cq.Vector(bore.x, bore.y, low), cq.Vector(0, 0, 1))

@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass
 
 from pneutouch.meridian.profile import Meridian
-from pneutouch.meridian.segments import Arc
+from pneutouch.meridian.segments import Arc, Point, Segment
 
 _ON_AXIS = 1e-9
 """A radius below this (mm) is a pole that rounding moved off the axis."""
@@ -56,3 +56,13 @@ def _inner_rings(arc: Arc, count: int) -> list[Ring]:
     radius = arc.radius + 2 / 3 * arc.radius * (1 - math.cos(step / 2))
     angles = [arc.first + step / math.sqrt(2) + k * step for k in range(count - 1)]
     return [Ring(*arc.at(angle, radius), lean=abs(math.cos(angle))) for angle in angles]
+
+
+def polygon(outline: tuple[Segment, ...], error: float) -> list[Point]:
+    """Corners of a closed outline in its plane whose arcs stay within ``error`` mm; the area is kept."""
+    corners: list[Point] = []
+    for piece in outline:
+        corners.append(piece.start)
+        if isinstance(piece, Arc):
+            corners += [(ring.radius, ring.height) for ring in _inner_rings(piece, chords(piece, error))]
+    return corners

@@ -11,10 +11,14 @@ import numpy as np
 from pneutouch.body import Body, Solid
 from pneutouch.catalogue import Scene
 from pneutouch.meridian.segments import Array
-from pneutouch.parts.connector import CHANNEL, connector_meridian
+from pneutouch.parts.connector import rigid_solids
+from pneutouch.parts.gas import glue_volume, internal_volume
 from pneutouch.parts.layout import Layout, lay_out
 from pneutouch.parts.membrane import INNER_WALL, membrane_meridian
-from pneutouch.parts.mount import mounting_bores
+from pneutouch.parts.room import check_room
+from pneutouch.parts.seat import SEAT
+from pneutouch.spec.part import ClampedFlange, OnePiece
+from pneutouch.spec.printer import Mode, Printer
 from pneutouch.units import ML
 
 _MARGIN = 1.0
@@ -23,7 +27,7 @@ _MARGIN = 1.0
 
 @dataclass(frozen=True)
 class Assembly:
-    """The solids of a scene in the design frame (base plane z = 0), and their meshes."""
+    """The solids of a scene in the design frame (base plane z = 0), and their meshes. The membrane comes first."""
 
     scene: Scene
     layout: Layout
@@ -34,6 +38,27 @@ class Assembly:
         """Print meshes within the scene's tolerance, in the design frame."""
         return tuple(solid.mesh(self.scene.mesh_tolerance) for solid in self.solids)
 
+    def solid(self, name: str) -> Solid:
+        """The solid of a name: membrane, connector, ring or plug."""
+        return next(solid for solid in self.solids if solid.name == name)
+
+    def machine(self, name: str) -> tuple[Printer, Mode]:
+        """The printer of a body and its mode."""
+        scene = self.scene
+        if name == "membrane":
+            return scene.printer, scene.membrane_mode
+        return scene.connector_printer, scene.connector_mode
+
+    def job(self, name: str) -> str:
+        """The print job of a body: bodies of one job are printed together."""
+        grown = isinstance(self.scene.seat, OnePiece) and name in ("membrane", "connector")
+        return "one piece" if grown else name
+
+    def stands_up(self, name: str) -> bool:
+        """Whether a body is printed as it stands in the design frame; else it is turned over."""
+        down = self.scene.design.print.orientation == "dome-down"
+        return not (down and self.job(name) == self.job("membrane"))
+
     @cached_property
     def print_offset(self) -> Array:
         """Shift (3,) in mm from the design frame to the print frame, whole millimetres."""
@@ -43,8 +68,7 @@ class Assembly:
 
     def deviation(self, body: Body) -> float:
         """Greatest distance in mm of a body's mesh from its exact surface, measured on dense points."""
-        solid = next(solid for solid in self.solids if solid.name == body.name)
-        return float(solid.distance(body.surface_points()).max())
+        return float(self.solid(body.name).distance(body.surface_points()).max())
 
     @cached_property
     def cavity_volume(self) -> float:
@@ -52,29 +76,38 @@ class Assembly:
         return self.solids[0].meridian.swept(INNER_WALL)
 
     @property
-    def channel_volume(self) -> float:
-        """Volume of the connector's air channel and port, mm3."""
-        return self.solids[1].meridian.swept(CHANNEL)
+    def seat_area(self) -> float:
+        """Area in mm2 of the faces that membrane and connector share; 0 where the flange is clamped."""
+        if isinstance(self.scene.seat, ClampedFlange):
+            return 0.0
+        return sum(piece.area() for piece in self.solid("connector").meridian.tagged(SEAT))
+
+    @cached_property
+    def internal_volume(self) -> float:
+        """Gas volume between the base plane and the port's mouth, the fitting in place, mm3."""
+        return internal_volume(self.scene, self.layout)
+
+    @property
+    def glue_volume(self) -> float:
+        """Volume in mm3 of the gaps to be filled with glue."""
+        return glue_volume(self.scene, self.layout)
 
     @property
     def tube_volume(self) -> float:
         """Volume of the tube, mm3."""
-        radius = 0.5 * self.scene.port.tube_inner_diameter
+        radius = 0.5 * self.scene.tube.inner_diameter
         return math.pi * radius**2 * self.scene.design.pneumatics.tube_length_mm
 
     @property
     def dead_volume(self) -> float:
-        """Gas behind the cavity in mm3: as the design states it, else channel and tube."""
+        """Gas behind the cavity in mm3: as the design states it, else connector and tube."""
         stated = self.scene.design.pneumatics.dead_volume_mL
-        return self.channel_volume + self.tube_volume if stated is None else stated * ML
+        return self.internal_volume + self.tube_volume if stated is None else stated * ML
 
 
 def assemble(scene: Scene) -> Assembly:
-    """Draw the membrane and the connector of a scene."""
+    """Draw the membrane and the rigid bodies of a scene. Raises InputError where there is no room for a part."""
     layout = lay_out(scene)
+    check_room(scene, layout)
     membrane = Solid("membrane", "membrane", scene.membrane_material, membrane_meridian(layout))
-    connector = Solid(
-        "connector", "connector", scene.connector_material, connector_meridian(layout, scene.port),
-        mounting_bores(scene.mount, layout),
-    )  # fmt: skip
-    return Assembly(scene, layout, (membrane, connector))
+    return Assembly(scene, layout, (membrane, *rigid_solids(scene, layout)))

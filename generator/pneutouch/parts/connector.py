@@ -1,38 +1,97 @@
-"""The connector: a rigid body with a groove for the flange, an air channel, a port and mounting holes."""
+"""The rigid bodies: a connector with its seat, port and mount, and the ring or plug that some seats add."""
 
 from __future__ import annotations
 
-from itertools import pairwise
-
-from pneutouch.meridian import Line, Meridian, Point
+from pneutouch.body import Solid
+from pneutouch.catalogue import Scene
+from pneutouch.meridian import Meridian
 from pneutouch.parts.layout import Layout
-from pneutouch.parts.port import port_outside
-from pneutouch.spec.part import Barb
+from pneutouch.parts.mount import mount_cuts, mounting_bores, underside
+from pneutouch.parts.port import CHANNEL
+from pneutouch.parts.rear_port import inward, outward, rear_lugs
+from pneutouch.parts.seat import clamping_bores, clearing_bores, seat_faces
+from pneutouch.parts.side_port import side_bore, side_boss
+from pneutouch.parts.trace import Path, trace
+from pneutouch.spec.part import ClampedFlange, OnePiece
 
-CHANNEL = "channel"
-SEAT = "seat"
-"""The part of the groove's floor that the flange rests on: the face both bodies share."""
+PLUG_SHOULDER = "shoulder"
 
 
-def connector_meridian(layout: Layout, port: Barb) -> Meridian:
-    """Meridian of the connector without its mounting holes, starting at the mouth of the port."""
-    outside = port_outside(port, layout.plate_low)
-    corners: list[tuple[Point, str]] = [
-        (outside[-1].end, "plate underside"),
-        ((layout.plate_radius, layout.plate_low), "plate edge"),
-        ((layout.plate_radius, layout.plate_high), "plate top"),
-        ((layout.ring_radius, layout.plate_high), "ring"),
-        ((layout.ring_radius, 0.0), "ring top"),
-        ((layout.groove_outer, 0.0), "groove outer"),
-        ((layout.groove_outer, layout.plate_high), "groove floor"),
-        ((layout.flange_radius, layout.plate_high), SEAT),
-        ((layout.inner_radius, layout.plate_high), "groove floor"),
-        ((layout.groove_inner, layout.plate_high), "groove inner"),
-        ((layout.groove_inner, 0.0), "spigot top"),
-        ((layout.channel_radius, 0.0), CHANNEL),
-        ((layout.channel_radius, layout.plate_low), CHANNEL),
-        ((outside[0].start[0], layout.plate_low), CHANNEL),
-        (outside[0].start, ""),
+def rigid_solids(scene: Scene, layout: Layout) -> tuple[Solid, ...]:
+    """The connector first, then the clamping ring or the plug."""
+    material, seat = scene.connector_material, scene.seat
+    bores = (*mounting_bores(scene, layout), *clamping_bores(seat, layout, scene.hole_undersize))
+    adds, cuts = [], list(mount_cuts(scene, layout))
+    if layout.port_axis is not None:
+        adds += side_boss(layout)
+        cuts.append(side_bore(layout, layout.opening_radius or layout.channel_radius))
+    elif not isinstance(seat, OnePiece):
+        adds += rear_lugs(layout)
+    outline = carrier_meridian(scene, layout) if isinstance(seat, OnePiece) else connector_meridian(scene, layout)
+    connector = Solid("connector", "connector", material, outline, tuple(bores), tuple(adds), tuple(cuts))
+    if isinstance(seat, ClampedFlange):
+        holes = clearing_bores(seat, layout, scene.hole_undersize)
+        return connector, Solid("ring", "ring", material, ring_meridian(seat, layout), holes)
+    if isinstance(seat, OnePiece):
+        lugs = () if layout.port_axis is not None else tuple(rear_lugs(layout))
+        return connector, Solid("plug", "plug", material, plug_meridian(scene, layout), adds=lugs)
+    return (connector,)
+
+
+def connector_meridian(scene: Scene, layout: Layout) -> Meridian:
+    """A connector whose channel leads to the port behind it, or ends blind where a side port's bore meets it."""
+    faces: Path = [
+        *underside(scene, layout),
+        *seat_faces(scene.seat, layout),
+        ("spigot top", (layout.channel_radius, 0.0)),
     ]
-    inside = [Line(a, b, tag) for (a, tag), (b, _) in pairwise(corners) if a != b]
-    return Meridian((*outside, *inside))
+    if layout.port_axis is not None:
+        end = [(CHANNEL, (layout.channel_radius, layout.channel_low)), (CHANNEL, (0.0, layout.channel_low))]
+        return trace((0.0, layout.under), [*faces, *end])
+    start, port = outward(layout)
+    return trace(start, [*port, *faces, *inward(layout)])
+
+
+def carrier_meridian(scene: Scene, layout: Layout) -> Meridian:
+    """The rigid body that a membrane is grown onto: open in the middle, with a counterbore for the plug."""
+    assert isinstance(scene.seat, OnePiece)
+    seat, opening = scene.seat, layout.opening_radius
+    wide, high = opening + seat.shoulder_width, layout.under + seat.shoulder_thickness
+    return trace((wide, layout.under), [
+        *underside(scene, layout), *seat_faces(seat, layout), ("lip top", (opening, 0.0)), ("opening", (opening, high)),
+        ("counterbore", (wide, high)), ("counterbore", (wide, layout.under)),
+    ])  # fmt: skip
+
+
+def plug_meridian(scene: Scene, layout: Layout) -> Meridian:
+    """The plug that closes the opening; it carries a port that points backwards."""
+    assert isinstance(scene.seat, OnePiece)
+    seat, body = scene.seat, plug_radius(scene, layout)
+    wide, high = body + seat.shoulder_width, layout.under + seat.shoulder_thickness
+    faces: Path = [
+        ("plug underside", (wide, layout.under)), (PLUG_SHOULDER, (wide, high)), (PLUG_SHOULDER, (body, high)),
+        ("plug", (body, 0.0)),
+    ]  # fmt: skip
+    if layout.port_axis is not None:
+        return trace((0.0, layout.under), [*faces, ("plug top", (0.0, 0.0))])
+    start, port = outward(layout)
+    return trace(start, [*port, *faces, ("plug top", (layout.channel_radius, 0.0)), *inward(layout)])
+
+
+def plug_radius(scene: Scene, layout: Layout) -> float:
+    """Radius of the plug: the opening less the fit of two bodies of one machine."""
+    return layout.opening_radius - scene.fit_clearance
+
+
+def ring_meridian(seat: ClampedFlange, layout: Layout) -> Meridian:
+    """The clamping ring as it rests on the flange before the screws take up the squeeze.
+
+    It opens upwards at 45 degrees, so that the dome is free to bulge.
+    """
+    inner, high = layout.outer_radius + layout.clearance, seat.ring_thickness
+    skirt = layout.plate_high + seat.squeeze * layout.flange_thickness
+    return trace((inner, 0.0), [
+        ("clamp face", (layout.groove_outer, 0.0)), ("skirt inside", (layout.groove_outer, skirt)),
+        ("skirt", (layout.ring_radius, skirt)), ("ring", (layout.ring_radius, high)),
+        ("ring top", (inner + high, high)), ("ring cone", (inner, 0.0)),
+    ])  # fmt: skip

@@ -1,14 +1,14 @@
-"""Where everything lies: the radii and heights that membrane, connector and drawing share.
+"""Where everything lies: the radii and heights that the bodies and the drawing share.
 
 The base plane is z = 0 and the dome points up. The membrane's rim goes on below the base plane as a
-flange; the connector's groove holds it there on three faces, so the dome is clamped at z = 0.
+flange; the seat holds it there, so the dome is clamped at z = 0.
 
     membrane          ___
                    .-'   '-.            outer wall  R0 + t0
                   /  .---.  \\           inner wall  R0
-    z = 0   ..---|  |     |  |---..     ring | groove: flange glued in | spigot with the channel
-            |____|__|_   _|__|____|     mounting plate
-                    | | | |             port
+    z = 0   ..---|  |     |  |---..     ring | flange | spigot with the channel
+            |____|__|_   _|__|____|     mounting plate, its underside at plate_low
+                    | | | |             port: behind, or out of the plate's side
 """
 
 from __future__ import annotations
@@ -17,16 +17,23 @@ import math
 from dataclasses import dataclass
 
 from pneutouch.catalogue import Scene
-from pneutouch.errors import InputError
-from pneutouch.spec.part import BoltCircle
+from pneutouch.parts.port import PortShape, port_shape
+from pneutouch.spec.part import BoltCircle, ClampedFlange, OnePiece, RobotFlange, Sleeve
 
-_HEAD_GAP = 0.5
+HEAD_GAP = 0.5
 """Room in mm around a screw head, for the driver."""
+
+_FLOOR = 1.0
+"""Rigid wall in mm kept behind a blind hole and beside a bore."""
 
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """All lengths in mm. Heights are z coordinates; the port hangs down from ``plate_low``."""
+    """All lengths in mm. Heights are z coordinates.
+
+    ``under`` is the rearmost face around the axis: ``plate_low``, or lower where the mount has a boss there.
+    ``opening_radius`` is the hole that a plug closes, 0 without one. ``port_axis`` is the height of a side port.
+    """
 
     inner_radius: float
     wall: float
@@ -37,8 +44,12 @@ class Layout:
     plate_radius: float
     plate_high: float
     plate_low: float
+    under: float
     bolt_circle_radius: float
     channel_radius: float
+    opening_radius: float
+    port: PortShape
+    port_axis: float | None
 
     @property
     def outer_radius(self) -> float:
@@ -60,52 +71,113 @@ class Layout:
         """Radius of the ring that carries the flange from outside."""
         return self.flange_radius + self.clearance
 
+    @property
+    def screw_circle(self) -> float:
+        """Radius of the circle of a clamping ring's screws; meaningless without a ring."""
+        return 0.5 * (self.groove_outer + self.ring_radius)
+
+    @property
+    def channel_low(self) -> float:
+        """Bottom of the channel that a side port's passage opens into."""
+        assert self.port_axis is not None
+        return self.port_axis - self.port.passage - 0.5
+
+    @property
+    def lowest(self) -> float:
+        """Lowest z of the port or the rear face."""
+        return self.under - self.port.length if self.port_axis is None else self.under
+
 
 def lay_out(scene: Scene) -> Layout:
-    """Derive the layout of a scene from membrane, seat, mount and the printers' fit clearance."""
+    """Derive the layout of a scene from membrane, seat, mount, port and the printers' fits; `check_room` judges it."""
     membrane, seat, mount = scene.design.membrane, scene.seat, scene.mount
+    port = port_shape(scene.port, scene.tube, scene.hole_undersize)
     flange = max(seat.least_flange_mm, seat.flange_over_wall * membrane.wall_thickness_mm)
-    flange_radius = membrane.inner_radius_mm + membrane.wall_thickness_mm + flange
-    ring = flange_radius + scene.fit_clearance + seat.ring_wall_mm
-    outside = mount.family == "through"
-    bolt_circle = _bolt_circle(mount, ring)
-    layout = Layout(
-        inner_radius=membrane.inner_radius_mm,
-        wall=membrane.wall_thickness_mm,
-        flange_width=flange,
-        flange_thickness=flange,
-        clearance=scene.fit_clearance,
-        ring_radius=ring,
-        plate_radius=bolt_circle + mount.head_diameter / 2 + _HEAD_GAP if outside else ring,
-        plate_high=-flange,
-        plate_low=-flange - mount.plate_thickness,
-        bolt_circle_radius=bolt_circle,
-        channel_radius=0.5 * seat.channel_diameter_mm,
-    )
-    _check_room(scene, layout)
-    return layout
+    clearance = 0.0 if isinstance(seat, OnePiece) else scene.fit_clearance
+    ring = _ring_radius(scene, membrane.inner_radius_mm + membrane.wall_thickness_mm + flange + clearance)
+    bolts = _bolt_circle(scene, ring)
+    thickness = _plate_thickness(scene, port)
+    low = -flange - thickness
+    side = mount.port_side == "side"
+    return Layout(
+        inner_radius=membrane.inner_radius_mm, wall=membrane.wall_thickness_mm, flange_width=flange,
+        flange_thickness=flange, clearance=clearance, ring_radius=ring, plate_radius=_plate_radius(scene, ring, bolts),
+        plate_high=-flange, plate_low=low, under=low - mount.boss_height if isinstance(mount, RobotFlange) else low,
+        bolt_circle_radius=bolts, channel_radius=_channel_radius(scene, port),
+        opening_radius=membrane.inner_radius_mm - seat.lip_wall_mm if isinstance(seat, OnePiece) else 0.0,
+        port=port, port_axis=low + _port_height(scene, port) if side else None,
+    )  # fmt: skip
 
 
-def _bolt_circle(mount: BoltCircle, ring: float) -> float:
-    """Radius of the bolt circle; its diameter is a whole number of mm so that it can be drilled."""
+def _ring_radius(scene: Scene, groove: float) -> float:
+    """Outer radius of the rigid ring around the flange."""
+    seat = scene.seat
+    if isinstance(seat, ClampedFlange):
+        least = scene.connector_printer.smallest.wall_rigid_mm.recommended
+        hole = 0.5 * (seat.clearance_diameter + scene.hole_undersize) + least
+        return groove + 2 * max(seat.ring_wall_mm, 0.5 * seat.head_diameter + HEAD_GAP, hole)
+    return groove + seat.ring_wall_mm
+
+
+def _bolt_circle(scene: Scene, ring: float) -> float:
+    """Radius of the mounting holes' circle, 0 without one; a whole number of mm across so that it can be drilled."""
+    mount = scene.mount
+    if isinstance(mount, RobotFlange):
+        return 0.5 * mount.pitch_diameter
+    if not isinstance(mount, BoltCircle):
+        return 0.0
     if mount.family == "through":
-        return 0.5 * math.ceil(2 * (ring + mount.head_diameter / 2 + _HEAD_GAP))
+        return 0.5 * math.ceil(2 * (ring + mount.head_diameter / 2 + HEAD_GAP))
     return 0.5 * math.floor(2 * (ring - 1.5 * mount.hole_diameter))
 
 
-def _check_room(scene: Scene, layout: Layout) -> None:
-    """Refuse a dome too small for the channel, the port or the holes behind it."""
-    port, mount = scene.port, scene.mount
-    behind = layout.bolt_circle_radius - mount.hole_diameter / 2
-    wall = scene.connector_printer.smallest.wall_rigid_mm.recommended
-    needs = {
-        "the spigot around the air channel": (layout.groove_inner, layout.channel_radius + wall),
-        "the holes around the port": (behind, port.barb_diameter / 2 + wall),
-        "the channel around the port's bore": (layout.channel_radius, port.bore_diameter / 2),
-    }
-    for what, (has, least) in needs.items():
-        if has < least:
-            raise InputError(
-                f"{scene.where}: membrane.inner_radius_mm = {layout.inner_radius:g}: too small for {what}: "
-                f"radius {has:.2f} mm, at least {least:.2f} mm; take a larger dome, another mount or printer"
-            )
+def _plate_radius(scene: Scene, ring: float, bolts: float) -> float:
+    mount = scene.mount
+    if isinstance(mount, RobotFlange):
+        return max(ring, 0.5 * mount.plate_diameter)
+    if isinstance(mount, Sleeve):
+        return max(ring, finger_radius(scene) + mount.sleeve_wall)
+    if isinstance(mount, BoltCircle) and mount.family == "through":
+        hole = (
+            0.5 * (mount.hole_diameter + scene.hole_undersize)
+            + scene.connector_printer.smallest.wall_rigid_mm.recommended
+        )
+        return bolts + max(mount.head_diameter / 2 + HEAD_GAP, hole)
+    return ring
+
+
+def finger_radius(scene: Scene) -> float:
+    """Inner radius of a sleeve: the finger, and what the printer makes holes smaller by."""
+    assert isinstance(scene.mount, Sleeve)
+    return 0.5 * (scene.mount.finger_diameter + scene.hole_undersize) + scene.connector_printer.accuracy_mm.nominal
+
+
+def _plate_thickness(scene: Scene, port: PortShape) -> float:
+    """At least the mount's; thicker for blind holes from both sides, a plug's shoulder or a port in the side."""
+    seat, mount = scene.seat, scene.mount
+    depth = mount.hole_depth if isinstance(mount, BoltCircle) and mount.hole_depth is not None else 0.0
+    needs = [mount.plate_thickness]
+    if isinstance(seat, ClampedFlange):
+        needs.append(seat.core_depth + depth + _FLOOR)
+    if isinstance(seat, OnePiece):
+        needs.append(seat.shoulder_thickness + _FLOOR)
+    if mount.port_side == "side":
+        needs.append(_port_height(scene, port) + port.root + 0.5)
+    inside = -port.hollow[-1][1]
+    if mount.port_side == "rear" and inside > 0:
+        needs.append(inside + _FLOOR)
+    return max(needs)
+
+
+def _port_height(scene: Scene, port: PortShape) -> float:
+    """Height of a side port's axis over the plate's underside: its root stays within the plate's edge."""
+    low = port.root + 0.5
+    if isinstance(scene.seat, OnePiece):
+        low = max(low, scene.seat.shoulder_thickness + port.passage + _FLOOR)
+    return low
+
+
+def _channel_radius(scene: Scene, port: PortShape) -> float:
+    """The seat's channel; wider than a passage that crosses it, for two equal cylinders meet in a point."""
+    channel = 0.5 * scene.seat.channel_diameter_mm
+    return max(channel, port.passage + 0.25) if scene.mount.port_side == "side" else max(channel, port.passage)

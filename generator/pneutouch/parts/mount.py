@@ -1,24 +1,62 @@
-"""Mounts: the holes of the connector's bolt circle."""
+"""Mounts: the rear faces of the connector and its mounting holes."""
 
 from __future__ import annotations
 
 import math
 
-from pneutouch.body import Bore
-from pneutouch.parts.layout import Layout
-from pneutouch.spec.part import BoltCircle
+from pneutouch.body import Bore, Feature, Frame, Turned, crossing
+from pneutouch.catalogue import Scene
+from pneutouch.parts.layout import Layout, finger_radius
+from pneutouch.parts.trace import Path, cylinder
+from pneutouch.spec.part import BoltCircle, RobotFlange, Sleeve
 
 
-def mounting_bores(mount: BoltCircle, layout: Layout) -> tuple[Bore, ...]:
-    """Equally spaced holes; the first lies half a spacing off the x axis."""
-    low = layout.plate_low
-    high = low + mount.hole_depth if mount.hole_depth is not None else layout.plate_high
+def underside(scene: Scene, layout: Layout) -> Path:
+    """From the rear face around the axis outwards to the lower edge of the plate."""
+    mount, low = scene.mount, layout.plate_low
+    edge = ("plate underside", (layout.plate_radius, low))
+    if isinstance(mount, RobotFlange):
+        boss = 0.5 * mount.boss_diameter - scene.connector_printer.accuracy_mm.nominal
+        return [("boss face", (boss, layout.under)), ("boss", (boss, low)), edge]
+    if isinstance(mount, Sleeve):
+        finger = finger_radius(scene)
+        outer, end = finger + mount.sleeve_wall, low - mount.sleeve_length
+        return [("plate underside", (finger, low)), ("finger", (finger, end)), ("sleeve end", (outer, end)),
+                ("sleeve", (outer, low)), edge]  # fmt: skip
+    return [edge]
+
+
+def mounting_bores(scene: Scene, layout: Layout) -> tuple[Bore, ...]:
+    """Equally spaced holes, the first half a spacing off the x axis; a robot flange has a dowel hole on the y axis."""
+    mount, wider = scene.mount, scene.hole_undersize
+    if not isinstance(mount, BoltCircle | RobotFlange):
+        return ()
+    low, high, circle = layout.plate_low, layout.plate_high, layout.bolt_circle_radius
+    depth = mount.hole_depth if isinstance(mount, BoltCircle) else None
     angles = [2 * math.pi * (k + 0.5) / mount.count for k in range(mount.count)]
-    radius = layout.bolt_circle_radius
-    return tuple(
-        Bore(
-            radius * math.cos(angle), radius * math.sin(angle),
-            0.5 * mount.hole_diameter, low, high, blind=mount.family == "blind",
-        )
+    radius = 0.5 * (mount.hole_diameter + wider)
+    holes = [
+        Bore(circle * math.cos(angle), circle * math.sin(angle), radius, low, high if depth is None else low + depth,
+             closed="" if depth is None else "high")
         for angle in angles
-    )  # fmt: skip
+    ]  # fmt: skip
+    if isinstance(mount, RobotFlange):
+        holes.append(Bore(0.0, circle, 0.5 * (mount.pin_diameter + wider), low, high))
+    return tuple(holes)
+
+
+def mount_cuts(scene: Scene, layout: Layout) -> tuple[Feature, ...]:
+    """The set screws' holes in a sleeve, half way along it, turned away from a side port."""
+    mount = scene.mount
+    if not isinstance(mount, Sleeve):
+        return ()
+    inner = finger_radius(scene)
+    outer, radius = inner + mount.sleeve_wall, 0.5 * (mount.set_screw_core_diameter + scene.hole_undersize)
+    height = layout.plate_low - 0.5 * mount.sleeve_length
+    drill = cylinder(radius, inner - 1.0 - (inner - math.sqrt(inner**2 - radius**2)), outer + 1.0)
+    net = crossing(outer, radius) - crossing(inner, radius)
+    angles = [0.5 * math.pi + 2 * math.pi * k / mount.set_screw_count for k in range(mount.set_screw_count)]
+    return tuple(
+        Feature(Turned(drill, Frame((0.0, 0.0, height), (math.cos(a), math.sin(a), 0.0), (0.0, 0.0, 1.0))), net)
+        for a in angles
+    )

@@ -1,33 +1,152 @@
-"""Ports: the lower end of the connector, drawn from the channel's end to the plate and back outside."""
+"""Ports: what each family looks like along its own axis, and what a fitting leaves free of its hollow.
+
+A port is drawn in (radius, height over the plate's face): heights grow away from the plate, and below 0 the hollow
+goes on inside the plate.
+"""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
 from itertools import pairwise
 
-from pneutouch.meridian import Line, Point
-from pneutouch.spec.part import Barb
+from pneutouch.body import Prism
+from pneutouch.meridian import Arc, Line, Point
+from pneutouch.spec.part import Barb, Luer, Port, PushIn, Thread, Tube
+
+CHANNEL = "channel"
+"""Faces that the air in the connector touches."""
 
 TIP_WALL = 0.3
 """Wall in mm left at the tip of a barb: a blunt edge that prints and does not cut the tube."""
 
-
-def barb_tip(port: Barb) -> float:
-    """Radius of the barb's tip: it must enter the tube, and keep a wall around the bore."""
-    return max(0.5 * port.tube_inner_diameter, 0.5 * port.bore_diameter + TIP_WALL)
+_LUG_ROOT = 0.2
+"""Depth in mm that a lug reaches into the body, so that the two are one."""
 
 
-def port_length(port: Barb) -> float:
-    """How far the port reaches below the plate, mm."""
-    return port.stem_length + port.barb_length
+@dataclass(frozen=True, slots=True)
+class PortShape:
+    """A port, mm.
+
+    Attributes:
+        outside: Faces from the inner edge of the mouth, over the outside, to the root at height 0: end point and tag.
+        hollow: Points from the inner edge of the mouth inwards; the last one is where the passage begins.
+        length: Height of the mouth.
+        engaged: How deep a fitting or tube fills the hollow, measured from the mouth.
+        fitting_bore: Radius that it leaves free.
+        lugs: Prisms joined to the outside, in the frame of the port.
+        lug_volume: What they add, mm3.
+    """
+
+    outside: tuple[tuple[Point, str], ...]
+    hollow: tuple[Point, ...]
+    length: float
+    engaged: float = 0.0
+    fitting_bore: float = 0.0
+    lugs: tuple[Prism, ...] = ()
+    lug_volume: float = 0.0
+
+    @property
+    def root(self) -> float:
+        """Outer radius where the port leaves the plate."""
+        return self.outside[-1][0][0]
+
+    @property
+    def reach(self) -> float:
+        """Greatest radius."""
+        lugs = [piece.bounds()[1] for lug in self.lugs for piece in lug.outline]
+        return max([point[0] for point, _ in self.outside] + lugs)
+
+    @property
+    def passage(self) -> float:
+        """Radius of the bore behind the port."""
+        return self.hollow[-1][0]
+
+    def hollow_volume(self, bottom: float) -> float:
+        """Volume in mm3 of the hollow from the mouth down to height ``bottom``."""
+        points = [*self.hollow, (self.passage, bottom)]
+        return sum(-Line(a, b, "").swept() for a, b in pairwise(points))
+
+    def filled_volume(self) -> float:
+        """Volume in mm3 that a fitting or tube takes of the hollow, its own bore left free."""
+        if not self.engaged:
+            return 0.0
+        end = self.length - self.engaged
+        inside = [point for point in self.hollow if point[1] >= end - 1e-9]
+        if inside[-1][1] > end + 1e-9:
+            after = self.hollow[len(inside)]
+            share = (inside[-1][1] - end) / (inside[-1][1] - after[1])
+            inside.append((inside[-1][0] + share * (after[0] - inside[-1][0]), end))
+        whole = sum(-Line(a, b, "").swept() for a, b in pairwise(inside))
+        return whole - math.pi * self.fitting_bore**2 * self.engaged
 
 
-def port_outside(port: Barb, plate_low: float) -> list[Line]:
-    """The port's outer faces from the bore's mouth up to the underside of the plate."""
+def port_shape(port: Port, tube: Tube, undersize: float) -> PortShape:
+    """The shape of a port for ``tube``; sockets are widened by the printer's ``undersize`` of holes (diameter, mm)."""
+    return _FAMILIES[port.family](port, tube, undersize)
+
+
+def _barb(port: Barb, tube: Tube, undersize: float) -> PortShape:
     stem, barb, bore = (0.5 * d for d in (port.stem_diameter, port.barb_diameter, port.bore_diameter))
-    shoulder = plate_low - port.stem_length
-    tip = shoulder - port.barb_length
-    points: list[Point] = [
-        (bore, tip), (barb_tip(port), tip), (barb, shoulder), (stem, shoulder), (stem, plate_low)
-    ]  # fmt: skip
-    tags = ["port mouth", "barb", "barb shoulder", "stem"]
-    return [Line(a, b, tag) for (a, b), tag in zip(pairwise(points), tags, strict=True)]
+    length = port.stem_length + port.barb_length
+    # The tip must enter the tube and keep a wall around the bore.
+    tip = max(0.5 * tube.inner_diameter, bore + TIP_WALL)
+    outside = (
+        ((tip, length), "port mouth"), ((barb, port.stem_length), "barb"), ((stem, port.stem_length), "barb shoulder"),
+        ((stem, 0.0), "stem"),
+    )  # fmt: skip
+    return PortShape(outside, ((bore, length), (bore, 0.0)), length)
+
+
+def _thread(port: Thread, tube: Tube, undersize: float) -> PortShape:
+    core, chamfer = 0.5 * (port.core_diameter + undersize), 0.5 * port.chamfer_diameter
+    face, passage, length = 0.5 * port.face_diameter, 0.5 * port.passage_diameter, port.boss_length
+    bottom = length - port.depth
+    chamfer = max(chamfer, core + 0.1)
+    hollow = [(chamfer, length), (core, length - (chamfer - core)), (core, bottom), (passage, bottom)]
+    outside = (((face, length), "port face"), ((face, 0.0), "boss"))
+    return PortShape(
+        outside, _to_plate(hollow), length, port.fitting_engagement, 0.5 * port.fitting_bore_diameter
+    )  # fmt: skip
+
+
+def _luer(port: Luer, tube: Tube, undersize: float) -> PortShape:
+    opening, passage, length = 0.5 * (port.opening_diameter + undersize), 0.5 * port.passage_diameter, port.boss_length
+    bottom = length - port.depth
+    hollow = [(opening, length), (opening - 0.5 * port.taper * port.depth, bottom), (passage, bottom)]
+    body = 0.5 * port.body_diameter
+    lugs = tuple(_lug(port, turn) for turn in (0.0, math.pi))
+    angle = math.radians(port.lug_angle_deg)
+    added = 2 * 0.5 * angle * ((0.5 * port.lug_diameter) ** 2 - body**2) * port.lug_thickness
+    return PortShape(
+        (((body, length), "port mouth"), ((body, 0.0), "boss")), _to_plate(hollow), length,
+        port.fitting_engagement, 0.5 * port.fitting_bore_diameter, lugs, added,
+    )  # fmt: skip
+
+
+def _lug(port: Luer, turn: float) -> Prism:
+    """A sector of a ring under the mouth, centred on the angle ``turn`` (rad)."""
+    outer, inner = 0.5 * port.lug_diameter, 0.5 * port.body_diameter - _LUG_ROOT
+    half = math.radians(0.5 * port.lug_angle_deg)
+    over, under = Arc((0, 0), outer, turn - half, turn + half, "lug"), Arc((0, 0), inner, turn + half, turn - half, "")
+    outline = (over, Line(over.end, under.start, "lug"), under, Line(under.end, over.start, "lug"))
+    return Prism(outline, port.boss_length - port.lug_thickness, port.boss_length)
+
+
+def _push_in(port: PushIn, tube: Tube, undersize: float) -> PortShape:
+    socket, passage, length = 0.5 * (tube.outer_diameter + undersize), 0.5 * tube.inner_diameter, port.boss_length
+    hollow = [(socket, length), (socket, length - port.depth), (passage, length - port.depth)]
+    outside = (((socket + port.wall, length), "port mouth"), ((socket + port.wall, 0.0), "boss"))
+    return PortShape(outside, _to_plate(hollow), length, port.depth, passage)
+
+
+def _to_plate(hollow: list[Point]) -> tuple[Point, ...]:
+    """The hollow, its passage drawn on to the plate's face where it ends above it."""
+    radius, height = hollow[-1]
+    return (*hollow, (radius, 0.0)) if height > 0 else tuple(hollow)
+
+
+_FAMILIES: dict[str, Callable[..., PortShape]] = {
+    "barb": _barb, "thread": _thread, "luer": _luer, "push-in": _push_in,
+}  # fmt: skip

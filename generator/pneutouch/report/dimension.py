@@ -72,4 +72,7 @@ def vertical(ax: Axes, x: float, y0: float, y1: float, feature: float, text: str
 def leader(ax: Axes, at: tuple[float, float], to: tuple[float, float], text: str, ha: str) -> None:
     """A note with an arrow to the point ``at``."""
     arrow = {"arrowstyle": "-|>,head_width=0.12,head_length=0.3", "lw": THIN, "color": INK, "shrinkA": 1, "shrinkB": 0}
-    ax.annotate(text, at, xytext=to, arrowprops=arrow, ha=ha, va="center", fontsize=_SIZE, multialignment="left")
+    ax.annotate(
+        text, at, xytext=to, arrowprops=arrow, ha=ha, va="center", fontsize=_SIZE, multialignment="left",
+        bbox={"fc": "white", "ec": "none", "pad": 0.6},
+    )  # fmt: skip

@@ -3,139 +3,169 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from pneutouch.body import Solid
-from pneutouch.meridian import sample
 from pneutouch.parts import Assembly
-from pneutouch.parts.port import port_length
 from pneutouch.report.dimension import CENTRE, THIN, circle, horizontal, leader, polar, vertical
-from pneutouch.report.style import BOLD, INK, MUTED, figure, svg
+from pneutouch.report.port_note import port_note
+from pneutouch.report.section import draw_bores, draw_section
+from pneutouch.report.style import BOLD, MUTED, figure, svg
+from pneutouch.spec.part import BoltCircle, ClampedFlange, OnePiece, RobotFlange, Sleeve
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-_THICK = 0.9
-_HATCHES = {"membrane": "////////", "connector": "\\\\\\\\"}
 
 
 def section_drawing(assembly: Assembly) -> str:
     """Section through the axis, and the plan from above, as SVG."""
     with figure(180, 76) as drawn:
         left, right = drawn.subplots(1, 2, width_ratios=(1.65, 1.0))
-        _section(left, assembly)
+        _Section(left, assembly).draw()
         _plan(right, assembly)
         return svg(drawn)
 
 
-@dataclass(frozen=True, slots=True)
-class _Frame:
-    """Where the section's dimensions go: ``unit`` is the drawing's step in mm, ``tip`` the port's lower end."""
+class _Section:
+    """The section and where its dimensions go: ``unit`` is the drawing's step in mm."""
 
-    unit: float
-    tip: float
-    left: float
-    right: float
-    low: float
+    def __init__(self, ax: Axes, assembly: Assembly) -> None:
+        layout, mount = assembly.layout, assembly.scene.mount
+        self.ax, self.assembly, self.layout = ax, assembly, layout
+        sleeve = mount.sleeve_length if isinstance(mount, Sleeve) else 0.0
+        self.bottom = min(layout.lowest, layout.plate_low - sleeve)
+        self.side = layout.plate_radius + (layout.port.length if layout.port_axis is not None else 0.0)
+        self.unit = max(layout.plate_radius / 22, (layout.outer_radius - self.bottom) / 26)
+        self.left, self.right = -layout.plate_radius - 4 * self.unit, self.side + 4 * self.unit
+        self.low = self.bottom - 4 * self.unit
+        soft = assembly.scene.printer.accuracy_mm.nominal
+        rigid = assembly.scene.connector_printer.accuracy_mm.nominal
+        self.soft, self.rigid = f"±{soft:.2f}", f"±{rigid:.2f}"
 
+    def draw(self) -> None:
+        draw_section(self.ax, self.assembly)
+        axis = [self.bottom - 2 * self.unit, self.layout.outer_radius + 2 * self.unit]
+        self.ax.plot([0, 0], axis, color=MUTED, lw=THIN, ls=CENTRE)
+        self._heights()
+        self._widths()
+        self._leaders()
+        xs = (self.left - 21 * self.unit, self.right + 13 * self.unit)
+        _finish(self.ax, "Section A-A", xs, (self.low - 7.5 * self.unit, self.layout.outer_radius + 5 * self.unit))
 
-def _frame(assembly: Assembly) -> _Frame:
-    layout = assembly.layout
-    tip = layout.plate_low - port_length(assembly.scene.port)
-    unit = max(layout.plate_radius / 22, (layout.outer_radius - tip) / 26)
-    reach = layout.plate_radius + 4 * unit
-    return _Frame(unit, tip, -reach, reach, tip - 4 * unit)
+    def _heights(self) -> None:
+        layout, ax, right, plate = self.layout, self.ax, self.right, self.layout.plate_radius
+        vertical(ax, right, 0, layout.outer_radius, 0.02 * plate, f"{layout.outer_radius:.2f} {self.soft}")
+        thick = layout.plate_high - layout.plate_low
+        vertical(ax, right, layout.plate_low, layout.plate_high, plate, f"{thick:.2f} {self.rigid}")
+        if self.bottom < layout.plate_low:
+            below = layout.plate_low - self.bottom
+            vertical(ax, right, self.bottom, layout.plate_low, 0.2 * plate, f"{below:.2f} {self.rigid}")
+        flange = layout.flange_thickness
+        vertical(ax, self.left, layout.plate_high, 0, -layout.flange_radius, f"{flange:.2f} {self.soft}")
+        outside = self.left - 14 * self.unit
+        whole = layout.outer_radius - self.bottom
+        vertical(ax, outside, self.bottom, layout.outer_radius, self.left, f"({whole:.2f})")
 
+    def _widths(self) -> None:
+        layout, ax, low = self.layout, self.ax, self.low
+        flange, plate = layout.flange_radius, layout.plate_radius
+        horizontal(ax, low, -flange, flange, layout.plate_high, f"Ø{2 * flange:.2f} {self.soft}")
+        horizontal(
+            ax, low - 4.5 * self.unit, -plate, plate, layout.plate_low, f"Ø{2 * plate:.2f} {self.rigid}"
+        )  # fmt: skip
 
-def _section(ax: Axes, assembly: Assembly) -> None:
-    layout, frame = assembly.layout, _frame(assembly)
-    for solid in assembly.solids:
-        _hatched(ax, solid)
-    axis = [frame.tip - 2 * frame.unit, layout.outer_radius + 2 * frame.unit]
-    ax.plot([0, 0], axis, color=MUTED, lw=THIN, ls=CENTRE)
-    _section_lengths(ax, assembly, frame)
-    _section_leaders(ax, assembly, frame)
-    xs = (frame.left - 21 * frame.unit, frame.right + 13 * frame.unit)
-    ys = (frame.low - 7.5 * frame.unit, layout.outer_radius + 5 * frame.unit)
-    _finish(ax, "Section A-A", xs, ys)
+    def _leaders(self) -> None:
+        layout, unit, ax = self.layout, self.unit, self.ax
+        outside, middle = layout.outer_radius + 4.5 * unit, layout.inner_radius + 0.5 * layout.wall
+        note = f"R{layout.inner_radius:g} {self.soft}"
+        leader(ax, polar(layout.inner_radius, 140), polar(outside, 140), note, "right")
+        leader(ax, polar(middle, 40), polar(outside, 40), f"wall {layout.wall:g} {self.soft}", "left")
+        text, port = port_note(self.assembly.scene), layout.port
+        if layout.port_axis is None:
+            tip = (0.9 * port.outside[0][0][0], layout.under - 0.7 * port.length)
+            beside = (max(6.5 * unit, port.reach + 2 * unit), layout.under - max(0.7 * port.length, 4 * unit))
+            leader(ax, tip, beside, text, "left")
+        else:
+            tip = (layout.plate_radius + 0.7 * port.length, layout.port_axis + 0.9 * port.root)
+            leader(ax, tip, (self.side - unit, layout.outer_radius + 3.5 * unit), text, "left")
+        self._extra()
 
-
-def _section_lengths(ax: Axes, assembly: Assembly, frame: _Frame) -> None:
-    layout, scene = assembly.layout, assembly.scene
-    soft, rigid = _tolerances(assembly)
-    plate, flange = layout.plate_radius, layout.flange_radius
-    barb = 0.5 * scene.port.barb_diameter
-    thick, reach = layout.plate_high - layout.plate_low, port_length(scene.port)
-    vertical(ax, frame.right, 0, layout.outer_radius, 0.02 * plate, f"{layout.outer_radius:.2f} {soft}")
-    vertical(ax, frame.right, layout.plate_low, layout.plate_high, plate, f"{thick:.2f} {rigid}")
-    vertical(ax, frame.right, frame.tip, layout.plate_low, barb, f"{reach:.2f} {rigid}")
-    vertical(ax, frame.left, layout.plate_high, 0, -flange, f"{layout.flange_thickness:.2f} {soft}")
-    outside = frame.left - 12.5 * frame.unit
-    vertical(ax, outside, frame.tip, layout.outer_radius, frame.left, f"({layout.outer_radius - frame.tip:.2f})")
-    horizontal(ax, frame.low, -flange, flange, layout.plate_high, f"Ø{2 * flange:.2f} {soft}")
-    horizontal(ax, frame.low - 4.5 * frame.unit, -plate, plate, layout.plate_low, f"Ø{2 * plate:.2f} {rigid}")
-
-
-def _section_leaders(ax: Axes, assembly: Assembly, frame: _Frame) -> None:
-    layout, port, unit = assembly.layout, assembly.scene.port, frame.unit
-    soft, _ = _tolerances(assembly)
-    outside = layout.outer_radius + 4.5 * unit
-    middle = layout.inner_radius + 0.5 * layout.wall
-    below, shoulder = layout.plate_low - 0.55 * port.stem_length, layout.plate_low - port.stem_length
-    stem, barb = 0.5 * port.stem_diameter, 0.5 * port.barb_diameter
-    leader(ax, polar(layout.inner_radius, 140), polar(outside, 140), f"R{layout.inner_radius:g} {soft}", "right")
-    leader(ax, polar(middle, 40), polar(outside, 40), f"wall {layout.wall:g} {soft}", "left")
-    text = f"Ø{port.stem_diameter:g}, bore Ø{port.bore_diameter:g}"
-    leader(ax, (stem, below), (6.5 * unit, below - 0.5 * unit), text, "left")
-    leader(ax, (-barb, shoulder), (-6.5 * unit, shoulder - 1.5 * unit), f"barb Ø{port.barb_diameter:g}", "right")
-
-
-def _tolerances(assembly: Assembly) -> tuple[str, str]:
-    """Tolerances of the membrane and of the connector: the stated accuracies of their printers."""
-    scene = assembly.scene
-    return f"±{scene.printer.accuracy_mm.nominal:.2f}", f"±{scene.connector_printer.accuracy_mm.nominal:.2f}"
+    def _extra(self) -> None:
+        """What a ring, a plug, a boss or a sleeve has to be told apart by."""
+        layout, unit, seat, mount = self.layout, self.unit, self.assembly.scene.seat, self.assembly.scene.mount
+        at = (-6.5 * unit, self.bottom - 1.0 * unit)
+        if isinstance(seat, ClampedFlange):
+            text = f"ring, {seat.screw_count} × {seat.screw}\ncloses {seat.squeeze * layout.flange_thickness:.2f}"
+            spot = (-layout.ring_radius + unit, 0.9 * seat.ring_thickness)
+            leader(self.ax, spot, (self.left - 0.5 * unit, 6.5 * unit), text, "right")
+        if isinstance(seat, OnePiece):
+            spot = (-layout.opening_radius + 0.6 * unit, layout.under + 0.5 * seat.shoulder_thickness)
+            leader(self.ax, spot, at, f"plug, opening Ø{2 * layout.opening_radius:g}", "right")
+        if isinstance(mount, Sleeve):
+            leader(self.ax, (-0.5 * mount.finger_diameter, layout.plate_low - 0.8 * mount.sleeve_length),
+                   (self.left - 0.5 * unit, layout.plate_low - 0.8 * mount.sleeve_length), f"finger Ø{mount.finger_diameter:g}", "right")  # fmt: skip
+        if isinstance(mount, RobotFlange):
+            text = f"centring Ø{mount.boss_diameter:g}\n{mount.boss_height:g} high"
+            leader(
+                self.ax,
+                (-0.4 * mount.boss_diameter, layout.under),
+                (self.left - 0.5 * unit, self.bottom - 1.5 * unit),
+                text,
+                "right",
+            )
 
 
 def _plan(ax: Axes, assembly: Assembly) -> None:
-    layout, mount = assembly.layout, assembly.scene.mount
-    _, rigid = _tolerances(assembly)
+    layout, scene = assembly.layout, assembly.scene
     unit = layout.plate_radius / 22
     outlines = [layout.plate_radius, layout.ring_radius, layout.groove_outer, layout.flange_radius, layout.outer_radius]
+    if isinstance(scene.seat, ClampedFlange):
+        outlines = [layout.plate_radius, layout.ring_radius, layout.outer_radius]
     for radius in dict.fromkeys(outlines):
         circle(ax, 0, 0, radius)
-    circle(ax, 0, 0, layout.bolt_circle_radius, color=MUTED, ls=CENTRE, lw=THIN)
-    hidden = {"ls": (0, (3, 1.5))} if mount.family == "blind" else {}
-    for bore in assembly.solids[1].bores:
-        circle(ax, bore.x, bore.y, bore.radius, **hidden)
+    for solid in assembly.solids:
+        if solid.name != "connector" or not isinstance(scene.seat, ClampedFlange):
+            draw_bores(ax, solid)
+    if isinstance(scene.seat, ClampedFlange) and isinstance(scene.mount, BoltCircle | RobotFlange):
+        draw_bores(ax, assembly.solid("connector"), but=layout.screw_circle)
     reach = layout.plate_radius + 2.5 * unit
     for ends in (([-reach, reach], [0, 0]), ([0, 0], [-reach, reach])):
         ax.plot(*ends, color=MUTED, lw=THIN, ls=CENTRE)
-    bore = assembly.solids[1].bores[0]
-    at = math.atan2(bore.y, bore.x)
-    edge = (bore.x + bore.radius * math.cos(at), bore.y + bore.radius * math.sin(at))
-    text = f"{mount.count} × Ø{mount.hole_diameter:g} {rigid}, {mount.screw}"
-    if mount.hole_depth is not None:
+    if layout.port_axis is not None:
+        _side_port(ax, assembly)
+    _holes(ax, assembly, unit)
+    far = max(reach, layout.plate_radius + (layout.port.length if layout.port_axis is not None else 0.0))
+    _finish(ax, "View from above", (-reach - 3 * unit, far + 3 * unit), (-reach - 3 * unit, reach + 5 * unit))
+
+
+def _side_port(ax: Axes, assembly: Assembly) -> None:
+    """The outline of a port in the side, as it shows from above."""
+    layout = assembly.layout
+    points = [layout.port.hollow[0], *(point for point, _ in layout.port.outside)]
+    xs = [layout.plate_radius + height for _, height in points]
+    for side in (-1, 1):
+        ax.plot(xs, [side * radius for radius, _ in points], color="black", lw=0.7)
+    ax.plot([xs[0], xs[0]], [-points[0][0], points[0][0]], color="black", lw=0.7)
+
+
+def _holes(ax: Axes, assembly: Assembly, unit: float) -> None:
+    """Notes on the mounting holes."""
+    layout, scene = assembly.layout, assembly.scene
+    mount, rigid = scene.mount, scene.connector_printer.accuracy_mm.nominal
+    if not isinstance(mount, BoltCircle | RobotFlange):
+        return
+    circle(ax, 0, 0, layout.bolt_circle_radius, color=MUTED, ls=CENTRE, lw=THIN)
+    at = math.pi / mount.count
+    across = mount.hole_diameter + scene.hole_undersize
+    text = f"{mount.count} × Ø{across:.4g} ±{rigid:.2f}, {mount.screw}"
+    if isinstance(mount, BoltCircle) and mount.hole_depth is not None:
         text += f",\n{mount.hole_depth:g} deep, from behind"
-    leader(ax, edge, (0.35 * layout.plate_radius, layout.plate_radius + 5 * unit), text, "left")
+    if isinstance(mount, RobotFlange):
+        text += f",\ndowel Ø{mount.pin_diameter + scene.hole_undersize:.4g}"
+    edge = layout.bolt_circle_radius + 0.5 * across
+    spot = (edge * math.cos(at), edge * math.sin(at))
+    leader(ax, spot, (0.35 * layout.plate_radius, layout.plate_radius + 5 * unit), text, "left")
     low = (-layout.plate_radius, -layout.plate_radius - 4 * unit)
     leader(ax, polar(layout.bolt_circle_radius, 209), low, f"bolt circle Ø{2 * layout.bolt_circle_radius:g}", "left")
-    _finish(ax, "View from above", (-reach - 3 * unit, reach + 3 * unit), (-reach - 3 * unit, reach + 5 * unit))
-
-
-def _hatched(ax: Axes, solid: Solid) -> None:
-    rings = np.array([(ring.radius, ring.height) for ring in sample(solid.meridian, 2e-3)])
-    for side in (-1, 1):
-        ax.fill(side * rings[:, 0], rings[:, 1], facecolor="white", edgecolor=MUTED, hatch=_HATCHES[solid.role], lw=0)
-        closed = rings if not solid.meridian.is_ring else np.vstack([rings, rings[:1]])
-        ax.plot(side * closed[:, 0], closed[:, 1], color=INK, lw=_THICK, solid_joinstyle="miter")
-    for bore in solid.bores:
-        # Drawing practice turns the holes of a pattern into the section plane.
-        x = math.copysign(math.hypot(bore.x, bore.y), bore.x)
-        ax.fill([x - bore.radius, x + bore.radius, x + bore.radius, x - bore.radius],
-                [bore.low, bore.low, bore.high, bore.high], facecolor="white", edgecolor=INK, lw=THIN)  # fmt: skip
 
 
 def _finish(ax: Axes, title: str, xs: tuple[float, float], ys: tuple[float, float]) -> None:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from pneutouch.catalogue import Scene
+from pneutouch.report.port_note import port_steps
+from pneutouch.spec.part import ClampedFlange, OnePiece, RobotFlange, Sleeve
 
 PAPER = (
     "He, Herzig, Nanayakkara, Maiolino: 3D-printed soft sensors for adaptive sensing with online and offline "
@@ -15,11 +17,11 @@ LIMITS_OF_USE = (
 )
 
 RELIABILITY = (
-    "Cycles to failure", "Tear under edge contact", "Leak rate of the glued joint", "Storage life", "Drop and shock",
+    "Cycles to failure", "Tear under edge contact", "Leak rate of the joints", "Storage life", "Drop and shock",
 )  # fmt: skip
 
 HANDLING = (
-    "Glue the flange on all three faces of its groove: the figures assume a rim that does not move.",
+    "The figures assume a rim that does not move: glue or clamp the flange all round.",
     "Leak test before first use: hold the highest driving pressure for ten minutes.",
     "Condition with five full-depth indentations before calibrating; re-zero after every change of driving pressure.",
     "Reset the driving pressure often: a sealed cavity drifts with temperature.",
@@ -79,22 +81,74 @@ def method(scene: Scene) -> tuple[str, ...]:
 
 def printing(scene: Scene) -> list[str]:
     """How to print, clean and assemble, in order."""
-    lines = [
-        f"Membrane: print in {scene.membrane_material.label}, dome up, rim on the tray. The sensing face then touches no "
-        "support and comes out glossy; support fills the cavity and leaves through the open base. Dome down takes less "
-        "support but leaves the sensing face matte.",
-        f"Membrane support: {scene.printer.support}. Aim the jet through the open base; keep it moving, the wall is soft.",
-        f"Connector: print in {scene.connector_material.label}, seat up. Remove support from groove, channel and barb "
-        f"({scene.connector_printer.support}). Push a {scene.port.bore_diameter:g} mm drill or wire through the bore.",
-        f"Fit: {scene.fit_clearance:.2f} mm a side between flange and groove, the printers' accuracies added up. "
-        "Dry-fit, then fill the gap with a flexible adhesive that wets both materials; the flange's underside lies on the seat.",
-        f"Tube: push {scene.port.tube_outer_diameter:g} x {scene.port.tube_inner_diameter:g} mm soft tube over the barb; "
-        f"the mounting surface needs a hole of at least {scene.port.tube_outer_diameter + 1:g} mm for it.",
-    ]
+    grown = isinstance(scene.seat, OnePiece)
+    lines = [_print_membrane(scene, grown)]
     if scene.membrane_material.is_digital:
         pair = " + ".join(scene.membrane_material.base_resins)
-        lines.insert(
-            1,
-            f"Digital material: choose {scene.membrane_material.title} made of {pair}; the vendor uses the same digits for other pairs.",
+        lines.append(
+            f"Digital material: choose {scene.membrane_material.title} made of {pair}; the vendor uses the same digits for other pairs."
         )
-    return lines
+    opening = "the opening" if grown else "the open base"
+    lines.append(
+        f"Membrane support: {scene.printer.support}. Aim the jet through {opening}; keep it moving, the wall is soft."
+    )
+    if not grown:
+        what = "groove, channel and port" if scene.seat.family == "glued-flange" else "channel, screw holes and port"
+        lines.append(
+            f"Connector: print in {scene.connector_material.label}, seat up. Remove support from {what} "
+            f"({scene.connector_printer.support})."
+        )
+    return [*lines, *_assembly(scene), port_steps(scene), *_mounting(scene)]
+
+
+def _print_membrane(scene: Scene, grown: bool) -> str:
+    soft, rigid = scene.membrane_material.label, scene.connector_material.label
+    up = scene.design.print.orientation == "dome-up"
+    if grown:
+        stands = "dome up" if up else "turned over, dome down"
+        return (
+            f"Membrane and connector: one print, {stands}, the membrane in {soft}, the connector in {rigid}; load both "
+            "bodies as one assembly. Support fills the cavity and leaves through the opening behind it. Plug: print apart."
+        )
+    if not up:
+        return (
+            f"Membrane: print in {soft}, turned over, dome down and rim up. Support stands under the dome, so that the "
+            "sensing face comes out matte; the cavity needs none."
+        )
+    return (
+        f"Membrane: print in {soft}, dome up, rim on the tray. The sensing face then touches no "
+        "support and comes out glossy; support fills the cavity and leaves through the open base."
+    )
+
+
+def _assembly(scene: Scene) -> list[str]:
+    """How membrane and rigid bodies go together, one way a seat."""
+    seat, fit = scene.seat, f"Fit: {scene.fit_clearance:.2f} mm a side"
+    if isinstance(seat, ClampedFlange):
+        return [
+            f"Ring: print in {scene.connector_material.label}, cone up. {fit} around the flange. Lay the flange on the plate and the "
+            f"ring on the flange; drive {seat.screw_count} {seat.screw} screws crosswise until the ring's skirt meets the plate: it then "
+            f"squeezes the flange by {seat.squeeze:.0%}. No glue."
+        ]
+    if isinstance(seat, OnePiece):
+        return [
+            f"Plug: print in {scene.connector_material.label}. {fit} in the opening. When the cavity is clean and dry, glue the "
+            "plug's shoulder into the counterbore; keep glue off the gap above it, which is part of the air space."
+        ]
+    return [
+        f"{fit} between flange and groove, the printers' accuracies added up. Dry-fit, then fill the gap with a flexible "
+        "adhesive that wets both materials; the flange's underside lies on the seat."
+    ]
+
+
+def _mounting(scene: Scene) -> list[str]:
+    mount = scene.mount
+    if isinstance(mount, RobotFlange):
+        return [
+            f"Mount: centring boss into the robot's flange, dowel in its hole, {mount.count} {mount.screw} screws from the dome's side."
+        ]
+    if isinstance(mount, Sleeve):
+        return [
+            f"Mount: push the sleeve over the {mount.finger_diameter:g} mm finger; tap and drive {mount.set_screw_count} {mount.screw} set screws."
+        ]
+    return []

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import datetime
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
@@ -77,6 +77,10 @@ class Pneumatics(Table):
     ambient_pressure_kPa: float = number(  # noqa: N815
         101.325, unit="kPa", low=20, high=1000, help="Absolute pressure around the sensor."
     )
+    tube: str | None = Field(
+        default=None, min_length=1, description="Tube between port and pressure sensor; left out: the port's usual one.",
+        json_schema_extra={"registry": "tubes"},
+    )  # fmt: skip
     tube_length_mm: float = number(
         300.0, unit="mm", low=0, high=20000, help="Tube between the port and the pressure sensor."
     )
@@ -102,6 +106,9 @@ class Print(Table):
 
     profile: str = name("objet260-connex", registry="printers", help="Printer of the membrane.")
     connector_profile: str = name("abs-filament", registry="printers", help="Printer of the connector.")
+    orientation: Literal["dome-up", "dome-down"] = Field(
+        default="dome-up", description="How the membrane stands in the machine: dome-up or dome-down."
+    )
 
 
 class Design(Table):

@@ -27,6 +27,8 @@ class Mode(Table):
     name: str
     layer_height_um: float = Field(gt=0)
     digital_materials: bool
+    resins_at_once: int | None = Field(default=None, ge=1, le=8, description="Fewer than the machine, where it is so.")
+    layer_seconds: Quantity | None = Field(default=None, description="Time of one layer, s; of one swath where there are several.")
     source: str = Field(min_length=8)
 
 
@@ -47,15 +49,24 @@ class Feature(Table):
 
 
 class Smallest(Table):
-    """Smallest features by kind of material."""
+    """Smallest features, walls and pins by kind of material; ``channel`` is a hole much longer than wide."""
 
     wall_rigid_mm: Feature
     wall_soft_mm: Feature
+    pin_rigid_mm: Feature
+    pin_soft_mm: Feature
     hole_mm: Feature
+    channel_mm: Feature
+    gap_mm: Feature
+    emboss_mm: Feature
 
     def wall(self, kind: Kind) -> Feature:
         """The wall limit for a kind of material."""
         return self.wall_soft_mm if kind == "elastomer" else self.wall_rigid_mm
+
+    def pin(self, kind: Kind) -> Feature:
+        """The limit of a free-standing pin for a kind of material."""
+        return self.pin_soft_mm if kind == "elastomer" else self.pin_rigid_mm
 
 
 class Printer(Table):
@@ -71,14 +82,20 @@ class Printer(Table):
     resins_at_once: int = Field(ge=1, le=8)
     mode: list[Mode] = Field(min_length=1)
     support: str = Field(description="Support material and how it comes off.")
+    hole_undersize_mm: Quantity = Field(description="By how much a printed hole is smaller in diameter than drawn.")
+    swath_mm: Quantity | None = Field(default=None, description="Width that one pass of the heads covers.")
+    deposition_mm3_per_s: Quantity | None = Field(default=None, description="Material laid down in a second; filament.")
 
-    def mode_for(self, material: Material) -> Mode | None:
-        """The finest mode that prints the material, or None where the machine cannot run it."""
-        if not set(material.base_resins) <= set(self.resins):
+    def mode_for(self, *materials: Material) -> Mode | None:
+        """The finest mode that prints the materials in one job, or None where the machine cannot."""
+        resins = {resin for material in materials for resin in material.base_resins}
+        if not resins <= set(self.resins) or len(resins) > self.resins_at_once:
             return None
-        if len(material.base_resins) > self.resins_at_once:
-            return None
-        modes = [mode for mode in self.mode if mode.digital_materials or not material.is_digital]
+        mixed = any(material.is_digital for material in materials)
+        modes = [
+            mode for mode in self.mode
+            if (mode.digital_materials or not mixed) and len(resins) <= (mode.resins_at_once or self.resins_at_once)
+        ]  # fmt: skip
         return min(modes, key=lambda mode: mode.layer_height_um, default=None)
 
     def finest_step(self, mode: Mode) -> float:

@@ -60,7 +60,10 @@ def study(plan: Plan, library: Library) -> Study:
     base = validate(Design, read_toml(path), str(path))
     _check(plan, library)
     files, things = {f"designs/{path.stem}.toml": path.read_text(encoding="utf-8-sig")}, {}
-    for kind, name in sorted(_names(plan, base)):
+    names = _names(plan, base)
+    # A design that names no tube takes one of its port's.
+    names |= {("tubes", tube) for kind, name in names if kind == "ports" for tube in library.load(kind, name).tubes}
+    for kind, name in sorted(names):
         source = library.shelf(kind)[name]
         files[f"{KINDS[kind].folder}/{name}.toml"] = source.read_text(encoding="utf-8-sig")
         things[f"{kind}/{name}"] = library.load(kind, name).model_dump(mode="json")
@@ -82,7 +85,7 @@ def _names(plan: Plan, base: Design) -> set[tuple[str, str]]:
             kind, key = declaration(table, field).registry, f"{table_name}.{field}"
             if kind is not None:
                 given = plan.settings.get(key, getattr(getattr(base, table_name), field))
-                found |= {(kind, name) for name in _chosen(plan, key, given)}
+                found |= {(kind, name) for name in _chosen(plan, key, given) if name is not None}
     return found
 
 

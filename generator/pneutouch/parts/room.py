@@ -1,0 +1,66 @@
+"""Whether a layout has room for its parts: refused before anything is drawn, with the lengths that do not fit."""
+
+from __future__ import annotations
+
+from pneutouch.catalogue import Scene
+from pneutouch.errors import InputError
+from pneutouch.parts.layout import HEAD_GAP, Layout, finger_radius
+from pneutouch.spec.part import BoltCircle, OnePiece, RobotFlange, Sleeve
+
+Lengths = dict[str, tuple[float, float]]
+"""What, with the radius that there is and the one that is needed, mm."""
+
+
+def check_room(scene: Scene, layout: Layout) -> None:
+    """Raise InputError for a dome too small for its channel, port or holes, or too large for its mount."""
+    head = f"{scene.where}: membrane.inner_radius_mm = {layout.inner_radius:g}: too"
+    for what, (has, least) in _least(scene, layout).items():
+        if has < least:
+            raise InputError(
+                f"{head} small for {what}: radius {has:.2f} mm, at least {least:.2f} mm; take a larger dome, another port, "
+                "mount or printer"
+            )
+    mount = scene.design.connector.mount
+    for what, (has, most) in _most(scene, layout).items():
+        if has > most:
+            raise InputError(
+                f"{head} large for connector.mount = {mount!r}: {what} is {has:.2f} mm in radius, there is room for "
+                f"{most:.2f} mm; take a smaller dome, another seat or mount"
+            )
+
+
+def _least(scene: Scene, layout: Layout) -> Lengths:
+    """Radii that must not be smaller."""
+    seat, mount, port, needs = scene.seat, scene.mount, layout.port, {}
+    wall = scene.connector_printer.smallest.wall_rigid_mm.recommended
+    inner = port.reach if layout.port_axis is None else 0.0
+    if isinstance(seat, OnePiece):
+        plug = layout.opening_radius - scene.fit_clearance
+        needs["the plug around the air channel"] = (plug, layout.channel_radius + wall)
+        if layout.port_axis is None:
+            needs["the port on the plug"] = (plug + seat.shoulder_width, port.root)
+        inner = max(inner, layout.opening_radius + seat.shoulder_width)
+    else:
+        needs["the spigot around the air channel"] = (layout.groove_inner, layout.channel_radius + wall)
+    if isinstance(mount, BoltCircle):
+        behind = layout.bolt_circle_radius - 0.5 * mount.hole_diameter
+        needs["the holes around the port"] = (behind, inner + wall)
+    elif layout.port_axis is None:
+        needs["the port on the plate"] = (layout.plate_radius, port.reach)
+    return needs
+
+
+def _most(scene: Scene, layout: Layout) -> Lengths:
+    """Radii that must not be larger."""
+    seat, mount = scene.seat, scene.mount
+    if isinstance(mount, RobotFlange):
+        free = layout.bolt_circle_radius - 0.5 * mount.head_diameter - HEAD_GAP
+        return {"the seat between the screw heads": (layout.ring_radius, free)}
+    if isinstance(mount, Sleeve) and isinstance(seat, OnePiece):
+        return {
+            "the plug, which goes in through the sleeve,": (
+                layout.opening_radius + seat.shoulder_width,
+                finger_radius(scene),
+            )
+        }
+    return {}

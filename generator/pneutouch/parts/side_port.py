@@ -1,0 +1,54 @@
+"""A port in the side of the plate, along +x: its boss, and the bore from the channel or the opening to its mouth."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from pneutouch.body import Feature, Frame, Turned, crossing
+from pneutouch.parts.layout import Layout
+from pneutouch.parts.trace import trace
+
+_PAST = 1.0
+"""How far in mm a shape reaches past a face that it opens, so that no two faces coincide."""
+
+
+def side_boss(layout: Layout) -> list[Feature]:
+    """The port's solid outside, from within the plate's edge, and its lugs."""
+    port, radius = layout.port, layout.plate_radius
+    inside = math.sqrt(radius**2 - port.root**2) - _PAST - radius
+    faces = [("", (port.root, inside)), *((tag, point) for point, tag in reversed(_faces(layout)))]
+    outline = trace((0.0, inside), [*faces, ("", (0.0, port.length))])
+    beyond = outline.volume() + math.pi * port.root**2 * (radius + inside) - crossing(radius, port.root)
+    boss = Feature(Turned(outline, _frame(layout)), beyond)
+    lugs = [Feature(replace(lug, frame=_frame(layout)), port.lug_volume / len(port.lugs)) for lug in port.lugs]
+    return [boss, *lugs]
+
+
+def side_bore(layout: Layout, across: float) -> Feature:
+    """The bore from a vertical hole of radius ``across`` to the mouth; ``net`` is what it takes beside that hole."""
+    port = layout.port
+    start = math.sqrt(across**2 - port.passage**2)
+    low = 0.5 * start - layout.plate_radius
+    mouth = (port.hollow[0][0], port.length + _PAST)
+    faces = [("", (port.passage, low)), *(("", point) for point in reversed(port.hollow)), ("", mouth)]
+    outline = trace((0.0, low), [*faces, ("", (0.0, mouth[1]))])
+    return Feature(Turned(outline, _frame(layout)), side_volume(layout, across))
+
+
+def side_volume(layout: Layout, across: float) -> float:
+    """Volume in mm3 of the bore and the port's hollow from the wall of a vertical hole of radius ``across`` to the mouth."""
+    port = layout.port
+    return port.hollow_volume(-layout.plate_radius) - crossing(across, port.passage)
+
+
+def _faces(layout: Layout) -> list[tuple[tuple[float, float], str]]:
+    """End point and tag of the outside faces, each tag at the end that a walk from the root reaches."""
+    port = layout.port
+    points = [port.hollow[0], *(point for point, _ in port.outside)]
+    return [(points[k], tag) for k, (_, tag) in enumerate(port.outside)] + [(points[-1], "")]
+
+
+def _frame(layout: Layout) -> Frame:
+    assert layout.port_axis is not None
+    return Frame((layout.plate_radius, 0.0, layout.port_axis), axis=(1.0, 0.0, 0.0), across=(0.0, 0.0, 1.0))
