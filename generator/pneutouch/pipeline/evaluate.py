@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -14,13 +15,28 @@ from pneutouch.mechanics import Prediction, Sensor, predict
 from pneutouch.mechanics.ladder import DEFAULT_TOLERANCE
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.parts import Assembly, assemble
+from pneutouch.pipeline.subject import subject_of
 from pneutouch.pipeline.table_s1 import sensitivity_error
-from pneutouch.printability import Finding, check
-from pneutouch.spec.printer import Printer
+from pneutouch.printability import Finding, SensorContext, check
+from pneutouch.printability.estimate import JobEstimate, estimate
+from pneutouch.spec.material import Material
 from pneutouch.units import KPA
 
 CLAMPS = ("base", "flange")
 """Where the solid is held."""
+
+
+Resins = dict[str, Material]
+
+
+@dataclass(frozen=True)
+class Asked:
+    """How a prediction was asked for: the rung, the membrane's closure, the clamp and what ``auto`` must meet."""
+
+    model: str = "solid"
+    closure: str = "variational"
+    clamp: str = "base"
+    tolerance: float = DEFAULT_TOLERANCE
 
 
 @dataclass(frozen=True)
@@ -31,12 +47,31 @@ class Evaluation:
     assembly: Assembly
     sensor: Sensor
     prediction: Prediction
-    library: Library
+    asked: Asked
+    find_resins: Callable[[], Resins]
+
+    @cached_property
+    def resins(self) -> Resins:
+        """Elastomers by name that the design is compared with and the model's error is taken from."""
+        return self.find_resins()
 
     @cached_property
     def findings(self) -> list[Finding]:
         """What the rules say."""
-        return check(self.assembly, self.prediction)
+        return check(subject_of(self.assembly), SensorContext(self.prediction, self.sensor))
+
+    @cached_property
+    def estimates(self) -> tuple[JobEstimate, ...]:
+        """What each print job takes: resin, support, layers, time."""
+        return tuple(estimate(subject_of(self.assembly)))
+
+    def deep_findings(self) -> list[Finding]:
+        """What pymeshlab, an independent reader, says of the meshes. Raises InputError where it is not installed."""
+        from pneutouch.printability.deep import inspect
+
+        tolerance, solids = self.scene.mesh_tolerance, self.assembly.solids
+        pairs = zip(self.assembly.bodies, solids, strict=True)
+        return [finding for body, solid in pairs for finding in inspect(body, solid, tolerance)]
 
     @cached_property
     def uncertainty(self) -> tuple[dict[str, Any], ...]:
@@ -59,19 +94,32 @@ def evaluate(
         raise InputError(f"--clamp {clamp}: unknown.{nearest(clamp, CLAMPS)}")
     shelves = library or Library.default()
     scene = load_scene(name, assignments, shelves)
+    return evaluate_scene(scene, lambda: elastomers(shelves), Asked(model, closure, clamp, tolerance))
+
+
+def evaluate_scene(scene: Scene, find_resins: Callable[[], Resins], asked: Asked) -> Evaluation:
+    """Draw and predict a scene; ``find_resins`` gives the resins to compare with, when they are needed.
+
+    Raises InputError where the scene cannot work.
+    """
     assembly = assemble(scene)
-    _check_envelope(assembly)
-    sensor = sensor_of(assembly, clamp)
+    sensor = sensor_of(assembly, asked.clamp)
     pressures = [p * KPA for p in scene.design.pneumatics.driving_pressures_kPa]
     try:
         prediction = predict(
-            scene.name, sensor, pressures, model=model, closure=closure, tolerance=tolerance,
-            sensitivity_error=lambda rung: sensitivity_error(scene.membrane_material, sensor, rung, closure),
+            scene.name, sensor, pressures, model=asked.model, closure=asked.closure, tolerance=asked.tolerance,
+            sensitivity_error=lambda rung: sensitivity_error(scene.membrane_material, sensor, rung, asked.closure),
         )  # fmt: skip
     except BeyondLimitError as error:
         raise _beyond_limit(scene, error) from None
     _check_plate(scene, prediction)
-    return Evaluation(scene, assembly, sensor, prediction, shelves)
+    return Evaluation(scene, assembly, sensor, prediction, asked, find_resins)
+
+
+def elastomers(library: Library) -> Resins:
+    """Every elastomer of a library, by name."""
+    materials = library.all("materials", Material)
+    return {name: material for name, material in materials.items() if material.kind == "elastomer"}
 
 
 def sensor_of(assembly: Assembly, clamp: str = "base") -> Sensor:
@@ -119,20 +167,4 @@ def _check_plate(scene: Scene, prediction: Prediction) -> None:
                 f"reaches the plate's edge at {ending[0].indentation:.2f} mm of indentation; it must be wider than the "
                 f"contact (twice membrane.inner_radius_mm = {2 * scene.design.membrane.inner_radius_mm:g} mm is safe), or "
                 f"indentation.depth_mm less"
-            )
-
-
-def _check_envelope(assembly: Assembly) -> None:
-    scene = assembly.scene
-    machines: list[tuple[str, Printer]] = [
-        ("profile", scene.printer), ("connector_profile", scene.connector_printer)
-    ]  # fmt: skip
-    for solid, (key, printer) in zip(assembly.solids, machines, strict=True):
-        radius, low, high = solid.meridian.bounds()
-        size, room = (2 * radius, 2 * radius, high - low), printer.envelope_mm
-        if any(length > limit for length, limit in zip(size, (room.x, room.y, room.z), strict=True)):
-            raise InputError(
-                f"{scene.where}: print.{key} = {getattr(scene.design.print, key)!r}: the {solid.name} is "
-                f"{size[0]:.1f} x {size[1]:.1f} x {size[2]:.1f} mm (membrane.inner_radius_mm = "
-                f"{assembly.layout.inner_radius:g}); it must fit {room.x:g} x {room.y:g} x {room.z:g} mm"
             )

@@ -1,6 +1,8 @@
-"""Rules over the bodies, the printers and the prediction; each returns findings."""
+"""Rules over the bodies as they will be printed, the printers and the prediction; each returns findings."""
 
 from pneutouch.printability.check import check
-from pneutouch.printability.finding import Finding
+from pneutouch.printability.finding import Excess, Finding
+from pneutouch.printability.subject import Item, Joint, Subject
+from pneutouch.printability.view import SensorContext
 
-__all__ = ["Finding", "check"]
+__all__ = ["Excess", "Finding", "Item", "Joint", "SensorContext", "Subject", "check"]

@@ -1,28 +1,61 @@
-"""Run every rule over a sensor."""
+"""Run every rule over a subject."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-from pneutouch.mechanics import Prediction
-from pneutouch.parts import Assembly
 from pneutouch.printability.finding import Finding
-from pneutouch.printability.rules import cleaning, contact_faces, driving, holes, walls
+from pneutouch.printability.rules import (
+    channels,
+    cleaning,
+    contact_faces,
+    driving,
+    edges,
+    emboss,
+    envelope,
+    gaps,
+    holes,
+    hollows,
+    layers,
+    matte,
+    mesh,
+    pins,
+    resins,
+    walls,
+)  # fmt: skip
+from pneutouch.printability.subject import Subject
+from pneutouch.printability.view import SensorContext, View
 
-Rule = Callable[[Assembly, Prediction], list[Finding]]
+Rule = Callable[[View], list[Finding]]
 
 RULES: dict[str, Rule] = {
-    "walls": walls.check,
-    "holes": holes.check,
+    "mesh": mesh.check,
     "contact faces": contact_faces.check,
+    "envelope": envelope.check,
+    "resins": resins.check,
+    "walls": walls.check,
+    "pins": pins.check,
+    "holes": holes.check,
+    "channels": channels.check,
+    "gaps": gaps.check,
+    "emboss": emboss.check,
+    "edges": edges.check,
+    "hollows": hollows.check,
     "cleaning": cleaning.check,
+    "matte": matte.check,
+    "layers": layers.check,
     "driving": driving.check,
 }
 
 _ORDER = {"error": 0, "warning": 1, "note": 2}
 
 
-def check(assembly: Assembly, prediction: Prediction) -> list[Finding]:
-    """All findings, errors first."""
-    found = [finding for rule in RULES.values() for finding in rule(assembly, prediction)]
+def check(subject: Subject, sensor_context: SensorContext | None = None) -> list[Finding]:
+    """All findings, errors first.
+
+    Bodies whose mesh bounds no solid get the findings that need none: mesh, envelope and resins. Rules on the sensor's
+    working (driving, layers) say nothing without ``sensor_context``.
+    """
+    view = View(subject, sensor_context)
+    found = [finding for rule in RULES.values() for finding in rule(view)]
     return sorted(found, key=lambda finding: _ORDER[finding.severity])

@@ -9,6 +9,19 @@ Severity = Literal["error", "warning", "note"]
 
 
 @dataclass(frozen=True, slots=True)
+class Excess:
+    """How far off: what was measured and the limit it stands against, both in ``unit`` ("" for a ratio or a count)."""
+
+    measured: float
+    limit: float
+    unit: str = "mm"
+
+    def document(self) -> dict[str, Any]:
+        """The numbers as ``check --json`` prints them."""
+        return {"measured": float(f"{self.measured:.4g}"), "limit": float(f"{self.limit:.4g}"), "unit": self.unit}
+
+
+@dataclass(frozen=True, slots=True)
 class Finding:
     """One finding. ``where`` is a point in the design frame in mm; ``source`` backs the limit."""
 
@@ -19,6 +32,7 @@ class Finding:
     fix: str
     source: str
     where: tuple[float, float, float] | None = None
+    excess: Excess | None = None
 
     def document(self) -> dict[str, Any]:
         """The finding as ``check --json`` prints it."""
@@ -27,7 +41,8 @@ class Finding:
             "severity": self.severity,
             "body": self.body,
             "message": self.message,
-            "where_mm": None if self.where is None else [round(value, 3) for value in self.where],
+            "where_mm": None if self.where is None else [round(value, 3) + 0.0 for value in self.where],
+            "excess": None if self.excess is None else self.excess.document(),
             "fix": self.fix,
             "source": self.source,
         }

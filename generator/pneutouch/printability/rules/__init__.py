@@ -1,1 +1,1 @@
-"""The rules, one file each: ``check(assembly, prediction)`` returns findings."""
+"""The rules, one file each: ``check(view)`` returns findings."""

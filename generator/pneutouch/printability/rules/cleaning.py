@@ -1,29 +1,133 @@
-"""Whether support can be reached and washed out."""
+"""Whether support can be reached and washed out: hollows behind necks, corners out of sight, long thin channels."""
 
 from __future__ import annotations
 
-from pneutouch.mechanics import Prediction
-from pneutouch.parts import Assembly
-from pneutouch.printability.finding import Finding
+import numpy as np
 
-_SOURCE = "vendor, objet.com Tips and Tricks: a confined hollow is not cleanable"
-_LEAST_OPENING = 0.5
-"""Opening over the widest hollow behind it; below this a straight jet does not see all of the wall."""
+from pneutouch.printability.finding import Excess, Finding, Severity
+from pneutouch.printability.measure.cavities import NARROW, Pocket, overhangs
+from pneutouch.printability.measure.rays import first_hits
+from pneutouch.printability.measure.surface import Indices
+from pneutouch.printability.subject import Flags, Point
+from pneutouch.printability.view import Job, View
+
+_VENDOR = "vendor, objet.com Tips and Tricks: a confined hollow is not cleanable; "
+_NECK = _VENDOR + "share of the width that the opening needs: own, unverified"
+_SIGHT = (
+    _VENDOR
+    + "near impossible with turns (PMC7172018); a straight jet in 300 directions, volume allowed: own, unverified"
+)
+_LONG = "Forge Labs PolyJet guideline: deep holes keep residue; ten widths: own, unverified"
+_FILAMENT = "own, unverified: support that no tool reaches stays in"
+
+CONFINED = 0.5
+"""Opening over the width behind it, below which a hollow is as good as closed."""
+SLENDER = 10.0
+"""Length of a channel over its width from which water alone does not clear it."""
+_HIDDEN = 2.0
+"""Volume out of sight (mm3) that is worth a word, and at least 30 cubes of the model."""
+_ASKED, _DIRECTIONS = 40, 300
+"""Cubes out of sight that are asked again, and directions spread evenly over the sphere (Fibonacci's spiral)."""
+_BRIDGED = 50.0
+"""Ceiling in mm2 that a filament printer bridges without support: about 7 mm each way."""
 
 
-def check(assembly: Assembly, prediction: Prediction) -> list[Finding]:
-    """The membrane is open over its whole base; the channel must be straight and wide enough for its length."""
-    layout, port = assembly.layout, assembly.scene.port
+def check(view: View) -> list[Finding]:
+    """Look into each job as it is printed; filament needs support only under ceilings."""
     found = []
-    if assembly.scene.connector_printer.process == "polyjet":
-        length = port.stem_length + port.barb_length
-        if length > 10 * port.bore_diameter:
-            text = f"the port's bore is {length / port.bore_diameter:.0f} times as long as wide"
-            fix = "push a wire through and flush from both sides"
-            where = (0.0, 0.0, layout.plate_low)
-            found.append(Finding("cleaning", "warning", "connector", text, fix, _SOURCE, where))
-    opening = layout.inner_radius / max(piece.bounds()[1] for piece in assembly.solids[0].meridian.tagged("inner wall"))
-    if opening < _LEAST_OPENING:
-        text = f"the opening is {opening:.0%} of the hollow's width"
-        found.append(Finding("cleaning", "error", "membrane", text, "open the base", _SOURCE, (0.0, 0.0, 0.0)))
+    for job in view.jobs:
+        if job.sound:
+            found += [*_necks(job), *_hidden(job)]
+            if job.printer.process == "polyjet":
+                found += _slender(job)
     return found
+
+
+def _necks(job: Job) -> list[Finding]:
+    found = []
+    for pocket in job.pockets:
+        if (
+            pocket.width < 2.5 * job.voxels.pitch
+            or job.in_hollow(pocket.where)
+            or not _needs_support(job, pocket.region)
+        ):
+            continue
+        severity: Severity = "error" if pocket.ratio < CONFINED else "warning"
+        source = _NECK
+        if job.printer.process == "filament":
+            severity, source = "warning", _FILAMENT
+        fix = "widen the opening, or split the part there"
+        excess = Excess(pocket.ratio, CONFINED if severity == "error" else NARROW, "")
+        found.append(_finding(job, severity, _words(pocket), fix, source, pocket.where, excess))
+    return found
+
+
+def _words(pocket: Pocket) -> str:
+    return (
+        f"a hollow of {pocket.volume:.3g} mm3, {pocket.width:.1f} mm wide and {pocket.depth:.1f} mm deep, opens by "
+        f"{pocket.opening:.1f} mm only ({pocket.ratio:.0%} of its width)"
+    )
+
+
+def _hidden(job: Job) -> list[Finding]:
+    voxels = job.voxels
+    hidden = job.hidden.copy()
+    for pocket in job.pockets:
+        hidden &= ~pocket.region
+    cells = np.argwhere(hidden)
+    volume, least = len(cells) * voxels.cube, max(_HIDDEN, 30 * voxels.cube)
+    if volume <= least or not _needs_support(job, hidden):
+        return []
+    # The cubes know few directions: ask some of them again with rays on the mesh.
+    asked = cells[np.linspace(0, len(cells) - 1, min(len(cells), _ASKED)).astype(np.int64)]
+    dark = asked[~_escapes(job, asked)]
+    volume *= len(dark) / len(asked)
+    if volume <= least:
+        return []
+    middle = dark[int(np.linalg.norm(dark - dark.mean(axis=0), axis=1).argmin())]
+    text = f"{volume:.3g} mm3 of support lie where no straight jet comes"
+    fix = "straighten the passage or open it from a second side"
+    polyjet = job.printer.process == "polyjet"
+    where, excess = voxels.point(middle), Excess(volume, least, "mm3")
+    return [_finding(job, "warning", text, fix, _SIGHT if polyjet else _FILAMENT, where, excess)]
+
+
+def _escapes(job: Job, cells: Indices) -> Flags:
+    """Whether a straight line leads from the middle of a cube to the outside, (n,)."""
+    index = np.arange(_DIRECTIONS) + 0.5
+    height, turn = 1 - 2 * index / _DIRECTIONS, np.pi * (1 + 5**0.5) * index
+    ring = np.sqrt(1 - height**2)
+    directions = np.column_stack([ring * np.cos(turn), ring * np.sin(turn), height])
+    starts = np.repeat([job.voxels.point(cell) for cell in cells], _DIRECTIONS, axis=0)
+    reach = 2 * float(np.linalg.norm(job.bounds[1] - job.bounds[0]))
+    hits = first_hits(job.union, starts, np.tile(directions, (len(cells), 1)), reach)
+    return np.asarray(np.isinf(hits.distances[:, 1]).reshape(len(cells), _DIRECTIONS).any(axis=1))
+
+
+def _needs_support(job: Job, region: Flags) -> bool:
+    """Polyjet fills every hollow; filament needs support under ceilings too wide to bridge."""
+    if job.printer.process == "polyjet":
+        return True
+    ceiling = overhangs(job.voxels)[:, :, 1:] & region[:, :, :-1]
+    return float(ceiling.sum()) * job.voxels.pitch**2 > _BRIDGED
+
+
+def _slender(job: Job) -> list[Finding]:
+    found = []
+    for part in job.parts:
+        for place in part.places:
+            if place.kind == "channel" and place.length > SLENDER * place.size:
+                slender = place.length / place.size
+                text = f"a channel {place.size:.2f} mm wide is {slender:.0f} times as long"
+                fix = part.item.hints.get("cleaning", "push a wire through and flush from both sides")
+                where, excess = place.where, Excess(slender, SLENDER, "")
+                found.append(Finding("cleaning", "warning", part.name, text, fix, _LONG, where, excess))
+    return found
+
+
+def _finding(
+    job: Job, severity: Severity, text: str, fix: str, source: str, where: Point, excess: Excess
+) -> Finding:  # fmt: skip
+    part = job.nearest(where)
+    fix = part.item.hints.get("cleaning", fix)
+    return Finding("cleaning", severity, part.name, text, fix, source, where, excess)

@@ -2,51 +2,84 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+from typing import Any
+
 import numpy as np
-from manifold3d import Manifold, Mesh64
 
 from pneutouch.body import Body
-from pneutouch.mechanics import Prediction
-from pneutouch.parts import Assembly
-from pneutouch.parts.connector import SEAT
-from pneutouch.printability.finding import Finding
+from pneutouch.meridian.segments import Array
+from pneutouch.printability.finding import Excess, Finding
+from pneutouch.printability.sizes import spot
+from pneutouch.printability.subject import Joint
+from pneutouch.printability.view import Part, View, manifold_of
 
 _SOURCE = "vendor: one closed shell per material region, shells must not occupy the same space (multi-colour guideline)"
+_FIX = "report the design: this is a fault"
 _NOTHING = 1e-6
 """Volume in mm3 below which an overlap is rounding: a cube of 10 um."""
+_SAME = 1e-6
+"""Corners that differ by less (mm) are the same."""
+_LEAST_SHARE = 0.999
+"""Share of a joint's exact area that the meshes must share."""
 
 
-def check(assembly: Assembly, prediction: Prediction) -> list[Finding]:
-    """Measure the overlap of the two bodies and the area of the face they share."""
-    membrane, connector = assembly.bodies
-    where = (assembly.layout.flange_radius, 0.0, assembly.layout.plate_high)
-    overlap = overlap_volume(membrane, connector)
-    if overlap > _NOTHING:
-        text = f"the bodies overlap by {overlap:.3g} mm3"
-        return [
-            Finding("contact faces", "error", "membrane", text, "report the design: this is a fault", _SOURCE, where)
-        ]
-    wanted = sum(piece.area() for piece in assembly.solids[1].meridian.tagged(SEAT))
-    shared = shared_area(membrane, connector)
-    if shared < 0.999 * wanted:
-        text = f"the bodies share {shared:.1f} mm2 of the seat's {wanted:.1f} mm2"
-        return [
-            Finding("contact faces", "error", "membrane", text, "report the design: this is a fault", _SOURCE, where)
-        ]
-    return []
+def check(view: View) -> list[Finding]:
+    """Measure the overlap of every two bodies and the area of the faces that they are to share."""
+    overlaps = {
+        frozenset((one.name, other.name)): finding
+        for one, other in combinations(view.sound, 2)
+        if (finding := _overlap(one, other)) is not None
+    }
+    joints = [joint for joint in view.subject.joints if frozenset((joint.one, joint.other)) not in overlaps]
+    return [*overlaps.values(), *(finding for joint in joints for finding in _parted(view, joint))]
+
+
+def _overlap(one: Part, other: Part) -> Finding | None:
+    boxes = one.item.body.bounds, other.item.body.bounds
+    if (boxes[0][0] >= boxes[1][1]).any() or (boxes[1][0] >= boxes[0][1]).any():
+        return None
+    common = one.manifold ^ other.manifold
+    volume = float(common.volume())
+    if volume <= _NOTHING:
+        return None
+    where = spot(np.array(common.bounding_box()).reshape(2, 3).mean(axis=0))
+    text = f"overlaps with the {other.name} by {volume:.3g} mm3"
+    fix = one.item.hints.get("contact faces", _FIX)
+    return Finding("contact faces", "error", one.name, text, fix, _SOURCE, where, Excess(volume, 0.0, "mm3"))
+
+
+def _parted(view: View, joint: Joint) -> list[Finding]:
+    one, other = view.part(joint.one), view.part(joint.other)
+    if one is None or other is None:
+        return []
+    shared = shared_area(one.item.body, other.item.body)
+    if shared >= _LEAST_SHARE * joint.area:
+        return []
+    text = f"shares {shared:.1f} mm2 with the {other.name}; the joint has {joint.area:.1f} mm2"
+    fix = one.item.hints.get("contact faces", _FIX)
+    excess = Excess(shared, joint.area, "mm2")
+    return [Finding("contact faces", "error", joint.one, text, fix, _SOURCE, joint.where, excess)]
 
 
 def overlap_volume(one: Body, other: Body) -> float:
     """Volume in mm3 that both bodies occupy."""
-    solids = [Manifold(Mesh64(body.vertices, body.triangles.astype(np.uint64))) for body in (one, other)]
-    return float((solids[0] ^ solids[1]).volume())
+    return float((manifold_of(one) ^ manifold_of(other)).volume())
 
 
 def shared_area(one: Body, other: Body) -> float:
     """Area in mm2 of the triangles that both bodies have, facing opposite ways."""
-    mine = {tuple(sorted(map(tuple, np.round(corners, 6)))) for corners in one.corners}
-    area = 0.0
-    for corners in other.corners:
-        if tuple(sorted(map(tuple, np.round(corners, 6)))) in mine:
-            area += 0.5 * float(np.linalg.norm(np.cross(corners[1] - corners[0], corners[2] - corners[0])))
-    return area
+    mine, theirs = _rows(one), _rows(other)
+    both = np.concatenate([mine, theirs])
+    _, number = np.unique(both, axis=0, return_inverse=True)
+    common = np.isin(number.reshape(-1)[len(mine) :], number.reshape(-1)[: len(mine)])
+    a, b, c = np.moveaxis(other.corners[common], 1, 0)
+    return float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+
+
+def _rows(body: Body) -> Any:
+    """Each triangle as nine whole numbers, its corners in order of size, (m, 9)."""
+    corners: Array = np.rint(body.corners / _SAME)
+    whole = corners.astype(np.int64)
+    order = np.lexsort((whole[:, :, 2], whole[:, :, 1], whole[:, :, 0]), axis=1)
+    return np.take_along_axis(whole, order[:, :, None], axis=1).reshape(-1, 9)

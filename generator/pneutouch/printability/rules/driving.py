@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from pneutouch.mechanics import Prediction
 from pneutouch.mechanics.limits import RATED_SHARE
-from pneutouch.parts import Assembly
-from pneutouch.printability.finding import Finding
+from pneutouch.printability.finding import Excess, Finding
+from pneutouch.printability.view import View
 from pneutouch.units import KPA
 
 _SOURCES = {
@@ -15,16 +14,22 @@ _SOURCES = {
 }
 
 
-def check(assembly: Assembly, prediction: Prediction) -> list[Finding]:
+def check(view: View) -> list[Finding]:
     """Compare the highest driving pressure with the limit that binds."""
+    if view.sensor is None:
+        return []
+    prediction = view.sensor.prediction
     limits = prediction.limits
     highest = prediction.states[-1].driving_pressure
+    if highest <= RATED_SHARE * limits.lowest:
+        return []
     apex = (0.0, 0.0, prediction.states[-1].apex_outer)
-    fix = f"lower pneumatics.driving_pressures_kPa below {RATED_SHARE * limits.lowest / KPA:.1f}"
-    source = _SOURCES[limits.binding]
+    rated = RATED_SHARE * limits.lowest / KPA
     text = f"{highest / KPA:g} kPa against the {limits.binding} at {limits.lowest / KPA:.1f} kPa"
-    if highest > limits.lowest:
-        return [Finding("driving", "error", "membrane", text, fix, source, apex)]
-    if highest > RATED_SHARE * limits.lowest:
-        return [Finding("driving", "warning", "membrane", text, fix, source, apex)]
-    return []
+    return [
+        Finding(
+            "driving", "error" if highest > limits.lowest else "warning", view.sensor.membrane, text,
+            f"lower pneumatics.driving_pressures_kPa below {rated:.1f}", _SOURCES[limits.binding], apex,
+            Excess(highest / KPA, rated, "kPa"),
+        )
+    ]  # fmt: skip

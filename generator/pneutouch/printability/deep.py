@@ -1,0 +1,126 @@
+"""A second opinion on one mesh by pymeshlab, which is GPL and not part of the package's dependencies."""
+
+from __future__ import annotations
+
+import importlib
+from typing import Any, Protocol, runtime_checkable
+
+import numpy as np
+
+from pneutouch.body import Body
+from pneutouch.errors import InputError
+from pneutouch.meridian.segments import Array
+from pneutouch.printability.finding import Excess, Finding, Severity
+from pneutouch.printability.subject import Exact
+from pneutouch.units import UM
+
+_SOURCE = "measured with pymeshlab (MeshLab's filters), independently of the meshes' maker"
+_FINER = 10.0
+"""How much finer the mesh is that stands for the exact solid."""
+_SLIVER = 1.0
+"""Least angle of a triangle in degrees below which slicers and solvers lose precision (own, unverified)."""
+_MANY = 0.1
+"""Share of slivers that is worth a word (own, unverified)."""
+
+
+@runtime_checkable
+class Meshable(Protocol):
+    """An exact solid that meshes itself."""
+
+    def mesh(self, tolerance: float) -> Body:
+        """The body within ``tolerance`` mm."""
+
+
+def inspect(body: Body, solid: Exact | None = None, tolerance: float = 0.016) -> list[Finding]:
+    """Self-intersections, topology, sliver triangles, and the distance both ways from a ten times finer mesh.
+
+    ``tolerance`` (mm) is what the body was meshed to. The distance needs a solid with ``mesh(tolerance)``. Takes seconds.
+    Raises InputError where pymeshlab is not installed.
+    """
+    try:
+        lab: Any = importlib.import_module("pymeshlab")
+    except ImportError:
+        raise InputError(
+            "the deep inspection needs pymeshlab, which is GPL: pip install 'pneutouch[inspect]'"
+        ) from None
+    found = [*_topology(lab, body), *_intersections(lab, body), *_slivers(body)]
+    if isinstance(solid, Meshable):
+        found += _deviation(lab, body, solid.mesh(tolerance / _FINER), tolerance)
+    return found
+
+
+def _loaded(lab: Any, *bodies: Body) -> Any:
+    meshes = lab.MeshSet()
+    for body in bodies:
+        meshes.add_mesh(lab.Mesh(np.ascontiguousarray(body.vertices), body.triangles.astype(np.int32)), body.name)
+    return meshes
+
+
+def _finding(severity: Severity, body: Body, text: str, fix: str, excess: Excess) -> Finding:
+    return Finding("deep", severity, body.name, text, fix, _SOURCE, None, excess)
+
+
+def _topology(lab: Any, body: Body) -> list[Finding]:
+    measures = _loaded(lab, body).get_topological_measures()
+    wrong = {
+        "open edges": measures["boundary_edges"],
+        "non-manifold edges": measures["non_two_manifold_edges"],
+        "non-manifold vertices": measures["non_two_manifold_vertices"],
+        "loose vertices": measures["unreferenced_vertices"],
+    }
+    return [
+        _finding("error", body, f"{count} {what}", "mend the mesh where it comes from", Excess(count, 0, what))
+        for what, count in wrong.items()
+        if count
+    ]
+
+
+def _intersections(lab: Any, body: Body) -> list[Finding]:
+    meshes = _loaded(lab, body)
+    meshes.compute_selection_by_self_intersections_per_face()
+    count = int(meshes.current_mesh().selected_face_number())
+    if not count:
+        return []
+    fix = "cut the shells from one another before meshing"
+    return [_finding("error", body, f"{count} triangles cross one another", fix, Excess(count, 0, "triangles"))]
+
+
+def _slivers(body: Body) -> list[Finding]:
+    least = least_angles(body)
+    share = float((least < _SLIVER).mean())
+    if share <= _MANY:
+        return []
+    low, middle = np.percentile(least, [1, 50])
+    text = (
+        f"{share:.0%} of the triangles have an angle below {_SLIVER:g} degree; a hundredth of them is below {low:.2f}, "
+        f"half below {middle:.0f} degrees"
+    )
+    return [_finding("note", body, text, "cut long faces once or twice across", Excess(share, _MANY, ""))]
+
+
+def least_angles(body: Body) -> Array:
+    """Least angle of each triangle, (m,), degrees."""
+    a, b, c = np.moveaxis(body.corners, 1, 0)
+    angles = []
+    for u, v in ((b - a, c - a), (c - b, a - b), (a - c, b - c)):
+        sine, cosine = np.linalg.norm(np.cross(u, v), axis=1), np.einsum("ij,ij->i", u, v)
+        angles.append(np.degrees(np.arctan2(sine, cosine)))
+    return np.asarray(np.min(angles, axis=0))
+
+
+def _deviation(lab: Any, body: Body, fine: Body, tolerance: float) -> list[Finding]:
+    """Hausdorff distance, both ways: each mesh sampled on vertices, edges and faces against the other."""
+    meshes = _loaded(lab, body, fine)
+    number = max(20_000, 4 * len(fine.triangles))
+    ways = [
+        meshes.get_hausdorff_distance(
+            sampledmesh=one, targetmesh=1 - one, sampleedge=True, sampleface=True, samplenum=number
+        )
+        for one in (0, 1)
+    ]
+    worst = max(float(way["max"]) for way in ways)
+    allowed = tolerance * (1 + 1 / _FINER)
+    if worst <= allowed:
+        return []
+    text = f"{worst / UM:.0f} um from a mesh {_FINER:g} times finer; {tolerance / UM:g} um were asked for"
+    return [_finding("warning", body, text, f"mesh it within {tolerance:g} mm", Excess(worst, allowed))]

@@ -1,0 +1,150 @@
+"""What a print takes: resin, support, layers and time, each with the assumption it rests on.
+
+Estimates for planning, from the same cubes that the rules look at; a slicer knows better.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from pneutouch.printability.measure.cavities import overhangs, supported
+from pneutouch.printability.subject import Subject
+from pneutouch.printability.view import Job, Part, View
+from pneutouch.units import ML, UM, grams
+
+_SPARSE = 0.15
+"""Share of the space under an overhang that filament support fills: usual slicer setting (own, unverified)."""
+
+_PURGE = "waste of purging, wiping and the first layers is left out"
+
+
+@dataclass(frozen=True)
+class ItemEstimate:
+    """One body: exact volume where the solid is known, else the mesh's, mm3; mass in g; resins in mL, those of a
+    digital material without a measured mix together."""
+
+    name: str
+    volume: float
+    mass: float
+    resins: dict[str, float]
+
+    def document(self) -> dict[str, Any]:
+        """As JSON, units in the names."""
+        return {
+            "name": self.name,
+            "volume_mL": self.volume / ML,
+            "mass_g": self.mass,
+            "resins_mL": dict(sorted(self.resins.items())),
+        }
+
+
+@dataclass(frozen=True)
+class JobEstimate:
+    """One job: size as it stands in mm, support in mm3, time in s; None where the profile does not say enough.
+
+    ``assumptions`` say what each figure rests on.
+    """
+
+    name: str
+    printer: str
+    mode: str
+    items: tuple[ItemEstimate, ...]
+    size: tuple[float, float, float]
+    support: float
+    layers: int
+    swaths: int | None
+    seconds: float | None
+    assumptions: tuple[str, ...]
+
+    @property
+    def resins(self) -> dict[str, float]:
+        """Resins of all items, mL."""
+        names = sorted({resin for item in self.items for resin in item.resins})
+        return {name: sum(item.resins.get(name, 0.0) for item in self.items) for name in names}
+
+    def document(self) -> dict[str, Any]:
+        """As JSON, units in the names."""
+        return {
+            "job": self.name,
+            "printer": self.printer,
+            "mode": self.mode,
+            "items": [item.document() for item in self.items],
+            "size_mm": list(self.size),
+            "resins_mL": self.resins,
+            "support_mL": self.support / ML,
+            "layers": self.layers,
+            "swaths": self.swaths,
+            "time_min": None if self.seconds is None else self.seconds / 60,
+            "assumptions": list(self.assumptions),
+        }
+
+
+def estimate(subject: Subject) -> list[JobEstimate]:
+    """What each job takes, in order of the subject's items; jobs with a mesh that is no solid are left out."""
+    return [_estimate(job) for job in View(subject).jobs if job.sound]
+
+
+def _estimate(job: Job) -> JobEstimate:
+    first = job.parts[0].item
+    x, y, z = (float(length) for length in job.bounds[1] - job.bounds[0])
+    layers = math.ceil(z / (UM * first.mode.layer_height_um) - 1e-9)
+    support, how = _support(job)
+    swaths = None
+    if job.printer.process == "polyjet":
+        swath = job.printer.swath_mm
+        swaths = None if swath is None else math.ceil(min(x, y) / swath.nominal)
+    seconds, reasons = _seconds(job, layers, swaths, support)
+    items = tuple(_item(part) for part in job.parts)
+    notes = [how, _PURGE, *reasons]
+    if any(part.item.body.material.is_digital for part in job.parts):
+        notes.append("resins of a digital material without a measured mix are added up: vendors publish no ratios")
+    return JobEstimate(
+        job.name, job.printer.title, first.mode.name, items, (x, y, z), support, layers, swaths, seconds, tuple(notes)
+    )
+
+
+def _item(part: Part) -> ItemEstimate:
+    body, solid = part.item.body, part.item.solid
+    volume = body.volume if solid is None else float(solid.volume)
+    material = body.material
+    mix = material.mix
+    # Without a measured mix only the sum of a digital material's resins is known.
+    shares = {" + ".join(material.base_resins): 1.0} if mix is None else mix.fractions
+    resins = {resin: share * volume / ML for resin, share in shares.items()}
+    return ItemEstimate(part.name, volume, grams(volume, material.density_g_per_cm3.nominal), resins)
+
+
+def _support(job: Job) -> tuple[float, str]:
+    """Support in mm3, and how it was found."""
+    voxels = job.voxels
+    cubes = f"cubes of {voxels.pitch:.2f} mm"
+    if job.printer.process == "polyjet":
+        volume = float(supported(voxels).sum()) * voxels.cube
+        return volume, f"support: everything below the part and inside it, solid, in {cubes}; no carpet below the part"
+    # Under each cube that nothing carries, down to the part or the tray.
+    hanging = overhangs(voxels)
+    under = (hanging[:, :, ::-1].cumsum(axis=2)[:, :, ::-1] > 0) & (voxels.label == 0)
+    volume = _SPARSE * float(under.sum()) * voxels.cube
+    return volume, f"support: under overhangs beyond 45 degrees, {_SPARSE:.0%} filled, bridges not spared, in {cubes}"
+
+
+def _seconds(job: Job, layers: int, swaths: int | None, support: float) -> tuple[float | None, list[str]]:
+    """Time in s, and what it rests on."""
+    item = job.parts[0].item
+    layer = item.mode.layer_seconds
+    if item.printer.process == "polyjet":
+        if layer is None or swaths is None:
+            return None, ["time: the printer's profile gives no layer_seconds or no swath_mm"]
+        text = f"time: {layers} layers x {swaths} swaths x {layer.nominal:g} s ({layer.source}); warming up left out"
+        return layers * swaths * layer.nominal, [text, "swaths: the shorter side across the travel of the heads"]
+    rate = item.printer.deposition_mm3_per_s
+    if layer is None or rate is None:
+        return None, ["time: the printer's profile gives no layer_seconds or no deposition_mm3_per_s"]
+    volume = support + sum(part.item.body.volume for part in job.parts)
+    text = (
+        f"time: {volume:.0f} mm3 at {rate.nominal:g} mm3/s ({rate.source}) and {layers} layers x {layer.nominal:g} s "
+        f"({layer.source}); solid throughout"
+    )
+    return volume / rate.nominal + layers * layer.nominal, [text]

@@ -1,0 +1,215 @@
+"""Hollows that support has to come out of: what lies behind a neck, and what no straight jet reaches."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+from typing import Any, cast
+
+import numpy as np
+
+from pneutouch.meridian.segments import Array
+from pneutouch.printability.measure.voxels import Voxels
+from pneutouch.printability.subject import Flags, Point
+
+NARROW = 0.7
+"""Share of a hollow's width below which its opening is a neck."""
+
+_STEPS = 8
+"""Widths of opening tried in the first place; each find is then narrowed down."""
+
+_HALVINGS = 3
+
+_BIAS = 0.25
+"""From the middle of the nearest full cube to the surface, in cubes: half a one at a flat wall, less at a round one."""
+
+_TILTS = (-1.0, -0.5, 0.0, 0.5, 1.0)
+"""Slopes of the lines of sight against the axis they mostly follow, both ways across it: 98 directions in all."""
+
+
+@dataclass(frozen=True)
+class Pocket:
+    """A hollow behind a neck: greatest ball through the opening and inside, both as diameters in mm; ``volume`` in mm3,
+    ``depth`` its longest side along the axes, mm; ``where`` its middle, ``region`` its cubes."""
+
+    opening: float
+    width: float
+    volume: float
+    depth: float
+    where: Point
+    region: Flags
+
+    @property
+    def ratio(self) -> float:
+        """Opening over width."""
+        return self.opening / self.width
+
+
+def pockets(voxels: Voxels, radius: Array, most: float = NARROW) -> list[Pocket]:
+    """Hollows whose opening is at most the share ``most`` of their width.
+
+    The space where a ball of a radius fits falls into pieces as the radius grows; a piece that does not reach the outside
+    lies behind an opening narrower than that. ``radius`` is that of `balls`, good to half a cube.
+    """
+    outside = _outside(voxels.label == 0)
+    found: list[Pocket] = []
+    taken = np.zeros(radius.shape, bool)
+    # Closed altogether, as far as the cubes tell: an opening narrower than one of them.
+    closed = (voxels.label == 0) & ~outside
+    if closed.any():
+        for piece in _pieces(closed):
+            found.append(_pocket(voxels, radius, piece, 0.5 * voxels.pitch))
+            taken |= piece
+    enclosed = _capped(radius, most)
+    if enclosed <= voxels.pitch:
+        return found
+    levels = np.geomspace(voxels.pitch, enclosed, _STEPS)
+    below = 0.5 * voxels.pitch
+    for level in levels:
+        cut = (radius >= level) & ~_outside(radius >= level) & ~taken
+        for piece in _pieces(cut) if cut.any() else []:
+            low = _narrowed(radius, piece, below, float(level))
+            pocket = _pocket(voxels, radius, _grown(voxels, piece, float(level)), 2 * low)
+            if pocket.ratio <= most:
+                found.append(pocket)
+            taken |= piece
+        below = float(level)
+    return found
+
+
+def balls(voxels: Voxels) -> Array:
+    """Radius of the largest ball around each empty cube that meets no full one, mm."""
+    from scipy.ndimage import distance_transform_edt
+
+    return np.maximum(cast(Array, distance_transform_edt(voxels.label == 0)) - _BIAS, 0.0) * voxels.pitch
+
+
+def _capped(radius: Array, most: float) -> float:
+    """The widest opening worth trying, mm: the share of the widest place away from the outside."""
+    return most * float(radius[1:-1, 1:-1, 1:-1].max())
+
+
+def _outside(space: Flags) -> Flags:
+    """The pieces of a space that reach the model's border."""
+    from scipy.ndimage import label
+
+    number, count = label(space)
+    border = np.zeros(count + 1, bool)
+    for axis in range(3):
+        for side in (0, -1):
+            border[np.unique(np.take(number, side, axis=axis))] = True
+    border[0] = False
+    return cast(Flags, border[number])
+
+
+def _pieces(space: Flags) -> list[Flags]:
+    """Connected pieces of more than one cube, by size from the largest; at most ten."""
+    from scipy.ndimage import label
+
+    number, _ = label(space)
+    size = np.bincount(number.ravel())
+    size[0] = 0
+    order = np.argsort(-size, kind="stable")[:10]
+    return [number == one for one in order if size[one] > 1]
+
+
+def _narrowed(radius: Array, piece: Flags, low: float, high: float) -> float:
+    """Radius of the opening of a piece that is open at ``low`` and closed at ``high``, mm."""
+    seed = np.unravel_index(int(np.where(piece, radius, -1.0).argmax()), radius.shape)
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        if _outside(radius >= middle)[seed]:
+            low = middle
+        else:
+            high = middle
+    return 0.5 * (low + high)
+
+
+def _grown(voxels: Voxels, piece: Flags, by: float) -> Flags:
+    """The piece with the empty cubes around it up to a distance, mm."""
+    from scipy.ndimage import distance_transform_edt
+
+    away = distance_transform_edt(~piece) * voxels.pitch
+    return cast(Flags, (away <= by + 0.5 * voxels.pitch) & (voxels.label == 0))
+
+
+def _pocket(voxels: Voxels, radius: Array, region: Flags, opening: float) -> Pocket:
+    cells = np.argwhere(region)
+    size = (np.ptp(cells, axis=0) + 1) * voxels.pitch
+    width = max(2 * float(radius[region].max()), voxels.pitch)
+    deepest = cells[int(radius[region].argmax())]
+    volume = float(region.sum()) * voxels.cube
+    return Pocket(min(opening, width), width, volume, float(size.max()), voxels.point(deepest), region)
+
+
+def seen(voxels: Voxels) -> Flags:
+    """Empty cubes that a straight jet reaches from outside, along one of 98 directions spread over the sphere."""
+    empty = voxels.label == 0
+    reached = np.zeros(empty.shape, bool)
+    ways = list(product(range(3), (1, -1), product(_TILTS, _TILTS)))
+    # Straight along the axes first: mostly they reach everything.
+    for axis, step, tilt in sorted(ways, key=lambda way: abs(way[2][0]) + abs(way[2][1])):
+        _sweep(np.moveaxis(empty, axis, 0)[::step], np.moveaxis(reached, axis, 0)[::step], tilt)
+        if np.array_equal(reached, empty):
+            break
+    return reached
+
+
+def _sweep(empty: Flags, reached: Flags, tilt: tuple[float, float]) -> None:
+    """Mark what parallel lines reach that come in through the border and stop at the first full cube."""
+    lit = np.ones(empty.shape[1:], bool)
+    shifts = np.rint(np.outer(np.arange(len(empty)), tilt)).astype(np.int64)
+    before = np.zeros(2, dtype=np.int64)
+    for layer in range(len(empty)):
+        moved = _shifted(lit, shifts[layer] - before)
+        before = shifts[layer]
+        lit = moved & empty[layer]
+        reached[layer] |= lit
+
+
+def _shifted(lit: Flags, by: Any) -> Flags:
+    """The layer moved by whole cubes; lines that come in from the side are lit."""
+    if not by.any():
+        return lit
+    result = np.ones_like(lit)
+    target = tuple(slice(max(int(b), 0), n + min(int(b), 0)) for b, n in zip(by, lit.shape, strict=True))
+    origin = tuple(slice(max(-int(b), 0), n + min(-int(b), 0)) for b, n in zip(by, lit.shape, strict=True))
+    result[target] = lit[origin]
+    return result
+
+
+def unseen(voxels: Voxels, radius: Array, reached: Flags) -> Flags:
+    """Empty cubes out of sight in hollows at least two cubes wide: what is narrower the cubes do not tell."""
+    from scipy.ndimage import binary_dilation
+
+    hidden = (voxels.label == 0) & ~reached
+    core = hidden & (radius >= voxels.pitch)
+    return cast(Flags, binary_dilation(core, iterations=2) & hidden)
+
+
+def supported(voxels: Voxels) -> Flags:
+    """Empty cubes with a full one somewhere above: what a polyjet machine fills with support."""
+    full = voxels.label > 0
+    above = np.maximum.accumulate(full[:, :, ::-1], axis=2)[:, :, ::-1]
+    below = above & ~full
+    # The lowest layer of cubes lies under the tray.
+    below[:, :, 0] = False
+    return below
+
+
+def overhangs(voxels: Voxels) -> Flags:
+    """Full cubes that a filament printer cannot lay on anything: nothing below them or beside below, one cube aside.
+
+    That is an overhang beyond 45 degrees, or a bridge.
+    """
+    from scipy.ndimage import binary_dilation
+
+    full = voxels.label > 0
+    cross = np.zeros((3, 3, 1), bool)
+    cross[:, 1], cross[1, :] = True, True
+    carried = binary_dilation(full, cross)
+    below = np.zeros_like(full)
+    below[:, :, 1:] = carried[:, :, :-1]
+    # What stands on the tray is carried.
+    below[:, :, :2] = True
+    return full & ~below

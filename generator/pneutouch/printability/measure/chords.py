@@ -1,0 +1,181 @@
+"""Thicknesses and clearances: lines from face to opposite face, and the size of what they cross.
+
+From points all over the surface a line is cast along the normal, into the body and out of it. Where it ends on a face
+that looks back, within 40 degrees, its length is a thickness of the body or a width of the air. Lines across the middle
+then tell whether the place is thin one way (a wall, a gap) or two (a pin, a hole), and lines along the flank how high
+the flank is (a ridge or a groove on a face).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from typing import Any, Literal, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneutouch.meridian.segments import Array
+from pneutouch.printability.measure.rays import neighbours
+from pneutouch.printability.measure.samples import Samples
+from pneutouch.printability.measure.surface import Indices, Surface
+
+Side = Literal["inside", "outside"]
+
+_OPPOSING = -np.cos(np.radians(40.0))
+_ACROSS = -0.6
+"""Cosine between the normals at both ends of a line that counts as across: faces of a corner do not."""
+_LINES = 6
+"""Lines across the middle, 30 degrees apart: one is within 15 of the narrow way, which it overstates by 3.5 %."""
+FLANK = 1.0
+"""A flank lower than this (mm) belongs to a ridge or groove on a face (own, unverified)."""
+_SQUARE = 0.8
+"""Least cosine between a flank's direction and the normals of the faces that end it: no line is square to two walls."""
+
+
+@dataclass(frozen=True)
+class Chords:
+    """Lines of one side from ``start`` (n, 3) along unit ``direction`` (n, 3) over ``length`` (n,), mm.
+
+    ``near`` and ``far`` are the faces at both ends, ``area`` the surface each start stands for, mm2. After `described`,
+    ``second`` is the narrowest way across the middle (inf where the place is wide) between the faces ``sides`` (n, 2),
+    ``axis`` the direction along the place,
+    ``flank`` the height of the flank (inf where it is no flank).
+    """
+
+    start: Array
+    direction: Array
+    length: Array
+    near: Indices
+    far: Indices
+    area: Array
+    second: Array
+    sides: Indices
+    axis: Array
+    flank: Array
+
+    def __len__(self) -> int:
+        return len(self.length)
+
+    @property
+    def middle(self) -> Array:
+        """Middles, (n, 3)."""
+        return self.start + 0.5 * self.length[:, None] * self.direction
+
+    @property
+    def end(self) -> Array:
+        """Far ends, (n, 3)."""
+        return self.start + self.length[:, None] * self.direction
+
+    def take(self, rows: NDArray[Any]) -> Chords:
+        """Some of them."""
+        return Chords(*(getattr(self, field.name)[rows] for field in fields(self)))
+
+
+def chords(manifold: Any, surface: Surface, samples: Samples, reach: float) -> dict[Side, Chords]:
+    """Chords of both sides no longer than ``reach`` mm. ``surface`` is the manifold's own mesh."""
+    # The smooth surface's normals: those of flat faces miss the axis of a round pin or hole.
+    normals = surface.smooth_normals(samples.faces, samples.points)
+    found = neighbours(manifold, samples.points, -normals, reach)
+    sides: dict[Side, Chords] = {}
+    for side, column, sign in (("outside", 0, 1.0), ("inside", 1, -1.0)):
+        length, far = found.distances[:, column], found.faces[:, column]
+        facing = np.einsum("ij,ij->i", normals, surface.normals[far])
+        rows = np.flatnonzero(np.isfinite(length) & (length <= reach) & (facing < _OPPOSING))
+        wide = np.full(len(rows), np.inf)
+        sides[cast(Side, side)] = Chords(
+            samples.points[rows], sign * normals[rows], length[rows], samples.faces[rows], far[rows],
+            samples.areas[rows], wide, np.zeros((len(rows), 2), np.int64), np.zeros((len(rows), 3)), wide,
+        )  # fmt: skip
+    return sides
+
+
+def described(manifold: Any, surface: Surface, found: Chords) -> Chords:
+    """The chords with ``second``, ``axis`` and ``flank`` measured."""
+    if not len(found):
+        return found
+    second, sides, axis, flank = found.second, found.sides, found.axis, found.flank
+    u, v = _tangents(found.direction)
+    for k in range(_LINES):
+        angle = np.pi * k / _LINES
+        line = np.cos(angle) * u + np.sin(angle) * v
+        middle = _lines(manifold, surface, found.middle, line, found.length)
+        across = middle.across
+        narrower = across < second
+        second = np.where(narrower, across, second)
+        sides = np.where(narrower[:, None], middle.faces, sides)
+        axis = np.where(narrower[:, None], np.cross(line, found.direction), axis)
+        shift = np.minimum(0.02, 0.1 * found.length)
+        # Just behind the face that the chord starts on: air beside a wall, body beside a gap.
+        beside = _lines(manifold, surface, found.start - shift[:, None] * found.direction, line, found.length)
+        for one, other in ((0, 1), (1, 0)):
+            flank = np.minimum(flank, beside.square[:, one] + middle.square[:, other])
+    return replace(found, second=second, sides=sides, axis=axis, flank=flank)
+
+
+@dataclass(frozen=True)
+class _Line:
+    """Width across (n,) where both ends face each other, and the distance to the faces at both ends (n, 2) where they are
+    about square to the line; inf elsewhere. The faces at both ends, (n, 2)."""
+
+    across: Array
+    square: Array
+    faces: Indices
+
+
+def _lines(manifold: Any, surface: Surface, middles: Array, directions: Array, lengths: Array) -> _Line:
+    reach = max(2.1 * float(lengths.max()), FLANK)
+    hit = neighbours(manifold, middles, directions, reach)
+    normals = surface.normals[hit.faces]
+    facing = np.einsum("ij,ij->i", normals[:, 0], normals[:, 1])
+    both = np.isfinite(hit.distances).all(axis=1)
+    lean = np.where(hit.faces >= 0, np.abs(np.einsum("nkj,nj->nk", normals, directions)), 0.0)
+    return _Line(
+        np.where(both & (facing < _ACROSS), hit.distances.sum(axis=1), np.inf),
+        np.where(lean > _SQUARE, np.where(hit.faces >= 0, hit.distances, 0.0) * lean, np.inf),
+        hit.faces,
+    )
+
+
+def continues(manifold: Any, surface: Surface, found: Chords) -> NDArray[np.bool_]:
+    """Whether the place goes on along its axis, (n,): at both ends as narrow a width further on, or
+    ended before that.
+
+    A pin does, to its tip; a web between two holes widens at both ends.
+    """
+    if not len(found):
+        return np.zeros(0, bool)
+    step = found.length
+    reach = 2.1 * float(step.max())
+    free = neighbours(manifold, found.middle, found.axis, reach).distances
+    cross = np.cross(found.axis, found.direction)
+    result = np.ones(len(found), bool)
+    for column, sign in ((0, -1.0), (1, 1.0)):
+        ahead = found.middle + (sign * step)[:, None] * found.axis
+        widths = [neighbours(manifold, ahead, way, reach).distances.sum(axis=1) for way in (found.direction, cross)]
+        narrow = (widths[0] <= 1.5 * step) & (widths[1] <= 1.5 * np.minimum(found.second, reach))
+        result &= (free[:, column] <= step) | narrow
+    return result
+
+
+def _tangents(directions: Array) -> tuple[Array, Array]:
+    """Two unit vectors square to each direction and to each other."""
+    least = np.abs(directions).argmin(axis=1)
+    u = np.cross(directions, np.eye(3)[least])
+    u /= np.linalg.norm(u, axis=1)[:, None]
+    return u, np.cross(directions, u)
+
+
+def refined(found: Chords, distance: Any) -> Array:
+    """Lengths (n,) from exact surface to exact surface, ``distance`` being the solid's.
+
+    An end moves along the chord, either way or not at all, to where it is nearest to the exact surface. The mesh leaves a
+    circle by its tolerance both ways, so that a bore measured from flat to flat is that much too narrow.
+    """
+    length = found.length.copy()
+    for points, outwards in ((found.start, -found.direction), (found.end, found.direction)):
+        off = distance(points)
+        ways = np.array([0.0, 1.0, -1.0])[:, None] * off
+        left = np.array([distance(points + way[:, None] * outwards) for way in ways])
+        # What is left, where another face is nearer than the one meant, counts for the part.
+        length = length + np.take_along_axis(ways, left.argmin(axis=0)[None], axis=0)[0] + left.min(axis=0)
+    return np.asarray(length)

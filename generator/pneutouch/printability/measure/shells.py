@@ -1,0 +1,43 @@
+"""Closed hollows: shells of a solid that face inwards."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from pneutouch.meridian.segments import Array
+from pneutouch.printability.subject import Point
+
+_NOTHING = 1e-6
+"""Volume in mm3 below which a shell is rounding."""
+
+
+@dataclass(frozen=True)
+class Hollow:
+    """A hollow without a way out: ``volume`` in mm3, ``bounds`` (2, 3) in mm, the ``body`` it lies in."""
+
+    body: str
+    volume: float
+    bounds: Array
+
+    @property
+    def where(self) -> Point:
+        """Middle of its box."""
+        x, y, z = (float(value) for value in self.bounds.mean(axis=0))
+        return x, y, z
+
+    def alike(self, other: Hollow) -> bool:
+        """Whether both are one and the same."""
+        return bool(np.allclose(self.bounds, other.bounds, atol=1e-6))
+
+
+def voids(manifold: Any, body: str) -> list[Hollow]:
+    """Hollows of a manifold3d solid, smallest first."""
+    found = []
+    for shell in manifold.decompose():
+        volume = float(shell.volume())
+        if volume < -_NOTHING:
+            found.append(Hollow(body, -volume, np.array(shell.bounding_box()).reshape(2, 3)))
+    return sorted(found, key=lambda hollow: hollow.volume)

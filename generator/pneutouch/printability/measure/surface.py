@@ -1,0 +1,183 @@
+"""Faces, edges and smooth face groups of a triangle mesh."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneutouch.meridian.segments import Array
+
+Indices = NDArray[np.int64]
+
+CREASE = np.radians(40.0)
+"""Edges that turn more are drawn edges; less, they approximate a curve: nine sides and more count as round."""
+
+_OCTAGON = np.radians(46.0)
+_EQUAL = 0.05
+"""Edges that turn no more than a regular octagon's approximate a curve where the faces on both sides are equally wide, to
+this share: meshes of the smallest circles have eight sides, chamfers of 45 degrees have not."""
+
+_FLAT = 1e-4
+"""Faces that turn less (radians) are one flat face."""
+
+
+_ARC = np.radians(25.0)
+"""Edges that turn less than this are taken for chords of a curve when its mesh is judged: 15 to a circle."""
+
+
+@dataclass(frozen=True)
+class Edges:
+    """Edges of a closed mesh: vertices (e, 2), the faces on both sides (e, 2), and the turn of the normal in radians.
+
+    ``turn`` is positive where the surface is convex; the angle inside the body is pi less it.
+    """
+
+    ends: Indices
+    faces: Indices
+    turn: Array
+
+
+@dataclass(frozen=True)
+class Surface:
+    """A closed mesh, vertices (n, 3) in mm and triangles (m, 3), facing outwards."""
+
+    vertices: Array
+    triangles: Indices
+
+    @cached_property
+    def corners(self) -> Array:
+        """Triangle corners, (m, 3, 3)."""
+        return self.vertices[self.triangles]
+
+    @cached_property
+    def _crosses(self) -> Array:
+        a, b, c = np.moveaxis(self.corners, 1, 0)
+        return np.cross(b - a, c - a)
+
+    @cached_property
+    def areas(self) -> Array:
+        """Areas, (m,), mm2."""
+        return cast(Array, 0.5 * np.linalg.norm(self._crosses, axis=1))
+
+    @cached_property
+    def normals(self) -> Array:
+        """Outward unit normals, (m, 3); zero for a triangle without area."""
+        length = 2 * self.areas[:, None]
+        return np.divide(self._crosses, length, out=np.zeros_like(self._crosses), where=length > 0)
+
+    @cached_property
+    def edges(self) -> Edges:
+        """Every edge once; the mesh must be closed."""
+        ends = self.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+        face = np.repeat(np.arange(len(self.triangles)), 3)
+        low, high = ends.min(axis=1), ends.max(axis=1)
+        order = np.lexsort((ends[:, 0], high, low))
+        pairs = order.reshape(-1, 2)
+        faces = face[pairs]
+        normal = self.normals[faces]
+        turn = np.arctan2(
+            np.linalg.norm(np.cross(normal[:, 0], normal[:, 1]), axis=1),
+            np.einsum("ij,ij->i", normal[:, 0], normal[:, 1]),
+        )
+        ahead = self.corners.mean(axis=1)[faces[:, 1]] - self.vertices[ends[pairs[:, 0], 0]]
+        convex = np.einsum("ij,ij->i", ahead, normal[:, 0]) <= 0
+        flat = (self.areas[faces] <= 0).any(axis=1)
+        return Edges(ends[pairs[:, 0]], faces, np.where(flat, 0.0, np.where(convex, turn, -turn)))
+
+    @cached_property
+    def creases(self) -> NDArray[np.bool_]:
+        """Which edges are drawn ones, (e,)."""
+        edges, turn = self.edges, np.abs(self.edges.turn)
+        drawn: NDArray[np.bool_] = turn >= CREASE
+        rows = np.flatnonzero(drawn & (turn <= _OCTAGON))
+        if len(rows):
+            flat = self._joined(turn < _FLAT)
+            areas = np.bincount(flat, weights=self.areas)
+            # The width of a flat face over an edge is its area over the edge's length, which both sides have in common.
+            low, high = np.sort(areas[flat[edges.faces[rows]]], axis=1).T
+            drawn[rows] = high > (1 + _EQUAL) * low
+        return drawn
+
+    def _joined(self, smooth: NDArray[np.bool_]) -> Indices:
+        """Number of the group of each triangle, (m,), where groups are joined over given edges."""
+        from scipy.sparse import coo_array
+        from scipy.sparse.csgraph import connected_components
+
+        pairs = self.edges.faces[smooth]
+        graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(self.triangles),) * 2)
+        return cast(Indices, connected_components(graph, directed=False)[1].astype(np.int64))
+
+    @cached_property
+    def groups(self) -> Indices:
+        """Number of the smooth face group of each triangle, (m,): faces joined over edges that are no crease."""
+        return self._joined(~self.creases)
+
+    @cached_property
+    def sagittas(self) -> Array:
+        """Height of the arc over each smooth edge's two faces, (e,), mm: what the mesh leaves of a curve; 0 at creases.
+
+        A circle that turns by t over a face of width w has the radius w/t, so the sagitta w t/8.
+        """
+        edges = self.edges
+        along = self.vertices[edges.ends[:, 1]] - self.vertices[edges.ends[:, 0]]
+        length = np.maximum(np.linalg.norm(along, axis=1), 1e-12)
+        # The narrower of both faces: where a drawn edge of a few degrees ends a long face, that face is not its chord.
+        width = self.areas[edges.faces].min(axis=1) * 2 / length
+        turn = np.abs(edges.turn)
+        return np.where(turn < _ARC, width * turn / 8, 0.0)
+
+    @cached_property
+    def group_turns(self) -> Array:
+        """The greatest turn between two faces of each smooth group, (groups,), radians."""
+        smooth = ~self.creases
+        widest = np.zeros(int(self.groups.max()) + 1)
+        np.maximum.at(widest, self.groups[self.edges.faces[smooth, 0]], np.abs(self.edges.turn[smooth]))
+        return widest
+
+    @cached_property
+    def chord_error(self) -> tuple[float, int]:
+        """What the mesh leaves of its curves, mm, and the edge where: the sagitta that a tenth of the length of a face
+        group's curved edges exceeds, in the worst group. Single edges between faces of two curves say nothing."""
+        edges, sagittas = self.edges, self.sagittas
+        curved = np.flatnonzero(sagittas > 1e-9)
+        if not len(curved):
+            return 0.0, 0
+        ends = self.vertices[edges.ends[curved]]
+        length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+        group = self.groups[edges.faces[curved, 0]]
+        order = np.lexsort((sagittas[curved], group))
+        total = np.cumsum(length[order])
+        last = np.append(np.flatnonzero(np.diff(group[order])), len(order) - 1)
+        before = np.concatenate([[0.0], total[last[:-1]]])
+        rows = order[np.searchsorted(total, before + 0.9 * (total[last] - before))]
+        worst = curved[rows[int(sagittas[curved[rows]].argmax())]]
+        return float(sagittas[worst]), int(worst)
+
+    @cached_property
+    def _corner_normals(self) -> Array:
+        """Unit normals at each triangle's corners, (m, 3, 3), averaged over the smooth group's faces there by angle."""
+        a, b, c = np.moveaxis(self.corners, 1, 0)
+        sides = [(b - a, c - a), (c - b, a - b), (a - c, b - c)]
+        angles = np.stack([
+            np.arctan2(np.linalg.norm(np.cross(u, v), axis=1), np.einsum("ij,ij->i", u, v)) for u, v in sides
+        ], axis=1)  # fmt: skip
+        key = self.triangles * (int(self.groups.max()) + 1) + self.groups[:, None]
+        _, number = np.unique(key.reshape(-1), return_inverse=True)
+        weighted = (angles[:, :, None] * self.normals[:, None, :]).reshape(-1, 3)
+        sums: Array = np.stack([np.bincount(number, weights=weighted[:, k]) for k in range(3)], axis=1)
+        sums = sums / np.maximum(np.linalg.norm(sums, axis=1, keepdims=True), 1e-30)
+        return cast(Array, sums[number].reshape(-1, 3, 3))
+
+    def smooth_normals(self, faces: Indices, points: Array) -> Array:
+        """Outward unit normals of the smooth surface that the mesh stands for, (n, 3), at points on given faces."""
+        a, b, c = np.moveaxis(self.corners[faces], 1, 0)
+        twice = np.maximum(2 * self.areas[faces], 1e-30)
+        weights = np.stack([
+            np.linalg.norm(np.cross(u - points, v - points), axis=1) / twice for u, v in ((b, c), (c, a), (a, b))
+        ], axis=1)  # fmt: skip
+        mixed = np.einsum("nk,nkd->nd", weights, self._corner_normals[faces])
+        return cast(Array, mixed / np.maximum(np.linalg.norm(mixed, axis=1, keepdims=True), 1e-30))

@@ -1,0 +1,211 @@
+"""Thin places of a part by kind: walls, pins, holes, channels, gaps, ridges and grooves, each as one place.
+
+A place is what chords join of smooth face groups. Where fillets make one face of several features they are one place, told
+by its narrowest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any, Literal
+
+import numpy as np
+
+from pneutouch.meridian.segments import Array
+from pneutouch.printability.measure.chords import FLANK, Chords, Side, continues, described
+from pneutouch.printability.measure.surface import Indices, Surface
+from pneutouch.printability.subject import Flags, Point
+
+Kind = Literal["wall", "pin", "hole", "channel", "gap", "raised", "engraved"]
+
+ROUND = 2.0
+"""An opening at most this many times as wide one way as the other is a hole, else a gap."""
+
+STOUT = 1.4
+"""A bar at most this many times as thick one way as the other is a pin, else a wall."""
+
+LONG = 3.0
+"""A hole longer than this many widths is a channel."""
+
+_KNIFE = np.radians(50.0)
+"""Faces that meet at less than this leave chords down to nothing: the edge is what is wrong there."""
+
+BLUNT = 0.5
+"""A taper's thickness is that this far (mm) from its thin end: what is shorter is a blunt edge, not a wall (own,
+unverified)."""
+
+_BENT = 1.25
+"""By its area a straight hole is as long as by its extent, up to a quarter for one that is not round."""
+
+_ALONG = np.radians(2.0)
+"""Faces that part by less run along each other, as far as interpolated normals tell."""
+
+_PER_GROUP = 48
+"""Chords of a face group that are looked at closely, from the shortest on and then evenly."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """One thin place: ``size`` at its narrowest, mm, at ``where``; ``length`` along it (mm) for pins and holes.
+
+    ``turn`` is the greatest turn (radians) between two faces of the curves around it.
+    """
+
+    kind: Kind
+    size: float
+    where: Point
+    length: float
+    turn: float = 0.0
+
+
+def thin_places(
+    manifold: Any, surface: Surface, sides: dict[Side, Chords], limits: dict[Side, float], exact: Any = None
+) -> list[Place]:
+    """Places with a chord up to a side's limit, mm, narrowest first. ``exact`` turns chords into exact lengths."""
+    places = []
+    for side, found in sides.items():
+        short = found.take(found.length <= limits[side])
+        short = short.take(np.logical_not(_in_wedge(surface, short, side)))
+        short = described(manifold, surface, _thinned(short, surface.groups))
+        if not len(short):
+            continue
+        flat, round_ = short.flank <= FLANK, _is_round(manifold, surface, short, side)
+        lengths = short.length if exact is None else exact(short)
+        tapered = lengths + BLUNT * _slope(surface, short)
+        for rows in _connected(short, surface.groups, round_):
+            sized = _Sized(short.take(rows), lengths[rows], tapered[rows], flat[rows], round_[rows])
+            around = np.unique(surface.groups[short.near[rows]])
+            turn = float(surface.group_turns[around].max())
+            places.append(replace(_place(side, sized, len(around)), turn=turn))
+    return sorted(places, key=lambda place: place.size)
+
+
+def _is_round(manifold: Any, surface: Surface, short: Chords, side: Side) -> Flags:
+    """Pins among chords inside, holes among those outside."""
+    if side == "outside":
+        return np.asarray(short.second <= ROUND * short.length)
+    rows = np.flatnonzero(short.second <= STOUT * short.length)
+    result = np.zeros(len(short), bool)
+    result[rows] = continues(manifold, surface, short.take(rows))
+    return result
+
+
+def _slope(surface: Surface, some: Chords) -> Array:
+    """How fast each chord's faces part, mm per mm, (n,); nothing where they run along each other as far as can be told."""
+    near = surface.smooth_normals(some.near, some.start)
+    far = surface.smooth_normals(some.far, some.start + some.length[:, None] * some.direction)
+    angle = np.arccos(np.clip(-np.einsum("ij,ij->i", near, far), -1, 1))
+    return np.where(angle > _ALONG, np.tan(np.minimum(angle, _KNIFE)), 0.0)
+
+
+@dataclass(frozen=True)
+class _Sized:
+    """Chords of one place: their lengths, those with the taper, and which are at a flank or round."""
+
+    chords: Chords
+    lengths: Array
+    tapered: Array
+    flat: Flags
+    round: Flags
+
+
+def _place(side: Side, some: _Sized, faces: int) -> Place:
+    """One place is of one kind: what most of it is, where flanks are concerned, and else what its narrowest tenth is.
+
+    ``faces`` is the number of face groups around it.
+    """
+    if some.flat.mean() > 0.5:
+        sizes = np.where(some.flat, np.minimum(some.lengths, some.chords.flank), np.inf)
+        first = int(sizes.argmin())
+        return Place("raised" if side == "inside" else "engraved", float(sizes[first]), _spot(some, first), 0.0)
+    first = int(some.lengths.argmin())
+    size, where = float(some.lengths[first]), _spot(some, first)
+    narrow = some.round & (some.lengths <= 1.1 * size)
+    if not narrow.any():
+        first = int(some.tapered.argmin())
+        return Place("wall" if side == "inside" else "gap", float(some.tapered[first]), _spot(some, first), 0.0)
+    along = _length(some, int(np.flatnonzero(narrow)[0]), faces)
+    if side == "inside":
+        return Place("pin", size, where, along)
+    return Place("channel" if along > LONG * size else "hole", size, where, along)
+
+
+def _length(some: _Sized, row: int, faces: int) -> float:
+    """Length along a pin or hole, mm: its extent along its axis, or by its area where it is bent."""
+    middles, around = some.chords.middle, float(np.median(some.lengths[some.round])) * (np.pi if faces == 1 else 4.0)
+    extent = float(np.ptp((middles - middles.mean(axis=0)) @ some.chords.axis[row]))
+    bent = float(some.chords.area[some.round].sum()) / around
+    return bent if bent > _BENT * extent else extent
+
+
+def _spot(some: _Sized, row: int) -> Point:
+    x, y, z = (float(value) for value in some.chords.middle[row])
+    return x, y, z
+
+
+def _thinned(found: Chords, groups: Indices) -> Chords:
+    """At most `_PER_GROUP` chords of each face group; those kept stand for the area of all."""
+    group = groups[found.near]
+    order = np.lexsort((found.length, group))
+    group = group[order]
+    first = np.concatenate([[0], np.flatnonzero(np.diff(group)) + 1, [len(group)]])
+    kept, scale = [], []
+    for low, high in pairwise(first.tolist()):
+        count = high - low
+        if not count:
+            continue
+        share = max(1.0, count / _PER_GROUP)
+        rows = order[low + np.unique((np.arange(0, count, share)).astype(np.int64))]
+        kept.append(rows)
+        scale.append(np.full(len(rows), found.area[order[low:high]].sum() / max(found.area[rows].sum(), 1e-12)))
+    if not kept:
+        return found
+    rows = np.concatenate(kept)
+    some = found.take(rows)
+    return replace(some, area=some.area * np.concatenate(scale))
+
+
+def _connected(some: Chords, groups: Indices, round_: Flags) -> list[Indices]:
+    """Rows of each place: chords whose face groups they join at both ends, and across where the place is round."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    near = groups[some.near]
+    one = np.concatenate([near, *[near[round_]] * 2])
+    other = groups[np.concatenate([some.far, *some.sides[round_].T])]
+    size = int(groups.max()) + 1
+    graph = coo_array((np.ones(len(one)), (one, other)), shape=(size, size))
+    label = connected_components(graph, directed=False)[1][near]
+    return [np.flatnonzero(label == number) for number in np.unique(label)]
+
+
+def _in_wedge(surface: Surface, found: Chords, side: Side) -> Flags:
+    """Chords in the corner between two faces that meet at less than 50 degrees, (n,) bool."""
+    edges = surface.edges
+    turn = edges.turn if side == "inside" else -edges.turn
+    sharp = turn > np.pi - _KNIFE
+    facing = np.einsum("ij,ij->i", surface.normals[found.near], surface.normals[found.far])
+    slack = np.zeros(len(found), bool)
+    if not sharp.any():
+        return slack
+    ends = surface.vertices[edges.ends[sharp]]
+    angle = np.maximum(np.pi - np.arccos(np.clip(facing, -1, 1)), 1e-6)
+    slanted = np.flatnonzero(angle > np.radians(1.0))
+    if not len(slanted):
+        return slack
+    away = distance_to_segments(found.middle[slanted], ends[:, 0], ends[:, 1])
+    slack[slanted] = away < 1.2 * found.length[slanted] / angle[slanted]
+    return slack
+
+
+def distance_to_segments(points: Array, starts: Array, ends: Array) -> Array:
+    """Distances (n,) of (n, 3) points from the nearest of m segments."""
+    along = ends - starts
+    square = np.maximum(np.einsum("mk,mk->m", along, along), 1e-30)
+    nearest = np.full(len(points), np.inf)
+    for k in range(len(starts)):
+        offset = points - starts[k]
+        share = np.clip(offset @ along[k] / square[k], 0, 1)
+        nearest = np.minimum(nearest, np.linalg.norm(offset - share[:, None] * along[k], axis=1))
+    return nearest

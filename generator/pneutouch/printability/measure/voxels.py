@@ -1,0 +1,94 @@
+"""Parts in cubes: what rays alone do not tell, such as what lies behind a neck or under an overhang."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneutouch.meridian.segments import Array
+from pneutouch.printability.measure.surface import Indices
+
+PITCH = 0.25
+"""Edge of a cube, mm, on parts small enough."""
+
+MOST = 300_000
+"""Cubes of a model; a larger part gets larger ones."""
+
+_OFF = (0.4142135623730951, 0.7320508075688772)
+"""Shift of the columns in cubes: no column runs along an edge of a part drawn on whole hundredths."""
+
+
+@dataclass(frozen=True)
+class Voxels:
+    """Number of the part that fills each cube, from 1, and 0 where none does, (i, j, k); one empty cube all around.
+
+    ``pitch`` in mm, ``origin`` the centre of cube (0, 0, 0) in the build frame, whose z points up; ``frame`` (3, 3) turns
+    the design frame into the build frame.
+    """
+
+    label: NDArray[np.int8]
+    pitch: float
+    origin: Array
+    frame: Array
+
+    @property
+    def cube(self) -> float:
+        """Volume of a cube, mm3."""
+        return self.pitch**3
+
+    def point(self, index: Indices | Array) -> tuple[float, float, float]:
+        """Centre of a cube in the design frame, mm."""
+        x, y, z = (self.origin + self.pitch * np.asarray(index)) @ self.frame
+        return float(x), float(y), float(z)
+
+
+def build_frame(up: Array) -> Array:
+    """Rotation (3, 3) from the design frame to the build frame: ``up``, a unit vector, becomes z."""
+    if up[2] > 1 - 1e-12:
+        return np.eye(3)
+    side = np.cross(up, np.eye(3)[int(np.abs(up).argmin())])
+    side /= np.linalg.norm(side)
+    return np.array([side, np.cross(up, side), up])
+
+
+def fill(parts: list[Array], frame: Array, most: int = MOST) -> Voxels:
+    """Cubes whose centres lie in the parts, given by their triangles' corners (m, 3, 3) in the design frame."""
+    turned = [corners @ frame.T for corners in parts]
+    low = np.min([corners.min(axis=(0, 1)) for corners in turned], axis=0)
+    size = np.max([corners.max(axis=(0, 1)) for corners in turned], axis=0) - low
+    pitch = max(PITCH, float(np.prod(size) / most) ** (1 / 3))
+    shape = tuple(int(n) for n in np.ceil(size / pitch) + 3)
+    origin = low - pitch * np.array([*_OFF, 0.5])
+    label = np.zeros(shape, dtype=np.int8)
+    for number, corners in enumerate(turned, start=1):
+        label[_filled((corners - origin) / pitch, shape)] = number
+    return Voxels(label, pitch, origin, frame)
+
+
+def _filled(corners: Array, shape: tuple[int, ...]) -> NDArray[np.bool_]:
+    """Cubes with their centres at whole numbers that lie inside, by counting the crossings below each."""
+    flat = corners[:, :, :2]
+    low = np.ceil(flat.min(axis=1)).astype(np.int64)
+    count = np.maximum(np.floor(flat.max(axis=1)).astype(np.int64) - low + 1, 0)
+    number = count[:, 0] * count[:, 1]
+    face = np.repeat(np.arange(len(corners)), number)
+    serial = np.arange(len(face)) - np.repeat(np.cumsum(number) - number, number)
+    column = low[face] + np.column_stack([serial // count[face, 1], serial % count[face, 1]])
+    a, b, c = np.moveaxis(corners, 1, 0)
+    twice = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    keep = twice[face] != 0
+    face, column = face[keep], column[keep]
+    dx, dy = (column - a[face, :2]).T
+    along, over = (b - a)[face], (c - a)[face]
+    s = (dx * over[:, 1] - dy * over[:, 0]) / twice[face]
+    t = (along[:, 0] * dy - along[:, 1] * dx) / twice[face]
+    hit = (s >= 0) & (t >= 0) & (s + t <= 1)
+    face, column, s, t = face[hit], column[hit], s[hit], t[hit]
+    height = a[face, 2] + s * (b - a)[face, 2] + t * (c - a)[face, 2]
+    layer = np.clip(np.ceil(height).astype(np.int64), 0, shape[2] - 1)
+    cell = np.ravel_multi_index((column[:, 0], column[:, 1], layer), shape)
+    # Going up, a face that looks down is the way in.
+    steps = np.bincount(cell, weights=-np.sign(twice[face]), minlength=int(np.prod(shape)))
+    return np.cumsum(steps.reshape(shape), axis=2) > 0.5

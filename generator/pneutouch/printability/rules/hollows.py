@@ -1,0 +1,23 @@
+"""Closed hollows: no support comes out of them, and nobody sees them."""
+
+from __future__ import annotations
+
+from pneutouch.printability.finding import Excess, Finding
+from pneutouch.printability.view import View
+
+_SOURCE = "vendor, objet.com Tips and Tricks: a confined hollow is not cleanable"
+_FILAMENT = "own, unverified: what is closed cannot be inspected, and loose support stays in it"
+
+
+def check(view: View) -> list[Finding]:
+    """Look for shells that face inwards, in each body and in what a job joins to one."""
+    found = []
+    for job in view.jobs:
+        source = _SOURCE if job.printer.process == "polyjet" else _FILAMENT
+        for hollow in job.hollows if job.sound else []:
+            text = f"a closed hollow of {hollow.volume:.3g} mm3"
+            part = job.nearest(hollow.where)
+            fix = part.item.hints.get("hollows", "open it with a hole to clean through, or fill it")
+            excess = Excess(hollow.volume, 0.0, "mm3")
+            found.append(Finding("hollows", "error", hollow.body, text, fix, source, hollow.where, excess))
+    return found

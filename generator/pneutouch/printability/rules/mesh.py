@@ -1,0 +1,81 @@
+"""Whether the mesh is a solid, and as fine as the machine: no coarser, and not much finer."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pneutouch.meridian.segments import Array
+from pneutouch.printability.finding import Excess, Finding
+from pneutouch.printability.sizes import spot
+from pneutouch.printability.view import Part, View
+from pneutouch.units import UM
+
+_SOLID = (
+    "vendor, objet.com Tips and Tricks: watertight; vertices rounded to 32-bit floats and merged, as STL readers do"
+)
+_FINEST = "the machine's finest step: least of layer height and pixel, as its profile states; "
+_VENDOR = "vendor, objet.com Tips and Tricks: finer does not print better; four times finer: own, unverified"
+_GUESS = 1.5
+"""A sagitta overstates the deviation of a mesh that keeps its area by as much."""
+_FINER = 4.0
+"""Chords this many times narrower than the finest step needs make at least as many times the triangles."""
+
+
+def check(view: View) -> list[Finding]:
+    """Measure closedness, the deviation from the exact solid and the width of chords."""
+    found = []
+    for part in view.parts:
+        found += _open(part) or [*_coarse(part), *_fine(part)]
+    return found
+
+
+def _open(part: Part) -> list[Finding]:
+    if not part.item.body.is_closed():
+        text = "the mesh is not closed"
+    elif not part.read.is_closed():
+        text = "the mesh is not closed once its points are rounded to 32-bit floats and merged"
+    elif not part.sound:
+        text = "the mesh bounds no solid: it is inside out or not manifold"
+    else:
+        return []
+    fix = part.item.hints.get("mesh", "mend the mesh where it comes from; nothing else is measured on it")
+    return [Finding("mesh", "error", part.name, text, fix, _SOLID)]
+
+
+def _coarse(part: Part) -> list[Finding]:
+    step = part.item.printer.finest_step(part.item.mode)
+    if part.item.solid is None:
+        (deviation, edge), how = part.surface.chord_error, "by the turn of its edges"
+        where = part.surface.vertices[part.surface.edges.ends[edge]].mean(axis=0)
+    else:
+        points = _points(part)
+        distances = part.item.solid.distance(points)
+        deviation, how = float(distances.max()), "from the exact solid"
+        where = points[int(distances.argmax())]
+    if deviation <= step * (_GUESS if part.item.solid is None else 1.02):
+        return []
+    text = f"the mesh is off by {deviation / UM:.0f} um ({how}); the machine's finest step is {step / UM:g} um"
+    fix = part.item.hints.get("mesh", f"mesh it within {step:g} mm")
+    source = f"{_FINEST}{part.item.printer.resolution.source}"
+    return [Finding("mesh", "warning", part.name, text, fix, source, spot(where), Excess(deviation, step))]
+
+
+def _points(part: Part) -> Array:
+    """Corners, middles of edges and middles of triangles: where a mesh is farthest off a smooth surface."""
+    body, ends = part.surface, part.surface.edges.ends
+    return np.concatenate([body.vertices, body.vertices[ends].mean(axis=1), body.corners.mean(axis=1)])
+
+
+def _fine(part: Part) -> list[Finding]:
+    step = part.item.printer.finest_step(part.item.mode)
+    sagittas = part.surface.sagittas
+    curved = sagittas[sagittas > 1e-9]
+    if len(curved) < 100:
+        return []
+    # A sagitta goes with the square of the chord's width.
+    finer = float(np.sqrt(step / np.percentile(curved, 90)))
+    if finer <= _FINER:
+        return []
+    text = f"its chords are {finer:.0f} times narrower than the machine's finest step of {step / UM:g} um needs"
+    fix = part.item.hints.get("mesh", f"mesh it within {step:g} mm; the file gets smaller, the print the same")
+    return [Finding("mesh", "note", part.name, text, fix, _FINEST + _VENDOR, None, Excess(finer, _FINER, ""))]

@@ -1,0 +1,88 @@
+"""What the rules look at: bodies as they will be printed, whatever they are, and where they must meet.
+
+A sensor's bodies become a subject like this::
+
+    Subject(
+        items=tuple(
+            Item(
+                body, printer, mode, solid, up=(0.0, 0.0, 1.0), job=solid.name,
+                hints={"walls": "raise membrane.wall_thickness_mm"},
+            )
+            for body, solid in zip(assembly.bodies, assembly.solids, strict=True)
+        ),
+        joints=(Joint("membrane", "connector", area=seat_area, where=(12.0, 0.0, -2.25)),),
+        name=scene.name,
+    )
+
+A coupon is a subject of one item and no joints.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneutouch.body import Body
+from pneutouch.meridian.segments import Array
+from pneutouch.spec.printer import Mode, Printer
+
+Point = tuple[float, float, float]
+Flags = NDArray[np.bool_]
+
+
+class Exact(Protocol):
+    """An exact shape. Its attributes may be anything that reads as such: fields, properties, cached ones."""
+
+    @property
+    def name(self) -> str:
+        """Name of the body."""
+
+    @property
+    def volume(self) -> float:
+        """Exact volume, mm3."""
+
+    def distance(self, points: Array) -> Array:
+        """Distances, shape (n,), of (n, 3) points in mm from the exact surface."""
+
+
+@dataclass(frozen=True)
+class Item:
+    """One body as it will be printed, in the design frame (mm).
+
+    ``solid`` is the exact shape where there is one. ``up`` is the build direction in the body's frame. Items with
+    the same ``job`` are printed together, standing to one another as in the design frame; "" is a job of its own.
+    ``sensing`` says of (n, 3) surface points which must not be matte. ``hints`` says, by the name of a rule, what in
+    the design would fix what the rule finds.
+    """
+
+    body: Body
+    printer: Printer
+    mode: Mode
+    solid: Exact | None = None
+    up: Point = (0.0, 0.0, 1.0)
+    job: str = ""
+    sensing: Callable[[Array], Flags] | None = None
+    hints: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Joint:
+    """Two items, by name, that must meet on a face of ``area`` (exact, mm2) near ``where`` without overlapping."""
+
+    one: str
+    other: str
+    area: float
+    where: Point
+
+
+@dataclass(frozen=True)
+class Subject:
+    """The items that are made for one design."""
+
+    items: tuple[Item, ...]
+    joints: tuple[Joint, ...] = ()
+    name: str = ""

@@ -1,0 +1,235 @@
+"""A subject measured: each part and each job once, when a rule asks for it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from pneutouch.body import Body
+from pneutouch.meridian.segments import Array
+from pneutouch.printability.measure.cavities import Pocket, balls, pockets, seen, unseen
+from pneutouch.printability.measure.chords import Chords, Side, chords, refined
+from pneutouch.printability.measure.samples import Samples, sample
+from pneutouch.printability.measure.shells import Hollow, voids
+from pneutouch.printability.measure.surface import Surface
+from pneutouch.printability.measure.thin import Place, thin_places
+from pneutouch.printability.measure.voxels import Voxels, build_frame, fill
+from pneutouch.printability.subject import Flags, Item, Point, Subject
+from pneutouch.spec.printer import Feature, Printer
+
+if TYPE_CHECKING:
+    from pneutouch.mechanics import Prediction, Sensor
+
+
+@dataclass(frozen=True)
+class SensorContext:
+    """What the rules on the sensor's working need: its prediction, and the mechanics' view of it.
+
+    ``membrane`` is the name of the item whose wall the sensor presses.
+    """
+
+    prediction: Prediction
+    sensor: Sensor
+    membrane: str = "membrane"
+
+
+NARROW = 3.0
+"""Holes up to this width (mm) are measured for their length where support has to come out of them (own, unverified)."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """An item with its measurements."""
+
+    item: Item
+
+    @property
+    def name(self) -> str:
+        """The body's name."""
+        return self.item.body.name
+
+    @property
+    def process(self) -> str:
+        """The printer's process."""
+        return self.item.printer.process
+
+    @cached_property
+    def read(self) -> Body:
+        """The body as a file reader sees it."""
+        return self.item.body.welded()
+
+    @cached_property
+    def manifold(self) -> Any:
+        """manifold3d's solid of the mesh; empty where the mesh is none."""
+        return manifold_of(self.item.body)
+
+    @cached_property
+    def sound(self) -> bool:
+        """Whether the mesh bounds a solid, without which nothing else can be measured on it."""
+        return self.item.body.is_closed() and not self.manifold.is_empty() and self.manifold.volume() > 0
+
+    @cached_property
+    def surface(self) -> Surface:
+        """The manifold's own mesh, whose faces rays name."""
+        mesh = self.manifold.to_mesh64()
+        return Surface(np.array(mesh.vert_properties[:, :3]), np.array(mesh.tri_verts).astype(np.int64))
+
+    @cached_property
+    def samples(self) -> Samples:
+        """Points all over the surface."""
+        return sample(self.surface)
+
+    @property
+    def _limits(self) -> dict[Side, float]:
+        """The longest chords that any rule asks for, mm."""
+        least, kind = self.item.printer.smallest, self.item.body.material.kind
+        emboss = 1.5 * least.emboss_mm.recommended
+        inside = max(least.wall(kind).recommended, least.pin(kind).recommended, emboss)
+        outside = max(least.hole_mm.recommended, least.channel_mm.recommended, least.gap_mm.recommended, emboss)
+        if self.process == "polyjet":
+            outside = max(outside, NARROW)
+        return {"inside": inside, "outside": outside}
+
+    @cached_property
+    def chords(self) -> dict[Side, Chords]:
+        """Thicknesses and clearances as far as the printer's limits reach."""
+        return chords(self.manifold, self.surface, self.samples, max(self._limits.values()))
+
+    @cached_property
+    def places(self) -> list[Place]:
+        """Thin places, narrowest first."""
+        solid = self.item.solid
+        exact = None if solid is None else lambda found: refined(found, solid.distance)
+        return thin_places(self.manifold, self.surface, self.chords, self._limits, exact)
+
+    def slack(self, size: float, turn: float) -> float:
+        """How far a measured size (mm) may be off, mm, between curves whose faces turn by ``turn`` (radians).
+
+        A chord may miss the axis by half that turn, and without the exact solid the mesh may be off as well.
+        """
+        chord = 1e-3 + size * turn**2 / 8
+        return chord if self.item.solid is not None else chord + 2 * self.surface.chord_error[0]
+
+    def limit(self, name: str) -> Feature:
+        """A limit of the printer for this part's kind of material: wall, pin, hole, channel, gap or emboss."""
+        smallest, kind = self.item.printer.smallest, self.item.body.material.kind
+        if name in ("wall", "pin"):
+            return smallest.wall(kind) if name == "wall" else smallest.pin(kind)
+        return cast(Feature, getattr(smallest, f"{name}_mm"))
+
+
+@dataclass(frozen=True)
+class Job:
+    """Parts printed together, standing to one another as in the design frame."""
+
+    name: str
+    parts: tuple[Part, ...]
+
+    @property
+    def up(self) -> Array:
+        """Build direction, unit, (3,)."""
+        up = np.asarray(self.parts[0].item.up, dtype=float)
+        return cast(Array, up / np.linalg.norm(up))
+
+    @property
+    def printer(self) -> Printer:
+        """The machine."""
+        return self.parts[0].item.printer
+
+    @property
+    def sound(self) -> bool:
+        """Whether every part is a solid."""
+        return all(part.sound for part in self.parts)
+
+    @cached_property
+    def union(self) -> Any:
+        """All parts as one manifold3d solid."""
+        from manifold3d import Manifold, OpType
+
+        if len(self.parts) == 1:
+            return self.parts[0].manifold
+        return Manifold.batch_boolean([part.manifold for part in self.parts], OpType.Add)
+
+    @cached_property
+    def voxels(self) -> Voxels:
+        """All parts in cubes, in the build frame."""
+        return fill([part.surface.corners for part in self.parts], build_frame(self.up))
+
+    @cached_property
+    def pockets(self) -> list[Pocket]:
+        """Hollows behind a narrow opening."""
+        return pockets(self.voxels, self.balls)
+
+    @cached_property
+    def balls(self) -> Array:
+        """Radius of the largest ball around each empty cube, mm."""
+        return balls(self.voxels)
+
+    @cached_property
+    def hidden(self) -> Flags:
+        """Empty cubes that no straight jet reaches."""
+        return unseen(self.voxels, self.balls, seen(self.voxels))
+
+    @cached_property
+    def hollows(self) -> list[Hollow]:
+        """Closed hollows of each part, and those that the parts close together."""
+        own = [shell for part in self.parts for shell in voids(part.manifold, part.name)]
+        if len(self.parts) == 1:
+            return own
+        joined = [shell for shell in voids(self.union, "") if not any(shell.alike(other) for other in own)]
+        return own + [replace(shell, body=self.nearest(shell.where).name) for shell in joined]
+
+    def in_hollow(self, where: Point) -> bool:
+        """Whether a point lies in the box of a closed hollow."""
+        return any(bool(((where >= h.bounds[0]) & (where <= h.bounds[1])).all()) for h in self.hollows)
+
+    def nearest(self, where: Point) -> Part:
+        """The part with a vertex nearest to a point."""
+        point = np.asarray(where)
+        return min(self.parts, key=lambda part: float(np.linalg.norm(part.item.body.vertices - point, axis=1).min()))
+
+    @cached_property
+    def bounds(self) -> Array:
+        """Smallest and largest corner in the build frame, (2, 3), mm."""
+        turned = np.concatenate([part.item.body.vertices for part in self.parts]) @ build_frame(self.up).T
+        return np.array([turned.min(axis=0), turned.max(axis=0)])
+
+
+@dataclass(frozen=True)
+class View:
+    """A subject with its parts and jobs, and the sensor's context where there is one."""
+
+    subject: Subject
+    sensor: SensorContext | None = None
+
+    @cached_property
+    def parts(self) -> tuple[Part, ...]:
+        """One a body."""
+        return tuple(Part(item) for item in self.subject.items)
+
+    @cached_property
+    def sound(self) -> tuple[Part, ...]:
+        """The parts that can be measured."""
+        return tuple(part for part in self.parts if part.sound)
+
+    @cached_property
+    def jobs(self) -> tuple[Job, ...]:
+        """In order of their first part; a part without a job's name is a job of its own."""
+        found: dict[tuple[str, int], list[Part]] = {}
+        for number, part in enumerate(self.parts):
+            found.setdefault((part.item.job, -1 if part.item.job else number), []).append(part)
+        return tuple(Job(name or parts[0].name, tuple(parts)) for (name, _), parts in found.items())
+
+    def part(self, name: str) -> Part | None:
+        """A part by its name."""
+        return next((part for part in self.parts if part.name == name), None)
+
+
+def manifold_of(body: Body) -> Any:
+    """A body as manifold3d takes it; empty where it is not closed."""
+    from manifold3d import Manifold, Mesh64
+
+    return Manifold(Mesh64(np.ascontiguousarray(body.vertices), body.triangles.astype(np.uint64)))

@@ -1,0 +1,55 @@
+"""Rules on the sensor's working: driving pressures, and the wall in whole layers and pixels."""
+
+from __future__ import annotations
+
+import re
+
+from pneutouch.printability import Subject, check
+from tests.printability.gallery import cup, item
+from tests.printability.working import WORKING, working
+
+
+def of(found, rule):
+    return [finding for finding in found if finding.rule == rule]
+
+
+def test_driving_well_below_the_limit_is_no_finding():
+    assert of(working([0, 12, 22]), "driving") == []
+
+
+def test_driving_near_a_limit_is_a_warning():
+    (near,) = of(working([0, 39]), "driving")
+    assert near.severity == "warning"
+    assert near.excess.measured == 39
+    assert "limit point" in near.message
+
+
+def test_driving_beyond_the_gauge_is_an_error():
+    (beyond,) = of(working([0, 120], resin="FLX9970"), "driving")
+    assert beyond.severity == "error"
+    assert "gauge range" in beyond.message
+
+
+def test_a_wall_of_whole_layers_is_no_finding_at_the_pole():
+    assert not any("pole" in finding.message for finding in of(working([0, 12]), "layers"))
+
+
+def test_a_wall_between_layers_says_what_it_prints_as_and_what_it_reads_then():
+    found = of(working([0, 12], wall=1.5), "layers")
+    (pole,) = [finding for finding in found if "pole" in finding.message]
+    assert pole.severity == "note"
+    assert "1.488 or 1.504 mm" in pole.message
+    thin, thick = map(float, re.search(r"reads ([\d.]+) or ([\d.]+) kPa/N", pole.message).groups())
+    # A thinner wall is softer and reads more; a layer of 16 um is a hundredth of the wall.
+    assert 0 < thin / thick - 1 < 0.02
+
+
+def test_outside_the_atlas_the_note_gives_the_thickness_alone():
+    found = of(working([0], wall=0.105, radius=9.3), "layers")
+    assert found
+    assert all("kPa/N" not in finding.message for finding in found)
+
+
+def test_without_a_prediction_these_rules_say_nothing():
+    found = check(Subject((item(cup(10.0, 1.5), "membrane", "TangoPlus"),)))
+    assert not [finding for finding in found if finding.rule in WORKING]

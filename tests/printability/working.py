@@ -1,0 +1,25 @@
+"""A dome with its prediction, for the rules on the sensor's working."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from pneutouch.mechanics import predict
+from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.printability import Finding, SensorContext, Subject, check
+from pneutouch.units import KPA
+from tests.printability.gallery import cup, item, material
+
+WORKING = ("layers", "driving")
+"""Rules that need a sensor's prediction."""
+
+
+def working(
+    pressures: list[float], wall: float = 1.488, radius: float = 9.3, resin: str = "TangoPlus"
+) -> list[Finding]:
+    """Findings of the rules on working for the paper's dome (kPa, mm); 1.488 mm are 93 layers of 16 um."""
+    sensor = replace(material_sensor(material(resin)), wall_thickness=wall, inner_radius=radius)
+    prediction = predict("dome", sensor, [p * KPA for p in pressures], model="membrane")
+    dome = item(cup(radius + wall, wall), "membrane", resin)
+    found = check(Subject((dome,)), SensorContext(prediction, sensor))
+    return [finding for finding in found if finding.rule in WORKING]
