@@ -58,7 +58,7 @@ def test_list_shows_designs_materials_printers_and_parts(command, root):
     assert set(document) == {"designs", "materials", "printers", "parts"}
     assert "paper-dome" in [entry["name"] for entry in document["designs"]]
     assert len(document["designs"]) >= 5
-    assert {entry["kind"] for entry in document["parts"]} == {"ports", "seats", "mounts"}
+    assert {entry["kind"] for entry in document["parts"]} == {"ports", "seats", "mounts", "tubes"}
     text = command("list", "materials", cwd=root).stdout
     assert "FLX9960-DM (TangoPlus + VeroClear)" in text
     assert command("list", "material", cwd=root).returncode == 2

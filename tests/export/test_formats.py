@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import io
+import json
 import xml.etree.ElementTree as ElementTree
 import zipfile
+from urllib.parse import unquote
 
 import numpy as np
 import pytest
@@ -82,8 +84,10 @@ def test_3mf_materials_sit_on_the_bodies_and_name_the_base_resins(output):
     assert len(root.findall(".//m:build/m:item", space)) == 1
     metadata = {entry.get("name"): entry.text for entry in root.findall("m:metadata", space)}
     assert metadata["Title"] == evaluation.scene.design.document.title
-    design = next(text for name, text in metadata.items() if name.endswith(":design"))
-    assert f'"inner_radius_mm": {evaluation.scene.design.membrane.inner_radius_mm}' in design
+    recipe = json.loads(unquote(next(text for name, text in metadata.items() if name.endswith(":recipe"))))
+    design = recipe["inputs"]["design"]
+    assert design["membrane"]["inner_radius_mm"] == evaluation.scene.design.membrane.inner_radius_mm
+    assert not [name for name in metadata if name.endswith(":design")]
     assert any(name.endswith(":versions") for name in metadata)
 
 

@@ -86,15 +86,20 @@ def main(
 
 @app.command()
 def build(
-    design: DesignArgument, set_: SetOption = None, model: ModelOption = None, tolerance: ToleranceOption = None,
+    context: typer.Context,
+    design: Annotated[str, typer.Argument(metavar="DESIGN", help="Name of a design, path of a TOML file, or a 3MF that was built.")],
+    set_: SetOption = None, model: ModelOption = None, tolerance: ToleranceOption = None,
     closure: ClosureOption = "variational", clamp: ClampOption = "base", out: OutOption = Path("outputs"), json: JsonOption = False,
 ) -> None:  # fmt: skip
-    """Build everything: print files, prediction, datasheet."""
+    """Build everything: print files, prediction, datasheet. A 3MF is built again from the recipe in it."""
     with reporting():
         from pneutouch.pipeline.evaluate import evaluate
         from pneutouch.pipeline.files import check_writable
 
-        evaluation = evaluate(design, set_, closure=closure, clamp=clamp, **_rung(model, tolerance))
+        if design.lower().endswith(".3mf"):
+            evaluation = _from_3mf(design, context)
+        else:
+            evaluation = evaluate(design, set_, closure=closure, clamp=clamp, **_rung(model, tolerance))
         check_writable(out / evaluation.scene.name)
         folder = _build_with_progress(evaluation, out)
         for finding in evaluation.findings:
@@ -130,12 +135,17 @@ def predict(
 
 
 @app.command()
-def check(design: DesignArgument, set_: SetOption = None, json: JsonOption = False) -> None:
+def check(
+    design: DesignArgument, set_: SetOption = None,
+    deep: Annotated[bool, typer.Option("--deep", help="Have pymeshlab (an extra) inspect the meshes as well.")] = False,
+    json: JsonOption = False,
+) -> None:  # fmt: skip
     """Check printability and mechanical limits; exit 1 where a rule is broken."""
     with reporting():
         from pneutouch.pipeline.evaluate import evaluate
 
-        findings = evaluate(design, set_).findings
+        evaluation = evaluate(design, set_)
+        findings = [*evaluation.findings, *(evaluation.deep_findings() if deep else [])]
         broken = any(finding.severity == "error" for finding in findings)
         if json:
             print_json({"design": design, "passed": not broken, "findings": [f.document() for f in findings]})
@@ -173,6 +183,30 @@ def new(
         from pneutouch.pipeline.new import new_design
 
         typer.echo(str(new_design(name, out)))
+
+
+def _from_3mf(file: str, context: typer.Context) -> Evaluation:
+    """Evaluate the recipe of a 3MF; says on stderr what was of another version when it was made."""
+    from pneutouch.errors import InputError
+    from pneutouch.export.threemf_read import read_threemf
+    from pneutouch.pipeline.recipe import evaluate_recipe
+    from pneutouch.pipeline.recipe_read import other_versions, read_recipe
+
+    options = {"set_": "--set", **{key: f"--{key}" for key in ("model", "tolerance", "closure", "clamp")}}
+    given = [
+        flag for key, flag in options.items() if getattr(context.get_parameter_source(key), "name", "") == "COMMANDLINE"
+    ]
+    if given:
+        raise InputError(
+            f"{file}: {', '.join(given)} cannot be given with a 3MF: its recipe fixes the design and the model; "
+            "build from a design file to change them"
+        )
+    package = read_threemf(Path(file))
+    recipe = read_recipe(package)
+    other = other_versions(package, recipe)
+    if other:
+        typer.echo(f"note: {file} was made with {', '.join(other)}: what is built may differ from it", err=True)
+    return evaluate_recipe(recipe)
 
 
 def _rung(model: str | None, tolerance: str | None) -> dict[str, Any]:

@@ -14,7 +14,7 @@ _GROUPS = {
     "designs": ["designs"],
     "materials": ["materials"],
     "printers": ["printers"],
-    "parts": ["ports", "seats", "mounts"],
+    "parts": ["ports", "seats", "mounts", "tubes"],
 }
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.metadata
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -11,23 +10,26 @@ from typing import Any
 from pneutouch import __version__
 from pneutouch.body import Body
 from pneutouch.errors import RuleBrokenError
-from pneutouch.export.scene import glb, stl, viewer_html
+from pneutouch.export.scene import cut_open, glb, stl, viewer_html
 from pneutouch.export.step import step
 from pneutouch.export.threemf import threemf
+from pneutouch.export.threemf_read import RECIPE
 from pneutouch.pipeline.evaluate import Evaluation
 from pneutouch.pipeline.files import MANIFEST, check_writable, digest, json_bytes, write_folder
+from pneutouch.pipeline.recipe import Recipe, versions
+from pneutouch.pipeline.recipe import input_hash as hash_of
 from pneutouch.pipeline.uncertainty import prediction_document, unknown
 from pneutouch.report import Sheet, datasheet, print_sheet
-from pneutouch.spec.design import Design
-from pneutouch.spec.material import Material
-from pneutouch.units import KPA
+from pneutouch.report.picture import picture
+from pneutouch.units import KPA, ML
 
 Progress = Callable[[str], None]
 
 STEPS = ("rules", "meshes", "3MF", "STL", "GLB", "STEP", "datasheet", "files")
 """The steps that a build reports, in order."""
 
-_LIBRARIES = ("numpy", "manifold3d", "trimesh", "lib3mf", "cadquery", "matplotlib", "jinja2", "typst")
+_THUMBNAIL_PIXELS = 256
+"""Width and height of the picture in the 3MF."""
 
 
 def build(evaluation: Evaluation, out: Path, progress: Progress = lambda step: None) -> Path:
@@ -44,7 +46,9 @@ def build(evaluation: Evaluation, out: Path, progress: Progress = lambda step: N
     bodies = tuple(body.moved(assembly.print_offset) for body in assembly.bodies)
     files: dict[str, bytes] = {"prediction.json": json_bytes(prediction_document(evaluation))}
     progress("3MF")
-    files[f"{scene.name}.3mf"] = threemf(scene.name, bodies, _metadata(evaluation))
+    files[f"{scene.name}.3mf"] = threemf(
+        scene.name, bodies, _metadata(evaluation, bodies), _thumbnail(evaluation)
+    )  # fmt: skip
     progress("STL")
     files |= {f"stl/{body.name}.stl": stl(body) for body in bodies}
     progress("GLB")
@@ -66,7 +70,7 @@ def _sheet(evaluation: Evaluation) -> Sheet:
     prediction, sensor = evaluation.prediction, evaluation.sensor
     sheet = Sheet(
         evaluation.scene, evaluation.assembly, prediction, evaluation.findings, input_hash(evaluation),
-        _resins(evaluation), evaluation.uncertainty,
+        evaluation.resins, evaluation.uncertainty, evaluation.estimates,
     )  # fmt: skip
     if unknown(sensor, prediction.model) is not None:
         return sheet
@@ -89,58 +93,40 @@ def refuse(evaluation: Evaluation) -> None:
 
 def inputs(evaluation: Evaluation) -> dict[str, Any]:
     """Everything that the result follows from: design, materials, printers and parts, as data."""
-    scene = evaluation.scene
-    models = {
-        "design": scene.design,
-        "membrane_material": scene.membrane_material,
-        "connector_material": scene.connector_material,
-        "printer": scene.printer,
-        "connector_printer": scene.connector_printer,
-        "port": scene.port,
-        "seat": scene.seat,
-        "mount": scene.mount,
-    }
-    return {
-        "model": evaluation.prediction.model,
-        "closure": evaluation.prediction.closure,
-        "clamp": "base" if evaluation.sensor.flange is None else "flange",
-        **{key: model.model_dump(mode="json") for key, model in models.items()},
-        "compared_resins": {name: m.model_dump(mode="json") for name, m in _resins(evaluation).items()},
-        "error_estimate": evaluation.prediction.error_estimate,
-    }
-
-
-def _resins(evaluation: Evaluation) -> dict[str, Material]:
-    """The resins that the datasheet compares."""
-    materials = evaluation.library.all("materials", Material)
-    return {name: material for name, material in materials.items() if material.kind == "elastomer"}
+    return Recipe.of(evaluation).inputs()
 
 
 def input_hash(evaluation: Evaluation) -> str:
     """First twelve digits of the SHA-256 of the inputs and the version."""
-    return digest(json_bytes({"inputs": inputs(evaluation), "version": __version__}))[:12]
+    return hash_of(inputs(evaluation), __version__)
 
 
-def design_text(design: Design) -> str:
-    """The whole design, defaults included, as JSON."""
-    return json_bytes(design.model_dump(mode="json")).decode()
-
-
-def _metadata(evaluation: Evaluation) -> dict[str, str]:
+def _metadata(evaluation: Evaluation, bodies: tuple[Body, ...]) -> dict[str, str]:
     scene = evaluation.scene
     return {
         "Title": scene.design.document.title,
         "Application": f"pneutouch {__version__}",
-        "Description": f"Pneumatic touch sensor {scene.name}: assembly of membrane and connector",
-        "design": design_text(scene.design),
-        "versions": json_bytes(_versions()).decode(),
+        "Description": f"Pneumatic touch sensor {scene.name}: assembly of {_and(bodies)}",
+        RECIPE: Recipe.of(evaluation).text(),
+        "versions": json_bytes(versions()).decode(),
         "input-hash": input_hash(evaluation),
         "mesh-tolerance-mm": f"{scene.mesh_tolerance:g}",
     }
 
 
-def _versions() -> dict[str, str]:
-    return {"pneutouch": __version__, **{name: importlib.metadata.version(name) for name in _LIBRARIES}}
+def _and(bodies: tuple[Body, ...]) -> str:
+    *first, last = [body.name for body in bodies]
+    return f"{', '.join(first)} and {last}" if first else last
+
+
+def _thumbnail(evaluation: Evaluation) -> bytes:
+    """PNG of the bodies cut open; meshes within an eighth of a pixel do."""
+    assembly = evaluation.assembly
+    extent = max(float((body.bounds[1] - body.bounds[0]).max()) for body in assembly.bodies)
+    tolerance = max(evaluation.scene.mesh_tolerance, extent / _THUMBNAIL_PIXELS / 8)
+    return picture(
+        tuple(cut_open(solid.mesh(tolerance)) for solid in assembly.solids), _THUMBNAIL_PIXELS, _THUMBNAIL_PIXELS
+    )
 
 
 def _manifest(evaluation: Evaluation, bodies: tuple[Body, ...], files: dict[str, bytes]) -> dict[str, Any]:
@@ -149,7 +135,7 @@ def _manifest(evaluation: Evaluation, bodies: tuple[Body, ...], files: dict[str,
         "name": evaluation.scene.name,
         "inputs": inputs(evaluation),
         "input_hash": input_hash(evaluation),
-        "versions": _versions(),
+        "versions": versions(),
         "print_frame_offset_mm": assembly.print_offset.tolist(),
         "mesh": {
             body.name: {
@@ -162,5 +148,7 @@ def _manifest(evaluation: Evaluation, bodies: tuple[Body, ...], files: dict[str,
             for body, original, solid in zip(bodies, assembly.bodies, assembly.solids, strict=True)
         },
         "findings": [finding.document() for finding in evaluation.findings],
+        "estimates": [job.document() for job in evaluation.estimates],
+        "glue_mL": assembly.glue_volume / ML,
         "files": {name: {"sha256": digest(content), "bytes": len(content)} for name, content in sorted(files.items())},
     }

@@ -16,7 +16,6 @@ from pneutouch.report.tuning import Tuning
 from pneutouch.report.variants import in_resin
 from pneutouch.selection import Problem, Resin
 from pneutouch.selection.front import front
-from pneutouch.spec.material import Material
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
@@ -37,7 +36,7 @@ def tuning(evaluation: Evaluation, highest: float) -> Tuning | None:
     drawn = curve(sensor, highest, "this design")
     if drawn is None:
         return None
-    materials = list(evaluation.library.all("materials", Material).values())
+    materials = list(evaluation.resins.values())
     low, high = interval(sensor, drawn, scene.membrane_material, materials, scene.printer, prediction.model)
     working = {s.driving_pressure / KPA: s.figures.sensitivity for s in prediction.states if s.figures}
     return Tuning(drawn, low, high, working)
@@ -76,8 +75,8 @@ def _problem(evaluation: Evaluation, pressure: float) -> Problem:
 
 def _resins(evaluation: Evaluation) -> tuple[Resin, ...]:
     found = []
-    for name, material in evaluation.library.all("materials", Material).items():
-        runs = material.kind == "elastomer" and evaluation.scene.printer.mode_for(material) is not None
+    for name, material in evaluation.resins.items():
+        runs = evaluation.scene.printer.mode_for(material) is not None
         if runs and outside_atlas(in_resin(evaluation.sensor, material)) is None:
             own = material_sensor(material)
             found.append(Resin(name, material, own.shear_modulus, own.break_stretch or np.inf))

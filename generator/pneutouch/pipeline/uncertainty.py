@@ -87,7 +87,7 @@ def documents(evaluation: Evaluation, samples: int = 0) -> tuple[Document, ...]:
     scene = evaluation.scene
     found = known(
         evaluation.sensor, [state.driving_pressure for state in states], scene.membrane_material,
-        list(evaluation.library.all("materials", Material).values()), scene.printer, rung,
+        list(evaluation.resins.values()), scene.printer, rung,
     )  # fmt: skip
     content = []
     for row, (state, notes) in enumerate(zip(states, gas_text(found.batch), strict=True)):

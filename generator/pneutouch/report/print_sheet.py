@@ -6,19 +6,19 @@ from pneutouch.body import Body
 from pneutouch.report import prose
 from pneutouch.report.ordering import part_number
 from pneutouch.report.sheet import Sheet
+from pneutouch.units import ML
 
 
 def print_sheet(sheet: Sheet) -> str:
     """Markdown for the operator. Print files carry names and colours; the resin is chosen at the machine."""
     scene, assembly = sheet.scene, sheet.assembly
-    rows = [
-        f"| {body.name} | stl/{body.name}.stl | {solid.material.label} | {machine.title} | {mode.name}, "
-        f"{mode.layer_height_um:g} µm | {_size(body)} | {solid.mass:.2f} g |"
-        for body, solid, machine, mode in zip(
-            assembly.bodies, assembly.solids,
-            (scene.printer, scene.connector_printer), (scene.membrane_mode, scene.connector_mode), strict=True,
+    rows = []
+    for body, solid in zip(assembly.bodies, assembly.solids, strict=True):
+        machine, mode = assembly.machine(body.name)
+        rows.append(
+            f"| {body.name} | stl/{body.name}.stl | {solid.material.label} | {machine.title} | {mode.name}, "
+            f"{mode.layer_height_um:g} µm | {_size(body)} | {solid.mass:.2f} g |"
         )
-    ]  # fmt: skip
     deviation = max(assembly.deviation(body) for body in assembly.bodies)
     findings = [f"- {f.severity}: {f.body}: {f.message}; {f.fix}." for f in sheet.findings] or ["- none"]
     return "\n".join([
@@ -32,8 +32,33 @@ def print_sheet(sheet: Sheet) -> str:
         f"Chord tolerance {1e3 * scene.mesh_tolerance:g} µm, the finest step of the machines; greatest measured distance "
         f"between mesh and exact surface {1e3 * deviation:.1f} µm.", "",
         "## Steps", "", *(f"{k}. {line}" for k, line in enumerate(prose.printing(scene), start=1)), "",
+        "## What it takes", "", *_takes(sheet), "",
         "## Findings of the rules", "", *findings, "",
     ])  # fmt: skip
+
+
+def _takes(sheet: Sheet) -> list[str]:
+    """Resin, support, layers and a rough time of each job, with what they rest on."""
+    rows, notes = [], []
+    for job in sheet.estimates:
+        resins = ", ".join(f"{name} {volume:.2f} mL" for name, volume in job.resins.items())
+        swaths = "" if job.swaths is None else f" x {job.swaths} swath{'s' if job.swaths > 1 else ''}"
+        rows.append(
+            f"| {job.name} | {job.mode} | {resins} | {job.support / ML:.2f} mL | {job.layers}{swaths} | {_time(job.seconds)} |"
+        )
+        notes += [f"- {job.name}: {note}." for note in job.assumptions]
+    glue = sheet.assembly.glue_volume / ML
+    return [
+        "| job | mode | resin | support | layers | time, rough |", "|---|---|---|---|---|---|", *rows, "",
+        *([f"Glue: about {glue:.2f} mL fills the gaps.", ""] if glue else []), *dict.fromkeys(notes),
+    ]  # fmt: skip
+
+
+def _time(seconds: float | None) -> str:
+    if seconds is None:
+        return "not known"
+    minutes = round(seconds / 60)
+    return f"{minutes} min" if minutes < 100 else f"{seconds / 3600:.1f} h"
 
 
 def _escaped(text: str) -> str:

@@ -13,6 +13,7 @@ from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.mechanics.prediction import State
 from pneutouch.parts import Assembly
 from pneutouch.printability import Finding
+from pneutouch.printability.estimate import JobEstimate
 from pneutouch.report import ordering, prose
 from pneutouch.report.certainty import how_sure, interval
 from pneutouch.report.environment import NOT_TESTED, environment
@@ -38,6 +39,7 @@ class Sheet:
         findings: What the print rules say.
         input_hash: Of everything the sheet follows from.
         resins: Materials to compare with.
+        estimates: What each print job takes.
         uncertainty: One document a state, as `Evaluation.uncertainty`.
         gas: What the air does, one entry a state; None where the atlas does not know.
         tradeoff: What the design is set in; None where the atlas does not know.
@@ -51,6 +53,7 @@ class Sheet:
     input_hash: str
     resins: dict[str, Material]
     uncertainty: tuple[dict[str, Any], ...]
+    estimates: tuple[JobEstimate, ...] = ()
     gas: GasNotes | None = None
     tradeoff: TradeOff | None = None
     tuning: Tuning | None = None
@@ -151,7 +154,8 @@ class Sheet:
         design = self.scene.design
         pressures = ", ".join(f"{p:g}" for p in design.pneumatics.driving_pressures_kPa)
         stated = "stated in the design" if design.pneumatics.dead_volume_mL is not None else (
-            f"channel {self.assembly.channel_volume / ML:.3f} mL and {design.pneumatics.tube_length_mm:g} mm of tube"
+            f"connector {self.assembly.internal_volume / ML:.3f} mL and {design.pneumatics.tube_length_mm:g} mm of "
+            f"{self.scene.tube.outer_diameter:g} x {self.scene.tube.inner_diameter:g} mm tube"
         )  # fmt: skip
         return [
             ["Driving pressure", pressures, "kPa gauge", "before contact"],
@@ -219,17 +223,14 @@ class Sheet:
 
     def bodies(self) -> list[list[str]]:
         """Material and print of each body."""
-        scene = self.scene
-        machines = (
-            (scene.printer, scene.membrane_mode), (scene.connector_printer, scene.connector_mode)
-        )  # fmt: skip
-        return [
-            [
+        rows = []
+        for solid in self.assembly.solids:
+            printer, mode = self.assembly.machine(solid.name)
+            rows.append([
                 solid.name, solid.material.label, f"{solid.volume / ML:.3f} mL, {solid.mass:.2f} g",
                 f"{printer.title}, {mode.name}, {mode.layer_height_um:g} µm", printer.support,
-            ]
-            for solid, (printer, mode) in zip(self.assembly.solids, machines, strict=True)
-        ]  # fmt: skip
+            ])  # fmt: skip
+        return rows
 
     def sources(self) -> list[list[str]]:
         """Where the resin's numbers come from: quantity, value, source."""

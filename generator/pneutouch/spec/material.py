@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from pydantic import Field, model_validator
 
 from pneutouch.spec.fields import Kind, Table
@@ -26,6 +28,31 @@ class HyperelasticLaw(Table):
     source: str = Field(min_length=8)
 
 
+_MIX_SUM = 1e-6
+"""How far from one the volume fractions of a mix may add up."""
+
+
+class Mix(Table):
+    """Volume fractions of a digital material's base resins; the 3MF then carries it as a composite.
+
+    No shipped material has one: vendors do not publish the ratios of their digital materials. A lab that has
+    measured its own writes ``[mix]`` with ``source`` and ``[mix.fractions]`` into its own material file.
+    """
+
+    fractions: dict[str, float] = Field(description="Volume fraction of each base resin; together 1.")
+    source: str = Field(min_length=8, description="Table, page or measurement that the fractions are from.")
+
+    @model_validator(mode="after")
+    def _whole(self) -> Mix:
+        for resin, fraction in self.fractions.items():
+            if not fraction > 0:
+                raise ValueError(f"fractions.{resin} = {fraction:g}: must be more than 0; leave out what is not in it")
+        total = math.fsum(self.fractions.values())
+        if abs(total - 1) > _MIX_SUM:
+            raise ValueError(f"fractions add up to {total:.9g}; they must add up to 1")
+        return self
+
+
 class Material(Table):
     """One cured material. A digital material is told apart by its code and its base resins together."""
 
@@ -45,6 +72,16 @@ class Material(Table):
     elongation_at_break_percent: Quantity | None = None
     law: HyperelasticLaw | None = None
     measured: Measured | None = None
+    mix: Mix | None = None
+
+    @model_validator(mode="after")
+    def _mix_of_the_base_resins(self) -> Material:
+        if self.mix is not None and set(self.mix.fractions) != set(self.base_resins):
+            raise ValueError(
+                f"mix.fractions names {', '.join(sorted(self.mix.fractions)) or 'nothing'}; it must name exactly the "
+                f"base_resins: {', '.join(self.base_resins)}"
+            )
+        return self
 
     @model_validator(mode="after")
     def _elastomer_complete(self) -> Material:

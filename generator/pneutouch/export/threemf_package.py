@@ -1,0 +1,158 @@
+"""The package under a 3MF, opened with suspicion: a zip whose parts are counted, inflated and looked through here.
+
+What is handed on is a fresh, plain archive of exactly the parts that were checked, so no other reader can see
+anything else in the file. Nothing is extracted to disk.
+"""
+
+from __future__ import annotations
+
+import io
+import struct
+import zipfile
+import zlib
+from pathlib import Path
+from typing import Any, NoReturn
+from xml.parsers import expat
+
+from pneutouch.errors import InputError
+
+MOST_BYTES = 256 * 2**20
+"""Greatest size of a file, and of all its parts inflated: a sensor has less than 1 MB, a fine one some tens."""
+
+MOST_PARTS = 1000
+"""Greatest number of parts; a sensor has four, a slicer's project some hundreds."""
+
+_DEEPEST = 64
+"""Deepest nesting of XML elements; the specification needs a tenth of it."""
+
+_XML = (".model", ".rels", ".xml")
+"""Endings of parts that must be well-formed XML."""
+
+_END, _END_SIZE = b"PK\x05\x06", 22
+_END_64, _END_64_SIZE = b"PK\x06\x06", 56
+_LOCATOR_64, _LOCATOR_64_SIZE = b"PK\x06\x07", 20
+_MOST_DIRECTORY = MOST_PARTS * 1024
+_DAMAGE = (zipfile.BadZipFile, zlib.error, struct.error, EOFError, OSError, ValueError, OverflowError, RuntimeError)
+"""What zipfile raises for archives with wrong bytes in them, found by changing bytes at random."""
+
+_METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
+
+
+def checked_package(path: Path) -> bytes:
+    """The package at ``path`` as a plain archive of checked parts.
+
+    Raises InputError for what is missing, no file, no zip, damaged, larger than `MOST_BYTES` in the file or inflated,
+    of more than `MOST_PARTS` parts, or holds XML with a document type or entities.
+    """
+    content = _content(path)
+    _check_end(content, path)
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            parts = _parts(archive, path)
+    except _DAMAGE as error:
+        raise InputError(f"{path}: damaged zip archive ({error}); export or download the file again") from None
+    for name, part in parts.items():
+        _check_xml(part, f"{path}: {name}", must=name.lower().endswith(_XML))
+    plain = io.BytesIO()
+    with zipfile.ZipFile(plain, "w", zipfile.ZIP_STORED) as archive:
+        for name, part in parts.items():
+            archive.writestr(zipfile.ZipInfo(name), part)
+    return plain.getvalue()
+
+
+def _content(path: Path) -> bytes:
+    if path.is_dir():
+        raise InputError(f"{path}: this is a folder; give a 3MF file")
+    if not path.exists():
+        raise InputError(f"{path}: no such file")
+    if not path.is_file():
+        raise InputError(f"{path}: not a plain file; give a 3MF file")
+    try:
+        if path.stat().st_size > MOST_BYTES:
+            raise InputError(f"{path}: larger than {_mega(MOST_BYTES)}, which no sensor needs")
+        return path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+
+
+def _check_end(content: bytes, path: Path) -> None:
+    """Check the archive's end record before a list of its parts is made: the list could be long."""
+    at = content.rfind(_END, max(0, len(content) - _END_SIZE - 0xFFFF))
+    end = content[at : at + _END_SIZE]
+    comment = int.from_bytes(end[20:22], "little")
+    if at < 0 or at + _END_SIZE + comment != len(content):
+        what = "a zip archive cut short or damaged" if content.startswith(b"PK") else "not a zip archive"
+        raise InputError(f"{path}: {what}; a 3MF is a zip archive, such as pneutouch build writes")
+    count, size = end[10:12], end[12:16]
+    locator = max(0, at - _LOCATOR_64_SIZE)
+    if content[locator:at].startswith(_LOCATOR_64):
+        # lib3mf always writes the long form; its record stands right before the locator.
+        long = content[max(0, locator - _END_64_SIZE) : locator]
+        if not long.startswith(_END_64):
+            raise InputError(f"{path}: damaged zip archive (no zip64 record); export or download the file again")
+        count, size = long[32:40], long[40:48]
+    if int.from_bytes(count, "little") > MOST_PARTS or int.from_bytes(size, "little") > _MOST_DIRECTORY:
+        _too_many(path)
+
+
+def _parts(archive: zipfile.ZipFile, path: Path) -> dict[str, bytes]:
+    """Content by name. Declared sizes are checked first; then no more than declared is inflated, and no less taken."""
+    entries = [entry for entry in archive.infolist() if not entry.is_dir()]
+    if len(entries) > MOST_PARTS:
+        _too_many(path)
+    if sum(entry.file_size for entry in entries) > MOST_BYTES:
+        raise InputError(f"{path}: inflates to more than {_mega(MOST_BYTES)}, which no sensor needs")
+    parts: dict[str, bytes] = {}
+    seen: set[str] = set()
+    for entry in entries:
+        if entry.flag_bits & 1 or entry.compress_type not in _METHODS:
+            raise InputError(f"{path}: {entry.filename}: encrypted or packed by a method that 3MF does not allow")
+        if entry.filename.lower() in seen:
+            raise InputError(f"{path}: {entry.filename}: there twice; a part may be there once only")
+        seen.add(entry.filename.lower())
+        with archive.open(entry) as stream:
+            part = stream.read(entry.file_size + 1)
+        if len(part) != entry.file_size:
+            raise zipfile.BadZipFile(
+                f"{entry.filename} inflates to {len(part)} bytes and not the {entry.file_size} declared"
+            )
+        parts[entry.filename] = part
+    return parts
+
+
+def _too_many(path: Path) -> NoReturn:
+    raise InputError(f"{path}: more than {MOST_PARTS} parts, which no sensor needs")
+
+
+def _mega(size: int) -> str:
+    return f"{size // 2**20} MiB"
+
+
+def _check_xml(content: bytes, where: str, must: bool) -> None:
+    """Refuse a document type, entities and deep nesting, in any encoding; ``must`` be well-formed XML at all.
+
+    Parts with other endings are looked through as well: what is no XML fails at its first bytes.
+    """
+    depth = 0
+
+    def refuse(*_: Any) -> NoReturn:
+        raise InputError(f"{where}: has a document type or entities, which 3MF does not allow; take them out")
+
+    def deeper(*_: Any) -> None:
+        nonlocal depth
+        depth += 1
+        if depth > _DEEPEST:
+            raise InputError(f"{where}: XML nested deeper than {_DEEPEST} elements, which no 3MF needs")
+
+    def back(*_: Any) -> None:
+        nonlocal depth
+        depth -= 1
+
+    parser = expat.ParserCreate()
+    parser.StartDoctypeDeclHandler = parser.EntityDeclHandler = parser.ExternalEntityRefHandler = refuse
+    parser.StartElementHandler, parser.EndElementHandler = deeper, back
+    try:
+        parser.Parse(content, True)
+    except (expat.ExpatError, ValueError, LookupError) as error:
+        if must:
+            raise InputError(f"{where}: not well-formed XML: {error}") from None
