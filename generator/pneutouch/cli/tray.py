@@ -1,0 +1,78 @@
+"""``pneutouch tray``: several sensors on one tray of a printer."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from pneutouch.cli.app import JsonOption, OutOption, SetOption, app, print_json, reporting
+from pneutouch.errors import InputError
+
+if TYPE_CHECKING:
+    from pneutouch.pipeline.tray.lay import Laid
+    from pneutouch.pipeline.tray.order import Order
+
+
+@app.command()
+def tray(
+    what: Annotated[list[str], typer.Argument(metavar="TRAY.toml | DESIGN...", help="Tray file, or names or paths of designs.")],
+    over: Annotated[
+        list[str] | None,
+        typer.Option("--over", metavar="TABLE.KEY=VALUES", help="One part a value: A,B,C. Not with a tray file."),
+    ] = None,
+    copies: Annotated[int | None, typer.Option("--copies", help="Copies of each. Not with a tray file.")] = None,
+    profile: Annotated[str | None, typer.Option("--profile", help="Printer; left out: the file's, or the membrane's.")] = None,
+    marks: Annotated[str | None, typer.Option("--marks", help="engraved, raised or none.")] = None,
+    set_: SetOption = None,
+    out: OutOption = Path("outputs"),
+    json: JsonOption = False,
+) -> None:  # fmt: skip
+    """Lay many sensors out on one tray: print files, part marks and a label list."""
+    with reporting():
+        from pneutouch.pipeline.files import check_writable
+        from pneutouch.pipeline.tray.lay import lay
+        from pneutouch.pipeline.tray.write import document, write_tray
+
+        order = _order(what, over or [], copies, set_ or [], {"profile": profile, "marks": marks})
+        folder = out / order.name
+        check_writable(folder)
+        laid = lay(order, progress=_tell)
+        write_tray(laid, folder, _tell)
+        for note in laid.expanded.left_out:
+            typer.echo(f"not on this tray: {note}", err=True)
+        if json:
+            print_json(document(laid, folder))
+        else:
+            typer.echo(_text(laid))
+            typer.echo(str(folder))
+
+
+def _order(what: list[str], over: list[str], copies: int | None, set_: list[str], head: dict[str, str | None]) -> Order:
+    """From a tray file where the one word given is a file with an [[entry]], else from designs and flags."""
+    from pneutouch.pipeline.tray.order import is_tray_file, order_of_file, order_of_flags
+
+    if len(what) == 1 and is_tray_file(Path(what[0])):
+        if over or copies is not None:
+            raise InputError(f"{what[0]}: a tray file and {'--over' if over else '--copies'}: put it into an [[entry]]")
+        return order_of_file(Path(what[0]), set_, **head)
+    return order_of_flags(what, over, 1 if copies is None else copies, set_, **head)
+
+
+def _tell(step: str) -> None:
+    typer.echo(f"{step} ...", err=True)
+
+
+def _text(laid: Laid) -> str:
+    """A line a job: what to load, how full it is."""
+    from pneutouch.pipeline.tray.lay import counted, fill
+
+    lines = [f"{laid.printer.title}: {counted(laid.parts)}, {laid.resin_note}"]
+    for job in laid.jobs:
+        shares = fill(job, laid.printer)
+        lines.append(
+            f"{laid.name(job)}: {counted(job.parts)}, {' + '.join(job.resins)}, {job.mode.name}, {job.layers} layers, "
+            f"bounding boxes take {shares['bounding_boxes']:.1%} of the footprint"
+        )
+    return "\n".join(lines)

@@ -1,0 +1,98 @@
+"""3MF of a tray through lib3mf: every part an object of its own with its material, one build item each, placed.
+
+Materials sit on mesh objects, never on components objects (3MF core 1.4). Bodies that grow in one print are the
+components of one object: tray software rejects separate objects whose bounding boxes overlap.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from pneutouch.body import Body
+from pneutouch.errors import ComputationError
+from pneutouch.export.threemf import DECIMALS, check_readable, facts_of, name_uuid, set_geometry
+from pneutouch.export.threemf_materials import Materials
+from pneutouch.export.threemf_metadata import add_metadata
+from pneutouch.meridian.segments import Array
+
+
+@dataclass(frozen=True)
+class Item:
+    """One part of a tray.
+
+    Attributes:
+        label: Part number of the build item, unique on the tray.
+        shape: Name of its object: items of one shape share it, and the bodies of the first are taken.
+        bodies: In the part's own frame, mm; their names are unique among all shapes.
+        transform: Rows (4, 3): the images of the x, y and z axes, and the shift in mm, from that frame to the tray's.
+    """
+
+    label: str
+    shape: str
+    bodies: tuple[Body, ...]
+    transform: Array
+
+
+def threemf_tray(name: str, items: Sequence[Item], metadata: dict[str, str]) -> bytes:
+    """Write a tray called ``name``; the same input gives the same bytes.
+
+    ``metadata`` is as for `export.threemf.threemf`. Raises ComputationError for a body that is not
+    closed, and where the file cannot be read back strictly.
+    """
+    import lib3mf
+
+    wrapper = lib3mf.get_wrapper()
+    model = wrapper.CreateModel()
+    model.SetUnit(lib3mf.ModelUnit.MilliMeter)
+    materials = Materials(wrapper, model, [body.material for item in items for body in item.bodies])
+    objects: dict[str, Any] = {}
+    for item in items:
+        if item.shape not in objects:
+            objects[item.shape] = _object(wrapper, model, name, item, materials)
+    for item in items:
+        built = model.AddBuildItem(objects[item.shape], _transform(lib3mf, item.transform))
+        built.SetPartNumber(item.label)
+        built.SetUUID(name_uuid(name, "tray item", item.label))
+    model.SetBuildUUID(name_uuid(name, "tray"))
+    add_metadata(model, metadata)
+    writer = model.QueryWriter("3mf")
+    writer.SetDecimalPrecision(DECIMALS)
+    content = bytes(writer.WriteToBuffer())
+    check_readable(wrapper, content)
+    return content
+
+
+def _object(wrapper: Any, model: Any, name: str, item: Item, materials: Materials) -> Any:
+    """The mesh object of a part, or a components object over those of its bodies."""
+    meshes = [_mesh(wrapper, model, name, body, materials) for body in item.bodies]
+    if len(meshes) == 1:
+        return meshes[0]
+    whole = model.AddComponentsObject()
+    whole.SetName(item.shape)
+    whole.SetUUID(name_uuid(name, "tray assembly", item.shape))
+    for mesh, body in zip(meshes, item.bodies, strict=True):
+        component = whole.AddComponent(mesh, wrapper.GetIdentityTransform())
+        component.SetUUID(name_uuid(name, "tray component", body.name))
+    return whole
+
+
+def _mesh(wrapper: Any, model: Any, name: str, body: Body, materials: Materials) -> Any:
+    mesh = model.AddMeshObject()
+    mesh.SetName(body.name)
+    mesh.SetUUID(name_uuid(name, "tray object", body.name))
+    set_geometry(wrapper, mesh, body)
+    mesh.SetObjectLevelProperty(*materials.property_of(body))
+    add_metadata(mesh, facts_of(body))
+    if not mesh.IsManifoldAndOriented():
+        raise ComputationError(f"3MF: {body.name} is not a closed, oriented mesh; please report the design")
+    return mesh
+
+
+def _transform(lib3mf: Any, rows: Array) -> Any:
+    placed = lib3mf.Transform()
+    for i, row in enumerate(rows):
+        for j, value in enumerate(row):
+            placed.Fields[i][j] = float(value)
+    return placed

@@ -1,0 +1,83 @@
+"""What a tray is asked to hold: from a tray file or from the flags of the command line."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from pneutouch.errors import InputError
+from pneutouch.spec.read import read_toml, validate
+from pneutouch.spec.tray import Setting, Tray
+
+
+@dataclass(frozen=True)
+class Order:
+    """A tray with the name of its output, the file or flags it is from (for messages), and overrides for all entries."""
+
+    name: str
+    where: str
+    tray: Tray
+    overrides: tuple[str, ...] = ()
+    folder: Path = field(default=Path())
+
+    def design(self, name: str) -> str:
+        """A design as the catalogue takes it: a file name in a tray file is beside that file."""
+        return str(self.folder / name) if name.endswith(".toml") else name
+
+
+def is_tray_file(path: Path) -> bool:
+    """Whether a path is a TOML file with the tables of a tray; designs have none of them. A missing ``.toml`` is not."""
+    return path.suffix == ".toml" and path.is_file() and not {"tray", "entry"}.isdisjoint(read_toml(path))
+
+
+def order_of_file(path: Path, overrides: Sequence[str] = (), **head: Any) -> Order:
+    """Read a tray file; ``head`` (profile, marks) comes before its [tray]. Raises InputError naming file and key."""
+    content = read_toml(path)
+    given = {key: value for key, value in head.items() if value is not None}
+    if given:
+        table = content.setdefault("tray", {})
+        if isinstance(table, dict):
+            table.update(given)
+    return Order(path.stem, str(path), validate(Tray, content, str(path)), tuple(overrides), path.parent)
+
+
+def order_of_flags(
+    designs: Sequence[str], over: Sequence[str] = (), copies: int = 1, overrides: Sequence[str] = (), **head: Any
+) -> Order:  # fmt: skip
+    """One entry a design, each over the values of ``--over table.key=A,B,C``, ``copies`` of each."""
+    varied = _varied(over)
+    entries = [{"design": design, "copies": copies, "over": varied} for design in designs]
+    stem = Path(designs[0]).stem
+    title = f"{stem}, {copies} of each" if len(designs) == 1 else f"{len(designs)} designs, {copies} of each"
+    content = {"tray": {"title": title, **{k: v for k, v in head.items() if v is not None}}, "entry": entries}
+    return Order(f"{stem}-tray", "the command line", validate(Tray, content, "the command line"), tuple(overrides))
+
+
+def assignments(settings: dict[str, Setting]) -> list[str]:
+    """Settings as ``--set`` takes them; JSON of numbers, texts and lists is TOML."""
+    return [f"{key}={json.dumps(value)}" for key, value in settings.items()]
+
+
+def _varied(over: Sequence[str]) -> dict[str, list[Any]]:
+    varied: dict[str, list[Any]] = {}
+    for text in over:
+        key, equals, values = (part.strip() for part in text.partition("="))
+        if not equals or not values:
+            raise InputError(f"--over {text}: write table.key=VALUES, such as membrane.material=TangoPlus,FLX9940")
+        if key in varied:
+            raise InputError(f"--over {text}: {key} is given twice")
+        varied[key] = [_toml(value.strip()) for value in values.split(",")]
+    return varied
+
+
+def _toml(text: str) -> Any:
+    """A TOML value, or the text itself where it is a bare word."""
+    try:
+        found = tomllib.loads(f"value = {text}")
+    except tomllib.TOMLDecodeError:
+        return text
+    return found["value"] if set(found) == {"value"} else text
