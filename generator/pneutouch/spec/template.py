@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import datetime
 import textwrap
 from collections.abc import Mapping
 from typing import Any
 
 from pneutouch.spec.design import Design
 from pneutouch.spec.fields import Declaration, declarations, table_of
+from pneutouch.spec.toml_text import value_text
 
 
 def design_template(title: str, values: Mapping[str, Mapping[str, Any]] | None = None, note: str | None = None) -> str:
@@ -34,16 +34,5 @@ def _entry(entry: Declaration, default: Any) -> list[str]:
     bounds = "" if entry.low is None else f" From {entry.low:g} to {entry.high:g} {entry.unit}".rstrip() + "."
     names = f" One of the {entry.registry}: see pneutouch list." if entry.registry else ""
     comment = textwrap.wrap(f"{entry.help}{bounds}{names}", width=96)
-    value = f"# {entry.key} =" if default is None else f"{entry.key} = {_toml(default)}"
+    value = f"# {entry.key} =" if default is None else f"{entry.key} = {value_text(default)}"
     return [*(f"# {line}" for line in comment), value]
-
-
-def _toml(value: Any) -> str:
-    if isinstance(value, str):
-        escaped = value.replace("\\", "\\\\").replace('"', '\\"')
-        return f'"{escaped}"'
-    if isinstance(value, list):
-        return "[" + ", ".join(_toml(item) for item in value) + "]"
-    if isinstance(value, datetime.date):
-        return value.isoformat()
-    return repr(value)

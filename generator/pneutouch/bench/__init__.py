@@ -1,0 +1,1 @@
+"""Measured data in, the same figures out."""

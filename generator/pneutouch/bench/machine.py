@@ -1,0 +1,134 @@
+"""Gauges and step blocks: what one printer makes of small features and of lengths."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from pneutouch.bench.finding import Change, Figure, Found, Said, rounded
+from pneutouch.bench.statistics import mean
+from pneutouch.errors import InputError
+from pneutouch.parts.coupons import COUPONS, Ground
+from pneutouch.spec.coupon import Gauge, Size
+from pneutouch.spec.material import Material
+from pneutouch.spec.printer import Printer
+
+_AXES = ("x", "y", "z")
+_INSTRUMENT = 0.01
+"""mm: what a caliper resolves; no accuracy is claimed below it."""
+
+_SLIP = 0.1
+"""A length of the block this share off its nominal is taken for a slip of the pen."""
+
+Measured = Sequence[tuple[str, Material, Gauge]]
+"""Gauges of one printer: name of the material, the material and the readings."""
+
+
+def gauges(name: str, printer: Printer, measured: Measured, said: Said, found: Found) -> None:
+    """Accuracy, holes and smallest features of a printer. Raises InputError for sizes that the gauge does not have."""
+    for material_name, material, gauge in measured:
+        _check_sizes(gauge, material, f"{said.where}: gauge.{name}.{material_name}")
+    _accuracy(name, measured, said, found)
+    _holes(name, measured, said, found)
+    for key, row, kinds in (
+        ("wall_soft_mm", "wall", ("elastomer",)), ("wall_rigid_mm", "wall", ("rigid",)),
+        ("pin_soft_mm", "pin", ("elastomer",)), ("pin_rigid_mm", "pin", ("rigid",)),
+        ("hole_mm", "hole", ("elastomer", "rigid")), ("gap_mm", "slot", ("elastomer", "rigid")),
+    ):  # fmt: skip
+        rows = [getattr(gauge, row) for _, material, gauge in measured if material.kind in kinds]
+        _least(name, key, row, rows, getattr(printer.smallest, key).model_dump(exclude_none=True), said, found)
+
+
+def _check_sizes(gauge: Gauge, material: Material, where: str) -> None:
+    known: dict[str, list[float]] = {}
+    for nominal in COUPONS["gauge"].nominals(Ground(material)):
+        known.setdefault(nominal.feature, []).append(nominal.value or 0.0)
+    for row, sizes in known.items():
+        seen: set[float] = set()
+        for size in getattr(gauge, row):
+            if size.nominal_mm not in sizes:
+                has = ", ".join(f"{value:g}" for value in sizes)
+                raise InputError(f"{where}.{row}: nominal_mm = {size.nominal_mm:g}: not on the gauge, which has {has}")
+            if size.nominal_mm in seen:
+                raise InputError(
+                    f"{where}.{row}: nominal_mm = {size.nominal_mm:g}: there twice; put all readings in one"
+                )
+            seen.add(size.nominal_mm)
+            _check_slip(row, size, where)
+
+
+def _check_slip(row: str, size: Size, where: str) -> None:
+    for reading in size.measured_mm if row in _AXES else ():
+        if abs(reading - size.nominal_mm) > _SLIP * size.nominal_mm:
+            raise InputError(
+                f"{where}.{row}: measured_mm = {reading:g}: more than a tenth off nominal_mm = {size.nominal_mm:g}; "
+                "must be a length of the block in mm"
+            )
+
+
+def _accuracy(name: str, measured: Measured, said: Said, found: Found) -> None:
+    sizes = [size for *_, gauge in measured for axis in _AXES for size in getattr(gauge, axis) if size.measured_mm]
+    if not sizes:
+        return
+    deviations = np.array([mean(size.measured_mm).value - size.nominal_mm for size in sizes])
+    worst = max(rounded(float(np.abs(deviations).max())), _INSTRUMENT)
+    content = {
+        "value": worst, "low": rounded(float(np.abs(deviations).min())), "high": worst,
+        "source": said.source("greatest deviation of a length of the step block, 5 to 20 mm; low: least", len(sizes)),
+    }  # fmt: skip
+    found.changes.append(Change("printers", name, ("accuracy_mm",), content))
+    found.figures.append(Figure(name, "accuracy, mm", worst, None, len(sizes)))
+    found.figures.append(Figure(name, "mean deviation of lengths, mm", float(deviations.mean()), None, len(sizes)))
+
+
+def _holes(name: str, measured: Measured, said: Said, found: Found) -> None:
+    holes = [hole for *_, gauge in measured for hole in gauge.hole if hole.measured_mm]
+    if not holes:
+        return
+    if len(holes) < 2:
+        raise InputError(f"{said.where}: gauge.{name}: 1 hole measured; at least 2, so that a spread can be told")
+    smaller = [hole.nominal_mm - mean(hole.measured_mm).value for hole in holes]
+    over = mean(smaller)
+    content = {
+        "value": rounded(over.value), "low": rounded(min(smaller)), "high": rounded(max(smaller)),
+        "spread": rounded(over.spread),
+        "source": said.source("nominal less measured diameter of upright holes; low and high: least and greatest hole", over.count),
+    }  # fmt: skip
+    found.changes.append(Change("printers", name, ("hole_undersize_mm",), content))
+    found.figures.append(Figure(name, "holes too small by, mm", over.value, over.spread, over.count))
+
+
+def smallest_sound(sizes: Sequence[Size]) -> float | None:
+    """The smallest that came out together with all larger ones, mm; None where the largest did not, or nothing is said."""
+    least = None
+    for size in sorted(sizes, key=lambda size: -size.nominal_mm):
+        if size.sound is False:
+            break
+        if size.sound:
+            least = size.nominal_mm
+    return least
+
+
+def _least(
+    name: str, key: str, row: str, rows: list[list[Size]], shipped: dict[str, Any], said: Said, found: Found
+) -> None:  # fmt: skip
+    """The worse of several gauges counts."""
+    told = [sizes for sizes in rows if any(size.sound is not None for size in sizes)]
+    if not told:
+        return
+    leasts = [smallest_sound(sizes) for sizes in told]
+    if any(least is None for least in leasts):
+        found.notes.append(f"{name}: no {row} came out together with all larger ones; {key} stays as it was")
+        return
+    least = max(least for least in leasts if least is not None)
+    count = sum(size.sound is not None for sizes in told for size in sizes)
+    was = str(shipped["source"])
+    recommended = was.partition("recommended: ")[2] or was
+    content = {
+        "least": least, "recommended": max(float(shipped["recommended"]), least),
+        "source": f"least: {said.source(f'the smallest {row} that came out together with all larger ones', count)}; recommended: {recommended}",
+    }  # fmt: skip
+    found.changes.append(Change("printers", name, ("smallest", key), content))
+    found.figures.append(Figure(name, f"smallest {row} ({key.removesuffix('_mm')}), mm", least, None, count))

@@ -1,0 +1,116 @@
+"""Pucks and dumbbells: hardness, density and shear modulus of one resin."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pneutouch.bench.finding import MARK, Change, Figure, Found, Said, rounded
+from pneutouch.bench.statistics import Mean, mean, neo_hookean, secant_modulus, shear_from_young
+from pneutouch.errors import InputError
+from pneutouch.spec.coupon import LEAST_READINGS, Dumbbell, Puck, Specimen
+from pneutouch.spec.material import Material
+
+_SECANT = 0.1
+"""Strain of the secant modulus."""
+
+_LEAST_POINTS = 3
+
+_DENSITIES = (0.5, 3.0)
+"""g/cm3: outside these a reading slipped; cured resins and filaments have 0.9 to 1.4."""
+
+
+def puck(name: str, material: Material, measured: Puck, said: Said, found: Found) -> None:
+    """Hardness and density. Raises InputError for a density that no resin has."""
+    for key, scale in (("shore_a", "Shore A"), ("shore_d", "Shore D")):
+        readings = getattr(measured, key)
+        if readings:
+            how = f"{scale} of pucks 20 mm x 3 mm, standard deviation over the readings"
+            _add(found, said, name, key, mean(readings), how, f"{scale} hardness")
+    if measured.shore_a:
+        _one_year(name, material, mean(measured.shore_a).value, found)
+    if not measured.mass_g:
+        return
+    mass, diameter, thickness = (np.array(v) for v in (measured.mass_g, measured.diameter_mm, measured.thickness_mm))
+    densities = 4e3 * mass / (np.pi * diameter**2 * thickness)
+    for place, density in enumerate(densities, start=1):
+        if not _DENSITIES[0] <= density <= _DENSITIES[1]:
+            raise InputError(
+                f"{said.where}: puck.{name}: puck {place}: mass_g = {mass[place - 1]:g}, diameter_mm = {diameter[place - 1]:g} and "
+                f"thickness_mm = {thickness[place - 1]:g} make {density:.3g} g/cm3; must be from {_DENSITIES[0]:g} to {_DENSITIES[1]:g}"
+            )
+    how = "mass over measured volume of pucks"
+    _add(found, said, name, "density_g_per_cm3", mean(densities.tolist()), how, "density, g/cm3")
+
+
+def _one_year(name: str, material: Material, fresh: float, found: Found) -> None:
+    """Keep the published change in a year: beside another fresh hardness the old value would mean another ageing."""
+    before, aged = material.shore_a, material.shore_a_one_year
+    if before is None or aged is None:
+        return
+    change = aged.nominal - before.nominal
+    content = {
+        **aged.model_dump(exclude_none=True, exclude={"low", "high"}), "value": rounded(fresh + change),
+        "source": f"hardness {MARK} and a change of {change:+.3g} in a year: {aged.source}",
+    }  # fmt: skip
+    found.changes.append(Change("materials", name, ("shore_a_one_year",), content))
+
+
+def _add(found: Found, said: Said, name: str, key: str, value: Mean, how: str, title: str) -> None:
+    content = {"value": rounded(value.value), "spread": rounded(value.spread), "source": said.source(how, value.count)}
+    found.changes.append(Change("materials", name, (key,), content))
+    found.figures.append(Figure(name, title, value.value, value.spread, value.count))
+
+
+def dumbbell(name: str, material: Material, measured: Dumbbell, said: Said, found: Found) -> None:
+    """Shear modulus by the neo-Hookean fit. Raises InputError for too few specimens or points, and for a rigid material."""
+    curves = [specimen for specimen in measured.specimen if specimen.force_N]
+    where = f"{said.where}: dumbbell.{name}"
+    if not curves:
+        return
+    if material.kind != "elastomer":
+        raise InputError(f"{where}: {material.label} is rigid; die C is for an elastomer")
+    if len(curves) < LEAST_READINGS:
+        raise InputError(
+            f"{where}: {len(curves)} specimen with a curve; at least {LEAST_READINGS}, so that a spread can be told"
+        )
+    most = measured.largest_strain
+    fits = [_fit(specimen, most, f"{where}.specimen[{k}]") for k, specimen in enumerate(curves, start=1)]
+    moduli = [modulus for modulus, _, _ in fits]
+    over, errors = mean(moduli), [error for _, error, _ in fits]
+    spread = max(over.spread, float(np.sqrt(np.mean(np.square(errors)))))
+    ratio = 0.5 if material.poisson_ratio is None else material.poisson_ratio.nominal
+    secants = [shear_from_young(young, ratio) for _, _, young in fits if young is not None]
+    compared = f"; E at 10 % over 2(1+nu) gives {np.mean(secants):.3g} MPa" if secants else ""
+    how = (
+        f"dumbbells ASTM D412 die C, neo-Hookean fit to {100 * most:g} % strain, forces after {measured.hold_s:g} s of hold; low "
+        f"and high: least and greatest dumbbell; standard error of the mean {over.error:.2g} MPa, of the fits "
+        f"{max(errors):.2g} MPa at most{compared}"
+    )
+    content = {
+        "value": rounded(over.value), "low": rounded(min(moduli)), "high": rounded(max(moduli)),
+        "spread": rounded(spread), "source": said.source(how, over.count),
+    }  # fmt: skip
+    found.changes.append(Change("materials", name, ("shear_modulus_MPa",), content))
+    found.figures.append(Figure(name, "shear modulus, MPa (neo-Hookean)", over.value, spread, over.count))
+    if secants:
+        found.figures.append(
+            Figure(name, "shear modulus, MPa (secant E at 10 %)", float(np.mean(secants)), None, len(secants))
+        )
+    if material.law is not None:
+        found.notes.append(
+            f"{name} has a law of its own ({material.law.name}), which predictions use; the shear modulus does not change it"
+        )
+
+
+def _fit(specimen: Specimen, most: float, where: str) -> tuple[float, float, float | None]:
+    """Shear modulus, its standard error, and the secant Young's modulus at 10 % strain, MPa."""
+    area = float(np.median(specimen.width_mm) * np.median(specimen.thickness_mm))
+    stretch = 1 + np.array(specimen.extension_mm) / specimen.gauge_length_mm
+    stress = np.array(specimen.force_N) / area
+    near = stretch - 1 <= most * (1 + 1e-9)
+    if near.sum() < _LEAST_POINTS:
+        raise InputError(
+            f"{where}: {near.sum()} points up to a strain of {most:g} (extension_mm = {most * specimen.gauge_length_mm:g}); "
+            f"at least {_LEAST_POINTS}"
+        )
+    return (*neo_hookean(stretch[near], stress[near]), secant_modulus(stretch, stress, _SECANT))

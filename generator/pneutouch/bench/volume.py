@@ -1,0 +1,64 @@
+"""Caps and plugs: the leak and the dead volume of one design."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from pneutouch.bench.finding import Figure, Found, Said
+from pneutouch.bench.statistics import Mean, dead_volume, mean
+from pneutouch.catalogue import Scene
+from pneutouch.errors import InputError
+from pneutouch.parts import assemble
+from pneutouch.parts.coupons import Ground
+from pneutouch.parts.coupons.volume_plug import WATER, cavity_size, cavity_volume
+from pneutouch.spec.coupon import LeakCap, VolumePlug
+from pneutouch.units import ML
+
+
+def leak(name: str, cap: LeakCap, found: Found) -> None:
+    """Leak rate, kPa a minute."""
+    if cap.start_kPa:
+        rate = mean((60 * (np.array(cap.start_kPa) - np.array(cap.end_kPa)) / cap.seconds).tolist())
+        found.figures.append(Figure(name, "leak, kPa/min", rate.value, rate.spread, rate.count))
+
+
+def volume(name: str, scene: Scene, cap: LeakCap | None, plug: VolumePlug, said: Said, found: Found) -> None:
+    """Dead volume in mL by Boyle's law. Raises InputError where the cap's pressures are missing or contradict."""
+    cavity = cavity_measured(Ground(scene.connector_material, scene), plug)
+    found.figures.append(Figure(name, "cavity of the plug, mL", cavity.value, cavity.error, cavity.count))
+    if not plug.pressure_kPa:
+        return
+    if cap is None or not cap.pressure_kPa:
+        raise InputError(
+            f"{said.where}: leak-cap.{name}.pressure_kPa: empty; the plug's pressures need the cap's beside them"
+        )
+    over_cap, over_plug = mean(cap.pressure_kPa), mean(plug.pressure_kPa)
+    try:
+        dead = dead_volume(cavity, over_cap, over_plug, plug.gauge_accuracy_kPa)
+    except ValueError:
+        raise InputError(
+            f"{said.where}: volume-plug.{name}.pressure_kPa: mean {over_plug.value:g} kPa; the same push must raise the pressure "
+            f"less over the plug than over the cap, {over_cap.value:g} kPa"
+        ) from None
+    assembly = assemble(scene)
+    drawn = (assembly.internal_volume + assembly.tube_volume) / ML
+    found.figures.append(Figure(name, "dead volume, mL", dead.value, dead.spread, None))
+    found.figures.append(Figure(name, "dead volume as drawn, mL", drawn))
+    found.figures.append(Figure(name, "air in the syringe, mL", dead.value * over_cap.value / cap.ambient_pressure_kPa))
+    found.notes.append(
+        f"put dead_volume_mL = {dead.value:.3f} under [pneumatics] of {name}; it is {dead.value:.3f} ± {dead.spread:.3f}"
+    )
+
+
+def cavity_measured(ground: Ground, plug: VolumePlug) -> Mean:
+    """The cavity's volume in mL: weighed, or as drawn with the printer's accuracy on its diameter and height."""
+    if plug.water_g:
+        water = mean(plug.water_g)
+        return Mean(water.value / WATER, water.spread / WATER, water.count)
+    scene = ground.design()
+    (radius, height), accuracy = cavity_size(ground), scene.connector_printer.accuracy_mm.nominal
+    drawn = cavity_volume(scene.design.membrane.inner_radius_mm) / ML
+    # Diameter and height each lie evenly within the accuracy (JCGM 100, 4.3.7).
+    return Mean(drawn, drawn * math.hypot(accuracy / radius, accuracy / height) / math.sqrt(3), 1)

@@ -1,0 +1,85 @@
+"""``pneutouch coupons``: test prints, and what a lab measured on them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from pneutouch.cli.app import JsonOption, app, print_json, reporting
+
+if TYPE_CHECKING:
+    from pneutouch.pipeline.coupons.order import Asked
+
+_FLAGS = {
+    "profile": "--profile",
+    "material": "--material",
+    "design": "--design",
+    "only": "--only",
+    "copies": "--copies",
+}
+
+
+@app.command()
+def coupons(
+    profile: Annotated[str | None, typer.Option(help="Printer to make coupons for.", show_default="the design's, else objet260-connex")] = None,
+    material: Annotated[list[str] | None, typer.Option(help="Resin; may be repeated.", show_default="the design's membrane, else TangoPlus")] = None,
+    design: Annotated[str | None, typer.Option(metavar="DESIGN", help="Design that cap and plug belong to.")] = None,
+    only: Annotated[list[str] | None, typer.Option(help="Coupons, such as puck,dumbbell; left out: all.")] = None,
+    copies: Annotated[list[str] | None, typer.Option(metavar="COUPON=N", help="Copies, such as puck=4; may be repeated.")] = None,
+    results: Annotated[Path | None, typer.Option(metavar="FILE", help="Filled results file: writes profiles of your own.")] = None,
+    out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder.", show_default="outputs; with --results the working folder")] = None,
+    json: JsonOption = False,
+) -> None:  # fmt: skip
+    """Make test prints to measure a printer and its resins, or enter what was measured."""
+    given = {key: value for key, value in locals().items() if key in _FLAGS and value}
+    with reporting():
+        if results is not None:
+            _enter(results, out or Path(), given, json)
+            return
+        from pneutouch.pipeline.coupons.build import build_coupons
+
+        folder, document = build_coupons(_asked(given), out or Path("outputs"))
+        if json:
+            print_json({"folder": str(folder), **document})
+        else:
+            typer.echo(str(folder))
+
+
+def _enter(path: Path, out: Path, given: dict[str, Any], json: bool) -> None:
+    """Write local profiles from a results file and tell what changed."""
+    from pneutouch.errors import InputError
+
+    if given:
+        flags = ", ".join(_FLAGS[key] for key in given)
+        raise InputError(f"--results {path}: {flags} cannot be given with it: the file says what was measured")
+    from pneutouch.pipeline.coupons.results import enter_results
+
+    document = enter_results(path, out)
+    if json:
+        print_json(document)
+    else:
+        from pneutouch.cli.coupons_text import results_text
+
+        typer.echo(results_text(document))
+
+
+def _asked(given: dict[str, Any]) -> Asked:
+    """What the flags ask for. Raises InputError for copies that are not a number."""
+    from pneutouch.errors import InputError
+    from pneutouch.pipeline.coupons.order import Asked
+
+    copies = {}
+    for word in _words(given.get("copies")):
+        name, equals, number = word.partition("=")
+        if not equals or not number.strip().isdecimal():
+            raise InputError(f"--copies {word}: write COUPON=N, such as puck=4")
+        copies[name.strip()] = int(number)
+    materials, only = _words(given.get("material")), _words(given.get("only"))
+    return Asked(given.get("profile"), materials, given.get("design"), only, copies)
+
+
+def _words(given: list[str] | None) -> list[str]:
+    """Words of a flag that may be repeated or hold several, parted by commas."""
+    return [word.strip() for text in given or [] for word in text.split(",") if word.strip()]

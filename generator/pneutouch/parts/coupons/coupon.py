@@ -1,0 +1,92 @@
+"""What every coupon family says of itself: what it belongs to, how it is drawn, what is measured on it and with what."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+from pneutouch.body import Solid
+from pneutouch.catalogue import Scene
+from pneutouch.parts.layout import Layout, lay_out
+from pneutouch.spec.fields import Kind
+from pneutouch.spec.material import Material
+
+ROLE = "coupon"
+"""Role of every coupon's solids."""
+
+Belongs = Literal["material", "printer", "design"]
+
+
+@dataclass(frozen=True, slots=True)
+class Nominal:
+    """A feature to be measured.
+
+    Attributes:
+        feature: What it is a size of, such as hole; features of one name make one table.
+        value: As drawn, in ``unit``; None where nothing is drawn and the reading alone counts.
+        unit: mm, g, mL, kPa ... or Shore A.
+        instrument: What measures it.
+        readings: How often on each copy.
+    """
+
+    feature: str
+    value: float | None
+    unit: str
+    instrument: str
+    readings: int = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Ground:
+    """What a coupon is drawn for: a material, and the scene of a design where it belongs to one."""
+
+    material: Material
+    scene: Scene | None = None
+
+    def layout(self) -> Layout:
+        """Where everything of the design lies. Raises InputError where the design has no room for a part."""
+        return lay_out(self.design())
+
+    def design(self) -> Scene:
+        """The scene. Raises TypeError where the coupon belongs to no design."""
+        if self.scene is None:
+            raise TypeError("this coupon belongs to a design; give its scene")
+        return self.scene
+
+
+@dataclass(frozen=True)
+class Coupon:
+    """A family of coupons.
+
+    Attributes:
+        name: As the command line and the results file call it.
+        title: As people say it.
+        belongs: Material: one set a material; printer: one a printer and material; design: one a design.
+        copies: How many are printed unless asked otherwise.
+        draw: The exact solids, in mm; those of a design in its frame.
+        nominals: What is measured, in the order of the sheet.
+        steps: How it is printed and measured, for the sheet.
+        formulas: What is computed from the readings, for the sheet.
+        each: Name of the table that every copy has of its own in the results file; empty: one table for all.
+        kinds: Kinds of material it is made for.
+        turned_over: Printed upside down: what seals or is filled then faces up and needs no support.
+    """
+
+    name: str
+    title: str
+    belongs: Belongs
+    copies: int
+    draw: Callable[[Ground], tuple[Solid, ...]]
+    nominals: Callable[[Ground], tuple[Nominal, ...]]
+    steps: tuple[str, ...]
+    formulas: tuple[str, ...]
+    each: str = ""
+    kinds: tuple[Kind, ...] = ("elastomer", "rigid")
+    turned_over: bool = False
+
+
+CALIPER = "caliper, 0.01 mm, closed without pressing"
+GAUGE_PINS = "gauge pins, or a microscope"
+BALANCE = "balance, 0.001 g"
+PRESSURE = "the sensor's own pressure gauge"

@@ -1,0 +1,79 @@
+"""The tensile dumbbell, die C of ASTM D412.
+
+Overall 115 mm, ends 25 mm wide, narrow part 33 mm x 6 mm, radii 14 and 25 mm, bench marks 25 mm apart: ASTM D412, Fig. 2
+(die C), the same outline as type 1 of ISO 37. Which radius lies where is read from type IV of ASTM D638, which is die C
+with narrower ends: its fillet at the narrow part has 14 mm, its outer radius at the end 25 mm (kcafrp.com, table of D638).
+"""
+
+from __future__ import annotations
+
+import math
+
+from pneutouch.body import Prism, Solid
+from pneutouch.meridian import Arc, Line, Segment
+from pneutouch.parts.coupons.coupon import CALIPER, ROLE, Coupon, Ground, Nominal
+
+OVERALL, END_WIDTH, NARROW_LENGTH, NARROW_WIDTH = 115.0, 25.0, 33.0, 6.0
+FILLET, OUTER_RADIUS = 14.0, 25.0
+BENCH_MARKS = 25.0
+THICKNESS = 2.0
+"""mm; ISO 37 asks for 2.0 +-0.2, ASTM D412 for 1.3 to 3.3."""
+
+
+def outline() -> tuple[Segment, ...]:
+    """The outline about its centre, lengthwise along x, counter-clockwise; every joint is tangent."""
+    turn = math.acos(1 - 0.5 * (END_WIDTH - NARROW_WIDTH) / (FILLET + OUTER_RADIUS))
+    end, wide = 0.5 * OVERALL, 0.5 * END_WIDTH
+    foot = 0.5 * NARROW_LENGTH
+    shoulder = foot + (FILLET + OUTER_RADIUS) * math.sin(turn)
+    up, down, fillet = 0.5 * math.pi, -0.5 * math.pi, 0.5 * NARROW_WIDTH + FILLET
+    pieces: list[Segment] = []
+    # Each quarter is a convex arc at the end and a concave one at the narrow part, walked in turn.
+    for sign in (1.0, -1.0):
+        right = Arc(
+            (sign * shoulder, sign * (wide - OUTER_RADIUS)), OUTER_RADIUS, sign * up, sign * up + turn, "shoulder"
+        )
+        into = Arc((sign * foot, sign * fillet), FILLET, sign * down + turn, sign * down, "fillet")
+        out = Arc((-sign * foot, sign * fillet), FILLET, sign * down, sign * down - turn, "fillet")
+        left = Arc(
+            (-sign * shoulder, sign * (wide - OUTER_RADIUS)), OUTER_RADIUS, sign * up - turn, sign * up, "shoulder"
+        )
+        corners = [(sign * end, -sign * wide), (sign * end, sign * wide), right.start]
+        pieces += [Line(corners[0], corners[1], "end"), Line(corners[1], corners[2], "side"), right, into]
+        pieces += [Line(into.end, out.start, "narrow"), out, left, Line(left.end, (-sign * end, sign * wide), "side")]
+    return tuple(pieces)
+
+
+def draw(ground: Ground) -> tuple[Solid, ...]:
+    """The dumbbell, lying on z = 0."""
+    return (Solid("dumbbell", ROLE, ground.material, Prism(outline(), 0.0, THICKNESS)),)
+
+
+def nominals(ground: Ground) -> tuple[Nominal, ...]:
+    """The cross-section, the bench marks, and then the curve."""
+    return (
+        Nominal("width_mm", NARROW_WIDTH, "mm", CALIPER),
+        Nominal("thickness_mm", THICKNESS, "mm", "thickness gauge, 0.01 mm"),
+        Nominal("gauge_length_mm", BENCH_MARKS, "mm", "bench marks, pen and rule or a marker", 1),
+        Nominal("extension_mm", None, "mm", "extensometer or camera on the bench marks", 10),
+        Nominal("force_N", None, "N", "load cell, 10 N or 50 N", 10),
+    )
+
+
+DUMBBELL = Coupon(
+    "dumbbell", "tensile dumbbell, ASTM D412 die C", "material", 5, draw, nominals,
+    steps=(
+        "Print flat, all lengthwise along x, and one set more along y where the direction matters.",
+        "Mark two lines 25 mm apart in the middle. Measure width and thickness at three places between them.",
+        "Stretch in about ten steps to 20 % of the gauge length (5 mm), more if you like; at each wait 60 s and read the "
+        "force. The sensor's model takes the relaxed modulus: at the 500 mm/min of ASTM D412 these resins read far stiffer.",
+        "Extension is that of the 25 mm between the marks, never of the grips.",
+    ),
+    formulas=(
+        "stretch L = 1 + extension / gauge length; stress s = force / (width x thickness), medians of three",
+        "shear modulus mu = sum(s g) / sum(g^2) with g = L - 1/L^2, over all points up to the largest strain (neo-Hookean)",
+        "for comparison E / (2 (1 + nu)) with the secant E = s / (L - 1) at 10 % strain; 8 % lower in a neo-Hookean resin",
+        "over the dumbbells: mean, standard deviation, least and greatest",
+    ),
+    each="specimen", kinds=("elastomer",),
+)  # fmt: skip

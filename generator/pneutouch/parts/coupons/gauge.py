@@ -1,0 +1,139 @@
+"""The wall and hole gauge and the step block: what the machine makes of small features, and how true its lengths are.
+
+The gauge is a plate with four rows, each in rising order away from the cut corner: walls, pins, holes, slots. The block is
+a staircase: four lengths along x, four along z and one along y, each measured between flat faces. The sizes run from half
+of the least that vendors state to above what they recommend; they are our own choice.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import accumulate, pairwise
+
+from pneutouch.body import Bore, Feature, Frame, Prism, Solid, Turned
+from pneutouch.meridian import Line, Point, Segment
+from pneutouch.parts.coupons.coupon import CALIPER, GAUGE_PINS, ROLE, Coupon, Ground, Nominal
+from pneutouch.parts.trace import cylinder
+
+WALLS = (0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.2, 1.6, 2.0)
+PINS = HOLES = (0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0, 2.5, 3.0)
+SLOTS = (0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0)
+STEPS = (5.0, 10.0, 15.0, 20.0)
+"""mm: walls and slots by thickness, pins and holes by diameter, steps of the block along x and z."""
+
+BLOCK = 20.0
+PLATE, WALL_HEIGHT, PIN_HEIGHT, LENGTH = 3.0, 5.0, 4.0, 10.0
+"""mm: the plate, what stands on it, and the length of walls and slots."""
+
+_GAP, _MARGIN, _ROOT, _CORNER = 4.0, 4.0, 1.0, 4.0
+"""mm: between features, around them, how deep a standing feature reaches into the plate, and the cut corner."""
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One row of the gauge: its feature, the sizes and the height of its middle, mm."""
+
+    feature: str
+    sizes: tuple[float, ...]
+    middle: float
+
+    def places(self) -> list[tuple[float, float]]:
+        """Middle along x and size of every feature."""
+        steps = [_MARGIN + 0.5 * self.sizes[0], *(0.5 * (a + b) + _GAP for a, b in pairwise(self.sizes))]
+        return list(zip(accumulate(steps), self.sizes, strict=True))
+
+    @property
+    def end(self) -> float:
+        """Where the last feature ends, mm."""
+        place, size = self.places()[-1]
+        return place + 0.5 * size
+
+
+def rows() -> tuple[Row, ...]:
+    """The rows from the cut corner upwards."""
+    found: list[Row] = []
+    here = _MARGIN
+    for feature, sizes, depth in (
+        ("wall", WALLS, LENGTH),
+        ("pin", PINS, max(PINS)),
+        ("hole", HOLES, max(HOLES)),
+        ("slot", SLOTS, LENGTH),
+    ):
+        found.append(Row(feature, sizes, here + 0.5 * depth))
+        here += depth + _GAP
+    return tuple(found)
+
+
+def draw(ground: Ground) -> tuple[Solid, ...]:
+    """The gauge plate and the step block, both standing on z = 0 with their least x and y at 0."""
+    walls, pins, holes, slots = rows()
+    wide, deep = max(row.end for row in rows()) + _MARGIN, slots.middle + 0.5 * LENGTH + _MARGIN
+    corners = [(_CORNER, 0.0), (wide, 0.0), (wide, deep), (0.0, deep), (0.0, _CORNER)]
+    adds = [_wall(x, size, walls.middle) for x, size in walls.places()]
+    adds += [_pin(x, size, pins.middle) for x, size in pins.places()]
+    bores = tuple(Bore(x, holes.middle, 0.5 * size, 0.0, PLATE) for x, size in holes.places())
+    cuts = tuple(_slot(x, size, slots.middle) for x, size in slots.places())
+    plate = Solid("gauge", ROLE, ground.material, Prism(_polygon(corners), 0.0, PLATE), bores, tuple(adds), cuts)
+    return plate, Solid("block", ROLE, ground.material, block())
+
+
+def block() -> Prism:
+    """The staircase, its steps rising against x."""
+    rise = list(zip(STEPS, reversed(STEPS), strict=True))
+    corners: list[Point] = [(0.0, 0.0), (STEPS[-1], 0.0)]
+    for x, z in reversed(rise):
+        corners += [(x, z), (x - STEPS[0], z)]
+    upright = Frame(axis=(0.0, -1.0, 0.0), across=(1.0, 0.0, 0.0))
+    return Prism(_polygon(corners), -BLOCK, 0.0, upright)
+
+
+def nominals(ground: Ground) -> tuple[Nominal, ...]:
+    """The block's lengths, then the rows of the gauge."""
+    lengths = [("x", STEPS), ("y", (BLOCK,)), ("z", STEPS)]
+    instruments = {"wall": CALIPER, "pin": CALIPER, "hole": GAUGE_PINS, "slot": "feeler gauge, or a microscope"}
+    return (
+        *(Nominal(axis, size, "mm", CALIPER) for axis, sizes in lengths for size in sizes),
+        *(Nominal(row.feature, size, "mm", instruments[row.feature]) for row in rows() for size in row.sizes),
+    )
+
+
+def _polygon(corners: list[Point]) -> tuple[Segment, ...]:
+    return tuple(Line(a, b, "") for a, b in pairwise([*corners, corners[0]]))
+
+
+def _strip(x: float, thickness: float, middle: float, low: float, high: float) -> Prism:
+    left, right, near, far = x - 0.5 * thickness, x + 0.5 * thickness, middle - 0.5 * LENGTH, middle + 0.5 * LENGTH
+    return Prism(_polygon([(left, near), (right, near), (right, far), (left, far)]), low, high)
+
+
+def _wall(x: float, thickness: float, middle: float) -> Feature:
+    return Feature(_strip(x, thickness, middle, PLATE - _ROOT, PLATE + WALL_HEIGHT), thickness * LENGTH * WALL_HEIGHT)
+
+
+def _slot(x: float, width: float, middle: float) -> Feature:
+    # It reaches past both faces, so that no two coincide.
+    return Feature(_strip(x, width, middle, -1.0, PLATE + 1.0), width * LENGTH * PLATE)
+
+
+def _pin(x: float, diameter: float, middle: float) -> Feature:
+    radius = 0.5 * diameter
+    rod = Turned(cylinder(radius, PLATE - _ROOT, PLATE + PIN_HEIGHT), Frame((x, middle, 0.0)))
+    return Feature(rod, cylinder(radius, PLATE, PLATE + PIN_HEIGHT).volume())
+
+
+GAUGE = Coupon(
+    "gauge", "wall and hole gauge with a step block", "printer", 1, draw, nominals,
+    steps=(
+        "Print gauge and block as they lie in the file: x, y and z are the machine's.",
+        "The cut corner of the gauge is at the least x and y. From it, sizes rise along x; along y the rows are walls, pins, "
+        "holes, slots. Look at each feature first: missing, broken, bent, blocked or grown together is came_out = false.",
+        "Measure what came out, three times each. Soft walls and pins: microscope, or a caliper that just touches.",
+        "The block is a staircase. Lying as printed, x is the width over each step counted from the top (5, 10, 15, 20), z the "
+        "height of each step over the base, y the length across. Three readings each.",
+    ),
+    formulas=(
+        "accuracy = greatest |mean reading - nominal| over the block's lengths",
+        "hole undersize = mean of (nominal - mean reading) over the holes that came out, with its standard deviation",
+        "least wall, pin, hole and gap = the smallest that came out together with all larger ones",
+    ),
+)  # fmt: skip

@@ -1,0 +1,76 @@
+"""The leak-test cap: closes the connector in place of the membrane, and leaves no cavity.
+
+It has the membrane's flange and sits in the same seat; a rigid disc stands in for the dome, its underside level with the
+base plane. What gas is left is the dead volume alone, and what leaks is not the membrane.
+"""
+
+from __future__ import annotations
+
+from pneutouch.body import Solid
+from pneutouch.meridian import Meridian
+from pneutouch.parts.coupons.coupon import PRESSURE, ROLE, Coupon, Ground, Nominal
+from pneutouch.parts.layout import Layout
+from pneutouch.parts.trace import Path, trace
+from pneutouch.spec.part import ClampedFlange
+
+TEST_PRESSURE = 20.0
+"""kPa, near the highest driving pressure of the paper's sensor."""
+
+_LEAST_DISC, _DISC_SHARE = 3.0, 1 / 3
+"""The disc in mm, and over R0: a clamped ABS disc then takes up less than 1e-4 of the hemisphere's volume at 100 kPa
+(Kirchhoff plate, E = 2.4 GPa)."""
+
+
+def draw(ground: Ground) -> tuple[Solid, ...]:
+    """The cap in the frame of its design. Raises InputError where the design has no room for a part."""
+    return (Solid("leak-cap", ROLE, ground.design().connector_material, cap(ground, [], 0.0)),)
+
+
+def cap(ground: Ground, hollow: Path, top: float) -> Meridian:
+    """A flange and a disc above ``top`` (mm); ``hollow`` leads from the axis at that height to the base plane."""
+    scene, layout = ground.design(), ground.layout()
+    # A membrane grown onto its connector leaves no gap for a part that is glued in its place.
+    slack = scene.fit_clearance - layout.clearance
+    inner, flange, low = layout.inner_radius + slack, layout.flange_radius - slack, -layout.flange_thickness
+    rim, high = rim_radius(ground, layout), top + disc_thickness(layout)
+    return trace((0.0, top), [
+        *hollow, ("base plane", (inner, 0.0)), ("held", (inner, low)), ("held", (flange, low)), ("held", (flange, 0.0)),
+        ("flange top", (rim, 0.0)), ("side", (rim, high)), ("top", (0.0, high)),
+    ])  # fmt: skip
+
+
+def rim_radius(ground: Ground, layout: Layout) -> float:
+    """Radius of the disc: over the whole flange, or inside the ring that clamps it."""
+    scene = ground.design()
+    if isinstance(scene.seat, ClampedFlange):
+        return layout.outer_radius
+    return layout.flange_radius - (scene.fit_clearance - layout.clearance)
+
+
+def disc_thickness(layout: Layout) -> float:
+    """Thickness of the disc, mm."""
+    return max(_LEAST_DISC, _DISC_SHARE * layout.inner_radius)
+
+
+def nominals(ground: Ground) -> tuple[Nominal, ...]:
+    """The leak, then the pressure after a known push of air."""
+    return (
+        Nominal("start_kPa", TEST_PRESSURE, "kPa", PRESSURE),
+        Nominal("end_kPa", None, "kPa", PRESSURE),
+        Nominal("pressure_kPa", None, "kPa", PRESSURE),
+    )
+
+
+LEAK_CAP = Coupon(
+    "leak-cap", "leak-test cap", "design", 1, draw, nominals,
+    steps=(
+        "Print as it lies in the file, the flange up. Fix it in the connector's seat as the membrane would be: glued, or under "
+        "the ring with a film of grease, for a rigid flange is not squeezed. A membrane grown onto its connector: print the "
+        "connector without the membrane and glue the cap into the seat.",
+        "Leak: pump to about 20 kPa, close the valve, wait 60 s, read the start; read the end after 600 s. Three runs. Hold cap "
+        "and tube under water where it falls by more than 1 kPa.",
+        "Push: vent, fill a syringe with the same volume of air each time, connect, push it home, wait 30 s, read. Three times.",
+    ),
+    formulas=("leak rate = (start - end) / time, kPa/min", "the push is used with the dead-volume plug"),
+    turned_over=True,
+)  # fmt: skip

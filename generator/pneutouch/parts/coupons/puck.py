@@ -1,0 +1,52 @@
+"""The hardness puck: a plain disc as the paper's, and with its mass the density.
+
+20 mm x 3 mm, four of them, five readings each: the paper's 20 trials (Supplement A, Table 1). ISO 868 and ASTM D2240 ask
+for 6 mm under the durometer, so two pucks are laid on one another for that; the paper does not say that it did.
+"""
+
+from __future__ import annotations
+
+from pneutouch.body import Solid
+from pneutouch.parts.coupons.coupon import BALANCE, CALIPER, ROLE, Coupon, Ground, Nominal
+from pneutouch.parts.trace import cylinder
+from pneutouch.units import grams
+
+DIAMETER, THICKNESS = 20.0, 3.0
+"""mm; paper, Supplement A."""
+
+
+def draw(ground: Ground) -> tuple[Solid, ...]:
+    """The disc, standing on z = 0."""
+    return (Solid("puck", ROLE, ground.material, cylinder(0.5 * DIAMETER, 0.0, THICKNESS)),)
+
+
+def nominals(ground: Ground) -> tuple[Nominal, ...]:
+    """Hardness on the scale of the material's kind, then what the density needs."""
+    material = ground.material
+    soft = material.kind == "elastomer"
+    known = material.shore_a if soft else material.shore_d
+    scale = "Shore A" if soft else "Shore D"
+    mass = grams(draw(ground)[0].volume, material.density_g_per_cm3.nominal)
+    key, nominal = "shore_a" if soft else "shore_d", None if known is None else known.nominal
+    return (
+        Nominal(key, nominal, scale, f"{scale} durometer", 5),
+        Nominal("mass_g", mass, "g", BALANCE, 1),
+        Nominal("diameter_mm", DIAMETER, "mm", CALIPER, 1),
+        Nominal("thickness_mm", THICKNESS, "mm", "thickness gauge or caliper, 0.01 mm", 1),
+    )
+
+
+PUCK = Coupon(
+    "puck", "hardness puck", "material", 4, draw, nominals,
+    steps=(
+        "Print flat, matte all over, so that both faces are alike. Clean, dry, and wait 24 h; note the age.",
+        "Weigh each puck; measure diameter and thickness once each, at the middle.",
+        "Five hardness readings a puck, 6 mm apart and 5 mm from the edge, each read after 1 s; 20 in all, as in the paper.",
+        "ISO 868 and ASTM D2240 ask for 6 mm of material: under one puck of 3 mm the table shows through. Lay two on one "
+        "another, or read single ones as the paper seems to have done, and note which; compare like with like.",
+    ),
+    formulas=(
+        "hardness: mean and standard deviation of all readings",
+        "density = 4 m / (pi d^2 t) a puck, then mean and standard deviation",
+    ),
+)  # fmt: skip

@@ -1,0 +1,83 @@
+"""The dead-volume plug: as the leak-test cap, but with a cavity of a known volume.
+
+The same push of air raises the pressure over the cap by one amount and over the plug by a smaller one; with the plug's
+volume known, the two give the dead volume behind them, and neither the syringe nor the weather enters (Boyle).
+"""
+
+from __future__ import annotations
+
+import math
+
+from pneutouch.body import Solid
+from pneutouch.errors import InputError
+from pneutouch.parts.coupons.coupon import BALANCE, PRESSURE, ROLE, Coupon, Ground, Nominal
+from pneutouch.parts.coupons.leak_cap import cap, rim_radius
+from pneutouch.units import ML
+
+WATER = 0.9982
+"""Density of water at 20 °C, g/mL (CRC Handbook of Chemistry and Physics)."""
+
+_LEDGE, _LEDGE_SHARE = 1.0, 0.15
+"""Width in mm, and most over R0, of the ledge at the base plane: it rests on the connector and shows how far to fill."""
+
+_SERIES = (5.0, 2.0, 1.0)
+"""Round volumes within a decade."""
+
+
+def cavity_volume(inner_radius: float) -> float:
+    """The greatest volume of the series 1, 2, 5 that the unloaded dome of a radius (mm) also holds, mm3.
+
+    A volume near the sensor's own makes the two pressures differ clearly; 1 mL for the paper's sensor.
+    """
+    dome = 2 / 3 * math.pi * inner_radius**3
+    decade = 10.0 ** math.floor(math.log10(dome))
+    return next(step * decade for step in _SERIES if step * decade <= dome)
+
+
+def cavity_size(ground: Ground) -> tuple[float, float]:
+    """Radius and height of the cavity, mm. Raises InputError for a dome too small to leave a wall around it."""
+    scene, layout = ground.design(), ground.layout()
+    wall = scene.connector_printer.smallest.wall(scene.connector_material.kind).recommended
+    ledge = min(_LEDGE, _LEDGE_SHARE * layout.inner_radius)
+    radius = min(layout.inner_radius - ledge, rim_radius(ground, layout) - wall)
+    if radius <= 0.5 * layout.inner_radius:
+        raise InputError(
+            f"{scene.where}: membrane.inner_radius_mm = {layout.inner_radius:g}: too small for a volume plug, whose wall on "
+            f"the {scene.connector_printer.title} must be {wall:g} mm; leave it out with --only, or take a finer printer"
+        )
+    return radius, cavity_volume(layout.inner_radius) / (math.pi * radius**2)
+
+
+def draw(ground: Ground) -> tuple[Solid, ...]:
+    """The plug in the frame of its design. Raises InputError for a dome too small to leave a wall around the cavity."""
+    radius, height = cavity_size(ground)
+    hollow = [("cavity top", (radius, height)), ("cavity", (radius, 0.0))]
+    return (Solid("volume-plug", ROLE, ground.design().connector_material, cap(ground, hollow, height)),)
+
+
+def nominals(ground: Ground) -> tuple[Nominal, ...]:
+    """The pressure after the same push of air as over the cap, and the cavity's volume by weighed water."""
+    volume = cavity_volume(ground.design().design.membrane.inner_radius_mm) / ML
+    return (
+        Nominal("pressure_kPa", None, "kPa", PRESSURE),
+        Nominal("water_g", WATER * volume, "g", BALANCE),
+    )
+
+
+VOLUME_PLUG = Coupon(
+    "volume-plug", "dead-volume plug", "design", 1, draw, nominals,
+    steps=(
+        "Print as it lies in the file, the cavity up. Before it goes in, fill the cavity up to its ledge with water at room "
+        "temperature and weigh what it holds, three times; dry it. Left out, the drawn volume counts, with the printer's accuracy.",
+        "Fix it as the leak-test cap. Push the same volume of air from the same syringe as over the cap, wait 30 s, read. "
+        "Three times. Pressures of 20 to 80 % of the gauge's range are best.",
+    ),
+    formulas=(
+        "cavity V_c = water mass / 0.9982 g/mL (20 °C)",
+        "dead volume V_d = V_c p_plug / (p_cap - p_plug) (Boyle: p_cap V_d = p_plug (V_d + V_c), the same air in both)",
+        "with a known syringe instead: V_d = V_i p_ambient / p_cap, V_i being the air that the full syringe held",
+        "u(V_d)^2 = (p_plug / D)^2 u(V_c)^2 + (V_c p_plug / D^2)^2 u(p_cap)^2 + (V_c p_cap / D^2)^2 u(p_plug)^2, D = p_cap - "
+        "p_plug; each u the standard error of the mean, the gauge's own added in squares",
+    ),
+    turned_over=True,
+)  # fmt: skip

@@ -1,0 +1,1 @@
+"""Coupons: what a lab prints, measures, and puts into profiles of its own."""

@@ -1,0 +1,118 @@
+"""A lab's own profile: the shipped one with what was measured in place of what was quoted."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pneutouch.bench.finding import MARK, Change, Said
+from pneutouch.catalogue import KINDS, Library
+from pneutouch.errors import InputError
+from pneutouch.spec.read import read_toml
+from pneutouch.spec.toml_text import toml_text
+
+HEAD = "# Written by pneutouch coupons"
+"""First words of every profile that is ours to overwrite."""
+
+
+@dataclass(frozen=True, slots=True)
+class Profile:
+    """A profile to write: its file, its text, and what it changes."""
+
+    path: Path
+    text: str
+    changes: list[dict[str, Any]]
+
+
+def base_file(shelf: str, name: str, shelves: Library) -> Path:
+    """The first profile of a known name that the command did not write; its own where there is no other."""
+    found = [root / KINDS[shelf].folder / f"{name}.toml" for root in shelves.folders]
+    there = [path for path in found if path.is_file()]
+    return next((path for path in there if not _is_ours(path)), there[0])
+
+
+def local_profiles(changes: Sequence[Change], said: Said, shelves: Library, out: Path) -> list[Profile]:
+    """One profile for each material and printer that something was measured of, checked but not written.
+
+    Quantities that an earlier run of the command measured and this one did not are kept. Raises InputError where a file
+    of that name was not written by the command.
+    """
+    found = []
+    for shelf, name in dict.fromkeys((change.shelf, change.name) for change in changes):
+        path = out / KINDS[shelf].folder / f"{name}.toml"
+        earlier = _earlier(path, [change for change in changes if (change.shelf, change.name) == (shelf, name)])
+        content = read_toml(base_file(shelf, name, shelves))
+        _carry(earlier, content)
+        said_of = [_put(content, change, path) for change in changes if (change.shelf, change.name) == (shelf, name)]
+        KINDS[shelf].validate(content, str(path))
+        head = (
+            f"{HEAD} from {said.where} ({said.lab}, {said.date.isoformat()}): the shipped profile with what was measured.\n"
+            "# Edit this line away and the command will no longer overwrite the file; delete the file to go back.\n"
+        )
+        found.append(Profile(path, head + toml_text(content), said_of))
+    return found
+
+
+def write_profiles(profiles: Sequence[Profile]) -> None:
+    """Write every profile beside its place and rename it there. Raises InputError where a folder cannot be written."""
+    fresh: list[tuple[Path, Path]] = []
+    try:
+        for profile in profiles:
+            profile.path.parent.mkdir(parents=True, exist_ok=True)
+            handle, name = tempfile.mkstemp(prefix=f".{profile.path.stem}.", dir=profile.path.parent)
+            beside = Path(name)
+            fresh.append((beside, profile.path))
+            with os.fdopen(handle, "w", encoding="utf-8") as file:
+                file.write(profile.text)
+            beside.chmod(0o644)
+        for beside, path in fresh:
+            beside.replace(path)
+    except OSError as error:
+        raise InputError(f"{error.filename}: {error.strerror}; give a folder you may write to with --out") from None
+    finally:
+        for beside, _ in fresh:
+            beside.unlink(missing_ok=True)
+
+
+def _is_ours(path: Path) -> bool:
+    with path.open(encoding="utf-8", errors="replace") as file:
+        return file.readline().startswith(HEAD)
+
+
+def _earlier(path: Path, changes: Sequence[Change]) -> dict[str, Any]:
+    """The content of the file that the command wrote before; nothing where there is none."""
+    if not (path.exists() or path.is_symlink()):
+        return {}
+    if path.is_file() and not path.is_symlink() and _is_ours(path):
+        return read_toml(path)
+    keys = ", ".join(".".join(change.keys) for change in changes)
+    raise InputError(
+        f"{path}: was not written by pneutouch coupons, so it is left as it is; put {keys} into it by hand, move it away, or "
+        "give another folder with --out"
+    )
+
+
+def _carry(earlier: dict[str, Any], content: dict[str, Any]) -> None:
+    """Take over the quantities whose source says that a coupon gave them."""
+    for key, value in earlier.items():
+        if not isinstance(value, dict):
+            continue
+        if MARK in str(value.get("source", "")):
+            content[key] = value
+        elif isinstance(content.get(key), dict):
+            _carry(value, content[key])
+
+
+def _put(content: dict[str, Any], change: Change, path: Path) -> dict[str, Any]:
+    """Put a quantity in its place; what it was and what it is, as data."""
+    *tables, last = change.keys
+    owner = content
+    for table in tables:
+        owner = owner[table]
+    before = owner.get(last)
+    owner[last] = change.content
+    return {"file": str(path), "key": ".".join(change.keys), "before": before, "after": change.content}

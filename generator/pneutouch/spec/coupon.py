@@ -1,0 +1,206 @@
+"""The results file: what a lab read on its coupons, one TOML with one table a coupon and material, printer or design.
+
+An empty list means that it was not measured. A list with readings has at least two, so that a spread can be told.
+"""
+
+from __future__ import annotations
+
+import datetime
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, Field, ValidationError, model_validator
+
+from pneutouch.errors import InputError, nearest
+from pneutouch.spec.design import Printable
+from pneutouch.spec.fields import Table, table_of
+from pneutouch.spec.read import read_toml
+
+LEAST_READINGS = 2
+
+
+def _readings(low: float, high: float, unit: str, least: int = LEAST_READINGS) -> AfterValidator:
+    """None at all, or ``least`` readings from ``low`` to ``high``."""
+
+    def check(values: list[float]) -> list[float]:
+        for place, value in enumerate(values, start=1):
+            if not low <= value <= high:
+                raise ValueError(f"reading {place} = {value:g}: must be from {low:g} to {high:g} {unit}".rstrip())
+        if values and len(values) < least:
+            raise ValueError(
+                f"{values}: at least {least} readings, so that a spread can be told; or [] if not measured"
+            )
+        return values
+
+    return AfterValidator(check)
+
+
+Shore = Annotated[list[float], _readings(0, 100, "on the Shore scale")]
+Lengths = Annotated[list[float], _readings(0.01, 1000, "mm")]
+Masses = Annotated[list[float], _readings(1e-4, 1e4, "g")]
+Pressures = Annotated[list[float], _readings(0.1, 1000, "kPa")]
+Curve = Annotated[list[float], _readings(1e-6, 1e5, "", least=3)]
+
+
+class Puck(Table):
+    """[puck.MATERIAL]: hardness readings of all pucks; mass, diameter and thickness one a puck."""
+
+    shore_a: Shore = Field(default_factory=list)
+    shore_d: Shore = Field(default_factory=list)
+    mass_g: Masses = Field(default_factory=list)
+    diameter_mm: Lengths = Field(default_factory=list)
+    thickness_mm: Lengths = Field(default_factory=list)
+
+    @model_validator(mode="after")
+    def _density_complete(self) -> Puck:
+        counts = {len(self.mass_g), len(self.diameter_mm), len(self.thickness_mm)}
+        if len(counts) > 1:
+            raise ValueError(
+                f"mass_g, diameter_mm and thickness_mm have {len(self.mass_g)}, {len(self.diameter_mm)} and "
+                f"{len(self.thickness_mm)} readings; the density needs one of each a puck"
+            )
+        return self
+
+
+class Specimen(Table):
+    """One dumbbell: its narrow part, and its curve point by point."""
+
+    width_mm: Lengths = Field(default_factory=list)
+    thickness_mm: Lengths = Field(default_factory=list)
+    gauge_length_mm: float = Field(default=25.0, gt=0, le=1000, description="Distance of the bench marks.")
+    extension_mm: Curve = Field(default_factory=list)
+    force_N: Curve = Field(default_factory=list)  # noqa: N815
+
+    @model_validator(mode="after")
+    def _complete(self) -> Specimen:
+        given = [self.width_mm, self.thickness_mm, self.extension_mm]
+        if any(given) and not all(given):
+            raise ValueError("width_mm, thickness_mm, extension_mm and force_N belong together; one of them is empty")
+        if len(self.extension_mm) != len(self.force_N):
+            raise ValueError(
+                f"extension_mm has {len(self.extension_mm)} points, force_N {len(self.force_N)}; they must have as many"
+            )
+        return self
+
+
+class Dumbbell(Table):
+    """[dumbbell.MATERIAL]: how the specimens were pulled, and one [[dumbbell.MATERIAL.specimen]] each."""
+
+    hold_s: float = Field(default=60.0, ge=0, le=1e6, description="Hold at each point before the force is read, s.")
+    largest_strain: float = Field(default=0.2, ge=0.02, le=2, description="Points beyond are left out of the fit.")
+    specimen: list[Specimen] = Field(default_factory=list)
+
+
+class Size(Table):
+    """One feature of the gauge. ``came_out`` is false where it is missing, broken, blocked or grown together."""
+
+    nominal_mm: float = Field(gt=0, le=100)
+    measured_mm: Lengths = Field(default_factory=list)
+    came_out: bool | None = None
+
+    @model_validator(mode="after")
+    def _agree(self) -> Size:
+        if self.came_out is False and self.measured_mm:
+            raise ValueError(
+                f"nominal_mm = {self.nominal_mm:g}: came_out = false, but it was measured; give one of both"
+            )
+        return self
+
+    @property
+    def sound(self) -> bool | None:
+        """Whether it came out; None where nothing was said."""
+        return True if self.measured_mm else self.came_out
+
+
+class Gauge(Table):
+    """[gauge.PRINTER.MATERIAL]: the block's lengths, then the rows of the gauge."""
+
+    x: list[Size] = Field(default_factory=list)
+    y: list[Size] = Field(default_factory=list)
+    z: list[Size] = Field(default_factory=list)
+    wall: list[Size] = Field(default_factory=list)
+    pin: list[Size] = Field(default_factory=list)
+    hole: list[Size] = Field(default_factory=list)
+    slot: list[Size] = Field(default_factory=list)
+
+
+class LeakCap(Table):
+    """[leak-cap.DESIGN]: pressure at the start and end of each run, and the pressure after each push of the syringe."""
+
+    seconds: float = Field(default=600.0, gt=0, le=1e6, description="How long a run lasted.")
+    start_kPa: Pressures = Field(default_factory=list)  # noqa: N815
+    end_kPa: Pressures = Field(default_factory=list)  # noqa: N815
+    pressure_kPa: Pressures = Field(default_factory=list)  # noqa: N815
+    ambient_pressure_kPa: float = Field(default=101.325, ge=20, le=1000)  # noqa: N815
+
+    @model_validator(mode="after")
+    def _runs(self) -> LeakCap:
+        if len(self.start_kPa) != len(self.end_kPa):
+            raise ValueError(
+                f"start_kPa has {len(self.start_kPa)} readings, end_kPa {len(self.end_kPa)}; one each a run"
+            )
+        return self
+
+
+class VolumePlug(Table):
+    """[volume-plug.DESIGN]: pressure after each push, and the mass of water that the cavity holds."""
+
+    pressure_kPa: Pressures = Field(default_factory=list)  # noqa: N815
+    water_g: Masses = Field(default_factory=list)
+    gauge_accuracy_kPa: float = Field(default=0.0, ge=0, le=100, description="Standard uncertainty of the gauge.")  # noqa: N815
+
+
+class Results(Table):
+    """A whole results file."""
+
+    lab: Printable = Field(min_length=1, max_length=80, description='who measured, such as "Soft lab, room 2"')
+    date: datetime.date = Field(description="a date such as 2026-11-21")
+    puck: dict[str, Puck] = Field(default_factory=dict)
+    dumbbell: dict[str, Dumbbell] = Field(default_factory=dict)
+    gauge: dict[str, dict[str, Gauge]] = Field(default_factory=dict)
+    leak_cap: dict[str, LeakCap] = Field(default_factory=dict, alias="leak-cap")
+    volume_plug: dict[str, VolumePlug] = Field(default_factory=dict, alias="volume-plug")
+
+
+def read_results(path: Path) -> Results:
+    """Read a results file. Raises InputError that names file, key, value and what would be right."""
+    try:
+        return Results.model_validate(read_toml(path))
+    except ValidationError as error:
+        lines = [f"{path}: {_explained(detail)}" for detail in error.errors()]
+        raise InputError("\n".join(lines)) from None
+
+
+def _explained(detail: Any) -> str:
+    """One line for one error of pydantic."""
+    key = "".join(f"[{step + 1}]" if isinstance(step, int) else f".{step}" for step in detail["loc"]).lstrip(".")
+    kind, last = detail["type"], str(detail["loc"][-1]) if detail["loc"] else ""
+    if kind == "value_error":
+        return f"{key}: {detail['ctx']['error']}"
+    if kind == "extra_forbidden":
+        owner = _owner([step for step in detail["loc"][:-1] if isinstance(step, str)])
+        what = "coupon" if owner is Results else "key"
+        return (
+            f"{key}: unknown {what}.{nearest(last, [info.alias or name for name, info in owner.model_fields.items()])}"
+        )
+    if kind == "missing":
+        return f"{key}: missing; give {Results.model_fields[last].description if last in Results.model_fields else 'a number'}"
+    message = str(detail["msg"]).removeprefix("Input ").replace("valid ", "").replace("dictionary", "table")
+    return f"{key} = {detail['input']!r}: {message}"
+
+
+def _owner(path: list[str]) -> type[Table]:
+    """The table that a path of keys leads to; names of materials, printers and designs are passed over."""
+    owner: type[Table] = Results
+    for step in path:
+        field = next((name for name, info in owner.model_fields.items() if step in (name, info.alias)), None)
+        found = None if field is None else _inner(owner, field)
+        owner = found or owner
+    return owner
+
+
+def _inner(owner: type[Table], field: str) -> type[Table] | None:
+    if owner is Results and field == "gauge":
+        return Gauge
+    found = table_of(owner, field)
+    return found if found is not None and issubclass(found, Table) else None

@@ -1,0 +1,64 @@
+"""Data as TOML text: plain values first, then tables, then arrays of tables."""
+
+from __future__ import annotations
+
+import datetime
+import json
+import re
+from collections.abc import Mapping
+from typing import Any
+
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
+
+
+def toml_text(content: Mapping[str, Any]) -> str:
+    """TOML of nested tables, lists, text, numbers, booleans and dates; what is None is left out."""
+    return "\n\n".join(_blocks(content, ())) + "\n"
+
+
+def value_text(value: Any) -> str:
+    """One value on one line. Raises TypeError for what TOML has no form for."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        # JSON escapes what TOML asks to be escaped, but for the delete character.
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(value_text(item) for item in value) + "]"
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{key_text(key)} = {value_text(item)}" for key, item in value.items()) + " }"
+    if isinstance(value, datetime.date):
+        return value.isoformat()
+    if isinstance(value, int | float):
+        return repr(value)
+    raise TypeError(f"{value!r} has no form in TOML")
+
+
+def key_text(key: str) -> str:
+    """A key, quoted where it must be."""
+    return key if _BARE.fullmatch(key) else json.dumps(key, ensure_ascii=False)
+
+
+def _blocks(content: Mapping[str, Any], path: tuple[str, ...], head: str = "") -> list[str]:
+    tables = {key: value for key, value in content.items() if isinstance(value, Mapping)}
+    arrays = {key: value for key, value in content.items() if _is_tables(value)}
+    lines = [
+        f"{key_text(key)} = {value_text(value)}"
+        for key, value in content.items()
+        if value is not None and key not in tables and key not in arrays
+    ]
+    blocks = ["\n".join([head, *lines] if head else lines)] if lines or (head and not tables) else []
+    for key, value in tables.items():
+        blocks += _blocks(value, (*path, key), f"[{_dotted((*path, key))}]")
+    for key, rows in arrays.items():
+        for row in rows:
+            blocks += _blocks(row, (*path, key), f"[[{_dotted((*path, key))}]]")
+    return blocks
+
+
+def _is_tables(value: Any) -> bool:
+    return isinstance(value, list) and bool(value) and all(isinstance(item, Mapping) for item in value)
+
+
+def _dotted(path: tuple[str, ...]) -> str:
+    return ".".join(key_text(key) for key in path)
