@@ -4,22 +4,18 @@ from __future__ import annotations
 
 import json
 import statistics
-from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 
 from benchmarks import laws, peers, shares, speed_accuracy, validation, validity
-from benchmarks.meshing import Row, measure
 from benchmarks.pages import speed
 from benchmarks.pages.speed_chart import chart
 from benchmarks.scenes import SCENES
 from benchmarks.theory import METHODS, Cell, ship_errors, table_s1
-from pneutouch.catalogue import Library, load_scene
+from pneutouch.catalogue import Library
 from pneutouch.mechanics.exact_membrane import RISING_BRANCH, limit_point_errors
 from pneutouch.mechanics.inflation import LIMIT_PRESSURE, relative_height
-from pneutouch.parts import assemble
-from pneutouch.report.style import ACCENT, INK, LINES, MARKERS, MUTED, figure, svg
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"
@@ -39,19 +35,17 @@ def main() -> None:
     paper = next(scene for scene in speeds["scenes"] if scene["scene"] == SCENES[1].name)
     programs = peers.measure(1e-3 * paper["reference"]["limit_pressure_kPa"])
     map_rows, law_curves = validity.measure(), laws.curves()
-    rows = measure(assemble(load_scene("paper-dome", [], library)).solids[0])
     _write("speed-accuracy.svg", chart(speeds, programs))
     _write("validity.svg", validity.draw(map_rows))
     _write("laws.svg", laws.draw(law_curves))
-    _write("meshing.svg", mesh_chart(rows))
     for name, data in (
         ("speed-accuracy.json", speeds), ("peers.json", programs), ("validity.json", map_rows),
-        ("meshing.json", [asdict(row) for row in rows]),
     ):  # fmt: skip
         _write(name, json.dumps(data, indent=1) + "\n")
     sections = [
         *contact_section(cells), *speed.section(speeds, programs, shares.shares()), *validity.section(map_rows),
-        *inflation_section(), *laws.section(law_curves), *mesh_section(rows),
+        *inflation_section(), *laws.section(law_curves),
+        "The print meshes beside other kernels: [meshing.md](meshing.md).", "",
     ]  # fmt: skip
     _write("accuracy.md", "\n".join([*HEAD, *sections]))
     _write("validation.md", validation.page())
@@ -101,43 +95,6 @@ def contact_section(cells: list[Cell]) -> list[str]:
         "its sensitivity; at zero driving pressure F = p pi rho^2 even bounds S from below by 1/(pi R0^2) = 3.72 kPa/N, above "
         "every measured value. Use the membrane for inflation, limits and trends; choose a resin by the solid.", "",
     ]  # fmt: skip
-
-
-def mesh_section(rows: list[Row]) -> list[str]:
-    """Meshing beside other kernels; times as ratios to ours in the same run."""
-    ours = {row.tolerance: row for row in rows if row.method == "pneutouch"}
-    table = [
-        f"| {row.tolerance:g} | {row.method} | {row.milliseconds / ours[row.tolerance].milliseconds:.1f} | {row.triangles} | "
-        f"{row.deviation / row.tolerance:.2f} | {row.volume_error:+.1e} |"
-        for row in sorted(rows, key=lambda r: -r.tolerance)
-    ]
-    return [
-        "## Print meshes: time against deviation", "",
-        "The membrane of `paper-dome`. Time is processor time over ours in the same run (median of seven, taken in turn); "
-        "deviation is the greatest distance of mesh points from the exact surface over the tolerance asked for.", "",
-        "![Deviation over processor time for each method](meshing.svg)", "",
-        "| tolerance mm | method | time / ours | triangles | deviation / tolerance | volume error |",
-        "|---|---|---|---|---|---|", *table, "",
-        "Ours needs fewer triangles because each ring has only as many vertices as its radius asks for, and because the "
-        "error is split between inside and outside so that the volume is kept. CadQuery hands its tolerance to Open CASCADE "
-        "as a relative one and misses an absolute one; its meshes are open by index until vertices are merged.", "",
-    ]  # fmt: skip
-
-
-def mesh_chart(rows: list[Row]) -> str:
-    """Measured deviation over processor time, log-log."""
-    with figure(150, 85) as drawn:
-        ax = drawn.add_subplot()
-        for k, method in enumerate(dict.fromkeys(row.method for row in rows)):
-            mine = [row for row in rows if row.method == method]
-            colour = ACCENT if method == "pneutouch" else (INK if k % 2 else MUTED)
-            ax.loglog(
-                [row.milliseconds for row in mine], [1e3 * row.deviation for row in mine], color=colour,
-                marker=MARKERS[k % len(MARKERS)], ls=LINES[k % len(LINES)], lw=2 if method == "pneutouch" else 1, label=method,
-            )  # fmt: skip
-        ax.set(xlabel="processor time  (ms)", ylabel="greatest deviation from the exact surface  (µm)")
-        ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
-        return svg(drawn)
 
 
 if __name__ == "__main__":

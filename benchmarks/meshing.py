@@ -10,11 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from pneutouch.body import Solid
+from pneutouch.body import Frame, Solid
 from pneutouch.export.step import exact_solid
 from pneutouch.meridian import Arc, Meridian
 
 TOLERANCES = (0.1, 0.05, 0.016, 0.005)
+FINER = (0.0016, 0.0008, 0.0004)
+"""CadQuery takes its tolerance as a relative one and needs to be asked for much less."""
+
+OURS, MANIFOLD = "pneutouch", "manifold3d alone"
 _RUNS = 7
 
 
@@ -22,6 +26,7 @@ _RUNS = 7
 class Row:
     """One method at one tolerance; ``deviation`` and ``volume_error`` are measured against the exact solid."""
 
+    body: str
     method: str
     tolerance: float
     milliseconds: float
@@ -55,8 +60,38 @@ def plain_grid(meridian: Meridian, tolerance: float) -> tuple[np.ndarray, np.nda
     return vertices, quads[area > 1e-12]
 
 
-def manifold_revolve(meridian: Meridian, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
-    """manifold3d's own revolve of the same inscribed outline."""
+def manifold_solid(solid: Solid, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
+    """The same operations by manifold3d alone: its revolve of an inscribed outline, its cylinders, its batch booleans."""
+    from manifold3d import Manifold, OpType
+
+    whole = _revolved(solid.meridian, tolerance)
+    adds = [_placed(_revolved(f.shape.meridian, tolerance), f.shape.frame) for f in solid.adds]
+    cuts = [_placed(_revolved(f.shape.meridian, tolerance), f.shape.frame) for f in solid.cuts]
+    for bore in solid.bores:
+        count = _circle(bore.radius, tolerance)
+        low, high = bore.low - (bore.closed != "low"), bore.high + (bore.closed != "high")
+        cuts.append(
+            Manifold.cylinder(high - low, bore.radius, circular_segments=count).translate((bore.x, bore.y, low))
+        )
+    if adds:
+        whole = Manifold.batch_boolean([whole, *adds], OpType.Add)
+    if cuts:
+        whole = Manifold.batch_boolean([whole, *cuts], OpType.Subtract)
+    mesh = whole.to_mesh64()
+    return np.asarray(mesh.vert_properties)[:, :3], np.asarray(mesh.tri_verts, np.int64)
+
+
+def _circle(radius: float, tolerance: float) -> int:
+    return max(8, 4 * int(np.ceil(np.pi / np.arccos(1 - min(0.5 * tolerance / radius, 0.5)) / 4)))
+
+
+def _placed(shape: Any, frame: Frame) -> Any:
+    if frame == Frame():
+        return shape
+    return shape.transform(np.column_stack([frame.rotation, np.array(frame.origin)]))
+
+
+def _revolved(meridian: Meridian, tolerance: float) -> Any:
     from manifold3d import CrossSection, Manifold
 
     half = 0.5 * tolerance
@@ -68,9 +103,9 @@ def manifold_revolve(meridian: Meridian, tolerance: float) -> tuple[np.ndarray, 
         else:
             outline.append(piece.start)
     outline.append(meridian.end)
-    count = int(np.ceil(np.pi / np.arccos(1 - half / meridian.bounds()[0])))
-    mesh = Manifold.revolve(CrossSection([np.array(outline)]), circular_segments=count).to_mesh()
-    return np.asarray(mesh.vert_properties, float), np.asarray(mesh.tri_verts, np.int64)
+    return Manifold.revolve(
+        CrossSection([np.array(outline)]), circular_segments=_circle(meridian.bounds()[0], tolerance)
+    )
 
 
 def cadquery_tessellate(shape: Any, tolerance: float, angle: float) -> tuple[np.ndarray, np.ndarray]:
@@ -93,20 +128,29 @@ def measure(solid: Solid) -> list[Row]:
     """Every method at every tolerance; the median of several runs taken in turn."""
     shape = exact_solid(solid)
     methods: dict[str, Callable[[float], tuple[np.ndarray, np.ndarray]]] = {
-        "pneutouch": lambda t: (body := solid.mesh(t), (body.vertices, body.triangles))[1],
-        "plain grid, numpy": lambda t: plain_grid(solid.meridian, t),
-        "manifold3d revolve": lambda t: manifold_revolve(solid.meridian, t),
+        OURS: lambda t: (body := solid.mesh(t), (body.vertices, body.triangles))[1],
+        MANIFOLD: lambda t: manifold_solid(solid, t),
         "CadQuery, angle off": lambda t: cadquery_tessellate(shape, t, 3.2),
         "CadQuery, angle 0.1": lambda t: cadquery_tessellate(shape, t, 0.1),
         "OCC, absolute": lambda t: occ_absolute(shape, t),
     }
-    seconds: dict[tuple[str, float], list[float]] = {(m, t): [] for m in methods for t in TOLERANCES}
+    if not (solid.bores or solid.adds or solid.cuts):
+        methods["plain grid, numpy"] = lambda t: plain_grid(solid.meridian, t)
+    keys = [(method, t) for method in methods for t in (*TOLERANCES, *(FINER if "CadQuery" in method else ()))]
+    seconds: dict[tuple[str, float], list[float]] = {key: [] for key in keys}
     for _ in range(_RUNS):
-        for key in seconds:
+        for method, tolerance in keys:
             start = time.process_time()
-            methods[key[0]](key[1])
-            seconds[key].append(time.process_time() - start)
-    return [_row(solid, m, t, methods[m](t), statistics.median(seconds[m, t])) for m, t in seconds]
+            methods[method](tolerance)
+            seconds[method, tolerance].append(time.process_time() - start)
+    return [_row(solid, m, t, methods[m](t), statistics.median(seconds[m, t])) for m, t in keys]
+
+
+def same_error(rows: list[Row], tolerance: float, prefix: str) -> float | None:
+    """Time of another method over ours at the same measured deviation: its cheapest row that is no worse; None without."""
+    ours = next(row for row in rows if (row.method, row.tolerance) == (OURS, tolerance))
+    good = [row for row in rows if row.method.startswith(prefix) and row.deviation <= ours.deviation]
+    return min(row.milliseconds for row in good) / ours.milliseconds if good else None
 
 
 def _row(solid: Solid, method: str, tolerance: float, mesh: tuple[np.ndarray, np.ndarray], seconds: float) -> Row:
@@ -115,6 +159,7 @@ def _row(solid: Solid, method: str, tolerance: float, mesh: tuple[np.ndarray, np
     points = np.einsum("wk,mkd->mwd", np.array(grid, float) / 6, vertices[triangles]).reshape(-1, 3)
     a, b, c = np.moveaxis(vertices[triangles], 1, 0)
     volume = abs(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
-    return Row(
-        method, tolerance, 1e3 * seconds, len(triangles), float(solid.distance(points).max()), volume / solid.volume - 1
+    deviation = max(
+        float(solid.distance(part).max()) for part in np.array_split(points, max(1, len(points) // 200_000))
     )
+    return Row(solid.name, method, tolerance, 1e3 * seconds, len(triangles), deviation, volume / solid.volume - 1)

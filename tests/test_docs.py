@@ -10,7 +10,7 @@ import pytest
 from benchmarks import laws, peers
 from benchmarks.chart import DOCS, contact_section, inflation_section
 from benchmarks.felupe_sweep import felupe_limit
-from benchmarks.meshing import manifold_revolve, plain_grid
+from benchmarks.meshing import OURS, manifold_solid, plain_grid
 from benchmarks.pages import speed
 from benchmarks.pages.speed_chart import front
 from benchmarks.scenes import PAPER, SCENES
@@ -87,21 +87,28 @@ def test_ours_and_felupe_agree_on_the_limit_pressure():
     assert theirs == pytest.approx(truth, rel=3e-3)
 
 
-def test_mesh_table_keeps_every_tolerance_at_fewer_triangles_than_the_plain_grid():
-    rows = re.findall(r"^\| ([\d.]+) \| ([^|]+) \| [\d.]+ \| (\d+) \| ([\d.]+) \|", page(), re.MULTILINE)
-    ours = {t: (int(n), float(d)) for t, method, n, d in rows if method == "pneutouch"}
-    plain = {t: int(n) for t, method, n, _ in rows if method == "plain grid, numpy"}
-    assert set(ours) == {"0.1", "0.05", "0.016", "0.005"}
-    for tolerance, (count, deviation) in ours.items():
-        assert deviation <= 1.0
-        assert count <= 0.6 * plain[tolerance]
+def test_mesh_tables_keep_every_tolerance_and_beat_the_peers():
+    data = stored("meshing.json")
+    text = (DOCS / "meshing.md").read_text(encoding="utf-8")
+    assert len(data) == 3
+    for rows in data.values():
+        ours = {row["tolerance"]: row for row in rows if row["method"] == OURS}
+        assert set(ours) == {0.1, 0.05, 0.016, 0.005}
+        for row in rows:
+            if row["method"] == OURS:
+                assert row["deviation"] <= row["tolerance"]
+                assert f"| {row['triangles']} | {row['deviation'] / row['tolerance']:.2f} |" in text
+            if row["method"] == "plain grid, numpy":
+                assert ours[row["tolerance"]]["triangles"] <= 0.6 * row["triangles"]
 
 
-@pytest.mark.parametrize("peer", [plain_grid, manifold_revolve])
-def test_the_peers_are_given_a_fair_outline(peer, evaluated):
-    """Both peers mesh the same solid and keep the tolerance too: they lose on count and volume alone."""
-    solid = evaluated("paper-dome").assembly.solids[0]
-    vertices, triangles = peer(solid.meridian, 0.05)
-    middle = vertices[triangles].mean(axis=1)
-    assert solid.distance(middle).max() <= 0.05
-    assert solid.distance(vertices).max() < 1e-5
+def test_the_peers_are_given_a_fair_outline(evaluated):
+    """The peers mesh the same solids and keep the tolerance too: they lose on count, volume and time alone."""
+    membrane, connector = evaluated("paper-dome").assembly.solids[:2]
+    cases = [(membrane, plain_grid(membrane.meridian, 0.05))]
+    cases += [(solid, manifold_solid(solid, 0.05)) for solid in (membrane, connector)]
+    for solid, (vertices, triangles) in cases:
+        middle = vertices[triangles].mean(axis=1)
+        assert solid.distance(middle).max() <= 0.05
+        # The kernel moves a vertex by rounding where it cuts.
+        assert solid.distance(vertices).max() < 1e-5
