@@ -88,7 +88,7 @@ def ring_meridian(seat: ClampedFlange, layout: Layout) -> Meridian:
 
     It opens upwards at 45 degrees, so that the dome is free to bulge.
     """
-    inner, high = layout.outer_radius + layout.clearance, seat.ring_thickness
+    inner, high = layout.ring_inner, seat.ring_thickness
     skirt = layout.plate_high + seat.squeeze * layout.flange_thickness
     return trace((inner, 0.0), [
         ("clamp face", (layout.groove_outer, 0.0)), ("skirt inside", (layout.groove_outer, skirt)),

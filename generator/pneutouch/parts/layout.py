@@ -23,8 +23,8 @@ from pneutouch.spec.part import BoltCircle, ClampedFlange, OnePiece, RobotFlange
 HEAD_GAP = 0.5
 """Room in mm around a screw head, for the driver."""
 
-_FLOOR = 1.0
-"""Rigid wall in mm kept behind a blind hole and beside a bore."""
+CLAMPED_SHARE = 0.5
+"""Share of the flange's width that a ring presses on; the rest leaves the dome room to bulge."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +72,11 @@ class Layout:
         return self.flange_radius + self.clearance
 
     @property
+    def ring_inner(self) -> float:
+        """Inner radius of a clamping ring at the base plane."""
+        return self.flange_radius - CLAMPED_SHARE * self.flange_width
+
+    @property
     def screw_circle(self) -> float:
         """Radius of the circle of a clamping ring's screws; meaningless without a ring."""
         return 0.5 * (self.groove_outer + self.ring_radius)
@@ -94,7 +99,8 @@ def lay_out(scene: Scene) -> Layout:
     port = port_shape(scene.port, scene.tube, scene.hole_undersize)
     flange = max(seat.least_flange_mm, seat.flange_over_wall * membrane.wall_thickness_mm)
     clearance = 0.0 if isinstance(seat, OnePiece) else scene.fit_clearance
-    ring = _ring_radius(scene, membrane.inner_radius_mm + membrane.wall_thickness_mm + flange + clearance)
+    groove = membrane.inner_radius_mm + membrane.wall_thickness_mm + flange + clearance
+    ring = _ring_radius(scene, groove, flange)
     bolts = _bolt_circle(scene, ring)
     thickness = _plate_thickness(scene, port)
     low = -flange - thickness
@@ -109,13 +115,15 @@ def lay_out(scene: Scene) -> Layout:
     )  # fmt: skip
 
 
-def _ring_radius(scene: Scene, groove: float) -> float:
-    """Outer radius of the rigid ring around the flange."""
+def _ring_radius(scene: Scene, groove: float, flange: float) -> float:
+    """Outer radius of the rigid ring around the flange; a clamping ring carries its screw heads on flat ground."""
     seat = scene.seat
     if isinstance(seat, ClampedFlange):
         least = scene.connector_printer.smallest.wall_rigid_mm.recommended
         hole = 0.5 * (seat.clearance_diameter + scene.hole_undersize) + least
-        return groove + 2 * max(seat.ring_wall_mm, 0.5 * seat.head_diameter + HEAD_GAP, hole)
+        cone = groove - scene.fit_clearance - CLAMPED_SHARE * flange + seat.ring_thickness
+        head = 0.5 * seat.head_diameter
+        return groove + 2 * max(seat.ring_wall_mm, head + HEAD_GAP, hole, cone + head - groove)
     return groove + seat.ring_wall_mm
 
 
@@ -156,16 +164,16 @@ def _plate_thickness(scene: Scene, port: PortShape) -> float:
     """At least the mount's; thicker for blind holes from both sides, a plug's shoulder or a port in the side."""
     seat, mount = scene.seat, scene.mount
     depth = mount.hole_depth if isinstance(mount, BoltCircle) and mount.hole_depth is not None else 0.0
-    needs = [mount.plate_thickness]
+    needs, floor = [mount.plate_thickness], scene.connector_printer.smallest.wall_rigid_mm.recommended
     if isinstance(seat, ClampedFlange):
-        needs.append(seat.core_depth + depth + _FLOOR)
+        needs.append(seat.core_depth + depth + floor)
     if isinstance(seat, OnePiece):
-        needs.append(seat.shoulder_thickness + _FLOOR)
+        needs.append(seat.shoulder_thickness + floor)
     if mount.port_side == "side":
         needs.append(_port_height(scene, port) + port.root + 0.5)
     inside = -port.hollow[-1][1]
     if mount.port_side == "rear" and inside > 0:
-        needs.append(inside + _FLOOR)
+        needs.append(inside + floor)
     return max(needs)
 
 
@@ -173,7 +181,10 @@ def _port_height(scene: Scene, port: PortShape) -> float:
     """Height of a side port's axis over the plate's underside: its root stays within the plate's edge."""
     low = port.root + 0.5
     if isinstance(scene.seat, OnePiece):
-        low = max(low, scene.seat.shoulder_thickness + port.passage + _FLOOR)
+        low = max(
+            low,
+            scene.seat.shoulder_thickness + port.passage + scene.connector_printer.smallest.wall_rigid_mm.recommended,
+        )
     return low
 
 

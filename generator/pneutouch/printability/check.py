@@ -13,6 +13,7 @@ from pneutouch.printability.rules import (
     edges,
     emboss,
     envelope,
+    freedom,
     gaps,
     holes,
     hollows,
@@ -45,6 +46,7 @@ RULES: dict[str, Rule] = {
     "matte": matte.check,
     "layers": layers.check,
     "driving": driving.check,
+    "freedom": freedom.check,
 }
 
 _ORDER = {"error": 0, "warning": 1, "note": 2}
