@@ -10,7 +10,7 @@ from pneutouch.printability import Finding, SensorContext, Subject, check
 from pneutouch.units import KPA
 from tests.printability.gallery import cup, item, material
 
-WORKING = ("layers", "driving")
+WORKING = ("layers", "driving", "freedom")
 """Rules that need a sensor's prediction."""
 
 
