@@ -5,7 +5,7 @@ Files in the working folder come before the shipped ones, so a lab's own printer
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -18,6 +18,7 @@ from pneutouch.spec.material import Material
 from pneutouch.spec.part import MOUNTS, PORTS, SEATS, Tube
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import read_toml, validate
+from pneutouch.spec.specimen import validate_specimen
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -25,33 +26,44 @@ _PACKAGE = Path(__file__).resolve().parents[1]
 _CHECKOUT = _PACKAGE.parents[1]
 
 
+Check = Callable[[dict[str, Any], str], BaseModel]
+"""Validates a file's content; the second argument names the file. Raises InputError that names the key."""
+
+
 @dataclass(frozen=True, slots=True)
 class Kind:
-    """One shelf: the model of its files, or one a family, and the folder they lie in."""
+    """One shelf: how its files are validated, and the folder they lie in."""
 
-    model: type[BaseModel] | Mapping[str, type[BaseModel]]
+    validate: Check
     folder: str
     part: bool = False
 
-    def validate(self, content: dict[str, Any], where: str) -> BaseModel:
-        """Validate a file's content. Raises InputError that names the key."""
-        if not isinstance(self.model, Mapping):
-            return validate(self.model, content, where)
+
+def _one(model: type[BaseModel]) -> Check:
+    return lambda content, where: validate(model, content, where)
+
+
+def _by_family(models: Mapping[str, type[BaseModel]]) -> Check:
+    """A file says its family, and so which keys it has."""
+
+    def check(content: dict[str, Any], where: str) -> BaseModel:
         family = content.get("family")
-        if not isinstance(family, str) or family not in self.model:
-            known = nearest(str(family), self.model)
-            raise InputError(f"{where}: family = {family!r}: unknown.{known}")
-        return validate(self.model[family], content, where)
+        if not isinstance(family, str) or family not in models:
+            raise InputError(f"{where}: family = {family!r}: unknown.{nearest(str(family), models)}")
+        return validate(models[family], content, where)
+
+    return check
 
 
 KINDS: dict[str, Kind] = {
-    "designs": Kind(Design, "designs"),
-    "materials": Kind(Material, "printprofiles/materials"),
-    "printers": Kind(Printer, "printprofiles"),
-    "tubes": Kind(Tube, "parts/tubes", part=True),
-    "ports": Kind(PORTS, "parts/ports", part=True),
-    "seats": Kind(SEATS, "parts/seats", part=True),
-    "mounts": Kind(MOUNTS, "parts/mounts", part=True),
+    "designs": Kind(_one(Design), "designs"),
+    "specimens": Kind(validate_specimen, "designs/specimens"),
+    "materials": Kind(_one(Material), "printprofiles/materials"),
+    "printers": Kind(_one(Printer), "printprofiles"),
+    "tubes": Kind(_one(Tube), "parts/tubes", part=True),
+    "ports": Kind(_by_family(PORTS), "parts/ports", part=True),
+    "seats": Kind(_by_family(SEATS), "parts/seats", part=True),
+    "mounts": Kind(_by_family(MOUNTS), "parts/mounts", part=True),
 }
 
 

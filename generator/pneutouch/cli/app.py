@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from pneutouch import __version__
 from pneutouch.errors import PneutouchError
-
-if TYPE_CHECKING:
-    from pneutouch.pipeline.evaluate import Evaluation
 
 app = typer.Typer(
     add_completion=False, no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False,
@@ -59,6 +56,9 @@ def reporting() -> Iterator[None]:
     except typer.Exit:
         raise
     except Exception as error:
+        if isinstance(error.__cause__ or error.__context__, KeyboardInterrupt):
+            # A library that is interrupted while it loads says that it cannot be loaded.
+            raise typer.Abort from None
         if os.environ.get("PNEUTOUCH_DEBUG"):
             raise
         typer.echo(
@@ -85,32 +85,6 @@ def main(
 
 
 @app.command()
-def build(
-    context: typer.Context,
-    design: Annotated[str, typer.Argument(metavar="DESIGN", help="Name of a design, path of a TOML file, or a 3MF that was built.")],
-    set_: SetOption = None, model: ModelOption = None, tolerance: ToleranceOption = None,
-    closure: ClosureOption = "variational", clamp: ClampOption = "base", out: OutOption = Path("outputs"), json: JsonOption = False,
-) -> None:  # fmt: skip
-    """Build everything: print files, prediction, datasheet. A 3MF is built again from the recipe in it."""
-    with reporting():
-        from pneutouch.pipeline.evaluate import evaluate
-        from pneutouch.pipeline.files import check_writable
-
-        if design.lower().endswith(".3mf"):
-            evaluation = _from_3mf(design, context)
-        else:
-            evaluation = evaluate(design, set_, closure=closure, clamp=clamp, **_rung(model, tolerance))
-        check_writable(out / evaluation.scene.name)
-        folder = _build_with_progress(evaluation, out)
-        for finding in evaluation.findings:
-            typer.echo(f"{finding.severity}: {finding.rule}: {finding.message}; {finding.fix}", err=True)
-        if json:
-            print_json({"design": evaluation.scene.name, "folder": str(folder)})
-        else:
-            typer.echo(str(folder))
-
-
-@app.command()
 def predict(
     design: DesignArgument, set_: SetOption = None, model: ModelOption = None, tolerance: ToleranceOption = None,
     closure: ClosureOption = "variational", clamp: ClampOption = "base",
@@ -124,7 +98,7 @@ def predict(
         from pneutouch.pipeline.evaluate import evaluate
         from pneutouch.pipeline.uncertainty import prediction_document
 
-        evaluation = evaluate(design, set_, closure=closure, clamp=clamp, **_rung(model, tolerance))
+        evaluation = evaluate(design, set_, closure=closure, clamp=clamp, **rung(model, tolerance))
         document = prediction_document(evaluation, monte_carlo)
         if json:
             print_json(document)
@@ -134,35 +108,12 @@ def predict(
             typer.echo(prediction_text(document))
 
 
-@app.command()
-def check(
-    design: DesignArgument, set_: SetOption = None,
-    deep: Annotated[bool, typer.Option("--deep", help="Have pymeshlab (an extra) inspect the meshes as well.")] = False,
-    json: JsonOption = False,
-) -> None:  # fmt: skip
-    """Check printability and mechanical limits; exit 1 where a rule is broken."""
-    with reporting():
-        from pneutouch.pipeline.evaluate import evaluate
-
-        evaluation = evaluate(design, set_)
-        findings = [*evaluation.findings, *(evaluation.deep_findings() if deep else [])]
-        broken = any(finding.severity == "error" for finding in findings)
-        if json:
-            print_json({"design": design, "passed": not broken, "findings": [f.document() for f in findings]})
-        else:
-            from pneutouch.cli.text import findings_text
-
-            typer.echo(findings_text([finding.document() for finding in findings]))
-        if broken:
-            raise typer.Exit(1)
-
-
 @app.command("list")
 def list_(
-    kind: Annotated[str | None, typer.Argument(help="designs, materials, printers or parts.")] = None,
+    kind: Annotated[str | None, typer.Argument(help="designs, specimens, materials, printers or parts.")] = None,
     json: JsonOption = False,
 ) -> None:
-    """List designs, materials, printers and parts."""
+    """List designs, specimens, materials, printers and parts."""
     with reporting():
         from pneutouch.cli.text import listing, listing_text
 
@@ -185,31 +136,7 @@ def new(
         typer.echo(str(new_design(name, out)))
 
 
-def _from_3mf(file: str, context: typer.Context) -> Evaluation:
-    """Evaluate the recipe of a 3MF; says on stderr what was of another version when it was made."""
-    from pneutouch.errors import InputError
-    from pneutouch.export.threemf_read import read_threemf
-    from pneutouch.pipeline.recipe import evaluate_recipe
-    from pneutouch.pipeline.recipe_read import other_versions, read_recipe
-
-    options = {"set_": "--set", **{key: f"--{key}" for key in ("model", "tolerance", "closure", "clamp")}}
-    given = [
-        flag for key, flag in options.items() if getattr(context.get_parameter_source(key), "name", "") == "COMMANDLINE"
-    ]
-    if given:
-        raise InputError(
-            f"{file}: {', '.join(given)} cannot be given with a 3MF: its recipe fixes the design and the model; "
-            "build from a design file to change them"
-        )
-    package = read_threemf(Path(file))
-    recipe = read_recipe(package)
-    other = other_versions(package, recipe)
-    if other:
-        typer.echo(f"note: {file} was made with {', '.join(other)}: what is built may differ from it", err=True)
-    return evaluate_recipe(recipe)
-
-
-def _rung(model: str | None, tolerance: str | None) -> dict[str, Any]:
+def rung(model: str | None, tolerance: str | None) -> dict[str, Any]:
     """The rung asked for; a tolerance alone asks for the cheapest that meets it."""
     from pneutouch.errors import InputError
     from pneutouch.mechanics.ladder import DEFAULT_TOLERANCE, parse_tolerance
@@ -228,27 +155,6 @@ def print_json(document: Any) -> None:
     from pneutouch.pipeline.files import json_bytes
 
     typer.echo(json_bytes(document).decode(), nl=False)
-
-
-def _build_with_progress(evaluation: Evaluation, out: Path) -> Path:
-    from pneutouch.pipeline.build import STEPS
-    from pneutouch.pipeline.build import build as run
-
-    if not sys.stderr.isatty():
-        return run(evaluation, out)
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
-
-    columns = (
-        TextColumn("{task.description:<12}"),
-        BarColumn(),
-        TextColumn("{task.completed}/{task.total}"),
-        TimeElapsedColumn(),
-    )
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("", total=len(STEPS))
-        report: Callable[[str], None] = lambda step: bar.update(task, description=step, completed=STEPS.index(step))  # noqa: E731
-        return run(evaluation, out, report)
 
 
 def run() -> None:

@@ -9,9 +9,11 @@ from pneutouch.errors import InputError, nearest
 from pneutouch.spec.design import Design
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
+from pneutouch.spec.specimen import Specimen
 
 _GROUPS = {
     "designs": ["designs"],
+    "specimens": ["specimens"],
     "materials": ["materials"],
     "printers": ["printers"],
     "parts": ["ports", "seats", "mounts", "tubes"],
@@ -114,7 +116,7 @@ def _optional(value: float | None, form: str) -> str:
 
 
 def _title(thing: Any) -> str:
-    if isinstance(thing, Design):
+    if isinstance(thing, Design | Specimen):
         return thing.document.title
     if isinstance(thing, Material):
         return f"{thing.label}, {thing.kind}"

@@ -1,0 +1,161 @@
+"""``pneutouch build`` and ``pneutouch check``: a sensor, a specimen, or a 3MF that was built."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from pneutouch.cli.app import (
+    ClampOption,
+    ClosureOption,
+    DesignArgument,
+    JsonOption,
+    ModelOption,
+    OutOption,
+    SetOption,
+    ToleranceOption,
+    app,
+    print_json,
+    reporting,
+    rung,
+)
+
+if TYPE_CHECKING:
+    from pneutouch.pipeline.evaluate import Evaluation
+    from pneutouch.printability import Finding
+
+_FLAGS = {"set_": "--set", **{key: f"--{key}" for key in ("model", "tolerance", "closure", "clamp")}}
+
+
+@app.command()
+def build(
+    context: typer.Context,
+    design: Annotated[str, typer.Argument(metavar="DESIGN", help="Name of a design or specimen, path of a TOML file, or a 3MF that was built.")],
+    set_: SetOption = None, model: ModelOption = None, tolerance: ToleranceOption = None,
+    closure: ClosureOption = "variational", clamp: ClampOption = "base", out: OutOption = Path("outputs"), json: JsonOption = False,
+) -> None:  # fmt: skip
+    """Build everything: print files, prediction, datasheet. A 3MF is built again from the recipe in it."""
+    with reporting():
+        if _is_specimen(design):
+            _refuse_flags(context, "a specimen, which has no prediction", design, but=("set_",))
+            name, folder, findings = _build_specimen(design, out, set_)
+        else:
+            name, folder, findings = _build_sensor(
+                design, out, lambda: _from_3mf(design, context) if design.lower().endswith(".3mf")
+                else _evaluated(design, set_, closure=closure, clamp=clamp, **rung(model, tolerance)),
+            )  # fmt: skip
+        for finding in findings:
+            typer.echo(f"{finding.severity}: {finding.rule}: {finding.message}; {finding.fix}", err=True)
+        if json:
+            print_json({"design": name, "folder": str(folder)})
+        else:
+            typer.echo(str(folder))
+
+
+@app.command()
+def check(
+    design: DesignArgument, set_: SetOption = None,
+    deep: Annotated[bool, typer.Option("--deep", help="Have pymeshlab (an extra) inspect the meshes as well.")] = False,
+    json: JsonOption = False,
+) -> None:  # fmt: skip
+    """Check printability and mechanical limits; exit 1 where a rule is broken."""
+    with reporting():
+        if _is_specimen(design):
+            from pneutouch.pipeline.specimen.build import check_specimen
+
+            findings = check_specimen(design, set_, deep=deep)
+        else:
+            evaluation = _evaluated(design, set_)
+            findings = [*evaluation.findings, *(evaluation.deep_findings() if deep else [])]
+        broken = any(finding.severity == "error" for finding in findings)
+        if json:
+            print_json({"design": design, "passed": not broken, "findings": [f.document() for f in findings]})
+        else:
+            from pneutouch.cli.text import findings_text
+
+            typer.echo(findings_text([finding.document() for finding in findings]))
+        if broken:
+            raise typer.Exit(1)
+
+
+def _evaluated(design: str, set_: list[str] | None, **asked: Any) -> Evaluation:
+    from pneutouch.pipeline.evaluate import evaluate
+
+    return evaluate(design, set_, **asked)
+
+
+def _is_specimen(design: str) -> bool:
+    from pneutouch.catalogue import Library
+    from pneutouch.pipeline.specimen.load import specimen_file
+
+    return not design.lower().endswith(".3mf") and specimen_file(design, Library.default()) is not None
+
+
+def _build_specimen(design: str, out: Path, set_: list[str] | None) -> tuple[str, Path, list[Finding]]:
+    from pneutouch.pipeline.specimen.build import STEPS, build_specimen
+
+    with _progress(STEPS) as report:
+        folder, findings = build_specimen(design, out, set_, progress=report)
+    return folder.name, folder, findings
+
+
+def _build_sensor(design: str, out: Path, evaluated: Callable[[], Evaluation]) -> tuple[str, Path, list[Finding]]:
+    from pneutouch.pipeline.build import STEPS
+    from pneutouch.pipeline.build import build as run
+    from pneutouch.pipeline.files import check_writable
+
+    evaluation = evaluated()
+    check_writable(out / evaluation.scene.name)
+    with _progress(STEPS) as report:
+        folder = run(evaluation, out, report)
+    return evaluation.scene.name, folder, evaluation.findings
+
+
+def _refuse_flags(context: typer.Context, what: str, file: str, but: Sequence[str] = ()) -> None:
+    """Raise InputError where an option was given that does not go with what is built."""
+    from pneutouch.errors import InputError
+
+    given = [
+        flag for key, flag in _FLAGS.items()
+        if key not in but and getattr(context.get_parameter_source(key), "name", "") == "COMMANDLINE"
+    ]  # fmt: skip
+    if given:
+        raise InputError(f"{file}: {', '.join(given)} cannot be given with {what}")
+
+
+def _from_3mf(file: str, context: typer.Context) -> Evaluation:
+    """Evaluate the recipe of a 3MF; says on stderr what was of another version when it was made."""
+    from pneutouch.export.threemf_read import read_threemf
+    from pneutouch.pipeline.recipe import evaluate_recipe
+    from pneutouch.pipeline.recipe_read import other_versions, read_recipe
+
+    why = "a 3MF: its recipe fixes the design and the model; build from a design file to change them"
+    _refuse_flags(context, why, file)
+    package = read_threemf(Path(file))
+    recipe = read_recipe(package)
+    other = other_versions(package, recipe)
+    if other:
+        typer.echo(f"note: {file} was made with {', '.join(other)}: what is built may differ from it", err=True)
+    return evaluate_recipe(recipe)
+
+
+@contextmanager
+def _progress(steps: Sequence[str]) -> Iterator[Callable[[str], None]]:
+    """A bar over named steps on a terminal; silence elsewhere."""
+    if not sys.stderr.isatty():
+        yield lambda step: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = (
+        TextColumn("{task.description:<12}"), BarColumn(), TextColumn("{task.completed}/{task.total}"), TimeElapsedColumn(),
+    )  # fmt: skip
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("", total=len(steps))
+        yield lambda step: bar.update(task, description=step, completed=steps.index(step))

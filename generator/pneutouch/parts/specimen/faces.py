@@ -1,0 +1,198 @@
+"""Triangulate a flat region from its directed boundary edges, in parts: ear clipping costs the square of the corners."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneutouch.errors import ComputationError
+from pneutouch.meridian.segments import Array
+from pneutouch.parts.specimen.mesh import Triangles
+
+Edges = NDArray[np.int64]
+
+Side = tuple[int, int]
+"""A side of a box: axis, and 0 for its low or 1 for its high end."""
+
+SIDES: tuple[Side, ...] = tuple(itertools.product(range(3), range(2)))
+
+_LARGE = 400
+"""Edges from which a region is cut into parts."""
+
+_PART = 80
+"""Edges of a part."""
+
+_ROOM = 1e-3
+"""Least width in mm of a gap that a cut runs through."""
+
+_CHUNK = 500
+"""Holes that are compared with all outlines at once."""
+
+_DECIMALS = 4
+"""Cuts stand on a grid of 0.1 um, so that those of two sides are either at one place or visibly apart."""
+
+
+def boundary(triangles: Triangles, size: int) -> Edges:
+    """Directed edges (n, 2) that triangles have in one direction only; ``size`` is the number of vertices."""
+    edges = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+    forth, back = edges[:, 0] * size + edges[:, 1], edges[:, 1] * size + edges[:, 0]
+    found: Edges = edges[~np.isin(forth, back)]
+    return found
+
+
+def cut_places(spans: Array) -> list[float]:
+    """Places between spans (n, 2) in mm where a straight cut meets none, about every ``_PART`` of them."""
+    if len(spans) < _LARGE:
+        return []
+    order = spans[np.argsort(spans[:, 0], kind="stable")]
+    reached = np.maximum.accumulate(order[:-1, 1])
+    gaps = np.flatnonzero(order[1:, 0] > reached + _ROOM)
+    places, last = [], 0
+    for k in gaps.tolist():
+        if k - last >= _PART:
+            places.append(round(float(0.5 * (reached[k] + order[k + 1, 0])), _DECIMALS))
+            last = k
+    return places
+
+
+def rim(points: Array, ends: Array, side: Side) -> list[Edges]:
+    """Vertices along the four edges of a box's side, counter-clockwise seen from outside; ``ends`` (2, 3) is the box.
+
+    Each run ends with the corner that the next begins with, where the corners are among ``points`` (n, 3).
+    """
+    axis, end = side
+    u, v = plane(side)
+    low, high = ends
+    on = points[:, axis] == ends[end, axis]
+    runs = []
+    for along, across, at, sign in ((u, v, low, 1), (v, u, high, 1), (u, v, high, -1), (v, u, low, -1)):
+        index = np.flatnonzero(on & (points[:, across] == at[across]))
+        runs.append(index[np.argsort(sign * points[index, along], kind="stable")])
+    return runs
+
+
+def plane(side: Side) -> tuple[int, int]:
+    """The two axes of a side, in the order that makes counter-clockwise face outwards."""
+    axis, end = side
+    return ((axis + 1) % 3, (axis + 2) % 3) if end else ((axis + 2) % 3, (axis + 1) % 3)
+
+
+def triangulated(points: Array, edges: Edges) -> Triangles:
+    """Triangles (m, 3) of the region left of directed ``edges`` (n, 2) among plane ``points`` (k, 2); no new vertices.
+
+    Raises ComputationError where the edges bound no region.
+    """
+    try:
+        groups = _grouped(points, _loops(points, edges))
+    except (IndexError, KeyError):
+        raise ComputationError(
+            "a pattern's footprint leaves no clean face on the block's side; move or resize a layer by 0.1 mm, or report it"
+        ) from None
+    found = [_filled(points, group) for group in groups]
+    return np.concatenate(found) if found else np.zeros((0, 3), np.int64)
+
+
+def _loops(points: Array, edges: Edges) -> list[Edges]:
+    """The edges chained to loops; where several meet in a point, the leftmost turn keeps loops from crossing."""
+    leaving: dict[int, list[int]] = {}
+    for a, b in edges.tolist():
+        leaving.setdefault(a, []).append(b)
+    loops = []
+    for start in list(leaving):
+        while leaving[start]:
+            here, loop = start, [start]
+            step = leaving[start].pop()
+            while step != start:
+                loop.append(step)
+                before, here = here, step
+                step = _leftmost(points, before, here, leaving[here])
+            loops.append(np.array(loop))
+    return loops
+
+
+def _leftmost(points: Array, before: int, here: int, ways: list[int]) -> int:
+    """Take the way out of ``here`` that turns most to the left."""
+    if len(ways) == 1:
+        return ways.pop()
+    back = points[before] - points[here]
+
+    def turn(way: int) -> float:
+        out = points[way] - points[here]
+        # Clockwise from where we came from: the region lies between.
+        angle = np.arctan2(back[0] * out[1] - back[1] * out[0], back @ out)
+        return float(-angle % (2 * np.pi))
+
+    best = min(ways, key=lambda way: turn(way) or 2 * np.pi)
+    ways.remove(best)
+    return best
+
+
+@dataclass
+class _Group:
+    """An outer loop with the holes in it."""
+
+    outer: Edges
+    holes: list[Edges]
+
+
+def _grouped(points: Array, loops: list[Edges]) -> list[_Group]:
+    """Outer loops, each with its holes: those of the smallest outer loop around them."""
+    if not loops:
+        return []
+    starts = np.cumsum([0, *(len(loop) for loop in loops)])[:-1]
+    index = np.concatenate(loops)
+    after = _shifted(index, starts)
+    (x, y), (x1, y1) = points[index].T, points[after].T
+    areas = 0.5 * np.add.reduceat(x * y1 - y * x1, starts)
+    lows, highs = np.minimum.reduceat(points[index], starts), np.maximum.reduceat(points[index], starts)
+    outer = np.flatnonzero(areas > 0)
+    outer = outer[np.argsort(areas[outer], kind="stable")]
+    groups = [_Group(loops[k], []) for k in outer.tolist()]
+    holes = np.flatnonzero(areas <= 0)
+    for chunk in np.array_split(holes, 1 + len(holes) // _CHUNK):
+        within = (lows[outer] <= lows[chunk, None]) & (highs[outer] >= highs[chunk, None])
+        around: NDArray[np.bool_] = np.asarray(within.all(axis=2))
+        for k, row in zip(chunk.tolist(), around, strict=True):
+            inside = np.flatnonzero(row).tolist()
+            if len(inside) > 1:
+                inside = [g for g in inside if _holds(points[groups[g].outer], points[loops[k]])]
+            groups[inside[0]].holes.append(loops[k])
+    return groups
+
+
+def _shifted(index: Edges, starts: Edges) -> Edges:
+    """The vertex after each one in its loop."""
+    after = np.roll(index, -1)
+    after[np.append(starts[1:], len(index)) - 1] = index[starts]
+    return after
+
+
+def _holds(outline: Array, line: Array) -> bool:
+    """Whether a loop lies in an outline: by the middle of its first edge, which may touch in corners alone."""
+    x, y = 0.5 * (line[0] + line[1])
+    (x0, y0), (x1, y1) = outline.T, np.roll(outline, -1, axis=0).T
+    level = np.where(y1 == y0, 1.0, y1 - y0)
+    crosses = ((y0 > y) != (y1 > y)) & (x < x0 + (y - y0) * (x1 - x0) / level)
+    return bool(np.count_nonzero(crosses) % 2)
+
+
+def _filled(points: Array, group: _Group) -> Triangles:
+    from manifold3d import triangulate
+
+    outer = group.outer
+    if not group.holes and len(outer) == 4 and _convex(points[outer]):
+        quad: Triangles = outer[np.array([[0, 1, 2], [0, 2, 3]])]
+        return quad
+    loops = [outer, *group.holes]
+    flat = triangulate([np.ascontiguousarray(points[loop]) for loop in loops])
+    found: Triangles = np.concatenate(loops)[np.asarray(flat)].astype(np.int64)
+    return found
+
+
+def _convex(corners: Array) -> bool:
+    forth = np.roll(corners, -1, axis=0) - corners
+    after = np.roll(forth, -1, axis=0)
+    return bool((forth[:, 0] * after[:, 1] - forth[:, 1] * after[:, 0] > 0).all())

@@ -1,0 +1,125 @@
+"""What a family of patterns is given and gives back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from pneutouch.body import Solid
+from pneutouch.errors import InputError
+from pneutouch.parts.specimen.mesh import Box, Mesh
+from pneutouch.spec.material import Material
+from pneutouch.spec.printer import Printer
+from pneutouch.spec.specimen import Layer
+
+MOST_TRIANGLES = 3_000_000
+"""Of one pattern: about 1.5 GiB while it is made and a 3MF of 60 MB, beyond which tray software was not tried (own)."""
+
+DECIMALS = 4
+"""Coordinates are put on a grid of 0.1 um: two faces are either the same or visibly apart."""
+
+
+@dataclass(frozen=True)
+class Ground:
+    """The block that a pattern is drawn in, with its file for messages; ``speed`` in mm/s, ``tolerance`` in mm."""
+
+    block: Box
+    printer: Printer
+    matrix: Material
+    inclusion: Material
+    speed: float
+    tolerance: float
+    where: str
+
+    def refuse(self, number: int, key: str, value: Any, right: str) -> InputError:
+        """The error for one value of a layer: names file, layer, key and value, and says what would be right."""
+        shown = f"{value:g}" if isinstance(value, float | int) else repr(value)
+        return InputError(f"{self.where}: layer[{number}].{key} = {shown}: {right}")
+
+    def least(self, kind: str) -> float:
+        """Smallest wall or pin in mm that the printer makes of the patterns' material."""
+        smallest = self.printer.smallest
+        feature = smallest.wall(self.inclusion.kind) if kind == "wall" else smallest.pin(self.inclusion.kind)
+        return feature.least or feature.recommended
+
+    def least_matrix(self) -> float:
+        """Smallest wall in mm that the printer makes of the matrix."""
+        feature = self.printer.smallest.wall(self.matrix.kind)
+        return feature.least or feature.recommended
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """A pattern drawn: its mesh, the box it fills, its pitches along the path in mm, and what else is true of it.
+
+    ``volume`` is exact where there is an exact shape, else None; ``solids`` are the exact shapes for STEP.
+    """
+
+    mesh: Mesh
+    box: Box
+    pitches: tuple[float, ...]
+    truth: dict[str, Any] = field(default_factory=dict)
+    volume: float | None = None
+    solids: tuple[Solid, ...] = ()
+
+
+@dataclass(frozen=True)
+class Family:
+    """A family: the box that its pattern will fill, known before it is drawn, and how it is drawn.
+
+    Both take the layer, the ground and the layer's number, for messages, and raise InputError for what cannot be.
+    """
+
+    box: Callable[[Any, Ground, int], Box]
+    draw: Callable[[Any, Ground, int], Pattern]
+
+
+def along(layer: Layer, ground: Ground) -> tuple[float, float]:
+    """Where a layer begins and ends along the path, mm."""
+    end = ground.block.high[0] if layer.end_mm is None else layer.end_mm
+    return round(layer.start_mm, DECIMALS), round(end, DECIMALS)
+
+
+def heights(layer: Layer, ground: Ground, height: float | None) -> tuple[float, float]:
+    """The least and greatest height of a layer, mm; down to the bottom of the block where it has no height."""
+    top = round(ground.block.high[2] - layer.depth_mm, DECIMALS)
+    return (ground.block.low[2] if height is None else round(top - height, DECIMALS)), top
+
+
+def check_inside(box: Box, ground: Ground, number: int, layer: Layer) -> None:
+    """Raise InputError where a pattern reaches out of the block, or its sides come within a micrometre of it."""
+    block = ground.block
+    keys = ("end_mm" if layer.end_mm is not None else "start_mm", "span_mm", "depth_mm")
+    for axis, key in enumerate(keys):
+        low, high = block.low[axis], block.high[axis]
+        if box.low[axis] < low - 1e-9 or box.high[axis] > high + 1e-9:
+            size = ("length_mm", "width_mm", "height_mm")[axis]
+            raise ground.refuse(
+                number, key, getattr(layer, key, high),
+                f"the pattern reaches from {box.low[axis]:g} to {box.high[axis]:g} mm along {'xyz'[axis]}; it must stay "
+                f"between {low:g} and {high:g} mm, so make it smaller or raise block.{size}",
+            )  # fmt: skip
+        for gap in (box.low[axis] - low, high - box.high[axis]):
+            if 0 < gap < 1e-3:
+                text = f"a gap of {1e3 * gap:.2g} um to the side of the block; make it flush or at least 1 um"
+                raise ground.refuse(number, key, getattr(layer, key, high), text)
+
+
+def check_least(ground: Ground, number: int, key: str, value: float, kind: str, factor: float = 1.0) -> None:
+    """Raise InputError where ``factor`` times a value (mm) is thinner than the printer makes a ``kind``."""
+    least = ground.least(kind)
+    if factor * value < least - 1e-9:
+        raise ground.refuse(
+            number, key, value, f"the {ground.printer.title} makes no {kind} of {ground.inclusion.label} thinner than {least:g} mm; "
+            f"it must be at least {least / factor:g} mm",
+        )  # fmt: skip
+
+
+def check_count(ground: Ground, number: int, key: str, value: float, triangles: float) -> None:
+    """Raise InputError where a pattern would take more triangles than files can carry."""
+    if triangles > MOST_TRIANGLES:
+        raise ground.refuse(
+            number, key, value, f"the pattern would take about {triangles / 1e6:.3g} million triangles; the most is "
+            f"{MOST_TRIANGLES / 1e6:g} million (about 1.5 GiB), so take a larger cell or pitch, or a smaller block",
+        )  # fmt: skip

@@ -1,0 +1,85 @@
+"""Meshes without a material, and the boxes they fill."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneutouch.meridian.segments import Array
+
+Point = tuple[float, float, float]
+Triangles = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """A box along the axes between two corners, mm."""
+
+    low: Point
+    high: Point
+
+    @property
+    def volume(self) -> float:
+        """Volume, mm3."""
+        a, b, c = (high - low for low, high in zip(self.low, self.high, strict=True))
+        return a * b * c
+
+    def gap(self, other: Box) -> float:
+        """Greatest distance along an axis between the boxes, mm; negative where they overlap."""
+        return max(
+            max(self.low[k] - other.high[k], other.low[k] - self.high[k]) for k in range(3)
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """``vertices`` (n, 3) in mm and ``triangles`` (m, 3), counter-clockwise seen from outside."""
+
+    vertices: Array
+    triangles: Triangles
+
+    @property
+    def volume(self) -> float:
+        """Volume in mm3 by the divergence theorem; the mesh must be closed."""
+        a, b, c = np.moveaxis(self.vertices[self.triangles], 1, 0)
+        return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
+
+    def is_closed(self) -> bool:
+        """Whether every edge is two triangles' own, run both ways, by index and once vertices are merged in float32."""
+        single, number = np.unique(self.vertices.astype(np.float32), axis=0, return_inverse=True)
+        merged = number.reshape(-1)[self.triangles]
+        return _paired(self.triangles, len(self.vertices)) and _paired(merged, len(single))
+
+    def compact(self) -> Mesh:
+        """The mesh without vertices that no triangle has."""
+        used = np.zeros(len(self.vertices), bool)
+        used[self.triangles.reshape(-1)] = True
+        number = np.cumsum(used) - 1
+        return Mesh(self.vertices[used], number[self.triangles].astype(np.int64))
+
+
+def _paired(triangles: Triangles, size: int) -> bool:
+    edges = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+    forth, back = edges[:, 0] * size + edges[:, 1], edges[:, 1] * size + edges[:, 0]
+    return len(np.unique(forth)) == len(forth) and bool(np.array_equal(np.sort(forth), np.sort(back)))
+
+
+def joined(meshes: list[Mesh]) -> Mesh:
+    """Meshes that are apart from one another as one."""
+    starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
+    return Mesh(
+        np.concatenate([mesh.vertices for mesh in meshes]),
+        np.concatenate([mesh.triangles + start for mesh, start in zip(meshes, starts, strict=False)]),
+    )
+
+
+def snapped(mesh: Mesh, box: Box, slack: float) -> Mesh:
+    """The mesh with coordinates within ``slack`` mm of a side of the box put on it."""
+    vertices = mesh.vertices.copy()
+    for axis in range(3):
+        for side in (box.low[axis], box.high[axis]):
+            column = vertices[:, axis]
+            column[np.abs(column - side) <= slack] = side
+    return Mesh(vertices, mesh.triangles)

@@ -1,0 +1,126 @@
+"""The rigid frame under a specimen: a plate with a hole in each corner and letters, conforming with the block on it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from pneutouch.body.revolve import circle_count, widen
+from pneutouch.meridian.segments import Array
+from pneutouch.parts.specimen.faces import Edges, boundary, triangulated
+from pneutouch.parts.specimen.mesh import Box, Mesh, Triangles
+
+CORNER = 0.5
+"""Share of the border that the cut corner takes at x = y = 0: it says which way round the specimen lies."""
+
+
+def holes(block: Box, border: float) -> list[tuple[float, float]]:
+    """Middles (x, y) of the mounting holes, mm: in the middle of the border, one in each corner."""
+    (x0, y0, _), (x1, y1, _) = block.low, block.high
+    half = 0.5 * border
+    return [(x0 - half, y0 - half), (x1 + half, y0 - half), (x1 + half, y1 + half), (x0 - half, y1 + half)]
+
+
+def plate(
+    block: Box, bodies: Sequence[Mesh], border: float, thickness: float, diameter: float, tolerance: float,
+    letters: Sequence[Array] = (), depth: float = 0.0,
+) -> Mesh:  # fmt: skip
+    """The plate, its top at the bottom of the block; lengths in mm.
+
+    ``bodies`` are what stands on it: their triangles on that plane are taken over, turned round. ``letters`` are plane
+    loops (n, 2), the solid of a letter left of them, cut ``depth`` deep into the top beside the block.
+    """
+    top = block.low[2]
+    made = _Mesh()
+    under = [made.taken(body, top) for body in bodies]
+    edges = [boundary(np.concatenate(under), len(made))]
+    edges[0] = edges[0][:, ::-1] if len(edges[0]) else edges[0]
+    bottom_edges: list[Edges] = []
+    around = outline(block, border)
+    high, low = made.ring(around, top), made.ring(around, top - thickness)
+    edges.append(_loop(high))
+    bottom_edges.append(_loop(low))
+    made.wall(low, high)
+    count = circle_count(0.5 * diameter, tolerance)
+    angle = 2 * np.pi * np.arange(count) / count
+    circle = 0.5 * diameter * widen(count) * np.column_stack([np.cos(angle), np.sin(angle)])
+    for middle in holes(block, border):
+        mouth, end = made.ring(circle + middle, top), made.ring(circle + middle, top - thickness)
+        edges.append(_loop(mouth)[:, ::-1])
+        bottom_edges.append(_loop(end)[:, ::-1])
+        made.wall(mouth, end)
+    floor: list[Edges] = []
+    for line in letters:
+        mouth, end = made.ring(line, top), made.ring(line, top - depth)
+        edges.append(_loop(mouth)[:, ::-1])
+        floor.append(_loop(end))
+        made.wall(mouth, end)
+    points = made.points()
+    flat = [_up(points, edges), _up(points, bottom_edges)[:, ::-1], *([_up(points, floor)] if floor else [])]
+    return Mesh(points, np.concatenate([*under, *made.walls, *flat])).compact()
+
+
+class _Mesh:
+    """Vertices as they come, and walls between rings of them."""
+
+    def __init__(self) -> None:
+        self._parts: list[Array] = []
+        self._size = 0
+        self._known: dict[tuple[float, ...], int] = {}
+        self.walls: list[Triangles] = []
+
+    def __len__(self) -> int:
+        return self._size
+
+    def points(self) -> Array:
+        """All vertices, (n, 3)."""
+        return np.concatenate(self._parts)
+
+    def taken(self, body: Mesh, top: float) -> Triangles:
+        """Triangles of a body on the plane z = ``top``, turned round; bodies share their vertices by position."""
+        flat = body.triangles[(body.vertices[:, 2] == top)[body.triangles].all(axis=1)]
+        used = np.unique(flat)
+        number = np.zeros(len(body.vertices), np.int64)
+        fresh: list[Array] = []
+        for k in used.tolist():
+            key = tuple(body.vertices[k].tolist())
+            if key not in self._known:
+                self._known[key] = self._size + len(fresh)
+                fresh.append(body.vertices[k])
+            number[k] = self._known[key]
+        if fresh:
+            self._add(np.array(fresh))
+        turned: Triangles = number[flat][:, ::-1]
+        return turned
+
+    def ring(self, line: Array, height: float) -> Edges:
+        """Numbers of a loop's vertices at a height."""
+        start = self._size
+        self._add(np.column_stack([line, np.full(len(line), height)]))
+        return np.arange(start, self._size)
+
+    def wall(self, low: Edges, high: Edges) -> None:
+        """The strip between two rings, facing right of their way where the first one is the lower."""
+        a, b = low, np.roll(low, -1)
+        c, d = high, np.roll(high, -1)
+        self.walls += [np.column_stack([a, b, d]), np.column_stack([a, d, c])]
+
+    def _add(self, points: Array) -> None:
+        self._parts.append(points)
+        self._size += len(points)
+
+
+def outline(block: Box, border: float) -> Array:
+    """Corners (5, 2) of the plate, mm, counter-clockwise from the cut one."""
+    (x0, y0, _), (x1, y1, _) = block.low, block.high
+    left, right, near, far, cut = x0 - border, x1 + border, y0 - border, y1 + border, CORNER * border
+    return np.array([[left + cut, near], [right, near], [right, far], [left, far], [left, near + cut]])
+
+
+def _loop(ring: Edges) -> Edges:
+    return np.column_stack([ring, np.roll(ring, -1)])
+
+
+def _up(points: Array, edges: Sequence[Edges]) -> Triangles:
+    return triangulated(points[:, :2], np.concatenate(list(edges)))

@@ -1,0 +1,219 @@
+"""Strut lattices: one octant of the cell by one batch boolean, mirrored and tiled by index.
+
+Every lattice here is its own mirror image in the planes at all multiples of half a cell. So an octant, [0, a/2]^3, and its
+mirror images fill any number of half cells, and what two of them share is the same outline by construction: nothing is
+intersected twice and no positions are compared. Only a block that ends inside a half cell is cut to size, in one boolean.
+
+A strut is the convex hull of two balls. All balls of a lattice are one polyhedron, turned the same way. The octant is
+made with a side of one, its nodes and its balls on a grid of 2^-20: sums are exact, and the struts that join at a node
+share its facets instead of nearly doing so.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneutouch.body.revolve import circle_count, widen
+from pneutouch.errors import ComputationError
+from pneutouch.meridian.segments import Array
+from pneutouch.parts.specimen.mesh import Box, Mesh, snapped
+from pneutouch.parts.specimen.partition import complement
+
+Ends = tuple[tuple[float, float, float], tuple[float, float, float]]
+
+_A, _B, _C = (0.5, 0.5, 0.0), (0.5, 0.0, 0.5), (0.0, 0.5, 0.5)
+_O = (0.0, 0.0, 0.0)
+_KELVIN = [
+    (0.0, 0.25, 0.5), (0.25, 0.0, 0.5), (0.5, 0.0, 0.25), (0.5, 0.25, 0.0), (0.25, 0.5, 0.0), (0.0, 0.5, 0.25),
+]  # fmt: skip
+
+STRUTS: dict[str, tuple[Ends, ...]] = {
+    "simple-cubic": ((_O, (0.5, 0.0, 0.0)), (_O, (0.0, 0.5, 0.0)), (_O, (0.0, 0.0, 0.5))),
+    "bcc": ((_O, (0.5, 0.5, 0.5)),),
+    "fcc": ((_O, _A), (_O, _B), (_O, _C)),
+    "octet": ((_O, _A), (_O, _B), (_O, _C), (_A, _B), (_B, _C), (_C, _A)),
+    "kelvin": tuple(itertools.pairwise([*_KELVIN, _KELVIN[0]])),
+}
+"""Struts, or the part of them, in an octant of the cell, in cells. Mirror images make the rest."""
+
+_GRID = 2.0**-20
+"""Vertices of the balls lie on this grid, in half cells, so that sums of them with nodes on the same grid are exact."""
+
+_MERGED = 1e-5
+"""Detail in half cells left out after the boolean: a reader in float32 merges what is nearer than 4e-6 mm at 60 mm."""
+
+_NUDGES = (0.0, 1e-5, -1e-5, 3e-5, -3e-5, 1e-4, -1e-4, 3e-4)
+"""Relative changes of a radius that does not come out clean, in the order tried."""
+
+_CUTS = (1e-3, 1e-4, 3e-3, 2e-5, 6e-3)
+"""Detail in mm left out where a lattice is cut to size, in the order tried: a knife may pass as near to its corners as it
+likes, and what is left there must be neither nearly nothing nor pressed into the face."""
+
+
+@dataclass(frozen=True)
+class Lattice:
+    """A strut lattice: its kind, cell and strut radius in mm, and the sides of a strut, a multiple of four."""
+
+    kind: str
+    cell: float
+    radius: float
+    sides: int
+
+    @staticmethod
+    def of(kind: str, cell: float, radius: float, tolerance: float) -> Lattice:
+        """With as many sides as keep a chord tolerance, mm."""
+        return Lattice(kind, cell, radius, circle_count(radius, tolerance))
+
+    def ball(self) -> Array:
+        """Corners (n, 3), in half cells, of the polyhedron that stands for every node's ball, about its middle.
+
+        A subdivided octahedron: the three planes of the axes cut it along its edges, so half balls are exact.
+        """
+        steps = self.sides // 4
+        corners = [
+            (i * sx, j * sy, (steps - i - j) * sz)
+            for i in range(steps + 1) for j in range(steps + 1 - i)
+            for sx in (-1, 1) for sy in (-1, 1) for sz in (-1, 1)
+        ]  # fmt: skip
+        points = np.unique(np.array(corners, float), axis=0)
+        # Equal angles along the edges: plain normalising would crowd the corners of the octahedron.
+        bent = np.sign(points) * np.sin(0.5 * np.pi * np.abs(points) / steps)
+        unit = bent / np.linalg.norm(bent, axis=1, keepdims=True)
+        # Widened until the equator has the area of its circle, as the circles of turned bodies are.
+        return np.asarray(np.rint(unit * self.radius / (0.5 * self.cell) * widen(self.sides) / _GRID) * _GRID)
+
+    def struts(self) -> list[tuple[Array, Array]]:
+        """Ends (3,), in half cells, of every strut that reaches into the octant, mirror images of its own included."""
+        reach = 1.1 * self.radius / (0.5 * self.cell)
+        found: dict[tuple[float, ...], tuple[Array, Array]] = {}
+        for one, other in STRUTS[self.kind]:
+            for signs in itertools.product((-1.0, 1.0), repeat=3):
+                for shift in itertools.product((0.0, 1.0), repeat=3):
+                    a, b = (2.0 * (np.array(shift) + np.array(signs) * np.array(end)) for end in (one, other))
+                    low, high = np.minimum(a, b) - reach, np.maximum(a, b) + reach
+                    if (high > 0).all() and (low < 1.0).all():
+                        key = tuple(sorted([tuple(a.tolist()), tuple(b.tolist())]))
+                        found[key] = (a, b)  # type: ignore[index]
+        return [found[key] for key in sorted(found)]
+
+    def distance(self, points: Array) -> Array:
+        """Distances (n,) of points (n, 3) in the octant from the nearest strut's axis, all in half cells."""
+        nearest = np.full(len(points), np.inf)
+        for a, b in self.struts():
+            way = b - a
+            share = np.clip((points - a) @ way / (way @ way), 0.0, 1.0)
+            nearest = np.minimum(nearest, np.linalg.norm(points - a - share[:, None] * way, axis=1))
+        return nearest
+
+
+def octant(lattice: Lattice) -> Mesh:
+    """The lattice in an octant of the cell whose side is one, closed: one batch union of its struts and one cut.
+
+    Struts that cross at symmetric places can leave a spike or a touching edge (manifold3d 3.5.4: octet, cell 7.7 mm, radius
+    0.5 mm). The radius is then changed by some parts in 100,000. Raises ComputationError where that does not help.
+    """
+    for nudge in _NUDGES:
+        tried = replace(lattice, radius=lattice.radius * (1 + nudge))
+        piece = _octant(tried)
+        if _sound(tried, piece):
+            return piece
+    raise ComputationError(
+        f"{lattice.kind}: no clean cell of {lattice.cell:g} mm with struts of {lattice.radius:g} mm; change either by 0.01 mm"
+    )
+
+
+def _octant(lattice: Lattice) -> Mesh:
+    from manifold3d import Manifold, OpType
+
+    ball = lattice.ball()
+    hulls = [Manifold.hull_points(np.concatenate([ball + a, ball + b])) for a, b in lattice.struts()]
+    whole = Manifold.batch_boolean(hulls, OpType.Add) ^ Manifold.cube((1.0, 1.0, 1.0))
+    return snapped(_read(whole.simplify(_MERGED)), Box((0.0, 0.0, 0.0), (1.0, 1.0, 1.0)), 1e-9)
+
+
+def _sound(lattice: Lattice, piece: Mesh) -> bool:
+    """Whether every vertex lies on a strut, and the octant with its mirror images is closed."""
+    reach = 1.01 * widen(lattice.sides) * lattice.radius / (0.5 * lattice.cell)
+    if (lattice.distance(piece.vertices) > reach).any():
+        return False
+    return tiled(piece, 1.0, (2, 2, 2), np.zeros(3)).is_closed()
+
+
+def tiled(piece: Mesh, half: float, counts: tuple[int, int, int], origin: Array) -> Mesh:
+    """An octant, drawn ``half`` mm wide, and its mirror images, ``counts`` of them along each axis, from ``origin`` (3,).
+
+    A vertex on a plane between octants is one vertex of both, by its number and the plane's: positions are not compared.
+    """
+    vertices, triangles = piece.vertices, piece.triangles
+    on_low, on_high = vertices == 0.0, vertices == 1.0
+    index = np.stack(np.meshgrid(*map(np.arange, counts), indexing="ij"), axis=-1).reshape(-1, 3)
+    odd = (index % 2).astype(bool)
+    on_first = np.where(odd[:, None, :], on_high, on_low)
+    on_last = np.where(odd[:, None, :], on_low, on_high)
+    # Planes have even codes, what lies between them odd ones.
+    code = 2 * index[:, None, :] + 1 - on_first + on_last
+    local = np.where(odd[:, None, :], 1.0 - vertices, vertices)
+    place = np.where(
+        code % 2 == 0, (code // 2) * half, (index[:, None, :] + local) * half
+    )  # fmt: skip
+    sizes = [2 * n + 1 for n in counts]
+    key = ((np.arange(len(vertices)) * sizes[0] + code[..., 0]) * sizes[1] + code[..., 1]) * sizes[2] + code[..., 2]
+    _, first, number = np.unique(key.reshape(-1), return_index=True, return_inverse=True)
+    corners = number.reshape(key.shape)[:, triangles]
+    flip = odd.sum(axis=1) % 2 == 1
+    corners[flip] = corners[flip][:, :, ::-1]
+    kept = corners[~_inner(code[:, triangles], sizes)]
+    return Mesh(place.reshape(-1, 3)[first] + origin, kept).compact()
+
+
+def _inner(code: NDArray[np.int64], sizes: list[int]) -> NDArray[np.bool_]:
+    """Triangles (octants, triangles) that lie on a plane between two octants: both have them, so neither keeps them."""
+    inner = np.zeros(code.shape[:2], bool)
+    for axis in range(3):
+        one = code[..., axis]
+        flat = (one == one[..., :1]).all(axis=-1) & (one[..., 0] % 2 == 0)
+        inner |= flat & (one[..., 0] > 0) & (one[..., 0] < sizes[axis] - 1)
+    return inner
+
+
+def half_cells(cell: float, box: Box) -> tuple[tuple[int, int, int], bool]:
+    """Half cells along each axis that cover a box, and whether they fill it exactly."""
+    size = np.array(box.high) - np.array(box.low)
+    a, b, c = (math.ceil(round(length / (0.5 * cell), 6)) for length in size.tolist())
+    return (a, b, c), bool(np.allclose(np.array([a, b, c]) * 0.5 * cell, size, rtol=0, atol=1e-6))
+
+
+def fill(lattice: Lattice, box: Box, piece: Mesh | None = None) -> Mesh:
+    """The lattice in a box, closed; cells start at its least corner. Cut in one boolean where half cells do not fill it.
+
+    ``piece`` is its octant, where it is there already.
+    """
+    counts, whole = half_cells(lattice.cell, box)
+    mesh = tiled(piece or octant(lattice), 0.5 * lattice.cell, counts, np.array(box.low))
+    return snapped(mesh, box, 2e-6) if whole else _cut(mesh, box)
+
+
+def _cut(mesh: Mesh, box: Box) -> Mesh:
+    """What of a mesh lies in a box that its low sides are flush with."""
+    from manifold3d import Manifold, Mesh64
+
+    size = np.array(box.high) - np.array(box.low)
+    shifted = Mesh64(np.ascontiguousarray(mesh.vertices - np.array(box.low)), mesh.triangles.astype(np.uint64))
+    cut = Manifold(shifted) ^ Manifold.cube(size.tolist())
+    for detail in _CUTS:
+        found = _read(cut.simplify(detail))
+        placed = snapped(Mesh(found.vertices + np.array(box.low), found.triangles), box, 1e-6)
+        if placed.is_closed() and complement(box, placed).is_closed():
+            break
+    return placed
+
+
+def _read(manifold: Any) -> Mesh:
+    mesh = manifold.to_mesh64()
+    return Mesh(np.array(mesh.vert_properties[:, :3], order="C"), mesh.tri_verts.astype(np.int64))

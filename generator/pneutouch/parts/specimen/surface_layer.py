@@ -1,0 +1,61 @@
+"""The family of minimal surfaces: checked, levelled to the volume fraction or thickness asked for, and drawn."""
+
+from __future__ import annotations
+
+from pneutouch.parts.specimen.family import Family, Ground, Pattern, along, check_count, check_least, heights
+from pneutouch.parts.specimen.mesh import Box
+from pneutouch.parts.specimen.surfaces import Surface, fill, fraction_of
+from pneutouch.spec.specimen import MinimalSurface
+
+_PER_CELL = 7.0
+"""Triangles that a sheet takes per step of the grid squared and per cell's area of its two faces, measured, rounded up."""
+
+
+def box(layer: MinimalSurface, ground: Ground, number: int) -> Box:
+    """The box that it fills: whole width, cells from its least corner."""
+    if layer.thickness_mm is not None:
+        check_least(ground, number, "thickness_mm", layer.thickness_mm, "wall")
+    start, end = along(layer, ground)
+    low, high = heights(layer, ground, layer.height_mm)
+    around = Box((start, ground.block.low[1], low), (end, ground.block.high[1], high))
+    cell = layer.pitch(ground.speed)
+    if min(b - a for a, b in zip(around.low, around.high, strict=True)) < 0.5 * cell - 1e-9:
+        text = f"half a cell of {cell:.4g} mm does not fit into the layer; take a smaller cell, or a higher layer"
+        raise ground.refuse(number, "cell_mm", cell, text)
+    surface = Surface(layer.kind, cell, layer.form, ground.tolerance)
+    faces = 2 if layer.form == "sheet" else 1
+    estimate = _PER_CELL * faces * 3.0 / cell * around.volume / surface.step**2
+    check_count(ground, number, layer.period_key(), cell, estimate)
+    return around
+
+
+def draw(layer: MinimalSurface, ground: Ground, number: int) -> Pattern:
+    """The body, with the fraction that it has as measured on its mesh."""
+    around, cell = box(layer, ground, number), layer.pitch(ground.speed)
+    surface = Surface(layer.kind, cell, layer.form, ground.tolerance)
+    asked = layer.volume_fraction
+    fraction = (
+        fraction_of(surface, around, layer.thickness_mm) if asked is None and layer.thickness_mm else asked or 0.0
+    )
+    low, high = surface.limits()
+    if not low < fraction < high:
+        key, value = ("thickness_mm", layer.thickness_mm) if asked is None else ("volume_fraction", asked)
+        raise ground.refuse(
+            number, key, value, f"the {layer.kind} {layer.form} would fill {fraction:.3g} of the layer; it hangs together from "
+            f"{low:.3f} to {high:.3f} only",
+        )  # fmt: skip
+    mean = fraction / fraction_of(surface, around, 1.0)
+    if layer.form == "sheet" and asked is not None and mean < ground.least("wall") - 1e-9:
+        raise ground.refuse(
+            number, "volume_fraction", asked, f"the sheet would be {mean:.3g} mm thick on average; the {ground.printer.title} makes no "
+            f"wall thinner than {ground.least('wall'):g} mm, so it must be at least {asked * ground.least('wall') / mean:.3f}, or take a larger cell_mm",
+        )  # fmt: skip
+    mesh = fill(surface, around, fraction)
+    truth = {
+        "cell_mm": cell, "form": layer.form, "volume_fraction": mesh.volume / around.volume,
+        **({"mean_thickness_mm": mean} if layer.form == "sheet" else {}),
+    }  # fmt: skip
+    return Pattern(mesh, around, (cell,), truth)
+
+
+FAMILY = Family(box, draw)

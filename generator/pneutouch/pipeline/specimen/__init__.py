@@ -1,0 +1,1 @@
+"""Texture specimens from their file to their folder."""

@@ -1,0 +1,101 @@
+"""A specimen's file with every name in it resolved: its materials, its printer and the ground its patterns are drawn in."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pneutouch.catalogue import Library
+from pneutouch.errors import InputError
+from pneutouch.parts.specimen import Box, Ground
+from pneutouch.spec.fields import Table
+from pneutouch.spec.material import Material
+from pneutouch.spec.printer import Mode, Printer
+from pneutouch.spec.read import override, read_toml
+from pneutouch.spec.specimen import Specimen, validate_specimen
+
+
+@dataclass(frozen=True, slots=True)
+class SpecimenScene:
+    """All that a specimen names. ``where`` is the file as the user gave it, for messages."""
+
+    name: str
+    where: str
+    specimen: Specimen
+    matrix: Material
+    inclusion: Material
+    frame: Material | None
+    printer: Printer
+    mode: Mode
+
+    @property
+    def block(self) -> Box:
+        """The block in mm: x along the path, z up; its bottom is z = 0."""
+        block = self.specimen.block
+        return Box((0.0, 0.0, 0.0), (block.length_mm, block.width_mm, block.height_mm))
+
+    @property
+    def tolerance(self) -> float:
+        """Chord tolerance in mm: the printer's finest step."""
+        return self.printer.finest_step(self.mode)
+
+    @property
+    def ground(self) -> Ground:
+        """What patterns are drawn in."""
+        speed = self.specimen.scan.speed_mm_per_s
+        return Ground(self.block, self.printer, self.matrix, self.inclusion, speed, self.tolerance, self.where)
+
+
+def is_specimen(content: dict[str, Any]) -> bool:
+    """Whether the content of a design file is a specimen's: it has a [block] table."""
+    return "block" in content
+
+
+def specimen_file(name: str, library: Library) -> Path | None:
+    """The file of a specimen given by name or path, or None where the name is a sensor's or of nothing."""
+    shelf = library.shelf("specimens")
+    if name in shelf:
+        return shelf[name]
+    try:
+        path = library.design_file(name)
+    except InputError:
+        return None
+    return path if path.is_file() and is_specimen(read_toml(path)) else None
+
+
+def load_specimen(
+    name: str, assignments: list[str] | None = None, library: Library | None = None
+) -> SpecimenScene:  # fmt: skip
+    """Load a specimen by name or path, apply ``table.key=value`` overrides and resolve its names.
+
+    Raises InputError that names file, key and value.
+    """
+    shelves = library or Library.default()
+    shelf = shelves.shelf("specimens")
+    path = shelf[name] if name in shelf else shelves.design_file(name)
+    content = override(read_toml(path), assignments or [], Specimen)
+    if not is_specimen(content):
+        raise InputError(f"{path}: has no [block] table, so it is no specimen; a sensor is built by its own name")
+    return _resolved(path.stem, str(path), validate_specimen(content, str(path)), shelves)
+
+
+def _resolved(name: str, where: str, specimen: Specimen, shelves: Library) -> SpecimenScene:
+    def find(kind: str, table: Table, section: str, key: str) -> Any:
+        return shelves.load(kind, getattr(table, key), asked_by=f"{where}: {section}.{key}")
+
+    printer: Printer = find("printers", specimen.print, "print", "profile")
+    matrix = find("materials", specimen.block, "block", "matrix")
+    inclusion = find("materials", specimen.block, "block", "inclusion")
+    frame = None
+    if specimen.frame is not None:
+        frame = find("materials", specimen.frame, "frame", "material") if specimen.frame.material else inclusion
+    together = [material for material in (matrix, inclusion, frame) if material is not None]
+    mode = printer.mode_for(*together)
+    if mode is None:
+        labels = ", ".join(dict.fromkeys(material.label for material in together))
+        raise InputError(
+            f"{where}: print.profile = {specimen.print.profile!r}: the {printer.title} cannot hold {labels} together; it runs "
+            f"{', '.join(printer.resins)}, {printer.resins_at_once} at once"
+        )
+    return SpecimenScene(name, where, specimen, matrix, inclusion, frame, printer, mode)

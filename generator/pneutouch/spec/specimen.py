@@ -1,0 +1,262 @@
+"""The specimen file: a soft block with rigid patterns in it, one TOML a specimen, known by its [block] table.
+
+Section 5 of the paper slides a sensor over such a block (Figure 9). A pattern is given by its pitch, or by the frequency
+that it is to have at the speed of the scan; the pitch is then speed over frequency.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, SerializeAsAny, model_validator
+
+from pneutouch.errors import InputError, nearest
+from pneutouch.spec.design import Document, Printable
+from pneutouch.spec.fields import Table, name, number
+from pneutouch.spec.read import validate
+
+Period = Literal["pitch_mm", "pitches_mm", "cell_mm"]
+StrutKind = Literal["simple-cubic", "bcc", "fcc", "octet", "kelvin"]
+SurfaceKind = Literal["gyroid", "schwarz-p", "diamond"]
+
+
+class Block(Table):
+    """[block]: the body that is scanned; x runs along the path, z up to the scanned surface at height_mm."""
+
+    length_mm: float = number(60.0, unit="mm", low=1, high=1000, help="Length along the path of the scan.")
+    width_mm: float = number(20.0, unit="mm", low=1, high=1000, help="Width across the path.")
+    height_mm: float = number(8.0, unit="mm", low=0.5, high=500, help="Height up to the scanned surface.")
+    matrix: str = name("Agilus30", registry="materials", help="Resin of the block.")
+    inclusion: str = name("VeroClear", registry="materials", help="Resin of the patterns in it.")
+
+    @model_validator(mode="after")
+    def _two(self) -> Block:
+        if self.matrix == self.inclusion:
+            raise ValueError(f"inclusion = {self.inclusion!r} is the matrix too; it must be another material")
+        return self
+
+
+class Scan(Table):
+    """[scan]: how the sensor is moved over it (paper, Figure 9)."""
+
+    speed_mm_per_s: float = number(4.0, unit="mm/s", low=0.001, high=10000, help="Speed along the path.")
+
+
+class Layer(Table):
+    """What every [[layer]] has."""
+
+    kind: str
+    name: Printable | None = Field(default=None, min_length=1, max_length=40, description="Name of the pattern.")
+    depth_mm: float = number(0.0, unit="mm", low=0, high=500, help="Depth of its top below the surface.")
+    start_mm: float = number(0.0, unit="mm", low=0, high=1000, help="Where it begins along the path.")
+    end_mm: float | None = number(
+        None, unit="mm", low=0, high=1000, help="Where it ends along the path; left out: at the end of the block."
+    )
+    target_frequency_Hz: float | None = number(  # noqa: N815
+        None, unit="Hz", low=1e-4, high=1e5, help="Frequency at the speed of the scan, instead of the pitch."
+    )
+
+    def period(self) -> float | None:
+        """The pitch or cell as given, mm; None where the frequency is given."""
+        raise NotImplementedError
+
+    def period_key(self) -> str:
+        """Name of the key that gives it."""
+        return "pitch_mm"
+
+    def pitch(self, speed: float) -> float:
+        """Pitch along the path in mm, at a speed of the scan in mm/s."""
+        given = self.period()
+        if given is not None:
+            return given
+        assert self.target_frequency_Hz is not None
+        return speed / self.target_frequency_Hz
+
+    @model_validator(mode="after")
+    def _one_period(self) -> Layer:
+        if (self.period() is None) == (self.target_frequency_Hz is None):
+            both = "both are" if self.period() is not None else "neither is"
+            raise ValueError(f"exactly one of {self.period_key()} and target_frequency_Hz must be given; {both}")
+        if self.end_mm is not None and self.end_mm <= self.start_mm:
+            raise ValueError(f"end_mm = {self.end_mm:g} must be more than start_mm = {self.start_mm:g}")
+        return self
+
+
+class _Pitched(Layer):
+    pitch_mm: float | None = number(None, unit="mm", low=0.001, high=1000, help="Pitch along the path.")
+    height_mm: float = number(
+        1.0, unit="mm", low=0.001, high=500, help="Height of the bars, or of the sheet in its troughs."
+    )
+    offset_mm: float = number(0.0, unit="mm", low=0, high=1000, help="Shift of the pattern along the path.")
+
+    def period(self) -> float | None:
+        return self.pitch_mm
+
+
+class Bars(_Pitched):
+    """Straight bars across the path; the first one's near side stands at start + offset."""
+
+    kind: Literal["bars"]
+    width_mm: float = number(1.5, unit="mm", low=0.001, high=1000, help="Width of a bar along the path.")
+    span_mm: float | None = number(
+        None, unit="mm", low=0.001, high=1000, help="Length of a bar across the path; left out: the block's width."
+    )
+
+
+class Sinusoid(_Pitched):
+    """A sheet across the block whose top is a sine; its crests lie at depth_mm."""
+
+    kind: Literal["sinusoid"]
+    amplitude_mm: float = number(0.5, unit="mm", low=0.001, high=500, help="Half of the height from trough to crest.")
+
+
+class RandomPhase(Layer):
+    """A sheet whose top is a sum of sines of one amplitude, with phases drawn once from a seed."""
+
+    kind: Literal["random-phase"]
+    pitches_mm: list[Annotated[float, Field(ge=0.001, le=1000)]] | None = Field(
+        default=None, min_length=1, max_length=50, description="pitches along the path, each from 0.001 to 1000 mm",
+    )  # fmt: skip
+    target_frequencies_Hz: list[Annotated[float, Field(ge=1e-4, le=1e5)]] | None = Field(  # noqa: N815
+        default=None, min_length=1, max_length=50, description="frequencies at the speed of the scan, Hz",
+    )  # fmt: skip
+    amplitude_mm: float = number(0.3, unit="mm", low=0.001, high=500, help="Amplitude of each sine.")
+    height_mm: float = number(1.0, unit="mm", low=0.001, high=500, help="Thickness under the lowest trough.")
+    seed: int = Field(default=1, ge=0, le=2**31 - 1, description="Seed of the phases; a whole number from 0.")
+
+    def period(self) -> float | None:
+        """The first pitch as given, mm."""
+        return None if self.pitches_mm is None else self.pitches_mm[0]
+
+    def period_key(self) -> str:
+        """Name of the key that gives them."""
+        return "pitches_mm"
+
+    def pitches(self, speed: float) -> list[float]:
+        """Pitches in mm at a speed in mm/s."""
+        if self.pitches_mm is not None:
+            return self.pitches_mm
+        return [speed / frequency for frequency in self.target_frequencies_Hz or []]
+
+    @model_validator(mode="after")
+    def _one_period(self) -> RandomPhase:
+        if self.target_frequency_Hz is not None:
+            raise ValueError("a random-phase layer takes target_frequencies_Hz, a list, not target_frequency_Hz")
+        if (self.pitches_mm is None) == (self.target_frequencies_Hz is None):
+            both = "both are" if self.pitches_mm is not None else "neither is"
+            raise ValueError(f"exactly one of pitches_mm and target_frequencies_Hz must be given; {both}")
+        if self.end_mm is not None and self.end_mm <= self.start_mm:
+            raise ValueError(f"end_mm = {self.end_mm:g} must be more than start_mm = {self.start_mm:g}")
+        return self
+
+
+class _Celled(Layer):
+    cell_mm: float | None = number(None, unit="mm", low=0.01, high=1000, help="Side of the cubic cell.")
+    height_mm: float | None = number(
+        None, unit="mm", low=0.001, high=500, help="Height of the layer; left out: down to the bottom of the block."
+    )
+    volume_fraction: float | None = number(
+        None, unit="", low=0.001, high=0.999, help="Share of the layer that it fills."
+    )
+
+    def period(self) -> float | None:
+        return self.cell_mm
+
+    def period_key(self) -> str:
+        return "cell_mm"
+
+    def _one_size(self, key: str, value: float | None) -> None:
+        if (value is None) == (self.volume_fraction is None):
+            both = "both are" if value is not None else "neither is"
+            raise ValueError(f"exactly one of {key} and volume_fraction must be given; {both}")
+
+
+class StrutLattice(_Celled):
+    """A lattice of round struts."""
+
+    kind: StrutKind
+    strut_radius_mm: float | None = number(None, unit="mm", low=0.001, high=500, help="Radius of the struts.")
+
+    @model_validator(mode="after")
+    def _one_radius(self) -> StrutLattice:
+        self._one_size("strut_radius_mm", self.strut_radius_mm)
+        return self
+
+
+class MinimalSurface(_Celled):
+    """A triply periodic minimal surface: a sheet about it, or the network on one side of it."""
+
+    kind: SurfaceKind
+    form: Literal["sheet", "network"] = Field(default="sheet", description="sheet or network")
+    thickness_mm: float | None = number(
+        None, unit="mm", low=0.001, high=500, help="Mean thickness of a sheet: its volume over its middle surface."
+    )
+
+    @model_validator(mode="after")
+    def _one_thickness(self) -> MinimalSurface:
+        self._one_size("thickness_mm", self.thickness_mm)
+        if self.form == "network" and self.thickness_mm is not None:
+            raise ValueError(f"thickness_mm = {self.thickness_mm:g}: a network has none; give volume_fraction")
+        return self
+
+
+class Frame(Table):
+    """[frame]: a rigid plate under the block, wider than it, with a hole in each corner and a cut corner at x = y = 0."""
+
+    material: str | None = Field(
+        default=None, min_length=1, description="Material; left out: that of the patterns.",
+        json_schema_extra={"registry": "materials"},
+    )  # fmt: skip
+    border_mm: float = number(8.0, unit="mm", low=1, high=100, help="Width of the plate beyond the block.")
+    thickness_mm: float = number(3.0, unit="mm", low=0.5, high=50, help="Thickness of the plate.")
+    hole_diameter_mm: float = number(
+        3.4, unit="mm", low=0.1, high=50, help="Mounting holes; 3.4 mm clears an M3 screw."
+    )
+    mark: str = Field(
+        default="",
+        pattern=r"^[A-Za-z0-9.+-]{0,24}$",
+        description="up to 24 letters, digits, points, + or -; left out: no mark",
+    )
+
+
+class SpecimenPrint(Table):
+    """[print]: the machine."""
+
+    profile: str = name("j735", registry="printers", help="Printer; it holds all materials at once.")
+
+
+class Specimen(Table):
+    """A whole specimen file; ``layer`` holds models of LAYERS."""
+
+    document: Document = Document(title="Texture specimen")
+    block: Block = Block()
+    scan: Scan = Scan()
+    layer: list[SerializeAsAny[Layer]] = Field(min_length=1, max_length=50, description="one [[layer]] a pattern")
+    frame: Frame | None = None
+    print: SpecimenPrint = SpecimenPrint()
+
+
+_KINDS: tuple[tuple[type[Layer], Any], ...] = (
+    (Bars, ("bars",)), (Sinusoid, ("sinusoid",)), (RandomPhase, ("random-phase",)),
+    (StrutLattice, ("simple-cubic", "bcc", "fcc", "octet", "kelvin")),
+    (MinimalSurface, ("gyroid", "schwarz-p", "diamond")),
+)  # fmt: skip
+
+LAYERS: dict[str, type[Layer]] = {kind: model for model, kinds in _KINDS for kind in kinds}
+"""Models of a [[layer]] by its kind."""
+
+
+def validate_specimen(content: dict[str, Any], where: str) -> Specimen:
+    """The model of a specimen's file; each layer by the model of its kind, so that messages name the layer and its keys."""
+    layers = content.get("layer", [])
+    if not isinstance(layers, list):
+        raise InputError(f"{where}: layer: must be tables, written [[layer]]")
+    models = [_layer(layer, f"{where}: layer[{k}]") for k, layer in enumerate(layers)]
+    return validate(Specimen, {**content, "layer": models}, where)
+
+
+def _layer(content: Any, where: str) -> Layer:
+    kind = content.get("kind") if isinstance(content, dict) else None
+    if not isinstance(kind, str) or kind not in LAYERS:
+        raise InputError(f"{where}.kind = {kind!r}: unknown.{nearest(str(kind), LAYERS)}")
+    return validate(LAYERS[kind], content, where)
