@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import struct
+import time
 import tracemalloc
 import zipfile
 import zlib
@@ -232,3 +233,33 @@ def test_bytes_changed_anywhere_are_read_or_refused_and_nothing_else(tmp_path_fa
         read_threemf(path)
     except InputError as error:
         assert str(error).startswith(f"{path}: ")
+
+
+def chained(depth, width, last="2"):
+    """Objects of ``width`` components each, every one the one before: ``width ** depth`` bodies in a few kB."""
+
+    def change(model):
+        text = model.decode()
+        ends = text.index("</resources>")
+        chain, child = "", last
+        for k in range(depth):
+            inside = f'<component objectid="{child}"/>' * width
+            chain += f'<object id="{100 + k}" type="model"><components>{inside}</components></object>'
+            child = str(100 + k)
+        return (text[:ends] + chain + text[ends:]).encode()
+
+    return change
+
+
+def test_components_that_amount_to_too_many_bodies_are_refused_at_once(tmp_path, good):
+    path = with_model(good, tmp_path / "bad.3mf", chained(30, 10))
+    start = time.process_time()
+    with pytest.raises(InputError, match="its components amount to more than 10000 objects"):
+        read_threemf(path)
+    assert time.process_time() - start < 1.0
+
+
+def test_components_of_themselves_are_refused(tmp_path, good):
+    path = with_model(good, tmp_path / "bad.3mf", chained(1, 1, last="100"))
+    with pytest.raises(InputError, match="object 100 is a component of itself"):
+        read_threemf(path)

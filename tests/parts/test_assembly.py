@@ -172,3 +172,63 @@ def test_a_port_larger_than_the_body_is_refused():
     small = ["membrane.inner_radius_mm=4", "membrane.wall_thickness_mm=0.6", "connector.mount=plain"]
     with pytest.raises(InputError, match=r"inner_radius_mm = 4: too small for the port on the plug: radius"):
         assemble(load_scene(BASE, [*small, "connector.seat=one-piece", "connector.port=thread-M5"], LIBRARY))
+
+
+FITTED = [parts for parts in PARTS if parts[0] in ("barb-4x2.5", "thread-M5", "push-in-6")]
+
+
+@pytest.mark.parametrize("parts", FITTED, ids=" ".join)
+def test_fits_go_together(parts):
+    """What goes into something is smaller than it, by at least the accuracy of its printer."""
+    assembly = assembled(LIBRARY, parts, *SMALL)
+    scene, layout, accuracy = assembly.scene, assembly.layout, assembly.scene.connector_printer.accuracy_mm.nominal
+    if scene.mount.family == "robot-flange":
+        boss = assembly.solid("connector").meridian.tagged("boss")[0].start[0]
+        assert 2 * boss <= scene.mount.boss_diameter - 2 * accuracy
+    if scene.mount.family == "sleeve":
+        finger = assembly.solid("connector").meridian.tagged("finger")[0].start[0]
+        assert 2 * finger >= scene.mount.finger_diameter + 2 * accuracy
+    if scene.port.family == "thread":
+        assert 2 * min(r for r, _ in layout.port.hollow[:2]) >= scene.port.core_diameter + scene.hole_undersize
+    if scene.port.family == "push-in":
+        assert 2 * layout.port.hollow[0][0] >= scene.tube.outer_diameter + scene.hole_undersize
+    if "plug" in [solid.name for solid in assembly.solids]:
+        plug = max(piece.bounds()[1] for piece in assembly.solid("plug").meridian.tagged("plug"))
+        assert layout.opening_radius - plug == pytest.approx(scene.fit_clearance)
+
+
+@pytest.mark.parametrize("parts", [parts for parts in PARTS if parts[1].startswith("clamped")], ids=" ".join)
+@pytest.mark.parametrize("wall", [0.6, 1.2, 1.8])
+def test_screw_heads_of_a_ring_lie_flat_and_blind_holes_keep_a_wall(parts, wall):
+    assembly = assembled(LIBRARY, parts, "membrane.inner_radius_mm=9", f"membrane.wall_thickness_mm={wall}")
+    seat, layout, ring = assembly.scene.seat, assembly.layout, assembly.solid("ring").meridian
+    least = assembly.scene.connector_printer.smallest.wall_rigid_mm.recommended
+    (flat,) = ring.tagged("ring top")
+    inner, outer = sorted((flat.start[0], flat.end[0]))
+    head, hole = 0.5 * seat.head_diameter, ring_hole(assembly)
+    assert layout.screw_circle - head >= inner - 1e-9
+    assert layout.screw_circle + head <= outer
+    assert layout.screw_circle + hole + least <= outer + 1e-9
+    assert layout.groove_outer + least <= layout.screw_circle - hole + 1e-9
+    bores = assembly.solid("connector").bores
+    for one, other in itertools.combinations(bores, 2):
+        beside = math.hypot(one.x - other.x, one.y - other.y) - one.radius - other.radius
+        above = max(one.low - other.high, other.low - one.high)
+        assert max(beside, above) >= least - 1e-9
+
+
+def ring_hole(assembly):
+    return assembly.solid("ring").bores[0].radius
+
+
+@pytest.mark.parametrize("port", LIBRARY.shelf("ports"))
+def test_a_plug_leaves_a_side_port_as_wide_a_way_as_its_passage(port):
+    """The curtain between the passage's rim and the plug, and the ring around its neck, against the passage."""
+    assembly = assembled(LIBRARY, (port, "one-piece", "robot-50-4-M6"), *SMALL)
+    layout, plug = assembly.layout, assembly.solid("plug").meridian
+    neck = plug.tagged("neck")[-1].start[0]
+    top, bottom = plug.tagged("neck")[-1].bounds()[3], plug.tagged("neck")[-1].bounds()[2]
+    gap, passage = layout.opening_radius - neck, layout.port.passage
+    assert bottom < layout.port_axis - passage < layout.port_axis + passage < top == 0.0
+    assert 2 * math.pi * passage * gap >= math.pi * passage**2
+    assert math.pi * (layout.opening_radius**2 - neck**2) >= math.pi * passage**2

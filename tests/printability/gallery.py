@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache
@@ -73,6 +74,13 @@ def ball(radius: float, at: tuple[float, float, float] = (0.0, 0.0, 0.0), sides:
 
 def prism(points: list[tuple[float, float]], length: float) -> Manifold:
     return CrossSection([points]).extrude(length)
+
+
+def taper(degrees: float, tip: float) -> Manifold:
+    """A wedge of an angle, its edge cut off where it is ``tip`` mm thick."""
+    half, back = 0.5 * tip, 0.5 * tip + 12 * math.tan(math.radians(0.5 * degrees))
+    corners = [(0.0, -half), (12.0, -back), (12.0, back), *([(0.0, half)] if tip else [])]
+    return prism(corners, 10)
 
 
 def outside(points):
@@ -222,6 +230,11 @@ GOOD: dict[str, Callable[[], Subject]] = {
     "bore": lambda: one(box(10, 10, 10) - rod(1.1, 12, (5.0, 5.0, -1.0))),
     "slot": lambda: one(box(12, 12, 8) - box(0.6, 14, 4, (6.0, -1.0, 4.5))),
     "ridge": lambda: one(box(12, 12, 5) + box(8, 0.7, 0.7, (2.0, 6.0, 5.0))),
+    **{
+        f"taper of {angle} degrees, tip {tip:g}": lambda angle=angle, tip=tip: one(taper(angle, tip))
+        for angle in (32, 36, 45, 48)
+        for tip in (0.0, 0.1, 0.4)
+    },
     "blunt wedge": lambda: one(prism([(0, 0), (20, 0), (20, 16)], 10)),
     "pot": lambda: one(box(14, 14, 14) - ball(5, (7.0, 7.0, 7.0)) - rod(4, 8, (7.0, 7.0, 7.0))),
     "lying pole": lambda: one(box(220, 12, 12)),

@@ -35,6 +35,7 @@ CASES = [
     ('[connector]\nport = "barb"', ["connector.port = 'barb'", "no such name among the ports", "Did you mean barb-"]),
     ("[membrane]\nwall_thikness_mm = 1", ["membrane.wall_thikness_mm", "unknown key", "Did you mean wall_thickness_mm?"]),
     ("[membran]\nmaterial = 'x'", ["membran", "unknown table", "Did you mean membrane?"]),
+    ('[print]\norientation = "sideways"', ["print.orientation = 'sideways'", "must be 'dome-up' or 'dome-down'"]),
     ("membrane = 3", ["membrane = 3", "a table"]),
     ("[pneumatics]\ndriving_pressures_kPa = []", ["driving_pressures_kPa = []", "at least one"]),
     ("[pneumatics]\ndriving_pressures_kPa = [0, -5]", ["driving_pressures_kPa", "from 0 to 1000 kPa"]),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,6 +52,12 @@ class Body:
         single = self.vertices.astype(np.float32).astype(np.float64)
         merged, index = np.unique(single, axis=0, return_inverse=True)
         return replace(self, vertices=merged, triangles=index.reshape(-1)[self.triangles])
+
+    def manifold(self) -> Any:
+        """The body as manifold3d takes it; empty where it is not closed."""
+        from manifold3d import Manifold, Mesh64
+
+        return Manifold(Mesh64(np.ascontiguousarray(self.vertices), self.triangles.astype(np.uint64)))
 
     def moved(self, offset: NDArray[np.float64]) -> Body:
         """The body shifted by ``offset`` (3,), mm."""

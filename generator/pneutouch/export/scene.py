@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -68,15 +68,14 @@ def _scene(bodies: tuple[Body, ...]) -> trimesh.Scene:
 
 def cut_open(body: Body) -> Body:
     """The body without the quarter towards the viewer."""
-    from manifold3d import Manifold, Mesh64
+    from manifold3d import Manifold
 
     low, high = body.bounds
     middle = 0.5 * (low + high)
     knife = Manifold.cube((high - low + 1).tolist()).translate(
         (middle[0], low[1] - 1 - (high - middle)[1], low[2] - 0.5)
     )
-    whole: Any = Manifold(Mesh64(body.vertices, body.triangles.astype(np.uint64)))
-    rest = (whole - knife).to_mesh64()
+    rest = (body.manifold() - knife).to_mesh64()
     return replace(
         body, vertices=np.array(rest.vert_properties[:, :3], order="C"), triangles=rest.tri_verts.astype(np.int64)
     )

@@ -25,6 +25,9 @@ MOST_PARTS = 1000
 _DEEPEST = 64
 """Deepest nesting of XML elements; the specification needs a tenth of it."""
 
+MOST_COMPONENTS = 10_000
+"""Greatest number of objects that the components of a file amount to, each counted as often as it is referred to."""
+
 _XML = (".model", ".rels", ".xml")
 """Endings of parts that must be well-formed XML."""
 
@@ -51,8 +54,10 @@ def checked_package(path: Path) -> bytes:
             parts = _parts(archive, path)
     except _DAMAGE as error:
         raise InputError(f"{path}: damaged zip archive ({error}); export or download the file again") from None
+    components = Components(str(path))
     for name, part in parts.items():
-        _check_xml(part, f"{path}: {name}", must=name.lower().endswith(_XML))
+        _check_xml(part, f"{path}: {name}", (components, name), must=name.lower().endswith(_XML))
+    components.check()
     plain = io.BytesIO()
     with zipfile.ZipFile(plain, "w", zipfile.ZIP_STORED) as archive:
         for name, part in parts.items():
@@ -128,19 +133,69 @@ def _mega(size: int) -> str:
     return f"{size // 2**20} MiB"
 
 
-def _check_xml(content: bytes, where: str, must: bool) -> None:
+Name = tuple[str, str]
+"""An object: the part that it stands in, and its id there."""
+
+
+class Components:
+    """Which object refers to which, over all parts: a few references can stand for more objects than any reader holds."""
+
+    def __init__(self, where: str) -> None:
+        self.where, self.object = where, ("", "")
+        self.references: dict[Name, list[Name]] = {}
+
+    def start(self, part: str, tag: str, attributes: dict[str, str]) -> None:
+        """Take note of an element of a part as it begins."""
+        local = tag.rsplit(":", 1)[-1]
+        if local == "object":
+            self.object = (part, attributes.get("id", ""))
+            self.references.setdefault(self.object, [])
+        elif local == "component":
+            path = next((value for key, value in attributes.items() if key.rsplit(":", 1)[-1] == "path"), part)
+            self.references.setdefault(self.object, []).append((path.lstrip("/"), attributes.get("objectid", "")))
+
+    def check(self) -> None:
+        """Raise InputError where objects refer to themselves, or amount to more than `MOST_COMPONENTS`."""
+        counts: dict[Name, int] = {}
+        for first in self.references:
+            self._count(first, counts)
+
+    def _count(self, first: Name, counts: dict[Name, int]) -> None:
+        """Children before parents, without recursion: the chain may be as long as the file."""
+        stack, open_ = [(first, False)], set()
+        while stack:
+            name, done = stack.pop()
+            children = self.references.get(name, [])
+            if done:
+                open_.discard(name)
+                counts[name] = 1 + sum(counts.get(child, 1) for child in children)
+                if counts[name] > MOST_COMPONENTS:
+                    raise InputError(
+                        f"{self.where}: its components amount to more than {MOST_COMPONENTS} objects, which no sensor needs"
+                    )
+            elif name not in counts:
+                if name in open_:
+                    raise InputError(f"{self.where}: object {name[1][:40]} is a component of itself")
+                open_.add(name)
+                stack.append((name, True))
+                stack += [(child, False) for child in dict.fromkeys(children) if child not in counts]
+
+
+def _check_xml(content: bytes, where: str, noted: tuple[Components, str], must: bool) -> None:
     """Refuse a document type, entities and deep nesting, in any encoding; ``must`` be well-formed XML at all.
 
-    Parts with other endings are looked through as well: what is no XML fails at its first bytes.
+    Parts with other endings are looked through as well: what is no XML fails at its first bytes. ``noted`` takes note of
+    the components, under the name of the part.
     """
     depth = 0
 
     def refuse(*_: Any) -> NoReturn:
         raise InputError(f"{where}: has a document type or entities, which 3MF does not allow; take them out")
 
-    def deeper(*_: Any) -> None:
+    def deeper(tag: str, attributes: dict[str, str]) -> None:
         nonlocal depth
         depth += 1
+        noted[0].start(noted[1], tag, attributes)
         if depth > _DEEPEST:
             raise InputError(f"{where}: XML nested deeper than {_DEEPEST} elements, which no 3MF needs")
 

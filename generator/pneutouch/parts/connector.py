@@ -16,6 +16,9 @@ from pneutouch.spec.part import ClampedFlange, OnePiece
 
 PLUG_SHOULDER = "shoulder"
 
+_UNDER_PORT = 0.3
+"""How far in mm below a side port's passage the plug gets thinner."""
+
 
 def rigid_solids(scene: Scene, layout: Layout) -> tuple[Solid, ...]:
     """The connector first, then the clamping ring or the plug."""
@@ -73,7 +76,9 @@ def plug_meridian(scene: Scene, layout: Layout) -> Meridian:
         ("plug", (body, 0.0)),
     ]  # fmt: skip
     if layout.port_axis is not None:
-        return trace((0.0, layout.under), [*faces, ("plug top", (0.0, 0.0))])
+        neck, step = plug_neck(scene, layout)
+        relief: Path = [("plug", (body, step)), ("neck", (neck, step)), ("neck", (neck, 0.0)), ("plug top", (0.0, 0.0))]
+        return trace((0.0, layout.under), [*faces[:-1], *relief])
     start, port = outward(layout)
     return trace(start, [*port, *faces, ("plug top", (layout.channel_radius, 0.0)), *inward(layout)])
 
@@ -81,6 +86,18 @@ def plug_meridian(scene: Scene, layout: Layout) -> Meridian:
 def plug_radius(scene: Scene, layout: Layout) -> float:
     """Radius of the plug: the opening less the fit of two bodies of one machine."""
     return layout.opening_radius - scene.fit_clearance
+
+
+def plug_neck(scene: Scene, layout: Layout) -> tuple[float, float]:
+    """Radius of a plug in front of a side port, and the height from which it is that thin.
+
+    The gap is as wide as the port's passage is in radius where the plug keeps a printable neck, so that a plug out of
+    the middle does not close it.
+    """
+    assert layout.port_axis is not None
+    least = scene.connector_printer.smallest.wall_rigid_mm.recommended
+    gap = max(scene.fit_clearance, min(layout.port.passage, layout.opening_radius - least))
+    return layout.opening_radius - gap, layout.port_axis - layout.port.passage - _UNDER_PORT
 
 
 def ring_meridian(seat: ClampedFlange, layout: Layout) -> Meridian:

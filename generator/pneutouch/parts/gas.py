@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from pneutouch.catalogue import Scene
-from pneutouch.parts.connector import plug_radius
+from pneutouch.parts.connector import plug_neck, plug_radius
 from pneutouch.parts.layout import Layout
 from pneutouch.parts.side_port import side_volume
 from pneutouch.spec.part import ClampedFlange, GluedFlange, OnePiece
@@ -33,8 +33,11 @@ def gap_volume(scene: Scene, layout: Layout) -> float:
     if isinstance(seat, ClampedFlange):
         return _annulus(layout.groove_inner, layout.inner_radius, layout.flange_thickness)
     if isinstance(seat, OnePiece):
-        height = -(layout.under + seat.shoulder_thickness)
-        return _annulus(plug_radius(scene, layout), layout.opening_radius, height)
+        bottom, body = layout.under + seat.shoulder_thickness, plug_radius(scene, layout)
+        if layout.port_axis is None:
+            return _annulus(body, layout.opening_radius, -bottom)
+        neck, step = plug_neck(scene, layout)
+        return _annulus(body, layout.opening_radius, step - bottom) + _annulus(neck, layout.opening_radius, -step)
     return 0.0
 
 

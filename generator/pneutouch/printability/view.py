@@ -64,7 +64,7 @@ class Part:
     @cached_property
     def manifold(self) -> Any:
         """manifold3d's solid of the mesh; empty where the mesh is none."""
-        return manifold_of(self.item.body)
+        return self.item.body.manifold()
 
     @cached_property
     def sound(self) -> bool:
@@ -226,10 +226,3 @@ class View:
     def part(self, name: str) -> Part | None:
         """A part by its name."""
         return next((part for part in self.parts if part.name == name), None)
-
-
-def manifold_of(body: Body) -> Any:
-    """A body as manifold3d takes it; empty where it is not closed."""
-    from manifold3d import Manifold, Mesh64
-
-    return Manifold(Mesh64(np.ascontiguousarray(body.vertices), body.triangles.astype(np.uint64)))

@@ -176,7 +176,7 @@ class Sleeve(Mount):
     finger_diameter: Length
     sleeve_length: Length
     sleeve_wall: Length
-    set_screw_count: int = Field(ge=2, le=4)
+    set_screw_count: int = Field(ge=2, le=3)
     set_screw_core_diameter: Length
 
 

@@ -84,6 +84,8 @@ def _explain(model: type[BaseModel], detail: Any) -> str:
         return f"{key}: {detail['ctx']['error']}" if key else str(detail["ctx"]["error"])
     if not path:
         return str(detail["msg"])
+    if detail["type"] == "literal_error":
+        return f"{key} = {_shown(detail['input'])}: must be {detail['ctx']['expected']}"
     label = f"{key}[{index}]" if index is not None else key
     right = f"{_wanted(detail)}{_right(owner, path)}".strip()
     return f"{label} = {_shown(detail['input'])}: {f'must be {right}' if right else detail['msg']}"

@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 from pneutouch.catalogue import load_scene
 from pneutouch.parts import assemble
 from pneutouch.pipeline.tray.expand import letter
-from pneutouch.pipeline.tray.faces import manifold
 from pneutouch.pipeline.tray.glyphs import is_clear, lettering, narrowest
 from pneutouch.pipeline.tray.mark import Marker
 from pneutouch.pipeline.tray.tally import read, tally
@@ -103,7 +102,7 @@ def test_marked_meshes_stay_closed_and_differ_by_the_mark_alone(drawn, seat, mou
             continue
         assert mark.stroke >= least - 2e-3
         assert mark.depth >= least
-        taken, put = manifold(plain) - manifold(marked), manifold(marked) - manifold(plain)
+        taken, put = plain.manifold() - marked.manifold(), marked.manifold() - plain.manifold()
         change = put.volume() if mark.raised else -taken.volume()
         assert marked.volume - plain.volume == pytest.approx(change, abs=1e-3)
         assert (taken if mark.raised else put).volume() == pytest.approx(0.0, abs=1e-4)
@@ -116,6 +115,21 @@ def test_marked_meshes_stay_closed_and_differ_by_the_mark_alone(drawn, seat, mou
             area = touched.slice(0.5 * (low + high))
             assert abs(change) == pytest.approx(area.area() * mark.depth, rel=1e-3)
             assert narrowest(area) >= least - 3e-3
+
+
+@pytest.mark.parametrize("seat", SEATS[:2])
+@pytest.mark.parametrize("marks", ["engraved", "raised"])
+def test_marks_are_a_fifth_larger_than_the_least_detail(drawn, seat, marks):
+    """Depth of letters, and the width of a tally's narrowest groove; a print of the recommended detail is at its limit."""
+    assembly = drawn(f"connector.seat={seat}", "membrane.wall_thickness_mm=2")
+    sure = 1.2 * assembly.scene.printer.smallest.emboss_mm.recommended
+    found = {mark.kind: mark for *_, mark in bodies(assembly, marks) if mark.kind != "none"}
+    assert set(found) == {"text", "tally"}
+    assert found["text"].depth == pytest.approx(sure)
+    if found["tally"].raised or seat == "clamped-flange-M2":
+        assert found["tally"].depth == pytest.approx(sure)
+    # A chord is a little shorter than the arc that was asked for.
+    assert found["tally"].stroke == pytest.approx(sure, rel=2e-3)
 
 
 @pytest.mark.parametrize("seat", SEATS[:2])

@@ -48,6 +48,14 @@ def test_two_pairs_that_share_a_resin_are_two_jobs_with_one_change(library):
     assert changes(loads(groups, parts)) == 1
 
 
+def test_what_is_loaded_anew_counts_not_what_is_taken_out():
+    few, many = frozenset({"Tango"}), frozenset({"Tango", "Agilus", "Clear"})
+    assert changes([few, many]) == 2
+    assert changes([many, few]) == 0
+    assert changes([many, few, many]) == 2
+    assert changes([few]) == 0
+
+
 @given(
     parts=st.lists(st.lists(st.sampled_from(RESINS), min_size=1, max_size=2, unique=True), min_size=1, max_size=9),
     at_once=st.integers(2, 4),

@@ -156,13 +156,12 @@ def test_the_3mf_gives_every_part_its_material_and_every_uuid_once(folder):
 
 def test_the_tallies_on_the_tray_read_as_their_labels(seven):
     """Grooves found again on the printed mesh: the section through the flange, walked round."""
-    from pneutouch.pipeline.tray.faces import manifold
 
     layout = seven.parts[0].value.assembly.layout
     for part in seven.parts:
         (body,) = part.bodies
         middle = 0.5 * part.size[:2]
-        section = manifold(body).slice(layout.flange_thickness - 0.3)
+        section = body.manifold().slice(layout.flange_thickness - 0.3)
         sectors = []
         for line in section.to_polygons():
             points = line - middle

@@ -69,7 +69,7 @@ def free_area(face: Face, solid: Solid, body: Body, depth: float, edge: float) -
     """
     from manifold3d import CrossSection
 
-    whole, inwards = manifold(body), -1.0 if face.up else 1.0
+    whole, inwards = body.manifold(), -1.0 if face.up else 1.0
     section = whole.slice(face.z + inwards * _STEP) ^ whole.slice(face.z + inwards * depth)
     section -= whole.slice(face.z - inwards * _STEP)
     section = (section ^ CrossSection.circle(face.outer, 180)).offset(-edge)
@@ -101,14 +101,6 @@ def placed(shape: Any, at: Spot) -> Any:
     turn = math.degrees(at.angle) - 90.0 if at.radius else 0.0
     turned = (shape if at.face.up else shape.mirror((1.0, 0.0))).rotate(turn)
     return turned.translate((at.radius * math.cos(at.angle), at.radius * math.sin(at.angle)))
-
-
-def manifold(body: Body) -> Any:
-    """A body as manifold3d has it."""
-    import numpy as np
-    from manifold3d import Manifold, Mesh64
-
-    return Manifold(Mesh64(body.vertices, body.triangles.astype(np.uint64)))
 
 
 def _radii(reach: float, height: float) -> list[float]:

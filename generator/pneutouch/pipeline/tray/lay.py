@@ -14,7 +14,6 @@ from pneutouch.catalogue import Library
 from pneutouch.errors import ComputationError, InputError
 from pneutouch.meridian.segments import Array
 from pneutouch.pipeline.tray.expand import Expanded, Piece, Value, expand
-from pneutouch.pipeline.tray.faces import manifold
 from pneutouch.pipeline.tray.mark import Mark, Marker, shape_of
 from pneutouch.pipeline.tray.order import Order
 from pneutouch.pipeline.tray.pack import Place, Room, pack
@@ -162,7 +161,7 @@ def outline(bodies: Sequence[Body]) -> Any:
     """What bodies cover seen from above, as a CrossSection."""
     from manifold3d import CrossSection, OpType
 
-    return CrossSection.batch_boolean([manifold(body).project() for body in bodies], OpType.Add)
+    return CrossSection.batch_boolean([body.manifold().project() for body in bodies], OpType.Add)
 
 
 def _job(pieces: list[Piece], printer: Printer, marker: Marker, order: Order) -> Job:

@@ -10,7 +10,7 @@ import numpy as np
 
 from pneutouch.body import Body, Solid
 from pneutouch.parts import Assembly
-from pneutouch.pipeline.tray.faces import HEIGHTS, Spot, free_area, lettered_faces, manifold, placed, spot
+from pneutouch.pipeline.tray.faces import HEIGHTS, Spot, free_area, lettered_faces, placed, spot
 from pneutouch.pipeline.tray.glyphs import is_clear, lettering, narrowest, rounded
 from pneutouch.pipeline.tray.tally import Tally, tally
 from pneutouch.spec.part import ClampedFlange
@@ -165,7 +165,7 @@ def _combined(body: Body, tool: Tool, raised: bool) -> Body:
 
     shape, low, high = tool
     parts = [part.extrude(high - low).translate((0.0, 0.0, low)) for part in shape.decompose()]
-    whole = Manifold.batch_boolean([manifold(body), *parts], OpType.Add if raised else OpType.Subtract)
+    whole = Manifold.batch_boolean([body.manifold(), *parts], OpType.Add if raised else OpType.Subtract)
     mesh = whole.to_mesh64()
     vertices = np.array(mesh.vert_properties[:, :3], order="C")
     return replace(body, vertices=vertices, triangles=mesh.tri_verts.astype(np.int64))

@@ -21,7 +21,7 @@ from pneutouch.printability.measure.surface import Indices, Surface
 
 Side = Literal["inside", "outside"]
 
-_OPPOSING = -np.cos(np.radians(40.0))
+_OPPOSING = -np.cos(np.radians(30.0))
 _ACROSS = -0.6
 """Cosine between the normals at both ends of a line that counts as across: faces of a corner do not."""
 _LINES = 6

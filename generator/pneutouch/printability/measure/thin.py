@@ -28,7 +28,7 @@ STOUT = 1.4
 LONG = 3.0
 """A hole longer than this many widths is a channel."""
 
-_KNIFE = np.radians(50.0)
+_KNIFE = np.radians(30.0)
 """Faces that meet at less than this leave chords down to nothing: the edge is what is wrong there."""
 
 BLUNT = 0.5

@@ -12,7 +12,7 @@ from pneutouch.meridian.segments import Array
 from pneutouch.printability.finding import Excess, Finding
 from pneutouch.printability.sizes import spot
 from pneutouch.printability.subject import Joint
-from pneutouch.printability.view import Part, View, manifold_of
+from pneutouch.printability.view import Part, View
 
 _SOURCE = "vendor: one closed shell per material region, shells must not occupy the same space (multi-colour guideline)"
 _FIX = "report the design: this is a fault"
@@ -64,7 +64,7 @@ def _parted(view: View, joint: Joint) -> list[Finding]:
 
 def overlap_volume(one: Body, other: Body) -> float:
     """Volume in mm3 that both bodies occupy."""
-    return float((manifold_of(one) ^ manifold_of(other)).volume())
+    return float((one.manifold() ^ other.manifold()).volume())
 
 
 def shared_area(one: Body, other: Body) -> float:

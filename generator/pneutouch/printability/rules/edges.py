@@ -12,6 +12,8 @@ from pneutouch.printability.view import Part, View
 
 _KNIFE = 30.0
 """Angle inside the body (degrees) below which an edge is a knife's."""
+_ROUNDING = 1e-4
+"""Degrees by which an edge drawn at the limit may miss it."""
 _LENGTH = 0.5
 """Length of sharp edges in mm that is worth a word."""
 _SHARP = "own, unverified: an edge thins to nothing, and below the smallest wall it is not printed"
@@ -26,7 +28,7 @@ def check(view: View) -> list[Finding]:
 def _knives(part: Part) -> list[Finding]:
     edges = part.surface.edges
     angle = 180.0 - np.degrees(edges.turn)
-    sharp = np.flatnonzero(angle < _KNIFE)
+    sharp = np.flatnonzero(angle < _KNIFE - _ROUNDING)
     ends = part.surface.vertices[edges.ends[sharp]]
     lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
     total = float(lengths.sum())
