@@ -13,14 +13,21 @@ from pneutouch.errors import InputError
 from pneutouch.parts.coupons import COUPONS, Ground
 from pneutouch.spec.coupon import Gauge, Size
 from pneutouch.spec.material import Material
-from pneutouch.spec.printer import Printer
+from pneutouch.spec.printer import HOLE_UNDERSIZE_MM, Printer
 
 _AXES = ("x", "y", "z")
 _INSTRUMENT = 0.01
 """mm: what a caliper resolves; no accuracy is claimed below it."""
 
 _SLIP = 0.1
-"""A length of the block this share off its nominal is taken for a slip of the pen."""
+"""A length of the block more than this share off its nominal is taken for a slip of the pen."""
+
+_FINE_SLIP, _FINE_SLIP_MM = 0.5, 0.3
+"""So is a wall, pin, hole or slot that is off by more than this share and by more than this many mm: our own choice, some
+times what vendors state for small features."""
+
+_ROUNDING = 1e-9
+"""Differences of lengths may miss a limit by this, mm."""
 
 Measured = Sequence[tuple[str, Material, Gauge]]
 """Gauges of one printer: name of the material, the material and the readings."""
@@ -60,11 +67,14 @@ def _check_sizes(gauge: Gauge, material: Material, where: str) -> None:
 
 
 def _check_slip(row: str, size: Size, where: str) -> None:
-    for reading in size.measured_mm if row in _AXES else ():
-        if abs(reading - size.nominal_mm) > _SLIP * size.nominal_mm:
+    nominal = size.nominal_mm
+    limit = _SLIP * nominal if row in _AXES else max(_FINE_SLIP_MM, _FINE_SLIP * nominal)
+    for reading in size.measured_mm:
+        if abs(reading - nominal) > limit + _ROUNDING:
+            share = "a tenth" if row in _AXES else f"{_FINE_SLIP_MM:g} mm and half"
             raise InputError(
-                f"{where}.{row}: measured_mm = {reading:g}: more than a tenth off nominal_mm = {size.nominal_mm:g}; "
-                "must be a length of the block in mm"
+                f"{where}.{row}: nominal_mm = {nominal:g}: measured_mm = {reading:g}: more than {share} off; must be from "
+                f"{max(nominal - limit, 0):g} to {nominal + limit:g} mm; read in another unit, or entered in the wrong row?"
             )
 
 
@@ -89,7 +99,7 @@ def _holes(name: str, measured: Measured, said: Said, found: Found) -> None:
         return
     if len(holes) < 2:
         raise InputError(f"{said.where}: gauge.{name}: 1 hole measured; at least 2, so that a spread can be told")
-    smaller = [hole.nominal_mm - mean(hole.measured_mm).value for hole in holes]
+    smaller = [_smaller(hole, f"{said.where}: gauge.{name}.hole") for hole in holes]
     over = mean(smaller)
     content = {
         "value": rounded(over.value), "low": rounded(min(smaller)), "high": rounded(max(smaller)),
@@ -98,6 +108,18 @@ def _holes(name: str, measured: Measured, said: Said, found: Found) -> None:
     }  # fmt: skip
     found.changes.append(Change("printers", name, ("hole_undersize_mm",), content))
     found.figures.append(Figure(name, "holes too small by, mm", over.value, over.spread, over.count))
+
+
+def _smaller(hole: Size, where: str) -> float:
+    """By how much a hole is too small, mm. Raises InputError where no printer profile may say so."""
+    average = mean(hole.measured_mm).value
+    less, (low, high) = hole.nominal_mm - average, HOLE_UNDERSIZE_MM
+    if not low - _ROUNDING <= less <= high + _ROUNDING:
+        raise InputError(
+            f"{where}: nominal_mm = {hole.nominal_mm:g}: mean of measured_mm = {average:.4g} makes hole_undersize_mm = "
+            f"{less:.4g}; it must be from {low:g} to {high:g} mm; entered in the wrong row?"
+        )
+    return less
 
 
 def smallest_sound(sizes: Sequence[Size]) -> float | None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from pneutouch.bench.finding import MARK, Change, Figure, Found, Said, rounded
@@ -9,6 +11,7 @@ from pneutouch.bench.statistics import Mean, mean, neo_hookean, secant_modulus, 
 from pneutouch.errors import InputError
 from pneutouch.spec.coupon import LEAST_READINGS, Dumbbell, Puck, Specimen
 from pneutouch.spec.material import Material
+from pneutouch.spec.quantity import Quantity
 
 _SECANT = 0.1
 """Strain of the secant modulus."""
@@ -18,6 +21,17 @@ _LEAST_POINTS = 3
 _DENSITIES = (0.5, 3.0)
 """g/cm3: outside these a reading slipped; cured resins and filaments have 0.9 to 1.4."""
 
+_FAR_SHORE = 25.0
+"""Points off the shipped hardness beyond which another resin may have been measured: our own choice. Makers state ranges of
+3 to 5 points, and the seven elastomers of the paper lie about 10 apart."""
+
+_MODULI = (0.01, 20.0)
+"""MPa: outside these a reading slipped, our own choice; the shipped elastomers have 0.17 to 5.33."""
+
+_FAR_MODULUS = 5.0
+"""Times the shipped shear modulus, or its part, beyond which it is told: our own choice; published estimates of one resin
+differ by a factor of 3 (TangoPlus.toml)."""
+
 
 def puck(name: str, material: Material, measured: Puck, said: Said, found: Found) -> None:
     """Hardness and density. Raises InputError for a density that no resin has."""
@@ -26,6 +40,7 @@ def puck(name: str, material: Material, measured: Puck, said: Said, found: Found
         if readings:
             how = f"{scale} of pucks 20 mm x 3 mm, standard deviation over the readings"
             _add(found, said, name, key, mean(readings), how, f"{scale} hardness")
+            _compare_hardness(name, key, readings, getattr(material, key), found)
     if measured.shore_a:
         _one_year(name, material, mean(measured.shore_a).value, found)
     if not measured.mass_g:
@@ -40,6 +55,17 @@ def puck(name: str, material: Material, measured: Puck, said: Said, found: Found
             )
     how = "mass over measured volume of pucks"
     _add(found, said, name, "density_g_per_cm3", mean(densities.tolist()), how, "density, g/cm3")
+
+
+def _compare_hardness(name: str, key: str, readings: list[float], shipped: Quantity | None, found: Found) -> None:
+    if shipped is None:
+        return
+    farthest = max(readings, key=lambda reading: abs(reading - shipped.nominal))
+    if (off := abs(farthest - shipped.nominal)) > _FAR_SHORE:
+        found.notes.append(
+            f"{name}: {key} = {farthest:g} is {off:.3g} points off the shipped {shipped.nominal:g}; "
+            "was another resin measured, or on the other scale?"
+        )
 
 
 def _one_year(name: str, material: Material, fresh: float, found: Found) -> None:
@@ -96,14 +122,39 @@ def dumbbell(name: str, material: Material, measured: Dumbbell, said: Said, foun
         found.figures.append(
             Figure(name, "shear modulus, MPa (secant E at 10 %)", float(np.mean(secants)), None, len(secants))
         )
+    _compare_modulus(name, over.value, material.shear_modulus_MPa, found)
     if material.law is not None:
         found.notes.append(
             f"{name} has a law of its own ({material.law.name}), which predictions use; the shear modulus does not change it"
         )
 
 
+def _compare_modulus(name: str, modulus: float, shipped: Quantity | None, found: Found) -> None:
+    if shipped is None:
+        return
+    times = modulus / shipped.nominal
+    if not 1 / _FAR_MODULUS <= times <= _FAR_MODULUS:
+        found.notes.append(
+            f"{name}: shear_modulus_MPa = {modulus:.3g} is {times:.2g} times the shipped {shipped.nominal:g}; "
+            "was another resin measured, or in other units than N and mm?"
+        )
+
+
+def _check_rising(specimen: Specimen, where: str) -> None:
+    """Forces in the order of their extensions; a coarse gauge may show one force at two points, but not at all."""
+    points = sorted(zip(specimen.extension_mm, specimen.force_N, strict=True))
+    pairs = [*pairwise(points), (points[0], points[-1])]
+    for k, ((before, lower), (after, higher)) in enumerate(pairs, start=1):
+        if higher < lower or (k == len(pairs) and higher == lower):
+            raise InputError(
+                f"{where}.force_N: {lower:g} N at extension_mm = {before:g}, {higher:g} N at {after:g}; it must rise with "
+                "extension_mm; give the points of the way up, none after a break"
+            )
+
+
 def _fit(specimen: Specimen, most: float, where: str) -> tuple[float, float, float | None]:
     """Shear modulus, its standard error, and the secant Young's modulus at 10 % strain, MPa."""
+    _check_rising(specimen, where)
     area = float(np.median(specimen.width_mm) * np.median(specimen.thickness_mm))
     stretch = 1 + np.array(specimen.extension_mm) / specimen.gauge_length_mm
     stress = np.array(specimen.force_N) / area
@@ -113,4 +164,10 @@ def _fit(specimen: Specimen, most: float, where: str) -> tuple[float, float, flo
             f"{where}: {near.sum()} points up to a strain of {most:g} (extension_mm = {most * specimen.gauge_length_mm:g}); "
             f"at least {_LEAST_POINTS}"
         )
-    return (*neo_hookean(stretch[near], stress[near]), secant_modulus(stretch, stress, _SECANT))
+    modulus, error = neo_hookean(stretch[near], stress[near])
+    if not _MODULI[0] <= modulus <= _MODULI[1]:
+        raise InputError(
+            f"{where}: force_N over width_mm and thickness_mm makes a shear modulus of {modulus:.4g} MPa; an elastomer has "
+            f"from {_MODULI[0]:g} to {_MODULI[1]:g} MPa; must be forces in N and lengths in mm"
+        )
+    return modulus, error, secant_modulus(stretch, stress, _SECANT)

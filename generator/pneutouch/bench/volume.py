@@ -16,9 +16,24 @@ from pneutouch.parts.coupons.volume_plug import WATER, cavity_size, cavity_volum
 from pneutouch.spec.coupon import LeakCap, VolumePlug
 from pneutouch.units import ML
 
+_ROUNDING = 1e-9
+"""Differences of pressures may miss a limit by this, kPa."""
 
-def leak(name: str, cap: LeakCap, found: Found) -> None:
-    """Leak rate, kPa a minute."""
+
+def leak(name: str, cap: LeakCap, accuracy: float, said: Said, found: Found) -> None:
+    """Leak rate, kPa a minute. Raises InputError where pressure rises by more than the gauge's ``accuracy``, kPa."""
+    for run, (start, end) in enumerate(zip(cap.start_kPa, cap.end_kPa, strict=True), start=1):
+        rise = end - start
+        if rise > accuracy + _ROUNDING:
+            raise InputError(
+                f"{said.where}: leak-cap.{name}.end_kPa: run {run}: {end:g} kPa is above start_kPa = {start:g}; must be at most "
+                f"that, for a cap gains no pressure; swapped, or is the gauge less accurate than gauge_accuracy_kPa = "
+                f"{accuracy:g} of volume-plug.{name}?"
+            )
+        if rise > 0:
+            found.notes.append(
+                f"{name}: leak-cap, run {run}: pressure rose by {rise:.2g} kPa, within the gauge's accuracy of {accuracy:g} kPa"
+            )
     if cap.start_kPa:
         rate = mean((60 * (np.array(cap.start_kPa) - np.array(cap.end_kPa)) / cap.seconds).tolist())
         found.figures.append(Figure(name, "leak, kPa/min", rate.value, rate.spread, rate.count))

@@ -2,15 +2,30 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from pneutouch.spec.design import Printable
 from pneutouch.spec.fields import Table, number
 
-Scalar = str | float | int
-Setting = Scalar | list[float | int]
+LEAST_COPIES, MOST_COPIES = 1, 200
+
+
+def _setting(given: Any) -> Any:
+    """Said once, not once for each kind that it is not."""
+
+    def finite(value: Any) -> bool:
+        return isinstance(value, float | int) and not isinstance(value, bool) and math.isfinite(value)
+
+    good = all(map(finite, given)) if isinstance(given, list) else isinstance(given, str) or finite(given)
+    if not good:
+        raise ValueError(f"{given!r:.60}: must be a finite number, text or a list of finite numbers")
+    return given
+
+
+Setting = Annotated[str | float | int | list[float | int], BeforeValidator(_setting)]
 Role = Literal["membrane", "connector", "ring", "plug"]
 Marks = Literal["engraved", "raised", "none"]
 
@@ -39,7 +54,7 @@ class Entry(Table):
     """
 
     design: str = Field(min_length=1, description="name of a design, or a .toml beside the tray file")
-    copies: int = Field(default=1, ge=1, le=200, description="from 1 to 200")
+    copies: int = Field(default=1, ge=LEAST_COPIES, le=MOST_COPIES, description=f"from {LEAST_COPIES} to {MOST_COPIES}")
     over: dict[str, Annotated[list[Setting], Field(min_length=1, max_length=50)]] = Field(
         default={}, description='one "table.key" with its values'
     )

@@ -29,7 +29,9 @@ def test_values_are_parted_as_toml_parts_them(text, values):
     assert over(text) == values
 
 
-SCALARS = st.one_of(st.integers(-99, 99), st.floats(-9, 9), st.text(st.characters(min_codepoint=32, max_codepoint=126), min_size=1))
+SCALARS = st.one_of(
+    st.integers(-99, 99), st.floats(-9, 9), st.text(st.characters(min_codepoint=32, max_codepoint=126), min_size=1)
+)
 
 
 @given(st.lists(SCALARS | st.lists(st.integers(0, 9), max_size=3), min_size=1, max_size=5, unique_by=repr))
@@ -41,7 +43,7 @@ def test_any_toml_values_come_back(values):
 
 @pytest.mark.parametrize("text", ["[1,2", "1,[2", "'a,b", "[[1],2"])
 def test_what_is_not_closed_is_said(text):
-    with pytest.raises(InputError, match="--over .*not closed") as error:
+    with pytest.raises(InputError, match=r"--over .*not closed") as error:
         over(text)
     assert text in str(error.value)
 

@@ -48,7 +48,7 @@ def evaluate_results(results: Results, where: str, shelves: Library) -> Found:
         cap, plug = results.leak_cap.get(name), results.volume_plug.get(name)
         scene = load_scene(_design(name, where, shelves), [], shelves)
         if cap is not None:
-            leak(name, cap, found)
+            leak(name, cap, 0.0 if plug is None else plug.gauge_accuracy_kPa, said, found)
         if plug is not None and (plug.pressure_kPa or plug.water_g):
             volume(name, scene, cap, plug, said, found)
     return found

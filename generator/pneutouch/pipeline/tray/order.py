@@ -11,7 +11,9 @@ from typing import Any
 
 from pneutouch.errors import InputError
 from pneutouch.spec.read import read_toml, validate
-from pneutouch.spec.tray import Setting, Tray
+from pneutouch.spec.tray import LEAST_COPIES, MOST_COPIES, Setting, Tray
+
+_OPENING = ("[", "{", "'", '"')
 
 
 @dataclass(frozen=True)
@@ -48,7 +50,12 @@ def order_of_file(path: Path, overrides: Sequence[str] = (), **head: Any) -> Ord
 def order_of_flags(
     designs: Sequence[str], over: Sequence[str] = (), copies: int = 1, overrides: Sequence[str] = (), **head: Any
 ) -> Order:  # fmt: skip
-    """One entry a design, each over the values of ``--over table.key=A,B,C``, ``copies`` of each."""
+    """One entry a design, each over the values of ``--over table.key=A,B,C``, ``copies`` of each.
+
+    Raises InputError naming the flag.
+    """
+    if not LEAST_COPIES <= copies <= MOST_COPIES:
+        raise InputError(f"--copies {copies}: must be from {LEAST_COPIES} to {MOST_COPIES}")
     varied = _varied(over)
     entries = [{"design": design, "copies": copies, "over": varied} for design in designs]
     stem = Path(designs[0]).stem
@@ -70,14 +77,31 @@ def _varied(over: Sequence[str]) -> dict[str, list[Any]]:
             raise InputError(f"--over {text}: write table.key=VALUES, such as membrane.material=TangoPlus,FLX9940")
         if key in varied:
             raise InputError(f"--over {text}: {key} is given twice")
-        varied[key] = [_toml(value.strip()) for value in values.split(",")]
+        varied[key] = _values(values, f"--over {text}")
     return varied
 
 
-def _toml(text: str) -> Any:
-    """A TOML value, or the text itself where it is a bare word."""
+def _values(text: str, where: str) -> list[Any]:
+    """TOML values and bare words, parted by the commas that are in no bracket or quote; one after the last is no harm."""
+    pieces = text.removesuffix(",").split(",")
+    found = []
+    while pieces:
+        value = pieces.pop(0).strip()
+        if value[:1] in _OPENING:
+            while not (read := _toml(value)) and pieces:
+                value = f"{value},{pieces.pop(0)}".rstrip()
+            if not read:
+                raise InputError(
+                    f"{where}: {value} is not closed, or not TOML; write lists as [1, 2] and texts as 'A, B'"
+                )
+        found += _toml(value) or [value]
+    return found
+
+
+def _toml(text: str) -> list[Any]:
+    """A TOML value alone in a list; nothing where it is none."""
     try:
         found = tomllib.loads(f"value = {text}")
     except tomllib.TOMLDecodeError:
-        return text
-    return found["value"] if set(found) == {"value"} else text
+        return []
+    return [found["value"]] if set(found) == {"value"} else []
