@@ -41,7 +41,11 @@ class Scene:
     @property
     def connector_mode(self) -> Mode:
         """Print mode of the connector; that of the membrane where both grow in one print."""
-        return self.membrane_mode if isinstance(self.seat, OnePiece) else _mode(self.connector_printer, self.connector_material)
+        return (
+            self.membrane_mode
+            if isinstance(self.seat, OnePiece)
+            else _mode(self.connector_printer, self.connector_material)
+        )
 
     @property
     def hole_undersize(self) -> float:
