@@ -1,0 +1,1 @@
+"""Scans over textured specimens and the wavelet spectra of their pressure."""

@@ -1,0 +1,120 @@
+"""A pressure signal sampled at even times, and its decimation."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from pneutouch.errors import InputError
+from pneutouch.meridian.segments import Array
+from pneutouch.units import KPA
+
+OVERSAMPLING = 5.0
+"""Sampling rate kept over the highest frequency asked."""
+
+_PASSED = 1.6
+"""Highest frequency let through over the highest asked: the Morse response (3, 60) is at 2e-5 of its peak there."""
+
+_STOP_DB = 100.0
+"""What folds back, and the ripple of what passes, in dB below it: 1e-5 of the amplitude."""
+
+_OFF = 0.25
+"""How far, in steps, a time may lie off the even grid: what rounding in a file does, and no lost sample."""
+
+
+@dataclass(frozen=True, slots=True)
+class Signal:
+    """Pressure in MPa gauge, (n,), sampled every ``step`` s from ``start`` s."""
+
+    start: float
+    step: float
+    pressure: Array
+
+    @property
+    def rate(self) -> float:
+        """Samples a second, Hz."""
+        return 1 / self.step
+
+    @property
+    def time(self) -> Array:
+        """Times in s, (n,)."""
+        return np.asarray(self.start + self.step * np.arange(len(self.pressure)), float)
+
+    @property
+    def duration(self) -> float:
+        """Time from the first sample to the last, s."""
+        return self.step * (len(self.pressure) - 1)
+
+
+def signal(time: Array, pressure: Array, where: str = "signal", rows: Sequence[int] | None = None) -> Signal:
+    """A signal from times in s and pressures in MPa, (n,) each.
+
+    ``where`` and ``rows`` (n,) name the source and its rows in messages; left out, rows count from 1. Raises InputError
+    for fewer than 4 rows, values that are not finite, and times that stand still, run back, leave a gap or are uneven.
+    """
+    numbers = range(1, len(time) + 1) if rows is None else rows
+    if len(time) != len(pressure):
+        raise InputError(f"{where}: {len(time)} times and {len(pressure)} pressures; must be as many")
+    if len(time) < 4:
+        raise InputError(f"{where}: {len(time)} rows; a signal needs at least 4")
+    for name, values, unit in (("time_s", time, 1.0), ("pressure_kPa", pressure, KPA)):
+        wrong = np.flatnonzero(~np.isfinite(values))
+        if wrong.size:
+            at = int(wrong[0])
+            raise InputError(f"{where}: row {numbers[at]}: {name} = {values[at] / unit:g}; must be a finite number")
+    _check_steps(time, where, numbers)
+    return Signal(float(time[0]), float(time[-1] - time[0]) / (len(time) - 1), np.asarray(pressure, float))
+
+
+def _check_steps(time: Array, where: str, rows: Sequence[int]) -> None:
+    steps = np.diff(time)
+    usual = float(np.median(steps))
+    back = np.flatnonzero(steps <= 0)
+    if back.size:
+        at = int(back[0]) + 1
+        raise InputError(
+            f"{where}: row {rows[at]}: time_s = {time[at]:.9g} after {time[at - 1]:.9g}; time must run forwards"
+        )
+    gap = np.flatnonzero(steps > (1 + 2 * _OFF) * usual * (1 + 1e-6))
+    if gap.size:
+        at = int(gap[0]) + 1
+        raise InputError(
+            f"{where}: row {rows[at]}: time_s = {time[at]:.9g} after {time[at - 1]:.9g}: a gap of {steps[at - 1]:.6g} s "
+            f"where steps are {usual:.6g} s; fill it, or give the longer piece alone"
+        )
+    even = np.linspace(time[0], time[-1], len(time))
+    off = np.abs(time - even)
+    at = int(np.argmax(off))
+    if off[at] > _OFF * float(steps.mean()) * (1 + 1e-6):
+        raise InputError(
+            f"{where}: row {rows[at]}: time_s = {time[at]:.9g} where even steps of {steps.mean():.6g} s would have "
+            f"{even[at]:.9g}; resample the signal to even steps"
+        )
+
+
+def decimated(given: Signal, highest: float) -> Signal:
+    """Every q-th sample of a signal freed of what would fold back, q the largest that keeps ``OVERSAMPLING`` x ``highest`` Hz.
+
+    A Kaiser low-pass without delay, evaluated only at the samples kept (polyphase), mirrored ends: amplitudes up to
+    1.6 ``highest`` stay within 1e-5. The signal itself where q is 1.
+    """
+    from scipy.signal import firwin, kaiser_beta, upfirdn
+
+    factor = math.floor(given.rate / (OVERSAMPLING * highest) * (1 + 1e-9))
+    if factor < 2:
+        return given
+    rate = given.rate / factor
+    stop = rate - _PASSED * highest
+    # Kaiser's estimate of the length; half of it a multiple of the factor, so that kept samples fall on filter outputs.
+    length = (_STOP_DB - 7.95) / (2.285 * 2 * math.pi * (stop - _PASSED * highest) / given.rate)
+    blocks = math.ceil(length / 2 / factor)
+    half = blocks * factor
+    taps = firwin(2 * half + 1, (stop + _PASSED * highest) / 2, window=("kaiser", kaiser_beta(_STOP_DB)), fs=given.rate)
+    mean = given.pressure.mean()
+    padded = np.pad(given.pressure - mean, half, mode="reflect")
+    kept = (len(given.pressure) - 1) // factor + 1
+    filtered = upfirdn(taps, padded, 1, factor)[2 * blocks : 2 * blocks + kept]
+    return Signal(given.start, given.step * factor, np.asarray(filtered + mean, float))
