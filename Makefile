@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: venv demo test lint check-slow chart chart-meshes atlas atlas-page lock clean
+.PHONY: venv demo test lint check-slow chart chart-meshes texture-page atlas atlas-page lock clean
 
 venv: $(VENV)/.dev
 
@@ -51,6 +51,10 @@ chart: $(VENV)/.dev
 # The print meshes beside other kernels; writes docs/meshing.md and its chart.
 chart-meshes: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.mesh_page
+
+# What the scan model says of the paper's Figure 9, beside finite elements; writes docs/texture.md and its charts.
+texture-page: $(VENV)/.dev
+	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.texture_page
 
 # The shipped table of the solid's answers; goes on where it was stopped. Its page presses 2,000 sensors by both.
 atlas: $(VENV)/.dev

@@ -1,0 +1,222 @@
+"""Write docs/texture.md with its charts: ``make texture-page`` (a few minutes)."""
+
+from __future__ import annotations
+
+import json
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchmarks.strip import AGILUS, Row, Strip, harmonic
+from benchmarks.texture_text import page
+from pneutouch.catalogue import Library
+from pneutouch.mechanics.atlas.respond import respond
+from pneutouch.mechanics.uncertainty import batch_of
+from pneutouch.meridian.segments import Array
+from pneutouch.pipeline.scan import Asked, run_scan
+from pneutouch.pipeline.scan_document import document, spectra
+from pneutouch.pipeline.separate import separating
+from pneutouch.report.style import ACCENT, INK, LINES, MARKERS, MUTED, figure, svg
+from pneutouch.texture.separate import Pattern, amplitudes, noise_amplitude, recommend
+from pneutouch.texture.substrate import Bars, Matrix, Substrate, amplitude
+from pneutouch.units import KPA
+
+ROOT = Path(__file__).resolve().parents[1]
+DOCS = ROOT / "docs"
+CELL, LENGTH, HEIGHT = 0.5, 24.0, 8.0
+DEPTHS, KINDS = (0.0, 1.0, 2.0, 3.0), {3.0: (1.5, 1.0), 6.0: (3.0, 1.5)}
+SURFACE = Row(3.0, 1.5, 1.0, 0.0, 0.75)
+PLACES = 3.0 + 0.75 * np.arange(8)
+"""Over one buried pitch, from the middle of a buried bar, which is the middle of a gap of the surface pattern."""
+_DIGITS = 5
+
+
+def measure() -> dict[str, Any]:
+    """All numbers of the page."""
+    library = Library((ROOT,))
+    run = run_scan("texture-specimen", "paper-dome", library=library)
+    radii = [seen.touch.contact_radius for seen in run.seen if seen.touch is not None]
+    return {
+        "scan": document(run), "single": single(radii), "both": both(radii), "plane": plane(radii),
+        "speed": speed(run), "sweeps": sweeps(run), "advice": advice(run),
+        "separate": separating("texture-specimen", "paper-dome", "3@0,6@2", Asked(), library=library),
+    }  # fmt: skip
+
+
+def _bars(row: Row, length: float = LENGTH) -> Bars:
+    first = np.arange(row.first, length, row.pitch)
+    return Bars(
+        f"{row.pitch:g}@{row.depth:g}",
+        row.pitch,
+        row.width,
+        row.height,
+        row.depth,
+        np.stack([first, first + row.width], 1),
+    )
+
+
+def single(radii: list[float]) -> list[dict[str, float]]:
+    """One row of bars under a disc: amplitude of the compliance by finite elements and by the reduced model, mm/N."""
+    found = []
+    for pitch, (width, height) in KINDS.items():
+        for depth in DEPTHS:
+            row = Row(pitch, width, height, depth)
+            at = width / 2 + pitch * np.arange(8) / 8
+            for radius in radii:
+                coarse, fe = (
+                    Strip(LENGTH, HEIGHT, cell, (row,)).disc_compliance(at, radius) for cell in (CELL, CELL / 2)
+                )
+                ours = -float(amplitude(Matrix(HEIGHT, *AGILUS), _bars(row), np.array(radius)))
+                found.append({"pitch": pitch, "depth": depth, "radius": radius, "fe": harmonic(fe), "reduced": ours,
+                              "coarse": harmonic(coarse), "fe_mean": float(fe.mean())})  # fmt: skip
+    return found
+
+
+def both(radii: list[float]) -> list[dict[str, float]]:
+    """The shipped specimen's two halves, amplitudes at 3 and 6 mm by finite elements and by the reduced model, mm/N."""
+    found = []
+    for depth in (2.0, 4.0):
+        rows = (SURFACE, Row(6.0, 3.0, 1.5, depth, 1.5))
+        for radius in radii:
+            fe = Strip(LENGTH, HEIGHT, CELL / 2, rows).disc_compliance(PLACES, radius)
+            bars = tuple(map(_bars, rows))
+            ground = Substrate(Matrix(HEIGHT, *AGILUS), bars, LENGTH, radius)
+            found.append({
+                "depth": depth, "radius": radius, "fe_3": harmonic(fe, 2), "fe_6": harmonic(fe), "fe_mean": float(fe.mean()),
+                "reduced_3": ground.amplitude(bars[0]), "reduced_6": -ground.amplitude(bars[1]),
+                "reduced_mean": float(ground.compliance(2048).mean()),
+            })  # fmt: skip
+    return found
+
+
+def plane(radii: list[float]) -> list[dict[str, float]]:
+    """Plane strain, a patch as wide as the disc: amplitudes in cells of 0.25 and 0.125 mm, mm/(N/mm)."""
+    found = []
+    for pitch, (width, height) in KINDS.items():
+        for depth in DEPTHS:
+            row, at = Row(pitch, width, height, depth), width / 2 + pitch * np.arange(8) / 8
+            for radius in radii:
+                fe = [harmonic(Strip(LENGTH, HEIGHT, c, (row,)).strip_compliance(at, radius)) for c in (0.25, 0.125)]
+                found.append({"pitch": pitch, "depth": depth, "radius": radius, "fe": fe[1], "coarse": fe[0]})
+    return found
+
+
+def speed(run: Any) -> dict[str, float]:
+    """Processor time of the finite elements over the reduced model's for one state of one specimen; and a scan's in s."""
+    from pneutouch.texture.scalogram import scalogram
+    from pneutouch.texture.scan import scan
+
+    state = run.seen[0]
+    rows = (SURFACE, Row(6.0, 3.0, 1.5, 2.0, 1.5))
+    begin = time.process_time()
+    Strip(LENGTH, HEIGHT, CELL, rows).disc_compliance(PLACES, state.touch.contact_radius)
+    fe = time.process_time() - begin
+    begin = time.process_time()
+    for _ in range(10):
+        Substrate(Matrix(HEIGHT, *AGILUS), tuple(map(_bars, rows)), LENGTH, state.touch.contact_radius).compliance(2048)
+    ours = (time.process_time() - begin) / 10
+    begin = time.perf_counter()
+    scanned = scan(state.touch, state.substrate, run.way)
+    scalogram(scanned.signal, 0.3, 3.0)
+    return {"fe_over_reduced": fe / ours, "scan_with_spectrum_s": time.perf_counter() - begin}
+
+
+def sweeps(run: Any) -> dict[str, Any]:
+    """Amplitudes in Pa, blurred as in `recommend`: over driving pressure, depth, pitch and preload."""
+    matrix, sensor = run.matrix, run.sensor
+    pressures = np.linspace(0.0, 22.0, 23) * KPA
+    ends = batch_of(sensor, np.array([0.0, 22.0]) * KPA)
+    depths, pitches, preloads = np.linspace(0, 6, 25), np.linspace(2, 12, 41), np.linspace(0.1, 1.0, 19)
+
+    def pascals(found: Array) -> list[Any]:
+        pascal = np.round(found / KPA * 1e3, _DIGITS).tolist()
+        return [[None if np.isnan(value) else value for value in row] for row in pascal]
+
+    kinds = [Pattern(3.0, 0.0), Pattern(6.0, 2.0), Pattern(6.0, 4.0)]
+    return {
+        "pressure": {"x": (pressures / KPA).tolist(), "y": pascals(amplitudes(batch_of(sensor, pressures), 0.5, matrix, kinds).T)},
+        "depth": {"x": depths.tolist(), "y": pascals(np.concatenate([amplitudes(ends, 0.5, matrix, [Pattern(p, float(d)) for d in depths]) for p in (3.0, 6.0)]))},
+        "pitch": {"x": pitches.tolist(), "y": pascals(np.concatenate([amplitudes(ends, 0.5, matrix, [Pattern(float(p), d) for p in pitches]) for d in (0.0, 2.0)]))},
+        "preload": {"x": preloads.tolist(), "y": pascals(np.stack([amplitudes(ends, float(f), matrix, kinds[:2]).T.ravel() for f in preloads], axis=1))},
+        "noise": [noise_amplitude(4 / 3) / KPA * 1e3, noise_amplitude(4 / 6) / KPA * 1e3],
+    }  # fmt: skip
+
+
+def advice(run: Any) -> list[dict[str, float]]:
+    """The recommended driving pressure of a few patterns, up to 22 kPa."""
+    found = []
+    limit = float(respond(batch_of(run.sensor, [0.0]), run.sensor.steps).limit_pressure[0])
+    for pitch, depth in ((3.0, 0.0), (6.0, 0.0), (6.0, 2.0), (6.0, 4.0), (10.0, 2.0), (15.0, 4.0), (30.0, 2.0)):
+        best = recommend(Pattern(pitch, depth), run.sensor, run.matrix, min(22 * KPA, 0.8 * limit))
+        found.append({"pitch": pitch, "depth": depth, "kPa": best.driving_pressure / KPA, "Pa": 1e3 * best.amplitude / KPA,
+                      "Pa_at_0": 1e3 * best.unpressurised / KPA})  # fmt: skip
+    return found
+
+
+def chart(data: dict[str, Any]) -> str:
+    """Amplitudes over driving pressure, depth, pitch and preload."""
+    sweeps = data["sweeps"]
+    names = {
+        "pressure": ("driving pressure  (kPa)", ["3 mm, surface", "6 mm, 2 mm deep", "6 mm, 4 mm deep"]),
+        "depth": ("depth  (mm)", ["3 mm, 0 kPa", "3 mm, 22 kPa", "6 mm, 0 kPa", "6 mm, 22 kPa"]),
+        "pitch": ("pitch  (mm)", ["surface, 0 kPa", "surface, 22 kPa", "2 mm deep, 0 kPa", "2 mm deep, 22 kPa"]),
+        "preload": ("preload  (N)", ["3 mm surface, 0 kPa", "3 mm surface, 22 kPa", "6 mm, 2 mm deep, 0 kPa", "6 mm, 2 mm deep, 22 kPa"]),
+    }  # fmt: skip
+    colours = [INK, ACCENT, MUTED, "#3D8FBF"]
+    with figure(180, 130) as drawn:
+        axes = drawn.subplots(2, 2)
+        for ax, (key, (label, labels)) in zip(axes.ravel(), names.items(), strict=True):
+            for k, (values, name) in enumerate(zip(sweeps[key]["y"], labels, strict=True)):
+                ax.semilogy(sweeps[key]["x"], np.array(values, float), color=colours[k], ls=LINES[k], label=name)
+            ax.axhline(sweeps["noise"][0], color=MUTED, lw=0.6, ls=LINES[4])
+            ax.set(xlabel=label, ylabel="pressure amplitude  (Pa)", ylim=(0.02, None))
+            ax.legend(loc="best", frameon=True, facecolor="white", edgecolor="none", framealpha=1.0)
+        return svg(drawn)
+
+
+def check_chart(data: dict[str, Any]) -> str:
+    """The reduced model over the finite elements, sign and all."""
+    with figure(180, 78) as drawn:
+        axes = drawn.subplots(1, 2)
+        for ax, pitch in zip(axes, KINDS, strict=True):
+            rows = [row for row in data["single"] if row["pitch"] == pitch]
+            for k, radius in enumerate(sorted({row["radius"] for row in rows})):
+                mine = [row for row in rows if row["radius"] == radius]
+                depth, look = [row["depth"] for row in mine], {"color": (ACCENT, INK)[k], "marker": MARKERS[k]}
+                ax.semilogy(
+                    depth,
+                    [1e3 * abs(row["fe"]) for row in mine],
+                    ls=LINES[0],
+                    label=f"finite elements, patch {radius:.2f} mm",
+                    **look,
+                )
+                ax.semilogy(
+                    depth,
+                    [1e3 * abs(row["reduced"]) for row in mine],
+                    ls=LINES[2],
+                    mfc="white",
+                    label=f"reduced, patch {radius:.2f} mm",
+                    **look,
+                )
+            ax.set(xlabel="depth of the bars  (mm)", ylabel="compliance amplitude  (µm/N)")
+            ax.set_title(f"pitch {pitch:g} mm", fontsize=7.5)
+        drawn.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
+        return svg(drawn)
+
+
+def main() -> None:
+    data = measure()
+    run = run_scan("texture-specimen", "paper-dome", library=Library((ROOT,)))
+    files = {
+        "texture.json": json.dumps(data, indent=1, sort_keys=True) + "\n", "texture.svg": chart(data),
+        "texture-check.svg": check_chart(data), "texture-scan.svg": spectra(run), "texture.md": page(data),
+    }  # fmt: skip
+    for name, text in files.items():
+        (DOCS / name).write_text(text, encoding="utf-8")
+        print(f"wrote docs/{name}")
+
+
+if __name__ == "__main__":
+    main()

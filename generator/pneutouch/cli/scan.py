@@ -1,0 +1,76 @@
+"""``pneutouch scan``: a sensor slides over a specimen, and its spectrum is read."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from pneutouch.cli.app import JsonOption, OutOption, SetOption, app, print_json, reporting
+
+if TYPE_CHECKING:
+    from pneutouch.pipeline.scan import Asked
+
+
+@app.command()
+def scan(
+    specimen: Annotated[str, typer.Argument(metavar="SPECIMEN", help="Name of a specimen, or path of its TOML file.")],
+    design: Annotated[str, typer.Option("--design", help="Sensor that scans: name of a design, or path.")],
+    pressures: Annotated[str, typer.Option(metavar="KPA,KPA", help="Driving pressures, kPa; empty: measured data alone.")] = "0,22",
+    preload: Annotated[float, typer.Option(help="Normal force at which the height is set, N.")] = 0.5,
+    speed: Annotated[float | None, typer.Option(help="Speed along the path, mm/s; left out: the specimen's.")] = None,
+    control: Annotated[str, typer.Option(help="What is held on the way: height or force.")] = "height",
+    noise: Annotated[float | None, typer.Option(help="White noise of a sample, kPa rms; left out: one step of the recorder.")] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the noise.")] = 0,
+    data: Annotated[list[Path] | None, typer.Option("--data", metavar="FILE", help="Measured signal, CSV with time_s and pressure_kPa; may be repeated.")] = None,
+    separate: Annotated[str | None, typer.Option("--separate", metavar="PITCH@DEPTH,PITCH@DEPTH", help="Instead: rank domes by how well they tell two patterns apart, mm.")] = None,
+    set_: SetOption = None, out: OutOption = Path("outputs"), json: JsonOption = False,
+) -> None:  # fmt: skip
+    """Scan a specimen with a sensor: signals, scalograms and which pattern each state shows."""
+    with reporting():
+        asked = _asked(pressures, preload, speed, control, noise, seed, data or [])
+        if separate is not None:
+            _separate(specimen, design, separate, asked, set_, json=json)
+            return
+        from pneutouch.pipeline.scan import run_scan, write_scan
+        from pneutouch.pipeline.scan_document import document
+
+        run = run_scan(specimen, design, asked, set_)
+        folder = write_scan(run, out)
+        if json:
+            print_json({**document(run), "folder": str(folder)})
+        else:
+            from pneutouch.cli.scan_text import scan_text
+
+            typer.echo(scan_text(document(run)))
+            typer.echo(f"\n{folder}")
+
+
+def _asked(
+    pressures: str, preload: float, speed: float | None, control: str, noise: float | None, seed: int, data: list[Path]
+) -> Asked:
+    from pneutouch.errors import InputError
+    from pneutouch.pipeline.scan import Asked
+    from pneutouch.texture.scan import NOISE
+    from pneutouch.units import KPA
+
+    try:
+        listed = tuple(float(part) * KPA for part in pressures.split(",") if part.strip())
+    except ValueError:
+        raise InputError(f"--pressures {pressures}: must be numbers in kPa with commas between, such as 0,22") from None
+    return Asked(listed, preload, speed, control, NOISE if noise is None else noise * KPA, seed, tuple(data))
+
+
+def _separate(specimen: str, design: str, text: str, asked: Asked, set_: list[str] | None, *, json: bool) -> None:
+    from pneutouch.pipeline.separate import separating
+
+    found = separating(specimen, design, text, asked, set_)
+    if json:
+        print_json(found)
+    else:
+        from pneutouch.cli.scan_text import separation_text
+
+        typer.echo(separation_text(found))
+    if not found["domes"]:
+        raise typer.Exit(1)

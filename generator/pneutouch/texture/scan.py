@@ -1,0 +1,159 @@
+"""The scan: a dome slides over a specimen, held at one height or at one force, and its pressure is recorded.
+
+What modulates the pressure: the dome (stiffness k) and the specimen (compliance c) are springs in series. At a held
+height the dome is pressed by what the specimen does not give, delta(F) + c(x) F = const, so that
+
+    dp = -dp/d(delta) F dc/(1 + k c)
+
+to first order (physics.md 4.2); here the dome's whole curve is used. At a held force the dome's state does not change at
+all in this model: only the sensor's height follows the specimen. No friction, no inertia, no relaxation, no relief.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from pneutouch.errors import InputError
+from pneutouch.meridian.segments import Array
+from pneutouch.texture.contact import Touch
+from pneutouch.texture.signal import Signal
+from pneutouch.texture.substrate import Bars, Substrate
+from pneutouch.units import GAUGE_LIMIT, KPA
+
+Control = Literal["height", "force"]
+CONTROLS: tuple[Control, ...] = ("height", "force")
+
+PRELOAD = 0.5
+"""N; paper, section 5."""
+
+RATE = 10_000.0
+"""Samples a second, Hz; paper, Supplement C."""
+
+STEP = 20.0 / 2**16 * 50.0 * KPA
+"""Step of the recorder, MPa: 16 bits over +-10 V (NI's USB-6341, paper, Supplement C; its range as NI's manuals give it)
+times 50 kPa/V (+-100 kPa on 1 to 5 V, SMC's usual output; assumed, the PSE543's sheet was not read)."""
+
+NOISE = 0.015 * KPA
+"""White noise of a sample, MPa rms: one step of the recorder. An assumption; the paper states no noise."""
+
+_NODES = 2**14
+_NEWTON = 6
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """How the sensor is moved: mm from ``start`` to ``end`` at ``speed`` mm/s, held at a "height" or a "force"."""
+
+    start: float
+    end: float
+    speed: float
+    control: Control = "height"
+
+
+@dataclass(frozen=True, slots=True)
+class Recorder:
+    """What the pressure is recorded with: samples a second, noise (MPa rms), step and range (MPa), seed of the noise."""
+
+    rate: float = RATE
+    noise: float = NOISE
+    step: float = STEP
+    limit: float = GAUGE_LIMIT
+    seed: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Scan:
+    """A scan: what was recorded, the same without noise, and beside it the place (mm), (n,) each.
+
+    ``height``: of the sensor above that at the preload, mm; not zero where the force is held.
+    """
+
+    signal: Signal
+    clean: Array
+    place: Array
+    height: Array
+
+    def pattern(self, bars: Bars) -> Array:
+        """1 where a bar is under the dome's axis, else 0, (n,)."""
+        return bars.covers(self.place)
+
+
+def gain(touch: Touch, compliance: float) -> float:
+    """Pressure by the specimen's compliance at a held height, MPa per mm/N: -dp/d(delta) F/(1 + k c)."""
+    return -touch.pressure_slope * touch.preload / (1.0 + touch.stiffness * compliance)
+
+
+def pressure_amplitude(
+    touch: Touch, substrate: Substrate, bars: Bars, control: Control = "height", order: int = 1
+) -> float:
+    """Amplitude of the pressure at a pattern's frequency, MPa, to first order; never negative, 0 at a held force."""
+    if control == "force":
+        return 0.0
+    found = gain(touch, float(substrate.compliance(_NODES).mean())) * substrate.amplitude(bars, order)
+    return abs(found)
+
+
+def scan(touch: Touch, substrate: Substrate, way: Way, recorder: Recorder = Recorder()) -> Scan:
+    """Slide a dome over a specimen. Raises InputError for a path that is none, or that the curve of the dome leaves."""
+    _check(touch, substrate, way, recorder)
+    time = np.arange(int(np.floor((way.end - way.start) / way.speed * recorder.rate * (1 + 1e-12))) + 1) / recorder.rate
+    place = way.start + way.speed * time
+    nodes = substrate.length * np.arange(_NODES + 1) / _NODES
+    compliance = substrate.compliance(_NODES)
+    mean = float(compliance.mean())
+    if way.control == "height":
+        indentation = _held(touch, compliance, touch.indentation + mean * touch.preload)
+        pressure, height = touch.pressure_at(indentation), np.zeros_like(compliance)
+    else:
+        pressure = np.full_like(compliance, touch.pressure)
+        height = (mean - compliance) * touch.preload
+    clean, lift = (np.interp(place, nodes, np.append(values, values[0])) for values in (pressure, height))
+    return Scan(Signal(0.0, 1.0 / recorder.rate, record(clean, recorder)), clean, place, lift)
+
+
+def record(pressure: Array, recorder: Recorder) -> Array:
+    """Pressures as recorded: with noise, in steps, cut at the range."""
+    noisy = pressure + recorder.noise * np.random.default_rng(recorder.seed).standard_normal(len(pressure))
+    if recorder.step > 0:
+        noisy = recorder.step * np.round(noisy / recorder.step)
+    return np.asarray(np.clip(noisy, -recorder.limit, recorder.limit))
+
+
+def _held(touch: Touch, compliance: Array, approach: float) -> Array:
+    """The dome's indentations where dome and specimen share one approach (mm): delta + c F(delta) = approach."""
+    at = np.full_like(compliance, touch.indentation)
+    for _ in range(_NEWTON):
+        excess = at + compliance * touch.force_at(at) - approach
+        at = at - excess / (1.0 + compliance * touch.force_slope_at(at))
+    if at.max() > touch.travel[-1] or at.min() < 0:
+        raise InputError(
+            f"preload = {touch.preload:g} N: the specimen moves the dome to {at.max():.3f} mm of indentation, beyond the "
+            f"{touch.travel[-1]:.3f} mm that are known; give less preload"
+        )
+    return at
+
+
+def _check(touch: Touch, substrate: Substrate, way: Way, recorder: Recorder) -> None:
+    if not 0 < way.speed < np.inf:
+        raise InputError(f"speed = {way.speed:g} mm/s: must be more than 0")
+    if not way.end > way.start:
+        raise InputError(
+            f"the path from {way.start:g} to {way.end:g} mm is none; the specimen is shorter than the patch"
+        )
+    if not 0 <= recorder.noise < np.inf:
+        raise InputError(f"noise = {recorder.noise / KPA:g} kPa: must not be below 0")
+    for row in substrate.bars:
+        # The lobes beyond are those of a sharp-edged uniform patch, which a real contact has not.
+        if row.pitch < LEAST_PITCH * touch.contact_radius:
+            raise InputError(
+                f"{row.name}: pitch {row.pitch:g} mm: less than {LEAST_PITCH:g} times the patch, whose radius is "
+                f"{touch.contact_radius:.2f} mm at {touch.driving_pressure / KPA:g} kPa and {touch.preload:g} N; "
+                f"it must be at least {LEAST_PITCH * touch.contact_radius:.2f} mm, or the preload less"
+            )
+
+
+LEAST_PITCH = 0.5
+"""Least pitch over contact radius: k rho = 4 pi, the fourth lobe of the patch filter."""

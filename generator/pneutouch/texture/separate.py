@@ -1,0 +1,146 @@
+"""Which driving pressure shows a pattern, and which dome tells two patterns apart: many domes at once, by the atlas."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from pneutouch.errors import InputError
+from pneutouch.mechanics.atlas.press import Batch
+from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.uncertainty import batch_of
+from pneutouch.meridian.segments import Array
+from pneutouch.texture.contact import touches
+from pneutouch.texture.morse import MORSE
+from pneutouch.texture.scan import NOISE, RATE
+from pneutouch.texture.substrate import Bars, Matrix, amplitude
+from pneutouch.units import KPA
+
+BLUR = (0.85, 1.0, 1.15)
+"""Contact radii over the predicted one that an amplitude is the root mean square of. A real patch has no sharp edge, so
+its filter has no zeros; a dome must not be chosen for standing on one."""
+
+LEAST_RATIO = 3.0
+"""Amplitude over noise that a pattern must have in the state meant for it."""
+
+LEAST_TRAVEL = 0.025
+"""Indentation over R0 from which the atlas's contact radius is smooth; before, it walks from element to element."""
+
+POINTS = 23
+"""Driving pressures looked at."""
+
+
+class Pattern(NamedTuple):
+    """Bars, half bar and half gap, by pitch and depth in mm."""
+
+    pitch: float
+    depth: float
+
+    @property
+    def bars(self) -> Bars:
+        """As a row."""
+        half = 0.5 * self.pitch
+        return Bars(f"{self.pitch:g}@{self.depth:g}", self.pitch, half, 1.0, self.depth, np.array([[0.0, half]]))
+
+
+class Advice(NamedTuple):
+    """A driving pressure (MPa), the amplitude there and at no pressure (MPa), and all that were looked at, (n,) each."""
+
+    driving_pressure: float
+    amplitude: float
+    unpressurised: float
+    pressures: Array
+    amplitudes: Array
+
+
+class Separation(NamedTuple):
+    """Domes, best first, (n,) each: their number, the two states' pressures (MPa), amplitudes (n, 2 states, 2 patterns).
+
+    The first state favours the first pattern. ``contrast``: by how much more than the second state.
+    """
+
+    dome: Array
+    pressures: Array
+    amplitudes: Array
+    contrast: Array
+
+
+def noise_amplitude(frequency: float, noise: float = NOISE, rate: float = RATE) -> float:
+    """What white noise (MPa rms a sample) reads as at a voice (Hz), MPa: mean of |W|, whose parts are Gaussian."""
+    ratio = np.linspace(0.02, 2.0, 400)
+    power = float(np.sum(MORSE.response(ratio) ** 2)) * float(ratio[1] - ratio[0])
+    return noise * math.sqrt(power * frequency / rate) * math.sqrt(math.pi) / 2.0
+
+
+def amplitudes(batch: Batch, preload: float, matrix: Matrix, patterns: list[Pattern]) -> Array:
+    """Pressure amplitudes at a held height, MPa, (n, patterns), blurred.
+
+    NaN where a dome does not reach the preload, or reaches it within `LEAST_TRAVEL`.
+    """
+    found = touches(batch, preload)
+    radius = np.where(found.indentation >= LEAST_TRAVEL * batch.inner_radius, found.contact_radius, np.nan)
+    gain = found.pressure_slope * preload / (1.0 + found.stiffness * matrix.compliance(radius))
+    radii = radius[:, None] * np.array(BLUR)
+    return np.stack([
+        gain * np.sqrt((amplitude(matrix, pattern.bars, radii) ** 2).mean(axis=1)) for pattern in patterns
+    ], axis=1)  # fmt: skip
+
+
+def recommend(
+    pattern: Pattern, sensor: Sensor, matrix: Matrix, highest: float, preload: float = 0.5
+) -> Advice:  # fmt: skip
+    """The driving pressure up to ``highest`` (MPa) at which a sensor shows a pattern with the greatest amplitude.
+
+    The sensor must lie in the atlas. Raises InputError where it reaches the preload at none.
+    """
+    check(pattern, matrix)
+    pressures = np.linspace(0.0, highest, POINTS)
+    found = amplitudes(batch_of(sensor, pressures), preload, matrix, [pattern])[:, 0]
+    if not np.isfinite(found).any():
+        raise InputError(
+            f"preload = {preload:g} N: the sensor reaches it at no driving pressure up to {highest / KPA:g} kPa"
+        )
+    best = int(np.nanargmax(found))
+    return Advice(float(pressures[best]), float(found[best]), float(found[0]), pressures, found)
+
+
+def separate(
+    batch: Batch, dome: Array, preload: float, matrix: Matrix, patterns: tuple[Pattern, Pattern], floor: tuple[float, float]
+) -> Separation:  # fmt: skip
+    """Rank domes by how differently two driving pressures weigh two patterns.
+
+    ``dome`` (n,) numbers the rows of ``batch`` that are one dome at several pressures; ``floor`` is the noise of each
+    pattern, MPa. Contrast: (A1/A2 in the first state) over (A1/A2 in the second), amplitudes no less than their floor;
+    the pattern that a state is for must stand ``LEAST_RATIO`` times above its floor there.
+    """
+    for pattern in patterns:
+        check(pattern, matrix)
+    found = amplitudes(batch, preload, matrix, list(patterns))
+    level = np.log(np.maximum(found, floor))
+    # NaN, a dome that cannot be judged, is not above anything.
+    seen = found >= LEAST_RATIO * np.array(floor)
+    lean = level[:, 0] - level[:, 1]
+    rows = []
+    for number in np.unique(dome):
+        mine = np.flatnonzero(dome == number)
+        first, second = mine[seen[mine, 0]], mine[seen[mine, 1]]
+        if first.size and second.size:
+            a, b = first[np.argmax(lean[first])], second[np.argmin(lean[second])]
+            rows.append((float(np.exp(lean[a] - lean[b])), int(a), int(b)))
+    rows.sort(key=lambda row: (-row[0], row[1]))
+    one, two = (np.array([row[k] for row in rows], dtype=np.intp) for k in (1, 2))
+    return Separation(
+        dome[one], np.stack([batch.driving_pressure[one], batch.driving_pressure[two]], axis=1),
+        np.stack([found[one], found[two]], axis=1), np.array([row[0] for row in rows]),
+    )  # fmt: skip
+
+
+def check(pattern: Pattern, matrix: Matrix) -> None:
+    """Raise InputError for a pattern that no specimen can have."""
+    if not (0.0 < pattern.pitch < np.inf and 0.0 <= pattern.depth < matrix.height):
+        raise InputError(
+            f"pattern {pattern.pitch:g}@{pattern.depth:g}: pitch must be more than 0 and depth from 0 to less than the "
+            f"block's {matrix.height:g} mm"
+        )

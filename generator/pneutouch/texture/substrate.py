@@ -1,0 +1,212 @@
+"""The specimen under the dome: a soft layer on a rigid floor with rows of stiff bars, as a compliance along the path.
+
+How stiff bars enter. Vero is some 4,000 times stiffer than Agilus30, so a first-order theory in the contrast of moduli
+is of no use: a little volume of it already takes away all the strain it can. But a bar as stiff as that is a beam that
+spreads the patch's load along its length (`Bars.bending_length`) and hardly sinks. So bars are taken to stand still, and
+
+    over a bar      only the cover sinks, a layer as thin as the bar is deep, bonded to it;
+    over a gap      the whole layer sinks;
+    in between      the share of bars that the patch feels: the true profile, harmonic by harmonic, through the filter of
+                    the patch and that of the cover, which says how much of a load on top still reaches the bars' depth;
+    field           all of it in the field of the specimen with its bars: times mean compliance over bare compliance.
+
+Both filters and both compliances are exact for their layers (Airy's function; Johnson, Contact Mechanics, 1985, ch. 13);
+how they are put together is an approximation, which docs/texture.md measures against finite elements. Linear, no
+friction, uniform pressure over a disc, no surface relief.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from pneutouch.meridian.segments import Array
+
+_HIGHEST = 40.0
+_STEP = 0.05
+"""Wavenumbers of a disc's field, over 1/radius: compliances to 3e-4."""
+
+FIRST_ZERO = 3.8317
+"""k rho at which the patch feels nothing of a pattern: J1's first zero; rho is then 0.61 pitches."""
+
+
+def patch_filter(k: Array, radius: Array | float) -> Array:
+    """What a uniform disc leaves of a pattern: 2 J1(k rho)/(k rho); physics.md 4.2."""
+    from scipy.special import j1
+
+    x = np.maximum(k * radius, 1e-9)
+    return np.asarray(2.0 * j1(x) / x)
+
+
+def half_space(k: Array, shear: float, poisson: float) -> Array:
+    """Sinking over pressure of a half-space at wavenumbers k, mm/MPa: (1 - nu)/(mu k); Johnson, ch. 13."""
+    return np.asarray((1.0 - poisson) / (shear * k))
+
+
+def bonded_layer(k: Array, height: float, shear: float, poisson: float) -> Array:
+    """Sinking over pressure, mm/MPa, of a layer bonded to a rigid floor, at wavenumbers k above 0.
+
+    (1-nu)/(mu k) (c sinh 2q - 2q)/(c cosh 2q + 2q^2 + (1+c^2)/2), q = k h, c = 3 - 4 nu: at nu = 1/2 the formula of
+    physics.md 4.2, for q to 0 the oedometer's h (1 - 2 nu)/(2 mu (1 - nu)). A test solves the layer anew.
+    """
+    q, c = k * height, 3.0 - 4.0 * poisson
+    e = np.exp(-2.0 * q)
+    # Both sides over exp(2q)/2, so that nothing overflows; small q with sinh itself, so that nothing cancels.
+    few = np.minimum(q, 1.0)
+    above = np.where(q < 1.0, 2.0 * e * (c * np.sinh(2.0 * few) - 2.0 * few), c * (1.0 - e * e) - 4.0 * q * e)
+    return np.asarray(half_space(k, shear, poisson) * above / _below(q, c))
+
+
+def reaching(k: Array, depth: float, poisson: float) -> Array:
+    """Pressure on a rigid plate at ``depth`` over that on top, at wavenumbers k; 1 for k or depth to 0.
+
+    (1+c)((1+c)/2 cosh q + q sinh q)/(c cosh 2q + 2q^2 + (1+c^2)/2), q = k d, c = 3 - 4 nu. Deep down at nu = 1/2 it is
+    twice the (1 + kd) exp(-kd) of a half-space (physics.md 4.2), for the plate throws the load back.
+    """
+    q, c = k * depth, 3.0 - 4.0 * poisson
+    e = np.exp(-2.0 * q)
+    above = (1.0 + c) * np.exp(-q) * (0.5 * (1.0 + c) * (1.0 + e) + q * (1.0 - e))
+    return np.asarray(above / _below(q, c))
+
+
+def _below(q: Array, c: float) -> Array:
+    """The denominator of both, over exp(2q)/2."""
+    e = np.exp(-2.0 * q)
+    return np.asarray(c * (1.0 + e * e) + 2.0 * e * (2.0 * q * q + 0.5 * (1.0 + c * c)))
+
+
+class Matrix(NamedTuple):
+    """The soft layer: height in mm, shear modulus in MPa, Poisson ratio; bonded to a rigid floor."""
+
+    height: float
+    shear_modulus: float
+    poisson_ratio: float
+
+    def compliance(self, radius: Array, height: float | None = None) -> Array:
+        """Mean sinking under a uniform disc over its force, mm/N, radii (n,); ``height`` in the place of the layer's."""
+        depth = self.height if height is None else height
+        if depth <= 0.0:
+            return np.zeros_like(radius)
+        # Inverse Hankel transform of the load's square; x = k rho.
+        x = np.asarray(_STEP * (np.arange(round(_HIGHEST / _STEP)) + 0.5), float)
+        k = x / radius[..., None]
+        kernel = bonded_layer(k, depth, self.shear_modulus, self.poisson_ratio) * k
+        total = (patch_filter(x, 1.0) ** 2 * kernel).sum(axis=-1) * _STEP / radius
+        # Beyond the last wavenumber the layer is a half-space, and the filter's square 4/(pi x^3) on average.
+        tail = (1.0 - self.poisson_ratio) / self.shear_modulus * 2.0 / (np.pi * _HIGHEST**2) / radius
+        return np.asarray((total + tail) / (2.0 * np.pi))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Bars:
+    """One row of stiff bars; mm. ``depth`` is that of their tops, ``edges`` (n, 2) are their sides along the path."""
+
+    name: str
+    pitch: float
+    width: float
+    height: float
+    depth: float
+    edges: Array
+
+    @property
+    def duty(self) -> float:
+        """Covered share where the pattern is."""
+        return self.width / self.pitch
+
+    def harmonic(self, order: int = 1) -> float:
+        """Amplitude of a harmonic of the covered share: 2 |sin(n pi w/p)|/(n pi)."""
+        return float(2.0 * abs(np.sin(order * np.pi * self.duty)) / (order * np.pi))
+
+    def series(self, length: float, orders: int) -> Array:
+        """Coefficients c_n, n = 0..orders, of the covered share over a path: sum of c_n exp(2 pi i n x/length)."""
+        n = np.arange(orders + 1)[:, None]
+        middle, width = self.edges.mean(axis=1), np.diff(self.edges, axis=1)[:, 0]
+        share = width / length * np.sinc(n * width / length)
+        return np.asarray((share * np.exp(-2j * np.pi * n * middle / length)).sum(axis=1))
+
+    def covers(self, place: Array) -> Array:
+        """1 where a bar is under a place (n,), else 0."""
+        inside = (place[:, None] >= self.edges[:, 0]) & (place[:, None] < self.edges[:, 1])
+        return np.asarray(inside.any(axis=1), float)
+
+    def bending_length(self, young: float, shear: float) -> float:
+        """Length over which a bar spreads a load, mm: (4 E I/(4 pi mu))^(1/4), a beam on a bed (Hetenyi 1946).
+
+        4 pi mu is the order of a soft body's reaction to a sinking line (slender rods: Batchelor 1970, doi
+        10.1017/S002211207000191X, without its logarithm). Bars stand still where it is longer than the patch.
+        """
+        return float((young * self.width * self.height**3 / 12.0 / (np.pi * shear)) ** 0.25)
+
+
+def contrast(matrix: Matrix, depth: float, radius: Array) -> Array:
+    """Compliance over a gap less that over a bar, mm/N, patch radii (n,)."""
+    return np.asarray(matrix.compliance(radius) - matrix.compliance(radius, depth))
+
+
+def amplitude(matrix: Matrix, bars: Bars, radius: Array, order: int = 1) -> Array:
+    """Amplitude of one row's compliance at a harmonic of its pitch, mm/N, patch radii (n,), alone in the specimen.
+
+    Negative where the patch sinks more with its middle over a bar: beyond the patch filter's first zero.
+    """
+    k = np.asarray(2.0 * np.pi * order / bars.pitch)
+    felt = patch_filter(k, radius) * reaching(k, bars.depth, matrix.poisson_ratio)
+    bare = matrix.compliance(radius)
+    taken = contrast(matrix, bars.depth, radius)
+    return np.asarray(bars.harmonic(order) * felt * taken * (1.0 - bars.duty * taken / bare))
+
+
+@dataclass(frozen=True)
+class Substrate:
+    """A specimen under a patch of a radius: its compliance along a path of ``length`` mm, which repeats at its ends."""
+
+    matrix: Matrix
+    bars: tuple[Bars, ...]
+    length: float
+    radius: float
+
+    @cached_property
+    def bare(self) -> float:
+        """Compliance without bars, mm/N."""
+        return float(self.matrix.compliance(np.array(self.radius)))
+
+    @cached_property
+    def shares(self) -> tuple[float, ...]:
+        """Mean compliance over bare compliance of each row alone, over the part of the path that it fills."""
+        taken = [float(contrast(self.matrix, row.depth, np.array(self.radius))) for row in self.bars]
+        return tuple(1.0 - row.duty * part / self.bare for row, part in zip(self.bars, taken, strict=True))
+
+    def field(self, row: Bars) -> float:
+        """Field at a row over the bare layer's: rows that share a part of the path with it shield it, and it itself."""
+        pairs = zip(self.bars, self.shares, strict=True)
+        return float(np.prod([share for other, share in pairs if _meet(row, other)]))
+
+    def amplitude(self, row: Bars, order: int = 1) -> float:
+        """Amplitude of the compliance at a harmonic of a row's pitch, mm/N, among the other rows; sign as `amplitude`."""
+        own = self.shares[self.bars.index(row)]
+        return float(amplitude(self.matrix, row, np.array(self.radius), order)) * self.field(row) / own
+
+    def compliance(self, count: int) -> Array:
+        """Compliance at ``count`` even places of the path, mm/N, from each row's Fourier series."""
+        orders = min(count // 2 - 1, int(_HIGHEST / self.radius * self.length / (2.0 * np.pi)))
+        k = np.asarray(2.0 * np.pi * np.arange(orders + 1) / self.length, float)
+        found = np.zeros(count // 2 + 1, complex)
+        for row in self.bars:
+            felt = patch_filter(k, self.radius) * reaching(k, row.depth, self.matrix.poisson_ratio)
+            taken = float(contrast(self.matrix, row.depth, np.array(self.radius))) * self.field(row)
+            found[: orders + 1] -= taken * felt * row.series(self.length, orders)
+        found[0] = self._mean()
+        return np.asarray(np.fft.irfft(found, count) * count)
+
+    def _mean(self) -> float:
+        """Mean along the path: shares of rows multiply, each to the part of the path that its row fills."""
+        filled = [float(np.diff(row.edges, axis=1).sum()) / row.duty / self.length for row in self.bars]
+        pairs = zip(self.shares, filled, strict=True)
+        return self.bare * float(np.prod([share ** min(part, 1.0) for share, part in pairs]))
+
+
+def _meet(one: Bars, other: Bars) -> bool:
+    """Whether two rows share a part of the path, or are one."""
+    return bool(one.edges.min() < other.edges.max() and other.edges.min() < one.edges.max())
