@@ -101,3 +101,10 @@ def test_a_broken_file_in_the_catalogue_names_itself(tmp_path, root):
     broken.write_text((root / "printprofiles/materials/TangoPlus.toml").read_text().replace("source = ", "sauce = "))
     with pytest.raises(InputError, match=r"TangoPlus\.toml: .*sauce: unknown key. Did you mean source"):
         load_scene("paper-dome", [], Library((tmp_path, root)))
+
+
+def test_a_specimen_asked_for_as_a_design_is_called_by_its_name(library):
+    with pytest.raises(
+        InputError, match="texture-specimen: is a texture specimen; it can be built, checked and scanned"
+    ):
+        load_scene("texture-specimen", [], library)

@@ -115,4 +115,8 @@ class Library:
             return shelf[name]
         if path.suffix == ".toml" or "/" in name or path.is_file():
             return path
+        if name in self.shelf("specimens"):
+            raise InputError(
+                f"{name}: is a texture specimen; it can be built, checked and scanned, a sensor's design is wanted here"
+            )
         raise InputError(f"{name}: no such design or file.{nearest(name, shelf)}")
