@@ -41,14 +41,7 @@ def threemf(name: str, bodies: tuple[Body, ...], metadata: dict[str, str], thumb
     assembly.SetName(name)
     assembly.SetUUID(name_uuid(name, "assembly"))
     for body in bodies:
-        mesh = model.AddMeshObject()
-        mesh.SetName(body.name)
-        mesh.SetUUID(name_uuid(name, "object", body.name))
-        set_geometry(wrapper, mesh, body)
-        mesh.SetObjectLevelProperty(*materials.property_of(body))
-        add_metadata(mesh, facts_of(body))
-        if not mesh.IsManifoldAndOriented():
-            raise ComputationError(f"3MF: {body.name} is not a closed, oriented mesh; please report the design")
+        mesh = mesh_object(wrapper, model, materials, body, name_uuid(name, "object", body.name))
         component = assembly.AddComponent(mesh, wrapper.GetIdentityTransform())
         component.SetUUID(name_uuid(name, "component", body.name))
     item = model.AddBuildItem(assembly, wrapper.GetIdentityTransform())
@@ -57,6 +50,24 @@ def threemf(name: str, bodies: tuple[Body, ...], metadata: dict[str, str], thumb
     add_metadata(model, metadata)
     if thumbnail is not None:
         model.CreatePackageThumbnailAttachment().ReadFromBuffer(thumbnail)
+    return content_of(wrapper, model)
+
+
+def mesh_object(wrapper: Any, model: Any, materials: Materials, body: Body, identity: str) -> Any:
+    """A body as a mesh object with its material and what it says of itself. Raises ComputationError where it is not closed."""
+    mesh = model.AddMeshObject()
+    mesh.SetName(body.name)
+    mesh.SetUUID(identity)
+    set_geometry(wrapper, mesh, body)
+    mesh.SetObjectLevelProperty(*materials.property_of(body))
+    add_metadata(mesh, facts_of(body))
+    if not mesh.IsManifoldAndOriented():
+        raise ComputationError(f"3MF: {body.name} is not a closed, oriented mesh; please report the design")
+    return mesh
+
+
+def content_of(wrapper: Any, model: Any) -> bytes:
+    """The file of a model, read back once. Raises ComputationError where it cannot be."""
     writer = model.QueryWriter("3mf")
     writer.SetDecimalPrecision(DECIMALS)
     content = bytes(writer.WriteToBuffer())

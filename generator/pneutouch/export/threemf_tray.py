@@ -11,8 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from pneutouch.body import Body
-from pneutouch.errors import ComputationError
-from pneutouch.export.threemf import DECIMALS, check_readable, facts_of, name_uuid, set_geometry
+from pneutouch.export.threemf import content_of, mesh_object, name_uuid
 from pneutouch.export.threemf_materials import Materials
 from pneutouch.export.threemf_metadata import add_metadata
 from pneutouch.meridian.segments import Array
@@ -57,16 +56,14 @@ def threemf_tray(name: str, items: Sequence[Item], metadata: dict[str, str]) -> 
         built.SetUUID(name_uuid(name, "tray item", item.label))
     model.SetBuildUUID(name_uuid(name, "tray"))
     add_metadata(model, metadata)
-    writer = model.QueryWriter("3mf")
-    writer.SetDecimalPrecision(DECIMALS)
-    content = bytes(writer.WriteToBuffer())
-    check_readable(wrapper, content)
-    return content
+    return content_of(wrapper, model)
 
 
 def _object(wrapper: Any, model: Any, name: str, item: Item, materials: Materials) -> Any:
     """The mesh object of a part, or a components object over those of its bodies."""
-    meshes = [_mesh(wrapper, model, name, body, materials) for body in item.bodies]
+    meshes = [
+        mesh_object(wrapper, model, materials, body, name_uuid(name, "tray object", body.name)) for body in item.bodies
+    ]
     if len(meshes) == 1:
         return meshes[0]
     whole = model.AddComponentsObject()
@@ -76,18 +73,6 @@ def _object(wrapper: Any, model: Any, name: str, item: Item, materials: Material
         component = whole.AddComponent(mesh, wrapper.GetIdentityTransform())
         component.SetUUID(name_uuid(name, "tray component", body.name))
     return whole
-
-
-def _mesh(wrapper: Any, model: Any, name: str, body: Body, materials: Materials) -> Any:
-    mesh = model.AddMeshObject()
-    mesh.SetName(body.name)
-    mesh.SetUUID(name_uuid(name, "tray object", body.name))
-    set_geometry(wrapper, mesh, body)
-    mesh.SetObjectLevelProperty(*materials.property_of(body))
-    add_metadata(mesh, facts_of(body))
-    if not mesh.IsManifoldAndOriented():
-        raise ComputationError(f"3MF: {body.name} is not a closed, oriented mesh; please report the design")
-    return mesh
 
 
 def _transform(lib3mf: Any, rows: Array) -> Any:
