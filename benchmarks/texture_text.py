@@ -8,12 +8,14 @@ from typing import Any
 def page(data: dict[str, Any]) -> str:
     """The whole page."""
     return "\n".join([
-        *_what(), *_scan(data), *_check(data), *_plane(data), *_speed(data), *_sweeps(data), *_claim(data), *_advice(data),
+        *_what(data), *_scan(data), *_check(data), *_plane(data), *_speed(data), *_sweeps(data), *_claim(data), *_advice(data),
         *_separate(data), *_cannot(),
     ])  # fmt: skip
 
 
-def _what() -> list[str]:
+def _what(data: dict[str, Any]) -> list[str]:
+    bend = [pattern["bending_length_mm"] for pattern in data["scan"]["patterns"]]
+    rho = [state["contact_radius_mm"] for state in data["scan"]["states"]]
     return [
         "# Texture: which state shows which pattern", "",
         "`make texture-page` writes this page. `pneutouch scan texture-specimen --design paper-dome` slides the paper's sensor over the "
@@ -25,7 +27,9 @@ def _what() -> list[str]:
         "    dp = -dp/d(delta) F dc / (1 + k c)", "",
         "k, dp/d(delta) and the patch's radius rho come from the atlas (or the solid), Boyle's gas and dead volume included. For c, bars "
         "of Vero in Agilus30 are 4,500 times stiffer than what is round them: a perturbation in the moduli is of no use, and a bar is a "
-        "beam that spreads the patch's load over 5 to 8 mm of its length, more than the patch. Bars are taken to stand still: over a bar the cover "
+        "beam that spreads the patch's load over "
+        f"{min(bend):.1f} (surface) to {max(bend):.1f} mm (buried) of its length, against patches {2 * min(rho):.1f} and {2 * max(rho):.1f} mm across: the buried bars "
+        "hardly bend, the surface bars do under the larger patch. Bars are taken to stand still: over a bar the cover "
         "alone sinks, over a gap the whole layer, and between the two goes the true bar profile, each harmonic through", "",
         "- the patch: 2 J1(k rho)/(k rho), no uniform disc feels a pattern at k rho = 3.83;",
         "- the cover: what reaches a plate at the bars' depth of a pressure wave on top;",
@@ -117,19 +121,30 @@ def _plane(data: dict[str, Any]) -> list[str]:
     change = max(abs(row["coarse"] / row["fe"] - 1) for row in rows)
     return [
         "**Plane strain is another specimen.** The same strip under a patch endless along the bars, which lets bars sink as a whole "
-        f"(cells of 0.25 and 0.125 mm, {100 * change:.1f} % apart at most). There a bar does not hold still, and the pattern is strongest not "
-        "at the surface but a millimetre or two below it, where the strain is. A reduced model made for plane strain would answer the "
+        f"(cells of 0.25 and 0.125 mm, {100 * change:.1f} % apart at most). There a bar does not hold still, and the pattern is strongest "
+        f"{_strongest(rows)}. A reduced model made for plane strain would answer the "
         "wrong question; this one does not answer that.", "",
         "| pitch mm | depth mm | half width mm | amplitude um/(N/mm) |", "|---|---|---|---|",
         *(f"| {row['pitch']:g} | {row['depth']:g} | {row['radius']:.2f} | {1e3 * row['fe']:+.2f} |" for row in rows), "",
     ]  # fmt: skip
 
 
+def _strongest(rows: list[dict[str, float]]) -> str:
+    """At which depth each column of the plane strain table is greatest."""
+    best: dict[tuple[float, float], dict[str, float]] = {}
+    for row in rows:
+        key = row["pitch"], row["radius"]
+        if key not in best or abs(row["fe"]) > abs(best[key]["fe"]):
+            best[key] = row
+    said = [f"{row['depth']:g} mm deep at {pitch:g} mm under {radius:.2f} mm" for (pitch, radius), row in best.items()]
+    return ", ".join(said)
+
+
 def _speed(data: dict[str, Any]) -> list[str]:
     speed = data["speed"]
     return [
         f"**Speed.** The finite elements (cells of 0.5 mm, eight places) take {_round(speed['fe_over_reduced'])} times the processor time of the reduced "
-        f"model's whole path. A scan of the 60 mm block at 10 kHz with its scalogram takes {speed['scan_with_spectrum_s']:.2f} s.", "",
+        f"model's whole path. Sliding over the 60 mm block at 10 kHz and the scalogram, without the dome's loading curve and the detection, take {speed['scan_with_spectrum_s']:.2f} s.", "",
     ]  # fmt: skip
 
 
@@ -158,6 +173,7 @@ def _trends(data: dict[str, Any]) -> list[str]:
         for soft, stiff, x in zip(sweeps[name]["y"][k], sweeps[name]["y"][k + 1], sweeps[name]["x"], strict=True)
         if soft is not None and stiff is not None
     ]  # fmt: skip
+    preload = ", ".join(f"{row[-1] / row[0]:.1f}" for row in sweeps["preload"]["y"])
     better = [(soft / stiff, where) for soft, stiff, where in pairs if soft > stiff]
     where = "at none of" if not better else f"at {len(better)} of"
     most = (
@@ -167,7 +183,8 @@ def _trends(data: dict[str, Any]) -> list[str]:
         f"- From 0 to 22 kPa the three patterns of the first panel gain {gains} times: the patch is smaller at the same force.",
         f"- Soft shows more than stiff {where} the {len(pairs)} depths, pitches and preloads drawn{most}.",
         "- Depth costs a short pitch more than a long one: 3 mm bars are gone at 3 mm, 6 mm bars at 6 mm.",
-        "- More preload is more force on a larger patch: it hardly gains at these pitches.", "",
+        f"- More preload is more force on a larger patch. From {sweeps['preload']['x'][0]:g} to {sweeps['preload']['x'][-1]:g} N the four lines change by "
+        f"{preload} times, and have their extremes on the way.", "",
     ]  # fmt: skip
 
 
@@ -199,7 +216,7 @@ def _claim(data: dict[str, Any]) -> list[str]:
         "4 mm/s are 1.33 and 0.67 Hz, not the 1.5 and 0.75 Hz of the caption.)", "",
         "| pattern, in the shipped specimen | soft Pa, FE | stiff Pa, FE | stiff/soft | soft Pa, reduced | stiff Pa, reduced |",
         "|---|---|---|---|---|---|", *rows, "",
-        *_compared(found),
+        *_compared(found, data["scan"]["states"]),
         "- **What the model cannot say.** A soft state that is better at the surface needs something that grows with softness and is felt at short "
         "distance: relief of the surface, into which an unpressurised wall sags; friction, which the paper lowers with lubricant "
         "but does not remove; the wall's own bending over an edge. None of them is in the model, and a relief of some micrometres (table above) "
@@ -227,7 +244,7 @@ def _pascals(data: dict[str, Any]) -> dict[str, tuple[float, float, float, float
     return found
 
 
-def _compared(found: dict[str, tuple[float, float, float, float]]) -> list[str]:
+def _compared(found: dict[str, tuple[float, float, float, float]], states: list[dict[str, Any]]) -> list[str]:
     """The claim against the numbers; surface over buried in both halves."""
     gains = [row[1] / row[0] for row in found.values()]
     lean = {
@@ -245,9 +262,17 @@ def _compared(found: dict[str, tuple[float, float, float, float]]) -> list[str]:
         "the reverse. The reduced model has the caption's order much more strongly over pattern 2, but only because its patch of 3.58 mm stands next to the zero "
         "for 6 mm, where its error is greatest: that is no support.",
         f"- **Pattern 2 sharper than pattern 1** in the stiff state, since it is nearer: yes, {nearer[1]:.1f} times. In the soft state they are alike ({nearer[0]:.2f}).",
-        "- **The buried pattern is found in the stiff state and not in the soft one**: yes, with the noise assumed here, but so is the surface pattern "
-        "(table above). With less noise both states would show both.",
+        f"- **What is found, with the noise assumed here** (p up to 0.05, seed 0): {_found(states)}. With less noise both states would show both.",
     ]  # fmt: skip
+
+
+def _found(states: list[dict[str, Any]]) -> str:
+    """Which patterns each state shows."""
+    said = []
+    for state in states:
+        names = [pattern["name"] for pattern in state["patterns"] if pattern["found"]]
+        said.append(f"at {state['label']} {', '.join(names) or 'none'}")
+    return "; ".join(said)
 
 
 def _advice(data: dict[str, Any]) -> list[str]:

@@ -123,7 +123,7 @@ def test_recorder_steps_and_clips():
 
 @pytest.mark.parametrize(
     ("pressure", "preload", "word"),
-    [(0.0, 0.0, "more than 0"), (0.0, np.nan, "more than 0"), (0.0, 1e4, "reaches"), (-1.0, 0.5, "not be below 0"),
+    [(0.0, 0.0, "more than 0"), (0.0, np.nan, "more than 0"), (0.0, 1e4, "reaches"), (-1.0, 0.5, "0 or more"),
      (45.0, 0.5, "limit point"), (150.0, 0.5, "range of 100 kPa")],
 )  # fmt: skip
 def test_touch_refuses_what_cannot_be(pressure, preload, word):
@@ -169,3 +169,23 @@ def test_separation_takes_the_states_that_lean_most():
     assert found.contrast == pytest.approx([ratio.max() / ratio.min()])
     assert found.pressures[0] == pytest.approx([pressures[ratio.argmax()], pressures[ratio.argmin()]])
     assert not separate(batch, np.zeros(4), 0.5, MATRIX, patterns, (1.0, 1.0)).dome.size
+
+
+@pytest.mark.parametrize("seed", range(1, 6))
+def test_the_stiff_state_shows_both_patterns_whatever_the_noise(seed, library):
+    from pneutouch.pipeline.scan import Asked, run_scan
+
+    (seen,) = run_scan("texture-specimen", "paper-dome", Asked(pressures=(0.022,), seed=seed), library=library).seen
+    for found, true in zip(seen.detections, (4 / 3, 2 / 3, 2 / 3), strict=True):
+        assert found.found
+        assert found.frequency == pytest.approx(true, rel=0.03)
+
+
+def test_a_sensor_held_at_a_force_rises_over_a_bar(library):
+    from pneutouch.pipeline.scan import Asked, run_scan
+
+    run = run_scan("texture-specimen", "paper-dome", Asked(pressures=(0.022,), control="force"), library=library)
+    scan = run.seen[0].scan
+    over = scan.pattern(run.bars[2]) > 0.5
+    late = scan.place > 34.0
+    assert scan.height[over & late].mean() > scan.height[~over & late].mean()

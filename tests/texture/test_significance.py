@@ -89,3 +89,45 @@ def test_frequencies_that_cannot_be_asked(asked, words):
 def test_a_constant_signal_has_nothing_in_it():
     with pytest.raises(InputError, match="the same throughout"):
         detect(record(np.ones(800)), [0.667])
+
+
+@pytest.mark.parametrize("colour", ["white", "red"])
+def test_patterns_an_octave_apart_are_found_whatever_the_noise(colour):
+    """Power: two lines of one amplitude, one at twice the frequency of the other, with overtones of their own."""
+    t = np.arange(int(RATE * SECONDS)) / RATE
+    lines = sum(
+        size * np.cos(2 * np.pi * f * t + k)
+        for k, (f, size) in enumerate([(0.667, 1.5), (1.333, 1.5), (2.0, 0.4), (2.667, 0.4), (4.0, 0.2)])
+    )
+    for seed in range(10):
+        given = record(noise(np.random.default_rng(seed), colour) + lines)
+        found = detect(given, [0.667, 1.333], surrogates=199, seed=seed)
+        assert all(one.found for one in found), (seed, found)
+
+
+def test_the_floor_of_white_noise_is_what_the_wavelet_passes_of_it():
+    from pneutouch.texture.morse import time_average
+
+    floors, true = [], []
+    for seed in range(8):
+        values = noise(np.random.default_rng(100 + seed), "white")
+        floors.append([one.floor for one in detect(record(values), [0.667, 1.333], surrogates=19, level=0.05)])
+        true.append(1e-3 * time_average(values, RATE, np.array([0.667, 1.333])))
+    assert np.median(floors, axis=0) == pytest.approx(np.median(true, axis=0), rel=0.5)
+
+
+@pytest.mark.parametrize("power", [0.0, -2.0, -1.0])
+def test_the_fit_recovers_a_known_density(power):
+    """Noise of density f^power drawn a hundred times: the mean of the fits is that density within a tenth."""
+    from pneutouch.texture.background import fitter
+
+    count = int(RATE * SECONDS)
+    used = fitter(count, RATE, 0.2, 6.0, np.array([0.667]), np.array([1.333]), 0.15)
+    frequency = np.fft.rfftfreq(2 * count, 1 / RATE)
+    true = np.where(frequency > 0.05, np.maximum(frequency, 0.05) ** power, 0.05**power)
+    rng = np.random.default_rng(3)
+    shape = rng.standard_normal((100, len(frequency))) + 1j * rng.standard_normal((100, len(frequency)))
+    values = np.fft.irfft(shape * np.sqrt(true * RATE * count), 2 * count)[:, :count]
+    at = np.array([0.3, 0.667, 1.5, 4.0])
+    found = np.exp(np.log(used.density(used.fit(values), at)).mean(axis=0))
+    assert found == pytest.approx(at**power, rel=0.15)

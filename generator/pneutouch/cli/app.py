@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
@@ -148,6 +148,17 @@ def rung(model: str | None, tolerance: str | None) -> dict[str, Any]:
             f"--tolerance {tolerance} with --model {model}: a tolerance is for --model auto; give one of both"
         )
     return {"model": "auto", "tolerance": parse_tolerance(tolerance)}
+
+
+def refuse_flags(context: typer.Context, flags: Mapping[str, str], what: str, file: str) -> None:
+    """Raise InputError where one of ``flags`` (by parameter) was given, which does not go with ``what``."""
+    from pneutouch.errors import InputError
+
+    given = [
+        flag for key, flag in flags.items() if getattr(context.get_parameter_source(key), "name", "") == "COMMANDLINE"
+    ]
+    if given:
+        raise InputError(f"{file}: {', '.join(given)} cannot be given with {what}")
 
 
 def print_json(document: Any) -> None:

@@ -21,6 +21,7 @@ from pneutouch.cli.app import (
     ToleranceOption,
     app,
     print_json,
+    refuse_flags,
     reporting,
     rung,
 )
@@ -42,7 +43,8 @@ def build(
     """Build everything: print files, prediction, datasheet. A 3MF is built again from the recipe in it."""
     with reporting():
         if _is_specimen(design):
-            _refuse_flags(context, "a specimen, which has no prediction", design, but=("set_",))
+            flags = {key: flag for key, flag in _FLAGS.items() if key != "set_"}
+            refuse_flags(context, flags, "a specimen, which has no prediction", design)
             name, folder, findings = _build_specimen(design, out, set_)
         else:
             name, folder, findings = _build_sensor(
@@ -116,18 +118,6 @@ def _build_sensor(design: str, out: Path, evaluated: Callable[[], Evaluation]) -
     return evaluation.scene.name, folder, evaluation.findings
 
 
-def _refuse_flags(context: typer.Context, what: str, file: str, but: Sequence[str] = ()) -> None:
-    """Raise InputError where an option was given that does not go with what is built."""
-    from pneutouch.errors import InputError
-
-    given = [
-        flag for key, flag in _FLAGS.items()
-        if key not in but and getattr(context.get_parameter_source(key), "name", "") == "COMMANDLINE"
-    ]  # fmt: skip
-    if given:
-        raise InputError(f"{file}: {', '.join(given)} cannot be given with {what}")
-
-
 def _from_3mf(file: str, context: typer.Context) -> Evaluation:
     """Evaluate the recipe of a 3MF; says on stderr what was of another version when it was made."""
     from pneutouch.export.threemf_read import read_threemf
@@ -135,7 +125,7 @@ def _from_3mf(file: str, context: typer.Context) -> Evaluation:
     from pneutouch.pipeline.recipe_read import other_versions, read_recipe
 
     why = "a 3MF: its recipe fixes the design and the model; build from a design file to change them"
-    _refuse_flags(context, why, file)
+    refuse_flags(context, _FLAGS, why, file)
     package = read_threemf(Path(file))
     recipe = read_recipe(package)
     other = other_versions(package, recipe)

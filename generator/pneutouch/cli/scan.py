@@ -7,14 +7,18 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from pneutouch.cli.app import JsonOption, OutOption, SetOption, app, print_json, reporting
+from pneutouch.cli.app import JsonOption, OutOption, SetOption, app, print_json, refuse_flags, reporting
 
 if TYPE_CHECKING:
     from pneutouch.pipeline.scan import Asked
 
 
+_NOT_SEPARATING = {key: f"--{key}" for key in ("pressures", "control", "seed", "data")}
+
+
 @app.command()
 def scan(
+    context: typer.Context,
     specimen: Annotated[str, typer.Argument(metavar="SPECIMEN", help="Name of a specimen, or path of its TOML file.")],
     design: Annotated[str, typer.Option("--design", help="Sensor that scans: name of a design, or path.")],
     pressures: Annotated[str, typer.Option(metavar="KPA,KPA", help="Driving pressures, kPa; empty: measured data alone.")] = "0,22",
@@ -31,6 +35,7 @@ def scan(
     with reporting():
         asked = _asked(pressures, preload, speed, control, noise, seed, data or [])
         if separate is not None:
+            refuse_flags(context, _NOT_SEPARATING, "--separate, which scans nothing", specimen)
             _separate(specimen, design, separate, asked, set_, json=json)
             return
         from pneutouch.pipeline.scan import run_scan, write_scan

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -31,7 +32,13 @@ from pneutouch.texture.substrate import Bars, Matrix, Substrate
 from pneutouch.units import KPA
 
 KEPT = 20.0
-"""Highest frequency of the signals in CSV files, Hz; they are decimated for it to five times as many samples a second."""
+"""Highest frequency of the signals in CSV files, Hz, or twice the highest pattern's; they keep five times as many samples."""
+
+SPEEDS = (0.01, 1000.0)
+"""Slowest and fastest scan, mm/s: a 60 mm path then lasts 1.7 h and 0.06 s."""
+
+MOST_NOISE = 100.0 * KPA
+"""Noise as large as the gauge's range, MPa rms."""
 
 PRESSURES = (0.0, 22.0 * KPA)
 """The soft and the stiff state of the paper's section 5, MPa."""
@@ -81,6 +88,11 @@ class ScanRun:
         """Name of the output folder."""
         return f"{self.specimen.name}-{self.design.name}-scan"
 
+    @property
+    def kept(self) -> float:
+        """Highest frequency that the signals are written for, Hz."""
+        return max(KEPT, 2 * max(self.frequencies.values(), default=0.0))
+
 
 def run_scan(
     specimen: str, design: str, asked: Asked = Asked(), assignments: list[str] | None = None, library: Library | None = None
@@ -90,7 +102,7 @@ def run_scan(
     Raises InputError for what cannot be: see `texture.contact`, `texture.scan`, `texture.detect`.
     """
     shelves = library or Library.default()
-    _check(asked)
+    check_asked(asked)
     ground, scene, sensor = load_both(specimen, design, assignments, shelves)
     if asked.speed is not None:
         ground = replace(ground, specimen=_at_speed(ground, asked.speed))
@@ -111,13 +123,19 @@ def run_scan(
 
 
 def load_both(
-    specimen: str, design: str, assignments: list[str] | None, library: Library
+    specimen: str, design: str, assignments: list[str] | None, library: Library, scanned: bool = True
 ) -> tuple[SpecimenScene, Scene, Sensor]:
-    """A specimen, checked as it is for printing, and a sensor. Raises InputError, also where one is the other."""
+    """A specimen and a sensor; one that is ``scanned`` is checked as it is for printing.
+
+    Raises InputError, also where one is the other.
+    """
     ground = load_specimen(specimen, None, library)
     if specimen_file(design, library) is not None:
         raise InputError(f"--design {design}: is a specimen; give the name or path of a sensor's design")
-    draw(ground)
+    matrix_of(ground)
+    if scanned:
+        bars_of(ground)
+        draw(ground)
     scene = load_scene(design, assignments, library)
     return ground, scene, sensor_of(assemble(scene))
 
@@ -155,8 +173,6 @@ def matrix_of(ground: SpecimenScene) -> Matrix:
 
 def _at_speed(ground: SpecimenScene, speed: float) -> Any:
     """The specimen at another speed; the bars stay where the file's own speed put them."""
-    if not 0.0 < speed < np.inf:
-        raise InputError(f"--speed {speed:g}: must be more than 0 mm/s")
     own = ground.specimen.scan.speed_mm_per_s
     layers = [
         layer.model_copy(update={"pitch_mm": layer.pitch(own), "target_frequency_Hz": None})
@@ -166,9 +182,16 @@ def _at_speed(ground: SpecimenScene, speed: float) -> Any:
     return ground.specimen.model_copy(update=update)
 
 
-def _check(asked: Asked) -> None:
+def check_asked(asked: Asked) -> None:
+    """Raise InputError for an option that no scan can have, in the words of the command line."""
     if asked.control not in CONTROLS:
         raise InputError(f"--control {asked.control}: unknown.{nearest(asked.control, CONTROLS)}")
+    if not math.isfinite(asked.preload) or asked.preload <= 0:
+        raise InputError(f"--preload {asked.preload:g}: must be a force above 0 N")
+    if asked.speed is not None and not SPEEDS[0] <= asked.speed <= SPEEDS[1]:
+        raise InputError(f"--speed {asked.speed:g}: must be from {SPEEDS[0]:g} to {SPEEDS[1]:g} mm/s")
+    if not 0 <= asked.noise <= MOST_NOISE:
+        raise InputError(f"--noise {asked.noise / KPA:g}: must be from 0 to {MOST_NOISE / KPA:g} kPa")
     if not asked.pressures and not asked.data:
         raise InputError("--pressures: none given, and no --data; nothing to scan")
 
@@ -214,7 +237,7 @@ def write_scan(run: ScanRun, out: Path) -> Path:
     check_writable(folder)
     files = {"scan.json": json_bytes(document(run)), "scan.svg": spectra(run).encode()}
     for number, seen in enumerate(run.seen):
-        files[f"signal-{number + 1}.csv"] = signal_csv(seen, run.bars)
+        files[f"signal-{number + 1}.csv"] = signal_csv(seen, run.bars, run.kept)
     content = inputs(run)
     manifest = {
         "name": run.name, "inputs": content, "input_hash": input_hash(content, __version__), "versions": versions(),
@@ -224,9 +247,9 @@ def write_scan(run: ScanRun, out: Path) -> Path:
     return folder
 
 
-def signal_csv(seen: Seen, bars: Sequence[Bars]) -> bytes:
-    """A signal decimated to five times `KEPT` Hz; a simulated one with place, noiseless pressure and true patterns."""
-    kept = decimated(seen.signal, KEPT)
+def signal_csv(seen: Seen, bars: Sequence[Bars], highest: float) -> bytes:
+    """A signal decimated for ``highest`` Hz; a simulated one with place, noiseless pressure and true patterns."""
+    kept = decimated(seen.signal, highest)
     columns = {"time_s": kept.time, "pressure_kPa": kept.pressure / KPA}
     if seen.scan is not None:
         every = np.searchsorted(seen.signal.time, kept.time - 0.5 * seen.signal.step)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from pneutouch.pipeline.scan import KEPT, ScanRun, Seen
+from pneutouch.pipeline.scan import ScanRun, Seen
 from pneutouch.pipeline.specimen.build import inputs as specimen_inputs
 from pneutouch.report.scalogram import Scanned, scalogram_chart
 from pneutouch.texture.detect import Detection
@@ -36,7 +36,7 @@ def document(run: ScanRun) -> dict[str, Any]:
     found = {
         "specimen": run.specimen.name, "design": run.design.name, "control": run.asked.control,
         "preload_N": run.asked.preload, "speed_mm_per_s": run.way.speed, "path_mm": [run.way.start, run.way.end],
-        "sampling_Hz": RATE, "kept_Hz": 5 * KEPT, "noise_kPa": run.asked.noise / KPA, "seed": run.asked.seed,
+        "sampling_Hz": RATE, "kept_Hz": 5 * run.kept, "noise_kPa": run.asked.noise / KPA, "seed": run.asked.seed,
         "range_kPa": GAUGE_LIMIT / KPA,
         "patterns": [_pattern(run, row) for row in run.bars],
         "states": [_state(run, number, seen) for number, seen in enumerate(run.seen)],

@@ -17,7 +17,7 @@ from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.meridian.segments import Array
 from pneutouch.pipeline.evaluate import elastomers
-from pneutouch.pipeline.scan import Asked, load_both, matrix_of
+from pneutouch.pipeline.scan import Asked, check_asked, load_both, matrix_of
 from pneutouch.texture.separate import Pattern, Separation, noise_amplitude, separate
 from pneutouch.units import KPA
 
@@ -46,6 +46,8 @@ def parse_patterns(text: str) -> tuple[Pattern, Pattern]:
     if match is None:
         raise InputError(f"--separate {text}: must be PITCH1@DEPTH1,PITCH2@DEPTH2 in mm, such as 3@0,6@2")
     a, b, c, d = (float(part) for part in match.groups())
+    if min(a, c) <= 0:
+        raise InputError(f"--separate {text}: a pitch must be more than 0 mm")
     if (a, b) == (c, d):
         raise InputError(f"--separate {text}: both patterns are the same; there is nothing to tell apart")
     return Pattern(a, b), Pattern(c, d)
@@ -57,9 +59,10 @@ def separating(
 ) -> dict[str, Any]:  # fmt: skip
     """The domes that best tell two patterns apart, as a document; the specimen gives matrix and speed, the design the rest."""
     shelves = library or Library.default()
+    check_asked(asked)
     patterns = parse_patterns(text)
-    ground, scene, sensor = load_both(specimen, design, assignments, shelves)
-    speed = asked.speed or ground.specimen.scan.speed_mm_per_s
+    ground, scene, sensor = load_both(specimen, design, assignments, shelves, scanned=False)
+    speed = ground.specimen.scan.speed_mm_per_s if asked.speed is None else asked.speed
     floor = tuple(noise_amplitude(speed / pattern.pitch, asked.noise) for pattern in patterns)
     domes = candidates(scene, sensor, shelves)
     found = separate(domes.batch, domes.dome, asked.preload, matrix_of(ground), patterns, (floor[0], floor[1]))

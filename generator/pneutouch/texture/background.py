@@ -83,14 +83,18 @@ class Fitter:
         return np.asarray(scipy.fft.irfft((normal[0] + 1j * normal[1]) * scale, total)[:, :count])
 
 
-def fitter(count: int, rate: float, low: float, high: float, lines: Array, band: float) -> Fitter:
+def fitter(
+    count: int, rate: float, low: float, high: float, lines: Array, overtones: Array, band: float
+) -> Fitter:  # fmt: skip
     """A fitter for records of ``count`` samples at ``rate`` Hz over ``low`` to ``high`` Hz, beside ``lines`` (m,) Hz.
 
-    Left out beside each line are the share ``band`` and the two bins that the Hann taper spreads a tone over.
+    Left out beside each line are the share ``band`` and the two bins that the Hann taper spreads a tone over; beside
+    ``overtones`` (k,) Hz those two bins alone.
     """
     frequency = np.fft.rfftfreq(count, 1 / rate)
-    room = band * lines + 2 * rate / count
-    beside = (np.abs(frequency[:, None] - lines) > room).all(axis=1)
+    spread = 2 * rate / count
+    beside = (np.abs(frequency[:, None] - lines) > band * lines + spread).all(axis=1)
+    beside &= (np.abs(frequency[:, None] - overtones) > spread).all(axis=1)
     taper = np.sin(np.pi * (np.arange(count) + 0.5) / count) ** 2
     return Fitter(rate, taper, beside & (frequency >= low) & (frequency <= high), low, high)
 

@@ -131,7 +131,7 @@ def _check(sensor: Sensor, pressure: float, preload: float) -> None:
     if not 0.0 < preload < np.inf:
         raise InputError(f"preload = {preload:g} N: must be more than 0")
     if not 0.0 <= pressure < np.inf:
-        raise InputError(f"driving pressure {pressure / KPA:g} kPa: must not be below 0")
+        raise InputError(f"driving pressure {pressure / KPA:g} kPa: must be a finite number, 0 or more")
     if pressure >= sensor.gauge_limit:
         raise InputError(
             f"driving pressure {pressure / KPA:g} kPa: beyond the pressure sensor's range of {sensor.gauge_limit / KPA:g} kPa"

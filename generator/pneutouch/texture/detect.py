@@ -25,8 +25,11 @@ CYCLES = 3.0
 SURROGATES = 999
 LEVEL = 0.05
 
-_HARMONICS = (1.0, 2.0, 3.0)
-"""Of an asked frequency, taken for lines: no noise is read there."""
+_OVERTONES = (2.0, 3.0)
+"""Of an asked frequency, where a pattern with edges has lines too: the bins that its taper spreads them over are no noise.
+
+No more than these: patterns whose frequencies are multiples of one another would leave no noise between them.
+"""
 
 _APART = 0.25
 """ln f from a line within which the wavelet spectrum is not taken for noise: a tone leaks 15 % of itself that far."""
@@ -104,12 +107,12 @@ def detect(
 
     The statistic is the highest time-averaged |W| within ``BAND`` of the asked frequency, outside the cone of influence,
     over the floor: the median of the time-averaged spectrum over its expected course (``background``) away from all asked
-    frequencies and their second and third harmonics. Noise records are read in the same way, fit and all. A pattern that
+    frequencies. Noise records are read in the same way, fit and all. A pattern that
     fills a part of the record counts with that part. Each frequency is judged alone: of twenty, one passes by chance.
     Raises InputError for frequencies the sampling or the length of the record cannot read, and for a constant signal.
     """
     _check(given, asked, surrogates, level, where)
-    lines = np.outer(asked, _HARMONICS).ravel()
+    lines = np.asarray(asked, float)
     return tuple(_detect(given, float(frequency), lines, surrogates, level, seed, where) for frequency in asked)
 
 
@@ -143,10 +146,11 @@ def _reader(given: Signal, asked: float, lines: Array, where: str) -> tuple[_Rea
     bottom = max(asked / _BELOW, (2 * float(MORSE.e_folding(np.float64(1.0))) + 1) / kept.duration)
     voices = bottom * 2.0 ** (np.arange(math.floor(VOICES * math.log2(top / bottom) + 1e-9) + 1) / VOICES)
     quiet = np.asarray((np.abs(np.log(voices[:, None] / lines)) > _APART).all(axis=1), bool)
-    used = fitter(len(kept.pressure), kept.rate, bottom, top, lines, BAND)
+    overtones = np.outer(lines, _OVERTONES).ravel()
+    used = fitter(len(kept.pressure), kept.rate, bottom, top, lines, overtones, BAND)
     if np.count_nonzero(quiet) < _LEAST_QUIET or np.count_nonzero(used.bins) < 2 * (DEGREE + 1):
         raise InputError(
-            f"{where}: pattern frequency {asked:g} Hz: the asked frequencies and their harmonics leave no noise to compare "
+            f"{where}: pattern frequency {asked:g} Hz: the asked frequencies leave no noise to compare "
             f"with between {bottom:.3g} and {top:.3g} Hz; ask for fewer, or give a longer record"
         )
     return _Reader(used, asked, voices, quiet), detrended(kept.pressure)

@@ -21,6 +21,9 @@ _PASSED = 1.6
 _STOP_DB = 100.0
 """What folds back, and the ripple of what passes, in dB below it: 1e-5 of the amplitude."""
 
+MOST = 1e6 * KPA
+"""Greatest pressure that is taken for one, MPa: a million kPa."""
+
 _OFF = 0.25
 """How far, in steps, a time may lie off the even grid: what rounding in a file does, and no lost sample."""
 
@@ -65,6 +68,10 @@ def signal(time: Array, pressure: Array, where: str = "signal", rows: Sequence[i
         if wrong.size:
             at = int(wrong[0])
             raise InputError(f"{where}: row {numbers[at]}: {name} = {values[at] / unit:g}; must be a finite number")
+    far = np.flatnonzero(np.abs(pressure) > MOST)
+    if far.size:
+        at = int(far[0])
+        raise InputError(f"{where}: row {numbers[at]}: pressure_kPa = {pressure[at] / KPA:g}; is this in kPa?")
     _check_steps(time, where, numbers)
     return Signal(float(time[0]), float(time[-1] - time[0]) / (len(time) - 1), np.asarray(pressure, float))
 
