@@ -89,7 +89,8 @@ def test_pressure_beside_the_greatest_gauge_pressure(gaps, say):
     inside, _ = parted(gaps)
     errors = of(inside, "gauge")
     say(f"atlas, pressure over the press's greatest gauge pressure: {spread(errors)}")
-    assert (errors <= of(inside, "pressure") * (1 + 1e-12)).all()
+    # The same difference over more: equal where the sensor is not driven, but for rounding.
+    assert (errors <= of(inside, "pressure") * (1 + 1e-9) + 1e-12).all()
     assert errors.max() <= 0.005
 
 
