@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -47,11 +48,17 @@ def journal_lines(out) -> int:
     return path.read_bytes().count(b"\n") if path.exists() else 0
 
 
+def _listening():
+    """A shell's background jobs ignore Ctrl-C, and so would all that they start."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def started(out, *words, group=False):
     """The command line as a process, returned as soon as it has kept its first chunk."""
     process = subprocess.Popen(
         [sys.executable, "-m", "pneutouch", "sweep", *WORDS, "--out", str(out), *words],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=group,
+        preexec_fn=_listening,
     )  # fmt: skip
     before, deadline = journal_lines(out), time.monotonic() + 60
     while journal_lines(out) <= before and process.poll() is None and time.monotonic() < deadline:
