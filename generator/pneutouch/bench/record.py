@@ -1,0 +1,104 @@
+"""What a run is on its way from file to figures: blocks of samples, indentations, a curve."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple
+
+from pneutouch.meridian.segments import Array
+from pneutouch.spec.campaign import Run
+
+
+class Doubt(NamedTuple):
+    """A stretch of a run that is not to be trusted, or not as it should be: seconds, and why. Never dropped silently.
+
+    ``used`` says whether it is used all the same.
+    """
+
+    start: float
+    end: float
+    why: str
+    used: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Blocks:
+    """A file's samples averaged over blocks of ``size``, in the file's order; s, mm, N, MPa, arrays (n,).
+
+    ``spread`` are standard deviations (ddof 0) within the blocks, ``extreme`` the greatest magnitude in them, ``first_row`` the row of
+    the file (the header is row 1) with which each begins. ``rate`` is the sampling rate of the file, Hz.
+    """
+
+    file: Path
+    rate: float
+    size: int
+    first_row: Array
+    time: Array
+    position: Array
+    force: Array
+    pressure: Array
+    force_spread: Array
+    pressure_spread: Array
+    force_extreme: Array
+    pressure_extreme: Array
+    doubts: tuple[Doubt, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Indent:
+    """One indentation as it was found. Times in s; mm, N, MPa.
+
+    Attributes:
+        contact: Time of first contact; of an indentation without, NaN.
+        hold: Begin and end of the hold.
+        read: Begin and end of the stretch that was averaged: the last part of the hold.
+        release: Time at which contact is lost.
+        onset: Plate position at first contact.
+        indentation: Plate travel from there to the hold.
+        force: Mean over ``read`` less the mean before contact.
+        rise: The same of the pressure.
+        driving: Pressure before contact.
+        zero_force: Force before contact.
+    """
+
+    contact: float
+    hold: tuple[float, float]
+    read: tuple[float, float]
+    release: float
+    onset: float
+    indentation: float
+    force: float
+    rise: float
+    driving: float
+    zero_force: float
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """What a run says: points in order of their depth, from first contact, (n,) mm, N, MPa; the first is the origin.
+
+    Attributes:
+        run: What the campaign says of it.
+        indentation, force, rise: Loading points.
+        driving: Pressure before contact as it was read, MPa, mean over the indentations.
+        indents: The indentations behind the points.
+        loop: Of a loop run: force and rise going in, force and rise coming out, of each cycle.
+        relaxation: Of a relaxation run: seconds since the hold began, force, rise.
+        noise: Standard deviations of a sample of force (N) and pressure (MPa) without contact, trend taken out; NaN where
+            nothing was without contact.
+        drift: Slope of the pressure without contact, MPa/s, and of the force, N/s; NaN likewise.
+        doubts: Stretches not to be trusted.
+    """
+
+    run: Run
+    indentation: Array
+    force: Array
+    rise: Array
+    driving: float
+    indents: tuple[Indent, ...] = ()
+    loop: tuple[tuple[Array, Array, Array, Array], ...] = ()
+    relaxation: tuple[Array, Array, Array] | None = None
+    noise: tuple[float, float] = (float("nan"), float("nan"))
+    drift: tuple[float, float] = (float("nan"), float("nan"))
+    doubts: tuple[Doubt, ...] = field(default=())

@@ -1,0 +1,128 @@
+"""A measurement campaign: which file holds which run of which sensor, on which rig. One TOML beside the runs."""
+
+from __future__ import annotations
+
+import datetime
+from typing import Literal
+
+from pydantic import Field, model_validator
+
+from pneutouch.spec.design import Printable
+from pneutouch.spec.fields import Table, number
+
+RunKind = Literal["steps", "saturation", "loop", "relaxation", "leak", "injection"]
+"""What a run is; see `bench.protocol`. Leak and injection need no plate."""
+
+UNITS: dict[str, dict[str, float]] = {
+    "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0},
+    "position": {"mm": 1.0, "um": 1e-3, "m": 1e3, "in": 25.4},
+    "force": {"N": 1.0, "mN": 1e-3, "kN": 1e3, "gf": 9.80665e-3, "kgf": 9.80665, "lbf": 4.4482216152605},
+    "pressure": {
+        "kPa": 1e-3, "Pa": 1e-6, "MPa": 1.0, "hPa": 1e-4, "mbar": 1e-4, "bar": 0.1, "psi": 6.894757293168e-3,
+        "mmHg": 1.33322387415e-4,
+    },
+    "volume": {"mL": 1e3, "uL": 1.0, "mm3": 1.0, "L": 1e6},
+}  # fmt: skip
+"""Units a column may have, with their factor to the inner units: s, mm, N, MPa, mm3."""
+
+
+class Column(Table):
+    """A column of the files: its name, its unit, and its sign."""
+
+    name: str = Field(min_length=1, description="Name in the header of the file.")
+    unit: str = Field(min_length=1, description="Unit of its numbers.")
+    sign: Literal[1, -1] = Field(default=1, description="-1 where the rig counts the other way.")
+
+
+def _column(name: str, unit: str) -> Column:
+    return Column(name=name, unit=unit)
+
+
+class Columns(Table):
+    """[columns]: the column map. Position counts into the sensor, force and pressure rise as it is pressed."""
+
+    time: Column = _column("time_s", "s")
+    position: Column = _column("position_mm", "mm")
+    force: Column = _column("force_N", "N")
+    pressure: Column = _column("pressure_kPa", "kPa")
+    volume: Column = _column("volume_mL", "mL")
+
+    @model_validator(mode="after")
+    def _known_units(self) -> Columns:
+        for key, units in UNITS.items():
+            unit = getattr(self, key).unit
+            if unit not in units:
+                raise ValueError(f"{key}.unit = {unit!r}: must be one of {', '.join(units)}")
+        names = [getattr(self, key).name for key in UNITS]
+        for key, name in zip(UNITS, names, strict=True):
+            if names.count(name) > 1:
+                raise ValueError(f"{key}.name = {name!r}: declared for two channels; must be one column each")
+        return self
+
+
+class Rig(Table):
+    """[rig]: what the instruments can do. Defaults are the paper's (Supplement C)."""
+
+    name: Printable = Field(default="the paper's rig: ATI SI-40-2, SMC PSE543-R06", max_length=120, description="Name.")
+    force_range_N: float = number(40.0, unit="N", low=1e-3, high=1e5, help="Greatest force of the force sensor.")  # noqa: N815
+    force_resolution_N: float = number(0.02, unit="N", low=0, high=100, help="Resolution of the force sensor.")  # noqa: N815
+    pressure_range_kPa: float = number(100.0, unit="kPa", low=1e-2, high=1e5, help="Greatest gauge pressure read.")  # noqa: N815
+    travel_mm: float = number(
+        100.0, unit="mm", low=0.1, high=1e4, help="Travel of the stage (Actuonix L16-100: 100 mm)."
+    )
+    rate_Hz: float = number(10_000.0, unit="Hz", low=1, high=1e6, help="Sampling rate.")  # noqa: N815
+
+
+class Run(Table):
+    """One [[runs]] entry: a file and what was measured in it."""
+
+    file: str = Field(min_length=1, description="Path of the CSV or parquet file, from the campaign's folder.")
+    kind: RunKind = Field(default="steps", description="Kind of run: " + ", ".join(RunKind.__args__) + ".")  # type: ignore[attr-defined]
+    sensor: Printable = Field(min_length=1, max_length=60, description="Name of the specimen.")
+    resin: str = Field(min_length=1, description="Name of its material.")
+    driving_pressure_kPa: float = number(0.0, unit="kPa", low=0, high=1000, help="Gauge pressure before contact.")  # noqa: N815
+    run: int = Field(default=1, ge=1, le=10_000, description="Number of the repetition.")
+    date: datetime.date | None = Field(default=None, description="Day of the run.")
+    age_days: float = number(0.0, unit="d", low=0, high=36_500, help="Age of the print on that day.")
+
+    @property
+    def label(self) -> str:
+        """How the run is called in tables and messages."""
+        return f"{self.sensor}, {self.driving_pressure_kPa:g} kPa, {self.kind}, run {self.run}"
+
+
+class Campaign(Table):
+    """A whole campaign file."""
+
+    title: Printable = Field(default="Measurement campaign", max_length=120, description="Title of the measured sheet.")
+    lab: Printable = Field(default="", max_length=120, description="Who measured.")
+    design: str | None = Field(default=None, min_length=1, description="Design of the sensors, where no flag names it.")
+    simulated: bool = Field(default=False, description="Whether a program made the files: said on every sheet.")
+    ambient_pressure_kPa: float | None = number(  # noqa: N815
+        None, unit="kPa", low=20, high=1000, help="Absolute pressure in the laboratory; left out: the design's."
+    )
+    rig: Rig = Rig()
+    columns: Columns = Columns()
+    runs: list[Run] = Field(min_length=1, max_length=100_000, description="The runs.")
+
+    @model_validator(mode="after")
+    def _runs_differ(self) -> Campaign:
+        files: dict[str, int] = {}
+        keys: dict[tuple[object, ...], int] = {}
+        resins: dict[str, str] = {}
+        for place, run in enumerate(self.runs):
+            key = (run.kind, run.sensor, run.driving_pressure_kPa, run.run, run.age_days)
+            same_file, same_run = files.setdefault(run.file, place), keys.setdefault(key, place)
+            if same_file != place:
+                raise ValueError(f"runs[{place}].file = {run.file!r}: is that of runs[{same_file}] too; must be there once")
+            if same_run != place:
+                raise ValueError(
+                    f"runs[{place}] ({run.file}): the same sensor, kind, pressure and run as runs[{same_run}] "
+                    f"({self.runs[same_run].file}); number repetitions with run = 1, 2, 3"
+                )
+            if resins.setdefault(run.sensor, run.resin) != run.resin:
+                raise ValueError(
+                    f"runs[{place}] ({run.file}): sensor {run.sensor!r} is of {run.resin} here and of {resins[run.sensor]} "
+                    "before; a sensor must be of one resin"
+                )
+        return self
