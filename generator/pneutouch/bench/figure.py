@@ -1,0 +1,148 @@
+"""What a run says in figures: measured curves through the same `mechanics.response` as predicted ones."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from pneutouch.bench.record import Curve
+from pneutouch.mechanics.response import figures, hysteresis
+from pneutouch.meridian.segments import Array
+from pneutouch.units import KPA
+
+Pooled = Literal["mean", "within", "between"]
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """A figure of a sensor: its key, name, unit, and how many runs are made one value."""
+
+    key: str
+    name: str
+    unit: str
+    pooled: Pooled = "mean"
+    of: str = ""
+    digits: int = 3
+
+
+FIGURES = (
+    Figure("sensitivity_kPa_per_N", "Sensitivity, line with intercept", "kPa/N", digits=4),
+    Figure("sensitivity_through_origin_kPa_per_N", "Sensitivity, line through the origin", "kPa/N", digits=4),
+    Figure("r_squared", "R²", "", digits=5),
+    Figure("nonlinearity_percent", "Nonlinearity", "% of full scale"),
+    Figure("repeatability_kPa_per_N", "Repeatability of the sensitivity", "kPa/N", "within", "sensitivity_kPa_per_N"),
+    Figure("part_to_part_kPa_per_N", "Part to part, of the sensitivity", "kPa/N", "between", "sensitivity_kPa_per_N"),
+    Figure("stiffness_N_per_mm", "Mean stiffness", "N/mm"),
+    Figure("force_range_N", "Force at the greatest depth", "N"),
+    Figure("saturation_force_N", "Saturation force", "N"),
+    Figure("sensing_range_N", "Sensing range", "N"),
+    Figure("hysteresis_width_percent", "Hysteresis, greatest width", "% of full scale"),
+    Figure("hysteresis_area_percent", "Hysteresis, area of the loop", "% of loading"),
+    Figure("relaxation_force_percent", "Relaxation of the force", "%"),
+    Figure("relaxation_force_percent_per_decade", "Relaxation of the force", "% a decade"),
+    Figure("relaxation_pressure_percent", "Relaxation of the pressure rise", "%"),
+    Figure("relaxation_pressure_percent_per_decade", "Relaxation of the pressure rise", "% a decade"),
+    Figure("drift_pressure_kPa_per_min", "Drift of the pressure without contact", "kPa/min"),
+    Figure("noise_force_N", "Noise of a force sample", "N rms"),
+    Figure("noise_pressure_kPa", "Noise of a pressure sample", "kPa rms"),
+    Figure("resolution_N", "Resolution of the force read from the pressure", "N"),
+)  # fmt: skip
+"""In the order of every table. Definitions with formula and source: docs/measuring.md."""
+
+BY_KEY = {figure.key: figure for figure in FIGURES}
+
+FIRST = 1.0
+"""Seconds after the hold began from which relaxation is counted: the plate's stop has rung down."""
+
+RESOLVED = 3.0
+"""Noise standard deviations that count as resolved: the limit of detection of IUPAC (Gold Book, L03540)."""
+
+_TERMS = 6
+"""Coefficients of the polynomials that stand for the branches of a loop."""
+_GRID = 200
+
+
+def run_figures(curve: Curve) -> dict[str, float]:
+    """The figures that one run gives, by key; those it does not determine are left out."""
+    found: dict[str, float] = {}
+    kind = curve.run.kind
+    if kind in ("steps", "saturation") and len(curve.force) > 2:
+        found |= _line(curve, saturating=kind == "saturation")
+    if kind == "loop" and curve.loop:
+        found |= _loop(curve)
+    if kind == "relaxation" and curve.relaxation is not None:
+        found |= _relaxation(*curve.relaxation)
+    found |= _still(curve, found.get("sensitivity_kPa_per_N"))
+    return {key: value for key, value in found.items() if np.isfinite(value)}
+
+
+def _line(curve: Curve, *, saturating: bool) -> dict[str, float]:
+    got = figures(curve.indentation, curve.force, curve.rise / KPA)
+    if got is None:
+        return {}
+    if saturating:
+        end = got.force_range[1] if got.saturation_force is None else got.saturation_force
+        saturated = {} if got.saturation_force is None else {"saturation_force_N": got.saturation_force}
+        return {**saturated, "sensing_range_N": end}
+    return {
+        "sensitivity_kPa_per_N": got.sensitivity, "sensitivity_through_origin_kPa_per_N": got.sensitivity_through_origin,
+        "r_squared": got.r_squared, "nonlinearity_percent": 100 * got.nonlinearity, "stiffness_N_per_mm": got.stiffness,
+        "force_range_N": got.force_range[1],
+    }  # fmt: skip
+
+
+def _loop(curve: Curve) -> dict[str, float]:
+    """Hysteresis of all cycles together, each branch as a polynomial: the greatest difference of noise is not its own."""
+    force_up, rise_up, force_down, rise_down = (np.concatenate(part) for part in zip(*curve.loop, strict=True))
+    top = min(force_up.max(), force_down.max())
+    grid = np.linspace(max(force_up.min(), force_down.min(), 0.0), top, _GRID)
+    up, down = _smooth(force_up, rise_up, grid), _smooth(force_down, rise_down, grid)
+    width, area = hysteresis(grid, up, grid, down)
+    return {"hysteresis_width_percent": 100 * width, "hysteresis_area_percent": 100 * area}
+
+
+def _smooth(force: Array, rise: Array, grid: Array) -> Array:
+    fitted = np.polynomial.Polynomial.fit(force, rise, min(_TERMS - 1, max(len(force) // 4, 1)))
+    return np.asarray(fitted(grid))
+
+
+def _relaxation(time: Array, force: Array, rise: Array) -> dict[str, float]:
+    """Loss from `FIRST` to the end of the hold, and its slope over log10 of time, both over the value at `FIRST`."""
+    later = time >= FIRST
+    if later.sum() < 3:
+        return {}
+    decades = np.log10(time[later])
+    found = {}
+    for name, values in (("force", force[later]), ("pressure", rise[later])):
+        # Even in log time: a hold of 600 s has nine tenths of its samples in its last decade.
+        grid = np.linspace(decades[0], decades[-1], _GRID)
+        even = _binned(decades, values, grid)
+        start = even[0]
+        slope = np.polyfit(grid, even, 1)[0]
+        found[f"relaxation_{name}_percent"] = float(100 * (start - even[-1]) / start)
+        found[f"relaxation_{name}_percent_per_decade"] = float(-100 * slope / start)
+    return found
+
+
+def _binned(place: Array, values: Array, grid: Array) -> Array:
+    """Means of values around each grid point; straight between where a bin is empty."""
+    edges = np.concatenate([[-np.inf], 0.5 * (grid[1:] + grid[:-1]), [np.inf]])
+    which = np.digitize(place, edges) - 1
+    count = np.bincount(which, minlength=grid.size)
+    total = np.bincount(which, weights=values, minlength=grid.size)
+    known = count > 0
+    return np.interp(grid, grid[known], total[known] / count[known])
+
+
+def _still(curve: Curve, sensitivity: float | None) -> dict[str, float]:
+    """What the channels do without contact; the resolution follows where the run has a sensitivity."""
+    noise_force, noise_pressure = curve.noise[0], curve.noise[1] / KPA
+    found = {
+        "noise_force_N": noise_force, "noise_pressure_kPa": noise_pressure,
+        "drift_pressure_kPa_per_min": 60 * curve.drift[0] / KPA,
+    }  # fmt: skip
+    if sensitivity:
+        found["resolution_N"] = RESOLVED * noise_pressure / abs(sensitivity)
+    return found

@@ -1,0 +1,78 @@
+"""A campaign in figures: runs of a resin, an age and a driving pressure made one, each figure with its interval."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from pneutouch.bench.figure import FIGURES, Pooled, run_figures
+from pneutouch.bench.interval import Estimate, mean_of, spread_between, spread_within
+from pneutouch.bench.record import Curve
+from pneutouch.meridian.segments import Array
+
+_MONTH = 365.25 / 12
+"""Days."""
+
+_POOL: dict[Pooled, Callable[[Sequence[Array]], Estimate]] = {
+    "mean": mean_of, "within": spread_within, "between": spread_between,
+}  # fmt: skip
+
+
+@dataclass(frozen=True, order=True, slots=True)
+class Key:
+    """What the runs of a group have in common: resin, age in months, driving pressure in kPa."""
+
+    resin: str
+    age_months: int
+    driving_pressure_kPa: float  # noqa: N815
+
+    @property
+    def age(self) -> str:
+        """The age in words."""
+        return "fresh" if self.age_months == 0 else f"{self.age_months} months"
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """Runs of one resin, age and driving pressure. ``figures`` are by key, ``each`` by curve in the order of ``curves``."""
+
+    key: Key
+    curves: tuple[Curve, ...]
+    figures: dict[str, Estimate]
+    each: tuple[dict[str, float], ...]
+
+    @property
+    def sensors(self) -> list[str]:
+        """Names of the specimens."""
+        return sorted({curve.run.sensor for curve in self.curves})
+
+    def of_kind(self, kind: str) -> list[Curve]:
+        """The curves of one kind of run."""
+        return [curve for curve in self.curves if curve.run.kind == kind]
+
+
+def summarize(curves: Iterable[Curve]) -> list[Group]:
+    """Groups in the order of resin, age and pressure."""
+    sorted_in: dict[Key, list[Curve]] = {}
+    for curve in curves:
+        run = curve.run
+        key = Key(run.resin, round(run.age_days / _MONTH), run.driving_pressure_kPa)
+        sorted_in.setdefault(key, []).append(curve)
+    return [_group(key, sorted_in[key]) for key in sorted(sorted_in)]
+
+
+def _group(key: Key, curves: list[Curve]) -> Group:
+    each = tuple(run_figures(curve) for curve in curves)
+    found: dict[str, Estimate] = {}
+    for figure in FIGURES:
+        by_sensor: dict[str, list[float]] = {}
+        for curve, values in zip(curves, each, strict=True):
+            if (figure.of or figure.key) in values:
+                by_sensor.setdefault(curve.run.sensor, []).append(values[figure.of or figure.key])
+        if by_sensor:
+            estimate = _POOL[figure.pooled]([np.array(by_sensor[name]) for name in sorted(by_sensor)])
+            if np.isfinite(estimate.value):
+                found[figure.key] = estimate
+    return Group(key, tuple(curves), found, each)

@@ -1,0 +1,82 @@
+"""What the measured datasheet is made from: groups of runs, each beside its prediction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pneutouch.bench.record import Curve
+from pneutouch.bench.summary import Group
+from pneutouch.catalogue import Scene
+from pneutouch.mechanics.prediction import State
+from pneutouch.spec.campaign import Campaign
+
+
+@dataclass(frozen=True)
+class Beside:
+    """A group beside its prediction.
+
+    Attributes:
+        group: The runs and their figures.
+        label: Title of the resin.
+        state: The predicted state at the group's driving pressure; None where there is none.
+        uncertainty: How sure it is, as `Evaluation.uncertainty` has it for a state.
+        predicted: Predicted figures by key of `bench.figure.FIGURES`, with the ends of their 95 % band where known:
+            value, low, high.
+        why: Why there is no prediction; empty where there is one.
+    """
+
+    group: Group
+    label: str
+    state: State | None
+    uncertainty: dict[str, Any]
+    predicted: dict[str, tuple[float, float | None, float | None]]
+    why: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """A wish of the target against what was measured.
+
+    ``passed`` is None where the interval holds values on both sides of the limit: more specimens would tell.
+    """
+
+    what: str
+    wanted: str
+    measured: str
+    passed: bool | None
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A whole campaign.
+
+    Attributes:
+        campaign: The campaign file.
+        scene: The design that it is compared with.
+        folder: Where the campaign lies, as the user gave it.
+        besides: Groups in the order of resin, age and pressure.
+        curves: Every curve read, injections aside.
+        failures: Files that could not be read, with the message.
+        questions: What looks wrong and was not changed: file or run, and the question.
+        verdicts: Of the target, empty without one.
+        injections: Figures of leak and injection runs: sensor, name, value, standard error, unit.
+        ageing: Change of sensitivity between ages: resin, pressure, age, change in percent with its interval, and what the
+            paper measured of this resin in a year, or None.
+        model: Rung of the predictions.
+        input_hash: Of campaign, design and files.
+    """
+
+    campaign: Campaign
+    scene: Scene
+    folder: Path
+    besides: tuple[Beside, ...]
+    curves: tuple[Curve, ...]
+    failures: tuple[tuple[str, str], ...]
+    questions: tuple[tuple[str, str], ...]
+    verdicts: tuple[Verdict, ...]
+    injections: tuple[tuple[str, str, float, float | None, str], ...]
+    ageing: tuple[tuple[str, float, str, float, float | None, float | None, float | None], ...]
+    model: str
+    input_hash: str
