@@ -15,6 +15,7 @@ from pydantic import BaseModel
 from pneutouch.errors import InputError, nearest
 from pneutouch.spec.design import Design
 from pneutouch.spec.material import Material
+from pneutouch.spec.mixing import MixingCurve
 from pneutouch.spec.part import MOUNTS, PORTS, SEATS, Tube
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import read_toml, validate
@@ -59,6 +60,7 @@ KINDS: dict[str, Kind] = {
     "designs": Kind(_one(Design), "designs"),
     "specimens": Kind(validate_specimen, "designs/specimens"),
     "materials": Kind(_one(Material), "printprofiles/materials"),
+    "mixing": Kind(_one(MixingCurve), "printprofiles/mixing"),
     "printers": Kind(_one(Printer), "printprofiles"),
     "tubes": Kind(_one(Tube), "parts/tubes", part=True),
     "ports": Kind(_by_family(PORTS), "parts/ports", part=True),

@@ -6,9 +6,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from pneutouch.catalogue.library import Library
+from pneutouch.catalogue.mixture import mixed_material
 from pneutouch.errors import InputError
 from pneutouch.spec.design import Design
 from pneutouch.spec.fields import Kind
+from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
 from pneutouch.spec.part import AnyMount, AnySeat, OnePiece, Port, Tube
 from pneutouch.spec.printer import Mode, Printer
@@ -91,7 +93,7 @@ def _resolved(name: str, where: str, design: Design, shelves: Library) -> Scene:
 
     scene = Scene(
         name=name, where=where, design=design,
-        membrane_material=find("materials", "membrane", "material"),
+        membrane_material=_membrane_material(design, where, shelves),
         connector_material=find("materials", "connector", "material"),
         printer=find("printers", "print", "profile"),
         connector_printer=find("printers", "print", "connector_profile"),
@@ -102,6 +104,15 @@ def _resolved(name: str, where: str, design: Design, shelves: Library) -> Scene:
     )  # fmt: skip
     check_scene(scene)
     return scene
+
+
+def _membrane_material(design: Design, where: str, shelves: Library) -> Material:
+    """The resin that the design names, or the mix that it describes."""
+    chosen = design.membrane.material
+    if isinstance(chosen, Grade):
+        return mixed_material(chosen, shelves, where)
+    found: Material = shelves.load("materials", chosen, asked_by=f"{where}: membrane.material")
+    return found
 
 
 def check_scene(scene: Scene) -> None:

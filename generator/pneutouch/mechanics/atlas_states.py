@@ -34,6 +34,7 @@ def outside_atlas(sensor: Sensor, atlas: Atlas | None = None) -> str | None:
     ratio, depth = sensor.wall_thickness / sensor.inner_radius, sensor.depth / sensor.inner_radius
     gas = sensor.ambient_pressure / sensor.shear_modulus
     reasons = [
+        (sensor.grade is not None, "the wall is graded along its arc"),
         (sensor.law is not None, "the resin has a law of its own, not the neo-Hookean one"),
         (sensor.poisson_ratio != recipe.poisson_ratio, f"Poisson ratio {sensor.poisson_ratio:g}, not {recipe.poisson_ratio:g}"),
         (sensor.flange is not None, "the flange is held as printed, not the base plane"),

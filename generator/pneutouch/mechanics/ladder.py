@@ -71,8 +71,8 @@ def _outside(rung: str, sensor: Sensor) -> str | None:
         from pneutouch.mechanics.atlas_states import outside_atlas
 
         return outside_atlas(sensor)
-    if rung == "membrane" and (sensor.law is not None or sensor.flange is not None):
-        return "it knows neither other laws nor a held flange"
+    if rung == "membrane" and not (sensor.law is None and sensor.flange is None and sensor.grade is None):
+        return "it knows neither other laws, nor a held flange, nor a graded wall"
     return None
 
 

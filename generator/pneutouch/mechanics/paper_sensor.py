@@ -25,6 +25,13 @@ def material_sensor(material: Material) -> Sensor:
         ambient_pressure=STANDARD_ATMOSPHERE, dead_volume=0.0, plate_radius=0.5 * PAPER_PLATE,
         depth=0.75 * PAPER_RADIUS, steps=14,
         break_stretch=None if elongation is None else 1 + elongation.least / 100, gauge_limit=GAUGE_LIMIT,
-        law=None if material.law is None else (material.law.name, tuple(material.law.constants)),
+        law=None if material.law is None else (material.law.name, tuple(material.law.constants)), grade=_grade(material),
     )  # fmt: skip
     return replace(sensor, shear_modulus=sensor.material.mu)
+
+
+def _grade(material: Material) -> tuple[tuple[float, ...], tuple[float, ...]] | None:
+    along, mean = material.along, material.shear_modulus_MPa
+    if along is None or mean is None:
+        return None
+    return tuple(along.arc), tuple(modulus / mean.nominal for modulus in along.shear_modulus_MPa)

@@ -13,7 +13,9 @@ class Sensor:
 
     ``law`` is a hyperelastic law's name with its constants where the resin has one of its own; without it the
     wall is neo-Hookean with ``shear_modulus``. ``flange`` is the width and thickness of the flange where the solid
-    shall be held as it is printed; without it the wall is clamped at the base plane, as in the paper.
+    shall be held as it is printed; without it the wall is clamped at the base plane, as in the paper. ``grade`` are arc
+    positions from the pole (0) to the rim (1) with the modulus there over ``shear_modulus``, straight between them; without it
+    the wall is even.
     """
 
     inner_radius: float
@@ -29,6 +31,7 @@ class Sensor:
     gauge_limit: float
     law: tuple[str, tuple[float, ...]] | None = None
     flange: tuple[float, float] | None = None
+    grade: tuple[tuple[float, ...], tuple[float, ...]] | None = None
 
     @property
     def material(self) -> Hyperelastic:

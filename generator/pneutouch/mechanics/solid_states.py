@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from pneutouch.mechanics.events import Event, range_end
@@ -26,6 +28,7 @@ from pneutouch.mechanics.solid import (
     state_at,
 )
 from pneutouch.mechanics.solid.mesh import Index
+from pneutouch.meridian.arc import arc_share
 from pneutouch.meridian.segments import Array
 from pneutouch.units import KPA
 
@@ -56,10 +59,18 @@ def solid_result(sensor: Sensor, driving_pressures: Array, *, cells: int | None 
     """
     size = (sensor.inner_radius, sensor.wall_thickness)
     mesh = dome(*size, arc=cells) if sensor.flange is None else printed_dome(*size, *sensor.flange, arc=cells)
-    solid = Solid(mesh, sensor.material)
+    solid = Solid(mesh, sensor.material, grade=_grade(sensor))
     run = inflate(solid, past_limit=_PAST_LIMIT)
     states = tuple(_state(sensor, solid, run, float(p)) for p in driving_pressures)
     return Result(_limit_point(sensor, run), _limits(sensor, solid, run), _inflation(solid, run), states)
+
+
+def _grade(sensor: Sensor) -> Callable[[Array, Array], Array] | None:
+    """The modulus along the arc as the solid takes it."""
+    if sensor.grade is None:
+        return None
+    arc, relative = np.array(sensor.grade[0]), np.array(sensor.grade[1])
+    return lambda radius, height: np.interp(arc_share(radius, height), arc, relative)
 
 
 def _limit_point(sensor: Sensor, run: Inflation) -> LimitPoint | None:

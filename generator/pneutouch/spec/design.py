@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, Field, model_validator
 
 from pneutouch.spec.fields import Table, name, number, numbers
+from pneutouch.spec.grade import ResinOrMix
 
 
 def _within(low: float, high: float, unit: str) -> AfterValidator:
@@ -46,7 +47,10 @@ class Membrane(Table):
 
     inner_radius_mm: float = number(9.25, unit="mm", low=1, high=100, help="Inner radius R0 of the unloaded dome.")
     wall_thickness_mm: float = number(1.5, unit="mm", low=0.05, high=50, help="Wall thickness t0 of the unloaded dome.")
-    material: str = name("TangoPlus", registry="materials", help="Resin of the dome: the offline stiffness.")
+    material: ResinOrMix = Field(
+        default="TangoPlus", json_schema_extra={"registry": "materials"},
+        description="Resin of the dome, the offline stiffness; or a mix such as { from, to, fraction = 0.2 }.",
+    )  # fmt: skip
 
     @model_validator(mode="after")
     def _wall_below_radius(self) -> Membrane:

@@ -86,8 +86,10 @@ def table_of(model: type[BaseModel], key: str) -> type[BaseModel] | None:
     info = model.model_fields.get(key)
     if info is None:
         return None
-    kinds: tuple[Any, ...] = (info.annotation, *typing.get_args(info.annotation))
+    kinds: list[Any] = [info.annotation]
     for kind in kinds:
+        # Optional, union and annotated types hold the model one or two levels down.
+        kinds += typing.get_args(kind) if not isinstance(kind, type) else ()
         if isinstance(kind, type) and issubclass(kind, BaseModel):
             return kind
     return None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 from pydantic import Field, model_validator
 
@@ -53,6 +54,24 @@ class Mix(Table):
         return self
 
 
+class AlongArc(Table):
+    """What a graded membrane is along its arc, from the pole (0) to the rim (1): lists of one length, straight between."""
+
+    arc: list[float] = Field(min_length=2)
+    stiff_fraction: list[float] = Field(min_length=2, description="Volume fraction of the second base resin.")
+    shear_modulus_MPa: list[float] = Field(min_length=2)  # noqa: N815
+
+    @model_validator(mode="after")
+    def _of_one_length(self) -> AlongArc:
+        if not len(self.arc) == len(self.stiff_fraction) == len(self.shear_modulus_MPa):
+            raise ValueError("along: arc, stiff_fraction and shear_modulus_MPa must be of one length")
+        if self.arc[0] != 0 or self.arc[-1] != 1 or any(b <= a for a, b in pairwise(self.arc)):
+            raise ValueError("along.arc: must rise from 0 to 1")
+        if min(self.shear_modulus_MPa) <= 0 or not 0 <= min(self.stiff_fraction) <= max(self.stiff_fraction) <= 1:
+            raise ValueError("along: moduli must be more than 0 and fractions from 0 to 1")
+        return self
+
+
 class Material(Table):
     """One cured material. A digital material is told apart by its code and its base resins together."""
 
@@ -73,6 +92,7 @@ class Material(Table):
     law: HyperelasticLaw | None = None
     measured: Measured | None = None
     mix: Mix | None = None
+    along: AlongArc | None = Field(default=None, description="Of a graded membrane; its numbers are means then.")
 
     @model_validator(mode="after")
     def _mix_of_the_base_resins(self) -> Material:

@@ -69,7 +69,8 @@ def _toml_value(text: str) -> Any:
 
 def _explain(model: type[BaseModel], detail: Any) -> str:
     """One line for one pydantic error: the key, the value, and what would be right."""
-    path = [str(step) for step in detail["loc"] if not isinstance(step, int)]
+    # Names in angle brackets tell the kinds of a value apart that may be of several; they are no keys.
+    path = [str(step) for step in detail["loc"] if not isinstance(step, int) and not str(step).startswith("<")]
     index = next((step for step in detail["loc"] if isinstance(step, int)), None)
     owner: type[BaseModel] | None = model
     for step in path[:-1]:
@@ -77,7 +78,7 @@ def _explain(model: type[BaseModel], detail: Any) -> str:
     key = ".".join(path)
     if detail["type"] == "extra_forbidden" and owner is not None:
         kind = "table" if isinstance(detail["input"], dict) else "key"
-        return f"{key}: unknown {kind}.{nearest(path[-1], owner.model_fields)}"
+        return f"{key}: unknown {kind}.{nearest(path[-1], _keys(owner))}"
     if detail["type"] == "missing":
         return f"{key}: missing; give {_right(owner, path)}"
     if detail["type"] == "value_error":
@@ -89,6 +90,11 @@ def _explain(model: type[BaseModel], detail: Any) -> str:
     label = f"{key}[{index}]" if index is not None else key
     right = f"{_wanted(detail)}{_right(owner, path)}".strip()
     return f"{label} = {_shown(detail['input'])}: {f'must be {right}' if right else detail['msg']}"
+
+
+def _keys(owner: type[BaseModel]) -> list[str]:
+    """The keys of a table as they are written."""
+    return [field.alias or key for key, field in owner.model_fields.items()]
 
 
 def _wanted(detail: Any) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +19,8 @@ from pneutouch.mechanics.solid.elements import DEFAULT_SCHEME, Scheme, gauss_squ
 from pneutouch.mechanics.solid.mesh import Index, SolidMesh
 
 Array = NDArray[np.float64]
+
+Grade = Callable[[Array, Array], Array]
 
 #: Contact stiffness in mu/t0: a traction of mu leaves a penetration of 3e-5 of the wall.
 CONTACT_STIFFNESS = 3.0e4
@@ -40,10 +43,16 @@ class Local:
 
 
 class Solid:
-    """A wall of one material on one mesh.  Positions are (n_nodes, 2) arrays in units of the inner radius."""
+    """A wall on one mesh, of one law whose modulus may vary along the arc.  Positions are (n_nodes, 2) arrays in units of
+    the inner radius.
 
-    def __init__(self, mesh: SolidMesh, material: Hyperelastic, scheme: Scheme | None = None) -> None:
-        self.mesh, self.material = mesh, material
+    ``grade`` gives the modulus over the material's own at reference points (r, z), arrays of any one shape.
+    """
+
+    def __init__(
+        self, mesh: SolidMesh, material: Hyperelastic, scheme: Scheme | None = None, grade: Grade | None = None
+    ) -> None:
+        self.mesh, self.material, self.grade = mesh, material, grade or _even
         self.scheme = scheme or DEFAULT_SCHEME[mesh.cells.shape[1]]
         self.length, self.mu = mesh.length, material.mu
         self.wall = mesh.wall / mesh.length
@@ -61,21 +70,24 @@ class Solid:
         # Rounding leaves this much force in the exact unloaded state; no residual can be asked to fall below it.
         idle = self.forces(self.local(self.rest))
         self.noise = float(np.linalg.norm(self.pattern.vector([idle, np.zeros((len(mesh.inner), tables[1].shape[1]))])))
-        self.contact = Contact(mesh, self.rest, CONTACT_STIFFNESS / self.wall)
+        self.contact = Contact(mesh, self.rest, float(self._relative.max()) * CONTACT_STIFFNESS / self.wall)
 
     def _integration(self) -> None:
         """Constant operators: strains (`_b`, also as `_tall` and its transpose `_wide`) and tested pressure modes."""
         points, weights = gauss_square(self.scheme.gauss)
-        b, measure, _ = strain_operator(self.rest, self.mesh.cells, points)
+        b, measure, position = strain_operator(self.rest, self.mesh.cells, points)
         self._weight = measure * weights
+        self._relative = self.grade(position[..., 0], position[..., 1])
         n_cells, n_points = self._weight.shape
         self._b = np.ascontiguousarray(b)
         self._tall = self._b.reshape(n_cells, n_points * 5, -1)
         self._wide = np.ascontiguousarray(np.swapaxes(self._tall, 1, 2))
         modes = pressure_modes(points, self._weight, self.scheme.pressure)
         self._tested = np.ascontiguousarray(modes * self._weight[:, None, :])
-        self._flat_weight = self._weight.ravel()
-        self._kappa = self.material.bulk_ratio
+        self._stiff_weight = (self._relative * self._weight).ravel()
+        # The averaged volume belongs to a whole cell, and so does its bulk modulus.
+        mean = (self._relative * self._weight).sum(axis=1) / self._weight.sum(axis=1)
+        self._kappa = (self.material.bulk_ratio * mean)[:, None, None]
 
     def expand(self, step: Array) -> Array:
         """Nodal displacement (n_nodes, 2) of a vector of free unknowns (size,)."""
@@ -97,11 +109,11 @@ class Solid:
         if not (j.min() > 0.0 and h.min() > 0.0):
             return Local(np.inf, f, f, f)
         a = f11 * f11 + f12 * f12 + f21 * f21 + f22 * f22
-        jets = self.material.energy(Strain(a, j, h)).data * (self._flat_weight / self.mu)
+        jets = self.material.energy(Strain(a, j, h)).data * (self._stiff_weight / self.mu)
         change = (j * h - 1.0).reshape(n_cells, n_points)
         content = np.matmul(self._tested, change[..., None])
-        pressure = self._kappa * np.matmul(np.swapaxes(self._tested, 1, 2), content).ravel()
-        energy = float(jets[0].sum()) + 0.5 * self._kappa * float(np.vdot(content, content))
+        pressure = (self._kappa * np.matmul(np.swapaxes(self._tested, 1, 2), content)).ravel()
+        energy = float(jets[0].sum()) + 0.5 * float(np.vdot(self._kappa * content, content))
         jets[2] += pressure * h
         jets[3] += pressure * j
         jets[8] += pressure
@@ -144,6 +156,11 @@ class Solid:
         by_strain[:, 4] = f[:, 0] * f[:, 3] - f[:, 1] * f[:, 2]
         tested = self._tested[..., None] * by_strain.reshape(n_cells, 1, n_points, 5)
         return np.asarray(np.matmul(tested.reshape(n_cells, -1, n_points * 5), self._tall))
+
+
+def _even(radius: Array, height: Array) -> Array:
+    del height
+    return np.ones_like(radius)
 
 
 def _number_dofs(mesh: SolidMesh) -> Index:

@@ -52,6 +52,7 @@ class Probe:
         self._edge_b = np.array([found[0][0, 0] for found in extra]).reshape(len(edges), 5, b.shape[-1])
         places = np.concatenate([flat[self._far], *(found[2][0] for found in extra)])
         outer = np.concatenate([np.tile(points[:, 1] > 0.0, b.shape[0])[self._far], [p[1] > 0.0 for _, p in edges]])
+        self._relative = solid.grade(places[:, 0], places[:, 1])
         third = np.clip(np.arctan2(places[:, 1], places[:, 0]) / (np.pi / 6.0), 0, 2).astype(np.intp)
         self._zone = third + 3 * outer.astype(np.intp)
         self._centre = strain_operator(rest, cells, np.zeros((1, 2)))[0][:, 0]
@@ -92,7 +93,7 @@ class Probe:
         stress = np.stack(
             [2.0 * jet[1] * stretch[0] ** 2 + common, 2.0 * jet[1] * stretch[1] ** 2 + common, h * jet[3]]
         )
-        return stretch, stress / (j * h)
+        return stretch, self._relative * stress / (j * h)
 
     def stretch_by_zone(self, x: Array) -> Array:
         """Greatest principal stretch on each face and third of the arc, inner face first, from the base up; (6,)."""

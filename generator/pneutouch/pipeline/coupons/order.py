@@ -104,7 +104,8 @@ def _materials(asked: Asked, scene: Scene | None, printer: Printer, profile: str
     if asked.materials:
         return list(dict.fromkeys(asked.materials))
     if scene is not None and scene.design.print.profile == profile:
-        return [scene.design.membrane.material]
+        chosen = scene.design.membrane.material
+        return [chosen] if isinstance(chosen, str) else [chosen.from_]
     runs = [name for name, one in shelves.all("materials", Material).items() if printer.mode_for(one) is not None]
     if not runs:
         raise InputError(f"--profile {profile}: no known material runs on the {printer.title}; give --material")
