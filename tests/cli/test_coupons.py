@@ -70,3 +70,20 @@ def test_bad_words_exit_2(words, said):
     assert result.exit_code == 2
     assert said in result.stderr
     assert "Traceback" not in result.output
+
+
+def test_the_mixing_pages_command_prints_eight_mixes_and_their_results_make_a_curve(here, root):
+    page = (root / "docs/mixing.md").read_text()
+    line = next(line for line in page.splitlines() if line.startswith("pneutouch coupons --mixing"))
+    result = run(*line.split()[2:], "--json")
+    assert result.exit_code == 0, result.stderr
+    document = json.loads(result.stdout)
+    assert len(document["coupons"]) == 16
+    text = (here / document["folder"] / "results.toml").read_text()
+    for reading in ("27, 28", "40, 41", "52, 53"):
+        text = text.replace("shore_a = []", f"shore_a = [{reading}]", 1)
+    (here / "results.toml").write_text('lab = "Lab 1"\ndate = 2026-11-21\n' + text)
+    entered = run("--results", "results.toml")
+    assert entered.exit_code == 0, entered.stderr
+    assert "written: printprofiles/mixing/TangoPlus+VeroClear.toml" in entered.stdout
+    assert "shear_modulus_MPa at 10 %" in entered.stdout

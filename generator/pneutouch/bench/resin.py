@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -87,37 +88,62 @@ def _add(found: Found, said: Said, name: str, key: str, value: Mean, how: str, t
     found.figures.append(Figure(name, title, value.value, value.spread, value.count))
 
 
-def dumbbell(name: str, material: Material, measured: Dumbbell, said: Said, found: Found) -> None:
-    """Shear modulus by the neo-Hookean fit. Raises InputError for too few specimens or points, and for a rigid material."""
+@dataclass(frozen=True, slots=True)
+class Pulled:
+    """What dumbbells gave: moduli over the specimens, the spread that counts, and how, for a source."""
+
+    over: Mean
+    moduli: tuple[float, ...]
+    spread: float
+    errors: tuple[float, ...]
+    secants: tuple[float, ...]
+    how: str
+
+
+def pulled(measured: Dumbbell, where: str) -> Pulled | None:
+    """Neo-Hookean shear modulus of the specimens that have a curve; None where none has.
+
+    Raises InputError for too few specimens or points; ``where`` names file and table.
+    """
     curves = [specimen for specimen in measured.specimen if specimen.force_N]
-    where = f"{said.where}: dumbbell.{name}"
     if not curves:
-        return
-    if material.kind != "elastomer":
-        raise InputError(f"{where}: {material.label} is rigid; die C is for an elastomer")
+        return None
     if len(curves) < LEAST_READINGS:
         raise InputError(
             f"{where}: {len(curves)} specimen with a curve; at least {LEAST_READINGS}, so that a spread can be told"
         )
     most = measured.largest_strain
     fits = [_fit(specimen, most, f"{where}.specimen[{k}]") for k, specimen in enumerate(curves, start=1)]
-    moduli = [modulus for modulus, _, _ in fits]
-    over, errors = mean(moduli), [error for _, error, _ in fits]
+    moduli, errors = tuple(fit[0] for fit in fits), tuple(fit[1] for fit in fits)
+    over = mean(moduli)
     spread = max(over.spread, float(np.sqrt(np.mean(np.square(errors)))))
+    secants = tuple(young for _, _, young in fits if young is not None)
+    how = f"ASTM D412 die C, neo-Hookean fit to {100 * most:g} % strain, forces after {measured.hold_s:g} s of hold"
+    return Pulled(over, moduli, spread, errors, secants, how)
+
+
+def dumbbell(name: str, material: Material, measured: Dumbbell, said: Said, found: Found) -> None:
+    """Shear modulus by the neo-Hookean fit. Raises InputError for too few specimens or points, and for a rigid material."""
+    where = f"{said.where}: dumbbell.{name}"
+    if material.kind != "elastomer" and any(specimen.force_N for specimen in measured.specimen):
+        raise InputError(f"{where}: {material.label} is rigid; die C is for an elastomer")
+    fit = pulled(measured, where)
+    if fit is None:
+        return
+    over = fit.over
     ratio = 0.5 if material.poisson_ratio is None else material.poisson_ratio.nominal
-    secants = [shear_from_young(young, ratio) for _, _, young in fits if young is not None]
+    secants = [shear_from_young(young, ratio) for young in fit.secants]
     compared = f"; E at 10 % over 2(1+nu) gives {np.mean(secants):.3g} MPa" if secants else ""
     how = (
-        f"dumbbells ASTM D412 die C, neo-Hookean fit to {100 * most:g} % strain, forces after {measured.hold_s:g} s of hold; low "
-        f"and high: least and greatest dumbbell; standard error of the mean {over.error:.2g} MPa, of the fits "
-        f"{max(errors):.2g} MPa at most{compared}"
+        f"dumbbells {fit.how}; low and high: least and greatest dumbbell; standard error of the mean {over.error:.2g} MPa, of "
+        f"the fits {max(fit.errors):.2g} MPa at most{compared}"
     )
     content = {
-        "value": rounded(over.value), "low": rounded(min(moduli)), "high": rounded(max(moduli)),
-        "spread": rounded(spread), "source": said.source(how, over.count),
+        "value": rounded(over.value), "low": rounded(min(fit.moduli)), "high": rounded(max(fit.moduli)),
+        "spread": rounded(fit.spread), "source": said.source(how, over.count),
     }  # fmt: skip
     found.changes.append(Change("materials", name, ("shear_modulus_MPa",), content))
-    found.figures.append(Figure(name, "shear modulus, MPa (neo-Hookean)", over.value, spread, over.count))
+    found.figures.append(Figure(name, "shear modulus, MPa (neo-Hookean)", over.value, fit.spread, over.count))
     if secants:
         found.figures.append(
             Figure(name, "shear modulus, MPa (secant E at 10 %)", float(np.mean(secants)), None, len(secants))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,10 @@ from pneutouch.catalogue.library import Library
 from pneutouch.errors import InputError
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import AlongArc, Material
-from pneutouch.spec.mixing import MixingCurve
+from pneutouch.spec.mixing import MixingCurve, MixingPoint
+
+FROM_CURVE = "mixing curve"
+"""First words of the source of a modulus that a mixing curve gave."""
 
 _STATIONS = 65
 """Places along the arc at which a grade's modulus is stored; straight between them it is within 1e-3 of the curve."""
@@ -22,11 +26,12 @@ _SLACK = 1e-12
 
 @dataclass(frozen=True)
 class Mixing:
-    """A curve with its moduli resolved; arrays (n,) over its points."""
+    """A curve with its moduli resolved; arrays (n,) over its points. ``spread`` is NaN where none was measured."""
 
     curve: MixingCurve
     fraction: Array
     modulus: Array
+    spread: Array
     elongation: Array
 
     def modulus_at(self, fraction: Array) -> Array:
@@ -34,6 +39,21 @@ class Mixing:
         top = float(self.fraction[-1])
         line = Along(tuple(self.fraction / top), tuple(np.log(self.modulus)))
         return np.asarray(np.exp(line(np.asarray(fraction) / top)))
+
+    def band_at(self, fraction: Array) -> tuple[Array, Array]:
+        """Least and greatest modulus in MPa: the points at their ``fraction_high`` and ``fraction_low``.
+
+        Straight in the logarithm between them. Nothing is known beyond the curve's stiffest point, so no modulus of the band
+        is greater than its.
+        """
+        middle, logs = self.modulus_at(fraction), np.log(self.modulus)
+        far = [np.array([getattr(point, side) for point in self.curve.points]) for side in ("high", "low")]
+        low, high = (np.exp(np.interp(fraction, at, logs)) for at in far)
+        return np.minimum(low, middle), np.maximum(high, middle)
+
+    def spread_at(self, fraction: Array) -> Array:
+        """Standard deviation in MPa, its share straight between the points; NaN where one was not measured."""
+        return np.asarray(np.interp(fraction, self.fraction, self.spread / self.modulus) * self.modulus_at(fraction))
 
     def elongation_at(self, fraction: Array) -> Array:
         """Elongation at break in percent, straight between the points where it is known; NaN where none is."""
@@ -44,24 +64,53 @@ class Mixing:
 
 
 def mixing(soft: str, stiff: str, library: Library, *, asked_by: str = "") -> Mixing:
-    """The curve of two base resins. Raises InputError where there is none."""
+    """The curve of two base resins.
+
+    Raises InputError where there is none, where it is another pair's, and where its modulus falls with the fraction.
+    """
+    shelf = library.shelf("mixing")
+    if f"{soft}+{stiff}" not in shelf:
+        head, turned = f"{asked_by}: " if asked_by else "", f"{stiff}+{soft}" in shelf
+        hint = f"the soft resin goes first: {stiff}" if turned else f"known: {', '.join(shelf) or 'none'}"
+        raise InputError(f"{head}no mixing curve of {stiff} in {soft}; {hint} (printprofiles/mixing)")
     curve: MixingCurve = library.load("mixing", f"{soft}+{stiff}", asked_by=asked_by)
-    moduli, elongations = [], []
-    for point in curve.points:
-        if point.material is None:
-            moduli.append(point.shear_modulus_MPa)
-            elongations.append(point.elongation_at_break_percent or np.nan)
-            continue
-        material: Material = library.load(
-            "materials", point.material, asked_by=f"mixing {soft}+{stiff}: points.material"
+    where = str(shelf[f"{soft}+{stiff}"])
+    if (curve.soft, curve.stiff) != (soft, stiff):
+        raise InputError(
+            f"{where}: soft = {curve.soft!r}, stiff = {curve.stiff!r}: must be {soft!r} and {stiff!r}, as the file's name"
         )
-        if material.shear_modulus_MPa is None:
-            raise InputError(f"mixing {soft}+{stiff}: {point.material} has no shear_modulus_MPa")
-        moduli.append(material.shear_modulus_MPa.nominal)
-        known = material.elongation_at_break_percent
-        elongations.append(np.nan if known is None else known.least)
-    return Mixing(
-        curve, np.array([p.fraction for p in curve.points]), np.array(moduli, float), np.array(elongations, float)
+    rows = np.array([_resolved(point, curve, library, where) for point in curve.points])
+    fraction = np.array([point.fraction for point in curve.points])
+    for (f, a), (g, b) in pairwise(zip(fraction, rows[:, 0], strict=True)):
+        if b <= a:
+            raise InputError(
+                f"{where}: points: a shear modulus of {b:g} MPa at fraction {g:g} after {a:g} MPa at {f:g}; "
+                f"it must rise with the fraction of {stiff}"
+            )
+    return Mixing(curve, fraction, *rows.T)
+
+
+def _resolved(point: MixingPoint, curve: MixingCurve, library: Library, where: str) -> tuple[float, float, float]:
+    """Modulus, its spread and the elongation at break of a point; NaN for what is not known."""
+    if point.material is None:
+        assert point.shear_modulus_MPa is not None
+        spread, torn = point.shear_modulus_spread_MPa, point.elongation_at_break_percent
+        return point.shear_modulus_MPa, np.nan if spread is None else spread, np.nan if torn is None else torn
+    material: Material = library.load("materials", point.material, asked_by=f"{where}: points.material")
+    foreign = [resin for resin in material.base_resins if resin not in (curve.soft, curve.stiff)]
+    if foreign:
+        raise InputError(
+            f"{where}: points.material = {point.material!r}: has {', '.join(foreign)} in it; must be of {curve.soft} and "
+            f"{curve.stiff} alone"
+        )
+    if material.shear_modulus_MPa is None:
+        raise InputError(f"{where}: points.material = {point.material!r}: has no shear_modulus_MPa")
+    known = material.elongation_at_break_percent
+    spread = material.shear_modulus_MPa.spread
+    return (
+        material.shear_modulus_MPa.nominal,
+        np.nan if spread is None else spread,
+        np.nan if known is None else known.least,
     )
 
 
@@ -71,6 +120,9 @@ def mixed_material(grade: Grade, library: Library, where: str) -> Material:
     Raises InputError for resins without a curve and for fractions beyond its last point.
     """
     key = f"{where}: membrane.material"
+    # The names first: of an unknown resin there is no curve either, and that would be said of the pair.
+    soft: Material = library.load("materials", grade.from_, asked_by=f"{key}.from")
+    stiff: Material = library.load("materials", grade.to, asked_by=f"{key}.to")
     law = mixing(grade.from_, grade.to, library, asked_by=key)
     top = float(law.fraction[-1])
     for value in grade.fractions:
@@ -79,29 +131,38 @@ def mixed_material(grade: Grade, library: Library, where: str) -> Material:
                 f"{key}: fraction = {value:g}: no modulus is known beyond {top:g} of {grade.to} in {grade.from_} "
                 f"(printprofiles/mixing); it must be at most that"
             )
-    soft: Material = library.load("materials", grade.from_, asked_by=f"{key}.from")
-    stiff: Material = library.load("materials", grade.to, asked_by=f"{key}.to")
     arc = np.linspace(0.0, 1.0, _STATIONS)
     fraction = Along(grade.knots, grade.fractions)(arc)
-    modulus = law.modulus_at(fraction)
     # The dome's wall has its area even over the height: the weight of an arc position is the cosine of its latitude.
     weight = np.sin(0.5 * np.pi * arc)
-    share, mean = float(np.average(fraction, weights=weight)), float(np.average(modulus, weights=weight))
-    if grade.is_constant:
-        share, mean = grade.fractions[0], float(law.modulus_at(np.array(share)))
-    content = _content(grade, soft, stiff, law, share, mean)
+    share = grade.fractions[0] if grade.is_constant else float(np.average(fraction, weights=weight))
+    content = _content(grade, soft, stiff, share)
+    content["shear_modulus_MPa"] = _modulus(law, fraction, weight)
     content["elongation_at_break_percent"] = _elongation(law, fraction)
     if not grade.is_constant:
         content["along"] = AlongArc(
-            arc=arc.tolist(), stiff_fraction=fraction.tolist(), shear_modulus_MPa=modulus.tolist(),
+            arc=arc.tolist(), stiff_fraction=fraction.tolist(), shear_modulus_MPa=law.modulus_at(fraction).tolist(),
         ).model_dump()  # fmt: skip
     return Material.model_validate({name: value for name, value in content.items() if value is not None})
 
 
-def _content(
-    grade: Grade, soft: Material, stiff: Material, law: Mixing, share: float, modulus: float
-) -> dict[str, Any]:
-    source = f"mixing curve {law.curve.soft}+{law.curve.stiff}: {law.curve.assumption}"
+def _modulus(law: Mixing, fraction: Array, weight: Array) -> dict[str, Any]:
+    """Mean modulus over the wall; with the band of an assumed curve, else the spread of a measured one.
+
+    All the wall is at one end of the band together: the curve is one, and where it is wrong it is wrong everywhere.
+    """
+    found: dict[str, Any] = {
+        "value": float(np.average(law.modulus_at(fraction), weights=weight)),
+        "source": f"{FROM_CURVE} {law.curve.soft}+{law.curve.stiff}: {law.curve.assumption}",
+    }
+    if law.curve.is_assumed:
+        found["low"], found["high"] = (float(np.average(end, weights=weight)) for end in law.band_at(fraction))
+    elif np.isfinite(law.spread).all():
+        found["spread"] = float(np.average(law.spread_at(fraction), weights=weight))
+    return found
+
+
+def _content(grade: Grade, soft: Material, stiff: Material, share: float) -> dict[str, Any]:
     fractions = {name: part for name, part in ((grade.from_, 1 - share), (grade.to, share)) if part > 0}
     whole = grade.is_constant and len(fractions) == 2
     return {
@@ -112,7 +173,6 @@ def _content(
             "source": f"by volume from {grade.from_} and {grade.to}",
         },
         "poisson_ratio": None if soft.poisson_ratio is None else soft.poisson_ratio.model_dump(exclude_none=True),
-        "shear_modulus_MPa": {"value": modulus, "source": source},
         "mix": {"fractions": fractions, "source": "asked for: printed by voxels"} if whole else None,
     }  # fmt: skip
 

@@ -110,10 +110,10 @@ def predict(
 
 @app.command("list")
 def list_(
-    kind: Annotated[str | None, typer.Argument(help="designs, specimens, materials, printers or parts.")] = None,
+    kind: Annotated[str | None, typer.Argument(help="designs, specimens, materials, mixing, printers or parts.")] = None,
     json: JsonOption = False,
 ) -> None:
-    """List designs, specimens, materials, printers and parts."""
+    """List designs, specimens, materials, mixing curves, printers and parts."""
     with reporting():
         from pneutouch.cli.text import listing, listing_text
 

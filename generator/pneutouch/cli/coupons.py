@@ -16,6 +16,7 @@ _FLAGS = {
     "profile": "--profile",
     "material": "--material",
     "design": "--design",
+    "mixing": "--mixing",
     "only": "--only",
     "copies": "--copies",
 }
@@ -25,6 +26,7 @@ _FLAGS = {
 def coupons(
     profile: Annotated[str | None, typer.Option(help="Printer to make coupons for.", show_default="the design's, else objet260-connex")] = None,
     material: Annotated[list[str] | None, typer.Option(help="Resin; may be repeated.", show_default="the design's membrane, else TangoPlus")] = None,
+    mixing: Annotated[list[str] | None, typer.Option(metavar="SOFT+STIFF", help="Two resins: coupons of eight mixes of them.")] = None,
     design: Annotated[str | None, typer.Option(metavar="DESIGN", help="Design that cap and plug belong to.")] = None,
     only: Annotated[list[str] | None, typer.Option(help="Coupons, such as puck,dumbbell; left out: all.")] = None,
     copies: Annotated[list[str] | None, typer.Option(metavar="COUPON=N", help="Copies, such as puck=4; may be repeated.")] = None,
@@ -77,7 +79,7 @@ def _asked(given: dict[str, Any]) -> Asked:
             raise InputError(f"--copies {word}: write COUPON=N, such as puck=4")
         copies[name.strip()] = int(number)
     materials, only = _words(given.get("material")), _words(given.get("only"))
-    return Asked(given.get("profile"), materials, given.get("design"), only, copies)
+    return Asked(given.get("profile"), materials, given.get("design"), only, copies, _words(given.get("mixing")))
 
 
 def _words(given: list[str] | None) -> list[str]:

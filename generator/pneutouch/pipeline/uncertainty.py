@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from pneutouch.mechanics import Sensor, State
 from pneutouch.mechanics.ladder import DISCRETISATION, NUMERICAL
+from pneutouch.pipeline.graded_uncertainty import even_wall, notes_on
 from pneutouch.pipeline.table_s1 import is_near_paper
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
@@ -79,20 +80,21 @@ def documents(evaluation: Evaluation, samples: int = 0) -> tuple[Document, ...]:
     ``samples`` > 0 adds ``monte_carlo``: the same sources sampled that often, the 95.45 % interval of every figure.
     """
     states, rung = evaluation.prediction.states, evaluation.prediction.model
-    why = unknown(evaluation.sensor, rung)
+    sensor = even_wall(evaluation.sensor)
+    why = unknown(sensor, rung)
     if why is not None:
         return tuple({"unknown": why} for _ in states)
     from pneutouch.mechanics.uncertainty import document, gas_text, text
 
     scene = evaluation.scene
     found = known(
-        evaluation.sensor, [state.driving_pressure for state in states], scene.membrane_material,
+        sensor, [state.driving_pressure for state in states], scene.membrane_material,
         list(evaluation.resins.values()), scene.printer, rung,
     )  # fmt: skip
     content = []
     for row, (state, notes) in enumerate(zip(states, gas_text(found.batch), strict=True)):
         values = _values(evaluation, state)
-        said = document(found.budget, row, values, notes)
+        said = document(found.budget, row, values, (*notes_on(evaluation.sensor), *notes))
         lacking = said["figures"].keys() - values.keys()
         for name in lacking:
             del said["figures"][name], said["elasticities"][name]

@@ -6,6 +6,7 @@ An empty list means that it was not measured. A list with readings has at least 
 from __future__ import annotations
 
 import datetime
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -91,6 +92,25 @@ class Dumbbell(Table):
     specimen: list[Specimen] = Field(default_factory=list)
 
 
+class MixedCoupons(Table):
+    """[[mixing."SOFT+STIFF"]]: pucks and dumbbells of two resins, one entry a volume fraction of the stiff one."""
+
+    fraction: float = Field(ge=0, le=1)
+    shore_a: Shore = Field(default_factory=list)
+    dumbbell: Dumbbell = Field(default_factory=Dumbbell)
+
+
+def _rising(points: list[MixedCoupons]) -> list[MixedCoupons]:
+    for one, other in pairwise(points):
+        if other.fraction <= one.fraction:
+            said = "there twice" if other.fraction == one.fraction else f"after {one.fraction:g}"
+            raise ValueError(f"fraction = {other.fraction:g}: {said}; the fractions must rise, one entry each")
+    return points
+
+
+Blends = Annotated[list[MixedCoupons], AfterValidator(_rising)]
+
+
 class Size(Table):
     """One feature of the gauge. ``came_out`` is false where it is missing, broken, blocked or grown together."""
 
@@ -157,6 +177,7 @@ class Results(Table):
     date: datetime.date = Field(description="a date such as 2026-11-21")
     puck: dict[str, Puck] = Field(default_factory=dict)
     dumbbell: dict[str, Dumbbell] = Field(default_factory=dict)
+    mixing: dict[str, Blends] = Field(default_factory=dict)
     gauge: dict[str, dict[str, Gauge]] = Field(default_factory=dict)
     leak_cap: dict[str, LeakCap] = Field(default_factory=dict, alias="leak-cap")
     volume_plug: dict[str, VolumePlug] = Field(default_factory=dict, alias="volume-plug")

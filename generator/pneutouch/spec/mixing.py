@@ -20,6 +20,7 @@ class MixingPoint(Table):
     fraction_high: float | None = Field(default=None, ge=0, le=1)
     material: str | None = Field(default=None, min_length=1, description="Catalogue material of this modulus.")
     shear_modulus_MPa: float | None = Field(default=None, gt=0, description="Where it was measured.")  # noqa: N815
+    shear_modulus_spread_MPa: float | None = Field(default=None, ge=0, description="One standard deviation.")  # noqa: N815
     elongation_at_break_percent: float | None = Field(default=None, gt=0)
     source: str = Field(min_length=8)
 
@@ -29,13 +30,24 @@ class MixingPoint(Table):
             raise ValueError(
                 f"the point at fraction = {self.fraction:g} must have either material or shear_modulus_MPa"
             )
-        low = self.fraction if self.fraction_low is None else self.fraction_low
-        high = self.fraction if self.fraction_high is None else self.fraction_high
-        if not low <= self.fraction <= high:
+        if self.shear_modulus_spread_MPa is not None and self.shear_modulus_MPa is None:
+            raise ValueError(f"the point at fraction = {self.fraction:g}: a spread needs its shear_modulus_MPa")
+        if not self.low <= self.fraction <= self.high:
             raise ValueError(
-                f"fraction = {self.fraction:g}: must lie between fraction_low = {low:g} and fraction_high = {high:g}"
+                f"fraction = {self.fraction:g}: must lie between fraction_low = {self.low:g} and "
+                f"fraction_high = {self.high:g}"
             )
         return self
+
+    @property
+    def low(self) -> float:
+        """The least fraction that this modulus may have."""
+        return self.fraction if self.fraction_low is None else self.fraction_low
+
+    @property
+    def high(self) -> float:
+        """The greatest fraction that this modulus may have."""
+        return self.fraction if self.fraction_high is None else self.fraction_high
 
 
 class MixingCurve(Table):
@@ -53,6 +65,20 @@ class MixingCurve(Table):
         for a, b in pairwise(fractions):
             if b <= a:
                 raise ValueError(f"points: fraction {b:g} after {a:g}; they must rise")
+        for side in ("low", "high"):
+            for one, other in pairwise(self.points):
+                if getattr(other, side) < getattr(one, side):
+                    raise ValueError(
+                        f"points: fraction_{side} {getattr(other, side):g} at fraction {other.fraction:g} after "
+                        f"{getattr(one, side):g} at {one.fraction:g}; it must not fall"
+                    )
+        if self.soft == self.stiff:
+            raise ValueError(f"stiff = {self.stiff!r}: must be another resin than soft")
         if fractions[0] != 0:
             raise ValueError(f"points: the first fraction is {fractions[0]:g}; must be 0, the soft resin alone")
         return self
+
+    @property
+    def is_assumed(self) -> bool:
+        """Whether some fraction is not known but placed between ``fraction_low`` and ``fraction_high``."""
+        return any(point.low < point.high for point in self.points)

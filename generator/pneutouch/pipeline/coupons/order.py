@@ -7,12 +7,19 @@ from dataclasses import dataclass, field
 
 from pneutouch.catalogue import Library, Scene, load_scene
 from pneutouch.errors import InputError, nearest
-from pneutouch.parts.coupons import COUPONS, Coupon, Ground
+from pneutouch.parts.coupons import COUPONS, Coupon, Ground, Nominal
+from pneutouch.pipeline.coupons.blends import Blend, blends
 from pneutouch.spec.design import Membrane, Print
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 
 MOST_COPIES = 100
+
+MIXED = ("puck", "dumbbell")
+"""Coupons that there are of a mix."""
+
+MIXED_COPIES = 2
+"""Of each fraction: the least that a spread can be told from, two pucks making the 6 mm under the durometer."""
 
 
 @dataclass(frozen=True)
@@ -24,11 +31,15 @@ class Asked:
     design: str | None = None
     only: Sequence[str] = ()
     copies: Mapping[str, int] = field(default_factory=dict)
+    mixing: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
 class Item:
-    """One coupon to print: ``about`` is the material or design that the results file files it under."""
+    """One coupon to print: ``about`` is the material or design that the results file files it under.
+
+    ``blend`` is given where it is of two resins in a known fraction, and then says where it is filed.
+    """
 
     coupon: Coupon
     about: str
@@ -36,11 +47,18 @@ class Item:
     printer: Printer
     ground: Ground
     copies: int
+    blend: Blend | None = None
 
     @property
     def material(self) -> Material:
         """What it is printed in."""
         return self.ground.material
+
+    @property
+    def nominals(self) -> tuple[Nominal, ...]:
+        """What is measured on it; of a mixed puck the hardness alone, for a mixing curve has no density."""
+        found = self.coupon.nominals(self.ground)
+        return found if self.blend is None or self.coupon.name != MIXED[0] else found[:1]
 
 
 @dataclass(frozen=True)
@@ -78,10 +96,13 @@ def order(asked: Asked, library: Library | None = None) -> Order:
             for coupon in families
             if coupon.belongs != "design" and material.kind in coupon.kinds
         ]
+    items += _of_mixing(asked, profile, printer, families, shelves)
     if scene is not None:
         items += _of_design(asked, scene, profile, families)
     _check_any(asked, families, items)
-    return Order(f"coupons-{profile}" + (f"-{scene.name}" if scene else ""), profile, scene, tuple(items))
+    pairs = dict.fromkeys(item.blend.pair for item in items if item.blend is not None)
+    names = ["coupons", profile, *([scene.name] if scene else []), *pairs]
+    return Order("-".join(names), profile, scene, tuple(items))
 
 
 def _families(asked: Asked) -> list[Coupon]:
@@ -101,7 +122,7 @@ def _families(asked: Asked) -> list[Coupon]:
 
 def _materials(asked: Asked, scene: Scene | None, printer: Printer, profile: str, shelves: Library) -> list[str]:
     """As asked; else the design's membrane; else the default resin where the printer runs it, else its first."""
-    if asked.materials:
+    if asked.materials or asked.mixing:
         return list(dict.fromkeys(asked.materials))
     if scene is not None and scene.design.print.profile == profile:
         chosen = scene.design.membrane.material
@@ -111,6 +132,29 @@ def _materials(asked: Asked, scene: Scene | None, printer: Printer, profile: str
         raise InputError(f"--profile {profile}: no known material runs on the {printer.title}; give --material")
     usual = Membrane().material
     return [usual if usual in runs else runs[0]]
+
+
+def _of_mixing(asked: Asked, profile: str, printer: Printer, families: list[Coupon], shelves: Library) -> list[Item]:
+    """The mixing set: every fraction of each pair; pucks alone unless dumbbells are asked for, which take a large tray."""
+    chosen = [
+        coupon for coupon in families
+        if coupon.name in MIXED and (coupon.name in asked.only or (not asked.only and coupon.name == MIXED[0]))
+    ]  # fmt: skip
+    found = []
+    for pair in dict.fromkeys(asked.mixing):
+        for blend in blends(pair, shelves):
+            if printer.mode_for(blend.material) is None:
+                raise InputError(
+                    f"--mixing {pair}: the {printer.title} cannot run {blend.material.label}; it runs {', '.join(printer.resins)}"
+                )
+            found += [
+                Item(
+                    coupon, blend.about, profile, printer, Ground(blend.material),
+                    asked.copies.get(coupon.name, MIXED_COPIES), blend,
+                )
+                for coupon in chosen
+            ]  # fmt: skip
+    return found
 
 
 def _of_design(asked: Asked, scene: Scene, profile: str, families: list[Coupon]) -> list[Item]:

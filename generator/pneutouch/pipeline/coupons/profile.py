@@ -49,12 +49,18 @@ def local_profiles(changes: Sequence[Change], said: Said, shelves: Library, out:
         _carry(earlier, content)
         said_of = [_put(content, change, path) for change in changes if (change.shelf, change.name) == (shelf, name)]
         KINDS[shelf].validate(content, str(path))
-        head = (
-            f"{HEAD} from {said.where} ({said.lab}, {said.date.isoformat()}): the shipped profile with what was measured.\n"
-            "# Edit this line away and the command will no longer overwrite the file; delete the file to go back.\n"
+        found.append(
+            Profile(path, head(said, "the shipped profile with what was measured") + toml_text(content), said_of)
         )
-        found.append(Profile(path, head + toml_text(content), said_of))
     return found
+
+
+def head(said: Said, what: str) -> str:
+    """The first lines of a profile that the command writes."""
+    return (
+        f"{HEAD} from {said.where} ({said.lab}, {said.date.isoformat()}): {what}.\n"
+        "# Edit this line away and the command will no longer overwrite the file; delete the file to go back.\n"
+    )
 
 
 def write_profiles(profiles: Sequence[Profile]) -> None:
@@ -85,11 +91,16 @@ def _is_ours(path: Path) -> bool:
 
 def _earlier(path: Path, changes: Sequence[Change]) -> dict[str, Any]:
     """The content of the file that the command wrote before; nothing where there is none."""
+    there = check_ours(path, ", ".join(".".join(change.keys) for change in changes))
+    return read_toml(path) if there else {}
+
+
+def check_ours(path: Path, keys: str) -> bool:
+    """Whether there is a file of ours. Raises InputError where it is somebody else's; ``keys`` is what would go into it."""
     if not (path.exists() or path.is_symlink()):
-        return {}
+        return False
     if path.is_file() and not path.is_symlink() and _is_ours(path):
-        return read_toml(path)
-    keys = ", ".join(".".join(change.keys) for change in changes)
+        return True
     raise InputError(
         f"{path}: was not written by pneutouch coupons, so it is left as it is; put {keys} into it by hand, move it away, or "
         "give another folder with --out"

@@ -12,6 +12,7 @@ from pneutouch.bench.resin import dumbbell, puck
 from pneutouch.bench.volume import leak, volume
 from pneutouch.catalogue import KINDS, Library, load_scene
 from pneutouch.errors import InputError
+from pneutouch.pipeline.coupons.mixing import local_curve
 from pneutouch.pipeline.coupons.profile import Profile, base_file, local_profiles, write_profiles
 from pneutouch.spec.coupon import Gauge, Results, read_results
 from pneutouch.spec.material import Material
@@ -27,10 +28,12 @@ def enter_results(path: Path, out: Path, library: Library | None = None) -> dict
     shelves = library or Library.default()
     results = read_results(path)
     found = evaluate_results(results, str(path), shelves)
+    here = Said(str(path), results.lab, results.date)
+    curves = [local_curve(pair, read, here, shelves, out, found) for pair, read in results.mixing.items()]
     if not (found.changes or found.figures or found.notes):
         raise InputError(f"{path}: nothing measured: every list is empty; fill in some readings")
     said = Said(path.name, results.lab, results.date)
-    profiles = local_profiles(found.changes, said, shelves, out)
+    profiles = local_profiles(found.changes, said, shelves, out) + [curve for curve in curves if curve is not None]
     write_profiles(profiles)
     return _document(results, found, profiles)
 

@@ -44,7 +44,18 @@ def _printing(name: str, pieces: tuple[Piece, ...], order: Order) -> list[str]:
         "their place on the tray alone, so bag and label them as they come off.", "",
         "| piece | copies | file | material | size, mm | mass each | middle of each on the tray, mm |",
         "|---|---|---|---|---|---|---|", *rows, "",
-        f"Support: {printer.support}. Do not turn the pieces.", "",
+        *_mixes(pieces), f"Support: {printer.support}. Do not turn the pieces.", "",
+    ]  # fmt: skip
+
+
+def _mixes(pieces: tuple[Piece, ...]) -> list[str]:
+    """How a machine that takes catalogue materials alone gets a mix."""
+    if not any(piece.item.blend is not None for piece in pieces):
+        return []
+    return [
+        "Mixed pieces are composites of two base resins in the 3MF, in volume fractions. No catalogue material has a known "
+        "fraction: do not choose one in their place. Where the machine's program takes no composites, print them droplet by "
+        "droplet from voxel slices of the same fractions.", "",
     ]  # fmt: skip
 
 
@@ -72,7 +83,7 @@ def _measuring(coupon: Coupon, items: list[Item]) -> list[str]:
 
 def _table(item: Item) -> list[str]:
     """Cells to fill: a line a feature and copy; where a feature has many sizes, a line a size."""
-    nominals = item.coupon.nominals(item.ground)
+    nominals = item.nominals
     if len({nominal.feature for nominal in nominals}) < len(nominals):
         return _sizes(nominals)
     cells = min(_CELLS, max(nominal.readings for nominal in nominals))

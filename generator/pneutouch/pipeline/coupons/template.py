@@ -23,7 +23,13 @@ _HEAD = """\
 def results_template(order: Order) -> str:
     """TOML that becomes valid once lab and date are given."""
     blocks = [_HEAD + '# lab = "who measured"\n# date = 2026-11-21']
+    filed: set[tuple[str, float]] = set()
     for item in order.items:
+        if item.blend is not None:
+            key = item.blend.pair, item.blend.fraction
+            blocks.append(_mixed(item, first=key not in filed))
+            filed.add(key)
+            continue
         path = [item.coupon.name, item.about]
         if item.coupon.belongs == "printer":
             path.insert(1, item.printer_name)
@@ -31,8 +37,19 @@ def results_template(order: Order) -> str:
     return "\n\n".join(blocks) + "\n"
 
 
+def _mixed(item: Item, *, first: bool) -> str:
+    """A coupon of one fraction: hardness stands in the fraction's own table, dumbbells in one below."""
+    assert item.blend is not None
+    path = f"mixing.{key_text(item.blend.pair)}"
+    lines = [f"[[{path}]]", f"fraction = {value_text(item.blend.fraction)}"] if first else []
+    if item.coupon.name != "puck":
+        return "\n".join([*lines, *([""] if lines else []), _table(item, f"{path}.{item.coupon.name}")])
+    hardness = item.nominals[0]
+    return "\n".join([*lines, _empty(hardness, item.copies)])
+
+
 def _table(item: Item, path: str) -> str:
-    nominals = item.coupon.nominals(item.ground)
+    nominals = item.nominals
     model = _model(item.coupon.name)
     lines = [f"# {item.coupon.title}: {item.copies} printed", f"[{path}]", *_settings(model)]
     features = list(dict.fromkeys(nominal.feature for nominal in nominals))

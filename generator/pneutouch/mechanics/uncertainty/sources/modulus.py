@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from pneutouch.catalogue.mixture import FROM_CURVE
 from pneutouch.mechanics.uncertainty.hardness import logarithmic_change, logarithmic_slope, shore_a
 from pneutouch.mechanics.uncertainty.source import SENSITIVITY, Source, counting
 from pneutouch.meridian.segments import Array
@@ -52,15 +53,38 @@ def modulus_sources(material: Material, validated: NDArray[np.bool_]) -> list[So
             "modulus as measured", "shear_modulus", _filled(modulus.spread / modulus.nominal, size), "lognormal",
             counting(size), f"spread of the shear modulus, {modulus.source}; the scatter between prints is in it", True,
         )]  # fmt: skip
+    if modulus.source.startswith(FROM_CURVE):
+        # The band is that of the fraction alone; how well the resins' own moduli are known comes on top.
+        bare = modulus.model_copy(update={"low": None, "high": None})
+        mixed = [_mixing_fraction(modulus, size)] if modulus.low is not None else []
+        return [*mixed, _published(bare, validated), _between_prints(material, size)]
     return [_published(modulus, validated), _between_prints(material, size)]
+
+
+def _mixing_fraction(modulus: Quantity, size: int) -> Source:
+    """How far an assumed mixing curve may be off; see `pneutouch.catalogue.mixture.Mixing.band_at`."""
+    return Source(
+        "mixing fraction", "shear_modulus", _filled(_log_rectangular(modulus.most / modulus.least), size),
+        "log-rectangular", counting(size),
+        f"assumed: {modulus.least:.3g} to {modulus.most:.3g} MPa, as the laws differ by which the catalogue's moduli are given "
+        "their fractions of the stiff resin; no greater modulus than the curve's stiffest was taken (docs/mixing.md)",
+        False,
+    )  # fmt: skip
+
+
+def _log_rectangular(factor: float) -> float:
+    """Standard deviation of the logarithm of what lies anywhere between two ends, ``factor`` apart.
+
+    Twelve is the square of a rectangle's width over its variance; the width is kept although the value need not be its
+    middle (JCGM 100, 4.3.8).
+    """
+    return float(np.log(factor) / np.sqrt(12.0))
 
 
 def _published(modulus: Quantity, validated: NDArray[np.bool_]) -> Source:
     known = modulus.low is not None and modulus.high is not None
     factor = modulus.most / modulus.least if known else ASSUMED_FACTOR
-    # Twelve is the square of a rectangle's width over its variance; the width is kept although the value need not be its
-    # middle (JCGM 100, 4.3.8).
-    standard = np.log(factor) / np.sqrt(12.0)
+    standard = _log_rectangular(factor)
     counts = counting(validated.size)
     counts[SENSITIVITY] = ~validated
     origin = (

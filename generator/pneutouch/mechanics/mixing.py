@@ -1,0 +1,127 @@
+"""How stiff a mix of a soft and a stiff incompressible solid can be: bounds, laws, and the fraction that a law gives a modulus.
+
+Shear moduli in MPa, ``fraction`` the volume fraction of the stiff solid, arrays of any shape. Every law gives the soft
+modulus at 0 and the stiff one at 1, and rises between.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from pneutouch.meridian.segments import Array
+from pneutouch.spec.material import Material
+
+Law = Callable[[Array, float, float], Array]
+"""Fraction, soft modulus, stiff modulus to the mix's modulus."""
+
+THRESHOLD = 0.163
+"""Volume fraction at which stiff droplets of random places touch all through: as the Abaqus/MATLAB mixture tool of Agilus30
+and VeroWhite has it (HELPER_MaterialsFE.m). It is the filling of spheres on a cubic lattice times that lattice's site
+threshold, pi/6 x 0.3116; Scher and Zallen (J. Chem. Phys. 53, 3759, 1970, DOI 10.1063/1.1674565) found near 0.16 for every
+lattice."""
+
+VOXEL_THRESHOLD = 0.3116
+"""The same for voxels that fill their cells and touch by faces: site threshold of the simple cubic lattice."""
+
+EXPONENT = 0.4
+"""Exponent of the share of the stiff solid that is connected, in three dimensions (De Gennes, Scaling Concepts in Polymer
+Physics, 1979), as Ouali, Cavaille and Perez took it (Plast. Rubber Compos. Process. Appl. 16, 55-60, 1991)."""
+
+LONG_TERM = ((0.0, 0.30), (0.165, 1.08), (0.333, 3.04), (0.5, 5.34), (1.0, 8.47))
+"""Fraction of VeroWhite in Agilus30 Black and the mix's long-term modulus, MPa: the Abaqus/MATLAB mixture tool
+(HELPER_MaterialsFE.m). VeroWhite's own is that of its rubbery state, not of the glass that it is in a room."""
+
+_HALVINGS = 200
+
+
+def voigt(fraction: Array, soft: float, stiff: float) -> Array:
+    """Equal strain in both: no mix is stiffer (Hill 1952, DOI 10.1088/0370-1298/65/5/307)."""
+    return np.asarray((1 - fraction) * soft + fraction * stiff)
+
+
+def reuss(fraction: Array, soft: float, stiff: float) -> Array:
+    """Equal stress in both: no mix is softer (Hill 1952)."""
+    return np.asarray(1 / ((1 - fraction) / soft + fraction / stiff))
+
+
+def hashin_shtrikman_low(fraction: Array, soft: float, stiff: float) -> Array:
+    """No isotropic mix is softer: stiff islands in the soft solid.
+
+    Hashin and Shtrikman (J. Mech. Phys. Solids 11, 127-140, 1963, DOI 10.1016/0022-5096(63)90060-7), both solids
+    incompressible: G1 + f / (1/(G2 - G1) + 2 (1 - f)/(5 G1)).
+    """
+    return np.asarray(soft + fraction / (1 / (stiff - soft) + 2 * (1 - fraction) / (5 * soft)))
+
+
+def hashin_shtrikman_high(fraction: Array, soft: float, stiff: float) -> Array:
+    """No isotropic mix is stiffer: soft islands in the stiff solid; the same formula with the solids changed over."""
+    return hashin_shtrikman_low(1 - np.asarray(fraction), stiff, soft)
+
+
+def logarithmic(fraction: Array, soft: float, stiff: float) -> Array:
+    """The logarithm by volume (Lichtenecker, Phys. Z. 27, 115-158, 1926): an empirical rule, no bound."""
+    return np.asarray(soft * (stiff / soft) ** np.asarray(fraction))
+
+
+def percolation(fraction: Array, soft: float, stiff: float, threshold: float = THRESHOLD) -> Array:
+    """Droplets that stay apart until they touch all through: Takayanagi's series and parallel model (Ouali et al. 1991).
+
+    With psi = f ((f - fc)/(1 - fc))^0.4 connected, and nothing below the threshold fc, the modulus is
+    ((1 - 2 psi + psi f) G1 G2 + (1 - f) psi G2^2) / ((1 - f) G2 + (f - psi) G1): below it that of `reuss`, which is less than
+    an isotropic mix can have.
+    """
+    f = np.asarray(fraction, float)
+    joined = f * np.clip((f - threshold) / (1 - threshold), 0.0, None) ** EXPONENT
+    above = (1 - 2 * joined + joined * f) * soft * stiff + (1 - f) * joined * stiff**2
+    # Nothing but the stiff solid leaves 0/0.
+    whole = f >= 1
+    below = np.where(whole, 1.0, (1 - f) * stiff + (f - joined) * soft)
+    return np.where(whole, stiff, above / below)
+
+
+def like_agilus(fraction: Array, soft: float, stiff: float) -> Array:
+    """The soft modulus times what VeroWhite makes of Agilus30's, up to half; beyond by the last slope, whatever ``stiff`` is."""
+    known = np.array(LONG_TERM[:-1])
+    at, ratio = known[:, 0], np.log(known[:, 1] / known[0, 1])
+    last = (ratio[-1] - ratio[-2]) / (at[-1] - at[-2])
+    beyond = np.maximum(np.asarray(fraction) - at[-1], 0.0)
+    return np.asarray(soft * np.exp(np.interp(fraction, at, ratio) + last * beyond))
+
+
+def fraction_of(law: Law, modulus: float, soft: float, stiff: float) -> float:
+    """The least fraction at which a law reaches a modulus, by halving; 1 where it does not."""
+    low, high = 0.0, 1.0
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        reached = float(law(np.array(middle), soft, stiff)) >= modulus
+        low, high = (low, middle) if reached else (middle, high)
+    return high
+
+
+PLACING: dict[str, Law] = {
+    "as Agilus30 with VeroWhite": like_agilus,
+    "logarithmic": logarithmic,
+    f"droplets that touch beyond {100 * THRESHOLD:g} %": percolation,
+    "islands, the softest isotropic mix": hashin_shtrikman_low,
+}
+"""The laws by which a catalogue modulus may be given its fraction: the first is the curve's own, the others say how far off
+it may be."""
+
+
+def placings(modulus: float, soft: float, stiff: float) -> dict[str, float]:
+    """The fraction that each law of `PLACING` gives a modulus."""
+    return {name: fraction_of(law, modulus, soft, stiff) for name, law in PLACING.items()}
+
+
+def stiff_moduli(material: Material) -> tuple[float, float]:
+    """Least and greatest shear modulus in MPa of a rigid resin taken as incompressible: a third of its Young's modulus.
+
+    A glassy resin's Poisson ratio is nearer 0.4; its modulus is then 7 % more, which is little beside the range of E.
+    Raises ValueError where the material has none.
+    """
+    young = material.young_modulus_MPa
+    if young is None:
+        raise ValueError(f"{material.label} has no young_modulus_MPa")
+    return young.least / 3, young.most / 3

@@ -1,0 +1,51 @@
+"""Mixes of two resins in known fractions, to be printed as coupons."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from pneutouch.catalogue import Library
+from pneutouch.catalogue.mixture import mixed_material, mixing
+from pneutouch.errors import InputError
+from pneutouch.spec.grade import Grade
+from pneutouch.spec.material import Material
+
+FRACTIONS = (0.0, 0.05, 0.1, 0.15, 0.2, 0.3, 0.45, 0.6)
+"""Volume fractions of the stiff resin that are printed: our own choice, close together about 16.3 %, where the laws of mixing
+differ most (docs/mixing.md)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Blend:
+    """One fraction of a pair ``SOFT+STIFF`` and what it is made of."""
+
+    pair: str
+    fraction: float
+    material: Material
+
+    @property
+    def about(self) -> str:
+        """How its pieces are called: ``TangoPlus+VeroClear-15``."""
+        return f"{self.pair}-{100 * self.fraction:g}"
+
+
+def resins_of(pair: str, asked_by: str) -> tuple[str, str]:
+    """The soft and the stiff resin of ``SOFT+STIFF``. Raises InputError for anything else."""
+    names = [name.strip() for name in pair.split("+")]
+    if len(names) != 2 or not all(names) or names[0] == names[1]:
+        raise InputError(f"{asked_by} {pair}: write two resins, SOFT+STIFF, such as TangoPlus+VeroClear")
+    return names[0], names[1]
+
+
+def blends(pair: str, shelves: Library) -> list[Blend]:
+    """What is printed of a pair, no farther than its mixing curve. Raises InputError where there is none."""
+    soft, stiff = resins_of(pair, "--mixing")
+    for name in (soft, stiff):
+        shelves.load("materials", name, asked_by="--mixing")
+    top = float(mixing(soft, stiff, shelves, asked_by="--mixing").fraction[-1])
+    grades = [
+        Grade.model_validate({"from": soft, "to": stiff, "fraction": fraction})
+        for fraction in FRACTIONS
+        if fraction <= top
+    ]
+    return [Blend(f"{soft}+{stiff}", g.fractions[0], mixed_material(g, shelves, "--mixing")) for g in grades]
