@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: venv demo test lint check-slow chart chart-meshes texture-page atlas atlas-page lock clean
+.PHONY: venv demo test lint check-slow chart chart-meshes texture-page voxel-page atlas atlas-page lock clean
 
 venv: $(VENV)/.dev
 
@@ -62,3 +62,7 @@ atlas: $(VENV)/.dev
 
 atlas-page: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.atlas_page
+
+# Voxel stacks: the dithers and the rasters, measured; writes docs/voxels.md and its pictures.
+voxel-page: $(VENV)/.dev
+	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.voxel_page

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -25,12 +24,24 @@ from pneutouch.cli.app import (
     reporting,
     rung,
 )
+from pneutouch.cli.bar import bar
 
 if TYPE_CHECKING:
     from pneutouch.pipeline.evaluate import Evaluation
+    from pneutouch.pipeline.voxels import VoxelPlan
     from pneutouch.printability import Finding
 
 _FLAGS = {"set_": "--set", **{key: f"--{key}" for key in ("model", "tolerance", "closure", "clamp")}}
+
+_VOXEL_FLAGS = {"voxels": "--voxels", "voxel_mode": "--voxel-mode"}
+
+VoxelsOption = Annotated[
+    bool, typer.Option("--voxels", help="Write a stack of PNG slices for voxel printing beside, in NAME-voxels.")
+]
+VoxelModeOption = Annotated[
+    str | None,
+    typer.Option("--voxel-mode", metavar="MODE", help="Print mode of the stack, such as 'High Mix'; implies --voxels."),
+]
 
 
 @app.command()
@@ -38,31 +49,40 @@ def build(
     context: typer.Context,
     design: Annotated[str, typer.Argument(metavar="DESIGN", help="Name of a design or specimen, path of a TOML file, or a 3MF that was built.")],
     set_: SetOption = None, model: ModelOption = None, tolerance: ToleranceOption = None,
-    closure: ClosureOption = "variational", clamp: ClampOption = "base", out: OutOption = Path("outputs"), json: JsonOption = False,
+    closure: ClosureOption = "variational", clamp: ClampOption = "base", out: OutOption = Path("outputs"),
+    voxels: VoxelsOption = False, voxel_mode: VoxelModeOption = None, json: JsonOption = False,
 ) -> None:  # fmt: skip
     """Build everything: print files, prediction, datasheet. A 3MF is built again from the recipe in it."""
     with reporting():
+        stack: Path | None = None
         if _is_specimen(design):
             flags = {key: flag for key, flag in _FLAGS.items() if key != "set_"}
             refuse_flags(context, flags, "a specimen, which has no prediction", design)
+            refuse_flags(context, _VOXEL_FLAGS, "a specimen, which has no membrane", design)
             name, folder, findings = _build_specimen(design, out, set_)
         else:
-            name, folder, findings = _build_sensor(
-                design, out, lambda: _from_3mf(design, context) if design.lower().endswith(".3mf")
-                else _evaluated(design, set_, closure=closure, clamp=clamp, **rung(model, tolerance)),
+            evaluation = (
+                _from_3mf(design, context) if design.lower().endswith(".3mf")
+                else _evaluated(design, set_, closure=closure, clamp=clamp, **rung(model, tolerance))
             )  # fmt: skip
+            plan = _planned(evaluation, out, voxel_mode) if voxels or voxel_mode else None
+            name, folder, findings = _build_sensor(evaluation, out)
+            stack = None if plan is None else _write_voxels(plan, evaluation, out)
         for finding in findings:
             typer.echo(f"{finding.severity}: {finding.rule}: {finding.message}; {finding.fix}", err=True)
         if json:
-            print_json({"design": name, "folder": str(folder)})
+            print_json({"design": name, "folder": str(folder), **({"voxels": str(stack)} if stack else {})})
         else:
             typer.echo(str(folder))
+            if stack is not None:
+                typer.echo(str(stack))
 
 
 @app.command()
 def check(
-    design: DesignArgument, set_: SetOption = None,
+    context: typer.Context, design: DesignArgument, set_: SetOption = None,
     deep: Annotated[bool, typer.Option("--deep", help="Have pymeshlab (an extra) inspect the meshes as well.")] = False,
+    voxels: Annotated[bool, typer.Option("--voxels", help="Check as well what a voxel stack must keep to.")] = False,
     json: JsonOption = False,
 ) -> None:  # fmt: skip
     """Check printability and mechanical limits; exit 1 where a rule is broken."""
@@ -70,10 +90,15 @@ def check(
         if _is_specimen(design):
             from pneutouch.pipeline.specimen.build import check_specimen
 
+            refuse_flags(context, _VOXEL_FLAGS, "a specimen, which has no membrane", design)
             findings = check_specimen(design, set_, deep=deep)
         else:
             evaluation = _evaluated(design, set_)
             findings = [*evaluation.findings, *(evaluation.deep_findings() if deep else [])]
+            if voxels:
+                from pneutouch.pipeline.voxels import plan_voxels
+
+                findings += plan_voxels(evaluation.assembly).findings
         broken = any(finding.severity == "error" for finding in findings)
         if json:
             print_json({"design": design, "passed": not broken, "findings": [f.document() for f in findings]})
@@ -106,16 +131,36 @@ def _build_specimen(design: str, out: Path, set_: list[str] | None) -> tuple[str
     return folder.name, folder, findings
 
 
-def _build_sensor(design: str, out: Path, evaluated: Callable[[], Evaluation]) -> tuple[str, Path, list[Finding]]:
+def _build_sensor(evaluation: Evaluation, out: Path) -> tuple[str, Path, list[Finding]]:
     from pneutouch.pipeline.build import STEPS
     from pneutouch.pipeline.build import build as run
     from pneutouch.pipeline.files import check_writable
 
-    evaluation = evaluated()
     check_writable(out / evaluation.scene.name)
     with _progress(STEPS) as report:
         folder = run(evaluation, out, report)
     return evaluation.scene.name, folder, evaluation.findings
+
+
+def _planned(evaluation: Evaluation, out: Path, mode: str | None) -> VoxelPlan:
+    """The plan of the voxel stack; what is wrong with it is said before anything is built."""
+    from pneutouch.pipeline.voxels import check_stack_folder, plan_voxels, stack_folder
+
+    plan = plan_voxels(evaluation.assembly, mode=mode)
+    plan.refuse()
+    check_stack_folder(stack_folder(out, evaluation.scene.name))
+    return plan
+
+
+def _write_voxels(plan: VoxelPlan, evaluation: Evaluation, out: Path) -> Path:
+    from pneutouch.pipeline.build import input_hash
+    from pneutouch.pipeline.voxels import write_voxels
+
+    with bar("voxels") as report:
+        folder, notes = write_voxels(plan, out, input_hash(evaluation), report)
+    for note in notes:
+        typer.echo(f"warning: voxels: {note}", err=True)
+    return folder
 
 
 def _from_3mf(file: str, context: typer.Context) -> Evaluation:
@@ -137,15 +182,5 @@ def _from_3mf(file: str, context: typer.Context) -> Evaluation:
 @contextmanager
 def _progress(steps: Sequence[str]) -> Iterator[Callable[[str], None]]:
     """A bar over named steps on a terminal; silence elsewhere."""
-    if not sys.stderr.isatty():
-        yield lambda step: None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
-
-    columns = (
-        TextColumn("{task.description:<12}"), BarColumn(), TextColumn("{task.completed}/{task.total}"), TimeElapsedColumn(),
-    )  # fmt: skip
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("", total=len(steps))
-        yield lambda step: bar.update(task, description=step, completed=steps.index(step))
+    with bar("") as report:
+        yield lambda step: report(steps.index(step), len(steps), step)

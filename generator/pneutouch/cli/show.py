@@ -1,4 +1,4 @@
-"""``pneutouch show``: what a 3MF holds."""
+"""``pneutouch show``: what a 3MF or a voxel stack holds."""
 
 from __future__ import annotations
 
@@ -7,21 +7,30 @@ from typing import Annotated
 
 import typer
 
-from pneutouch.cli.app import JsonOption, app, print_json, reporting
+from pneutouch.cli.app import JsonOption, app, print_json, refuse_flags, reporting
 
 
 @app.command()
 def show(
-    file: Annotated[Path, typer.Argument(metavar="FILE.3mf", help="A 3MF, ours or not.")], json: JsonOption = False
-) -> None:
-    """Show a 3MF: its bodies, its metadata and the recipe it was built from."""
+    context: typer.Context,
+    file: Annotated[Path, typer.Argument(metavar="FILE.3mf", help="A 3MF, ours or not; or the folder of a voxel stack.")],
+    out: Annotated[Path | None, typer.Option("--out", metavar="FILE.png", help="Picture of a voxel stack's sections.")] = None,
+    json: JsonOption = False,
+) -> None:  # fmt: skip
+    """Show a 3MF: its bodies, its metadata and the recipe it was built from. Of a voxel stack: what lies in it."""
     with reporting():
-        from pneutouch.pipeline.show import show as run
+        if file.is_dir() and file.suffix.lower() != ".3mf":
+            from pneutouch.cli.show_text import stack_text as text
+            from pneutouch.pipeline.show_voxels import show_stack
 
-        document = run(file)
+            document = show_stack(file, out)
+        else:
+            from pneutouch.cli.show_text import show_text as text
+            from pneutouch.pipeline.show import show as run
+
+            refuse_flags(context, {"out": "--out"}, "a 3MF, which has no sections", str(file))
+            document = run(file)
         if json:
             print_json(document)
         else:
-            from pneutouch.cli.show_text import show_text
-
-            typer.echo(show_text(document))
+            typer.echo(text(document))

@@ -1,4 +1,4 @@
-"""The content of a 3MF as text."""
+"""The content of a 3MF or of a voxel stack as text."""
 
 from __future__ import annotations
 
@@ -14,6 +14,35 @@ def show_text(document: dict[str, Any]) -> str:
     blocks = [_bodies(document), _table("metadata", document["metadata"]), *_recipe(document["recipe"])]
     lines = "\n\n".join(block for block in blocks if block).split("\n")
     return "\n".join("".join(letter for letter in line if letter.isprintable()) for line in lines)
+
+
+def stack_text(document: dict[str, Any]) -> str:
+    """A voxel stack: its raster, its resins as counted, its bodies as the manifest has them."""
+    wide, tall = document["pixels"]
+    x, y, z = document["size_mm"]
+    about = (
+        f"{document['stack']}: {document['layers']} slices of {wide} x {tall} pixels, {x:.2f} x {y:.2f} x {z:.2f} mm; "
+        f"{document['dpi'][0]} x {document['dpi'][1]} dpi, {document['layer_um']:g} um layers"
+    )
+    machine = f"for the {document['printer']} in the mode {document['mode']}" if "printer" in document else ""
+    resins = [
+        [resin, ", ".join(map(str, entry["rgba"])), str(entry["voxels"]), f"{entry['volume_mm3']:.2f}", f"{entry['share_of_the_print']:.3%}"]
+        for resin, entry in document["resins"].items()
+    ]  # fmt: skip
+    bodies = [
+        [
+            name, str(body["voxels"]), f"{body['volume_mm3']:.2f}", f"{body['volume_mm3'] / body['exact_volume_mm3'] - 1:+.2%}",
+            body.get("stiff_resin", "-"),
+            *(f"{body[key]:.3%}" if key in body else "-" for key in ("fraction_asked", "fraction_realised")),
+        ]
+        for name, body in document["bodies"].items()
+    ]  # fmt: skip
+    return "\n".join([
+        about, *([machine] if machine else []), "",
+        columns(["resin", "RGBA", "voxels", "volume mm3", "share"], resins), "",
+        columns(["body", "voxels", "volume mm3", "off exact", "dithered in", "asked", "realised"], bodies), "",
+        *(f"assumed: {line}" for line in document.get("assumptions", [])),
+    ])  # fmt: skip
 
 
 def _bodies(document: dict[str, Any]) -> str:

@@ -16,6 +16,9 @@ HOLE_UNDERSIZE_MM = (-0.5, 1.0)
 wider by it vanish or meet."""
 
 
+_INCH_UM = 25400.0
+
+
 class Envelope(Table):
     """Build envelope in mm."""
 
@@ -43,6 +46,19 @@ class Resolution(Table):
 
     x_um: float = Field(gt=0)
     y_um: float = Field(gt=0)
+    source: str = Field(min_length=8)
+
+    @property
+    def dpi(self) -> tuple[int, int]:
+        """Dots an inch along x and y: the whole number next to what the rounded steps say."""
+        return round(_INCH_UM / self.x_um), round(_INCH_UM / self.y_um)
+
+
+class VoxelPrint(Table):
+    """What the machine's voxel print utility takes: a stack of PNG slices on the raster of ``resolution``."""
+
+    colours: int = Field(ge=1, le=8, description="Most colours of a stack beside the background.")
+    least_slices: int = Field(ge=1, description="Fewest slices of a stack.")
     source: str = Field(min_length=8)
 
 
@@ -91,6 +107,7 @@ class Printer(Table):
     hole_undersize_mm: Quantity = Field(description="By how much a printed hole is smaller in diameter than drawn.")
     swath_mm: Quantity | None = Field(default=None, description="Width that one pass of the heads covers.")
     deposition_mm3_per_s: Quantity | None = Field(default=None, description="Material laid down in a second; filament.")
+    voxel_print: VoxelPrint | None = Field(default=None, description="Left out: the machine takes no voxel stacks.")
 
     @field_validator("hole_undersize_mm")
     @classmethod

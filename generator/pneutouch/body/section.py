@@ -1,0 +1,134 @@
+"""What lies inside a solid, from its exact shapes and no mesh: points anywhere, and whole level sections.
+
+Faces are half-open (`pneutouch.meridian.crossings`): where two bodies meet, a point belongs to one of them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneutouch.body.shapes import Bore, Prism, Shape, Turned
+from pneutouch.body.solid import Solid
+from pneutouch.meridian import Meridian
+from pneutouch.meridian.crossings import Rise, crossings, encloses, rises
+from pneutouch.meridian.segments import Array
+
+Flags = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Window:
+    """The rows and columns of a level section that are looked at: x (c,) and y (r,) of their centres, mm."""
+
+    x: Array
+    y: Array
+
+    @cached_property
+    def squares(self) -> Array:
+        """Squares (r, c) of the distances from the z axis, mm2."""
+        square: Array = self.y[:, None] ** 2 + self.x[None, :] ** 2
+        return square
+
+    def within(self, low: Array, high: Array) -> tuple[slice, slice]:
+        """Rows and columns inside a box of corners (at least 2,); x and y may run either way."""
+        return _span(self.y, low[1], high[1]), _span(self.x, low[0], high[0])
+
+
+@dataclass(frozen=True)
+class _Tool:
+    """A shape beside the base, with the box it lies in."""
+
+    shape: Shape
+    low: Array
+    high: Array
+    outline: tuple[Rise, ...]
+
+    def contains(self, points: Array) -> Flags:
+        shape = self.shape
+        if isinstance(shape, Bore):
+            near = (points[:, 0] - shape.x) ** 2 + (points[:, 1] - shape.y) ** 2 < shape.radius**2
+            return np.asarray(near & (shape.low <= points[:, 2]) & (points[:, 2] < shape.high))
+        assert isinstance(shape, Turned | Prism)
+        local = shape.frame.into(points)
+        if isinstance(shape, Turned):
+            return encloses(self.outline, np.hypot(local[:, 0], local[:, 1]), local[:, 2])
+        inside = encloses(self.outline, local[:, 0], local[:, 1])
+        return np.asarray(inside & (shape.low <= local[:, 2]) & (local[:, 2] < shape.high))
+
+
+class Inside:
+    """The inside of a solid; what does not change from section to section is worked out once."""
+
+    def __init__(self, solid: Solid) -> None:
+        base = solid.base
+        self._turned = rises(base.pieces) if isinstance(base, Meridian) else None
+        self._base = _tool(Turned(base) if isinstance(base, Meridian) else base)
+        self._adds = [_tool(feature.shape) for feature in solid.adds]
+        self._cuts = [*map(_tool, solid.bores), *(_tool(feature.shape) for feature in solid.cuts)]
+        boxes = [self._base, *self._adds]
+        self.low: Array = np.min([tool.low for tool in boxes], axis=0)
+        self.high: Array = np.max([tool.high for tool in boxes], axis=0)
+
+    def contains(self, points: Array) -> Flags:
+        """Whether points (n, 3) in mm lie inside, (n,)."""
+        inside = self._base.contains(points)
+        for tool in self._adds:
+            inside |= tool.contains(points)
+        for tool in self._cuts:
+            inside &= ~tool.contains(points)
+        return inside
+
+    def section(self, window: Window, z: float) -> Flags:
+        """The section at height ``z`` mm, (r, c): which centres of the window lie inside."""
+        inside = np.zeros((len(window.y), len(window.x)), bool)
+        if self._turned is None:
+            _mark(inside, window, z, self._base, True)
+        else:
+            for edge in crossings(self._turned, z):
+                inside ^= window.squares >= edge * edge
+        for tool in self._adds:
+            _mark(inside, window, z, tool, True)
+        for tool in self._cuts:
+            _mark(inside, window, z, tool, False)
+        return inside
+
+
+def _mark(inside: Flags, window: Window, z: float, tool: _Tool, value: bool) -> None:
+    """Set what a tool holds, looking at its box alone."""
+    if not tool.low[2] <= z <= tool.high[2]:
+        return
+    box = window.within(tool.low, tool.high)
+    y, x = window.y[box[0]], window.x[box[1]]
+    if not len(x) or not len(y):
+        return
+    points = np.column_stack([np.tile(x, len(y)), np.repeat(y, len(x)), np.full(len(x) * len(y), z)])
+    part = inside[box]
+    part[tool.contains(points).reshape(part.shape)] = value
+
+
+def _tool(shape: Shape) -> _Tool:
+    outline: tuple[Rise, ...] = ()
+    if isinstance(shape, Bore):
+        low = np.array([shape.x - shape.radius, shape.y - shape.radius, shape.low])
+        return _Tool(shape, low, np.array([shape.x + shape.radius, shape.y + shape.radius, shape.high]), outline)
+    assert isinstance(shape, Turned | Prism)
+    if isinstance(shape, Turned):
+        outline = rises(shape.meridian.pieces)
+        radius, bottom, top = shape.meridian.bounds()
+        corners = np.array([[x, y, z] for x in (-radius, radius) for y in (-radius, radius) for z in (bottom, top)])
+    else:
+        outline = rises(shape.outline)
+        boxes = np.array([piece.bounds() for piece in shape.outline])
+        wide, tall = (boxes[:, 0].min(), boxes[:, 1].max()), (boxes[:, 2].min(), boxes[:, 3].max())
+        corners = np.array([[x, y, z] for x in wide for y in tall for z in (shape.low, shape.high)])
+    moved = shape.frame.out(corners)
+    return _Tool(shape, moved.min(axis=0), moved.max(axis=0), outline)
+
+
+def _span(centres: Array, low: float, high: float) -> slice:
+    held = np.flatnonzero((centres >= low) & (centres <= high))
+    return slice(int(held[0]), int(held[-1]) + 1) if len(held) else slice(0, 0)

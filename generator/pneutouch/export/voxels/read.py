@@ -1,0 +1,171 @@
+"""Read a stack back, and hold it to the rules of the voxel print utility and to its own manifest."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pneutouch.errors import InputError
+from pneutouch.export.voxels.manifest import FORMAT, MANIFEST, slice_name, whole_hash
+from pneutouch.export.voxels.png import Labels, Pixels, decode, table
+
+LEAST_SLICES = 30
+MOST_COLOURS = 6
+"""Of the utility (GrabCAD Voxel Print guide), whatever a manifest says."""
+
+_NEEDED = {
+    "format": int, "prefix": str, "dpi": list, "pixels": list, "layers": int, "layer_um": (int, float), "pixel_um": list,
+    "background_rgba": list, "resins": dict, "bodies": dict, "slices": list, "sha256": str,
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Stack:
+    """A stack that keeps every rule. ``counts`` are its voxels by resin, counted in the slices."""
+
+    folder: Path
+    manifest: dict[str, Any]
+    counts: dict[str, int]
+    section: Labels
+    """The plane through the middle, (layers, columns), layer 0 first: labels as in `labels`."""
+
+    @property
+    def colours(self) -> Pixels:
+        """Pixels of the labels: the background, then the resins as the manifest lists them."""
+        return _colours(self.manifest)
+
+    @property
+    def voxel(self) -> float:
+        """Volume of a voxel, mm3."""
+        x, y = self.manifest["pixel_um"]
+        return float(x * y * self.manifest["layer_um"]) * 1e-9
+
+    def labels(self, number: int) -> Labels:
+        """A slice, (rows, columns): 0 the background, k the k-th resin of the manifest."""
+        path = self.folder / slice_name(self.manifest["prefix"], number)
+        return _labels(_read(path), self.manifest, str(path))
+
+
+def read_stack(folder: Path) -> Stack:
+    """Read a folder of slices. Raises InputError that names the file and what breaks which rule."""
+    manifest = _manifest(folder)
+    _check_names(folder, manifest)
+    resins = list(manifest["resins"])
+    totals = np.zeros(len(resins) + 1, np.int64)
+    middle = []
+    for number, labels in enumerate(_slices(folder, manifest)):
+        totals += np.bincount(labels.ravel(), minlength=len(totals))
+        middle.append(labels[len(labels) // 2].copy())
+        stated = manifest["slices"][number]
+        path = folder / slice_name(manifest["prefix"], number)
+        if hashlib.sha256(_read(path)).hexdigest() != stated:
+            raise InputError(f"{path}: was changed after it was written: its SHA-256 is not that of {MANIFEST}")
+    counts = {resin: int(totals[k + 1]) for k, resin in enumerate(resins)}
+    _check_counts(folder, manifest, counts)
+    return Stack(folder, manifest, counts, np.array(middle))
+
+
+def _manifest(folder: Path) -> dict[str, Any]:
+    path = folder / MANIFEST
+    try:
+        content: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise InputError(f"{folder}: holds no {MANIFEST}: not a voxel stack that pneutouch wrote") from None
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+    except ValueError:
+        raise InputError(f"{path}: not JSON; write the stack anew") from None
+    for key, kind in _NEEDED.items():
+        if not isinstance(content, dict) or not isinstance(content.get(key), kind):  # type: ignore[arg-type]
+            raise InputError(f"{path}: {key} is missing or of another type; write the stack anew")
+    if content["format"] != FORMAT:
+        raise InputError(f"{path}: format = {content['format']}; this version reads {FORMAT}")
+    try:
+        colours = _colours(content)
+    except (ValueError, TypeError, KeyError, OverflowError):
+        raise InputError(f"{path}: the colours are not four numbers from 0 to 255 each; write the stack anew") from None
+    if len(set(colours.tolist())) != len(colours):
+        raise InputError(f"{path}: two of the colours are the same; write the stack anew")
+    if len(content["resins"]) > MOST_COLOURS:
+        raise InputError(f"{path}: {len(content['resins'])} colours; the utility takes {MOST_COLOURS}")
+    if whole_hash([str(one) for one in content["slices"]]) != content["sha256"]:
+        raise InputError(f"{path}: was changed after it was written: sha256 is not that of its slices")
+    return content
+
+
+def _colours(manifest: dict[str, Any]) -> Pixels:
+    listed = [manifest["background_rgba"], *(entry["rgba"] for entry in manifest["resins"].values())]
+    if any(len(colour) != 4 for colour in listed):
+        raise ValueError
+    return table([tuple(colour) for colour in listed])
+
+
+def _check_names(folder: Path, manifest: dict[str, Any]) -> None:
+    """Slices from 0 without gaps, as many as the manifest says, and no other PNG."""
+    prefix, layers = manifest["prefix"], manifest["layers"]
+    pattern = re.compile(re.escape(prefix) + r"(0|[1-9][0-9]*)\.png")
+    found = set()
+    for path in folder.glob("*.png"):
+        match = pattern.fullmatch(path.name)
+        if match is None:
+            raise InputError(
+                f"{path}: is no slice; they are called {slice_name(prefix, 0)}, {slice_name(prefix, 1)} ..."
+            )
+        found.add(int(match[1]))
+    for number in range(max(layers, max(found, default=-1) + 1)):
+        if number not in found:
+            raise InputError(f"{folder}: {slice_name(prefix, number)} is missing; slices must be numbered without gaps")
+    if len(found) != layers or len(manifest["slices"]) != layers:
+        raise InputError(f"{folder}: {len(found)} slices; {MANIFEST} says {layers}")
+    if layers < LEAST_SLICES:
+        raise InputError(f"{folder}: {layers} slices; the utility takes no fewer than {LEAST_SLICES}")
+
+
+def _slices(folder: Path, manifest: dict[str, Any]) -> Iterator[Labels]:
+    for number in range(manifest["layers"]):
+        path = folder / slice_name(manifest["prefix"], number)
+        yield _labels(_read(path), manifest, str(path))
+
+
+def _labels(content: bytes, manifest: dict[str, Any], where: str) -> Labels:
+    """A slice as labels. Raises InputError for another size, pitch or colour."""
+    read = decode(content, where)
+    rows, columns = read.pixels.shape
+    if [columns, rows] != manifest["pixels"]:
+        wide, tall = manifest["pixels"]
+        raise InputError(f"{where}: {columns} x {rows} pixels; all slices must be {wide} x {tall}")
+    if read.dpi is None or list(read.dpi) != manifest["dpi"]:
+        stated = "no pitch" if read.dpi is None else f"{read.dpi[0]} x {read.dpi[1]} dpi"
+        raise InputError(f"{where}: says {stated}; must be {manifest['dpi'][0]} x {manifest['dpi'][1]} dpi")
+    labels, known = np.zeros(read.pixels.shape, np.uint8), np.zeros(read.pixels.shape, bool)
+    for k, colour in enumerate(_colours(manifest)):
+        same = read.pixels == colour
+        known |= same
+        if k:
+            labels[same] = k
+    if not known.all():
+        row, column = (int(index) for index in np.argwhere(~known)[0])
+        colour = ", ".join(str(part) for part in read.pixels[row : row + 1, column].view(np.uint8))
+        raise InputError(f"{where}: the pixel in column {column}, row {row} is ({colour}), which stands for no resin")
+    return labels
+
+
+def _read(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+
+
+def _check_counts(folder: Path, manifest: dict[str, Any], counts: dict[str, int]) -> None:
+    for resin, count in counts.items():
+        stated = manifest["resins"][resin].get("voxels")
+        if stated != count:
+            raise InputError(f"{folder / MANIFEST}: {resin} has {count} voxels in the slices; {stated} are stated")

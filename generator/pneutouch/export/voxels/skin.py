@@ -1,0 +1,121 @@
+"""The skin of a mixed body: its outermost voxels stay soft resin, and what they lack is made up for just beneath.
+
+A voxel is skin where one of its six neighbours lies outside the body, whatever is there: so no stiff droplet lies at a
+face, where it would be a way for air to leak along, and the membrane's faces are as smooth as the soft resin's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Generic, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+Flags = NDArray[np.bool_]
+
+Singles = NDArray[np.float32]
+Item = TypeVar("Item")
+
+LEAST_REACH, MOST_REACH = 0.12, 0.4
+"""How far in mm from a skin voxel its lack is made up for, and two voxels at least: less than a wall; our choice."""
+
+
+def interior(below: Flags | None, here: Flags, above: Flags | None) -> Flags:
+    """Voxels of a layer (rows, columns) with all six neighbours inside; None is an empty layer."""
+    if below is None or above is None:
+        return np.zeros_like(here)
+    inner = here & below & above
+    inner[1:] &= here[:-1]
+    inner[:-1] &= here[1:]
+    inner[:, 1:] &= here[:, :-1]
+    inner[:, :-1] &= here[:, 1:]
+    inner[0], inner[-1], inner[:, 0], inner[:, -1] = False, False, False, False
+    return inner
+
+
+def reach_for(most: float, pitch: tuple[float, float, float]) -> float:
+    """How far in mm to make up for what the skin lacks where the share is ``most`` at most.
+
+    Far enough that an edge, where two faces' lack comes together, is not filled beyond one.
+    """
+    wanted = 2 * most * max(pitch) / (1 - most) if most < 1 else MOST_REACH
+    return min(max(wanted, LEAST_REACH), MOST_REACH)
+
+
+class Recent(Generic[Item]):
+    """Something made for layers in turn; the last ``keep`` are kept, so that neighbours need not be made again."""
+
+    def __init__(self, make: Callable[[int], Item], keep: int) -> None:
+        self._make, self._keep = make, keep
+        self._items: dict[int, Item] = {}
+
+    def __call__(self, number: int) -> Item:
+        """The item of a layer."""
+        if number not in self._items:
+            self._items[number] = self._make(number)
+            while len(self._items) > self._keep:
+                del self._items[next(iter(self._items))]
+        return self._items[number]
+
+
+class MadeUp:
+    """What is added to the share of every interior voxel, so that what the skin lacks is in the body all the same.
+
+    The share asked for in a skin voxel goes in equal parts to the interior voxels of the box of ``reach`` mm around it: the
+    sum over the body is kept, and so is that of any region much larger than the reach. What has no interior near is lost.
+    """
+
+    def __init__(
+        self, parts: Callable[[int], tuple[Flags, Singles] | None], pitch: tuple[float, float, float], reach: float
+    ) -> None:
+        """``parts`` gives the interior and the skin's shares (0 elsewhere) of a layer, None beyond the body's."""
+        x, y, z = (max(2, round(reach / step)) for step in pitch)
+        self._parts, self._plane, self._up = parts, (y, x), z
+        self._room = Recent(self._rooms, 2 * z + 2)
+        self._given = Recent(self._gifts, 2 * z + 2)
+
+    @property
+    def ahead(self) -> int:
+        """How many layers to each side are looked at."""
+        return 2 * self._up
+
+    def layer(self, number: int) -> Singles | None:
+        """What is added in a layer, (rows, columns); for the interior alone it has a meaning."""
+        return _sum(self._given(k) for k in self._around(number))
+
+    def _around(self, number: int) -> range:
+        return range(number - self._up, number + self._up + 1)
+
+    def _rooms(self, number: int) -> Singles | None:
+        found = self._parts(number)
+        return None if found is None else _boxed(found[0].astype(np.float32), self._plane)
+
+    def _gifts(self, number: int) -> Singles | None:
+        found = self._parts(number)
+        room = _sum(self._room(k) for k in self._around(number))
+        if found is None or room is None:
+            return None
+        lacking = found[1]
+        return _boxed(np.divide(lacking, room, out=np.zeros_like(lacking), where=room > 0), self._plane)
+
+
+def _sum(layers: Iterable[Singles | None]) -> Singles | None:
+    total: Singles | None = None
+    for layer in layers:
+        if layer is not None:
+            total = layer.copy() if total is None else np.add(total, layer, out=total)
+    return total
+
+
+def _boxed(values: Singles, reach: tuple[int, int]) -> Singles:
+    """Sums over the box of so many rows and columns each way."""
+    for axis, far in enumerate(reach):
+        lines = np.moveaxis(values, axis, 0)
+        total = values.copy()
+        out = np.moveaxis(total, axis, 0)
+        for step in range(1, far + 1):
+            out[step:] += lines[:-step]
+            out[:-step] += lines[step:]
+        values = total
+    return values
