@@ -17,7 +17,9 @@ _FLAGS = {
     "at": ("target", "driving_pressure_kPa"), "force_range": ("target", "force_range_N"),
     "stiffness_least": ("target", "stiffness_least_N_per_mm"), "stiffness_most": ("target", "stiffness_most_N_per_mm"),
     "max_diameter": ("target", "max_diameter_mm"), "inner_radius": ("given", "inner_radius_mm"),
-    "wall": ("given", "wall_thickness_mm"), "material": ("given", "materials"), "base": ("setting", "base"),
+    "wall": ("given", "wall_thickness_mm"), "material": ("given", "materials"), "mix": ("given", "mix"),
+    "graded": ("given", "graded"), "same_at": ("target", "same_sensitivity_at_kPa"),
+    "same_within": ("target", "same_within_percent"), "widest_range": ("target", "widest_range"), "base": ("setting", "base"),
     "profile": ("setting", "profile"), "tube_length": ("setting", "tube_length_mm"),
     "dead_volume": ("setting", "dead_volume_mL"), "robustness": ("weights", "robustness"),
     "tunability": ("weights", "tunability"),
@@ -37,6 +39,11 @@ def select(
     inner_radius: Annotated[float | None, typer.Option(help="Inner radius, mm, where it is settled.")] = None,
     wall: Annotated[float | None, typer.Option(help="Wall thickness, mm, where it is settled.")] = None,
     material: Annotated[list[str] | None, typer.Option(help="Resin to choose from; may be repeated.")] = None,
+    mix: Annotated[str | None, typer.Option(metavar="SOFT+STIFF", help="Two base resins to mix: any fraction may be chosen.")] = None,
+    graded: Annotated[bool | None, typer.Option("--graded", help="Let the mix differ between pole and rim; the solid searches.")] = None,
+    same_at: Annotated[str | None, typer.Option(metavar="KPA,KPA", help="Two driving pressures with the same sensitivity; with --graded.")] = None,
+    same_within: Annotated[str | None, typer.Option(help="How far the two may differ, such as 2%.")] = None,
+    widest_range: Annotated[bool | None, typer.Option("--widest-range", help="As wide a force range as a grade gives.")] = None,
     base: Annotated[str | None, typer.Option(help="Design that gives everything else; left out: the defaults.")] = None,
     profile: Annotated[str | None, typer.Option(help="Printer of the membrane.")] = None,
     tube_length: Annotated[float | None, typer.Option(help="Tube to the pressure sensor, mm.")] = None,
@@ -58,9 +65,12 @@ def select(
 
         if write is not None:
             check_name(write, out)
-        selection = run(_target(target, values), str(target or "select"))
-        designs = selection.answer.designs
-        choice, path = None, None
+        wanted, where = _target(target, values), str(target or "select")
+        if wanted.given.graded:
+            _graded(wanted, where, write, out, charts=charts is not None, pick=pick != 1, json=json)
+            return
+        selection = run(wanted, where)
+        designs, choice, path = selection.answer.designs, None, None
         if designs:
             choice = shown.pick(selection, pick)
             path = shown.write_choice(selection, choice, write, out) if write is not None else None
@@ -80,6 +90,13 @@ def select(
             raise typer.Exit(1)
 
 
+def _graded(target: Target, where: str, write: str | None, out: Path, *, json: bool, **others: bool) -> None:
+    """The search for a grade; ``others`` are flags that do not go with it and whether they were given."""
+    from pneutouch.cli.graded import select_graded
+
+    select_graded(target, where, write, out, json=json, refused=[flag for flag, given in others.items() if given])
+
+
 def _target(path: Path | None, values: dict[str, Any]) -> Target:
     """The target of a file, flags laid over it; or of flags alone."""
     from pneutouch.errors import InputError
@@ -90,6 +107,10 @@ def _target(path: Path | None, values: dict[str, Any]) -> Target:
     content = {} if path is None else read_toml(path)
     if "tolerance" in values:
         values["tolerance"] = 100 * parse_tolerance(values["tolerance"])
+    if "same_within" in values:
+        values["same_within"] = 100 * parse_tolerance(values["same_within"])
+    if "same_at" in values:
+        values["same_at"] = _pressures(values["same_at"])
     for flag, value in values.items():
         table, key = _FLAGS[flag]
         section = content.setdefault(table, {})
@@ -99,3 +120,13 @@ def _target(path: Path | None, values: dict[str, Any]) -> Target:
     if "target" not in content:
         raise InputError("say what the sensor shall do: a target file, or --sensitivity, --force-range or a stiffness")
     return validate(Target, content, "select" if path is None else str(path))
+
+
+def _pressures(text: str) -> list[float]:
+    """Two driving pressures, kPa. Raises InputError."""
+    from pneutouch.errors import InputError
+
+    try:
+        return [float(part) for part in text.split(",")]
+    except ValueError:
+        raise InputError(f"--same-at {text}: write two driving pressures in kPa, such as 0,22") from None

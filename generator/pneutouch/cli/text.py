@@ -8,6 +8,7 @@ from pneutouch.catalogue import KINDS, Library
 from pneutouch.errors import InputError, nearest
 from pneutouch.spec.design import Design
 from pneutouch.spec.material import Material
+from pneutouch.spec.mixing import MixingCurve
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.specimen import Specimen
 
@@ -15,6 +16,7 @@ _GROUPS = {
     "designs": ["designs"],
     "specimens": ["specimens"],
     "materials": ["materials"],
+    "mixing": ["mixing"],
     "printers": ["printers"],
     "parts": ["ports", "seats", "mounts", "tubes"],
 }
@@ -77,7 +79,7 @@ def findings_text(findings: list[dict[str, Any]]) -> str:
 
 
 def listing(kind: str | None, library: Library | None = None) -> dict[str, list[dict[str, str]]]:
-    """Names and titles by kind; ``kind`` is one of designs, materials, printers, parts, or None for all."""
+    """Names and titles by kind; ``kind`` is one of designs, specimens, materials, mixing, printers, parts, or None for all."""
     if kind is not None and kind not in _GROUPS:
         raise InputError(f"KIND = {kind!r}: unknown.{nearest(kind, _GROUPS)}")
     shelves = library or Library.default()
@@ -120,6 +122,10 @@ def _title(thing: Any) -> str:
         return thing.document.title
     if isinstance(thing, Material):
         return f"{thing.label}, {thing.kind}"
+    if isinstance(thing, MixingCurve):
+        points, top = len(thing.points), 100 * thing.points[-1].fraction
+        known = "fractions assumed" if thing.is_assumed else "measured"
+        return f"{thing.title}: {points} points, 0 to {top:g} % {thing.stiff}, {known}"
     if isinstance(thing, Printer):
         return f"{thing.title}: {', '.join(thing.resins)}"
     return str(thing.title)

@@ -112,6 +112,8 @@ def _found(
 def _asked(rung: str, sensor: Sensor, pressures: Array, closure: str) -> tuple[Result, Lack | None]:
     """One rung's answer, and what it lacks."""
     if rung == "membrane":
+        if sensor.grade is not None:
+            raise InputError("--model membrane: the wall is graded along its arc; take --model auto or solid")
         return membrane_result(sensor, pressures, closure), None
     if rung == "atlas":
         from pneutouch.mechanics.atlas_states import atlas_result, outside_atlas

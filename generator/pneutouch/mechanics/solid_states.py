@@ -51,16 +51,19 @@ KINDS = {
 """The solver's events as they are reported, and whether figures must not be fitted beyond them."""
 
 
-def solid_result(sensor: Sensor, driving_pressures: Array, *, cells: int | None = None) -> Result:
+def solid_result(
+    sensor: Sensor, driving_pressures: Array, *, cells: int | None = None, past_limit: float = _PAST_LIMIT
+) -> Result:
     """Inflate through the limit point, then press at every driving pressure (MPa, ascending).
 
     ``cells`` is the number of cells along the arc; left out, the wall ratio decides (docs/accuracy.md says why).
+    ``past_limit`` is the multiple of the limit volume to which inflation goes on: 1 where only the figures are wanted.
     Raises BeyondLimitError beyond the limit point, ComputationError where no equilibrium is found.
     """
     size = (sensor.inner_radius, sensor.wall_thickness)
     mesh = dome(*size, arc=cells) if sensor.flange is None else printed_dome(*size, *sensor.flange, arc=cells)
     solid = Solid(mesh, sensor.material, grade=_grade(sensor))
-    run = inflate(solid, past_limit=_PAST_LIMIT)
+    run = inflate(solid, past_limit=past_limit)
     states = tuple(_state(sensor, solid, run, float(p)) for p in driving_pressures)
     return Result(_limit_point(sensor, run), _limits(sensor, solid, run), _inflation(solid, run), states)
 

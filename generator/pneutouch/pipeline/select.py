@@ -20,13 +20,18 @@ from pneutouch.mechanics.uncertainty.source import FIGURES, SENSITIVITY
 from pneutouch.meridian.segments import Array
 from pneutouch.parts import assemble
 from pneutouch.pipeline.evaluate import sensor_of
+from pneutouch.pipeline.select_mix import USUAL, Pair, mix_resins, pair_of
 from pneutouch.pipeline.table_s1 import is_near_paper
 from pneutouch.selection import Answer, Choice, Problem, Resin, choose
+from pneutouch.selection.mixes import met_by_fraction
+from pneutouch.selection.pool import Pool
 from pneutouch.spec.design import Design
+from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import read_toml, validate
 from pneutouch.spec.target import Target
+from pneutouch.spec.toml_text import value_text
 from pneutouch.units import KPA
 
 _CONFIRMED = 3
@@ -60,7 +65,7 @@ class Selection:
         pressure = float(choice.pool.pressure[0]) / KPA
         pressures = sorted({0.0, round(pressure, 6)})
         found = [
-            f"membrane.material={choice.resin.name}",
+            f"membrane.material={_written(choice.resin)}",
             f"membrane.inner_radius_mm={float(choice.pool.radius[0]):.6g}",
             f"membrane.wall_thickness_mm={float(choice.pool.wall[0]):.6g}",
             f"pneumatics.driving_pressures_kPa={pressures}",
@@ -93,18 +98,45 @@ class Selection:
 def select(target: Target, where: str, library: Library | None = None) -> Selection:
     """Answer a target. Raises InputError where it names what there is not; ``where`` names the file in messages."""
     shelves = library or Library.default()
-    scene = _base(target, where, shelves)
+    scene = base_scene(target, where, shelves)
     sensor = sensor_of(assemble(scene))
-    resins, left_out = _resins(target, where, scene, sensor, shelves)
-    problem = _problem(target, scene, sensor, resins)
+    pair = pair_asked(target, where, scene.printer, shelves)
+    if pair is None:
+        resins, left_out = _resins(target, where, scene, sensor, shelves)
+    else:
+        resins, left_out = mix_resins(pair, sensor.ambient_pressure, shipped().recipe)
+    problem = problem_of(target, scene, sensor, resins)
     answer = choose(
-        problem, (target.weights.robustness, target.weights.tunability), _uncertainty(scene, sensor, shelves)
-    )
+        problem, (target.weights.robustness, target.weights.tunability), _uncertainty(scene, sensor, shelves),
+        None if pair is None else _refined(pair),
+    )  # fmt: skip
     found = Selection(target, scene, sensor, problem, answer, left_out, ())
     return replace(found, confirmed=tuple(_confirm(found, choice) for choice in answer.designs[:_CONFIRMED]))
 
 
-def _base(target: Target, where: str, library: Library) -> Scene:
+def _written(resin: Resin) -> str:
+    """A resin as a design names it: by its name, or as the mix that it is."""
+    return resin.name if resin.grade is None else grade_text(resin.grade)
+
+
+def grade_text(grade: Grade) -> str:
+    """A grade as a design file has it."""
+    return value_text(grade.model_dump(by_alias=True, exclude_none=True))
+
+
+def pair_asked(target: Target, where: str, printer: Printer, library: Library) -> Pair | None:
+    """The pair to mix: the one named, the usual one for a grade; None where resins are to be chosen from."""
+    given = target.given
+    if given.mix is None and not given.graded:
+        return None
+    return pair_of(given.mix or USUAL, printer, library, where, asked=given.mix is not None)
+
+
+def _refined(pair: Pair) -> Callable[[Problem, Pool], tuple[Problem, Pool]]:
+    return lambda problem, pool: met_by_fraction(problem, pool, pair.law, pair.resin)
+
+
+def base_scene(target: Target, where: str, library: Library) -> Scene:
     """The scene that gives everything the target does not; its own dome is replaced by the candidates'."""
     setting, given = target.setting, target.given
     values = {
@@ -129,7 +161,8 @@ def _some_resin(target: Target, where: str, library: Library) -> str:
         design = validate(Design, read_toml(base), str(base)) if base else Design()
         profile = design.print.profile
     printer: Printer = library.load("printers", profile, asked_by=f"{where}: setting.profile")
-    names = target.given.materials or sorted(library.shelf("materials"))
+    pair = pair_asked(target, where, printer, library)
+    names = [pair.soft] if pair else target.given.materials or sorted(library.shelf("materials"))
     loaded = {name: library.load("materials", name, asked_by=f"{where}: given.materials") for name in names}
     for name in target.given.materials or []:
         if loaded[name].kind != "elastomer":
@@ -163,7 +196,8 @@ def _resins(
     return tuple(resins), out
 
 
-def _problem(target: Target, scene: Scene, sensor: Sensor, resins: tuple[Resin, ...]) -> Problem:
+def problem_of(target: Target, scene: Scene, sensor: Sensor, resins: tuple[Resin, ...]) -> Problem:
+    """The search in numbers, on a base with its sensor."""
     wanted, given = target.target, target.given
     feature = scene.printer.smallest.wall("elastomer")
     return Problem(

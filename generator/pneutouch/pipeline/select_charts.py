@@ -48,8 +48,11 @@ def tradeoff(selection: Selection) -> TradeOff:
     if pressure is None:
         pressure = float(designs[0].pool.pressure[0]) if designs else 0.0
     wanted = problem.sensitivity
+    # Of a mix the fronts of the designs' own fractions: those of all that were tried lie side by side.
+    mixed = any(resin.grade is not None for resin in problem.resins)
+    resins = tuple(choice.resin for choice in designs) if mixed and designs else problem.resins
     return TradeOff(
-        tuple(front(replace(problem, driving_pressure=pressure))), pressure / KPA, (problem.gauge_limit - pressure) / KPA,
+        tuple(front(replace(problem, driving_pressure=pressure, resins=resins))), pressure / KPA, (problem.gauge_limit - pressure) / KPA,
         tuple(_spot(rank, choice) for rank, choice in enumerate(designs, start=1)),
         None if wanted is None else (wanted * (1 - problem.tolerance), wanted * (1 + problem.tolerance)),
         problem.force_range,

@@ -50,6 +50,7 @@ def _choice(selection: Selection, choice: Choice, solid: Confirmation | None) ->
     batch = selection.problem.batch(pool.resin, pool.radius, pool.wall, pool.pressure)
     return {
         "material": choice.resin.name,
+        "mix": None if choice.resin.grade is None else choice.resin.grade.model_dump(by_alias=True, exclude_none=True),
         "inner_radius_mm": float(pool.radius[0]),
         "wall_thickness_mm": float(pool.wall[0]),
         "driving_pressure_kPa": float(pool.pressure[0]) / KPA,
@@ -91,13 +92,18 @@ def would_need(selection: Selection, way: Way) -> str:
 
 def write_choice(selection: Selection, choice: Choice, name: str, folder: Path) -> Path:
     """Save a choice as ``folder/name.toml``, a design that ``build`` takes; never over a file."""
-    base = selection.base.design.model_dump()
-    content = override(base, selection.assignments(choice), Design)
+    return write_assigned(selection.base.design, selection.assignments(choice), name, folder)
+
+
+def write_assigned(design: Design, assignments: list[str], name: str, folder: Path) -> Path:
+    """Save a design with ``table.key=value`` assignments as ``folder/name.toml``; never over a file."""
+    base = design.model_dump(by_alias=True)
+    content = override(base, assignments, Design)
     content["document"] = {**base["document"], "title": name}
     content["pneumatics"]["driving_pressures_kPa"] = [float(p) for p in content["pneumatics"]["driving_pressures_kPa"]]
-    design = validate(Design, content, name)
+    chosen = validate(Design, content, name)
     note = "Every key may be left out; it then takes its default."
-    return write_design(name, folder, design_template(name, design.model_dump(), note))
+    return write_design(name, folder, design_template(name, chosen.model_dump(by_alias=True), note))
 
 
 def pick(selection: Selection, rank: int) -> Choice:

@@ -14,6 +14,7 @@ from pneutouch.mechanics import Sensor
 from pneutouch.report import curves
 from pneutouch.report.certainty import ends, shares
 from pneutouch.report.drawing import section_drawing
+from pneutouch.report.graded_sheet import CAPTIONS, graded_figures
 from pneutouch.report.picture import picture
 from pneutouch.report.shares import share_bars
 from pneutouch.report.sheet import Sheet
@@ -38,6 +39,7 @@ def datasheet(sheet: Sheet, sensor: Sensor, viewer: str) -> dict[str, bytes]:
     resins = resin_curves(sensor, sheet.resins, highest, sheet.prediction.model, sheet.prediction.closure)
     figures = _figures(sheet, resins, sensor)
     content = {**sheet.content(), "figures": sorted(figures)}
+    content["captions"] |= CAPTIONS
     content["captions"]["sensitivity"] = (
         f"Sensitivity over driving pressure for each resin in this geometry, this design picked out; {drawn_by(resins)}."
     )
@@ -67,7 +69,7 @@ def _figures(sheet: Sheet, resins: dict[str, ResinCurve], sensor: Sensor) -> dic
         found["tuning"] = tuning_chart(sheet.tuning, curves.SIZE)
     if prediction.states[0].shapes:
         found["shapes"] = curves.shapes(prediction)
-    return found
+    return found | graded_figures(sheet.scene, sensor, prediction)
 
 
 def _html(content: dict[str, Any], figures: dict[str, str], viewer: str) -> str:

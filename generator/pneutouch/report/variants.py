@@ -38,7 +38,7 @@ def in_resin(sensor: Sensor, material: Material) -> Sensor:
     resin = material_sensor(material)
     return replace(
         sensor, shear_modulus=resin.shear_modulus, poisson_ratio=resin.poisson_ratio, law=resin.law,
-        break_stretch=resin.break_stretch,
+        break_stretch=resin.break_stretch, grade=resin.grade,
     )  # fmt: skip
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,10 +23,16 @@ _APART = 1.1
 _DIGITS = 2
 """Sizes are given to a hundredth of a millimetre, below what any of the printers resolves."""
 
+_REFINABLE = 0.1
+"""A sensitivity this near is met by refining: neighbouring fractions of a mix lie less than twice so far apart."""
+
 _UNKNOWN = -1.0e9
 
 Uncertainty = Callable[[Resin, Batch], Array]
 """Relative expanded uncertainty of the sensitivity of sensors of one resin, (n,)."""
+
+Refine = Callable[[Problem, Pool], tuple[Problem, Pool]]
+"""Candidates at sizes that can be written down made better in what is still free, in a problem of their own resins."""
 
 
 @dataclass(frozen=True)
@@ -73,17 +79,21 @@ class Answer:
     candidates: int
 
 
-def choose(problem: Problem, weights: tuple[float, float], uncertainty: Uncertainty) -> Answer:
+def choose(
+    problem: Problem, weights: tuple[float, float], uncertainty: Uncertainty, refine: Refine | None = None
+) -> Answer:
     """Search, keep what meets every limit, and rank it; weights on robustness and on tunability."""
     pool = search(problem) if problem.resins else None
     if pool is None or pool.resin.size == 0:
         return Answer([], None, [], 0)
     room = margins(problem, pool)
-    fits = np.all([margin >= 0.0 for margin in room.values()], axis=0)
-    rows = _shortlist(pool, room, fits)
+    wide = room if refine is None else margins(replace(problem, tolerance=max(problem.tolerance, _REFINABLE)), pool)
+    fits = np.all([margin >= 0.0 for margin in wide.values()], axis=0)
+    rows = _shortlist(pool, wide, fits)
     if rows.size:
         close = _rounded(problem, pool.take(rows))
-        judged = _judged(problem, close, weights, uncertainty)
+        own, close = (problem, close) if refine is None else refine(problem, close)
+        judged = _judged(own, close, weights, uncertainty)
         good = [choice for choice in judged if min(choice.room.values()) >= 0.0]
         if good:
             return Answer(_ranked(good), None, [], pool.resin.size)

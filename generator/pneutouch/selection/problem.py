@@ -10,6 +10,7 @@ import numpy as np
 from pneutouch.mechanics.atlas.press import Batch
 from pneutouch.mechanics.atlas.recipe import Recipe
 from pneutouch.meridian.segments import Array
+from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
 
 _SMALLEST, _LARGEST = 2.0, 60.0
@@ -18,12 +19,13 @@ _SMALLEST, _LARGEST = 2.0, 60.0
 
 @dataclass(frozen=True)
 class Resin:
-    """A resin as the atlas needs it."""
+    """A resin as the atlas needs it; ``grade`` where it is mixed from two."""
 
     name: str
     material: Material
     shear_modulus: float
     break_stretch: float
+    grade: Grade | None = None
 
 
 @dataclass(frozen=True)

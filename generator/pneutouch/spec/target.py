@@ -33,6 +33,16 @@ class Wanted(Table):
     max_diameter_mm: float | None = number(
         None, unit="mm", low=2, high=300, help="Greatest outer diameter of the unloaded dome, 2 (R0 + t0)."
     )
+    same_sensitivity_at_kPa: list[float] | None = Field(  # noqa: N815
+        default=None, min_length=2, max_length=2,
+        description="Two driving pressures, kPa, at both of which the sensitivity holds; for a grade.",
+    )  # fmt: skip
+    same_within_percent: float = number(
+        2.0, unit="%", low=0.01, high=100, help="How far the sensitivities at the two driving pressures may differ."
+    )
+    widest_range: bool = Field(
+        default=False, description="Whether the force range shall be as wide as it can; for a grade."
+    )
 
     @model_validator(mode="after")
     def _says_something(self) -> Wanted:
@@ -46,6 +56,31 @@ class Wanted(Table):
             raise ValueError("give at least one of sensitivity_kPa_per_N, force_range_N and a stiffness")
         return self
 
+    @model_validator(mode="after")
+    def _sound_wish_of_a_grade(self) -> Wanted:
+        both = self.same_sensitivity_at_kPa
+        if both is None:
+            return self
+        if not 0 <= both[0] < both[1] <= 1000:
+            raise ValueError(
+                f"same_sensitivity_at_kPa = {both}: must be two rising driving pressures from 0 to 1000 kPa"
+            )
+        if self.sensitivity_kPa_per_N is None:
+            raise ValueError(
+                "same_sensitivity_at_kPa needs sensitivity_kPa_per_N: at some sensitivity a constant mix does it"
+            )
+        if self.driving_pressure_kPa is not None:
+            raise ValueError(
+                f"driving_pressure_kPa = {self.driving_pressure_kPa:g} and same_sensitivity_at_kPa = {both} contradict "
+                f"each other; give one of them"
+            )
+        return self
+
+    @property
+    def is_for_a_grade(self) -> bool:
+        """Whether it asks for what only the search of graded membranes answers."""
+        return self.widest_range or self.same_sensitivity_at_kPa is not None
+
 
 class Given(Table):
     """[given]: what is settled already; the rest is solved for."""
@@ -53,12 +88,24 @@ class Given(Table):
     inner_radius_mm: float | None = number(None, unit="mm", low=1, high=100, help="Inner radius R0 of the dome.")
     wall_thickness_mm: float | None = number(None, unit="mm", low=0.05, high=50, help="Wall thickness t0 of the dome.")
     materials: Names | None = Field(default=None, description="Resins to choose from; left out: all the printer runs.")
+    mix: str | None = Field(
+        default=None,
+        pattern=r"^[^+]+\+[^+]+$",
+        description="SOFT+STIFF, two base resins to mix instead of a resin to choose.",
+    )
+    graded: bool = Field(default=False, description="Whether the mix may differ between pole and rim.")
 
     @model_validator(mode="after")
     def _wall_below_radius(self) -> Given:
         radius, wall = self.inner_radius_mm, self.wall_thickness_mm
         if radius is not None and wall is not None and wall >= radius:
             raise ValueError(f"wall_thickness_mm = {wall:g} must be less than inner_radius_mm = {radius:g}")
+        return self
+
+    @model_validator(mode="after")
+    def _mix_or_materials(self) -> Given:
+        if self.materials is not None and (self.mix is not None or self.graded):
+            raise ValueError("materials and a mix contradict each other; give one of them")
         return self
 
 
@@ -101,4 +148,21 @@ class Target(Table):
                 f"target.max_diameter_mm = {room:g} and given.inner_radius_mm = {radius:g} contradict each other: "
                 f"the dome alone is {2 * (radius + wall):g} mm wide"
             )
+        return self
+
+    @model_validator(mode="after")
+    def _grade_and_its_wish(self) -> Target:
+        wanted, graded = self.target, self.given.graded
+        if wanted.is_for_a_grade and not graded:
+            raise ValueError(
+                "same_sensitivity_at_kPa and widest_range are met by grades; give given.graded = true (--graded) too"
+            )
+        if graded and not wanted.is_for_a_grade:
+            raise ValueError(
+                "given.graded needs target.same_sensitivity_at_kPa (--same-at) or target.widest_range (--widest-range)"
+            )
+        if graded and wanted.sensitivity_kPa_per_N is None:
+            raise ValueError("given.graded needs target.sensitivity_kPa_per_N (--sensitivity)")
+        if graded and (wanted.stiffness_least_N_per_mm, wanted.stiffness_most_N_per_mm) != (None, None):
+            raise ValueError("the search for a grade takes no bounds on the stiffness; leave them out")
         return self

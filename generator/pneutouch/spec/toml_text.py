@@ -17,7 +17,7 @@ def toml_text(content: Mapping[str, Any]) -> str:
 
 
 def value_text(value: Any) -> str:
-    """One value on one line. Raises TypeError for what TOML has no form for."""
+    """One value on one line, what is None in a table left out. Raises TypeError for what TOML has no form for."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
@@ -26,7 +26,8 @@ def value_text(value: Any) -> str:
     if isinstance(value, list | tuple):
         return "[" + ", ".join(value_text(item) for item in value) + "]"
     if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{key_text(key)} = {value_text(item)}" for key, item in value.items()) + " }"
+        entries = (f"{key_text(key)} = {value_text(item)}" for key, item in value.items() if item is not None)
+        return "{ " + ", ".join(entries) + " }"
     if isinstance(value, datetime.date):
         return value.isoformat()
     if isinstance(value, int | float):

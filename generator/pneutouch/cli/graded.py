@@ -1,0 +1,98 @@
+"""``pneutouch select --graded``: the search for a grade, with its cost."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from pneutouch.cli.app import print_json
+from pneutouch.cli.text import columns
+from pneutouch.errors import InputError
+from pneutouch.spec.target import Target
+from pneutouch.units import KPA
+
+if TYPE_CHECKING:
+    from pneutouch.pipeline.select_graded import GradedSelection
+    from pneutouch.selection.grade_search import Progress, Trial
+
+
+def select_graded(
+    target: Target, where: str, write: str | None, out: Path, *, json: bool, refused: list[str]
+) -> None:  # fmt: skip
+    """Search, show and save a grade. Exits 1 where none meets the target; ``refused`` are flags that do not go with it."""
+    from pneutouch.pipeline import graded_document as shown
+    from pneutouch.pipeline.select_graded import select_graded as run
+
+    if refused:
+        raise InputError(f"{', '.join(f'--{flag}' for flag in refused)} cannot be given with --graded")
+    begun = time.perf_counter()
+    with _bar() as progress:
+        selection = run(target, where, progress=progress)
+    typer.echo(f"{selection.solves} solid solves in {time.perf_counter() - begun:.0f} s", err=True)
+    path = shown.write_graded(selection, write, out) if write is not None and selection.search.met else None
+    if json:
+        print_json({**shown.graded_document(selection), "written": None if path is None else str(path)})
+    else:
+        typer.echo(graded_text(selection))
+        if path is not None:
+            typer.echo(f"\nwritten: {path}")
+    if not selection.search.met:
+        raise typer.Exit(1)
+
+
+def graded_text(selection: GradedSelection) -> str:
+    """The grade and the constant membranes of its size, or what is missed."""
+    from pneutouch.pipeline.graded_document import missed
+
+    best, sensor, wish = selection.search.best, selection.sensor, selection.wish
+    pressures = [f"{p / KPA:g} kPa" for p in wish.pressures]
+    head = ["", *(f"S {p}" for p in pressures), *(["apart"] if len(pressures) > 1 else []), *(f"range {p}" for p in pressures), "ends with", "rated kPa", "meets"]  # fmt: skip
+    rows = [["graded: " + selection.grade.label, *_row(selection, best)]]
+    rows += [[constant.name, *_row(selection, constant.trial)] for constant in selection.constants]
+    size = f"R0 {sensor.inner_radius:g} mm, t0 {sensor.wall_thickness:g} mm, on {selection.base.where}"
+    met = "a grade meets the target" if selection.search.met else "no grade of this size meets the target; the nearest"
+    lines = [f"{met}: {size}", "", columns(head, rows), ""]
+    if not selection.search.met:
+        lines += [f"it misses {line}" if k == 0 else line for k, line in enumerate(missed(selection))]
+    constant = [c.name for c in selection.constants if selection.meets(c.trial)]
+    lines.append(
+        f"a constant membrane does too: {', '.join(constant)}" if constant else "no constant one listed meets it"
+    )
+    lines.append(f"cost: {selection.solves} solid solves, {len(selection.search.trials)} of them grades")
+    lines += [f"left out: {name}: {why}" for name, why in selection.left_out.items()]
+    return "\n".join(lines)
+
+
+def _row(selection: GradedSelection, trial: Trial) -> list[str]:
+    apart = [f"{100 * trial.difference:+.1f} %"] if len(trial.sensitivity) > 1 else []
+    rated = "-" if trial.note else f"{trial.rated / KPA:.1f}"
+    return [
+        *(f"{value:.3f}" for value in trial.sensitivity), *apart, *(f"{value:.1f} N" for value in trial.force),
+        ", ".join(dict.fromkeys(trial.ends)) or "-", rated, "yes" if selection.meets(trial) else "no",
+    ]  # fmt: skip
+
+
+@contextlib.contextmanager
+def _bar() -> Iterator[Progress]:
+    """A progress bar on stderr where that is a terminal."""
+    if not sys.stderr.isatty():
+        yield lambda trial, done, most: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    shown = (
+        TextColumn("grades"),
+        BarColumn(),
+        TextColumn("{task.completed} of at most {task.total}"),
+        TimeElapsedColumn(),
+    )
+    with Progress(*shown, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("")
+        yield lambda trial, done, most: bar.update(task, completed=done, total=most)

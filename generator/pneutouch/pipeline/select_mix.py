@@ -1,0 +1,84 @@
+"""Two base resins to mix: resolved, checked against the printer, and offered to the search as resins."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pneutouch.catalogue import Library
+from pneutouch.catalogue.mixture import Mixing, mixed_material, mixing
+from pneutouch.errors import InputError
+from pneutouch.mechanics.atlas.recipe import Recipe
+from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.selection.mixes import levels
+from pneutouch.selection.problem import Resin
+from pneutouch.spec.grade import Grade
+from pneutouch.spec.material import Material
+from pneutouch.spec.printer import Printer
+
+USUAL = "TangoPlus+VeroClear"
+"""The pair a grade is made of where none is named: the paper's resins."""
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A soft and a stiff resin with their mixing curve. ``where`` names the file in messages."""
+
+    soft: str
+    stiff: str
+    law: Mixing
+    library: Library
+    where: str
+
+    @property
+    def name(self) -> str:
+        """``SOFT+STIFF``, as it is asked for."""
+        return f"{self.soft}+{self.stiff}"
+
+    def grade(self, *fractions: float) -> Grade:
+        """A constant mix of one fraction, or a grade of fractions at even knots from the pole to the rim."""
+        value = fractions[0] if len(fractions) == 1 else list(fractions)
+        return Grade.model_validate({"from": self.soft, "to": self.stiff, "fraction": value})
+
+    def material(self, grade: Grade) -> Material:
+        """The material of a grade."""
+        return mixed_material(grade, self.library, self.where)
+
+    def resin(self, fraction: float) -> Resin:
+        """A constant mix as the search takes a resin."""
+        grade = self.grade(fraction)
+        material = self.material(grade)
+        own = material_sensor(material)
+        return Resin(grade.label, material, own.shear_modulus, own.break_stretch or np.inf, grade)
+
+
+def pair_of(name: str, printer: Printer, library: Library, where: str, asked: bool = True) -> Pair:
+    """The pair of ``SOFT+STIFF``. Raises InputError where a name is unknown or the printer does not hold both.
+
+    ``asked`` says whether the user named the pair.
+    """
+    soft, stiff = (part.strip() for part in name.split("+"))
+    pair = Pair(soft, stiff, mixing(soft, stiff, library, asked_by=f"{where}: given.mix"), library, where)
+    if printer.mode_for(pair.material(pair.grade(0.5 * float(pair.law.fraction[-1])))) is None:
+        way = "name a pair that it holds with --mix, or another printer with --profile"
+        raise InputError(
+            f"{where}: given.mix = {name!r}{'' if asked else ' (none was named)'}: the {printer.title} cannot mix {soft} with "
+            f"{stiff}; it runs {', '.join(printer.resins)}, {printer.resins_at_once} at once; {way}"
+        )
+    return pair
+
+
+def mix_resins(pair: Pair, ambient_pressure: float, recipe: Recipe) -> tuple[tuple[Resin, ...], dict[str, str]]:
+    """Mixes of a pair that the atlas knows, and why the others are left out."""
+    resins, out = [], {}
+    for fraction in levels(pair.law):
+        resin = pair.resin(round(float(fraction), 4))
+        own = material_sensor(resin.material)
+        if own.law is not None or own.poisson_ratio != recipe.poisson_ratio:
+            out[resin.name] = "the atlas knows neither its law nor its Poisson ratio"
+        elif ambient_pressure > recipe.stiffest * own.shear_modulus:
+            out[resin.name] = "it is too soft for the atlas in so high an ambient pressure"
+        else:
+            resins.append(resin)
+    return tuple(resins), out

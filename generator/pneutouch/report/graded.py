@@ -1,0 +1,132 @@
+"""Pictures of a graded membrane: how its two resins are laid out, and what that does beside constant mixes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from pneutouch.catalogue import Scene
+from pneutouch.mechanics.prediction import State
+from pneutouch.report.style import ACCENT, BOLD, INK, LINES, MUTED, Label, figure, label_ends, svg
+from pneutouch.spec.material import AlongArc, Material
+from pneutouch.units import KPA
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_CELLS = 90
+"""Cells along the arc of the shaded section; one more would not be seen."""
+_SHADES = ("#F4F1EA", ACCENT)
+
+
+class Compared(NamedTuple):
+    """A membrane with its states, driving pressures ascending."""
+
+    label: str
+    states: Sequence[State]
+
+
+def grade_section(material: Material, scene: Scene, size: tuple[float, float] = (180.0, 62.0)) -> str:
+    """Half section of the dome shaded by the stiff resin's fraction, beside fraction and modulus along the arc, as SVG.
+
+    ``material`` must be graded; ``size`` is width and height in mm.
+    """
+    assert material.along is not None
+    membrane, stiff = scene.design.membrane, material.base_resins[-1]
+    with figure(*size) as drawn:
+        left, middle, right = drawn.subplots(1, 3, width_ratios=(1.3, 1.0, 1.0))
+        _section(left, material.along, membrane.inner_radius_mm, membrane.wall_thickness_mm, stiff)
+        arc, along = np.array(material.along.arc), material.along
+        middle.plot(arc, 100 * np.array(along.stiff_fraction), color=ACCENT, lw=1.8)
+        middle.set(ylabel=f"{stiff}  (% of the volume)", ylim=(0, None))
+        right.plot(arc, along.shear_modulus_MPa, color=ACCENT, lw=1.8)
+        mean = material.shear_modulus_MPa
+        if mean is not None:
+            right.axhline(mean.nominal, color=INK, lw=0.8, ls=LINES[1])
+            right.annotate(
+                f"mean {mean.nominal:.2f} MPa", (0.5, mean.nominal), xytext=(0, 3), textcoords="offset points",
+                fontsize=6.5, ha="center",
+            )  # fmt: skip
+        right.set(ylabel="shear modulus  (MPa)", ylim=(0, None))
+        for ax in (middle, right):
+            ax.set(xlim=(0, 1), xticks=[0, 0.5, 1], xticklabels=["pole", "arc", "rim"])
+        return svg(drawn)
+
+
+def _section(ax: Axes, along: AlongArc, inner: float, wall: float, stiff: str) -> None:
+    from matplotlib.collections import PolyCollection
+    from matplotlib.colors import LinearSegmentedColormap
+
+    edges = np.linspace(0.0, 1.0, _CELLS + 1)
+    angle = 0.5 * np.pi * edges
+    low, high = (r * np.stack([np.sin(angle), np.cos(angle)], axis=1) for r in (inner, inner + wall))
+    cells = np.stack([low[:-1], low[1:], high[1:], high[:-1]], axis=1)
+    share = 100 * np.interp(0.5 * (edges[1:] + edges[:-1]), along.arc, along.stiff_fraction)
+    shades = LinearSegmentedColormap.from_list("stiff", _SHADES)
+    for side in (1.0, -1.0):
+        wall_cells = PolyCollection(
+            list(cells * np.array([side, 1.0])), array=share, cmap=shades, edgecolors="face", linewidths=0.2
+        )
+        wall_cells.set_clim(0.0, max(float(share.max()), 1.0))
+        ax.add_collection(wall_cells)
+        for line in (low, high):
+            ax.plot(side * line[:, 0], line[:, 1], color=INK, lw=0.8)
+        ax.plot(side * np.array([inner, inner + wall]), [0, 0], color=INK, lw=0.8)
+    reach = 1.06 * (inner + wall)
+    ax.set(
+        xlim=(-reach, reach), ylim=(-0.06 * reach, reach), aspect="equal", xlabel="radius  (mm)", ylabel="height  (mm)"
+    )
+    ax.grid(visible=False)
+    scale = ax.figure.colorbar(wall_cells, ax=ax, location="top", shrink=0.8, aspect=30)
+    scale.set_label(f"{stiff}  (% of the volume)", fontsize=7)
+    scale.outline.set_linewidth(0.5)
+
+
+def graded_against_constant(
+    graded: Compared, constants: Sequence[Compared], size: tuple[float, float] = (180.0, 72.0)
+) -> str:
+    """Sensitivity over driving pressure, and pressure rise over force at the highest, graded and constant, as SVG."""
+    with figure(*size) as drawn:
+        left, right = drawn.subplots(1, 2)
+        _sensitivities(left, graded, constants)
+        _rises(right, graded, constants)
+        return svg(drawn)
+
+
+def _looks(
+    graded: Compared, constants: Sequence[Compared]
+) -> list[tuple[Compared, dict[str, object], dict[str, object]]]:
+    """Every membrane with the look of its line and of its label, the graded one last and on top."""
+    lines = [
+        (one, {"color": INK, "lw": 0.9, "ls": LINES[1 + k % 4]}, {"fontsize": 6.5, "color": MUTED})
+        for k, one in enumerate(constants)
+    ]
+    return [*lines, (graded, {"color": ACCENT, "lw": 2.0, "zorder": 4}, {"fontsize": 6.5, "color": INK, **BOLD})]
+
+
+def _sensitivities(ax: Axes, graded: Compared, constants: Sequence[Compared]) -> None:
+    ends: list[Label] = []
+    for one, line, look in _looks(graded, constants):
+        points = [(s.driving_pressure / KPA, s.figures.sensitivity) for s in one.states if s.figures is not None]
+        if not points:
+            continue
+        x, y = np.array(points).T
+        ax.plot(x, y, marker="o", ms=3, mfc="white", **line)  # type: ignore[arg-type]
+        ends.append((float(x[-1]), float(y[-1]), one.label, dict(look)))
+    ax.set(xlabel="driving pressure  (kPa)", ylabel="sensitivity  (kPa/N)", ylim=(0, None), xlim=(0, None))
+    label_ends(ax, ends)
+
+
+def _rises(ax: Axes, graded: Compared, constants: Sequence[Compared]) -> None:
+    ends: list[Label] = []
+    for one, line, look in _looks(graded, constants):
+        state = one.states[-1]
+        keep = state.indentation <= state.range_end * (1 + 1e-9)
+        force, rise = state.force[keep], state.pressure_rise[keep] / KPA
+        ax.plot(force, rise, **line)  # type: ignore[arg-type]
+        ends.append((float(force[-1]), float(rise[-1]), one.label, dict(look)))
+    at = graded.states[-1].driving_pressure / KPA
+    ax.set(xlabel=f"contact force at {at:g} kPa  (N)", ylabel="pressure rise  (kPa)", ylim=(0, None), xlim=(0, None))
+    label_ends(ax, ends)

@@ -1,0 +1,178 @@
+"""The search for a grade: fractions at the pole and at the rim that meet a wish, by as few solid solves as it takes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from pneutouch.meridian.segments import Array
+
+ENOUGH = 0.5
+"""A trial that uses no more than this share of every tolerance ends a search for the same sensitivity."""
+_LEAST_GAIN = 1e-3
+"""A search ends where the surface through the trials promises no more than this: of a tolerance, or of the force."""
+_SPARE = 0.9
+"""Share of a tolerance that the surface may use up for the widest range: what it says is not exact."""
+_LATTICE = 51
+_APART = 2e-3
+"""Trials lie at least so far from one another, as a share of the greatest fraction."""
+_FEWEST = 4
+_SURFACES = ("linear", "thin_plate_spline")
+"""Radial bases in the order they are asked: the first does not ring where figures jump, since another event ends the range;
+the second follows a smooth course better."""
+_DIGITS = 4
+"""A fraction is given to a hundredth of a percent, below what a droplet pattern resolves."""
+_LIMITS = ("rated pressure", "force range")
+_MISSED = 1.0e3
+"""Violation of a trial without figures."""
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What a grade shall do: sensitivity (kPa/N) at each pressure (MPa) within a share, the same at all within another.
+
+    force: what the range must reach (N); None where it need not. widest: whether it shall reach as far as it can.
+    """
+
+    sensitivity: float
+    tolerance: float
+    pressures: tuple[float, ...]
+    same_within: float | None
+    force: float | None
+    widest: bool
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One membrane and what the solid says: fractions at pole and rim, by pressure sensitivity and end of the force range
+    (NaN where there are no figures), the rated driving pressure (MPa), what ends the ranges, and why there are no figures."""
+
+    pole: float
+    rim: float
+    sensitivity: tuple[float, ...]
+    force: tuple[float, ...]
+    rated: float
+    ends: tuple[str, ...] = ()
+    note: str = ""
+
+    @property
+    def difference(self) -> float:
+        """Sensitivity at the last pressure over that at the first, less one."""
+        return self.sensitivity[-1] / self.sensitivity[0] - 1.0
+
+    @property
+    def reach(self) -> float:
+        """Force that the range reaches at every pressure, N."""
+        return float(min(self.force))
+
+
+@dataclass(frozen=True)
+class Search:
+    """The best trial, whether it meets the wish, and all trials in order; one solid solve each."""
+
+    best: Trial
+    met: bool
+    trials: tuple[Trial, ...]
+
+
+Try = Callable[[float, float], Trial]
+Progress = Callable[[Trial, int, int], None]
+
+
+def shares(wish: Wish, trial: Trial) -> dict[str, float]:
+    """What of each tolerance or limit a trial uses up: at most 1 where it is kept."""
+    values = np.array(trial.sensitivity)
+    if not np.isfinite(values).all() or values.min() <= 0.0:
+        return {"no figures": _MISSED}
+    found = {"sensitivity": float(np.abs(values / wish.sensitivity - 1.0).max()) / wish.tolerance}
+    if wish.same_within is not None:
+        found["same sensitivity"] = abs(trial.difference) / wish.same_within
+    found["rated pressure"] = max(wish.pressures) / trial.rated
+    if wish.force is not None:
+        found["force range"] = wish.force / max(trial.reach, 1e-9)
+    return found
+
+
+def cost(wish: Wish, trial: Trial, spare: float = 1.0) -> float:
+    """What the search makes small: the worst share of the aims; for the widest range, less the more force, where all is kept.
+
+    ``spare`` is the share of every tolerance that may be used up for the widest range.
+    """
+    used = shares(wish, trial)
+    if wish.widest:
+        worst = max(used.values()) / spare
+        return 100.0 + 10.0 * (worst - 1.0) if worst > 1.0 else -float(np.log(max(trial.reach, 1e-9)))
+    # The rated pressure and a force range are limits, not aims: nothing is gained far inside them.
+    return max(value for name, value in used.items() if name not in _LIMITS or value > 1.0)
+
+
+def grade_search(wish: Wish, levels: Array, solve: Try, progress: Progress, most: int) -> Search:
+    """Fractions at pole and rim between the ends of ``levels``, rising fractions (n,), that meet a wish.
+
+    A scan of all pairs of levels, soft ones first; then the best place on a surface through all trials is tried, and again
+    with that trial in it. It stops where every tolerance is half kept, or where the surface promises no gain. ``most`` bounds
+    the trials of both together.
+    """
+    trials: list[Trial] = []
+
+    def tried(pole: float, rim: float) -> None:
+        trials.append(solve(pole, rim))
+        progress(trials[-1], len(trials), most)
+
+    for pole in np.round(levels, _DIGITS):
+        for rim in np.round(levels, _DIGITS):
+            if len(trials) < most and not _done(wish, trials):
+                tried(float(pole), float(rim))
+    while len(trials) < most and not _done(wish, trials):
+        looks = (_promising(wish, float(levels[-1]), trials, surface) for surface in _SURFACES)
+        place = next((look for look in looks if look is not None), None)
+        if place is None:
+            break
+        tried(*place)
+    best = min(trials, key=lambda trial: cost(wish, trial))
+    return Search(best, max(shares(wish, best).values()) <= 1.0, tuple(trials))
+
+
+def _done(wish: Wish, trials: list[Trial]) -> bool:
+    return not wish.widest and any(
+        max(shares(wish, trial).values()) <= 1.0 and cost(wish, trial) <= ENOUGH for trial in trials
+    )
+
+
+def _promising(wish: Wish, top: float, trials: list[Trial], surface: str) -> tuple[float, float] | None:
+    """The place of least cost on the surface through the trials, none tried yet; None where it promises no gain."""
+    known = [trial for trial in trials if np.isfinite(trial.sensitivity).all()]
+    if len(known) < _FEWEST:
+        return None
+    centre, width, best = np.array([0.5 * top, 0.5 * top]), 0.5 * top, np.inf
+    for _ in range(2):
+        axes = [np.linspace(max(c - width, 0.0), min(c + width, top), _LATTICE) for c in centre]
+        places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2).round(_DIGITS)
+        costs = _expected(wish, top, trials, places, surface)
+        k = int(np.argmin(costs))
+        centre, best, width = places[k], float(costs[k]), 2 * width / (_LATTICE - 1)
+    gain = min(cost(wish, trial) for trial in trials) - best
+    return (float(centre[0]), float(centre[1])) if gain > _LEAST_GAIN else None
+
+
+def _expected(wish: Wish, top: float, trials: list[Trial], places: Array, surface: str) -> Array:
+    """Cost at places (n, 2) by a surface through the logarithms of sensitivities, forces and rated pressures, (n,).
+
+    Infinite beside a trial and where the nearest one has no figures.
+    """
+    from scipy.interpolate import RBFInterpolator
+
+    known = [trial for trial in trials if np.isfinite(trial.sensitivity).all()]
+    at = np.array([(t.pole, t.rim) for t in known]) / top
+    table = np.log([[*t.sensitivity, *np.maximum(t.force, 1e-9), t.rated] for t in known])
+    values = np.exp(RBFInterpolator(at, table, kernel=surface, degree=1)(places / top))
+    n = len(wish.pressures)
+    costs = np.array([
+        cost(wish, Trial(0.0, 0.0, tuple(v[:n]), tuple(v[n : 2 * n]), v[-1]), _SPARE) for v in values.tolist()
+    ])  # fmt: skip
+    every = np.array([(t.pole, t.rim) for t in trials])
+    away = np.hypot(*np.moveaxis(places[:, None, :] - every[None, :, :], -1, 0)) / top
+    unknown = np.array([not np.isfinite(t.sensitivity).all() for t in trials])
+    return np.where((away.min(axis=1) < _APART) | unknown[away.argmin(axis=1)], np.inf, costs)

@@ -1,0 +1,92 @@
+"""Graded membranes beside constant ones: the solid's figures of each, and the constant mix that comes nearest to a wish."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pneutouch.catalogue.mixture import Mixing
+from pneutouch.errors import ComputationError
+from pneutouch.mechanics.atlas.respond import respond
+from pneutouch.mechanics.limits import RATED_SHARE
+from pneutouch.mechanics.sensor import Sensor
+from pneutouch.meridian.segments import Array
+from pneutouch.selection.grade_search import Trial, Wish, cost
+from pneutouch.selection.problem import Problem, Resin
+
+_FRACTIONS = 401
+"""Constant fractions that the atlas is asked about."""
+_WALLS = 60
+
+
+@dataclass(frozen=True)
+class Constant:
+    """A membrane of one material, of the size of the graded one. ``fraction`` is None of a catalogue resin."""
+
+    name: str
+    fraction: float | None
+    trial: Trial
+
+
+def trial_of(sensor: Sensor, pressures: tuple[float, ...], pole: float = np.nan, rim: float = np.nan) -> Trial:
+    """A sensor's figures by the solid; NaN with the reason where it has none."""
+    from pneutouch.mechanics.solid_states import solid_result
+
+    unknown = (np.nan,) * len(pressures)
+    try:
+        found = solid_result(sensor, np.array(pressures), past_limit=1.0)
+    except ComputationError as error:
+        return Trial(pole, rim, unknown, unknown, 1e-12, note=str(error))
+    sensitivities, forces, ends = [], [], []
+    for state in found.states:
+        figures = state.figures
+        sensitivities.append(np.nan if figures is None else figures.sensitivity)
+        reach = np.nan if figures is None else figures.force_range[1]
+        saturated = None if figures is None else figures.saturation_force
+        forces.append(reach if saturated is None else min(reach, saturated))
+        ends.append(next((event.kind for event in state.events if event.ends_range), "depth"))
+    return Trial(pole, rim, tuple(sensitivities), tuple(forces), RATED_SHARE * found.limits.lowest, tuple(ends))
+
+
+def nearest_fraction(wish: Wish, problem: Problem, law: Mixing, size: tuple[float, float]) -> float | None:
+    """The constant fraction nearest to a wish at an inner radius and a wall (mm), by the atlas; None where it has no answer."""
+    at = np.linspace(0.0, float(law.fraction[-1]), _FRACTIONS)
+    strain = law.elongation_at(at) / 100.0
+    resins = tuple(
+        Resin("", problem.resins[0].material, float(modulus), float(stretch))
+        for modulus, stretch in zip(law.modulus_at(at), 1.0 + np.nan_to_num(strain, nan=np.inf), strict=True)
+    )
+    mine, ones, numbers = replace(problem, resins=resins), np.ones(at.size), np.arange(at.size, dtype=float)
+    answers = [
+        respond(mine.batch(numbers, size[0] * ones, size[1] * ones, pressure * ones), problem.steps)
+        for pressure in wish.pressures
+    ]
+    lines = [answer.lines for answer in answers]
+    costs = np.array([
+        cost(wish, Trial(
+            at[k], at[k], tuple(float(line.sensitivity[k]) for line in lines),
+            tuple(float(np.fmin(line.force_high[k], line.saturation_force[k])) for line in lines),
+            RATED_SHARE * float(np.fmin(answers[0].limit_pressure[k], problem.gauge_limit)),
+        ))
+        for k in range(at.size)
+    ])  # fmt: skip
+    known = np.all([np.isfinite(line.sensitivity) for line in lines], axis=0)
+    return float(at[np.argmin(np.where(known, costs, np.inf))]) if known.any() else None
+
+
+def middle_wall(wish: Wish, problem: Problem, radius: float, thickest: float) -> float | None:
+    """The wall (mm) with which the problem's one resin has the sensitivity wished for, by the atlas; None where it has no answer.
+
+    With a mix of middle modulus either end of a grade is then free to be softer or stiffer.
+    """
+    box = problem.recipe
+    low, high = max(problem.least_wall, box.thinnest * radius), min(thickest, box.thickest * radius)
+    if low >= high:
+        return None
+    walls: Array = np.geomspace(low, high, _WALLS)
+    ones = np.ones(_WALLS)
+    found = respond(problem.batch(0 * ones, radius * ones, walls, wish.pressures[0] * ones), problem.steps)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        off = np.abs(np.log(found.lines.sensitivity / wish.sensitivity))
+    return None if not np.isfinite(off).any() else round(float(walls[np.nanargmin(off)]), 2)

@@ -1,0 +1,93 @@
+"""A mix of two resins as something to choose: fractions tried as if each were a resin, the best met exactly."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneutouch.catalogue.mixture import Mixing
+from pneutouch.meridian.segments import Array
+from pneutouch.selection.pool import Pool, evaluated, margins
+from pneutouch.selection.problem import Problem, Resin
+
+LEVELS = 24
+"""Fractions tried, even in the logarithm of the modulus: 16 % apart for TangoPlus and VeroClear."""
+_KEPT = 6
+"""Candidates whose fraction is refined."""
+_POLISH = 12
+_DIGITS = 4
+"""A fraction is given to a hundredth of a percent, below what a droplet pattern resolves."""
+
+Mixed = Callable[[float], Resin]
+"""The mix of a fraction as a resin."""
+
+
+def levels(law: Mixing, count: int = LEVELS) -> Array:
+    """Fractions (count,) from the soft resin to the last point of the curve, even in the logarithm of the modulus."""
+    fine = np.linspace(0.0, float(law.fraction[-1]), 2001)
+    logs = np.log(law.modulus_at(fine))
+    return np.interp(np.linspace(logs[0], logs[-1], count), logs, fine)
+
+
+def met_by_fraction(problem: Problem, pool: Pool, law: Mixing, mixed: Mixed) -> tuple[Problem, Pool]:
+    """The best few candidates with the fraction at which the sensitivity is met at their sizes and pressures.
+
+    Returns a problem whose resins are these mixes, one each, and the candidates evaluated. Bisected where two neighbouring
+    fractions bracket the sensitivity; else a candidate stays as it is.
+    """
+    pool = pool.take(_best(problem, pool))
+    at = np.array([_fraction(problem.resins[int(number)]) for number in pool.resin])
+    if problem.sensitivity is not None:
+        at = _bisected(problem, pool, law, at)
+    places = np.stack([np.round(at, _DIGITS), pool.radius, pool.wall, pool.pressure])
+    once = np.sort(np.unique(places, axis=1, return_index=True)[1])
+    pool, at = pool.take(once), places[0, once]
+    resins = tuple(mixed(float(fraction)) for fraction in at)
+    own = replace(problem, resins=resins)
+    return own, evaluated(own, np.arange(len(resins), dtype=float), pool.radius, pool.wall, pool.pressure)
+
+
+def _fraction(resin: Resin) -> float:
+    assert resin.grade is not None
+    return resin.grade.fractions[0]
+
+
+def _best(problem: Problem, pool: Pool) -> NDArray[np.intp]:
+    """Candidates with the most room, one a fraction at most."""
+    room = [margin for name, margin in margins(problem, pool).items() if name != "sensitivity"]
+    order = np.argsort(-np.minimum(np.min(room, axis=0), 1.0), kind="stable")
+    first = np.unique(pool.resin[order], return_index=True)[1]
+    return order[np.sort(first)[:_KEPT]]
+
+
+def _bisected(problem: Problem, pool: Pool, law: Mixing, at: Array) -> Array:
+    """Fractions (n,) between the neighbouring levels at which the sensitivity is the one wanted."""
+    assert problem.sensitivity is not None
+    known = levels(law)
+    index = np.clip(np.searchsorted(known, at - 1e-9), 0, known.size - 1)
+    low, high = known[np.maximum(index - 1, 0)], known[np.minimum(index + 1, known.size - 1)]
+
+    wanted = problem.sensitivity
+
+    def off(fraction: Array) -> Array:
+        resins = tuple(
+            replace(problem.resins[int(number)], shear_modulus=float(modulus))
+            for number, modulus in zip(pool.resin, law.modulus_at(fraction), strict=True)
+        )
+        numbers = np.arange(len(resins), dtype=float)
+        found = evaluated(replace(problem, resins=resins), numbers, pool.radius, pool.wall, pool.pressure)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return np.asarray(np.log(found.response.lines.sensitivity / wanted))
+
+    a, b = off(low), off(high)
+    bracketed = a * b <= 0.0
+    for _ in range(_POLISH):
+        middle = 0.5 * (low + high)
+        here = off(middle)
+        same = here * a > 0.0
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+        a = np.where(same, here, a)
+    return np.where(bracketed, 0.5 * (low + high), at)

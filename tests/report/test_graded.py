@@ -1,0 +1,48 @@
+"""A graded design's datasheet shows how it is graded and what that does; any other's does not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pneutouch.pipeline.evaluate import evaluate
+from pneutouch.report.graded_sheet import graded_figures
+from pneutouch.report.variants import in_resin
+
+SHALLOW = ["indentation.depth_mm=3", "indentation.steps=6", "pneumatics.driving_pressures_kPa=[0, 12]"]
+
+
+@pytest.fixture(scope="module")
+def graded():
+    return evaluate("graded-dome", SHALLOW)
+
+
+def test_a_graded_membrane_has_two_figures_in_the_same_bytes(graded):
+    once, again = (graded_figures(graded.scene, graded.sensor, graded.prediction) for _ in range(2))
+    assert set(once) == {"grade", "graded"}
+    assert once == again
+    # The wall's cells are there one by one, on both sides of the axis.
+    assert once["grade"].count("<path") > 2 * 90
+
+
+def test_a_constant_membrane_has_none():
+    found = evaluate("paper-dome", SHALLOW)
+    assert graded_figures(found.scene, found.sensor, found.prediction) == {}
+
+
+def test_constants_beyond_their_own_limit_are_drawn_as_far_as_they_go(graded):
+    """The softest bears 40 kPa, the grade more: its curve ends, the sheet does not."""
+    states = tuple(replace(s, driving_pressure=p) for s, p in zip(graded.prediction.states, (0.0, 0.05), strict=True))
+    assert set(graded_figures(graded.scene, graded.sensor, replace(graded.prediction, states=states))) == {
+        "grade",
+        "graded",
+    }
+
+
+def test_other_resins_in_the_same_geometry_are_not_graded(graded, library):
+    other = in_resin(graded.sensor, library.load("materials", "FLX9950"))
+    assert other.grade is None
+    assert graded.sensor.grade is not None
+    assert np.ptp(graded.sensor.grade[1]) > 1
