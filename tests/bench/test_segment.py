@@ -44,7 +44,9 @@ def test_points_are_those_of_the_law(kind, sensor, bias):
     onset = np.array([one.onset for one in found.indents[1:]]) - faults.zero
     assert abs(np.median(onset)) < bias
     assert np.abs(onset - np.median(onset)).max() < 0.08
-    assert found.indentation[2:] == pytest.approx(depths[1:] - onset, abs=0.003)
+    # Every travel is counted from one place, the first contact of the run's first indentations.
+    start = depths - found.indentation[1:]
+    assert np.ptp(start) < 0.006 and abs(start.mean()) < bias + 0.03
     force = sensor.force(depths)
     assert found.force[1:] == pytest.approx(force, abs=0.002)
     assert found.rise[1:] == pytest.approx(sensor.slope * force, abs=0.01 * KPA)

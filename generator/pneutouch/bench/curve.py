@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pneutouch.bench.contact import BEFORE, Baseline
+from pneutouch.bench.contact import BEFORE, Baseline, baseline
 from pneutouch.bench.doubts import doubts_of, untrusted
 from pneutouch.bench.indents import Found, find_indents
 from pneutouch.bench.record import Blocks, Curve, Doubt
@@ -27,7 +27,7 @@ def curve_of(run: Run, blocks: Blocks, rig: Rig) -> Curve:
     Steps and saturation: one point for each indentation, sorted by depth. Loop and relaxation: the way in, averaged over
     the cycles, at `WAY_POINTS` even depths. A force or rise that falls as the sensor is pressed stays negative
     (`plausible.check_plausible` tells). Noise is that of single samples without contact, from the spread within blocks and
-    the one between their means about a straight line; drift the mean slope just before contact.
+    the one between their means about a straight line; drift the slope before the first contact.
 
     Raises InputError where the plate does not move or moves the wrong way, or nothing is ever touched.
     """
@@ -51,7 +51,7 @@ def curve_of(run: Run, blocks: Blocks, rig: Rig) -> Curve:
         loop=tuple(_cycle(blocks, found, k) for k in kept) if run.kind == "loop" else (),
         relaxation=_relaxation(blocks, found, kept[0]) if run.kind == "relaxation" else None,
         noise=(_noise(bases, 0), _noise(bases, 1)),
-        drift=(float(np.mean([base.slope[1] for base in bases])), float(np.mean([base.slope[0] for base in bases]))),
+        drift=_drift(blocks, found),
         doubts=tuple(sorted(doubts, key=lambda doubt: (doubt.start, doubt.end, doubt.why))),
     )  # fmt: skip
 
@@ -106,7 +106,7 @@ def _way(blocks: Blocks, found: Found, k: int) -> tuple[Array, Array, Array]:
     start = int(np.searchsorted(blocks.time, indent.contact))
     end = _deepest(blocks, part.hold) + 1
     at = slice(min(start, end - 1), end)
-    return blocks.position[at] - indent.onset, blocks.force[at] - base.mean[0], blocks.pressure[at] - base.mean[1]
+    return blocks.position[at] - found.onset, blocks.force[at] - base.mean[0], blocks.pressure[at] - base.mean[1]
 
 
 def _deepest(blocks: Blocks, hold: tuple[int, int]) -> int:
@@ -140,6 +140,16 @@ def _relaxation(blocks: Blocks, found: Found, k: int) -> tuple[Array, Array, Arr
     at, base = slice(*found.parts[k].hold), found.bases[k]
     time = blocks.time[at]
     return time - time[0], blocks.force[at] - base.mean[0], blocks.pressure[at] - base.mean[1]
+
+
+def _drift(blocks: Blocks, found: Found) -> tuple[float, float]:
+    """Slopes of pressure and force over the last third of the first stretch without contact.
+
+    There a reset is over and nothing was pressed yet: after an indentation the wall still recovers.
+    """
+    start, end = found.parts[0].clear
+    slopes = baseline(blocks, end - max((end - start) // 3, 1), end).slope
+    return slopes[1], slopes[0]
 
 
 def _noise(bases: Sequence[Baseline], channel: int) -> float:

@@ -59,8 +59,11 @@ FIRST = 1.0
 RESOLVED = 3.0
 """Noise standard deviations that count as resolved: the limit of detection of IUPAC (Gold Book, L03540)."""
 
-_TERMS = 6
-"""Coefficients of the polynomials that stand for the branches of a loop."""
+_BINS, _CURVE = 40, 7
+"""Bins of force that a loop's gap is averaged in, and coefficients of the middle line that is taken out before: the gap of the
+solid's loops changes little within a bin, and a bin of a fast record holds hundreds of samples, so that the greatest gap is not
+that of their noise."""
+_LEAST_BINS = 5
 _GRID = 200
 
 
@@ -94,18 +97,32 @@ def _line(curve: Curve, *, saturating: bool) -> dict[str, float]:
 
 
 def _loop(curve: Curve) -> dict[str, float]:
-    """Hysteresis of all cycles together, each branch as a polynomial: the greatest difference of noise is not its own."""
-    force_up, rise_up, force_down, rise_down = (np.concatenate(part) for part in zip(*curve.loop, strict=True))
-    top = min(force_up.max(), force_down.max())
-    grid = np.linspace(max(force_up.min(), force_down.min(), 0.0), top, _GRID)
-    up, down = _smooth(force_up, rise_up, grid), _smooth(force_down, rise_down, grid)
-    width, area = hysteresis(grid, up, grid, down)
-    return {"hysteresis_width_percent": 100 * width, "hysteresis_area_percent": 100 * area}
+    """Hysteresis of all cycles together: the greatest difference of two noisy branches would be that of their noise."""
+    up, down = ([np.concatenate(part) for part in zip(*side, strict=True)] for side in (
+        [cycle[:2] for cycle in curve.loop], [cycle[2:] for cycle in curve.loop],
+    ))  # fmt: skip
+    force, rise = np.concatenate([up[0], down[0]]), np.concatenate([up[1], down[1]])
+    middle = np.polynomial.Polynomial.fit(force, rise, _CURVE - 1)
+    edges = np.linspace(max(up[0].min(), down[0].min(), 0.0), min(up[0].max(), down[0].max()), _BINS + 1)
+    centre = 0.5 * (edges[1:] + edges[:-1])
+    off = [_in_bins(f, r - middle(f), edges) for f, r in (up, down)]
+    known = np.isfinite(off[0]) & np.isfinite(off[1])
+    if known.sum() < _LEAST_BINS:
+        return {}
+    line = middle(centre[known])
+    width, area = hysteresis(centre[known], line + off[0][known], centre[known], line + off[1][known])
+    full = float(rise.max() / np.ptp(line + off[0][known]))
+    return {"hysteresis_width_percent": 100 * width / full, "hysteresis_area_percent": 100 * area}
 
 
-def _smooth(force: Array, rise: Array, grid: Array) -> Array:
-    fitted = np.polynomial.Polynomial.fit(force, rise, min(_TERMS - 1, max(len(force) // 4, 1)))
-    return np.asarray(fitted(grid))
+def _in_bins(force: Array, values: Array, edges: Array) -> Array:
+    """Means of values by bin of force; NaN where a bin is empty."""
+    which = np.digitize(force, edges) - 1
+    inside = (which >= 0) & (which < edges.size - 1)
+    count = np.bincount(which[inside], minlength=edges.size - 1)
+    total = np.bincount(which[inside], weights=values[inside], minlength=edges.size - 1)
+    with np.errstate(invalid="ignore"):
+        return np.where(count > 0, total / np.maximum(count, 1), np.nan)
 
 
 def _relaxation(time: Array, force: Array, rise: Array) -> dict[str, float]:
@@ -138,11 +155,12 @@ def _binned(place: Array, values: Array, grid: Array) -> Array:
 
 def _still(curve: Curve, sensitivity: float | None) -> dict[str, float]:
     """What the channels do without contact; the resolution follows where the run has a sensitivity."""
+    found = {"drift_pressure_kPa_per_min": 60 * curve.drift[0] / KPA}
+    if curve.run.kind == "loop":
+        # Its rests are too short for the noise: the wall still recovers.
+        return found
     noise_force, noise_pressure = curve.noise[0], curve.noise[1] / KPA
-    found = {
-        "noise_force_N": noise_force, "noise_pressure_kPa": noise_pressure,
-        "drift_pressure_kPa_per_min": 60 * curve.drift[0] / KPA,
-    }  # fmt: skip
+    found |= {"noise_force_N": noise_force, "noise_pressure_kPa": noise_pressure}
     if sensitivity:
         found["resolution_N"] = RESOLVED * noise_pressure / abs(sensitivity)
     return found

@@ -23,6 +23,10 @@ RELEASED = 0.01
 
 _STAYS = 3
 
+EARLY = 3
+"""Indentations whose first contacts, in the median, are the run's: the wall stays behind after deep ones, so that later contacts
+come deeper, while the model counts from the dome as it was. Enough that noise of one does not matter: our choice."""
+
 
 @dataclass(frozen=True, slots=True)
 class Found:
@@ -36,6 +40,7 @@ class Found:
         pressed: Whether the record begins with the plate in.
         sign: -1 where the force falls as the sensor is pressed.
         least: Force that is told from none, N.
+        onset: Plate position at the run's first contact, mm; NaN where there is none.
     """
 
     parts: list[Excursion]
@@ -45,22 +50,25 @@ class Found:
     pressed: bool
     sign: int
     least: float
+    onset: float
 
 
 def find_indents(blocks: Blocks) -> Found:
     """Cut a run into its indentations and read them. Raises InputError where the plate does not move."""
     parts, pressed = excursions(blocks)
     if not parts:
-        return Found([], [], [], (), pressed, 1, 0.0)
+        return Found([], [], [], (), pressed, 1, 0.0, math.nan)
     bases = [first_baseline(blocks, one) for one in parts]
     least, sign = threshold(blocks, bases, parts)
     contacts = onsets(blocks, parts, bases, least, sign)
     bases = [_just_before(blocks, base, contact) for base, contact in zip(bases, contacts, strict=True)]
+    own = [contact.position for contact in contacts if contact is not None and contact.own][:EARLY]
+    onset = float(np.median(own)) if own else math.nan
     indents = tuple(
-        _indent(blocks, one, base, contact, least, sign)
+        _indent(blocks, one, base, contact, onset, (least, sign))
         for one, base, contact in zip(parts, bases, contacts, strict=True)
     )
-    return Found(parts, bases, contacts, indents, pressed, sign, least)
+    return Found(parts, bases, contacts, indents, pressed, sign, least, onset)
 
 
 def read_window(blocks: Blocks, hold: tuple[int, int]) -> tuple[int, int]:
@@ -83,18 +91,19 @@ def _just_before(blocks: Blocks, base: Baseline, contact: Onset | None) -> Basel
 
 
 def _indent(
-    blocks: Blocks, one: Excursion, base: Baseline, contact: Onset | None, least: float, sign: int
+    blocks: Blocks, one: Excursion, base: Baseline, contact: Onset | None, onset: float, told: tuple[float, int]
 ) -> Indent:  # fmt: skip
+    least, sign = told
     start, end = read_window(blocks, one.hold)
     at = slice(start, end)
     force = float(blocks.force[at].mean()) - base.mean[0]
-    onset = math.nan if contact is None else contact.position
     return Indent(
         contact=math.nan if contact is None else contact.time,
         hold=(float(blocks.time[one.hold[0]]), float(blocks.time[one.hold[1] - 1])),
         read=(float(blocks.time[start]), float(blocks.time[end - 1])),
         release=math.nan if contact is None else _release(blocks, one, base, max(RELEASED * sign * force, least), sign),
-        onset=onset, indentation=float(blocks.position[at].mean()) - onset, force=force,
+        onset=math.nan if contact is None else contact.position,
+        indentation=math.nan if contact is None else float(blocks.position[at].mean()) - onset, force=force,
         rise=float(blocks.pressure[at].mean()) - base.mean[1], driving=base.mean[1], zero_force=base.mean[0],
     )  # fmt: skip
 

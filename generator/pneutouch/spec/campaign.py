@@ -114,7 +114,9 @@ class Campaign(Table):
             key = (run.kind, run.sensor, run.driving_pressure_kPa, run.run, run.age_days)
             same_file, same_run = files.setdefault(run.file, place), keys.setdefault(key, place)
             if same_file != place:
-                raise ValueError(f"runs[{place}].file = {run.file!r}: is that of runs[{same_file}] too; must be there once")
+                raise ValueError(
+                    f"runs[{place}].file = {run.file!r}: is that of runs[{same_file}] too; must be there once"
+                )
             if same_run != place:
                 raise ValueError(
                     f"runs[{place}] ({run.file}): the same sensor, kind, pressure and run as runs[{same_run}] "
