@@ -22,7 +22,7 @@ from pneutouch.bench.curve import curve_of
 from pneutouch.bench.figure import BY_KEY, RESOLVED
 from pneutouch.bench.record import Curve
 from pneutouch.bench.simulate import Specimens, Truth, population, press_curves, simulate_run
-from pneutouch.bench.simulate.curve import Pressed
+from pneutouch.bench.simulate.curve import PressCurve, Pressed
 from pneutouch.bench.summary import Group, summarize
 from pneutouch.catalogue import Library
 from pneutouch.mechanics import Sensor
@@ -41,8 +41,9 @@ RATE, LOOP_RATE = 100.0, 2000.0
 TRUTH = Truth(rest=10.0)
 """The paper's protocol with rests of 10 s in place of 30: half of them is read at most."""
 
-SAFE = 0.9
-"""Share of the range of the nominal sensor that is pressed where it ends before three quarters of R0: all specimens reach it."""
+SAFE, LIGHT = 0.9, 30.0
+"""Share of the nominal sensor's range that is pressed where it ends before three quarters of R0, and the greatest force in N: all
+specimens reach the one, and none goes beyond the 40 N of the paper's force sensor."""
 
 
 @dataclass(frozen=True)
@@ -60,10 +61,16 @@ def cell(resin: str) -> Cell:
     sensor = material_sensor(Library.default().load("materials", resin))
     pressures = [p * KPA for p in PRESSURES]
     wanted = 0.75 * sensor.inner_radius
-    reach = min(curve.reach for curve in press_curves(sensor, pressures, wanted, "atlas").curves)
-    depth = wanted if reach >= wanted * (1 - 1e-9) else SAFE * reach
+    depth = min(_safe(curve, wanted) for curve in press_curves(sensor, pressures, wanted, "atlas").curves)
     nominal = press_curves(sensor, pressures, depth, "atlas")
     return Cell(resin, sensor, depth, {p: _true(nominal, k) for k, p in enumerate(PRESSURES)})
+
+
+def _safe(curve: PressCurve, wanted: float) -> float:
+    """The depth that is pressed of a nominal curve, mm."""
+    depth = wanted if curve.reach >= wanted * (1 - 1e-9) else SAFE * curve.reach
+    light = float(np.interp(LIGHT, curve.force, curve.indentation))
+    return depth if np.interp(depth, curve.indentation, curve.force) < 1.2 * LIGHT else min(depth, light)
 
 
 def _true(nominal: Pressed, k: int) -> dict[str, float]:

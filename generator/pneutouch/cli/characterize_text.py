@@ -21,11 +21,18 @@ def measured_text(document: dict[str, Any]) -> str:
     for entry in document["injections"]:
         error = "" if entry["standard_error"] is None else f" ± {entry['standard_error']:.2g}"
         lines.append(f"\n{entry['sensor']}: {entry['figure']} {entry['value']:.4g}{error} {entry['unit']}")
-    doubts = sum(len(run["doubts"]) for run in document["runs"])
-    if doubts:
-        lines.append(f"\n{doubts} doubtful stretches; see figures.json and evidence/")
+    lines += _doubts(document["runs"])
     lines += [f"\nquestion: {entry['file']}: {entry['question']}" for entry in document["questions"]]
     return "\n".join(lines)
+
+
+def _doubts(runs: list[dict[str, Any]]) -> list[str]:
+    """How many stretches were left out, and how many are noted but used."""
+    every = [doubt for run in runs for doubt in run["doubts"]]
+    left = sum(not doubt["used"] for doubt in every)
+    if not every:
+        return []
+    return [f"\n{left} doubtful stretches left out, {len(every) - left} noted and used; see figures.json and evidence/"]
 
 
 def _group(group: dict[str, Any]) -> list[str]:

@@ -71,9 +71,7 @@ def test_a_first_contact_that_is_not_sure_weighs_steep_points_less(library):
     from pneutouch.bench.record import Indent
 
     (clean,) = exact(DESIGNED, (22.0,))
-    indents = tuple(
-        Indent(0.0, (1.0, 5.0), (4.0, 5.0), 6.0, 0.1 * k, 1.0, 0.0, 0.0, 0.022, 0.0) for k in (-1, 0, 1)
-    )
+    indents = tuple(Indent(0.0, (1.0, 5.0), (4.0, 5.0), 6.0, 0.1 * k, 1.0, 0.0, 0.0, 0.022, 0.0) for k in (-1, 0, 1))
     sure = points_of(Observations((clean,)))
     wandering = points_of(Observations((replace(clean, indents=indents),)))
     added = np.sqrt(wandering.force_error**2 - sure.force_error**2)[0]
