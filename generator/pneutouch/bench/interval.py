@@ -12,7 +12,7 @@ normal values.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -96,6 +96,15 @@ def _chi_square(freedom: int) -> tuple[float, float]:
     tails = 0.5 * (1 + LEVEL), 0.5 * (1 - LEVEL)
     low, high = (float(np.sqrt(0.5 * freedom / gammaincinv(0.5 * freedom, tail))) for tail in tails)
     return low, high
+
+
+def widened(estimate: Estimate, reading: float) -> Estimate:
+    """With a relative error of the reading that all runs share, added to the interval's half width as squares."""
+    if estimate.low is None or estimate.high is None or reading == 0:
+        return estimate
+    half = float(np.hypot(0.5 * (estimate.high - estimate.low), reading * estimate.value))
+    middle = 0.5 * (estimate.high + estimate.low)
+    return replace(estimate, low=middle - half, high=middle + half)
 
 
 def _quantile(freedom: int) -> float:

@@ -54,8 +54,8 @@ class Indent:
         hold: Begin and end of the hold.
         read: Begin and end of the stretch that was averaged: the last part of the hold.
         release: Time at which contact is lost.
-        onset: Plate position at first contact.
-        indentation: Plate travel from there to the hold.
+        onset: Plate position at its own first contact.
+        indentation: Plate travel to the hold from the run's first contact (`indents.EARLY`).
         force: Mean over ``read`` less the mean before contact.
         rise: The same of the pressure.
         driving: Pressure before contact.
@@ -87,7 +87,7 @@ class Curve:
         relaxation: Of a relaxation run: seconds since the hold began, force, rise.
         noise: Standard deviations of a sample of force (N) and pressure (MPa) without contact, trend taken out; NaN where
             nothing was without contact.
-        drift: Slope of the pressure without contact, MPa/s, and of the force, N/s; NaN likewise.
+        drift: Slope of the pressure before the first contact, MPa/s, and of the force, N/s.
         doubts: Stretches not to be trusted.
     """
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.bench.figure import FIGURES, Pooled, run_figures
-from pneutouch.bench.interval import Estimate, mean_of, spread_between, spread_within
+from pneutouch.bench.interval import Estimate, mean_of, spread_between, spread_within, widened
 from pneutouch.bench.record import Curve
 from pneutouch.meridian.segments import Array
 
@@ -74,5 +74,5 @@ def _group(key: Key, curves: list[Curve]) -> Group:
         if by_sensor:
             estimate = _POOL[figure.pooled]([np.array(by_sensor[name]) for name in sorted(by_sensor)])
             if np.isfinite(estimate.value):
-                found[figure.key] = estimate
+                found[figure.key] = widened(estimate, figure.reading)
     return Group(key, tuple(curves), found, each)

@@ -91,15 +91,18 @@ def predict(
     monte_carlo: Annotated[
         int, typer.Option(metavar="N", min=0, max=1_000_000, help="Check the uncertainty by N samples; about 0.1 s for 1000 a state.")
     ] = 0,
+    aged: Annotated[
+        bool, typer.Option("--aged", help="After a year in light and air: the modulus shifted by the resin's hardness then.")
+    ] = False,
     json: JsonOption = False,
 ) -> None:  # fmt: skip
     """Predict the figures alone, and how sure they are."""
     with reporting():
         from pneutouch.pipeline.evaluate import evaluate
-        from pneutouch.pipeline.uncertainty import prediction_document
+        from pneutouch.pipeline.viscous import full_document
 
-        evaluation = evaluate(design, set_, closure=closure, clamp=clamp, **rung(model, tolerance))
-        document = prediction_document(evaluation, monte_carlo)
+        evaluation = evaluate(design, set_, closure=closure, clamp=clamp, aged=aged, **rung(model, tolerance))
+        document = full_document(evaluation, monte_carlo)
         if json:
             print_json(document)
         else:
@@ -110,7 +113,9 @@ def predict(
 
 @app.command("list")
 def list_(
-    kind: Annotated[str | None, typer.Argument(help="designs, specimens, materials, mixing, printers or parts.")] = None,
+    kind: Annotated[
+        str | None, typer.Argument(help="designs, specimens, materials, mixing, printers or parts.")
+    ] = None,
     json: JsonOption = False,
 ) -> None:
     """List designs, specimens, materials, mixing curves, printers and parts."""

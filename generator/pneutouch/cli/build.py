@@ -24,7 +24,7 @@ from pneutouch.cli.app import (
     reporting,
     rung,
 )
-from pneutouch.cli.bar import bar
+from pneutouch.cli.progress import bar
 
 if TYPE_CHECKING:
     from pneutouch.pipeline.evaluate import Evaluation

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import contextlib
-import sys
 import time
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import typer
 
 from pneutouch.cli.app import print_json
+from pneutouch.cli.progress import bar
 from pneutouch.cli.text import columns
 from pneutouch.errors import InputError
 from pneutouch.spec.target import Target
@@ -19,7 +17,7 @@ from pneutouch.units import KPA
 
 if TYPE_CHECKING:
     from pneutouch.pipeline.select_graded import GradedSelection
-    from pneutouch.selection.grade_search import Progress, Trial
+    from pneutouch.selection.grade_search import Trial
 
 
 def select_graded(
@@ -32,8 +30,8 @@ def select_graded(
     if refused:
         raise InputError(f"{', '.join(f'--{flag}' for flag in refused)} cannot be given with --graded")
     begun = time.perf_counter()
-    with _bar() as progress:
-        selection = run(target, where, progress=progress)
+    with bar("grades of at most") as report:
+        selection = run(target, where, progress=lambda trial, done, most: report(done, most))
     typer.echo(f"{selection.solves} solid solves in {time.perf_counter() - begun:.0f} s", err=True)
     path = shown.write_graded(selection, write, out) if write is not None and selection.search.met else None
     if json:
@@ -76,23 +74,3 @@ def _row(selection: GradedSelection, trial: Trial) -> list[str]:
         *(f"{value:.3f}" for value in trial.sensitivity), *apart, *(f"{value:.1f} N" for value in trial.force),
         ", ".join(dict.fromkeys(trial.ends)) or "-", rated, "yes" if selection.meets(trial) else "no",
     ]  # fmt: skip
-
-
-@contextlib.contextmanager
-def _bar() -> Iterator[Progress]:
-    """A progress bar on stderr where that is a terminal."""
-    if not sys.stderr.isatty():
-        yield lambda trial, done, most: None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
-
-    shown = (
-        TextColumn("grades"),
-        BarColumn(),
-        TextColumn("{task.completed} of at most {task.total}"),
-        TimeElapsedColumn(),
-    )
-    with Progress(*shown, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("")
-        yield lambda trial, done, most: bar.update(task, completed=done, total=most)

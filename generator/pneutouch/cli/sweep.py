@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
-import sys
-from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from pneutouch.cli.app import JsonOption, SetOption, app, print_json, reporting
+from pneutouch.cli.progress import bar
 from pneutouch.errors import InputError
 
 if TYPE_CHECKING:
@@ -55,7 +53,7 @@ def sweep(
 
         plan = _plan(file, design, over or [], set_ or [], {"model": model, "closure": closure, "clamp": clamp})
         target = Path("outputs") / f"{plan.name}.nc" if out is None else out
-        with _bar() as progress:
+        with bar("points") as progress:
             done = run(plan, target, Machines(workers, scheduler), fresh=fresh, progress=progress)
         _tell(done, json=json)
 
@@ -86,21 +84,3 @@ def _tell(done: Outcome, *, json: bool) -> None:
     there = "; was there already, --fresh computes it again" if done.computed == 0 else ""
     typer.echo(f"{done.points} points, states: {counts}{there}", err=True)
     typer.echo(str(done.path))
-
-
-@contextlib.contextmanager
-def _bar() -> Iterator[Callable[[int, int], None]]:
-    """A progress bar on stderr where that is a terminal."""
-    if not sys.stderr.isatty():
-        yield lambda done, total: None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
-
-    columns = (
-        TextColumn("points"), BarColumn(), TextColumn("{task.completed}/{task.total}"),
-        TimeElapsedColumn(), TimeRemainingColumn(),
-    )  # fmt: skip
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("")
-        yield lambda done, total: bar.update(task, completed=done, total=total)

@@ -53,6 +53,9 @@ def prediction_text(document: dict[str, Any]) -> str:
         "", columns(head, rows), "",
         f"error in sensitivity {far}: {error['sensitivity_basis']}",
         *_how_sure(document["states"]),
+        *_viscous(document["viscous"]),
+        *([f"aged one year: modulus times {document['aged']['modulus_ratio']:.3f} by its hardness; {document['aged']['assumes']}"]
+          if "aged" in document else []),
     ])  # fmt: skip
 
 
@@ -68,6 +71,30 @@ def _how_sure(states: list[dict[str, Any]]) -> list[str]:
     if "unknown" in last["uncertainty"]:
         return [f"uncertainty not known: {last['uncertainty']['unknown']}"]
     return [f"at {last['driving_pressure_kPa']:g} kPa: {last['uncertainty']['summary']}"]
+
+
+def _viscous(found: dict[str, Any]) -> list[str]:
+    """Relaxation and hysteresis at the highest driving pressure, over the sources; or why nothing is known."""
+    if "unknown" in found:
+        return [f"relaxation and hysteresis not known: {found['unknown']}"]
+    last = found["states"][-1]
+    held = [one["relaxation"].get("pressure_rise_loss_percent") for one in last["by_source"]]
+    quick = [one["hysteresis"][-1] for one in last["by_source"]]
+    wide = [one.get("width_percent") for one in quick]
+    speed = f"{quick[0]['speed_mm_per_s']:g} mm/s" if quick else ""
+    return [
+        f"held at {found['depth_mm']:.2f} mm and {last['driving_pressure_kPa']:g} kPa the pressure rise loses {_span(held)} from 1 s to "
+        f"600 s; hysteresis at {speed} {_span(wide)} of full scale ({len(found['sources'])} source(s) of relaxation data)"
+    ]
+
+
+def _span(percents: list[float | None]) -> str:
+    """The range of what is known, or a word that nothing is."""
+    known = [value for value in percents if value is not None]
+    if not known:
+        return "not known"
+    ends = f"{min(known):.1f} %" if len(known) == 1 else f"{min(known):.1f} to {max(known):.1f} %"
+    return ends if len(known) == len(percents) else f"{ends} (not known by every source)"
 
 
 def findings_text(findings: list[dict[str, Any]]) -> str:

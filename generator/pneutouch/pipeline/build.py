@@ -9,7 +9,7 @@ from typing import Any
 
 from pneutouch import __version__
 from pneutouch.body import Body
-from pneutouch.errors import RuleBrokenError
+from pneutouch.errors import InputError, RuleBrokenError
 from pneutouch.export.scene import cut_open, glb, stl, viewer_html
 from pneutouch.export.step import step
 from pneutouch.export.threemf import threemf
@@ -18,7 +18,8 @@ from pneutouch.pipeline.evaluate import Evaluation
 from pneutouch.pipeline.files import MANIFEST, check_writable, digest, json_bytes, write_folder
 from pneutouch.pipeline.recipe import Recipe, versions
 from pneutouch.pipeline.recipe import input_hash as hash_of
-from pneutouch.pipeline.uncertainty import prediction_document, unknown
+from pneutouch.pipeline.uncertainty import unknown
+from pneutouch.pipeline.viscous import full_document
 from pneutouch.report import Sheet, datasheet, print_sheet
 from pneutouch.report.picture import picture
 from pneutouch.units import KPA, ML
@@ -38,13 +39,15 @@ def build(evaluation: Evaluation, out: Path, progress: Progress = lambda step: N
     Raises RuleBrokenError, with nothing written, where a rule is broken. The same input gives the same bytes.
     """
     scene, assembly = evaluation.scene, evaluation.assembly
+    if evaluation.asked.aged:
+        raise InputError(f"{scene.where}: an aged prediction is for reading; a build is of a fresh print")
     folder = out / scene.name
     check_writable(folder)
     progress("rules")
     refuse(evaluation)
     progress("meshes")
     bodies = tuple(body.moved(assembly.print_offset) for body in assembly.bodies)
-    files: dict[str, bytes] = {"prediction.json": json_bytes(prediction_document(evaluation))}
+    files: dict[str, bytes] = {"prediction.json": json_bytes(full_document(evaluation))}
     progress("3MF")
     files[f"{scene.name}.3mf"] = threemf(
         scene.name, bodies, _metadata(evaluation, bodies), _thumbnail(evaluation)

@@ -14,6 +14,7 @@ from pneutouch.errors import BeyondLimitError, InputError, nearest
 from pneutouch.mechanics import Prediction, Sensor, predict
 from pneutouch.mechanics.ladder import DEFAULT_TOLERANCE
 from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.viscous.known import AGED, ageing_ratio
 from pneutouch.parts import Assembly, assemble
 from pneutouch.pipeline.subject import subject_of
 from pneutouch.pipeline.table_s1 import sensitivity_error
@@ -31,12 +32,16 @@ Resins = dict[str, Material]
 
 @dataclass(frozen=True)
 class Asked:
-    """How a prediction was asked for: the rung, the membrane's closure, the clamp and what ``auto`` must meet."""
+    """How a prediction was asked for: the rung, the membrane's closure, the clamp and what ``auto`` must meet.
+
+    ``aged`` asks for the sensor after a year; a recipe does not carry it: what is printed is fresh.
+    """
 
     model: str = "solid"
     closure: str = "variational"
     clamp: str = "base"
     tolerance: float = DEFAULT_TOLERANCE
+    aged: bool = False
 
 
 @dataclass(frozen=True)
@@ -84,17 +89,18 @@ class Evaluation:
 def evaluate(
     name: str, assignments: list[str] | None = None, *,
     model: str = "solid", closure: str = "variational", clamp: str = "base", tolerance: float = DEFAULT_TOLERANCE,
-    library: Library | None = None,
+    library: Library | None = None, aged: bool = False,
 ) -> Evaluation:  # fmt: skip
     """Load, draw and predict a design given by name or path. Raises InputError where it cannot work.
 
     ``tolerance`` is what ``model="auto"`` must meet. ``clamp`` says where the solid is held: at the "base" plane, as in the paper, or at the "flange", as printed.
+    ``aged`` shifts the resin's modulus by its hardness after a year (docs/ageing.md).
     """
     if clamp not in CLAMPS:
         raise InputError(f"--clamp {clamp}: unknown.{nearest(clamp, CLAMPS)}")
     shelves = library or Library.default()
     scene = load_scene(name, assignments, shelves)
-    return evaluate_scene(scene, lambda: elastomers(shelves), Asked(model, closure, clamp, tolerance))
+    return evaluate_scene(scene, lambda: elastomers(shelves), Asked(model, closure, clamp, tolerance, aged))
 
 
 def evaluate_scene(scene: Scene, find_resins: Callable[[], Resins], asked: Asked) -> Evaluation:
@@ -104,6 +110,8 @@ def evaluate_scene(scene: Scene, find_resins: Callable[[], Resins], asked: Asked
     """
     assembly = assemble(scene)
     sensor = sensor_of(assembly, asked.clamp)
+    if asked.aged:
+        sensor, shift = _aged(scene, sensor)
     pressures = [p * KPA for p in scene.design.pneumatics.driving_pressures_kPa]
     try:
         prediction = predict(
@@ -113,6 +121,8 @@ def evaluate_scene(scene: Scene, find_resins: Callable[[], Resins], asked: Asked
     except BeyondLimitError as error:
         raise _beyond_limit(scene, error) from None
     _check_plate(scene, prediction)
+    if asked.aged:
+        prediction = replace(prediction, assumptions=(*prediction.assumptions, shift))
     return Evaluation(scene, assembly, sensor, prediction, asked, find_resins)
 
 
@@ -145,6 +155,19 @@ def _material_sensor(scene: Scene) -> Sensor:
         return material_sensor(scene.membrane_material)
     except InputError as error:
         raise InputError(f"{scene.where}: membrane.material = {scene.design.membrane.material!r}: {error}") from None
+
+
+def _aged(scene: Scene, sensor: Sensor) -> tuple[Sensor, str]:
+    """The sensor after a year, and what is assumed of it. Raises InputError where the resin's hardness then is not known."""
+    material = scene.membrane_material
+    try:
+        ratio = ageing_ratio(material)
+    except InputError as error:
+        raise InputError(f"{scene.where}: membrane.material = {scene.design.membrane.material!r}: {error}") from None
+    assert material.shore_a is not None and material.shore_a_one_year is not None
+    said = f"Shore A {material.shore_a.nominal:g} to {material.shore_a_one_year.nominal:g}"
+    shifted = replace(sensor, shear_modulus=ratio * sensor.shear_modulus)
+    return shifted, f"aged one year: {said}, modulus times {ratio:.3f}. {AGED}"
 
 
 def _beyond_limit(scene: Scene, error: BeyondLimitError) -> InputError:

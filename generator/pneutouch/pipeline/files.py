@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import os
 import shutil
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 from pneutouch.errors import InputError
@@ -45,6 +47,19 @@ def write_folder(folder: Path, files: dict[str, bytes]) -> None:
     Everything is written to a hidden folder beside it first. A run that stops before the last renames
     leaves the previous output as it was.
     """
+    with replacing(folder) as fresh:
+        for name, content in files.items():
+            path = fresh / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(content)
+
+
+@contextlib.contextmanager
+def replacing(folder: Path) -> Iterator[Path]:
+    """A hidden folder to write into, put in the place of ``folder`` when the block ends; what others put there is kept.
+
+    Raises InputError where it cannot be written, half way too; the previous output then stays and nothing else does.
+    """
     check_writable(folder)
     try:
         folder.parent.mkdir(parents=True, exist_ok=True)
@@ -52,10 +67,7 @@ def write_folder(folder: Path, files: dict[str, bytes]) -> None:
     except OSError as error:
         raise InputError(f"--out: {folder.parent}: {error.strerror}; give a folder you may write to") from None
     try:
-        for name, content in files.items():
-            path = fresh / name
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_bytes(content)
+        yield fresh
         _swap(folder, fresh)
     except OSError as error:
         raise InputError(f"--out: {folder}: {error.strerror}; the previous output is unchanged") from None
@@ -71,6 +83,11 @@ def _swap(folder: Path, fresh: Path) -> None:
         return
     if any(folder.iterdir()):
         _keep_foreign(folder, fresh)
+    exchange(folder, fresh)
+
+
+def exchange(folder: Path, fresh: Path) -> None:
+    """Rename ``fresh`` to ``folder``, which is there already and is removed; an interruption leaves one of the two whole."""
     aside = fresh.with_name(f"{fresh.name}.old")
     folder.rename(aside)
     try:

@@ -21,7 +21,7 @@ from pneutouch.export.voxels.png import encode, table
 from pneutouch.export.voxels.raster import raster
 from pneutouch.export.voxels.slices import Slicer
 from pneutouch.parts import Assembly
-from pneutouch.pipeline.files import check_writable, digest, json_bytes
+from pneutouch.pipeline.files import check_writable, digest, exchange, json_bytes
 from pneutouch.printability import Finding
 from pneutouch.printability.rules.voxels import check_stack
 from pneutouch.spec.printer import Mode
@@ -127,7 +127,11 @@ def write_stack(
             hashes.append(digest(content))
             progress(number + 1, len(job.raster.z))
         (fresh / MANIFEST).write_bytes(json_bytes(manifest(job, slicer, hashes, about, prefix)))
-        _swap(folder, fresh)
+        fresh.chmod(0o755)
+        if folder.exists():
+            exchange(folder, fresh)
+        else:
+            fresh.rename(folder)
         return slicer
     except OSError as error:
         raise InputError(
@@ -152,21 +156,6 @@ def check_stack_folder(folder: Path) -> None:
     )
     if foreign is not None:
         raise InputError(f"--out: {foreign} is not of the stack that is to be written anew; move it elsewhere")
-
-
-def _swap(folder: Path, fresh: Path) -> None:
-    fresh.chmod(0o755)
-    if not folder.exists():
-        fresh.rename(folder)
-        return
-    aside = fresh.with_name(f"{fresh.name}.old")
-    folder.rename(aside)
-    try:
-        fresh.rename(folder)
-    except BaseException:
-        aside.rename(folder)
-        raise
-    shutil.rmtree(aside, ignore_errors=True)
 
 
 def _mode(assembly: Assembly, name: str | None) -> Mode:

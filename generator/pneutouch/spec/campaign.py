@@ -13,6 +13,9 @@ from pneutouch.spec.fields import Table, number
 RunKind = Literal["steps", "saturation", "loop", "relaxation", "leak", "injection"]
 """What a run is; see `bench.protocol`. Leak and injection need no plate."""
 
+AS_DESIGNED = "as designed"
+"""In place of a resin's name: the membrane as the design has it, which may be a mix that no file names."""
+
 UNITS: dict[str, dict[str, float]] = {
     "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0},
     "position": {"mm": 1.0, "um": 1e-3, "m": 1e3, "in": 25.4},
@@ -79,7 +82,7 @@ class Run(Table):
     file: str = Field(min_length=1, description="Path of the CSV or parquet file, from the campaign's folder.")
     kind: RunKind = Field(default="steps", description="Kind of run: " + ", ".join(RunKind.__args__) + ".")  # type: ignore[attr-defined]
     sensor: Printable = Field(min_length=1, max_length=60, description="Name of the specimen.")
-    resin: str = Field(min_length=1, description="Name of its material.")
+    resin: str = Field(min_length=1, description=f"Name of its material, or {AS_DESIGNED!r}.")
     driving_pressure_kPa: float = number(0.0, unit="kPa", low=0, high=1000, help="Gauge pressure before contact.")  # noqa: N815
     run: int = Field(default=1, ge=1, le=10_000, description="Number of the repetition.")
     date: datetime.date | None = Field(default=None, description="Day of the run.")

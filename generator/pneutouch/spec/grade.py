@@ -33,7 +33,9 @@ class Grade(Table):
 
     from_: str = Field(alias="from", min_length=1, description="Soft base resin.")
     to: str = Field(min_length=1, description="Stiff base resin.")
-    fraction: FractionOrMany = Field(description="from 0 to 1, the volume fraction of the stiff one, or a list of them.")
+    fraction: FractionOrMany = Field(
+        description="from 0 to 1, the volume fraction of the stiff one, or a list of them."
+    )
     at: list[float] | None = Field(default=None, description="Knots along the arc, 0 at the pole, 1 at the rim.")
 
     @model_validator(mode="after")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
+from typing import Literal
 
 from pydantic import Field, model_validator
 
@@ -72,6 +73,32 @@ class AlongArc(Table):
         return self
 
 
+class RelaxationTerm(Table):
+    """One term of a Prony series."""
+
+    share: float = Field(gt=0, lt=1, description="Of the instantaneous modulus.")
+    time_s: float = Field(gt=0, description="Relaxation time.")
+
+
+class Relaxation(Table):
+    """How a resin's modulus falls after a step of strain: 1 - sum of share (1 - exp(-t/time_s)), over its first value."""
+
+    terms: list[RelaxationTerm] = Field(min_length=1, max_length=20, description="In ascending order of time_s.")
+    temperature_C: float | None = Field(default=None, description="Of the test, where it is known.")  # noqa: N815
+    source: str = Field(min_length=8, description="Table, page, DOI or measurement; how far it was verified.")
+
+    @model_validator(mode="after")
+    def _relaxes_to_a_solid(self) -> Relaxation:
+        total = math.fsum(term.share for term in self.terms)
+        if not total < 1:
+            raise ValueError(f"terms: shares add up to {total:.9g}; it must be less than 1, so that a modulus is left")
+        times = [term.time_s for term in self.terms]
+        for k, (before, after) in enumerate(pairwise(times)):
+            if not after > before:
+                raise ValueError(f"terms[{k + 1}].time_s = {after:g}: must be more than the one before, {before:g}")
+        return self
+
+
 class Material(Table):
     """One cured material. A digital material is told apart by its code and its base resins together."""
 
@@ -93,6 +120,16 @@ class Material(Table):
     measured: Measured | None = None
     mix: Mix | None = None
     along: AlongArc | None = Field(default=None, description="Of a graded membrane; its numbers are means then.")
+    relaxation: list[Relaxation] = Field(default=[], max_length=8, description="One entry a source.")
+    shear_modulus_is: Literal["relaxed", "instantaneous"] | None = Field(
+        default=None, description="Which modulus shear_modulus_MPa is: relaxed (long-term) or instantaneous."
+    )
+
+    @model_validator(mode="after")
+    def _relaxation_of_a_known_modulus(self) -> Material:
+        if self.relaxation and self.shear_modulus_is is None:
+            raise ValueError('relaxation needs shear_modulus_is = "relaxed" or "instantaneous"')
+        return self
 
     @model_validator(mode="after")
     def _mix_of_the_base_resins(self) -> Material:

@@ -1,0 +1,159 @@
+"""Samples averaged into blocks of equal time as they come, with what is missing among them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from pneutouch.bench.record import Blocks, Doubt
+from pneutouch.errors import InputError
+from pneutouch.meridian.segments import Array
+
+BLOCK_RATE = 100.0
+"""Blocks a second: our choice; a plate at 5 mm/s moves 0.05 mm in one, and ten minutes are 60 000 blocks."""
+
+SLOW = 200.0
+"""Hz: a file of this rate or less keeps one sample a block; averages of one or two would gain nothing."""
+
+MOST_BLOCKS = 400_000
+"""So that a slow file of any length stays small in memory."""
+
+MISSED, GAP = 1.5, 0.1
+"""A step of more than so many sampling periods has lost samples; one longer than this, in s, is a gap of its own."""
+
+MOST_GAPS = 20
+"""Gaps listed one by one; what is beyond is summed up."""
+
+_NAMES = {"time": "time", "position": "position", "force": "force", "pressure": "pressure"}
+_ROUNDING = 1e-6
+"""Share of a block by which a time may miss the beginning of its block for rounding."""
+
+
+@dataclass
+class Collector:
+    """Takes samples in inner units (s, mm, N, MPa) chunk by chunk, gives `Blocks`.
+
+    ``rate`` in Hz and samples a block ``size``: left out, found from the first chunk (the median step of time; `BLOCK_RATE`);
+    ``total`` is about how many samples will come. ``names`` are the columns' names for messages.
+    """
+
+    file: Path
+    rate: float | None = None
+    size: int | None = None
+    total: int = 0
+    names: Mapping[str, str] = field(default_factory=lambda: _NAMES)
+    _parts: list[Array] = field(default_factory=list)
+    _held: Array = field(default_factory=lambda: np.empty((5, 0)))
+    _first: float | None = None
+    _last: float = 0.0
+    _samples: int = 0
+    _missed: list[tuple[float, float, int]] = field(default_factory=list)
+    _short: list[int] = field(default_factory=lambda: [0, 0])
+
+    def take(self, rows: Array, samples: Array) -> None:
+        """Takes samples (4, n): time, position, force, pressure, and their rows (n,). Raises InputError where time does not run on."""
+        if not rows.size:
+            return
+        time = samples[0]
+        self._check_time(rows, time)
+        if self._first is None:
+            self._first = float(time[0])
+        if self.rate is None:
+            if time.size < 2:
+                raise InputError(f"{self.file}: 1 row; at least 2, so that a sampling rate can be told")
+            self.rate = 1 / float(np.median(np.diff(time)))
+        if self.size is None:
+            usual = 1 if self.rate <= SLOW else round(self.rate / BLOCK_RATE)
+            self.size = max(usual, -(-self.total // MOST_BLOCKS))
+        self._find_missed(time)
+        self._samples, self._last = self._samples + time.size, float(time[-1])
+        self._average(np.concatenate([self._held, np.vstack([rows, samples])], axis=1))
+
+    def _check_time(self, rows: Array, time: Array) -> None:
+        before = np.concatenate([[self._last if self._samples else -np.inf], time[:-1]])
+        if (time > before).all():
+            return
+        at = int(np.flatnonzero(time <= before)[0])
+        does = "stands still" if time[at] == before[at] else "runs backwards"
+        raise InputError(
+            f"{self.file}: row {rows[at]:.0f}: column {self.names['time']}: time {does}: {time[at]:.9g} s after "
+            f"{before[at]:.9g} s; must rise from row to row (enough decimals written? two recordings in one file?)"
+        )
+
+    def _find_missed(self, time: Array) -> None:
+        assert self.rate is not None
+        period = 1 / self.rate
+        joined = np.concatenate([[self._last], time]) if self._samples else time
+        step = np.diff(joined)
+        at = np.flatnonzero(step > MISSED * period)
+        lost = np.round(step[at] * self.rate).astype(int) - 1
+        long = step[at] > max(GAP, MISSED * period)
+        self._missed += [
+            (float(joined[k]), float(joined[k + 1]), max(int(n), 1)) for k, n in zip(at[long], lost[long], strict=True)
+        ]
+        self._short[0] += int(np.maximum(lost[~long], 1).sum())
+        self._short[1] += int((~long).sum())
+
+    def _average(self, samples: Array, end: bool = False) -> None:
+        """Averages the blocks that are whole and holds the last back, for more of it may come."""
+        assert self.size is not None and self.rate is not None and self._first is not None
+        if self.size == 1:
+            starts = np.arange(samples.shape[1])
+        else:
+            block = np.floor((samples[1] - self._first) * self.rate / self.size + _ROUNDING)
+            starts = np.concatenate([[0], np.flatnonzero(np.diff(block)) + 1])
+            if not end:
+                samples, self._held, starts = samples[:, : starts[-1]], samples[:, starts[-1] :], starts[:-1]
+        if not starts.size:
+            return
+        counts = np.diff(np.append(starts, samples.shape[1]))
+        means = np.add.reduceat(samples[1:], starts, axis=1) / counts
+        off = samples[3:] - np.repeat(means[2:], counts, axis=1)
+        spreads = np.sqrt(np.add.reduceat(off * off, starts, axis=1) / counts)
+        extremes = np.maximum.reduceat(np.abs(samples[3:]), starts, axis=1)
+        self._parts.append(np.vstack([samples[:1, starts], means, spreads, extremes]))
+
+    def blocks(self, doubts: tuple[Doubt, ...] = ()) -> Blocks:
+        """The blocks, with the gaps among their doubts. Raises InputError where more than half of the record is missing."""
+        if self.rate is None or self.size is None or self._first is None:
+            raise InputError(f"{self.file}: no samples")
+        if self._held.size:
+            self._average(self._held, end=True)
+        lost = self._short[0] + sum(count for *_, count in self._missed)
+        if lost > self._samples:
+            raise InputError(
+                f"{self.file}: {self._samples} samples are there and {lost} are missing, at {self.rate:.4g} Hz: more than half; "
+                f"column {self.names['time']} must be that of one recording"
+            )
+        row, time, position, force, pressure, *more = np.concatenate(self._parts, axis=1)
+        force_spread, pressure_spread, force_extreme, pressure_extreme = more
+        return Blocks(
+            self.file, self.rate, self.size, row, time, position, force, pressure, force_spread, pressure_spread,
+            force_extreme, pressure_extreme, (*self._gaps(), *doubts),
+        )  # fmt: skip
+
+    def _gaps(self) -> list[Doubt]:
+        found = [
+            Doubt(start, end, f"gap: {count} samples missing", False) for start, end, count in self._missed[:MOST_GAPS]
+        ]
+        more = self._missed[MOST_GAPS:]
+        if more:
+            count = sum(lost for *_, lost in more)
+            found.append(Doubt(more[0][0], more[-1][1], f"{len(more)} more gaps: {count} samples missing", True))
+        if self._short[0]:
+            count, times = self._short
+            told = f"{count} of {self._samples + count} samples missed, in {times} places of at most {GAP:g} s"
+            found.append(Doubt(self._first or 0.0, self._last, told, True))
+        return found
+
+
+def blocks_of(
+    file: Path, time: Array, position: Array, force: Array, pressure: Array, rate: float | None = None, size: int | None = None
+) -> Blocks:  # fmt: skip
+    """Blocks of samples in memory, (n,) each, s, mm, N, MPa; no range is checked. Raises InputError as `Collector`."""
+    collector = Collector(file, rate, size, len(time))
+    collector.take(np.arange(len(time), dtype=float) + 2, np.vstack([time, position, force, pressure]).astype(float))
+    return collector.blocks()

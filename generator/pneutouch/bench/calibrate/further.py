@@ -1,0 +1,151 @@
+"""Which further test would tell apart what the data do not: predicted at the estimate, before anybody measures."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from pneutouch.bench.calibrate.fit import Fit
+from pneutouch.bench.calibrate.inject import free_pressure
+from pneutouch.bench.calibrate.model import Model
+from pneutouch.bench.calibrate.observations import ATLAS_FORCE, ATLAS_PRESSURE, READING, Points
+from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, NAMES, WALL
+from pneutouch.bench.protocol import REPETITIONS, SHARE
+from pneutouch.mechanics.atlas.table import REST_VOLUME, shipped
+from pneutouch.meridian.segments import Array
+from pneutouch.units import KPA
+
+COUPON = 0.03
+"""Relative standard deviation of a modulus from a tensile coupon of the same print: our choice."""
+
+CALIPER = 0.05 / np.sqrt(3.0)
+"""Standard deviation of a soft wall's thickness by caliper, mm: even within 0.05 mm, our choice; the caliper itself is
+better, the soft wall gives way."""
+
+SYRINGE = 0.01
+"""Relative error of an injected volume, all volumes of a syringe alike: our choice, a gas-tight syringe."""
+
+CAP = 10.0
+"""Standard deviation of the air under a rigid cap, mm3: our choice, 2 mm of a 2.5 mm bore."""
+
+_STEPS = 12
+_LIMIT_SHARE = 0.8
+"""Greatest pressure of a test over the limit pressure: our choice, clear of the snap."""
+_RIDGE = 1e-8
+_QUANTILE = 1.96
+
+
+@dataclass(frozen=True, slots=True)
+class Further:
+    """A test, what it would do.
+
+    Attributes:
+        what: The test in words.
+        gain: By how much it shrinks the interval of the worst known combination.
+        half_width: 95 % intervals then expected of the fitted parameters, coordinates, (k,).
+    """
+
+    what: str
+    gain: float
+    half_width: Array
+
+
+def further_tests(fit: Fit) -> list[Further]:
+    """Candidate tests, the one that helps most first. Parameters on a bound are left as they are."""
+    places = np.flatnonzero(~fit.solution.bound)
+    if not places.size:
+        return []
+    numbers = np.array(fit.parameters.fitted)[places]
+    belief = fit.parameters.belief[numbers]
+    scale = np.outer(belief, belief)
+    now = fit.covariance.information[np.ix_(places, places)] * scale
+    now += (1.0 if fit.parameters.priors else _RIDGE) * np.eye(places.size)
+    before = np.linalg.inv(now)
+    worst = np.linalg.eigh(before)[1][:, -1]
+    found = []
+    for what, gained in _candidates(fit):
+        after = np.linalg.inv(now + gained[np.ix_(numbers, numbers)] * scale)
+        width = np.full(fit.solution.at.size, np.nan)
+        width[places] = _QUANTILE * np.sqrt(np.diag(after)) * belief
+        found.append(Further(what, float(np.sqrt((worst @ before @ worst) / (worst @ after @ worst))), width))
+    return sorted(found, key=lambda test: -test.gain)
+
+
+def _candidates(fit: Fit) -> Iterator[tuple[str, Array]]:
+    """Tests with what they would say of all four parameters, (4, 4)."""
+    full, size = fit.full, fit.sensor.inner_radius
+    slices = shipped().slices(np.array([np.exp(full[WALL]) / size]), ())
+    limit = float(slices.limit_pressure[0]) * float(np.exp(full[MODULUS]))
+    highest = min(_LIMIT_SHARE * limit, 0.5 * fit.sensor.gauge_limit)
+    measured = fit.points.driving
+    depth = SHARE * size
+    for pressure in (0.0, 0.5 * highest, highest):
+        near = measured.size > 0 and float(np.abs(measured - pressure).min()) < 0.1 * highest
+        deep = near and float(fit.points.travel[np.abs(measured - pressure).argmin()].max()) > 0.9 * depth
+        if not deep:
+            words = f"{REPETITIONS} indentations to {depth:.2g} mm at {pressure / KPA:.2g} kPa"
+            yield words, _indented(fit, full, pressure, depth)
+    volume = _volume(fit, full, highest)
+    yield f"air injected into the closed sensor up to {highest / KPA:.2g} kPa", _injected(fit, full, volume)
+    if full[DEAD] > 0:
+        spread = np.hypot(full[DEAD] * np.hypot(READING / (0.5 * fit.sensor.gauge_limit), SYRINGE), CAP)
+        yield "air injected with a rigid cap in place of the dome (the dead volume alone)", _alone(DEAD, spread)
+    yield "a tensile coupon of the same print (the modulus alone)", _alone(MODULUS, COUPON)
+    yield "the wall measured with a caliper", _alone(WALL, CALIPER / float(np.exp(full[WALL])))
+
+
+def _alone(number: int, spread: float) -> Array:
+    found = np.zeros((len(NAMES), len(NAMES)))
+    found[number, number] = spread**-2.0
+    return found
+
+
+def _looked(fit: Fit, full: Array, points: Points) -> tuple[Array, Array]:
+    """Values (N,) and derivatives (N, 4) at the estimate; what the model does not have is 0 with no derivative."""
+    step = np.where(full + fit.parameters.step <= fit.parameters.high, fit.parameters.step, -fit.parameters.step)
+    values, ok = Model(fit.sensor, points).values(np.vstack([full, full + np.diag(step)]))
+    known = np.asarray(ok.all(axis=0))
+    derivatives = ((values[1:] - values[0]) / step[:, None]).T
+    return np.where(known, values[0], 0.0), np.where(known[:, None], derivatives, 0.0)
+
+
+def _indented(fit: Fit, full: Array, pressure: float, depth: float) -> Array:
+    """Repeated runs at one pressure, scattering as the runs measured do."""
+    row = np.linspace(0.0, depth, _STEPS + 1)[None, 1:]
+    one, none = np.ones_like(row), np.zeros((0, 0))
+    points = Points(row, one, one, one, one, one > 0, np.array([pressure]), none, none, none, none > 0)
+    values, derivatives = _looked(fit, full, points)
+    half = row.size
+    force = np.hypot(fit.observations.rig.force_resolution_N / np.sqrt(12.0), ATLAS_FORCE * np.abs(values[:half]).max())
+    rise = np.hypot(READING, ATLAS_PRESSURE * np.abs(values[half:]).max())
+    error = np.repeat([force, rise] * fit.channel_factor[:2], half)
+    # Where no scatter between runs was seen, a run is taken to be worth a point: its points all move together.
+    together = fit.run_factor if fit.points.there.any() and fit.covariance.clustered else float(half)
+    scaled = derivatives / error[:, None]
+    return np.asarray(scaled.T @ scaled) * REPETITIONS / together
+
+
+def _volume(fit: Fit, full: Array, pressure: float) -> float:
+    """Volume to inject from ambient for a pressure, mm3."""
+    size, mu = fit.sensor.inner_radius, float(np.exp(full[MODULUS]))
+    slices = shipped().slices(np.array([np.exp(full[WALL]) / size]), ())
+    nodes = np.linspace(0.0, 1.0, 100)
+    found, _ = free_pressure(slices, np.zeros(nodes.size, dtype=np.intp), nodes)
+    nu = float(np.interp(pressure / mu, found, nodes))
+    grown = nu * float(slices.reach(np.zeros(1, dtype=np.intp))[0]) * size**3
+    room = REST_VOLUME * size**3 + full[DEAD]
+    return float((pressure + fit.sensor.ambient_pressure) * (room + grown) / fit.sensor.ambient_pressure - room)
+
+
+def _injected(fit: Fit, full: Array, volume: float) -> Array:
+    """An injection in steps, all its volumes wrong by one factor."""
+    row = np.linspace(0.0, volume, _STEPS + 1)[None, 1:]
+    one, none = np.ones_like(row), np.zeros((0, 0))
+    points = Points(none, none, none, none, none, none > 0, np.zeros(0), row, one, one, one > 0)
+    values, derivatives = _looked(fit, full, points)
+    by_volume = np.gradient(values, row[0]) * row[0] * SYRINGE
+    error = np.hypot(READING, ATLAS_PRESSURE * np.abs(values).max()) * fit.channel_factor[2]
+    noise = np.diag(np.full(row.size, error**2)) + np.outer(by_volume, by_volume)
+    return np.asarray(derivatives.T @ np.linalg.solve(noise, derivatives))

@@ -1,0 +1,40 @@
+"""What no interval holds: an error that all runs share, such as a gauge that reads too much."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pneutouch.bench.calibrate.fit import Fit
+from pneutouch.bench.calibrate.model import Model
+from pneutouch.meridian.segments import Array
+
+GAIN = 0.01
+
+
+def gain_shifts(fit: Fit) -> tuple[Array, Array]:
+    """How the estimates move, (k,) coordinates each, where force and where pressure read 1 % more than they are; 0 on a bound.
+
+    The gauge reads the driving pressure too.
+    """
+    p, found = fit.points, fit.solution
+    size = p.there.size
+    more = Model(fit.sensor, p._replace(driving=p.driving * (1.0 - GAIN))).values(fit.full[None])[0][0]
+    force, pressure = np.zeros(p.values.size), np.where(found.use, more - found.model, 0.0)
+    # True values are lower than read ones, and so would be the data.
+    force[:size] = GAIN * p.values[:size]
+    pressure[size:] += GAIN * p.values[size:]
+    return _shift(fit, force), _shift(fit, pressure)
+
+
+def _shift(fit: Fit, residual: Array) -> Array:
+    """Step of the estimates for a change of the residuals in N and MPa."""
+    free = np.flatnonzero(~fit.solution.bound)
+    jacobian = fit.solution.jacobian[:, free]
+    normal = jacobian.T @ jacobian + np.diag(fit.problem.weight[free])
+    scale = np.sqrt(np.maximum(np.diag(normal), 1e-30))
+    normal += 1e-12 * np.diag(scale**2)
+    shift = np.zeros(fit.solution.at.size)
+    # The estimates follow readings that are too high: what is found is minus the correction.
+    right = jacobian.T @ np.where(fit.solution.use, residual / fit.problem.errors, 0.0)
+    shift[free] = np.linalg.solve(normal, right)
+    return np.asarray(shift)

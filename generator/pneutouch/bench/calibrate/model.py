@@ -1,0 +1,97 @@
+"""What the atlas says at the measured travels and volumes, for many sets of parameters in one batch."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneutouch.bench.calibrate.inject import injected
+from pneutouch.bench.calibrate.observations import Points
+from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, OFFSET, WALL
+from pneutouch.errors import InputError
+from pneutouch.mechanics.atlas.press import Batch, Flags, Press
+from pneutouch.mechanics.atlas.table import Slices, shipped
+from pneutouch.mechanics.atlas_states import outside_atlas
+from pneutouch.mechanics.sensor import Sensor
+from pneutouch.meridian.segments import Array
+
+_GAP = 0.08
+"""Longest step of the plate in R0; where points are further apart, the press goes by steps between them."""
+
+
+class Model:
+    """The atlas at ``points``. Parameter sets are (s, 4) coordinates, values (s, N) in the order of `Points.values`.
+
+    Raises InputError where the atlas does not speak for the sensor.
+    """
+
+    def __init__(self, sensor: Sensor, points: Points) -> None:
+        why = outside_atlas(sensor)
+        if why is not None:
+            raise InputError(f"calibrate: the atlas does not speak for this sensor: {why}; no fit without it")
+        self.sensor, self.points = sensor, points
+        self._last: tuple[bytes, Array, Flags] | None = None
+        size, depth = sensor.inner_radius, points.travel / sensor.inner_radius
+        deepest = float(depth.max(initial=0.0))
+        gaps = np.diff(depth, prepend=0.0, axis=1)
+        wide = depth.size > 0 and float(gaps.max()) > _GAP
+        self._between = np.linspace(0.0, deepest, int(np.ceil(deepest / _GAP)) + 1)[1:] * size if wide else np.zeros(0)
+
+    def values(self, sets: Array) -> tuple[Array, Flags]:
+        """Values and whether the model has them, (s, N) each. The last answer is kept: fits begin where others end."""
+        key = sets.tobytes()
+        if self._last is None or self._last[0] != key:
+            self._last = key, *self._asked(sets)
+        return self._last[1], self._last[2]
+
+    def _asked(self, sets: Array) -> tuple[Array, Flags]:
+        atlas, size = shipped(), self.sensor.inner_radius
+        walls, k = np.unique(np.exp(sets[:, WALL]) / size, return_inverse=True)
+        slices = atlas.slices(walls, ("contact_radius",))
+        force, rise, ok = self._curves(sets, slices, k)
+        pressure, fine = self._injections(sets, slices, k)
+        return np.hstack([force, rise, pressure]), np.hstack([ok, ok, fine])
+
+    def _curves(self, sets: Array, slices: Slices, k: NDArray[np.intp]) -> tuple[Array, Array, Flags]:
+        (c, m), s, size = self.points.travel.shape, len(sets), self.sensor.inner_radius
+        if not c:
+            return np.zeros((s, 0)), np.zeros((s, 0)), np.zeros((s, 0), dtype=bool)
+        each = np.repeat(np.arange(s), c)
+        batch = self._batch(sets[each], np.tile(self.points.driving, s))
+        press = Press(batch, slices, k[each])
+        asked = np.maximum(self.points.travel[None] + sets[:, OFFSET, None, None], 0.0).reshape(s * c, m)
+        rows = np.hstack([np.zeros((s * c, 1)), asked, np.broadcast_to(self._between, (s * c, self._between.size))])
+        order = np.argsort(rows, axis=1, kind="stable")
+        track = press.march(np.take_along_axis(rows, order, axis=1) / size)
+        place = np.argsort(order, axis=1, kind="stable")[:, 1 : m + 1]
+
+        def at(found: NDArray[Any]) -> NDArray[Any]:
+            return np.take_along_axis(found, place, axis=1).reshape(s, c * m)
+
+        mu = batch.shear_modulus[:, None]
+        edge = press.field("contact_radius", track) < press.flat_radius[:, None]
+        ok = track.ok & edge & (press.pressure < press.limit)[:, None]
+        force = track.point.force * mu * size**2
+        return at(force), at((track.point.pressure - press.pressure[:, None]) * mu), at(ok)
+
+    def _batch(self, sets: Array, driving: Array) -> Batch:
+        def all_of(value: float) -> Array:
+            return np.full(len(sets), value)
+
+        return Batch(
+            all_of(self.sensor.inner_radius), np.exp(sets[:, WALL]), np.exp(sets[:, MODULUS]),
+            all_of(self.sensor.ambient_pressure), sets[:, DEAD], driving, all_of(self.sensor.depth),
+            all_of(self.sensor.plate_radius), all_of(np.inf), all_of(np.inf),
+        )  # fmt: skip
+
+    def _injections(self, sets: Array, slices: Slices, k: NDArray[np.intp]) -> tuple[Array, Flags]:
+        """Gauge pressures after the injections, (s, i n)."""
+        volume, s = self.points.volume.ravel(), len(sets)
+        if not volume.size:
+            return np.zeros((s, 0)), np.zeros((s, 0), dtype=bool)
+        size, mu = self.sensor.inner_radius, np.exp(sets[:, MODULUS])
+        ambient = self.sensor.ambient_pressure / mu
+        pressure, ok = injected(slices, k, ambient, sets[:, DEAD] / size**3, volume / size**3)
+        return pressure * mu[:, None], ok

@@ -1,0 +1,182 @@
+"""What a calibration is fitted to: indentation curves and injections of one sensor, as arrays of one shape."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from pneutouch.bench.indents import EARLY
+from pneutouch.bench.record import Curve
+from pneutouch.errors import InputError
+from pneutouch.mechanics.atlas.press import Flags
+from pneutouch.meridian.segments import Array
+from pneutouch.spec.campaign import Rig
+from pneutouch.units import KPA, STANDARD_ATMOSPHERE
+
+ATLAS_FORCE, ATLAS_PRESSURE = 0.0011, 0.0004
+"""The atlas's own error over full scale: medians of 500 presses at their worst state (docs/atlas.md)."""
+
+READING = 0.05 * KPA
+"""Least standard deviation of a pressure point, MPa: our choice, half of the 0.1 kPa that such gauges show; the paper gives
+the resolution of its force sensor alone."""
+
+_AVERAGED = 100
+"""Greatest number of samples whose noise is taken to average out in a point: our choice, for noise is not white."""
+
+
+@dataclass(frozen=True, slots=True)
+class Injection:
+    """Air pushed into the closed sensor from ambient pressure: injected volume (mm3, at ambient pressure) and gauge
+    pressure (MPa), (n,) each; ``noise`` is the standard deviation of a pressure, MPa."""
+
+    label: str
+    volume: Array
+    pressure: Array
+    noise: float = READING
+
+
+@dataclass(frozen=True, slots=True)
+class Observations:
+    """Curves and injections of one sensor, the ambient pressure (MPa) they were measured in, and the rig."""
+
+    curves: tuple[Curve, ...]
+    injections: tuple[Injection, ...] = ()
+    ambient: float = STANDARD_ATMOSPHERE
+    rig: Rig = field(default_factory=Rig)
+
+    @property
+    def pressures(self) -> tuple[float, ...]:
+        """Driving pressures of the curves as the campaign names them, kPa, ascending, each once."""
+        return tuple(sorted({curve.run.driving_pressure_kPa for curve in self.curves}))
+
+    def without(self, pressure: float) -> Observations:
+        """The same without the curves of a driving pressure, kPa."""
+        kept = tuple(curve for curve in self.curves if curve.run.driving_pressure_kPa != pressure)
+        return replace(self, curves=kept)
+
+    def only(self, pressure: float) -> Observations:
+        """The curves of a driving pressure, kPa, alone."""
+        kept = tuple(curve for curve in self.curves if curve.run.driving_pressure_kPa == pressure)
+        return replace(self, curves=kept, injections=())
+
+
+class Points(NamedTuple):
+    """Observations as arrays; c curves of at most m points, i injections of at most n, padded by repetition.
+
+    travel, force, rise, force_error, rise_error, there: (c, m) mm, N, MPa, standard deviations, and whether it is a point.
+    driving: (c,). volume, pressure, pressure_error, known: (i, n) mm3, MPa, MPa, and whether it is a point.
+    """
+
+    travel: Array
+    force: Array
+    rise: Array
+    force_error: Array
+    rise_error: Array
+    there: Flags
+    driving: Array
+    volume: Array
+    pressure: Array
+    pressure_error: Array
+    known: Flags
+
+    @property
+    def values(self) -> Array:
+        """All measured values in one row: force, rise, pressure of the injections, (N,)."""
+        return np.concatenate([self.force.ravel(), self.rise.ravel(), self.pressure.ravel()])
+
+    @property
+    def errors(self) -> Array:
+        """Their standard deviations, (N,)."""
+        return np.concatenate([self.force_error.ravel(), self.rise_error.ravel(), self.pressure_error.ravel()])
+
+    @property
+    def use(self) -> Flags:
+        """Which of them are points, (N,)."""
+        return np.concatenate([self.there.ravel(), self.there.ravel(), self.known.ravel()])
+
+    @property
+    def clusters(self) -> Array:
+        """Number of the curve or injection behind each value, (N,): what one run's gain and zero move together."""
+        (c, m), (i, n) = self.travel.shape, self.volume.shape
+        curve = np.repeat(np.arange(c), m)
+        return np.concatenate([curve, curve, c + np.repeat(np.arange(i), n)])
+
+    @property
+    def channels(self) -> Array:
+        """0 force, 1 rise, 2 injection, (N,)."""
+        sizes = self.force.size, self.rise.size, self.pressure.size
+        return np.repeat(np.arange(3), sizes)
+
+
+def points_of(observations: Observations) -> Points:
+    """The arrays of observations. Raises InputError for what holds nothing to fit."""
+    if not observations.curves and not observations.injections:
+        raise InputError(
+            "calibrate: no curves and no injections; there must be at least one run of kind steps or injection"
+        )
+    curves = [_curve(curve, observations.rig) for curve in observations.curves]
+    travel, force, rise, force_error, rise_error, there = _padded(curves, 5)
+    injections = [_injection(injection) for injection in observations.injections]
+    volume, pressure, pressure_error, known = _padded(injections, 3)
+    # What a gauge reads a little below zero before contact is zero: the dome is not sucked in.
+    driving = np.array([max(curve.driving, 0.0) for curve in observations.curves])
+    found = Points(
+        travel, force, rise, force_error, rise_error, there.astype(bool), driving, volume, pressure, pressure_error,
+        known.astype(bool),
+    )  # fmt: skip
+    if found.there.sum() + found.known.sum() < 2:
+        raise InputError("calibrate: one point is not enough; there must be at least two beside the origin")
+    return found
+
+
+def _curve(curve: Curve, rig: Rig) -> tuple[Array, ...]:
+    """Travel, force, rise and their errors; the origin is no measurement but the definition of zero."""
+    loaded = curve.indentation > 0
+    x, force, rise = curve.indentation[loaded], curve.force[loaded], curve.rise[loaded]
+    if not x.size:
+        raise InputError(f"calibrate: {curve.run.file}: no point beyond first contact; there must be at least one")
+    for name, values in (("indentation", x), ("force", force), ("pressure rise", rise)):
+        if not np.isfinite(values).all():
+            raise InputError(f"calibrate: {curve.run.file}: {name}: not a number among the points; must be finite")
+    order = np.unique(x, return_index=True)[1]
+    x, force, rise = x[order], force[order], rise[order]
+    samples = np.mean([(i.read[1] - i.read[0]) * rig.rate_Hz for i in curve.indents]) if curve.indents else 1.0
+    noise = np.nan_to_num(np.array(curve.noise)) / np.sqrt(np.clip(samples, 1.0, _AVERAGED))
+    # A resolution is a rectangle as wide as itself (JCGM 100, F.2.2.1).
+    reading = rig.force_resolution_N / np.sqrt(12.0)
+    missed = _travel_error(curve)
+    by_travel = [np.abs(np.gradient(y, x)) * missed if x.size > 1 else np.zeros(1) for y in (force, rise)]
+    force_error = np.sqrt(noise[0] ** 2 + reading**2 + (ATLAS_FORCE * np.abs(force).max()) ** 2)
+    rise_error = np.sqrt(noise[1] ** 2 + READING**2 + (ATLAS_PRESSURE * np.abs(rise).max()) ** 2)
+    return x, force, rise, np.hypot(force_error, by_travel[0]), np.hypot(rise_error, by_travel[1])
+
+
+def _travel_error(curve: Curve) -> float:
+    """Standard error of a run's first contact, mm: of the indentations that it is the middle of."""
+    onsets = np.array([indent.onset for indent in curve.indents])
+    onsets = onsets[np.isfinite(onsets)][:EARLY]
+    return float(np.std(onsets, ddof=1) / np.sqrt(onsets.size)) if onsets.size > 1 else 0.0
+
+
+def _injection(injection: Injection) -> tuple[Array, ...]:
+    pushed = injection.volume > 0
+    volume, pressure = injection.volume[pushed], injection.pressure[pushed]
+    if not volume.size:
+        raise InputError(f"calibrate: {injection.label}: no injected volume above zero; there must be at least one")
+    if not (np.isfinite(volume).all() and np.isfinite(pressure).all()):
+        raise InputError(f"calibrate: {injection.label}: not a number among volumes and pressures; must be finite")
+    error = np.hypot(max(injection.noise, READING), ATLAS_PRESSURE * np.abs(pressure).max())
+    return volume, pressure, np.full(volume.size, error)
+
+
+def _padded(rows: list[tuple[Array, ...]], columns: int) -> list[Array]:
+    """Columns of rows as (rows, longest) arrays, the last value repeated, and which entries are there."""
+    longest = max((row[0].size for row in rows), default=0)
+    found = [
+        np.array([np.pad(row[k], (0, longest - row[k].size), mode="edge") for row in rows]).reshape(len(rows), longest)
+        for k in range(columns)
+    ]
+    there = np.array([np.arange(longest) < row[0].size for row in rows]).reshape(len(rows), longest)
+    return [*found, there]

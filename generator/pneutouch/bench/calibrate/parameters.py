@@ -1,0 +1,131 @@
+"""What can be fitted, in which coordinate, within which bounds, and what is believed of it beforehand."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from pneutouch.errors import InputError, nearest
+from pneutouch.mechanics.atlas.batches import batch_of
+from pneutouch.mechanics.atlas.table import REST_VOLUME, shipped
+from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.uncertainty.source import Source
+from pneutouch.mechanics.uncertainty.sources.build import build_sources
+from pneutouch.mechanics.uncertainty.sources.modulus import modulus_sources
+from pneutouch.meridian.segments import Array
+from pneutouch.spec.material import Material
+from pneutouch.spec.printer import Printer
+from pneutouch.units import ML
+
+NAMES = ("modulus", "wall", "dead-volume", "offset")
+"""The parameters, in the order of every array over parameters."""
+MODULUS, WALL, DEAD, OFFSET = range(4)
+
+KEYS = ("shear_modulus_MPa", "wall_thickness_mm", "dead_volume_mL", "contact_offset_mm")
+"""Their names outside, with unit."""
+
+UNITS = ("MPa", "mm", "mL", "mm")
+LOGARITHMIC = np.array([True, True, False, False])
+"""Those fitted in their logarithm: positive, and uncertain by a factor."""
+_OUTSIDE = np.array([1.0, 1.0, ML, 1.0])
+
+OFFSET_BOUND = 0.5
+"""Greatest contact offset, mm: our choice, one step of the paper's protocol; more is not an offset but a missed contact."""
+
+OFFSET_PRIOR = 0.05
+"""Standard deviation of the contact offset beforehand, mm: our choice, what is lost of the first touch below the noise."""
+
+_STIFFEST = 100.0
+"""Greatest shear modulus fitted, MPa: our choice, far above any elastomer."""
+_LARGEST = 1e6
+"""Greatest dead volume fitted, mm3: the design file's own bound, 1000 mL."""
+
+
+@dataclass(frozen=True, slots=True)
+class Parameters:
+    """Coordinates of the four parameters: ln MPa, ln mm, mm3, mm; (4,) arrays.
+
+    Attributes:
+        fitted: Numbers of those that are fitted, ascending.
+        start: Design values; what is not fitted keeps them.
+        low, high: Bounds.
+        belief: Standard deviations believed beforehand around ``start``.
+        step: Finite difference steps.
+        origin: Where each belief comes from.
+        priors: Whether the beliefs count in the fit.
+    """
+
+    fitted: tuple[int, ...]
+    start: Array
+    low: Array
+    high: Array
+    belief: Array
+    step: Array
+    origin: tuple[str, ...]
+    priors: bool
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the fitted ones."""
+        return tuple(NAMES[k] for k in self.fitted)
+
+    def full(self, fitted: Array) -> Array:
+        """All four from the fitted ones, (..., k) to (..., 4)."""
+        found = np.broadcast_to(self.start, (*fitted.shape[:-1], 4)).copy()
+        found[..., list(self.fitted)] = fitted
+        return found
+
+
+def outside_value(k: int, coordinate: float) -> float:
+    """A parameter in the unit it leaves with (`UNITS`) from its coordinate."""
+    return float((np.exp(coordinate) if LOGARITHMIC[k] else coordinate) / _OUTSIDE[k])
+
+
+def parse_names(names: Iterable[str]) -> tuple[int, ...]:
+    """Numbers of parameters named. Raises InputError for an unknown, missing or repeated name."""
+    words = [name.strip() for name in names]
+    for word in words:
+        if word not in NAMES:
+            raise InputError(f"--fit {word}: no such parameter.{nearest(word, NAMES)}")
+        if words.count(word) > 1:
+            raise InputError(f"--fit {','.join(words)}: {word} is there twice; must be there once")
+    if not words:
+        raise InputError(f"--fit: empty; must name at least one of {', '.join(NAMES)}")
+    return tuple(sorted(NAMES.index(word) for word in words))
+
+
+def parameters(
+    sensor: Sensor, material: Material, printer: Printer, names: Sequence[str] = NAMES, *, priors: bool = True
+) -> Parameters:
+    """Parameters of a sensor as designed. Raises InputError for unknown names."""
+    recipe, size = shipped().recipe, sensor.inner_radius
+    rest = REST_VOLUME * size**3
+    low = [np.log(sensor.ambient_pressure / recipe.stiffest), np.log(recipe.thinnest * size), 0.0, -OFFSET_BOUND]
+    high = [np.log(_STIFFEST), np.log(recipe.thickest * size), _LARGEST, OFFSET_BOUND]
+    start = [np.log(sensor.shear_modulus), np.log(sensor.wall_thickness), sensor.dead_volume, 0.0]
+    belief, origin = _beliefs(sensor, material, printer)
+    return Parameters(
+        parse_names(names), np.array(start), np.array(low), np.array(high), belief,
+        np.array([1e-3, 1e-3, 1e-3 * (rest + sensor.dead_volume), 1e-3 * size]), origin, priors,
+    )  # fmt: skip
+
+
+def _beliefs(sensor: Sensor, material: Material, printer: Printer) -> tuple[Array, tuple[str, ...]]:
+    """Standard deviations in the coordinates and where they come from: the sources of every prediction's uncertainty."""
+    built = build_sources(batch_of(sensor, [0.0]), printer)
+    groups = (
+        modulus_sources(material, np.zeros(1, dtype=bool)),
+        [source for source in built if source.acts_on == "wall_thickness"],
+        [source for source in built if source.acts_on == "dead_volume"],
+    )
+    found = [_together(group) for group in groups]
+    offset = (OFFSET_PRIOR, f"normal, {OFFSET_PRIOR:g} mm: our choice, what is lost of the first touch below the noise")
+    spreads, origins = zip(*found, offset, strict=True)
+    return np.array(spreads), tuple(origins)
+
+
+def _together(sources: Sequence[Source]) -> tuple[float, str]:
+    spread = float(np.sqrt(sum(float(source.standard[0]) ** 2 for source in sources)))
+    return spread, "; ".join(f"{source.name}: {source.origin}" for source in sources)

@@ -1,0 +1,157 @@
+"""Least squares by Gauss-Newton steps, damped where they would go too far (Levenberg and Marquardt), within bounds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pneutouch.bench.calibrate.model import Model
+from pneutouch.bench.calibrate.parameters import Parameters
+from pneutouch.errors import ComputationError
+from pneutouch.mechanics.atlas.press import Flags
+from pneutouch.meridian.segments import Array
+
+_ROUNDS = 60
+_DAMPING = 1e-3
+_MOST = 1e9
+_SETTLED = 1e-4
+"""A step that is to lower the sum of squares by less, a hundredth of a standard deviation, ends the search. It is counted in
+the sum, not the step: along a direction that nothing holds, steps stay long."""
+_MOST_LOST = 0.5
+"""A step that loses more than this share of a run's points is too long: our choice; else runs could vanish unseen."""
+
+
+@dataclass(frozen=True, slots=True)
+class Solution:
+    """Where the sum of squares is least; (k,) fitted coordinates, N values.
+
+    Attributes:
+        at: Coordinates of the fitted parameters.
+        residual: Model less measured over the standard deviation, 0 where not used, (N,).
+        jacobian: Its derivatives, (N, k).
+        model: Values of the model, (N,).
+        use: Points that were used, (N,).
+        bound: Parameters on a bound that would go beyond it, (k,).
+        rounds: Steps taken.
+    """
+
+    at: Array
+    residual: Array
+    jacobian: Array
+    model: Array
+    use: Flags
+    bound: Flags
+    rounds: int
+
+
+class Problem:
+    """Residuals and derivatives; ``errors`` are the standard deviations that weigh the values."""
+
+    def __init__(self, model: Model, chosen: Parameters, errors: Array) -> None:
+        self.model, self.chosen, self.errors = model, chosen, errors
+        fitted = list(chosen.fitted)
+        self.low, self.high, self.step = chosen.low[fitted], chosen.high[fitted], chosen.step[fitted]
+        self.centre, belief = chosen.start[fitted], chosen.belief[fitted]
+        self.weight: Array = belief**-2.0 if chosen.priors else np.zeros(len(fitted))
+
+    def look(self, at: Array) -> tuple[Array, Array, Array, Flags]:
+        """Residuals (N,), derivatives (N, k), values (N,), and where all of them are known; one batch."""
+        # Differences point inwards where the bound is near.
+        step = np.where(at + self.step <= self.high, self.step, -self.step)
+        sets = self.chosen.full(np.vstack([at, at + np.diag(step)]))
+        values, ok = self.model.values(sets)
+        known = np.asarray(ok.all(axis=0))
+        scaled = np.where(known, values, 0.0) / self.errors
+        residual = scaled[0] - np.where(known, self.model.points.values, 0.0) / self.errors
+        return residual, ((scaled[1:] - scaled[0]) / step[:, None]).T, values[0], known
+
+    def lost(self, use: Flags, known: Flags) -> bool:
+        """Whether too many points of a run in ``use`` are not ``known``."""
+        clusters = self.model.points.clusters
+        before, after = (
+            np.bincount(clusters[use]),
+            np.bincount(clusters[use & known], minlength=clusters[use].max() + 1),
+        )
+        return bool((after < (1 - _MOST_LOST) * before).any())
+
+    def cost(self, residual: Array, use: Flags, at: Array) -> float:
+        """Sum of squares, beliefs included."""
+        return float((residual[use] ** 2).sum() + (self.weight * (at - self.centre) ** 2).sum())
+
+
+def solve(problem: Problem, start: Array) -> Solution:
+    """The least sum of squares from ``start``, (k,). Raises ComputationError where the search does not end.
+
+    Points that the model does not have on the way are left out; once the search has ended, those it has there come back.
+    """
+    at = np.clip(start, problem.low, problem.high)
+    rounds = 0
+    for _ in range(3):
+        found = _descend(problem, at)
+        rounds += found.rounds
+        at = found.at
+        if found.use.sum() == problem.model.points.use.sum():
+            break
+        known = problem.look(at)[3]
+        if (known & problem.model.points.use).sum() == found.use.sum():
+            break
+    return replace(found, rounds=rounds)
+
+
+def _descend(problem: Problem, at: Array) -> Solution:
+    residual, jacobian, values, known = problem.look(at)
+    use = known & problem.model.points.use
+    if not use.any():
+        raise ComputationError(
+            "calibrate: the model of the design has none of the measured states (beyond its limit point or buckled); give the "
+            "design a modulus or wall nearer to the sensor's"
+        )
+    damping = _DAMPING
+    rounds = 0
+    while rounds < _ROUNDS:
+        rounds += 1
+        step, bound, expected = _step(problem, at, residual, jacobian, use, damping)
+        # Differences leave an error in the slope that grows with the residuals, and so must what counts as settled.
+        settled = _SETTLED * max(1.0, problem.cost(residual, use, at) / use.sum())
+        if expected < settled:
+            break
+        trial = np.clip(at + step, problem.low, problem.high)
+        new = problem.look(trial)
+        kept = use & new[3]
+        better = not problem.lost(use, new[3]) and (
+            problem.cost(new[0], kept, trial) <= problem.cost(residual, kept, at)
+        )
+        if better:
+            at, use, damping = trial, kept, max(0.1 * damping, 1e-12)
+            residual, jacobian, values = new[0], new[1], new[2]
+        else:
+            damping *= 10.0
+            if damping > _MOST:
+                break
+    else:
+        raise ComputationError(
+            f"calibrate: no least sum of squares within {_ROUNDS} steps; fit fewer parameters with --fit"
+        )
+    keep = use[:, None]
+    return Solution(at, np.where(use, residual, 0.0), np.where(keep, jacobian, 0.0), values, use, bound, rounds)
+
+
+def _step(
+    problem: Problem, at: Array, residual: Array, jacobian: Array, use: Flags, damping: float
+) -> tuple[Array, Flags, float]:  # fmt: skip
+    """The damped step, which parameters it holds on their bounds, and by how much it is to lower the cost."""
+    r, j = residual[use], jacobian[use]
+    slope = j.T @ r + problem.weight * (at - problem.centre)
+    normal = j.T @ j + np.diag(problem.weight)
+    size = np.diag(normal).copy()
+    size[size <= 0] = 1.0
+    bound = ((at <= problem.low) & (slope > 0)) | ((at >= problem.high) & (slope < 0))
+    step = np.zeros_like(at)
+    free = ~bound
+    if free.any():
+        root = np.sqrt(size[free])
+        # In parameters scaled to unit information the damping is the same for all, and tiny directions stay tame.
+        scaled = normal[np.ix_(free, free)] / np.outer(root, root) + damping * np.eye(root.size)
+        step[free] = -np.linalg.solve(scaled, slope[free] / root) / root
+    return step, bound, float(-(slope @ step))

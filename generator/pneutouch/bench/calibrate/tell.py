@@ -1,0 +1,194 @@
+"""A calibration in sentences: what was left out, what the data cannot tell, what would, and where the model misses."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from pneutouch.bench.calibrate.fit import Fit
+from pneutouch.bench.calibrate.further import Further
+from pneutouch.bench.calibrate.gains import gain_shifts
+from pneutouch.bench.calibrate.goodness import Miss
+from pneutouch.bench.calibrate.held_out import HeldOut
+from pneutouch.bench.calibrate.identify import UNSEEN, Ambiguity, Identified
+from pneutouch.bench.calibrate.intervals import LEAST_RUNS
+from pneutouch.bench.calibrate.parameters import DEAD, LOGARITHMIC
+from pneutouch.units import ML
+
+WORDS = ("shear modulus", "wall thickness", "dead volume", "contact offset")
+_WORTH = 1.2
+"""A test that shrinks the worst interval by less than this is not told: our choice."""
+_FAR = 2.0
+"""Prior standard deviations from the design from which on an estimate is remarked: our choice, one in twenty by chance."""
+_MANY = 100.0
+_CHI = 2.0
+"""Chi-squared per degree of freedom above which runs scatter more than reading and atlas explain: our choice."""
+
+
+def amount(k: int, deviation: float) -> str:
+    """A deviation of parameter k in its coordinate, in words."""
+    if LOGARITHMIC[k]:
+        return (
+            f"{100 * np.expm1(deviation):.2g} %" if deviation < np.log(2.0) else f"a factor of {np.exp(deviation):.2g}"
+        )
+    return f"{deviation / ML:.2g} mL" if k == DEAD else f"{deviation:.2g} mm"
+
+
+def sentences(
+    fit: Fit, identified: Identified, further: Sequence[Further], missed: Sequence[Miss], held_out: Sequence[HeldOut]
+) -> list[str]:  # fmt: skip
+    """What a reader must know beside the numbers, one sentence each."""
+    return [
+        *_left_out(fit), *_bounds(fit), *_far(fit), *_basis(fit), *_open(fit, identified), *_tests(fit, identified, further),
+        *_fitness(fit, missed), *_shared(fit), *(_held(one) for one in held_out),
+    ]  # fmt: skip
+
+
+def _left_out(fit: Fit) -> list[str]:
+    found = []
+    for curve, lost, travel in zip(fit.observations.curves, fit.left_out, fit.points.travel, strict=True):
+        if lost.any():
+            found.append(
+                f"{curve.run.label}: {int(lost.sum())} points from {travel[lost].min():.2f} mm on are left out: the model's "
+                "range ends before them (buckling, the plate's edge, or a depth beyond the atlas)"
+            )
+    for injection, lost in zip(fit.observations.injections, fit.injections_left_out, strict=True):
+        if lost.any():
+            found.append(
+                f"{injection.label}: {int(lost.sum())} points are left out: beyond the limit point of the dome"
+            )
+    return found
+
+
+def _bounds(fit: Fit) -> list[str]:
+    return [
+        f"{WORDS[k]}: the estimate is on its bound, no interval: the data would have it beyond"
+        for k, bound in zip(fit.parameters.fitted, fit.solution.bound, strict=True) if bound
+    ]  # fmt: skip
+
+
+def _far(fit: Fit) -> list[str]:
+    """Estimates that the beliefs hold back although the data would have them elsewhere."""
+    found = []
+    for place, k in enumerate(fit.parameters.fitted):
+        away = abs(fit.solution.at[place] - fit.parameters.start[k]) / fit.parameters.belief[k]
+        if away > _FAR and fit.parameters.priors:
+            found.append(
+                f"{WORDS[k]}: the estimate is {away:.1f} prior standard deviations from the design's value; where the design does "
+                "not say what was built, mend it or leave the priors aside (--no-priors)"
+            )
+    return found
+
+
+def _basis(fit: Fit) -> list[str]:
+    found = []
+    if not fit.covariance.clustered:
+        runs = fit.covariance.runs
+        why = f"{runs} run{'s'[: runs != 1]}, fewer than {LEAST_RUNS}" if runs < LEAST_RUNS else (
+            f"{runs} runs for {len(fit.parameters.fitted)} parameters"
+        )  # fmt: skip
+        found.append(
+            f"the intervals rest on the scatter of the points and the instruments alone ({why}): how runs differ is not in them, "
+            "and it is more; measure more runs"
+        )
+    else:
+        for k, run in zip(fit.parameters.fitted, fit.covariance.alone, strict=True):
+            if run >= 0:
+                label = [curve.run.label for curve in fit.observations.curves]
+                label += [injection.label for injection in fit.observations.injections]
+                found.append(
+                    f"{WORDS[k]}: rests on one run ({label[run]}), which is taken to scatter as the others do; repeat it"
+                )
+    return found
+
+
+def _open(fit: Fit, identified: Identified) -> list[str]:
+    found = [_apart(group) for group in identified.ambiguities]
+    for k in identified.unseen:
+        what = "the estimate is the belief" if fit.parameters.priors else "the estimate means nothing"
+        found.append(
+            f"{WORDS[k]}: the data say nothing of it (more than {UNSEEN:.0%} of its prior spread is left); {what}"
+        )
+    return found
+
+
+def _apart(group: Ambiguity) -> str:
+    names = _joined([WORDS[k] for k in group.members])
+    each = "; ".join(
+        f"{WORDS[k]} alone ± {_spread(k, alone)}, with the other{'s'[: len(group.members) > 2]} known ± {_spread(k, given)}"
+        for k, alone, given in zip(group.members, group.alone, group.given, strict=True)
+    )
+    product = (
+        f"; what is known is modulus × wall^{group.combination:.2f}"
+        if group.combination is not None and group.combination > 0
+        else ""
+    )
+    return (
+        f"{names}: the data cannot tell them apart (correlation {group.correlation:+.3f}); standard deviations by the data: "
+        f"{each}{product}"
+    )
+
+
+def _spread(k: int, deviation: float) -> str:
+    """A standard deviation in words; what no prior bounds may be immense."""
+    return "anything" if LOGARITHMIC[k] and deviation > np.log(100.0) else amount(k, deviation)
+
+
+def _tests(fit: Fit, identified: Identified, further: Sequence[Further]) -> list[str]:
+    if identified.clear:
+        return []
+    helpful = [test for test in further if test.gain > _WORTH][:2]
+    found = []
+    for place, test in enumerate(helpful):
+        widths = ", ".join(
+            f"{WORDS[k]} ± {amount(k, width)}"
+            for k, width in zip(fit.parameters.fitted, test.half_width, strict=True) if np.isfinite(width)
+        )  # fmt: skip
+        found.append(
+            f"{'to tell them apart, measure' if place == 0 else 'or'}: {test.what}; the widest interval would shrink "
+            f"{_times(test.gain)}, 95 % intervals then about {widths}"
+        )
+    return found
+
+
+def _times(gain: float) -> str:
+    return f"{gain:.1f} times" if gain < _MANY else f"more than {_MANY:g} times"
+
+
+def _fitness(fit: Fit, missed: Sequence[Miss]) -> list[str]:
+    found = []
+    if fit.freedom and fit.chi_squared / fit.freedom > _CHI:
+        found.append(
+            f"chi-squared per degree of freedom is {fit.chi_squared / fit.freedom:.1f}: the residuals are larger than reading and "
+            "atlas explain (runs that differ, or a model that misses); the intervals are widened by it"
+        )
+    found += [
+        f"the model misses at {miss.pressure:g} kPa: {miss.channel} {abs(miss.share):.1%} of full scale too "
+        f"{'high' if miss.share > 0 else 'low'} from {miss.start:.2f} to {miss.end:.2f} mm, in all runs alike; no interval holds that"
+        for miss in missed
+    ]
+    return found
+
+
+def _shared(fit: Fit) -> list[str]:
+    found = []
+    for what, shift in zip(("force", "pressure"), gain_shifts(fit), strict=True):
+        moved = ", ".join(
+            f"{WORDS[k]} {'+' if d >= 0 else '-'}{amount(k, abs(d))}"
+            for k, d in zip(fit.parameters.fitted, shift, strict=True) if d
+        )  # fmt: skip
+        if moved:
+            found.append(f"not in the intervals: a {what} reading 1 % too high in all runs moves {moved}")
+    return found
+
+
+def _held(one: HeldOut) -> str:
+    return (
+        f"held out {one.pressure:g} kPa: sensitivity {one.predicted:.4g} kPa/N predicted, {one.measured:.4g} measured "
+        f"({one.error:+.1%}); force within {one.force_worst:.1%} and pressure within {one.rise_worst:.1%} of full scale"
+    )
+
+
+def _joined(words: Sequence[str]) -> str:
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"

@@ -1,0 +1,147 @@
+"""What is not as it should be in a run: told with its stretch, never dropped silently."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+
+from pneutouch.bench.contact import Baseline
+from pneutouch.bench.indents import Found, read_window
+from pneutouch.bench.protocol import HOLD, RELAXATION
+from pneutouch.bench.record import Blocks, Doubt, Indent
+from pneutouch.spec.campaign import Run
+from pneutouch.units import KPA
+
+SHORT = 0.5
+"""A hold is short below this share of the paper's: our choice."""
+
+SETTLED = 0.01
+"""Share of the force or the rise by which the two halves of a read window may differ: our choice."""
+
+LEAK = 0.02
+"""Share of the greatest rise that a leak may take during a hold: our choice, about what three runs of a sensor differ by."""
+
+SAME_DEPTH = 0.03
+"""mm within which two indentations are of one depth: some standard deviations of an onset (0.004 to 0.01 mm in the tests)."""
+
+_SURE = 4.0
+"""Standard errors that a change must have before it is told: one false alarm in 10^4."""
+
+
+def untrusted(blocks: Blocks, indent: Indent, before: float) -> str | None:
+    """Why an indentation cannot be used: something clipped before contact or while read, or half of the read samples gone."""
+    for doubt in blocks.doubts:
+        if doubt.used:
+            continue
+        in_read = min(doubt.end, indent.read[1]) - max(doubt.start, indent.read[0])
+        if doubt.why.startswith("gap"):
+            if in_read > 0.5 * (indent.read[1] - indent.read[0]):
+                return "most of its samples are missing"
+        elif in_read >= 0 or (doubt.end >= indent.contact - before and doubt.start <= indent.contact):
+            return doubt.why
+    return None
+
+
+def doubts_of(run: Run, blocks: Blocks, found: Found) -> list[Doubt]:
+    """Doubts about holds, contacts, releases, depths and the pressure without contact, in order of time."""
+    told: list[Doubt] = []
+    if found.pressed:
+        end = found.parts[0].clear[0] if found.parts else blocks.time.size - 1
+        told.append(
+            Doubt(
+                float(blocks.time[0]), float(blocks.time[end]), "the record begins with the plate in; left out", False
+            )
+        )
+    usual = RELAXATION if run.kind == "relaxation" else HOLD
+    for number, indent in enumerate(found.indents, start=1):
+        told += _of_one(number, indent, blocks, found, usual, run.kind != "loop")
+    if run.kind != "loop":
+        told += _of_depths([indent for indent in found.indents if not math.isnan(indent.contact)])
+    return told + _leak(blocks, found)
+
+
+def _of_one(
+    number: int, indent: Indent, blocks: Blocks, found: Found, usual: float, held: bool
+) -> list[Doubt]:  # fmt: skip
+    begin, end = indent.hold
+    if math.isnan(indent.contact):
+        return [Doubt(begin, end, f"indentation {number}: no contact found", False)]
+    told = []
+    contact = found.contacts[number - 1]
+    if contact is not None and not contact.own:
+        light = "too light to tell where it began; its onset is the median of the others"
+        told.append(Doubt(indent.contact, begin, f"indentation {number}: {light}", True))
+    if held and end - begin < SHORT * usual:
+        told.append(
+            Doubt(begin, end, f"indentation {number}: held for {end - begin:.3g} s, usual are {usual:g} s", True)
+        )
+    elif held and (why := _unsettled(blocks, found, number - 1)):
+        told.append(Doubt(*indent.read, f"indentation {number}: {why}", True))
+    if math.isnan(indent.release):
+        told.append(
+            Doubt(end, float(blocks.time[-1]), f"indentation {number}: no release: the force does not go back", True)
+        )
+    return told
+
+
+def _unsettled(blocks: Blocks, found: Found, number: int) -> str | None:
+    start, end = read_window(blocks, found.parts[number].hold)
+    middle, indent = (start + end) // 2, found.indents[number]
+    if end - start < 4:
+        return None
+    for key, values, whole in (
+        ("force", blocks.force, indent.force),
+        ("pressure", blocks.pressure, indent.rise),
+    ):
+        first, last = values[start:middle], values[middle:end]
+        change = float(last.mean() - first.mean())
+        error = math.sqrt(first.var() / first.size + last.var() / last.size)
+        if abs(change) > max(SETTLED * abs(whole), _SURE * error):
+            return f"{key} not settled: changes by {100 * change / whole:.2g} % within the stretch that is read"
+    return None
+
+
+def _of_depths(indents: list[Indent]) -> list[Doubt]:
+    told = []
+    for before, after in itertools.pairwise(indents):
+        if after.indentation < before.indentation - SAME_DEPTH:
+            why = f"out of order: {after.indentation:.3g} mm after {before.indentation:.3g} mm; sorted by depth"
+            told.append(Doubt(*after.hold, why, True))
+    by_depth = sorted(indents, key=lambda one: one.indentation)
+    for less, more in itertools.pairwise(by_depth):
+        if more.indentation - less.indentation <= SAME_DEPTH:
+            later = max(less, more, key=lambda one: one.contact)
+            why = f"two indentations at one depth, {less.indentation:.4g} and {more.indentation:.4g} mm"
+            told.append(Doubt(*later.hold, why, True))
+    return told
+
+
+def _leak(blocks: Blocks, found: Found) -> list[Doubt]:
+    """The pressure without contact drifts: while a hold lasts by more than a share of the greatest rise."""
+    touched = [
+        (base, one)
+        for base, one in zip(found.bases, found.indents, strict=True)
+        if not math.isnan(one.contact) and base.end - base.start > 3
+    ]
+    if not touched:
+        return []
+    slopes = np.array([base.slope[1] for base, _ in touched])
+    longest = max(one.hold[1] - one.contact for _, one in touched)
+    top = max(abs(one.rise) for _, one in touched)
+    slope = float(slopes.mean())
+    error = math.sqrt(sum(_slope_variance(blocks, base) for base, _ in touched)) / slopes.size
+    if abs(slope) * longest <= LEAK * top or abs(slope) <= _SURE * error:
+        return []
+    first, last = touched[0][0], touched[-1][0]
+    why = (
+        f"pressure without contact drifts by {60 * slope / KPA:.3g} kPa a minute, {100 * abs(slope) * longest / top:.2g} % of the "
+        "greatest rise during an indentation: a leak, or a reset that has not settled"
+    )
+    return [Doubt(float(blocks.time[first.start]), float(blocks.time[last.end - 1]), why, True)]
+
+
+def _slope_variance(blocks: Blocks, base: Baseline) -> float:
+    time = blocks.time[base.start : base.end]
+    return base.between[1] / float(((time - time.mean()) ** 2).sum())

@@ -1,0 +1,63 @@
+"""Runs that stand apart from the others of their sensor: a file of another sensor among them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from pneutouch.bench.record import Curve
+from pneutouch.mechanics.response import figures
+
+APART = 0.15
+"""Share by which runs of one sensor may differ: our choice. The paper's three runs differ by 1 % in sensitivity, its three
+identical sensors by 2 to 10 % (Fig. 7 and S2)."""
+
+TIMES = 5.0
+"""So many times the scatter of the others (1.4826 of their median deviation) must be exceeded besides."""
+
+
+def mixed(curves: Sequence[Curve]) -> list[tuple[Curve, str]]:
+    """Runs that stand apart from the others of one sensor, kind, driving pressure and age, and why.
+
+    Compared are the force at the greatest common depth and the slope of pressure over force, as logarithms: a run
+    stands apart where one of them is off the median of the others by more than `APART` and `TIMES` their scatter. Of
+    two that differ by `APART` both are told, as neither is known to be the odd one.
+    """
+    groups: dict[tuple[object, ...], list[Curve]] = {}
+    for curve in curves:
+        run = curve.run
+        groups.setdefault((run.sensor, run.kind, run.driving_pressure_kPa, run.age_days), []).append(curve)
+    found: list[tuple[Curve, str]] = []
+    for group in groups.values():
+        found += _apart(group)
+    return found
+
+
+def _apart(group: list[Curve]) -> list[tuple[Curve, str]]:
+    if len(group) < 2:
+        return []
+    depth = min(float(curve.indentation[-1]) for curve in group)
+    forces = np.array([float(np.interp(depth, curve.indentation, curve.force)) for curve in group])
+    slopes = np.array([_slope(curve) for curve in group])
+    told: dict[int, str] = {}
+    for name, values in ((f"force at {depth:.3g} mm", forces), ("slope of pressure over force", slopes)):
+        if not (values > 0).all():
+            continue
+        for k in range(len(group)):
+            others = np.delete(values, k)
+            middle = float(np.median(others))
+            scatter = 1.4826 * float(np.median(np.abs(np.log(others / middle))))
+            if abs(np.log(values[k] / middle)) > max(np.log1p(APART), TIMES * scatter):
+                told.setdefault(k, f"{name} is {values[k] / middle:.2f} times that of")
+    which = "the other run" if len(group) == 2 else f"the other {len(group) - 1} runs"
+    ask = "is one of them" if len(group) == 2 else "is it"
+    return [
+        (group[k], f"{group[k].run.file}: {why} {which} of sensor {group[k].run.sensor}; {ask} of another sensor?")
+        for k, why in sorted(told.items())
+    ]
+
+
+def _slope(curve: Curve) -> float:
+    found = figures(curve.indentation, curve.force, curve.rise)
+    return float("nan") if found is None else found.sensitivity

@@ -1,0 +1,176 @@
+"""Whether a run can be what the campaign says it is: wrong units, signs and columns are asked about, never guessed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from pneutouch.bench.mixed import mixed
+from pneutouch.bench.protocol import HOLD, RELAXATION
+from pneutouch.bench.record import Curve
+from pneutouch.errors import InputError
+from pneutouch.spec.campaign import UNITS, Columns
+from pneutouch.units import KPA
+
+__all__ = ["Expected", "check_plausible", "mixed"]
+
+FAR = 3.0
+"""Factor from the prediction beyond which something is asked: our choice. The solid's predictions meet the paper's table with a
+median error of 8 % and are off by two for its stiffest resin."""
+
+UNIT_NEAR = 1.8
+"""Factor within which another unit must bring a reading to the prediction, to be named: our choice, below half of `FAR`."""
+
+RESET_KPA, RESET_SHARE = 1.0, 0.1
+"""How far the pressure before contact may be from the driving pressure: our choice, a regulator's scatter."""
+
+SWAP_SURE = math.log(2.0)
+"""The swapped reading must be nearer to the prediction by this (logarithm of a factor), where no driving pressure tells."""
+
+_RESTS = 0.05
+"""Share of the greatest force or rise by which points may be negative: noise about the origin."""
+
+_HOLD_FAR = 50.0
+_SHAPE = 1.5
+"""Exponent of force and rise over depth by which a prediction is carried to a shallower depth (Hertz); only a factor counts."""
+
+
+@dataclass(frozen=True, slots=True)
+class Expected:
+    """The prediction of a run: force (N) and rise (MPa) at a depth (mm), and the sensitivity (MPa/N)."""
+
+    depth: float
+    force: float
+    rise: float
+    sensitivity: float
+
+
+def check_plausible(curve: Curve, columns: Columns, expected: Expected, file: Path) -> tuple[str, ...]:
+    """Questions about a run that may be right all the same.
+
+    Raises InputError for what cannot be: a sign that is wrong, force and pressure swapped, a magnitude that is off by
+    more than `FAR` and right in another unit of `spec.campaign.UNITS`.
+    """
+    _check_signs(curve, columns, file)
+    _check_swap(curve, columns, expected, file)
+    _check_time(curve, columns, file)
+    depth = float(curve.indentation[-1])
+    ratio = depth / expected.depth
+    told = [
+        _magnitude(
+            file,
+            columns,
+            "position",
+            ratio,
+            f"goes to {_number(depth)} mm in",
+            f"the prediction goes to {_number(expected.depth)} mm",
+        )
+    ]
+    reach = min(depth, expected.depth) if told[0] is None else depth
+    share = (reach / expected.depth) ** _SHAPE if told[0] is None else 1.0
+    for key, values, predicted, unit, name in (
+        ("force", curve.force, expected.force, 1.0, "N"), ("pressure", curve.rise, expected.rise, KPA, "kPa")
+    ):  # fmt: skip
+        measured, target = float(np.interp(reach, curve.indentation, values)), predicted * share
+        what = "reads" if key == "force" else "rises by"
+        reads = f"{what} {_number(measured / unit)} {name} at {_number(reach)} mm"
+        told.append(
+            _magnitude(
+                file, columns, key, measured / target, reads, f"the prediction has {_number(target / unit)} {name}"
+            )
+        )
+    return tuple(text for text in (*told, _driving(curve, file, columns)) if text is not None)
+
+
+def _number(value: float) -> str:
+    return f"{value:.2g}" if abs(value) < 1e4 else f"{value:.1e}".replace("e+0", "e")
+
+
+def _magnitude(
+    file: Path, columns: Columns, key: str, ratio: float, reads: str, predicted: str
+) -> str | None:  # fmt: skip
+    """None where a ratio of measured to predicted is plausible, else a question; an error where a unit explains it."""
+    if 1 / FAR <= ratio <= FAR:
+        return None
+    column = getattr(columns, key)
+    times = f"{ratio:.2g} times it" if ratio < 100 else f"{ratio:.0f} times it"
+    said = f"{file}: column {column.name}: {reads} where {predicted}, {times}"
+    declared = UNITS[key][column.unit]
+    off = {unit: abs(math.log(max(ratio, 1e-12) * factor / declared)) for unit, factor in UNITS[key].items()}
+    nearest = min(off, key=lambda unit: off[unit])
+    if nearest != column.unit and off[nearest] < math.log(UNIT_NEAR):
+        same = " or ".join(unit for unit in off if math.isclose(UNITS[key][unit], UNITS[key][nearest]))
+        raise InputError(f"{said}; is the column in {same}? set columns.{key}.unit")
+    return f"{said}; no unit explains that: another resin or design, a smaller plate, or a wrong calibration?"
+
+
+def _check_signs(curve: Curve, columns: Columns, file: Path) -> None:
+    for key, values, unit, name in (("force", curve.force, 1.0, "N"), ("pressure", curve.rise, KPA, "kPa")):
+        column = getattr(columns, key)
+        deep = float(values[np.argmax(np.abs(values))])
+        if deep < 0 and float(values.max()) <= _RESTS * -deep:
+            raise InputError(
+                f"{file}: column {column.name}: falls by {_number(-deep / unit)} {name} as the sensor is pressed; it must rise: set "
+                f"columns.{key}.sign = {-column.sign}"
+            )
+    if curve.indentation[-1] <= 0:
+        raise InputError(
+            f"{file}: column {columns.position.name}: falls as the force rises; it must count into the sensor: set "
+            f"columns.position.sign = {-columns.position.sign}"
+        )
+
+
+def _check_swap(curve: Curve, columns: Columns, expected: Expected, file: Path) -> None:
+    """Force and pressure exchanged: each has the magnitude of the other, and the pressure before contact is in the force.
+
+    Compared as the numbers that stand in the columns. At a driving pressure the resting values decide; at none the
+    magnitudes do, where they differ enough.
+    """
+    force_unit, pressure_unit = UNITS["force"][columns.force.unit], UNITS["pressure"][columns.pressure.unit]
+    depth = min(float(curve.indentation[-1]), expected.depth)
+    share = (depth / expected.depth) ** _SHAPE
+    force = float(np.interp(depth, curve.indentation, curve.force)) / force_unit
+    rise = float(np.interp(depth, curve.indentation, curve.rise)) / pressure_unit
+    wanted_force, wanted_rise = expected.force * share / force_unit, expected.rise * share / pressure_unit
+    if min(force, rise, wanted_force, wanted_rise) <= 0:
+        return
+    as_said = abs(math.log(force / wanted_force)) + abs(math.log(rise / wanted_rise))
+    swapped = abs(math.log(force / wanted_rise)) + abs(math.log(rise / wanted_force))
+    driving = curve.run.driving_pressure_kPa * KPA
+    zeros = [one.zero_force for one in curve.indents if not math.isnan(one.contact)]
+    in_force = (float(np.mean(zeros)) if zeros else 0.0) / force_unit * pressure_unit
+    allowed = max(RESET_KPA * KPA, RESET_SHARE * driving)
+    tells = driving > 3 * RESET_KPA * KPA
+    rests = abs(in_force - driving) <= allowed and abs(curve.driving - driving) > allowed
+    if swapped < 2 * math.log(FAR) and ((tells and rests) or (not tells and swapped + SWAP_SURE < as_said)):
+        before = f", and {_number(in_force / KPA)} before contact, the driving pressure" if tells else ""
+        raise InputError(
+            f"{file}: columns {columns.force.name} and {columns.pressure.name} look swapped: {columns.force.name} rises by {force:.3g} "
+            f"where {wanted_force:.3g} {columns.force.unit} are predicted and {wanted_rise:.3g} {columns.pressure.unit} of pressure{before}; "
+            "exchange columns.force.name and columns.pressure.name"
+        )
+
+
+def _check_time(curve: Curve, columns: Columns, file: Path) -> None:
+    """A hold's length tells a wrong unit of time, where the unit is wrong by far: holds may well be a few times the paper's."""
+    if curve.run.kind == "loop" or not curve.indents:
+        return
+    length = float(np.median([one.hold[1] - one.hold[0] for one in curve.indents]))
+    usual = RELAXATION if curve.run.kind == "relaxation" else HOLD
+    if 1 / _HOLD_FAR <= length / usual <= _HOLD_FAR:
+        return
+    reads = f"holds last {_number(length)} s"
+    _magnitude(file, columns, "time", length / usual, reads, f"the protocol has {usual:g} s")
+
+
+def _driving(curve: Curve, file: Path, columns: Columns) -> str | None:
+    stated, read = curve.run.driving_pressure_kPa, curve.driving / KPA
+    if abs(read - stated) <= max(RESET_KPA, RESET_SHARE * stated):
+        return None
+    return (
+        f"{file}: column {columns.pressure.name}: {read:.3g} kPa before contact; the campaign says driving_pressure_kPa = {stated:g}; "
+        "another run's file, a gauge not zeroed, or absolute pressure?"
+    )

@@ -1,0 +1,152 @@
+"""A measured file to blocks: units and signs, and what a channel cannot have measured."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneutouch.bench.blocks import Collector
+from pneutouch.bench.record import Blocks, Doubt
+from pneutouch.bench.table import chunks
+from pneutouch.errors import InputError
+from pneutouch.meridian.segments import Array
+from pneutouch.spec.campaign import UNITS, Columns, Rig
+from pneutouch.units import KPA
+
+CLIPPED = 0.98
+"""Share of an instrument's range at which it is taken for clipped: our choice, makers specify up to the range."""
+
+BEYOND = 1.2
+"""No instrument reads on beyond this share of its range: then the unit or the stated range is wrong, and nothing is clipped."""
+
+FLAT, ALIKE = 0.1, 0.05
+"""A flat top lasts longer than this, in s, and less than this share of the other blocks repeats the one before: a coarse
+or noiseless channel repeats everywhere. Our choice."""
+
+Flags = NDArray[np.bool_]
+
+_PRESSED = 30.0
+"""Noise standard deviations by which the force must change to say that something moved: our choice."""
+
+_CHANNELS = ("time", "position", "force", "pressure")
+_EXACT = 1e-9
+"""Relative difference at which two blocks hold one and the same number, summing aside."""
+
+
+def read_blocks(
+    path: Path, columns: Columns, rig: Rig, progress: Callable[[float], None] = lambda share: None, plate: bool = True
+) -> Blocks:  # fmt: skip
+    """Blocks of a CSV or parquet file, in s, mm, N, MPa; ``progress`` is called with the share read, 0 to 1.
+
+    About `blocks.BLOCK_RATE` blocks a second, or one sample each up to `blocks.SLOW` Hz. The file is read in one pass and never
+    stands whole in memory. Gaps, clipped stretches and a last row that may be cut are among the doubts.
+
+    Of a run without a plate (``plate`` False: a leak run) only time and pressure are read; position and force are zero.
+
+    Raises InputError, naming file, column and row, for what `table.chunks` refuses, time that does not run on, more than
+    half of the samples missing, and a channel that is dead; a run in which nothing moves, as a leak run, has no dead channel.
+    """
+    names = {key: getattr(columns, key).name for key in _CHANNELS}
+    read = [place for place, key in enumerate(_CHANNELS) if plate or key in ("time", "pressure")]
+    factor = np.array([[scale(columns, _CHANNELS[place])] for place in read])
+    collector = Collector(path, names=names)
+    cut = False
+    for chunk in chunks(path, [names[_CHANNELS[place]] for place in read]):
+        collector.total = chunk.total
+        samples = np.zeros((len(_CHANNELS), chunk.rows.size))
+        samples[read] = chunk.values * factor
+        collector.take(chunk.rows, samples)
+        cut = cut or chunk.cut
+        progress(chunk.share)
+    blocks = collector.blocks()
+    end = float(blocks.time[-1])
+    doubts = [Doubt(end, end, "last row left out: no line end, so its last number may be cut", False)] if cut else []
+    if plate:
+        _check_alive(blocks, names)
+        doubts += _clipped(blocks, "force", blocks.force, blocks.force_extreme, rig.force_range_N, 1.0, "N")
+    doubts += _clipped(blocks, "pressure", blocks.pressure, blocks.pressure_extreme, rig.pressure_range_kPa, KPA, "kPa")
+    return replace(blocks, doubts=(*blocks.doubts, *doubts))
+
+
+def scale(columns: Columns, key: str) -> float:
+    """What a column's numbers are to be multiplied with for inner units, its sign included."""
+    column = getattr(columns, key)
+    return float(UNITS[key][column.unit] * column.sign)
+
+
+def _check_alive(blocks: Blocks, names: dict[str, str]) -> None:
+    """Force and pressure are judged while the plate moves, the position where the force shows that it must have moved."""
+    said = f"dead: reads one and the same number from row {blocks.first_row[0]:.0f} on"
+    ask = "; was the right column named, the sensor connected?"
+    moved = np.abs(np.diff(blocks.position, prepend=blocks.position[0]))
+    if np.ptp(blocks.position) <= _EXACT * float(np.abs(blocks.position).max()):
+        noise = float(np.median(blocks.force_spread))
+        if blocks.size > 1 and np.ptp(blocks.force) > _PRESSED * noise:
+            raise InputError(f"{blocks.file}: column {names['position']}: {said} while the force changes{ask}")
+        return
+    moving = moved > 0.1 * moved.max()
+    for key, values, spread in (
+        ("force", blocks.force, blocks.force_spread), ("pressure", blocks.pressure, blocks.pressure_spread)
+    ):  # fmt: skip
+        close = _EXACT * float(np.abs(values).max())
+        if spread[moving].max() <= close and np.ptp(values[moving]) <= close:
+            raise InputError(f"{blocks.file}: column {names[key]}: {said} whenever the plate moves{ask}")
+
+
+def _clipped(
+    blocks: Blocks, key: str, values: Array, extreme: Array, top: float, unit: float, name: str
+) -> list[Doubt]:  # fmt: skip
+    """Stretches at the end of an instrument's range, or at a flat top below it."""
+    highest = float(extreme.max()) / unit
+    if highest > BEYOND * top:
+        told = f"{key} goes to {highest:.4g} {name}, beyond the rig's range of {top:g}: is its unit right, or the rig's range?"
+        return [Doubt(float(blocks.time[0]), float(blocks.time[-1]), told, True)]
+    found = [
+        Doubt(start, end, f"{key} clipped: at {CLIPPED:g} of the range of {top:g} {name} or beyond", False)
+        for start, end in _stretches(blocks, extreme / unit >= CLIPPED * top)
+    ]
+    flat = _flat_top(blocks, values, getattr(blocks, f"{key}_spread"), extreme)
+    if found or not flat.any():
+        return found
+    return [
+        Doubt(start, end, f"{key} clipped: a flat top at {highest:.4g} {name}", False)
+        for start, end in _stretches(blocks, flat)
+    ]
+
+
+def _flat_top(blocks: Blocks, values: Array, spread: Array, extreme: Array) -> Flags:
+    """Which blocks hold nothing but the extreme value, (n,) of bool; none where the channel is coarse or without noise."""
+    close = _EXACT * extreme.max()
+    quiet = spread <= close
+    again = quiet & (np.abs(np.diff(values, prepend=np.nan)) <= close)
+    top = quiet & (np.abs(values) >= extreme.max() - close)
+    least = max(FLAT * blocks.rate / blocks.size, 5)
+    others = ~top
+    if top.sum() < least or not others.any() or again[others].mean() > ALIKE:
+        return np.zeros(values.size, bool)
+    long: Flags = np.zeros(values.size, bool)
+    for start, end in _runs(top):
+        long[start:end] = end - start >= least
+    return long
+
+
+def _runs(mask: Flags) -> list[tuple[int, int]]:
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(np.int8), [0]])))
+    return [(int(start), int(end)) for start, end in zip(edges[::2], edges[1::2], strict=True)]
+
+
+def _stretches(blocks: Blocks, mask: Flags) -> list[tuple[float, float]]:
+    """Begin and end in s of the stretches in which ``mask`` holds; those less than `FLAT` apart are one."""
+    found: list[tuple[float, float]] = []
+    width = blocks.size / blocks.rate
+    for start, end in _runs(mask):
+        begin, finish = float(blocks.time[start] - width / 2), float(blocks.time[end - 1] + width / 2)
+        if found and begin - found[-1][1] < FLAT:
+            found[-1] = (found[-1][0], finish)
+        else:
+            found.append((begin, finish))
+    return found

@@ -1,0 +1,100 @@
+"""The pressed curve of one specimen, as the simulator and the test plan read it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pneutouch.errors import InputError
+from pneutouch.mechanics import Sensor, State, predict
+from pneutouch.mechanics.limits import Limits
+from pneutouch.mechanics.prediction import InflationCurve
+from pneutouch.meridian.segments import Array
+from pneutouch.units import KPA
+
+STEPS = 56
+"""Equal plate steps of the fine grid: the solid's contact advances in cells, 56 steps follow it to 0.1 % of force."""
+
+_ROUNDING = 1e-9
+_LEAST_POINTS = 3
+
+_SHORT = 1e-4
+"""By this share a press stops before the event that ends its range."""
+
+
+@dataclass(frozen=True, slots=True)
+class PressCurve:
+    """Force and pressure rise over plate travel, (n,) mm, N, MPa, from first contact to the end of the range.
+
+    Attributes:
+        driving: Driving pressure.
+        indentation, force, rise: The curve; the first point is the origin.
+        ends: What ends the range before the depth asked for, and where (mm); None where nothing does.
+    """
+
+    driving: float
+    indentation: Array
+    force: Array
+    rise: Array
+    ends: tuple[str, float] | None = None
+
+    @property
+    def reach(self) -> float:
+        """Greatest plate travel that the curve knows."""
+        return float(self.indentation[-1])
+
+    def knows(self, depth: float) -> bool:
+        """Whether a plate travel lies within the range."""
+        return depth <= self.reach * (1 + _ROUNDING)
+
+    def at(self, travel: Array) -> tuple[Array, Array]:
+        """Force and rise at plate travels (n,) from zero to the reach; monotone between the points (Fritsch and Carlson)."""
+        from scipy.interpolate import PchipInterpolator
+
+        found = PchipInterpolator(self.indentation, np.stack([self.force, self.rise], axis=1))(travel)
+        return found[..., 0], found[..., 1]
+
+
+@dataclass(frozen=True, slots=True)
+class Pressed:
+    """The curves of one sensor at ascending driving pressures, its free inflation and its limits."""
+
+    sensor: Sensor
+    model: str
+    curves: tuple[PressCurve, ...]
+    inflation: InflationCurve
+    limits: Limits
+
+
+def press_curves(
+    sensor: Sensor, pressures: Sequence[float], depth: float, model: str = "solid", steps: int = STEPS
+) -> Pressed:
+    """Press a sensor to ``depth`` mm at ascending driving pressures (MPa). The gauge ends no range: the rig clips.
+
+    Raises what `predict` raises, and InputError where the range ends before the plate has moved.
+    """
+    free = replace(sensor, depth=depth, steps=steps, gauge_limit=np.inf)
+    prediction = predict("", free, list(pressures), model=model)
+    curves = tuple(_curve(free, state, prediction.model) for state in prediction.states)
+    limits = replace(prediction.limits, gauge=sensor.gauge_limit)
+    return Pressed(sensor, prediction.model, curves, prediction.inflation, limits)
+
+
+def _curve(sensor: Sensor, state: State, model: str) -> PressCurve:
+    """The curve of a state up to the end of its range; where that comes early, pressed again so that the points reach it."""
+    ending = next((event for event in state.events if event.ends_range), None)
+    ends = None if ending is None else (ending.kind, state.range_end)
+    if ends is not None and state.range_end > 0:
+        shorter = replace(sensor, depth=state.range_end * (1 - _SHORT))
+        state = predict("", shorter, [state.driving_pressure], model=model).states[0]
+    keep = (state.indentation <= state.range_end * (1 + _ROUNDING)) & np.isfinite(state.force)
+    if keep.sum() < _LEAST_POINTS:
+        raise InputError(
+            f"driving pressure {state.driving_pressure / KPA:g} kPa: the range ends at {state.range_end:.2f} mm"
+            f"{'' if ends is None else f' ({ends[0]})'}; nothing can be pressed"
+        )
+    return PressCurve(
+        state.driving_pressure, state.indentation[keep], state.force[keep], state.pressure_rise[keep], ends
+    )

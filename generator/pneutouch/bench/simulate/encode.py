@@ -1,0 +1,39 @@
+"""A simulated record as the bytes of a file, marked as simulated."""
+
+from __future__ import annotations
+
+import io
+
+import numpy as np
+
+from pneutouch.errors import InputError
+from pneutouch.meridian.segments import Array
+
+LEAK_SECONDS = 600.0
+"""How long a leak run lasts: our choice, as long as the relaxation run."""
+
+MARK = "# simulated by pneutouch"
+"""First line of every file."""
+
+_DECIMALS = {"time_s": 6, "position_mm": 5, "force_N": 5, "pressure_kPa": 6, "volume_mL": 4}
+"""Decimals in files: a hundredth of the finest noise."""
+
+
+def encoded(columns: dict[str, Array], *, parquet: bool = False) -> bytes:
+    """Columns as CSV or parquet, marked as simulated. Raises InputError where parquet is asked for and pyarrow missing."""
+    rounded = {name: np.round(values, _DECIMALS[name]) + 0.0 for name, values in columns.items()}
+    if not parquet:
+        from pandas import DataFrame
+
+        return f"{MARK}\n{DataFrame(rounded).to_csv(index=False, lineterminator=chr(10))}".encode()
+    try:
+        import pyarrow
+        from pyarrow import parquet as files
+    except ImportError:
+        raise InputError(
+            "--parquet: needs pyarrow; pip install 'pneutouch[parquet]', or leave it out for CSV"
+        ) from None
+    table = pyarrow.table(rounded).replace_schema_metadata({"comment": MARK.removeprefix("# ")})
+    target = io.BytesIO()
+    files.write_table(table, target)
+    return target.getvalue()

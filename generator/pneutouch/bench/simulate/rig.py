@@ -1,0 +1,104 @@
+"""What the instruments make of what there is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pneutouch.bench.simulate.parameter import parameter
+from pneutouch.meridian.segments import Array
+from pneutouch.texture.scan import NOISE, STEP
+from pneutouch.units import GAUGE_LIMIT, KPA
+
+MINUTE = 60.0
+
+
+@dataclass(frozen=True, slots=True)
+class RigModel:
+    """Noise, drift and play of a rig; inner units. Zero offsets are drawn once a run."""
+
+    force_noise: float = parameter(
+        0.02,
+        "N rms",
+        "white noise of a sample before the filter: the resolution of the ATI SI-40-2 (paper, Supplement C), taken as rms",
+    )
+    pressure_noise: float = parameter(
+        NOISE, "MPa rms", "white noise of a sample before the filter: one step of the recorder"
+    )
+    pressure_step: float = parameter(
+        STEP, "MPa", "step of the recorder, 16 bits over +-10 V at 50 kPa/V (see texture.scan)"
+    )
+    cutoff: float = parameter(30.0, "Hz", "first-order low pass on force and pressure alike: our choice")
+    force_range: float = parameter(40.0, "N", "ATI SI-40-2, where its reading stops")
+    pressure_range: float = parameter(
+        GAUGE_LIMIT, "MPa", "SMC PSE543, +-100 kPa, where its reading stops (paper, Supplement C)"
+    )
+    force_drift: float = parameter(0.005 / MINUTE, "N/s", "drift of the force's zero, 0.005 N/min: our choice")
+    temperature: float = parameter(
+        0.01 * KPA / MINUTE,
+        "MPa/s",
+        "drift of the shut-in pressure by warming, 0.01 kPa/min, 2 K in an hour: our choice",
+    )
+    leak: float = parameter(
+        0.0005 / MINUTE,
+        "1/s",
+        "share of the driving pressure lost, 0.05 % a minute: our choice; of the rise none is lost",
+    )
+    backlash: float = parameter(
+        0.03, "mm", "play of the stage: coming out, the reading lags the plate by it; our choice"
+    )
+    position_noise: float = parameter(
+        0.0025, "mm rms", "accuracy of the Aerotech stage (paper, Supplement C), taken as rms"
+    )
+    missed: float = parameter(1e-4, "1", "share of the samples that are missing from the file: our choice")
+    force_zero: float = parameter(0.05, "N", "standard deviation of the force's zero from run to run: our choice")
+    pressure_zero: float = parameter(
+        0.1 * KPA, "MPa", "standard deviation of the pressure's zero from run to run: our choice"
+    )
+    position_zero: float = parameter(
+        0.2, "mm", "standard deviation of the place of first contact: our choice, mounting"
+    )
+
+    @classmethod
+    def perfect(cls) -> RigModel:
+        """A rig that reads what is there."""
+        return cls(
+            force_noise=0.0, pressure_noise=0.0, pressure_step=0.0, cutoff=np.inf, force_range=np.inf, pressure_range=np.inf,
+            force_drift=0.0, temperature=0.0, leak=0.0, backlash=0.0, position_noise=0.0, missed=0.0, force_zero=0.0,
+            pressure_zero=0.0, position_zero=0.0,
+        )  # fmt: skip
+
+    def share(self, rate: float) -> float:
+        """Weight of the new sample in the low pass at ``rate`` Hz."""
+        return float(-np.expm1(-2.0 * np.pi * self.cutoff / rate))
+
+    def passed(self, values: Array, rate: float, start: float) -> Array:
+        """Values (n,) after the low pass, which stood at ``start``."""
+        share = self.share(rate)
+        if share >= 1.0:
+            return values
+        from scipy.signal import lfilter
+
+        return np.asarray(lfilter([share], [1.0, share - 1.0], values, zi=[(1.0 - share) * start])[0])
+
+    def noise(self, rate: float) -> tuple[float, float]:
+        """Standard deviations of a sample of force (N) and pressure (MPa) in the file: filtered, then rounded to steps.
+
+        Rounding adds step^2/12 where the noise is at least half a step (Sheppard).
+        """
+        share = self.share(rate)
+        kept = np.sqrt(share / (2.0 - share))
+        return float(self.force_noise * kept), float(
+            np.hypot(self.pressure_noise * kept, self.pressure_step / np.sqrt(12))
+        )
+
+    def drift(self, driving: float) -> float:
+        """Slope of the shut-in pressure at a driving pressure (MPa), MPa/s."""
+        return self.temperature - self.leak * driving
+
+    def stepped(self, pressure: Array) -> Array:
+        """Pressure as the recorder writes it: in steps, within its range."""
+        if self.pressure_step > 0:
+            pressure = self.pressure_step * np.round(pressure / self.pressure_step)
+        return np.clip(pressure, -self.pressure_range, self.pressure_range)

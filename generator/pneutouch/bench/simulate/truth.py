@@ -1,0 +1,241 @@
+"""What a perfect reading of simulated runs must find: figures of each specimen and of the population it is from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from pneutouch.bench.protocol import Protocol, protocol
+from pneutouch.bench.simulate.curve import PressCurve, Pressed
+from pneutouch.bench.simulate.rig import MINUTE, RigModel
+from pneutouch.bench.simulate.run import simulate_run, within
+from pneutouch.bench.simulate.scatter import Scatter, Specimens, ageing_factor, stiffened
+from pneutouch.bench.simulate.wall import Wall
+from pneutouch.mechanics.atlas.batches import batch_of
+from pneutouch.mechanics.atlas.respond import DEPTH, respond
+from pneutouch.mechanics.response import Lines, figures, hysteresis, lines
+from pneutouch.mechanics.sensor import Sensor
+from pneutouch.meridian.segments import Array
+from pneutouch.units import KPA
+
+SPECIMENS = 4000
+"""Specimens drawn for the mean and spread of a population: the mean is then known to a sixtieth of the spread."""
+
+STEPS = 28
+"""Equal plate steps of a specimen of the population."""
+
+_ENOUGH = 0.5
+"""Share of the specimens that must reach every depth for a population to be made of them."""
+
+_LOOP_RATE = 1000.0
+_FIRST = 1.0
+"""Seconds into the hold from which relaxation is counted: the stop of the plate has rung down."""
+
+_INSTANTS = 200
+_KEYS = (
+    ("sensitivity_kPa_per_N", "sensitivity", 1.0), ("sensitivity_through_origin_kPa_per_N", "sensitivity_through_origin", 1.0),
+    ("r_squared", "r_squared", 1.0), ("nonlinearity_percent", "nonlinearity", 100.0), ("stiffness_N_per_mm", "stiffness", 1.0),
+    ("force_range_N", "force_high", 1.0),
+)  # fmt: skip
+"""Figures of a loading curve: key, field of `Lines`, factor."""
+
+
+@dataclass(frozen=True, slots=True)
+class Truth:
+    """All that the simulator makes up: how specimens and runs scatter, what the rig does, the wall's memory.
+
+    ``rest`` is the longest rest in s (None: the protocol's), ``specimens`` how many are drawn for a population.
+    """
+
+    scatter: Scatter = field(default_factory=Scatter)
+    rig: RigModel = field(default_factory=RigModel)
+    wall: Wall = field(default_factory=Wall)
+    rest: float | None = None
+    specimens: int = SPECIMENS
+
+    def protocol(self, kind: Any, inner_radius: float, reach: float) -> Protocol:
+        """The protocol of a kind as it is simulated: rests as asked for, no depth beyond the range."""
+        found = within(protocol(kind, inner_radius), reach)
+        return found if self.rest is None else found.quicker(min(self.rest, found.rest))
+
+
+@dataclass(frozen=True, slots=True)
+class Population:
+    """Sensors of one resin and age at one driving pressure: mean figures by key, their spread over specimens, how many, and where from."""
+
+    figures: dict[str, float | None]
+    spread: dict[str, float]
+    count: int
+    basis: str
+
+
+def loading(curve: PressCurve, steps: Protocol, wall: Wall) -> tuple[Array, Array, Array]:
+    """Indentation, force and rise at the ends of the holds without noise, the origin first; (n + 1,) mm, N, MPa."""
+    depths = np.array(steps.depths)
+    force, rise = curve.at(depths)
+    if wall.times:
+        by_force, by_rise = wall.held(steps, curve.indentation)
+        force, rise = force + by_force @ curve.force, rise + by_rise @ curve.rise
+    return tuple(np.concatenate([[0.0], x]) for x in (depths, force, rise))  # type: ignore[return-value]
+
+
+def specimen_figures(curve: PressCurve, truth: Truth, inner_radius: float, rate: float) -> dict[str, float | None]:
+    """Figures of one specimen at one driving pressure without noise, by key.
+
+    Relaxation is the wall's alone: the rig's drift is not in it. Drift is the rig's alone: the wall's recovery after a press,
+    which a reading without contact shows too, is not in it.
+    """
+    steps = truth.protocol("steps", inner_radius, curve.reach)
+    depth, force, rise = loading(curve, steps, truth.wall)
+    found = _by_key(lines(depth, force, rise / KPA))
+    deep = loading(curve, truth.protocol("saturation", inner_radius, curve.reach), truth.wall)
+    saturation = figures(deep[0], deep[1], deep[2] / KPA)
+    noise = truth.rig.noise(rate)
+    return {
+        **found,
+        "saturation_force_N": None if saturation is None else saturation.saturation_force,
+        **loop_figures(curve, truth, inner_radius),
+        **relaxation_figures(curve, truth, inner_radius),
+        "noise_force_N": noise[0],
+        "noise_pressure_kPa": noise[1] / KPA,
+        "drift_pressure_kPa_per_min": MINUTE * truth.rig.drift(curve.driving) / KPA,
+    }
+
+
+def loop_figures(curve: PressCurve, truth: Truth, inner_radius: float) -> dict[str, float]:
+    """Hysteresis of the noise-free loop, percent, mean over its cycles; the rise counts from before each."""
+    loop = truth.protocol("loop", inner_radius, curve.reach)
+    quiet = Scatter.none()
+    record = simulate_run(
+        curve, loop, RigModel.perfect(), _LOOP_RATE, np.random.default_rng(0), wall=truth.wall, scatter=quiet
+    )
+    knots, _ = loop.way()
+    rise, both = record.pressure - curve.driving, []
+    touched = record.force > 0
+    for k in range(len(loop.depths)):
+        a, b, c, d = (knots[4 * k + j] for j in (1, 2, 3, 4))
+        up = touched & (record.time >= a) & (record.time <= b)
+        down = touched & (record.time >= c) & (record.time <= d)
+        here = rise - rise[np.searchsorted(record.time, a - 1e-9)]
+        both.append(hysteresis(record.force[up], here[up], record.force[down], here[down]))
+    width, area = np.mean(both, axis=0)
+    return {"hysteresis_width_percent": 100 * float(width), "hysteresis_area_percent": 100 * float(area)}
+
+
+def relaxation_figures(curve: PressCurve, truth: Truth, inner_radius: float) -> dict[str, float]:
+    """Loss from 1 s into the hold to its end, and its slope over log10 of time, over the value at 1 s; percent.
+
+    As the rig reads it: what its zero and the gas drift in that time is in it.
+
+    The slope is the least-squares line through instants even in log time; a loss counts as positive.
+    """
+    asked = truth.protocol("relaxation", inner_radius, curve.reach)
+    depth = np.array(asked.depths[:1])
+    force, rise = (float(x[0]) for x in curve.at(depth))
+    step = depth[0] / asked.speed / 2000
+    ramp = np.stack(curve.at(np.linspace(0.0, depth[0], 2001)), axis=1)
+    start = [term[-1] for term in truth.wall.terms(ramp, step)]
+    time = np.geomspace(_FIRST, asked.hold, _INSTANTS)
+    found = {}
+    rig, wall = truth.rig, truth.wall
+    for k, (name, level, shares, drift) in enumerate((
+        ("force", force, wall.force, rig.force_drift), ("pressure", rise, wall.rise, rig.drift(curve.driving)),
+    )):  # fmt: skip
+        value = level + drift * time
+        for share, term, tau in zip(shares, start, truth.wall.times, strict=True):
+            value += share * term[k] * np.exp(-time / tau)
+        slope = np.polyfit(np.log10(time), value, 1)[0]
+        found[f"relaxation_{name}_percent"] = float(100 * (value[0] - value[-1]) / value[0])
+        found[f"relaxation_{name}_percent_per_decade"] = float(-100 * slope / value[0])
+    return found
+
+
+def population(pressed: Pressed, k: int, truth: Truth, rate: float, seed: tuple[int, ...]) -> Population:
+    """The population around a nominal sensor, pressed at its k-th driving pressure.
+
+    Specimens come from the atlas in one batch. Mean and spread of each figure are then scaled by the nominal sensor's own
+    figure over the atlas's, so that they belong to the model that made the records. Where the atlas does not speak, the
+    figures are the nominal sensor's and there is no spread but the runs'.
+    """
+    sensor, curve = pressed.sensor, pressed.curves[k]
+    nominal = specimen_figures(curve, truth, sensor.inner_radius, rate)
+    steps = truth.protocol("steps", sensor.inner_radius, curve.reach)
+    drawn = _drawn(sensor, curve.driving, steps, truth, seed)
+    if drawn is None:
+        return Population(
+            _with_runs(nominal, truth, None), {}, 0, "the nominal sensor: the atlas does not speak for this population"
+        )
+    here, kept = drawn
+    base = _by_key(Lines(*(column[:1] for column in here)))
+    mean, spread = dict(nominal), {}
+    for key, name, factor in _KEYS:
+        values = factor * getattr(here, name)[1:]
+        own, tabulated = nominal[key], base[key]
+        scale = own / tabulated if own is not None and tabulated else 1.0
+        mean[key], spread[key] = float(scale * values.mean()), float(scale * values.std(ddof=1))
+    basis = (
+        f"{kept} of {truth.specimens} specimens through the atlas, scaled to the {pressed.model}'s nominal sensor; "
+        "saturation, hysteresis and relaxation are the nominal sensor's"
+    )
+    return Population(_with_runs(mean, truth, spread["sensitivity_kPa_per_N"]), spread, kept, basis)
+
+
+def _drawn(
+    sensor: Sensor, driving: float, steps: Protocol, truth: Truth, seed: tuple[int, ...]
+) -> tuple[Lines, int] | None:
+    """Figures of the nominal sensor (first) and of the specimens that reach every depth; None where too few do."""
+    from pneutouch.mechanics.atlas_states import outside_atlas
+
+    depth = max(steps.depths)
+    nominal = replace(sensor, depth=depth, gauge_limit=np.inf)
+    if outside_atlas(nominal) is not None:
+        return None
+    count = truth.specimens
+    some = Specimens.draw(truth.scatter, count, np.random.default_rng([*seed, count]))
+    batch = batch_of(nominal, np.full(count + 1, driving))
+    wall = np.maximum(batch.wall_thickness[1:] + some.wall, 0.05 * sensor.wall_thickness)
+    batch = replace(
+        batch, shear_modulus=batch.shear_modulus * np.concatenate([[1.0], some.modulus]),
+        wall_thickness=np.concatenate([batch.wall_thickness[:1], wall]),
+        dead_volume=batch.dead_volume + np.concatenate([[0.0], some.dead_volume]),
+    )  # fmt: skip
+    found = respond(batch, STEPS)
+    whole = np.flatnonzero((found.ends == DEPTH) & np.isfinite(found.range_end))
+    if not whole.size or whole[0] != 0 or whole.size - 1 < _ENOUGH * count:
+        return None
+    nodes = np.linspace(0.0, depth, STEPS + 1)
+    force, rise = _held(found.force[whole], found.rise[whole], nodes, steps, truth.wall)
+    depths = np.broadcast_to(np.concatenate([[0.0], steps.depths]), force.shape)
+    return lines(depths, force, rise / KPA), whole.size - 1
+
+
+def _held(force: Array, rise: Array, nodes: Array, steps: Protocol, wall: Wall) -> tuple[Array, Array]:
+    """Values at the ends of the holds of curves (n, nodes), the origin first."""
+    from scipy.interpolate import PchipInterpolator
+
+    found = []
+    for values, memory in zip((force, rise), wall.held(steps, nodes), strict=True):
+        here = PchipInterpolator(nodes, values, axis=1)(np.array(steps.depths)) + values @ memory.T
+        found.append(np.concatenate([np.zeros((len(values), 1)), here], axis=1))
+    return found[0], found[1]
+
+
+def _by_key(found: Lines) -> dict[str, float | None]:
+    return {key: float(factor * np.ravel(getattr(found, name))[0]) for key, name, factor in _KEYS}
+
+
+def _with_runs(mean: dict[str, float | None], truth: Truth, parts: float | None) -> dict[str, float | None]:
+    """With the spread of the sensitivity between runs of one specimen and between specimens."""
+    slope = mean["sensitivity_kPa_per_N"]
+    return {
+        **mean,
+        "repeatability_kPa_per_N": None if slope is None else truth.scatter.gain * slope,
+        "part_to_part_kPa_per_N": parts,
+    }
+
+
+def aged(sensor: Sensor, truth: Truth, days: float) -> Sensor:
+    """The nominal sensor at an age."""
+    return stiffened(sensor, ageing_factor(truth.scatter, days))

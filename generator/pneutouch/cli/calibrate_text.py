@@ -1,0 +1,36 @@
+"""A calibration as text for people."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pneutouch.cli.text import columns
+
+
+def calibration_text(document: dict[str, Any]) -> str:
+    """The estimates beside the design's values, how well they fit, what must be known, and the files written."""
+    rows = [
+        [e["key"], f"{e['value']:.4g}", _interval(e), f"designed {e['designed']:.4g}"] for e in document["estimates"]
+    ]
+    fit = document["fit"]
+    head = (
+        f"{document['sensor']}, {document['design']}: {document['runs']} curves, {document['injections']} injections, "
+        f"{fit['points_used']} values"
+    )
+    chi = fit["chi_squared_per_degree"]
+    parts = [
+        head,
+        columns([], rows),
+        "" if chi is None else f"chi-squared per degree of freedom: {chi:.2f}",
+        "\n".join(f"note: {note}" for note in document["told"]),
+        "\n".join(f"not read: {file}: {why}" for file, why in document["failures"]),
+        "\n".join(f"written: {path}" for path in document["written"]),
+    ]
+    return "\n\n".join(part for part in parts if part)
+
+
+def _interval(estimate: dict[str, Any]) -> str:
+    interval = estimate["interval_95"]
+    if interval is None:
+        return "on its bound, no interval" if estimate["on_bound"] else "no interval"
+    return f"95 %: {interval[0]:.4g} to {interval[1]:.4g}"

@@ -1,0 +1,46 @@
+"""``pneutouch characterize``: measured data to figures, beside the predicted ones."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pneutouch.cli.app import JsonOption, OutOption, SetOption, app, print_json, reporting
+
+
+@app.command()
+def characterize(
+    data: Annotated[Path, typer.Argument(metavar="DATA", help="Folder of a campaign, its campaign.toml, or one run's file.")],
+    design: Annotated[str | None, typer.Option("--design", help="Design of the sensors; left out: the campaign's.")] = None,
+    target: Annotated[Path | None, typer.Option("--target", metavar="FILE", help="Target file (TOML) to pass or fail against.")] = None,
+    model: Annotated[str, typer.Option("--model", help="Rung of the prediction: membrane, atlas, solid or auto.")] = "solid",
+    evidence: Annotated[str, typer.Option("--evidence", help="Runs whose evidence is plotted: doubtful, all or none.")] = "doubtful",
+    set_: SetOption = None, out: OutOption = Path("outputs"), json: JsonOption = False,
+) -> None:  # fmt: skip
+    """Turn measured runs into figures, beside the predicted ones; exit 3 where files could not be read."""
+    with reporting():
+        from pneutouch.cli.progress import bar
+        from pneutouch.errors import InputError, nearest
+        from pneutouch.pipeline.characterize.run import EVIDENCE, write
+        from pneutouch.pipeline.characterize.run import characterize as run
+
+        if evidence not in EVIDENCE:
+            raise InputError(f"--evidence {evidence}: unknown.{nearest(evidence, EVIDENCE)}")
+        with bar("MB read") as progress:
+            found = run(data, design, set_, target=target, model=model, progress=progress)
+        folder = write(found, out, evidence)
+        if json:
+            print_json({**found.document, "folder": str(folder)})
+        else:
+            from pneutouch.cli.characterize_text import measured_text
+
+            typer.echo(measured_text(found.document))
+            typer.echo(f"\n{folder}")
+        for file, message in found.measured.failures:
+            typer.echo(f"error: {file}: not read: {message}", err=True)
+        if found.failed:
+            raise typer.Exit(3)
+        if found.missed:
+            raise typer.Exit(1)

@@ -1,0 +1,50 @@
+"""A characterization as text."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pneutouch.bench.figure import BY_KEY
+
+
+def measured_text(document: dict[str, Any]) -> str:
+    """A table a group: measured with its interval, beside the prediction; then what is doubtful."""
+    head = f"{document['title']}: measured on {document['design']}, predicted by {document['model']}"
+    lines = [head + ("  SIMULATED DATA" if document["simulated"] else "")]
+    for group in document["groups"]:
+        lines += ["", *_group(group)]
+    for entry in document["target"]:
+        word = {True: "met", False: "NOT met", None: "not decided"}[entry["passed"]]
+        lines.append(f"\ntarget {word}: {entry['what']}: wanted {entry['wanted']}, measured {entry['measured']}")
+    for change in document["ageing"]:
+        lines.append(f"\nageing: {change['resin']}, {change['driving_pressure_kPa']:g} kPa, {change['age']}: {change['sensitivity_change_percent']:+.1f} %")  # fmt: skip
+    for entry in document["injections"]:
+        error = "" if entry["standard_error"] is None else f" ± {entry['standard_error']:.2g}"
+        lines.append(f"\n{entry['sensor']}: {entry['figure']} {entry['value']:.4g}{error} {entry['unit']}")
+    lines += _doubts(document["runs"])
+    lines += [f"\nquestion: {entry['file']}: {entry['question']}" for entry in document["questions"]]
+    return "\n".join(lines)
+
+
+def _doubts(runs: list[dict[str, Any]]) -> list[str]:
+    """How many stretches were left out, and how many are noted but used."""
+    every = [doubt for run in runs for doubt in run["doubts"]]
+    left = sum(not doubt["used"] for doubt in every)
+    if not every:
+        return []
+    return [f"\n{left} doubtful stretches left out, {len(every) - left} noted and used; see figures.json and evidence/"]
+
+
+def _group(group: dict[str, Any]) -> list[str]:
+    sensors = ", ".join(group["sensors"])
+    lines = [f"{group['resin']}, {group['age']}, {group['driving_pressure_kPa']:g} kPa: {sensors}"]
+    if group["why_not_predicted"]:
+        lines.append(f"  not predicted: {group['why_not_predicted']}")
+    for key, entry in group["figures"].items():
+        figure = BY_KEY[key]
+        interval = "" if entry["low"] is None else f"{entry['low']:.4g} to {entry['high']:.4g}"
+        said = f"  {figure.name:<48} {entry['value']:>9.4g}  {interval:<22} {figure.unit}"
+        if "predicted" in entry:
+            said += f"  (predicted {entry['predicted']['value']:.4g})"
+        lines.append(said.rstrip())
+    return lines

@@ -1,0 +1,45 @@
+"""``pneutouch plan``: a test plan for the laboratory."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pneutouch.cli.app import DesignArgument, JsonOption, OutOption, SetOption, app, print_json, reporting
+from pneutouch.cli.simulate import ResinsOption, SpecimensOption, words
+
+
+@app.command()
+def plan(
+    design: DesignArgument,
+    resins: ResinsOption = "",
+    specimens: SpecimensOption = 3,
+    rig: Annotated[
+        Path | None, typer.Option("--rig", metavar="RIG.toml", help="File with a [rig] table; left out: the paper's rig.")
+    ] = None,
+    set_: SetOption = None, out: OutOption = Path("outputs"), json: JsonOption = False,
+) -> None:  # fmt: skip
+    """Plan a measurement campaign: every run and step, what it must read, and where the rig cannot follow."""
+    with reporting():
+        from pneutouch.pipeline.plan import make_plan, rig_of, write_plan
+
+        found = make_plan(
+            design,
+            set_,
+            resins=words(resins),
+            specimens=specimens,
+            rig=rig_of(rig),
+            rig_name="" if rig is None else rig.name,
+        )
+        folder = write_plan(found, out)
+        for warning in found.document["warnings"]:
+            typer.echo(f"warning: {warning['rule']}: {warning['message']}", err=True)
+        if json:
+            print_json({**found.document, "folder": str(folder)})
+        else:
+            from pneutouch.cli.plan_text import plan_text
+
+            typer.echo(plan_text(found.document))
+            typer.echo(f"\n{folder}")

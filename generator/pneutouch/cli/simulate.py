@@ -1,0 +1,83 @@
+"""``pneutouch simulate``: a campaign of simulated runs, to try the measuring chain on."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from pneutouch.cli.app import DesignArgument, JsonOption, OutOption, SetOption, app, print_json, reporting
+from pneutouch.cli.progress import bar
+
+if TYPE_CHECKING:
+    from pneutouch.pipeline.simulate import Asked
+
+ResinsOption = Annotated[
+    str, typer.Option("--resins", metavar="NAME,NAME", help="Resins of the dome, or all of the paper's; left out: the design's.")
+]  # fmt: skip
+SpecimensOption = Annotated[int, typer.Option("--specimens", help="Specimens of each resin.")]
+
+
+@app.command()
+def simulate(
+    design: DesignArgument,
+    resins: ResinsOption = "",
+    specimens: SpecimensOption = 3,
+    pressures: Annotated[str | None, typer.Option(metavar="KPA,KPA", help="Driving pressures, kPa; left out: the design's.")] = None,
+    runs: Annotated[int, typer.Option(help="Runs of each steps and saturation test; other kinds have one.")] = 3,
+    kinds: Annotated[str, typer.Option(metavar="KIND,KIND", help="Of steps, saturation, loop, relaxation, leak, injection.")] = "steps,loop,relaxation",
+    rate: Annotated[float, typer.Option(help="Samples a second, Hz.")] = 100.0,
+    rest: Annotated[float | None, typer.Option(metavar="S", help="Longest rest, s; left out: the paper's 30 s and 2 s.")] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of scatter and noise.")] = 0,
+    ages: Annotated[str, typer.Option(metavar="DAYS,DAYS", help="Ages at which every specimen is measured, days.")] = "0",
+    model: Annotated[str, typer.Option("--model", help="What presses the specimens: solid, atlas or auto.")] = "solid",
+    parquet: Annotated[bool, typer.Option("--parquet", help="Parquet files instead of CSV.")] = False,
+    set_: SetOption = None, out: OutOption = Path("outputs"), json: JsonOption = False,
+) -> None:  # fmt: skip
+    """Simulate a measurement campaign: records with known truth, always labelled as simulated."""
+    with reporting():
+        from pneutouch.bench.simulate import Truth
+        from pneutouch.pipeline.simulate import Asked, simulate
+
+        asked = Asked(
+            resins=words(resins), specimens=specimens, runs=runs, kinds=words(kinds), rate=rate, seed=seed, model=model,
+            pressures=None if pressures is None else numbers("--pressures", pressures), ages=numbers("--ages", ages),
+            parquet=parquet, truth=Truth(rest=rest),
+        )  # fmt: skip
+        with bar("specimens") as progress:
+            folder = simulate(design, out, set_, asked, progress=progress)
+        _tell(folder, asked, json=json)
+
+
+def words(text: str) -> tuple[str, ...]:
+    """Names with commas between."""
+    return tuple(part.strip() for part in text.split(",") if part.strip())
+
+
+def numbers(flag: str, text: str) -> tuple[float, ...]:
+    """Numbers with commas between. Raises InputError."""
+    from pneutouch.errors import InputError
+
+    try:
+        return tuple(float(part) for part in words(text))
+    except ValueError:
+        raise InputError(f"{flag} {text}: must be numbers with commas between, such as 0,22") from None
+
+
+def _tell(folder: Path, asked: Asked, *, json: bool) -> None:
+    """The folder on stdout; on stderr where runs stop short of their depth."""
+    from json import loads
+
+    truth = loads((folder / "truth.json").read_text(encoding="utf-8"))
+    files = [name for name in loads((folder / "manifest.json").read_text(encoding="utf-8"))["files"] if "/" in name]
+    for note in truth["notes"]:
+        typer.echo(f"note: {note}", err=True)
+    if json:
+        print_json({
+            "folder": str(folder), "simulated": True, "runs": len(files), "specimens": len(truth["specimens"]),
+            "seed": asked.seed, "populations": truth["populations"], "notes": truth["notes"],
+        })  # fmt: skip
+        return
+    typer.echo(f"{len(files)} simulated runs of {len(truth['specimens'])} specimens", err=True)
+    typer.echo(str(folder))

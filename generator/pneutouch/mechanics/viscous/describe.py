@@ -1,0 +1,121 @@
+"""What a press, a hold and a loop of every state say, in figures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from pneutouch.mechanics.atlas.batches import batch_of
+from pneutouch.mechanics.atlas.respond import respond
+from pneutouch.mechanics.atlas_states import outside_atlas
+from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.viscous.known import ageing_ratio
+from pneutouch.mechanics.viscous.prony import prony_series, relaxed
+from pneutouch.mechanics.viscous.runs import Loop, Relaxation, loop, relaxation
+from pneutouch.meridian.segments import Array
+from pneutouch.spec.material import Material
+from pneutouch.units import KPA
+
+RAMP_SPEED = 5.0
+"""mm/s, of the press before the hold: our choice, the paper gives none."""
+
+LOOP_SPEEDS = (0.5, 5.0)
+"""mm/s: our choice, a slow and a quick hand."""
+
+DEPTH_SHARE = 0.5
+"""Depth as a share of R0: our choice, the paper gives no depth for its relaxation test. Deeper, stiff resins pressed fast buckle."""
+
+BASIS = (
+    "quasi-linear viscoelasticity on the atlas, gas isothermal and sealed; the inflated dome has relaxed before contact",
+    "one relaxation for all stresses of the resin, that of small strain; no temperature dependence",
+)
+
+
+@dataclass(frozen=True)
+class Viscous:
+    """Runs of one sensor: ``held[i][j]`` and ``loops[speed][i][j]`` of state i in series j; pressures in MPa, depth in mm."""
+
+    sources: tuple[str, ...]
+    driving_pressures: tuple[float, ...]
+    depth: float
+    held: list[list[Relaxation]]
+    loops: dict[float, list[list[Loop]]]
+
+    def document(self) -> dict[str, Any]:
+        """The figures as data: one entry a state, one a source in it."""
+        return {
+            "depth_mm": self.depth, "ramp_speed_mm_per_s": RAMP_SPEED, "sources": list(self.sources), "basis": list(BASIS),
+            "states": [
+                {
+                    "driving_pressure_kPa": pressure / KPA,
+                    "by_source": [
+                        {
+                            "relaxation": _held(self.held[i][j]),
+                            "hysteresis": [{"speed_mm_per_s": v, **_looped(runs[i][j])} for v, runs in self.loops.items()],
+                        }
+                        for j in range(len(self.sources))
+                    ],
+                }
+                for i, pressure in enumerate(self.driving_pressures)
+            ],
+        }  # fmt: skip
+
+
+def describe(sensor: Sensor, material: Material, driving_pressures: Sequence[float], depth: float) -> Viscous:
+    """Press a sensor at driving pressures (MPa) to a depth (mm) in every series of its resin.
+
+    The sensor and its resin must be such that `known.unknown` has nothing to say. A series whose relaxed modulus leaves the
+    atlas, where the file gives the instantaneous one, is left out.
+    """
+    kept, held, loops = [], [], []
+    for series in prony_series(material):
+        own = relaxed(sensor, material, series)
+        if outside_atlas(own) is not None:
+            continue
+        kept.append(series.source)
+        held.append(relaxation(own, [series], driving_pressures, depth, RAMP_SPEED))
+        loops.append({v: loop(own, [series], driving_pressures, depth, v) for v in LOOP_SPEEDS})
+    states = range(len(driving_pressures))
+    return Viscous(
+        tuple(kept), tuple(driving_pressures), depth, [[one[i][0] for one in held] for i in states],
+        {v: [[one[v][i][0] for one in loops] for i in states] for v in LOOP_SPEEDS},
+    )  # fmt: skip
+
+
+def chosen_depth(sensor: Sensor, range_ends: Sequence[float]) -> float:
+    """Depth of the runs in mm: a share of R0, within the range of every state."""
+    return float(min(DEPTH_SHARE * sensor.inner_radius, sensor.depth, *range_ends))
+
+
+def ageing_shift(sensor: Sensor, material: Material, driving_pressures: Sequence[float]) -> tuple[float, Array]:
+    """Ratio of the modulus after a year by hardness, and the relative change of the sensitivity from it, (n,).
+
+    Raises InputError where the resin's hardness after a year is not known.
+    """
+    ratio = ageing_ratio(material)
+    old = replace(sensor, shear_modulus=ratio * sensor.shear_modulus)
+    before, after = (respond(batch_of(one, driving_pressures), one.steps).lines.sensitivity for one in (sensor, old))
+    return ratio, after / before - 1.0
+
+
+def _held(run: Relaxation) -> dict[str, Any]:
+    if run.ended is not None:
+        return {"ended": run.ended}
+    (force, force_decade), (rise, rise_decade) = run.drop(run.force), run.drop(run.rise)
+    return {
+        "force_loss_percent": 100 * force, "force_loss_percent_per_decade": 100 * force_decade,
+        "pressure_rise_loss_percent": 100 * rise, "pressure_rise_loss_percent_per_decade": 100 * rise_decade,
+        "from_s": 1.0, "to_s": float(np.round(run.times[-1], 9)),
+    }  # fmt: skip
+
+
+def _looped(run: Loop) -> dict[str, Any]:
+    found, ended = run.hysteresis(), {} if run.ended is None else {"ended": run.ended}
+    if found is None:
+        return ended
+    return {
+        "width_percent": 100 * found[0], "area_percent": 100 * found[1], "contact_lost_at_mm": run.contact_lost, **ended,
+    }  # fmt: skip

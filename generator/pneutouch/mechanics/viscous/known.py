@@ -1,0 +1,53 @@
+"""Whether anything can be said of a resin's relaxation and of its ageing."""
+
+from __future__ import annotations
+
+from pneutouch.errors import InputError
+from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.viscous.prony import prony_series, relaxed
+from pneutouch.spec.material import Material
+
+_MEMBRANE = "the membrane has no stiffness of its own to relax; take --model atlas, solid or auto"
+
+AGED = (
+    "The ratio alone of Gent's relation of Shore A to modulus (Rubber Chem. Technol. 31, 896, 1958) is used, not its level; above "
+    "Shore A 80, where the scale is compressed, it grows steep. Hardness is read in seconds and is applied to the relaxed modulus; "
+    "what light and air harden may be a skin, and is taken as the whole wall"
+)
+"""What the step from hardness to modulus assumes."""
+
+
+def unknown(sensor: Sensor, material: Material, rung: str) -> str | None:
+    """Why nothing can be said of relaxation and hysteresis, or None where it can."""
+    if not material.relaxation:
+        return f"no relaxation data for {material.title}; no other resin's are put in their place"
+    if rung == "membrane":
+        return _MEMBRANE
+    from pneutouch.mechanics.atlas_states import outside_atlas
+
+    reasons = [outside_atlas(relaxed(sensor, material, series)) for series in prony_series(material)]
+    return None if None in reasons else f"the sensor is outside the atlas: {reasons[0]}"
+
+
+def ageing_unknown(material: Material) -> str | None:
+    """Why a year's change of the modulus is not known, or None where it is."""
+    if material.shore_a is None or material.shore_a_one_year is None:
+        return f"the hardness of {material.title} after a year is not known"
+    if material.law is not None:
+        return f"{material.title} has a law of its own, whose constants hardness does not give"
+    return None
+
+
+def ageing_ratio(material: Material) -> float:
+    """Shear modulus after a year in light and air over the fresh one, by hardness; `AGED` says what that assumes.
+
+    Raises InputError for a resin of which it is not known.
+    """
+    why = ageing_unknown(material)
+    if why is not None:
+        raise InputError(f"aged: {why}; give shore_a and shore_a_one_year in its material file, or leave --aged out")
+    from pneutouch.mechanics.uncertainty.hardness import young_modulus
+
+    assert material.shore_a is not None and material.shore_a_one_year is not None
+    fresh, aged = material.shore_a.nominal, material.shore_a_one_year.nominal
+    return young_modulus(aged) / young_modulus(fresh)

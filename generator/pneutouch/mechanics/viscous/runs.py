@@ -1,0 +1,185 @@
+"""The two runs of a viscous sensor: pressed and held, and pressed and let go; in mm, N, MPa and s."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+
+from pneutouch.mechanics.atlas.batches import batch_of
+from pneutouch.mechanics.atlas.press import Press
+from pneutouch.mechanics.atlas.table import Atlas, shipped
+from pneutouch.mechanics.response import hysteresis
+from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.viscous.follow import Path, follow
+from pneutouch.mechanics.viscous.prony import Prony
+from pneutouch.meridian.segments import Array
+
+_Run = TypeVar("_Run")
+
+HOLD_TIMES = np.concatenate([np.geomspace(1e-2, 1.0, 13)[:-1], np.geomspace(1.0, 600.0, 28)])
+"""Seconds after the ramp: to the paper's 600 s (Supplement D), even in the logarithm, 1 s among them."""
+
+_RAMP_STEPS, _LOOP_STEPS = 30, 48
+"""Equal steps of travel in a ramp and in each half of a loop: losses stand to 0.1, hysteresis to 0.2 percentage points (tests)."""
+
+
+@dataclass(frozen=True)
+class Relaxation:
+    """A sensor pressed evenly to a depth and held: force (N) and pressure rise (MPa) over times (s) since the ramp's end.
+
+    ``ended`` says where the run could not be followed further, with what is known before; None where it was followed.
+    """
+
+    times: Array
+    force: Array
+    rise: Array
+    ended: str | None = None
+
+    def drop(self, values: Array) -> tuple[float, float]:
+        """What a value loses from 1 s to the end, and a decade (least squares over log10 t from 1 s); over its value at 1 s.
+
+        Raises ValueError where the run does not reach from 1 s onwards.
+        """
+        late = self.times >= 1.0 - 1e-9
+        if late.sum() < 2:
+            raise ValueError("the run does not hold for longer than 1 s")
+        first, decades = values[late][0], np.log10(self.times[late])
+        slope = np.polyfit(decades, values[late], 1)[0]
+        return float(1.0 - values[-1] / first), float(-slope / first)
+
+
+@dataclass(frozen=True)
+class Loop:
+    """A sensor pressed evenly to a depth and let go: indentation (mm), force (N), pressure rise (MPa) in and out.
+
+    ``contact_lost`` is the plate travel (mm) at which the dome no longer follows the plate on its way out, where the loop
+    ends; None where it follows to the end. ``ended`` says where the run could not be followed further, or None; one that
+    does not reach its depth has no way out.
+    """
+
+    indentation_in: Array
+    force_in: Array
+    rise_in: Array
+    indentation_out: Array
+    force_out: Array
+    rise_out: Array
+    contact_lost: float | None = None
+    ended: str | None = None
+
+    def hysteresis(self) -> tuple[float, float] | None:
+        """Both usual measures, see `response.hysteresis`; None where there is no way out."""
+        if self.force_out.size < 2:
+            return None
+        return hysteresis(self.force_in, self.rise_in, self.force_out, self.rise_out)
+
+    def energy_loss(self) -> float | None:
+        """Share of the plate's work that does not come back; None where there is no way out."""
+        if self.force_out.size < 2:
+            return None
+        spent = np.trapezoid(self.force_in, self.indentation_in)
+        return float(1.0 + np.trapezoid(self.force_out, self.indentation_out) / spent)
+
+
+def relaxation(
+    sensor: Sensor, series: Sequence[Prony], driving_pressures: Sequence[float], depth: float, speed: float,
+    times: Array = HOLD_TIMES, steps: int = _RAMP_STEPS, atlas: Atlas | None = None,
+) -> list[list[Relaxation]]:  # fmt: skip
+    """Press to ``depth`` mm at ``speed`` mm/s and hold for ``times`` (ascending, s, above 0); one list a driving pressure (MPa), one run a series.
+
+    The sensor's modulus is the relaxed one and the sensor lies inside the atlas (`atlas_states.outside_atlas`).
+    """
+    share = np.linspace(0.0, 1.0, steps + 1)
+    # The history is taken as even between times: those between the ones asked for must not be left out.
+    between = (
+        HOLD_TIMES
+        if times[-1] <= HOLD_TIMES[-1]
+        else np.append(HOLD_TIMES, np.geomspace(HOLD_TIMES[-1], times[-1], 28))
+    )
+    waits = np.union1d(times, between[between < times[-1]])
+    clock = np.concatenate([share * depth / speed, depth / speed + waits])
+    travel = np.concatenate([share, np.ones(waits.size)]) * depth
+    press, path = _followed(sensor, series, driving_pressures, clock, travel, atlas)
+    force, rise = _with_units(press, path)
+    runs = []
+    for i in range(force.shape[0]):
+        known, ended = _sound(press, path, i)
+        asked = steps + 1 + np.searchsorted(waits, times)
+        asked = asked[asked < known]
+        where = None if ended is None else f"{ended} at {travel[known]:.2f} mm"
+        runs.append(Relaxation(times[: asked.size], force[i, asked], rise[i, asked], where))
+    return _by_state(runs, len(series))
+
+
+def loop(
+    sensor: Sensor, series: Sequence[Prony], driving_pressures: Sequence[float], depth: float, speed: float,
+    steps: int = _LOOP_STEPS, atlas: Atlas | None = None,
+) -> list[list[Loop]]:  # fmt: skip
+    """Press to ``depth`` mm and back at ``speed`` mm/s; one list a driving pressure (MPa), one run a series; see `relaxation`."""
+    share = np.linspace(0.0, 1.0, steps + 1)
+    travel = np.concatenate([share, share[-2::-1]]) * depth
+    clock = np.linspace(0.0, 2.0 * depth / speed, 2 * steps + 1)
+    press, path = _followed(sensor, series, driving_pressures, clock, travel, atlas)
+    force, rise = _with_units(press, path)
+    runs = [_loop(travel, force[i], rise[i], *_sound(press, path, i)) for i in range(force.shape[0])]
+    return _by_state(runs, len(series))
+
+
+def _loop(travel: Array, force: Array, rise: Array, known: int, ended: str | None) -> Loop:
+    """One run of 2 n + 1 points, of which the first ``known`` are; cut where the plate pulls the dome, which it cannot."""
+    turn, last = travel.size // 2, travel.size - 1
+    where = None if ended is None else f"{ended} at {travel[known]:.2f} mm"
+    there = slice(0, min(known, turn + 1))
+    back = np.stack([travel, force, rise])[:, turn : max(known, turn)]
+    pulled, lost = np.flatnonzero(back[1] <= 0.0), None
+    if pulled.size and turn + pulled[0] < last:
+        first = int(pulled[0])
+        before, after = back[:, first - 1], back[:, first]
+        edge = before + before[1] / (before[1] - after[1]) * (after - before)
+        back, lost, where = np.column_stack([back[:, :first], edge]), float(edge[0]), None
+    return Loop(travel[there], force[there], rise[there], back[0], back[1], back[2], lost, where)
+
+
+def _followed(
+    sensor: Sensor, series: Sequence[Prony], driving_pressures: Sequence[float], clock: Array, travel: Array,
+    atlas: Atlas | None,
+) -> tuple[Press, Path]:  # fmt: skip
+    """Every state with every series, series running fastest."""
+    batch = batch_of(sensor, np.repeat(np.asarray(driving_pressures, dtype=float), len(series)))
+    terms = max(len(one.shares) for one in series)
+    excess, times = np.zeros((len(series), terms)), np.ones((len(series), terms))
+    for row, one in enumerate(series):
+        excess[row, : len(one.times)], times[row, : len(one.times)] = one.excess, one.times
+    slices = (atlas or shipped()).slices(batch.wall_ratio[:1], ())
+    press = Press(batch, slices, np.zeros(len(batch), dtype=np.intp))
+    many = len(driving_pressures)
+    shape = (len(batch), clock.size)
+    path = follow(
+        press, np.tile(excess, (many, 1)), np.tile(times, (many, 1)), np.broadcast_to(clock, shape),
+        np.broadcast_to(travel / sensor.inner_radius, shape),
+    )  # fmt: skip
+    return press, path
+
+
+def _with_units(press: Press, path: Path) -> tuple[Array, Array]:
+    """Force (N) and pressure rise (MPa), (n, m)."""
+    mu, radius = press.batch.shear_modulus[:, None], press.batch.inner_radius[:, None]
+    return path.force * mu * radius**2, (path.pressure - path.pressure[:, :1]) * mu
+
+
+def _sound(press: Press, path: Path, i: int) -> tuple[int, str | None]:
+    """How many states of a run are known and within the gauge's range, and why no more."""
+    clipped = path.pressure[i] > press.batch.gauge_limit[i] / press.batch.shear_modulus[i]
+    sound = path.known[i] & ~clipped
+    if sound.all():
+        return sound.size, None
+    first = int(np.argmin(sound))
+    if path.known[i, first]:
+        return first, "gauge range"
+    return first, "inward buckling" if path.folded[i, first] else "outside the atlas"
+
+
+def _by_state(runs: list[_Run], series: int) -> list[list[_Run]]:
+    return [runs[k : k + series] for k in range(0, len(runs), series)]

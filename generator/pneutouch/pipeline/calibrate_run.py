@@ -1,0 +1,57 @@
+"""The command behind ``pneutouch calibrate``: a campaign's folder in, its calibration and files out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pneutouch.catalogue import Library, load_scene
+from pneutouch.errors import InputError
+from pneutouch.pipeline.calibrate import calibrate, observations_of
+from pneutouch.pipeline.calibrate_files import prepare, save, write_calibration
+from pneutouch.pipeline.characterize.load import load_curves
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """What the flags ask for: see the command."""
+
+    data: Path
+    design: str | None
+    sensor: str | None
+    names: tuple[str, ...]
+    hold_out: tuple[float, ...]
+    priors: bool
+    save: str | None
+    shadow: bool
+    out: Path
+
+
+def run_calibration(asked: Asked, shelves: Library | None = None) -> dict[str, Any]:
+    """Read, fit and write; the calibration's document with ``written`` and ``failures``. Raises InputError.
+
+    Everything is checked before the first file is written.
+    """
+    library = shelves or Library.default()
+    if asked.shadow and asked.save is None:
+        raise InputError("--shadow: goes with --save NAME")
+    loaded = load_curves(asked.data)
+    design = asked.design or loaded.campaign.design
+    if design is None:
+        raise InputError(f"{asked.data}: names no design; give --design")
+    scene = load_scene(design, library=library)
+    sensor, observations, notes = observations_of(
+        loaded.campaign, loaded.curves, loaded.injections, scene, asked.sensor
+    )
+    found = calibrate(
+        observations, scene, asked.names, priors=asked.priors, hold_out=asked.hold_out, sensor=sensor,
+        title=loaded.campaign.title, notes=notes,
+    )  # fmt: skip
+    saved = None if asked.save is None else prepare(found, asked.save, Path(), library, shadow=asked.shadow)
+    folder = write_calibration(found, asked.out)
+    written = [str(folder)]
+    if saved is not None:
+        save(saved)
+        written += saved.paths
+    return {**found.document, "written": written, "failures": [list(failure) for failure in loaded.failures]}

@@ -1,0 +1,70 @@
+"""What ``characterize --json`` prints: every figure measured and predicted, and everything that is doubtful."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pneutouch.bench.figure import BY_KEY
+from pneutouch.bench.interval import LEVEL, Estimate
+from pneutouch.bench.record import Curve
+from pneutouch.report.measured import Beside, Measured
+
+
+def document(measured: Measured) -> dict[str, Any]:
+    """A campaign as plain data."""
+    campaign = measured.campaign
+    return {
+        "title": campaign.title, "lab": campaign.lab, "simulated": campaign.simulated, "design": measured.scene.name,
+        "input_hash": measured.input_hash, "model": measured.model, "level": LEVEL,
+        "groups": [_group(beside) for beside in measured.besides],
+        "runs": [_run(curve, values) for b in measured.besides for curve, values in zip(b.group.curves, b.group.each, strict=True)],
+        "injections": [
+            {"sensor": sensor, "figure": name, "value": value, "standard_error": error, "unit": unit}
+            for sensor, name, value, error, unit in measured.injections
+        ],
+        "ageing": [
+            {
+                "resin": resin, "driving_pressure_kPa": pressure, "age": age, "sensitivity_change_percent": value, "low": low, "high": high,
+                "published_change_one_year_percent": published,
+            }
+            for resin, pressure, age, value, low, high, published in measured.ageing
+        ],
+        "target": [
+            {"what": v.what, "wanted": v.wanted, "measured": v.measured, "passed": v.passed} for v in measured.verdicts
+        ],
+        "questions": [{"file": file, "question": text} for file, text in measured.questions],
+        "failures": [{"file": file, "message": text} for file, text in measured.failures],
+    }  # fmt: skip
+
+
+def _group(beside: Beside) -> dict[str, Any]:
+    group = beside.group
+    return {
+        "resin": group.key.resin, "age": group.key.age, "driving_pressure_kPa": group.key.driving_pressure_kPa,
+        "sensors": group.sensors, "why_not_predicted": beside.why or None,
+        "figures": {key: _figure(key, estimate, beside) for key, estimate in group.figures.items()},
+    }  # fmt: skip
+
+
+def _figure(key: str, estimate: Estimate, beside: Beside) -> dict[str, Any]:
+    found: dict[str, Any] = {
+        "value": estimate.value, "low": estimate.low, "high": estimate.high, "unit": BY_KEY[key].unit,
+        "specimens": estimate.specimens, "runs": estimate.runs, "interval_over": estimate.over or None,
+    }  # fmt: skip
+    if key in beside.predicted:
+        value, low, high = beside.predicted[key]
+        off = 100 * (estimate.value / value - 1) if value else None
+        found["predicted"] = {"value": value, "low": low, "high": high, "measured_off_percent": off}
+    return found
+
+
+def _run(curve: Curve, values: dict[str, float]) -> dict[str, Any]:
+    run = curve.run
+    return {
+        "file": run.file, "kind": run.kind, "sensor": run.sensor, "resin": run.resin, "run": run.run,
+        "driving_pressure_kPa": run.driving_pressure_kPa, "age_days": run.age_days, "points": len(curve.force) - 1,
+        "figures": dict(values),
+        "doubts": [
+            {"start_s": round(d.start, 4), "end_s": round(d.end, 4), "why": d.why, "used": d.used} for d in curve.doubts
+        ],
+    }  # fmt: skip

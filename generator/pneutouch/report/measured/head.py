@@ -1,0 +1,205 @@
+"""The first page in words: what was measured, whether the target is met, the figures that count, and the conditions."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from statistics import median
+from typing import Any
+
+from pneutouch import __version__
+from pneutouch.bench.interval import Estimate
+from pneutouch.report.measured.beside import Beside, Measured, Verdict
+from pneutouch.report.measured.words import between, difference, listed, number, overlap, said, signed
+from pneutouch.units import KPA
+
+SIMULATED = "SIMULATED DATA"
+_SENSITIVITY = "sensitivity_kPa_per_N"
+_WORDS = ("passed", "failed", "not decided")
+
+Tile = list[str]
+
+
+def head(measured: Measured) -> dict[str, Any]:
+    """Title, who, when, how many, and the mark of simulated data."""
+    campaign = measured.campaign
+    resins, sensors = {run.resin for run in campaign.runs}, {run.sensor for run in campaign.runs}
+    return {
+        "title": campaign.title,
+        "design": f"{measured.scene.name}, {measured.scene.design.document.title}",
+        "lab": campaign.lab or "not named",
+        "dates": dates(measured),
+        "count": f"{counted(len(sensors), 'specimen')}, {counted(len(campaign.runs), 'run')}, {counted(len(resins), 'resin')}",
+        "tool": f"pneutouch {__version__}",
+        "input_hash": measured.input_hash,
+        "simulated": SIMULATED if campaign.simulated else "",
+        "simulated_note": "A program made these runs. No sensor was measured." if campaign.simulated else "",
+    }
+
+
+def counted(count: int, what: str) -> str:
+    """``1 run``, ``2 runs``."""
+    return f"{count} {what}{'' if count == 1 else 's'}"
+
+
+def dates(measured: Measured) -> str:
+    """First and last day of the runs."""
+    days = sorted(run.date for run in measured.campaign.runs if run.date is not None)
+    if not days:
+        return "undated"
+    first, last = days[0].isoformat(), days[-1].isoformat()
+    return first if first == last else f"{first} to {last}"
+
+
+def verdict(measured: Measured) -> dict[str, Any]:
+    """Whether the target is met, wish by wish, and how many runs gave nothing."""
+    return {
+        "word": _whole(measured.verdicts),
+        "rows": [[v.what, v.wanted, v.measured, said(v.passed, _WORDS)] for v in measured.verdicts],
+        "notes": " ".join(_notes(measured)),
+    }
+
+
+def _notes(measured: Measured) -> list[str]:
+    """What is to be said under the verdicts."""
+    failed, runs = len(measured.failures), len(measured.campaign.runs)
+    doubts = sum(len(curve.doubts) for curve in measured.curves)
+    notes = []
+    if any(v.passed is None for v in measured.verdicts):
+        notes.append("Not decided: the interval holds values on both sides of the limit; more specimens would tell.")
+    if failed:
+        notes.append(f"{failed} of {counted(runs, 'run')} could not be read: see Failures.")
+    else:
+        notes.append(f"All {runs} runs were read." if runs > 1 else "The run was read.")
+    if doubts:
+        notes.append(f"{doubts} {'stretches are' if doubts > 1 else 'stretch is'} in doubt: see Doubts.")
+    return notes
+
+
+def _whole(verdicts: tuple[Verdict, ...]) -> str:
+    if not verdicts:
+        return "No target given"
+    passed = [v.passed for v in verdicts]
+    return f"Target {said(False if False in passed else None if None in passed else True, _WORDS)}"
+
+
+def tiles(measured: Measured) -> list[Tile]:
+    """Name, value, unit, condition of the figures that count; those that were not measured are left out."""
+    found = [_extent(measured, _SENSITIVITY, "Sensitivity", "kPa/N"), *_against(measured)]
+    for key, name in (("repeatability_kPa_per_N", "Repeatability"), ("part_to_part_kPa_per_N", "Part to part")):
+        found.append(_worst(measured, key, name, "kPa/N", "standard deviation of the sensitivity"))
+    found.append(_worst(measured, "hysteresis_width_percent", "Hysteresis", "% FS", "greatest width of the loop"))
+    found.append(
+        _worst(measured, "relaxation_force_percent", "Relaxation of the force", "%", "from 1 s to the end of the hold")
+    )
+    found.append(_worst(measured, "resolution_N", "Resolution", "N", "three standard deviations of the noise"))
+    found.append(_extent(measured, "stiffness_N_per_mm", "Mean stiffness", "N/mm"))
+    found.append(_extent(measured, "force_range_N", "Force at the greatest depth", "N"))
+    return [tile for tile in found if tile is not None][:6]
+
+
+def _with(measured: Measured, key: str) -> list[tuple[Beside, Estimate]]:
+    return [(beside, beside.group.figures[key]) for beside in measured.besides if key in beside.group.figures]
+
+
+def _where(measured: Measured, beside: Beside) -> str:
+    """A group in words: its resin and age where there are several."""
+    key, keys = beside.group.key, [other.group.key for other in measured.besides]
+    resin = [beside.label] if len({other.resin for other in keys}) > 1 else []
+    age = [key.age] if key.age_months or len({other.age_months for other in keys}) > 1 else []
+    return ", ".join([*resin, f"{key.driving_pressure_kPa:g} kPa", *age])
+
+
+def _extent(measured: Measured, key: str, name: str, unit: str) -> Tile | None:
+    """The one value that there is, or the extent from the least to the greatest group."""
+    found = _with(measured, key)
+    if not found:
+        return None
+    low, high = min(found, key=lambda pair: pair[1].value), max(found, key=lambda pair: pair[1].value)
+    if len(found) == 1:
+        estimate = low[1]
+        width = between((estimate.value, estimate.low, estimate.high))
+        sure = f"; {width} (95 %)" if estimate.low is not None else "; one value, no interval"
+        return [name, number(estimate.value), unit, f"{_where(measured, low[0])}{sure}"]
+    ends = f"{number(low[1].value)} to {number(high[1].value)}"
+    return [name, ends, unit, f"least at {_where(measured, low[0])}, greatest at {_where(measured, high[0])}"]
+
+
+def _against(measured: Measured) -> list[Tile]:
+    """How far the measured sensitivities are off the predicted, and in how many groups the intervals overlap."""
+    pairs = [(b, e, b.predicted[_SENSITIVITY]) for b, e in _with(measured, _SENSITIVITY) if _SENSITIVITY in b.predicted]
+    off = [(gap, b) for b, e, p in pairs if (gap := difference(e.value, p[0])) is not None]
+    if not off:
+        return []
+    if len(off) == 1:
+        first = ["Measured less predicted", signed(off[0][0]), "%", "of the predicted sensitivity"]
+    else:
+        worst = max(off, key=lambda pair: abs(pair[0]))
+        middle = number(median(abs(gap) for gap, _ in off), 2)
+        first = [
+            "Off the predicted sensitivity",
+            middle,
+            "%",
+            f"median; most {signed(worst[0])} % at {_where(measured, worst[1])}",
+        ]
+    known = [found for _, e, p in pairs if (found := overlap((e.value, e.low, e.high), p)) is not None]
+    if not known:
+        return [first]
+    if len(known) == 1:
+        return [first, ["In the predicted band", said(known[0]), "", "95 % interval or value against 95 % band"]]
+    return [
+        first,
+        ["In the predicted band", f"{sum(known)} of {len(known)}", "", "groups whose 95 % interval meets the band"],
+    ]
+
+
+def _worst(measured: Measured, key: str, name: str, unit: str, what: str) -> Tile | None:
+    """The greatest of a figure over the groups."""
+    found = [pair for pair in _with(measured, key) if math.isfinite(pair[1].value)]
+    if not found:
+        return None
+    beside, estimate = max(found, key=lambda pair: pair[1].value)
+    most = "greatest, " if len(found) > 1 else ""
+    return [name, number(estimate.value), unit, f"{what}; {most}{_where(measured, beside)}"]
+
+
+def conditions(measured: Measured) -> list[list[str]]:
+    """Rig, air, runs and model: quantity and value."""
+    campaign, rig, scene = measured.campaign, measured.campaign.rig, measured.scene
+    kinds = Counter(run.kind for run in campaign.runs)
+    ambient = campaign.ambient_pressure_kPa
+    air = f"{ambient:g} kPa absolute, as measured" if ambient is not None else (
+        f"{scene.design.pneumatics.ambient_pressure_kPa:g} kPa absolute, as the design states"
+    )  # fmt: skip
+    design = scene.design.membrane
+    return [
+        ["Laboratory", campaign.lab or "not named"],
+        ["Dates", dates(measured)],
+        ["Design", f"{scene.name}: inner radius {design.inner_radius_mm:g} mm, wall {design.wall_thickness_mm:g} mm"],
+        ["Rig", rig.name],
+        ["Force sensor", f"to {rig.force_range_N:g} N, resolution {rig.force_resolution_N:g} N"],
+        ["Pressure sensor", f"to {rig.pressure_range_kPa:g} kPa gauge"],
+        ["Sampling", f"{rig.rate_Hz:g} Hz"],
+        ["Ambient pressure", air],
+        ["Runs", listed([f"{count} {kind}" for kind, count in sorted(kinds.items())])],
+        ["Ages", listed(list({b.group.key.age_months: b.group.key.age for b in sorted(measured.besides, key=_age)}.values())) or "none"],
+        ["Driving pressure as read", _as_read(measured)],
+        ["Predicted by", measured.model],
+    ]  # fmt: skip
+
+
+def _age(beside: Beside) -> int:
+    return beside.group.key.age_months
+
+
+def _as_read(measured: Measured) -> str:
+    """Greatest distance of a run's driving pressure from its nominal one."""
+    off = [
+        curve.driving / KPA - curve.run.driving_pressure_kPa
+        for curve in measured.curves
+        if math.isfinite(curve.driving)
+    ]
+    if not off:
+        return "not read"
+    worst = max(off, key=abs)
+    return f"within {number(abs(worst), 2)} kPa of the nominal one in every run"

@@ -1,0 +1,186 @@
+"""Small multiples: one panel a resin, one way of telling specimens, pressures and ages apart on every plot.
+
+Marker: specimen. Line and tone: driving pressure. Filled: the youngest age; open: older. Nothing rests on colour alone.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import groupby
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from pneutouch.bench.record import Curve
+from pneutouch.report.measured.beside import Beside
+from pneutouch.report.style import FAINT, INK, LINES, MARKERS, MUTED, figure, svg
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+NARROW, WIDE = 86.0, 180.0
+"""Widths in mm: two in a row on A4, and the whole row."""
+
+_HEIGHT = 52.0
+_ROW = {2: 60.0, 3: 55.0, 4: 55.0}
+"""Height of a row of panels in mm by the number of columns."""
+_LEGEND = 4.0
+"""Height of a line of the legend, mm."""
+_ENTRIES = {NARROW: 3, WIDE: 7}
+_COLUMNS = 4
+
+SKY = "#3F8FBF"
+"""A tone that stays apart from INK in grayscale, as ACCENT does not."""
+TONES = (INK, SKY, MUTED)
+MOST_RUNS = 30
+"""Runs of a group that are drawn: more hide one another."""
+
+
+class Plot(NamedTuple):
+    """A plot as SVG, and whether it takes the whole row."""
+
+    svg: str
+    wide: bool
+
+
+@dataclass(frozen=True)
+class Panel:
+    """The groups of one resin in the order of age and pressure.
+
+    ``campaign_pressures`` are the driving pressures of every resin, kPa; ``alone`` says that there is no other resin.
+    """
+
+    label: str
+    besides: tuple[Beside, ...]
+    campaign_pressures: tuple[float, ...]
+    alone: bool
+
+    @cached_property
+    def sensors(self) -> list[str]:
+        """Names of the specimens; their places are their markers."""
+        return sorted({name for beside in self.besides for name in beside.group.sensors})
+
+    @cached_property
+    def pressures(self) -> list[float]:
+        """Driving pressures, kPa, ascending."""
+        return sorted({beside.group.key.driving_pressure_kPa for beside in self.besides})
+
+    @cached_property
+    def ages(self) -> list[int]:
+        """Ages in months, ascending."""
+        return sorted({beside.group.key.age_months for beside in self.besides})
+
+    def tone(self, beside: Beside) -> tuple[str, Any]:
+        """Colour and line style of a group's driving pressure: the same in every panel."""
+        return _tone(self.campaign_pressures.index(beside.group.key.driving_pressure_kPa))
+
+    def spots(self, beside: Beside, curve: Curve) -> dict[str, Any]:
+        """How the points of a run are drawn."""
+        color, _ = self.tone(beside)
+        young = beside.group.key.age_months == self.ages[0]
+        marker = MARKERS[self.sensors.index(curve.run.sensor) % len(MARKERS)]
+        return {"ls": "", "marker": marker, "ms": 2.6, "mew": 0.5, "mec": color, "mfc": color if young else "white"}
+
+    def has(self, kind: str) -> bool:
+        """Whether there are runs of a kind."""
+        return any(beside.group.of_kind(kind) for beside in self.besides)
+
+
+def _tone(k: int) -> tuple[str, Any]:
+    return TONES[k % len(TONES)], LINES[k % len(LINES)]
+
+
+def panels_of(besides: Sequence[Beside]) -> list[Panel]:
+    """Groups by resin, in their order."""
+    every = tuple(sorted({beside.group.key.driving_pressure_kPa for beside in besides}))
+    by_resin = [tuple(some) for _, some in groupby(besides, key=lambda beside: beside.group.key.resin)]
+    return [Panel(members[0].label, members, every, len(by_resin) == 1) for members in by_resin]
+
+
+def some(curves: Sequence[Curve]) -> list[Curve]:
+    """At most `MOST_RUNS` runs, spread evenly over all."""
+    step = math.ceil(len(curves) / MOST_RUNS)
+    return list(curves[::step]) if step else []
+
+
+def multiples(
+    panels: Sequence[Panel], draw: Callable[[Axes, Panel], None], labels: tuple[str, str], legend: dict[str, Any], *,
+    shared: bool = False,
+) -> Plot:  # fmt: skip
+    """One panel a resin.
+
+    ``labels`` are those of the axes, ``legend`` handles by their words. ``shared`` panels have the same axes.
+    """
+    down = math.ceil(len(panels) / _COLUMNS)
+    across = math.ceil(len(panels) / down)
+    wide = NARROW if across == 1 else WIDE
+    lines = math.ceil(len(legend) / _ENTRIES[wide])
+    with figure(wide, (_HEIGHT if across == 1 else _ROW[across] * down) + lines * _LEGEND) as drawn:
+        grid = drawn.subplots(down, across, sharex=shared, sharey=shared, squeeze=False)
+        for ax, panel in zip(_axes(grid, len(panels)), panels, strict=True):
+            if not panel.alone:
+                ax.set_title(panel.label.replace("$", r"\$"), fontsize=7.5, loc="left", pad=3)
+            ax.tick_params(labelbottom=True, labelleft=True)
+            draw(ax, panel)
+        drawn.supxlabel(labels[0], fontsize=7.5)
+        drawn.supylabel(labels[1], fontsize=7.5)
+        _legend(drawn, legend, wide)
+        return Plot(svg(drawn), wide > NARROW)
+
+
+def _axes(grid: Any, count: int) -> Iterator[Axes]:
+    for k, ax in enumerate(grid.flat):
+        if k < count:
+            yield ax
+        else:
+            ax.remove()
+
+
+def _legend(drawn: Figure, legend: dict[str, Any], wide: float) -> None:
+    if legend:
+        ncols = min(_ENTRIES[wide], len(legend))
+        # matplotlib fills columns: taken in this order the entries read row by row.
+        words = [word for k in range(ncols) for word in list(legend)[k::ncols]]
+        drawn.legend(
+            [legend[word] for word in words], words, loc="outside upper left", ncols=ncols, handlelength=2.2,
+            columnspacing=1.4, handletextpad=0.5, borderpad=0.1,
+        )  # fmt: skip
+
+
+def key(panels: Sequence[Panel]) -> dict[str, Any]:
+    """Legend of a plot of runs: markers of the specimens, fill of the ages."""
+    from matplotlib.lines import Line2D
+
+    found: dict[str, Any] = {}
+    for k in range(min(max((len(panel.sensors) for panel in panels), default=0), len(MARKERS))):
+        found[f"specimen {k + 1}"] = Line2D([], [], ls="", marker=MARKERS[k], color=INK, ms=3.4)
+    ages = sorted({age for panel in panels for age in panel.ages})
+    if len(ages) > 1:
+        found["youngest"] = Line2D([], [], ls="", marker="o", color=INK, ms=3.4)
+        found["older"] = Line2D([], [], ls="", marker="o", mec=INK, mfc="white", ms=3.4)
+    return found
+
+
+def lines_of(panels: Sequence[Panel], pressures: Sequence[float]) -> dict[str, Any]:
+    """Legend of the driving pressures, kPa, that are drawn."""
+    from matplotlib.lines import Line2D
+
+    found = {}
+    for pressure in pressures:
+        color, style = _tone(panels[0].campaign_pressures.index(pressure))
+        found[f"{pressure:g} kPa"] = Line2D([], [], color=color, ls=style, lw=1.1)
+    return found
+
+
+def band_of() -> dict[str, Any]:
+    """Legend of a predicted band."""
+    from matplotlib.patches import Patch
+
+    return {"predicted, 95 %": Patch(fc=FAINT, ec=MUTED, lw=0.5, alpha=0.7)}
+
+
+def ends_of(pressures: Sequence[float], most: int = 2) -> list[float]:
+    """All of them where they are few, else the lowest and the highest."""
+    return list(pressures) if len(pressures) <= most else [pressures[0], pressures[-1]]

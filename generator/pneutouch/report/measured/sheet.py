@@ -1,0 +1,78 @@
+"""The measured datasheet: one HTML page and one PDF from the same content and the same figures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from pneutouch.report import pages
+from pneutouch.report.measured import definition, head, plots, slow, tables
+from pneutouch.report.measured.beside import Measured
+from pneutouch.report.measured.panels import MOST_RUNS, Panel, Plot, panels_of
+
+_RUNS_ONLY = ("steps", "saturation", "loop", "relaxation")
+
+
+def measured_datasheet(measured: Measured) -> dict[str, bytes]:
+    """``measured-datasheet.html`` and ``measured-datasheet.pdf``; the same bytes for the same campaign."""
+    panels = panels_of(measured.besides)
+    drawn = _figures(measured, panels)
+    entries = [
+        {"name": n, "title": title, "caption": words, "wide": plot.wide} for n, (title, words, plot) in drawn.items()
+    ]
+    content = {**_content(measured, panels), "figures": entries}
+    figures = {name: plot.svg for name, (_, _, plot) in drawn.items()}
+    days = [run.date for run in measured.campaign.runs if run.date is not None]
+    return {
+        "measured-datasheet.html": pages.html("measured.html.j2", content, figures).encode(),
+        "measured-datasheet.pdf": pages.pdf("measured.typ", content, figures, max(days, default=None)),
+    }
+
+
+def _content(measured: Measured, panels: Sequence[Panel]) -> dict[str, Any]:
+    """The sections of the sheet; every leaf is text, ready to be printed."""
+    return {
+        **head.head(measured),
+        "verdict": head.verdict(measured),
+        "tiles": head.tiles(measured),
+        "resins": [tables.resin_table(panel) for panel in panels],
+        "ageing": tables.ageing(measured),
+        "injections": _listed(tables.injections(measured)),
+        "specimens": _listed(tables.specimens(panels)),
+        "failures": _listed(tables.failures(measured)),
+        "questions": _listed(tables.questions(measured)),
+        "doubts": _listed(tables.doubts(measured)),
+        "conditions": head.conditions(measured),
+        "definitions": definition.rows(),
+        "where": definition.WHERE,
+    }
+
+
+def _listed(found: tuple[list[list[str]], str]) -> dict[str, Any]:
+    return {"rows": found[0], "more": found[1]}
+
+
+Drawn = dict[str, tuple[str, str, Plot]]
+
+
+def _figures(measured: Measured, panels: Sequence[Panel]) -> Drawn:
+    """Title, caption and plot by name; plots without data are left out, wide ones stand first."""
+    thinned = any(len(b.group.of_kind(kind)) > MOST_RUNS for b in measured.besides for kind in _RUNS_ONLY)
+    some = f" At most {MOST_RUNS} runs a group are drawn." if thinned else ""
+    many = panels and len(panels[0].campaign_pressures) > 2
+    ends = " at the lowest and the highest driving pressure" if many else ""
+    joined = (
+        " Thin lines join the points of runs without a prediction."
+        if any(b.state is None for b in measured.besides)
+        else ""
+    )
+    found = {
+        "sensitivity": ("Sensitivity over driving pressure", "Mean over specimens with its 95 % interval, in the predicted band.", plots.sensitivities(panels)),
+        "response": ("Response", f"Pressure rise over contact force. Markers: every run; lines: predicted, with the band of the sensitivity{ends}.{joined}{some}", plots.responses(panels)),
+        "indentation": ("Force over indentation", f"Contact force over indentation. Markers: every run; lines: predicted, with the band of the stiffness{ends}.{joined}{some}", plots.indentations(panels)),
+        "loops": ("Hysteresis", "Pressure rise over contact force: the first run at the lowest and at the highest driving pressure, all its cycles.", slow.loops(panels)),
+        "relaxation": ("Relaxation", f"Force and pressure rise in a long hold, in percent of their value at 1 s; every driving pressure.{some}", slow.relaxations(panels)),
+        "ageing": ("Ageing", "Change of the sensitivity since fresh, in percent of the aged one, with its 95 % interval.", slow.ageings(measured)),
+    }  # fmt: skip
+    drawn = {name: (title, caption, plot) for name, (title, caption, plot) in found.items() if plot is not None}
+    return dict(sorted(drawn.items(), key=lambda item: not item[1][2].wide))

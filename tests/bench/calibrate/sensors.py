@@ -1,0 +1,88 @@
+"""Sensors and measured curves made for the tests: the atlas's or the solid's answers with gain, zero and noise."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from pneutouch.bench.calibrate import Injection, Observations, parameters
+from pneutouch.bench.calibrate.inject import injected
+from pneutouch.bench.record import Curve
+from pneutouch.mechanics import Sensor
+from pneutouch.mechanics.atlas.batches import batch_of
+from pneutouch.mechanics.atlas.respond import respond
+from pneutouch.mechanics.atlas.table import shipped
+from pneutouch.spec.campaign import Run
+from pneutouch.units import KPA
+
+DESIGNED = Sensor(
+    inner_radius=9.25, wall_thickness=1.5, shear_modulus=0.17, poisson_ratio=0.49, ambient_pressure=0.101325,
+    dead_volume=1000.0, plate_radius=15.0, depth=6.5, steps=13, break_stretch=None, gauge_limit=0.1,
+)  # fmt: skip
+GAIN, FORCE_ZERO, RISE_ZERO = 0.01, 0.003, 0.02 * KPA
+FORCE_NOISE, RISE_NOISE = 0.005, 0.03 * KPA
+
+
+def run(pressure: float, number: int = 1) -> Run:
+    return Run(
+        file=f"{pressure:g}-{number}.csv", sensor="A", resin="TangoPlus", driving_pressure_kPa=pressure, run=number
+    )
+
+
+def disturbed(at, force, rise, pressure, number, rng, gain=GAIN) -> Curve:
+    """A run: its own gain and zero on each channel, and noise at each point; the origin stays."""
+    size = at.size - 1
+    force, rise = force.copy(), rise.copy()
+    force[1:] = force[1:] * (1 + gain * rng.normal()) + FORCE_ZERO * rng.normal() + FORCE_NOISE * rng.normal(size=size)
+    rise[1:] = rise[1:] * (1 + gain * rng.normal()) + RISE_ZERO * rng.normal() + RISE_NOISE * rng.normal(size=size)
+    return Curve(run(pressure, number), at, force, rise, pressure * KPA)
+
+
+def curves(truth: Sensor, pressures, runs: int, rng, gain=GAIN, offset=0.0) -> tuple[Curve, ...]:
+    """Runs of the atlas's sensor at pressures in kPa; ``offset`` is travel that was not seen."""
+    found = respond(batch_of(truth, [p * KPA for p in pressures]), truth.steps)
+    return tuple(
+        disturbed(np.maximum(found.indentation[i] - offset, 0.0), found.force[i], found.rise[i], p, n + 1, rng, gain)
+        for i, p in enumerate(pressures) for n in range(runs)
+    )  # fmt: skip
+
+
+def exact(truth: Sensor, pressures) -> tuple[Curve, ...]:
+    found = respond(batch_of(truth, [p * KPA for p in pressures]), truth.steps)
+    return tuple(
+        Curve(run(p), found.indentation[i], found.force[i], found.rise[i], p * KPA) for i, p in enumerate(pressures)
+    )
+
+
+def injections(truth: Sensor, volumes, runs: int, rng, gain=0.002, noise=0.03 * KPA) -> tuple[Injection, ...]:
+    """Air pushed into the atlas's sensor."""
+    slices = shipped().slices(np.array([truth.wall_thickness / truth.inner_radius]), ())
+    size, mu = truth.inner_radius**3, truth.shear_modulus
+    found, ok = injected(
+        slices, np.zeros(1, dtype=np.intp), np.array([truth.ambient_pressure / mu]), np.array([truth.dead_volume / size]),
+        volumes / size,
+    )  # fmt: skip
+    assert ok.all()
+    return tuple(
+        Injection(f"injection {n}", volumes, found[0] * mu * (1 + gain * rng.normal()) + noise * rng.normal(size=volumes.size))
+        for n in range(runs)
+    )  # fmt: skip
+
+
+def observed(*parts) -> Observations:
+    return Observations(*parts)
+
+
+def chosen(library, *names, priors=True, sensor=DESIGNED):
+    return parameters(
+        sensor,
+        library.load("materials", "TangoPlus"),
+        library.load("printers", "objet260-connex"),
+        names,
+        priors=priors,
+    )
+
+
+def other(**changes) -> Sensor:
+    return replace(DESIGNED, **changes)

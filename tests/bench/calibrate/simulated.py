@@ -1,0 +1,69 @@
+"""Campaigns of simulated sensors in memory: what the rig writes of a wall that remembers, read as a lab's records are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from pneutouch.bench.blocks import blocks_of
+from pneutouch.bench.calibrate import Fit, Observations, Parameters, fit
+from pneutouch.bench.calibrate.parameters import DEAD, MODULUS
+from pneutouch.bench.curve import curve_of
+from pneutouch.bench.record import Curve
+from pneutouch.bench.simulate import Specimens, Truth, press_curves, simulate_run
+from pneutouch.mechanics import Sensor
+from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.spec.campaign import Rig, Run
+from pneutouch.units import KPA
+
+RATE = 100.0
+TRUTH = Truth(rest=10.0)
+DEAD_VOLUME = 300.0
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What was measured on a specimen that is known."""
+
+    truth: Sensor
+    seen: Observations
+
+
+def designed(library, resin: str) -> Sensor:
+    """The paper's dome in a resin, with 0.3 mL behind it."""
+    return replace(material_sensor(library.load("materials", resin)), dead_volume=DEAD_VOLUME)
+
+
+def trial(
+    nominal: Sensor, pressures: Sequence[float], runs: int, rng: np.random.Generator, model: str = "atlas"
+) -> Trial:  # fmt: skip
+    """A specimen drawn around ``nominal`` and its runs at driving pressures in kPa."""
+    specimen = Specimens.draw(TRUTH.scatter, 1, rng).sensor(nominal, 0)
+    pressed = press_curves(specimen, [p * KPA for p in pressures], 0.75 * nominal.inner_radius, model)
+    return Trial(
+        specimen, Observations(tuple(_runs(pressed.curves, pressures, runs, nominal, rng)), rig=Rig(rate_Hz=RATE))
+    )
+
+
+def _runs(curves, pressures, runs: int, nominal: Sensor, rng: np.random.Generator) -> Iterator[Curve]:
+    for pressure, curve in zip(pressures, curves, strict=True):
+        way = TRUTH.protocol("steps", nominal.inner_radius, curve.reach)
+        for number in range(1, runs + 1):
+            record = simulate_run(curve, way, TRUTH.rig, RATE, rng, wall=TRUTH.wall, scatter=TRUTH.scatter)
+            run = Run(
+                file=f"{pressure:g}-{number}", sensor="A", resin="TangoPlus", driving_pressure_kPa=pressure, run=number
+            )
+            yield curve_of(run, blocks_of(Path(run.file), *record, rate=RATE), Rig(rate_Hz=RATE))
+
+
+def held(one: Trial, nominal: Sensor, parameters: Parameters) -> tuple[Fit, list[bool], list[float]]:
+    """The fit to a trial, whether the intervals of modulus and dead volume hold the truth, and their half widths."""
+    found = fit(one.seen, nominal, parameters)
+    true = {MODULUS: float(np.log(one.truth.shear_modulus)), DEAD: one.truth.dead_volume}
+    places = [parameters.fitted.index(k) for k in true]
+    off = [abs(float(found.solution.at[place]) - value) for place, value in zip(places, true.values(), strict=True)]
+    half = [float(found.half_width[place]) for place in places]
+    return found, [o <= h for o, h in zip(off, half, strict=True)], half

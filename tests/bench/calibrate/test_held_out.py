@@ -1,0 +1,56 @@
+"""A pressure left out is predicted by the others; the truth is the solid's, which is not the model that is fitted."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from pneutouch.bench.calibrate import Observations, fit, predict_held_out
+from pneutouch.bench.calibrate.parameters import DEAD, MODULUS
+from pneutouch.errors import InputError
+from pneutouch.mechanics.solid_states import solid_result
+from tests.bench.calibrate.sensors import DESIGNED, chosen, curves, disturbed, other
+
+
+@pytest.fixture(scope="module")
+def solid_curves():
+    truth = other(shear_modulus=0.2, dead_volume=1300.0)
+    rng = np.random.default_rng(12)
+    states = solid_result(truth, np.array([0.0, 0.012, 0.022])).states
+    at = np.linspace(0.0, 6.5, 14)
+    return tuple(
+        disturbed(at, np.interp(at, s.indentation, s.force), np.interp(at, s.indentation, s.pressure_rise), p, n, rng, 0.002)
+        for s, p in zip(states, (0.0, 12.0, 22.0), strict=True) for n in (1, 2)
+    )  # fmt: skip
+
+
+def test_the_solids_parameters_come_back(library, solid_curves):
+    found = fit(Observations(solid_curves), DESIGNED, chosen(library, "modulus", "dead-volume"))
+    assert np.exp(found.full[MODULUS]) == pytest.approx(0.2, rel=0.01)
+    assert found.full[DEAD] == pytest.approx(1300.0, abs=40.0)
+
+
+@pytest.mark.parametrize("pressure", [0.0, 12.0, 22.0])
+def test_a_pressure_left_out_is_predicted(library, solid_curves, pressure):
+    found = predict_held_out(Observations(solid_curves), DESIGNED, chosen(library, "modulus", "dead-volume"), pressure)
+    assert abs(found.error) < 0.015
+    assert found.force_error < 0.015
+    assert found.rise_error < 0.015
+    assert found.force_worst >= found.force_error
+    assert (found.points, found.left_out) == (26, 0)
+
+
+def test_the_prediction_is_better_than_the_designs(library, solid_curves):
+    """The design has the wrong modulus and dead volume; the fit to the other pressures mends it."""
+    held = predict_held_out(Observations(solid_curves), DESIGNED, chosen(library, "modulus", "dead-volume"), 22.0)
+    stiff = chosen(library, "offset")
+    assert abs(held.error) < 0.3 * abs(predict_held_out(Observations(solid_curves), DESIGNED, stiff, 22.0).error)
+
+
+def test_what_cannot_be_held_out_is_refused(library):
+    parameters = chosen(library, "modulus")
+    seen = curves(DESIGNED, (22.0,), 3, np.random.default_rng(1))
+    with pytest.raises(InputError, match=r"--hold-out 12: no run .* measured: 22 kPa"):
+        predict_held_out(Observations(seen), DESIGNED, parameters, 12.0)
+    with pytest.raises(InputError, match="all runs are at this driving pressure"):
+        predict_held_out(Observations(seen), DESIGNED, parameters, 22.0)

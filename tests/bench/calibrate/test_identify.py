@@ -1,0 +1,105 @@
+"""What data cannot tell apart is said, and so is the test that would."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pneutouch.bench.calibrate import NAMES, Observations, fit
+from pneutouch.bench.calibrate.further import further_tests
+from pneutouch.bench.calibrate.goodness import misses
+from pneutouch.bench.calibrate.identify import identify
+from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, OFFSET, WALL
+from pneutouch.bench.calibrate.tell import sentences
+from tests.bench.calibrate.sensors import DESIGNED, chosen, curves, injections, other
+
+VOLUMES = np.linspace(100.0, 1500.0, 12)
+
+
+def told(found):
+    return sentences(found, identify(found), further_tests(found), misses(found), [])
+
+
+def test_injections_alone_do_not_tell_modulus_from_dead_volume(library):
+    seen = injections(other(shear_modulus=0.2), VOLUMES, 3, np.random.default_rng(1))
+    found = fit(Observations((), seen), DESIGNED, chosen(library, "modulus", "dead-volume"))
+    (group,) = identify(found).ambiguities
+    assert group.members == (MODULUS, DEAD)
+    assert abs(group.correlation) > 0.95
+    assert np.all(group.alone > 3 * group.given)
+    assert any("shear modulus and dead volume: the data cannot tell them apart" in line for line in told(found))
+
+
+def test_inflation_knows_the_product_of_modulus_and_wall_alone(library):
+    seen = injections(DESIGNED, VOLUMES, 3, np.random.default_rng(2))
+    found = fit(Observations((), seen), DESIGNED, chosen(library, "modulus", "wall"))
+    (group,) = identify(found).ambiguities
+    assert group.members == (MODULUS, WALL)
+    assert group.correlation < -0.99
+    # The membrane theory knows modulus x wall; a wall of finite thickness makes the exponent a little less.
+    assert 0.7 < group.combination < 1.1
+    product = found.full[MODULUS] + group.combination * found.full[WALL]
+    assert abs(product - np.log(0.17) - group.combination * np.log(1.5)) < 0.01
+
+
+def test_curves_at_several_pressures_tell_modulus_from_dead_volume(library):
+    seen = curves(other(shear_modulus=0.2), (0.0, 12.0, 22.0), 3, np.random.default_rng(3))
+    found = fit(Observations(seen), DESIGNED, chosen(library, "modulus", "dead-volume"))
+    assert identify(found).clear
+    assert not any("tell" in line for line in told(found))
+
+
+def test_data_that_do_not_see_a_parameter_say_so(library):
+    seen = injections(DESIGNED, VOLUMES, 3, np.random.default_rng(4))
+    for priors, words in ((True, "the estimate is the belief"), (False, "the estimate means nothing")):
+        found = fit(Observations((), seen), DESIGNED, chosen(library, "modulus", "offset", priors=priors))
+        assert identify(found).unseen == (OFFSET,)
+        assert any(words in line for line in told(found))
+        assert np.isfinite(found.half_width[1]) == priors
+
+
+def test_the_best_further_test_does_what_it_promises(library):
+    """After the indentations that it names the interval is as narrow as was said, to a factor of two."""
+    truth, rng = other(shear_modulus=0.2), np.random.default_rng(5)
+    pushed = injections(truth, VOLUMES, 3, rng)
+    parameters = chosen(library, "modulus", "dead-volume")
+    before = fit(Observations((), pushed), DESIGNED, parameters)
+    best = further_tests(before)[0]
+    assert "indentations" in best.what
+    assert best.gain > 2
+    assert any("to tell them apart, measure" in line and best.what in line for line in told(before))
+    pressure = float(best.what.split(" at ")[1].split()[0])
+    after = fit(
+        Observations(curves(other(shear_modulus=0.2, depth=6.9), (pressure,), 3, rng, 0.003), pushed),
+        DESIGNED,
+        parameters,
+    )
+    assert identify(after).clear or after.half_width[0] < 0.5 * before.half_width[0]
+    assert 0.3 < after.half_width[0] / best.half_width[0] < 3
+
+
+def test_every_further_test_helps_and_the_right_ones_most(library):
+    seen = injections(DESIGNED, VOLUMES, 3, np.random.default_rng(6))
+    found = fit(Observations((), seen), DESIGNED, chosen(library, "modulus", "wall", priors=False))
+    tests = further_tests(found)
+    gains = {test.what: test.gain for test in tests}
+    assert all(gain >= 1 - 1e-9 for gain in gains.values())
+    assert list(gains.values()) == sorted(gains.values(), reverse=True)
+    assert (
+        max(gains["the wall measured with a caliper"], gains["a tensile coupon of the same print (the modulus alone)"])
+        > 2
+    )
+    assert gains["air injected with a rigid cap in place of the dome (the dead volume alone)"] < 1.01
+
+
+def test_an_estimate_far_from_the_design_is_remarked(library):
+    seen = curves(other(dead_volume=1900.0), (0.0, 12.0, 22.0), 3, np.random.default_rng(8), 0.002)
+    found = fit(Observations(seen), DESIGNED, chosen(library, "modulus", "dead-volume"))
+    (line,) = [line for line in told(found) if "prior standard deviations" in line]
+    assert line.startswith("dead volume: ")
+    near = curves(DESIGNED, (0.0, 12.0, 22.0), 3, np.random.default_rng(8), 0.002)
+    assert not any("prior standard" in line for line in told(fit(Observations(near), DESIGNED, found.parameters)))
+
+
+def test_one_curve_rests_on_its_points(library):
+    found = fit(Observations(curves(DESIGNED, (0.0,), 1, np.random.default_rng(7))), DESIGNED, chosen(library, *NAMES))
+    assert any("rest on the scatter of the points and the instruments alone (1 run" in line for line in told(found))

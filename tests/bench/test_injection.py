@@ -1,0 +1,117 @@
+"""Air pushed into a closed line, and a line left to itself, against Boyle's law and known leaks."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pneutouch.bench.blocks import blocks_of
+from pneutouch.bench.injection import dead_volume_of_cap, leak_of, leak_rate, read_injection
+from pneutouch.errors import InputError
+from pneutouch.spec.campaign import Column, Columns
+from pneutouch.units import KPA, ML
+
+AMBIENT = 101.325 * KPA
+COLUMNS = Columns()
+
+
+def table(tmp_path, volume, pressure, header="volume_mL,pressure_kPa"):
+    path = tmp_path / "injection.csv"
+    path.write_text(header + "\n" + "".join(f"{v:.6g},{p:.6g}\n" for v, p in zip(volume, pressure, strict=True)))
+    return path
+
+
+def test_a_cap_gives_back_its_volume(tmp_path):
+    injected = np.linspace(0, 0.5, 11)
+    pressure = 101.325 * injected / 2.6 + 0.4  # kPa, with the gauge's zero off
+    volume, read = read_injection(table(tmp_path, injected, pressure), COLUMNS)
+    assert volume == pytest.approx(injected * ML) and read == pytest.approx(pressure * KPA, rel=1e-5)
+    found = dead_volume_of_cap(volume, read, AMBIENT)
+    assert found.value == pytest.approx(2.6 * ML, rel=1e-4) and found.error < 1e-3 * ML
+
+
+def test_its_error_is_that_of_many_trials():
+    rng, volume = np.random.default_rng(4), np.linspace(0, 500, 11)
+    found = [
+        dead_volume_of_cap(volume, AMBIENT * volume / 2600 + rng.normal(0, 0.1 * KPA, 11), AMBIENT) for _ in range(3000)
+    ]
+    values = np.array([one.value for one in found])
+    assert values.mean() == pytest.approx(2600, rel=2e-3)
+    assert np.sqrt(np.mean([one.spread**2 for one in found])) == pytest.approx(values.std(), rel=0.05)
+
+
+def test_units_of_an_injection(tmp_path):
+    path = table(tmp_path, [0, 100, 200, 300], [0, 40, 81, 120], "uL,mbar")
+    columns = Columns(volume=Column(name="uL", unit="uL"), pressure=Column(name="mbar", unit="mbar"))
+    volume, pressure = read_injection(path, columns)
+    assert volume.tolist() == [0, 100, 200, 300] and pressure == pytest.approx(np.array([0, 4, 8.1, 12]) * KPA)
+
+
+@pytest.mark.parametrize(
+    ("volume", "pressure", "told"),
+    [
+        ([0, 0.1], [0, 4], "2 rows; at least 3"), ([0.1, 0.1, 0.1], [0, 4, 5], "volume_mL: does not vary"),
+        ([0, 0.1, 0.2], [4, 4, 4], "pressure_kPa: does not rise"), ([0, 0.1, 0.2], [8, 4, 0], "pressure_kPa: does not rise"),
+    ],
+)  # fmt: skip
+def test_tables_that_cannot_be(tmp_path, volume, pressure, told):
+    path = table(tmp_path, volume, pressure)
+    with pytest.raises(InputError) as caught:
+        read_injection(path, COLUMNS)
+    assert str(caught.value).startswith(f"{path}: ") and told in str(caught.value)
+
+
+def test_a_missing_column_is_named(tmp_path):
+    with pytest.raises(InputError, match=r"column volume_mL: missing .*Did you mean Volume_ml"):
+        read_injection(table(tmp_path, [0, 1, 2], [0, 1, 2], "Volume_ml,pressure_kPa"), COLUMNS)
+
+
+def test_dead_volume_refuses_what_boyle_does():
+    volume = np.linspace(0, 500, 5)
+    with pytest.raises(ValueError, match="rise"):
+        dead_volume_of_cap(volume, -volume, AMBIENT)
+    with pytest.raises(ValueError, match="at least 3"):
+        dead_volume_of_cap(volume[:2], volume[:2], AMBIENT)
+    with pytest.raises(ValueError, match="gauge pressure"):
+        dead_volume_of_cap(volume, AMBIENT * (1 + volume / 2600), AMBIENT)
+
+
+def leak_samples(rng, constant=3600.0, noise=0.05, size=60_000):
+    time = np.arange(size) / 100.0
+    return time, 22 * KPA * np.exp(-time / constant) + rng.normal(0, noise * KPA, size)
+
+
+def test_a_leak_gives_back_its_rate_and_time_constant():
+    found = leak_of(*leak_samples(np.random.default_rng(1)))
+    # The slope of a straight line through an exponential is that in its middle, to second order.
+    assert found.rate == pytest.approx(22 * KPA / 3600 * np.exp(-300 / 3600), rel=2e-3)
+    assert found.time_constant == pytest.approx(3600, rel=2e-3)
+    assert found.interval[0] < found.rate < found.interval[1]
+
+
+def test_the_interval_of_a_leak_covers_it():
+    rng, time = np.random.default_rng(8), np.arange(2000) / 10.0
+    inside = 0
+    for _ in range(400):
+        # Noise that is alike over 20 samples, as a filtered gauge's.
+        noise = np.repeat(rng.normal(0, 0.05 * KPA, 100), 20)
+        low, high = leak_of(time, 22 * KPA - 2e-3 * KPA * time + noise).interval
+        inside += low <= 2e-3 * KPA <= high
+    assert 0.92 * 400 <= inside <= 0.985 * 400
+
+
+def test_a_tight_line_has_no_time_constant():
+    time, rng = np.arange(1000.0), np.random.default_rng(2)
+    found = leak_of(time, 22 * KPA + 1e-9 * time + rng.normal(0, 1e-12, 1000))
+    assert found.rate < 0 and found.time_constant == np.inf
+
+
+def test_a_leak_run_goes_through_blocks():
+    time, pressure = leak_samples(np.random.default_rng(3))
+    blocks = blocks_of(Path("leak.csv"), time, np.zeros(time.size), np.zeros(time.size), pressure)
+    rate, error = leak_rate(blocks)
+    assert rate == pytest.approx(22 * KPA / 3600 * np.exp(-300 / 3600), rel=2e-3) and 0 < error < 0.01 * rate
+    with pytest.raises(InputError, match=r"leak\.csv: a leak run of 5 points"):
+        leak_rate(blocks_of(Path("leak.csv"), time[:5], time[:5], time[:5], pressure[:5]))

@@ -1,0 +1,176 @@
+"""What a run cannot be: each wrong unit, sign, exchange and mixture is told as what it is, and a right run is left alone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pneutouch.bench.curve import curve_of
+from pneutouch.bench.plausible import Expected, check_plausible, mixed
+from pneutouch.bench.reading import read_blocks
+from pneutouch.bench.record import Curve
+from pneutouch.errors import InputError
+from pneutouch.spec.campaign import UNITS, Columns, Rig
+from pneutouch.units import KPA
+from tests.bench.rig import HEADER, Sensor, run_of, small, write
+
+SENSOR = Sensor()
+DEPTH = 5.0
+EXPECTED = Expected(DEPTH, 2.9, 7.2 * KPA, 2.5 * KPA)
+COLUMNS, RIG = Columns(), Rig()
+
+
+@pytest.fixture(scope="module")
+def samples():
+    return small()
+
+
+def analyse(tmp_path, samples, columns=COLUMNS, header=HEADER, expected=EXPECTED, sensor=SENSOR):
+    path = write(tmp_path / "run.csv", samples, header)
+    curve = curve_of(run_of(sensor=sensor), read_blocks(path, columns, RIG), RIG)
+    return check_plausible(curve, columns, expected, path)
+
+
+def refused(tmp_path, samples, *texts, **more):
+    with pytest.raises(InputError) as caught:
+        analyse(tmp_path, samples, **more)
+    for text in ("run.csv", *texts):
+        assert text in str(caught.value)
+
+
+def declared(**units):
+    given = Columns().model_dump()
+    for key, unit in units.items():
+        given[key]["unit"] = unit
+    return Columns.model_validate(given)
+
+
+def ideal(
+    force=SENSOR.force, slope=SENSOR.slope, deepest=6.9, factor=(1.0, 1.0, 1.0), driving=12.0, name="A1", number=1
+):
+    """A curve without a rig, its channels multiplied as by a wrong unit."""
+    depth = np.linspace(0, deepest, 15)
+    pressed = force(depth)
+    run = run_of(run=number).model_copy(
+        update={"sensor": name, "driving_pressure_kPa": driving, "file": f"{name}-{number}.csv"}
+    )
+    return Curve(
+        run, depth * factor[0], pressed * factor[1], slope * pressed * factor[2], driving=driving * KPA * factor[2]
+    )
+
+
+def test_a_right_run_is_left_alone(tmp_path, samples):
+    assert analyse(tmp_path, samples) == ()
+
+
+@pytest.mark.parametrize(
+    ("key", "unit", "ask"),
+    [
+        ("force", "mN", "mN"), ("force", "kN", "kN"), ("force", "gf", "gf"), ("force", "lbf", "lbf"), ("force", "kgf", "kgf"),
+        ("pressure", "Pa", "Pa"), ("pressure", "psi", "psi"), ("pressure", "MPa", "MPa"), ("pressure", "hPa", "hPa or mbar"),
+        ("pressure", "mmHg", "mmHg"), ("position", "um", "um"), ("position", "m", "m"), ("position", "in", "in"),
+    ],
+)  # fmt: skip
+def test_every_wrong_unit_is_asked_for(tmp_path, samples, key, unit, ask):
+    """The file is written in ``unit``; the campaign says N, kPa and mm."""
+    row, inner = {"position": (1, 1.0), "force": (2, 1.0), "pressure": (3, KPA)}[key]
+    wrong = samples.copy()
+    wrong[row] *= inner / UNITS[key][unit]
+    path = tmp_path / "run.csv"
+    values = wrong * np.array([[1], [1], [1], [1 / KPA]])
+    path.write_text(",".join(HEADER) + "\n" + ("%.6f,%.9g,%.9g,%.9g\n" * values.shape[1]) % tuple(values.T.ravel()))
+    curve = curve_of(run_of(), read_blocks(path, COLUMNS, RIG), RIG)
+    name = getattr(COLUMNS, key).name
+    with pytest.raises(InputError) as caught:
+        check_plausible(curve, COLUMNS, EXPECTED, path)
+    assert str(caught.value).startswith(f"{path}: column {name}: ")
+    assert f"is the column in {ask}? set columns.{key}.unit" in str(caught.value)
+    right = declared(**{key: unit})
+    found = curve_of(run_of(), read_blocks(path, right, RIG), RIG)
+    assert check_plausible(found, right, EXPECTED, path) == ()
+
+
+def test_the_message_has_the_numbers(tmp_path):
+    curve = ideal(factor=(1, 1e3, 1))
+    with pytest.raises(InputError) as caught:
+        check_plausible(curve, COLUMNS, Expected(6.9, 4.2, 11 * KPA, 2.5 * KPA), Path("run.csv"))
+    told = str(caught.value)
+    assert told == (
+        "run.csv: column force_N: reads 4.5e+03 N at 6.9 mm where the prediction has 4.2 N, 1079 times it; is the column in mN? "
+        "set columns.force.unit"
+    )
+
+
+def test_time_in_milliseconds_is_asked_for(tmp_path, samples):
+    slow = samples * np.array([[1e3], [1], [1], [1]])
+    refused(tmp_path, slow, "column time_s", "holds last 2.4e+03 s", "is the column in ms? set columns.time.unit")
+
+
+def test_what_no_unit_explains_is_a_question():
+    told = check_plausible(ideal(factor=(1, 20.0, 1)), COLUMNS, replace(EXPECTED, depth=6.9), Path("run.csv"))
+    assert len(told) == 1 and "column force_N" in told[0] and "no unit explains that" in told[0]
+
+
+@settings(max_examples=50, deadline=None)
+@given(force=st.floats(0.45, 2.2), rise=st.floats(0.45, 2.2), depth=st.floats(0.5, 2.0))
+def test_nothing_is_asked_within_a_factor_of_two(force, rise, depth):
+    measured = ideal(deepest=depth * DEPTH, factor=(1, force, rise), driving=0.0)
+    true = float(SENSOR.force(DEPTH))
+    # A swap is told by magnitudes where there is no driving pressure; these numbers are far from each other's.
+    expected = Expected(DEPTH, true, 40 * SENSOR.slope * true, 40 * SENSOR.slope)
+    measured = replace(measured, rise=40 * measured.rise)
+    assert check_plausible(measured, COLUMNS, expected, Path("run.csv")) == ()
+
+
+@pytest.mark.parametrize("driving", [0.0, 12.0, 22.0])
+def test_exchanged_columns_are_told(tmp_path, driving):
+    sensor = replace(SENSOR, driving=driving * KPA)
+    samples = small(sensor=sensor)
+    swapped = (HEADER[0], HEADER[1], HEADER[3], HEADER[2])
+    refused(tmp_path, samples, "force_N and pressure_kPa look swapped", header=swapped, sensor=sensor)
+    assert analyse(tmp_path, samples, sensor=sensor) == ()
+
+
+@pytest.mark.parametrize(
+    ("row", "told"), [(1, "columns.position.sign"), (2, "columns.force.sign = -1"), (3, "columns.pressure.sign = -1")]
+)
+def test_wrong_signs_are_told(tmp_path, samples, row, told):
+    wrong = samples.copy()
+    wrong[row] *= -1
+    refused(tmp_path, wrong, told)
+
+
+def test_another_driving_pressure_is_a_question(tmp_path, samples):
+    (told,) = analyse(tmp_path, samples, sensor=replace(SENSOR, driving=22 * KPA))
+    assert "column pressure_kPa: 12 kPa before contact" in told and "driving_pressure_kPa = 22" in told
+    assert analyse(tmp_path, samples, sensor=replace(SENSOR, driving=12.9 * KPA)) == ()
+
+
+def test_the_odd_one_of_three_is_named():
+    other = ideal(lambda d: 1.5 * SENSOR.force(d), number=3)
+    runs = [ideal(number=1), ideal(lambda d: 1.02 * SENSOR.force(d), number=2), other]
+    ((found, why),) = mixed(runs)
+    assert found is other and why.startswith(
+        "A1-3.csv: force at 6.9 mm is 1.49 times that of the other 2 runs of sensor A1"
+    )
+    ((found, why),) = mixed([*runs[:2], ideal(slope=0.7 * SENSOR.slope, number=3)])
+    assert found.run.run == 3 and "slope of pressure over force is 0.70 times" in why
+
+
+def test_of_two_that_differ_both_are_named():
+    runs = [ideal(number=1), ideal(lambda d: 1.5 * SENSOR.force(d), number=2)]
+    assert [curve.run.run for curve, _ in mixed(runs)] == [1, 2]
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.lists(st.floats(0.95, 1.05), min_size=2, max_size=6))
+def test_runs_alike_and_other_sensors_are_left_alone(factors):
+    alike = [ideal(lambda d, f=f: f * SENSOR.force(d), number=k + 1) for k, f in enumerate(factors)]
+    stiffer = ideal(lambda d: 3 * SENSOR.force(d), name="B1")
+    inflated = ideal(lambda d: 2 * SENSOR.force(d), driving=22.0)
+    assert mixed([*alike, stiffer, inflated]) == []

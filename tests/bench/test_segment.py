@@ -1,0 +1,266 @@
+"""Records of known sensors to curves: the law that was put in comes out, and what is wrong is told."""
+
+from __future__ import annotations
+
+import itertools
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pneutouch.bench.blocks import blocks_of
+from pneutouch.bench.curve import WAY_POINTS, curve_of
+from pneutouch.bench.protocol import HOLD, protocol
+from pneutouch.bench.record import Doubt
+from pneutouch.bench.segment import excursions, position_noise
+from pneutouch.errors import InputError
+from pneutouch.mechanics.response import figures
+from pneutouch.spec.campaign import Rig
+from pneutouch.units import KPA
+from tests.bench.rig import Dome, Faults, Sensor, record, run_of, small
+
+FILE = Path("run.csv")
+LAWS = [Sensor(0.6, 1.0), Sensor(0.25, 1.5), Sensor(0.12, 1.8), Dome()]
+
+
+def curve(samples, kind="steps", sensor=LAWS[1], rig=None, **more):
+    return curve_of(run_of(kind, sensor), blocks_of(FILE, *samples, **more), rig or Rig())
+
+
+def whys(found, used=None):
+    return [doubt.why for doubt in found.doubts if used is None or doubt.used == used]
+
+
+@pytest.mark.parametrize(("sensor", "bias"), [(LAWS[0], 0.01), (LAWS[1], 0.05), (LAWS[2], 0.09), (LAWS[3], 0.04)])
+@pytest.mark.parametrize("kind", ["steps", "saturation"])
+def test_points_are_those_of_the_law(kind, sensor, bias):
+    faults = Faults(rate=4000.0, missed=0.01, backlash=0.1)
+    found = curve(record(kind, sensor, faults), kind, sensor)
+    depths = np.array(protocol(kind, 9.25).depths)
+    assert found.indentation[0] == found.force[0] == found.rise[0] == 0
+    # The shallowest is touched with less than 0.1 N, five times the noise of one sample.
+    onset = np.array([one.onset for one in found.indents[1:]]) - faults.zero
+    assert abs(np.median(onset)) < bias
+    assert np.abs(onset - np.median(onset)).max() < 0.08
+    # Every travel is counted from one place, the first contact of the run's first indentations.
+    start = depths - found.indentation[1:]
+    assert np.ptp(start) < 0.006 and abs(start.mean()) < bias + 0.03
+    force = sensor.force(depths)
+    assert found.force[1:] == pytest.approx(force, abs=0.002)
+    assert found.rise[1:] == pytest.approx(sensor.slope * force, abs=0.01 * KPA)
+    assert found.driving == pytest.approx(sensor.driving, abs=0.005 * KPA)
+    (missed,) = (why for why in whys(found) if not why.startswith("indentation 1: too light"))
+    assert "samples missed" in missed
+
+
+def test_the_sensitivity_is_that_put_in():
+    sensor = Sensor(0.3, 1.4, 1.9 * KPA)
+    found = curve(record(sensor=sensor), sensor=sensor)
+    told = figures(found.indentation, found.force, found.rise / KPA)
+    assert told is not None and told.sensitivity == pytest.approx(1.9, rel=2e-3) and told.r_squared > 0.9999
+
+
+def test_a_filter_moves_the_onset_by_at_most_the_way_made_in_its_delay():
+    for tau in (0.005, 0.02):
+        found = curve(record(sensor=LAWS[3], faults=Faults(rate=2000.0, filter=tau)))
+        onset = np.median([one.onset for one in found.indents]) - 41.3
+        assert 0.0 < onset < 5.0 * tau
+        assert found.force[-1] == pytest.approx(LAWS[3].force(6.9375), abs=0.005)
+
+
+def test_noise_is_that_of_samples_and_drift_that_of_a_leak():
+    found = curve(record(faults=Faults(rate=2000.0, leak=0.02 * KPA)))
+    assert found.noise[0] == pytest.approx(0.02, rel=0.03)
+    assert found.noise[1] == pytest.approx(0.03 * KPA, rel=0.03)
+    assert found.drift[0] == pytest.approx(-0.02 * KPA, rel=0.1)
+    fast = curve(record(faults=Faults(rate=2000.0, leak=0.1 * KPA)))
+    (leak,) = (why for why in whys(fast) if why.startswith("pressure without"))
+    told = re.fullmatch(r"pressure without contact drifts by (\S+) kPa a minute, .*", leak)
+    assert told is not None and float(told[1]) == pytest.approx(-6.0, rel=0.02)
+    quiet = curve(record(faults=Faults(rate=2000.0)))
+    assert quiet.doubts == () and abs(quiet.drift[0]) < 1e-3 * KPA
+
+
+def test_filtered_noise_is_not_underestimated():
+    """Noise that is alike from sample to sample is mostly between blocks."""
+    samples = record(faults=Faults(force_noise=0.0))
+    rng = np.random.default_rng(5)
+    slow = np.repeat(rng.normal(0, 0.02, samples.shape[1] // 20 + 1), 20)[: samples.shape[1]]
+    samples[2] += slow
+    assert curve(samples).noise[0] == pytest.approx(0.02, rel=0.1)
+
+
+def test_a_reset_does_not_enter_the_driving_pressure():
+    """In every rest the cavity is vented and filled anew."""
+    blocks = blocks_of(FILE, *record())
+    assert blocks.pressure.min() < 1 * KPA
+    found = curve_of(run_of(), blocks, Rig())
+    assert [one.driving for one in found.indents] == pytest.approx([12 * KPA] * 14, abs=0.02 * KPA)
+
+
+def test_times_are_those_of_the_protocol():
+    faults = Faults(rate=2000.0, backlash=0.0)
+    what = protocol("saturation", 9.25)
+    found = curve(record("saturation", faults=faults, what=what), "saturation")
+    knots, travels = what.way()
+    for k, one in enumerate(found.indents):
+        rest, down, up = knots[4 * k + 1], knots[4 * k + 2], knots[4 * k + 3]
+        assert one.hold == (pytest.approx(down, abs=0.03), pytest.approx(up, abs=0.03))
+        assert one.contact == pytest.approx(rest + 1.0 / 5.0, abs=0.03)
+        assert one.read[0] == pytest.approx(up - HOLD / 4, abs=0.1) and up - 0.1 < one.read[1] < up
+        assert up < one.release <= knots[4 * k + 4]
+        assert one.release == pytest.approx(up + travels[4 * k + 3] / 5.0, abs=0.12)
+
+
+@pytest.mark.parametrize("rate", [100.0, 500.0])
+def test_slow_rigs_are_read_too(rate):
+    found = curve(record(faults=Faults(rate=rate)))
+    force = LAWS[1].force(np.array(protocol("steps", 9.25).depths))
+    count = found.force.size - 1
+    assert count >= 13
+    assert found.force[1:] == pytest.approx(force[-count:], abs=0.015)
+    assert found.indentation[3:] == pytest.approx(np.array(protocol("steps", 9.25).depths)[2 - 14 :], abs=0.2)
+
+
+def test_a_run_in_a_wrong_unit_is_cut_all_the_same():
+    right, samples = curve(small()), small()
+    samples *= np.array([[1.0], [1e3], [1e-3], [1e3]])
+    wrong = curve(samples)
+    assert wrong.indentation == pytest.approx(1e3 * right.indentation, rel=1e-6)
+    assert wrong.force == pytest.approx(1e-3 * right.force, rel=1e-6)
+    assert any("position covers" in why for why in whys(wrong))
+    samples[0] *= 1e3  # now of one sample a block, so that the onset is less sharp
+    assert curve(samples).indentation == pytest.approx(1e3 * right.indentation, rel=0.1)
+
+
+@pytest.mark.parametrize("rest", [2.0, 0.0])
+def test_a_loop_has_its_branches(rest):
+    sensor = LAWS[1]
+    what = replace(protocol("loop", 9.25), rest=rest)
+    found = curve(record("loop", sensor, Faults(rate=5000.0, backlash=0.0), what), "loop", sensor)
+    assert len(found.loop) == 3 and found.indentation.size == WAY_POINTS + 1
+    assert found.indentation[-1] == pytest.approx(6.9375, abs=0.05)
+    assert found.force == pytest.approx(sensor.force(found.indentation), abs=0.06)
+    for force_in, rise_in, force_out, rise_out in found.loop:
+        assert force_in[0] < 0.05 and force_in[-1] == pytest.approx(sensor.force(6.9375), rel=0.01)
+        assert force_out[0] == pytest.approx(force_in[-1]) and force_out[-1] < 0.1
+        assert np.all(np.diff(force_in[10:]) > 0) and np.all(np.diff(force_out[:-10]) < 0)
+        for force, rise in ((force_in, rise_in), (force_out, rise_out)):
+            assert rise == pytest.approx(sensor.slope * force, abs=0.1 * KPA)
+
+
+def test_relaxation_is_followed():
+    what = protocol("relaxation", 9.25).quicker(5.0)
+    samples = record("relaxation", faults=Faults(rate=500.0), what=what)
+    begin = what.way()[0][2]
+    held = samples[0] > begin
+    samples[2, held] -= 0.4 * (1 - np.exp(-(samples[0, held] - begin) / 100.0))
+    found = curve(samples, "relaxation")
+    assert found.relaxation is not None
+    since, force, rise = found.relaxation
+    assert since[-1] == pytest.approx(600.0, abs=0.5)
+    middle = slice(50, -50)
+    expected = LAWS[1].force(6.9375) - 0.4 * (1 - np.exp(-since / 100.0))
+    assert force[middle] == pytest.approx(expected[middle], abs=0.05)
+    assert rise.mean() == pytest.approx(2.5 * KPA * LAWS[1].force(6.9375), rel=0.01)
+    assert found.indentation.size == WAY_POINTS + 1 and len(found.indents) == 1
+
+
+def test_no_contact_is_said():
+    samples = small()
+    samples[2] = 0.13 + np.random.default_rng(1).normal(0, 0.02, samples.shape[1])
+    with pytest.raises(InputError, match=r"run\.csv: no contact: the force never leaves its noise: at most 0\.0\d+ N"):
+        curve(samples)
+
+
+def test_an_indentation_without_contact_is_a_doubt():
+    what = replace(protocol("steps", 9.25), depths=(-0.3, 2.0, 4.0), rest=4.0)
+    found = curve(record(what=what))
+    assert whys(found, used=False) == ["indentation 1: no contact found"]
+    assert np.isnan(found.indents[0].contact) and found.indentation.size == 3
+
+
+def test_a_plate_that_stays_or_goes_the_wrong_way():
+    samples = small()
+    with pytest.raises(InputError, match=r"columns\.position\.sign"):
+        curve(samples * np.array([[1], [-1], [1], [1]]))
+    samples[1] = 3.0 + np.random.default_rng(1).normal(0, 0.003, samples.shape[1])
+    with pytest.raises(InputError, match="never moves"):
+        curve(samples)
+    with pytest.raises(InputError, match="no plate"):
+        curve(small(), "leak")
+
+
+def test_clipped_points_are_left_out_and_told():
+    samples = small()
+    blocks = blocks_of(FILE, *samples)
+    third = curve(samples).indents[2]
+    clipped = replace(blocks, doubts=(Doubt(third.hold[0], third.hold[1], "force clipped: at the top", False),))
+    found = curve_of(run_of(), clipped, Rig())
+    assert found.indentation.size == 3
+    assert any(
+        why.startswith("indentation 3, ") and "left out: force clipped" in why for why in whys(found, used=False)
+    )
+    everywhere = replace(blocks, doubts=(Doubt(0.0, 1e3, "force clipped", False),))
+    with pytest.raises(InputError, match=r"none of 3 indentations can be used: .*clipped"):
+        curve_of(run_of(), everywhere, Rig())
+
+
+def test_a_gap_in_what_is_read_leaves_the_point_out_and_elsewhere_not():
+    samples = small()
+    one = curve(samples).indents[1]
+    time = samples[0]
+    lost = (time > one.read[0] - 0.05) & (time < one.read[1])
+    assert curve(samples[:, ~lost]).indentation.size == 4  # the stretch read moves to what is left of the hold
+    lost = (time > one.hold[0] + 0.3) & (time < one.hold[0] + 0.9)
+    kept = curve(samples[:, ~lost])
+    assert kept.indentation.size == 4
+    assert kept.force == pytest.approx(curve(samples).force, abs=1e-3)
+    assert any(why.startswith("gap: ") for why in whys(kept))
+
+
+def test_holds_that_are_short_or_not_settled():
+    short = curve(record(what=replace(protocol("steps", 9.25), depths=(2.0, 4.0), rest=4.0, hold=1.0)))
+    assert [why.split(":")[1] for why in whys(short)] == [" held for 0.99 s, usual are 4 s"] * 2
+    samples = small()
+    late = curve(small()).indents[2].read
+    samples[2] += np.where((samples[0] > late[0]) & (samples[0] < late[1] + 0.2), -(samples[0] - late[0]) * 0.5, 0.0)
+    (told,) = whys(curve(samples))
+    assert told.startswith("indentation 3: force not settled: changes by -")
+
+
+def test_depths_out_of_order_or_twice():
+    what = replace(protocol("steps", 9.25), rest=4.0)
+    found = curve(record(what=replace(what, depths=(4.0, 2.0, 3.0))))
+    assert np.all(np.diff(found.indentation) > 0)
+    assert [why for why in whys(found) if why.startswith("out of order")]
+    twice = curve(record(what=replace(what, depths=(2.0, 4.0, 4.0)), faults=Faults(rate=10_000.0)))
+    assert [why for why in whys(twice) if why.startswith("two indentations at one depth")]
+
+
+def test_a_record_that_ends_or_begins_with_the_plate_in():
+    samples = small()
+    holds = [one.hold for one in curve(samples).indents]
+    ends = curve(samples[:, samples[0] < holds[2][1] - 0.2])
+    assert ends.indentation.size == 4
+    assert whys(ends) == ["indentation 3: no release: the force does not go back"]
+    begins = curve(samples[:, samples[0] > holds[0][0] + 0.5])
+    assert begins.indentation.size == 3
+    assert "the record begins with the plate in; left out" in whys(begins, used=False)
+
+
+def test_excursions_survive_wild_positions():
+    samples = small()
+    clean, _ = excursions(blocks_of(FILE, *samples))
+    samples[1, 5000:5010] = 60.0
+    wild, pressed = excursions(blocks_of(FILE, *samples))
+    assert not pressed and [one.hold for one in wild] == [one.hold for one in clean]
+
+
+def test_the_noise_of_the_position_is_not_its_motion():
+    rng, size = np.random.default_rng(2), 4000
+    for place, slope in itertools.product((0.0, 50.0), (0.0, 0.05)):
+        noise = position_noise(place + slope * np.arange(size) + rng.normal(0, 0.004, size))
+        assert noise == pytest.approx(0.004, rel=0.06)
