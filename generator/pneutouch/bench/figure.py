@@ -72,6 +72,10 @@ _CURVE, _GAP = 8, 4
 than force is: the least that follow the solid's loops."""
 
 _LEAST_SAMPLES = 40
+
+_ENDS = 0.3
+"""Decades at either end of a hold over which a line gives the value at the end: one block at 1 s would give it its noise."""
+
 _GRID = 200
 
 
@@ -141,9 +145,11 @@ def _relaxation(time: Array, force: Array, rise: Array) -> dict[str, float]:
         # Even in log time: a hold of 600 s has nine tenths of its samples in its last decade.
         grid = np.linspace(decades[0], decades[-1], _GRID)
         even = _binned(decades, values, grid)
-        start = even[0]
         slope = np.polyfit(grid, even, 1)[0]
-        found[f"relaxation_{name}_percent"] = float(100 * (start - even[-1]) / start)
+        start, end = (float(np.polyval(np.polyfit(grid[part] - at, even[part], 1), 0.0)) for part, at in (
+            (grid <= grid[0] + _ENDS, grid[0]), (grid >= grid[-1] - _ENDS, grid[-1]),
+        ))  # fmt: skip
+        found[f"relaxation_{name}_percent"] = float(100 * (start - end) / start)
         found[f"relaxation_{name}_percent_per_decade"] = float(-100 * slope / start)
     return found
 
@@ -160,10 +166,10 @@ def _binned(place: Array, values: Array, grid: Array) -> Array:
 
 def _still(curve: Curve, sensitivity: float | None) -> dict[str, float]:
     """What the channels do without contact; the resolution follows where the run has a sensitivity."""
-    found = {"drift_pressure_kPa_per_min": 60 * curve.drift[0] / KPA}
     if curve.run.kind == "loop":
-        # Its rests are too short for the noise: the wall still recovers.
-        return found
+        # Its rests are too short for noise and drift: the wall still recovers.
+        return {}
+    found = {"drift_pressure_kPa_per_min": 60 * curve.drift[0] / KPA}
     noise_force, noise_pressure = curve.noise[0], curve.noise[1] / KPA
     found |= {"noise_force_N": noise_force, "noise_pressure_kPa": noise_pressure}
     if sensitivity:
