@@ -15,7 +15,7 @@ def calibrate(
     data: Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="Folder of a campaign, or its campaign file.")],
     design: Annotated[str | None, typer.Option(metavar="DESIGN", help="Design that the sensor was made to.", show_default="the campaign's")] = None,
     sensor: Annotated[str | None, typer.Option(metavar="NAME", help="Sensor of the campaign.", show_default="its only one")] = None,
-    fit: Annotated[str, typer.Option(metavar="NAMES", help="What to fit: modulus, wall, dead-volume, offset.")] = "modulus,dead-volume",
+    fit: Annotated[str, typer.Option(metavar="NAMES", help="What to fit: modulus, wall, dead-volume, offset.")] = "modulus,dead-volume,wall,offset",
     hold_out: Annotated[list[float] | None, typer.Option(metavar="KPA", help="Driving pressure to predict by the others; may be repeated.")] = None,
     no_priors: Annotated[bool, typer.Option("--no-priors", help="Leave aside what is known before measuring.")] = False,
     save: Annotated[str | None, typer.Option(metavar="NAME", help="Write resin and design of this name into the working folder.")] = None,

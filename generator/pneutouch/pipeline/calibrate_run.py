@@ -40,7 +40,7 @@ def run_calibration(asked: Asked, shelves: Library | None = None) -> dict[str, A
     design = asked.design or loaded.campaign.design
     if design is None:
         raise InputError(f"{asked.data}: names no design; give --design")
-    scene = load_scene(design, library=library)
+    scene = load_scene(design, loaded.campaign.assignments, library)
     sensor, observations, notes = observations_of(
         loaded.campaign, loaded.curves, loaded.injections, scene, asked.sensor
     )

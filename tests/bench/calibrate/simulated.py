@@ -43,7 +43,9 @@ def trial(
     """A specimen drawn around ``nominal`` and its runs at driving pressures in kPa."""
     specimen = Specimens.draw(TRUTH.scatter, 1, rng).sensor(nominal, 0)
     pressed = press_curves(specimen, [p * KPA for p in pressures], 0.75 * nominal.inner_radius, model)
-    return Trial(specimen, Observations(tuple(_runs(pressed.curves, pressures, runs, nominal, rng)), rig=Rig(rate_Hz=RATE)))
+    return Trial(
+        specimen, Observations(tuple(_runs(pressed.curves, pressures, runs, nominal, rng)), rig=Rig(rate_Hz=RATE))
+    )
 
 
 def _runs(curves, pressures, runs: int, nominal: Sensor, rng: np.random.Generator) -> Iterator[Curve]:
@@ -51,7 +53,9 @@ def _runs(curves, pressures, runs: int, nominal: Sensor, rng: np.random.Generato
         way = TRUTH.protocol("steps", nominal.inner_radius, curve.reach)
         for number in range(1, runs + 1):
             record = simulate_run(curve, way, TRUTH.rig, RATE, rng, wall=TRUTH.wall, scatter=TRUTH.scatter)
-            run = Run(file=f"{pressure:g}-{number}", sensor="A", resin="TangoPlus", driving_pressure_kPa=pressure, run=number)
+            run = Run(
+                file=f"{pressure:g}-{number}", sensor="A", resin="TangoPlus", driving_pressure_kPa=pressure, run=number
+            )
             yield curve_of(run, blocks_of(Path(run.file), *record, rate=RATE), Rig(rate_Hz=RATE))
 
 
