@@ -8,7 +8,7 @@ import pytest
 from pneutouch.spec.campaign import Column, Columns, Rig
 from pneutouch.units import KPA
 from tests.bench.reads import read, refuse
-from tests.bench.rig import small, write
+from tests.bench.rig import Faults, record, small, write
 
 
 @pytest.fixture(scope="module")
@@ -125,3 +125,14 @@ def test_a_number_that_overflows_in_inner_units_is_named(tmp_path, samples, valu
     path.write_text("".join(lines))
     columns = Columns(position=Column(name="position_mm", unit="m"))
     refuse(path, "row 100", "column position_mm", "e+", "no instrument reads that", columns=columns)
+
+
+def test_a_gap_across_a_move_kills_no_channel(tmp_path):
+    """The one block after the gap has moved farthest; it alone says nothing of force and pressure."""
+    slow = record(faults=Faults(rate=100.0))
+    rests = np.flatnonzero(slow[1] < slow[1].min() + 0.1)
+    holds = np.flatnonzero(slow[1] > slow[1].max() - 0.1)
+    keep = np.ones(slow.shape[1], bool)
+    keep[rests[rests < holds[0]][-1] : holds[0] + 5] = False
+    (gap, *_) = read(write(tmp_path / "a.csv", slow[:, keep])).doubts
+    assert gap.kind == "gap" and not gap.used

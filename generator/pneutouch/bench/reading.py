@@ -107,6 +107,9 @@ def _check_alive(blocks: Blocks, names: dict[str, str]) -> None:
         if blocks.size > 1 and np.ptp(blocks.force) > _PRESSED * noise:
             raise InputError(f"{blocks.file}: column {names['position']}: {said} while the force changes{ask}")
         return
+    # Across a gap the plate has moved far between two blocks; that is no motion that was recorded.
+    steps = np.diff(blocks.time, prepend=blocks.time[0] - np.median(np.diff(blocks.time)))
+    moved = np.where(steps <= 2 * np.median(steps), moved, 0.0)
     moving = moved > 0.1 * moved.max()
     for key, values, spread in (
         ("force", blocks.force, blocks.force_spread), ("pressure", blocks.pressure, blocks.pressure_spread)
