@@ -25,12 +25,14 @@ def calibrate(
 ) -> None:  # fmt: skip
     """Fit modulus, wall, dead volume and contact offset to a sensor's runs."""
     with reporting():
+        from pneutouch.cli.progress import bar
         from pneutouch.pipeline.calibrate_run import Asked, run_calibration
 
         asked = Asked(
             data, design, sensor, tuple(fit.split(",")), tuple(hold_out or ()), not no_priors, save, shadow, out
         )
-        document = run_calibration(asked)
+        with bar("MB read") as progress:
+            document = run_calibration(asked, progress=progress)
         if json:
             print_json(document)
         else:
@@ -38,4 +40,4 @@ def calibrate(
 
             typer.echo(calibration_text(document))
         if document["failures"]:
-            raise typer.Exit(2)
+            raise typer.Exit(3)

@@ -73,7 +73,7 @@ def characterize(
     _check_resins(data, loaded, shelves)
     pairs = [(curve.run.resin, curve.run.driving_pressure_kPa) for curve in loaded.curves]
     model_says = answers(name, given, pairs, model, shelves)
-    curves, failures, questions = _sound(loaded, model_says)
+    curves, failures, questions = sound(loaded, model_says)
     groups = summarize(curves)
     scene = load_scene(name, given, shelves)
     pushed, unread = injections(loaded, scene)
@@ -114,7 +114,7 @@ def _answer(found: Mapping[tuple[str, float], Answer], resin: str, pressure: flo
     return found.get((resin, pressure), Answer(None, 0, "not predicted"))
 
 
-def _sound(
+def sound(
     loaded: Loaded, model_says: Mapping[tuple[str, float], Answer]
 ) -> tuple[list[Curve], list[tuple[str, str]], tuple[tuple[str, str], ...]]:
     """Curves that may be what they say, those that cannot with the reason, and what is to be asked of the others."""
