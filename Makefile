@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: venv demo test lint check-slow chart chart-meshes texture-page voxel-page atlas atlas-page lock clean
+.PHONY: venv demo test lint check-slow chart chart-meshes texture-page coverage-page voxel-page atlas atlas-page lock clean
 
 venv: $(VENV)/.dev
 
@@ -55,6 +55,10 @@ chart-meshes: $(VENV)/.dev
 # What the scan model says of the paper's Figure 9, beside finite elements; writes docs/texture.md and its charts.
 texture-page: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.texture_page
+
+# How often the intervals of simulated campaigns hold the truth; writes docs/coverage.json and the table of docs/measuring.md.
+coverage-page: $(VENV)/.dev
+	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.coverage
 
 # The shipped table of the solid's answers; goes on where it was stopped. Its page presses 2,000 sensors by both.
 atlas: $(VENV)/.dev

@@ -1,7 +1,7 @@
 """Do stated intervals hold what they say? Simulated campaigns of the paper, read and made figures, against their truth.
 
 Each campaign: seven resins, three specimens, two driving pressures, three steps runs, one loop and one relaxation run. Writes
-docs/coverage.json; docs/measuring.md shows it.
+docs/coverage.json and the table of docs/measuring.md.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import numpy as np
 from benchmarks.chart import DOCS
 from pneutouch.bench.blocks import blocks_of
 from pneutouch.bench.curve import curve_of
-from pneutouch.bench.figure import BY_KEY, RESOLVED
+from pneutouch.bench.figure import BY_KEY, FIGURES, RESOLVED
 from pneutouch.bench.record import Curve
 from pneutouch.bench.simulate import Specimens, Truth, population, press_curves, simulate_run
 from pneutouch.bench.simulate.curve import PressCurve, Pressed
@@ -33,6 +33,7 @@ from pneutouch.units import KPA
 RESINS = ("TangoPlus", "FLX9940", "FLX9950", "FLX9960", "FLX9970", "FLX9985", "FLX9995")
 PRESSURES = (0.0, 22.0)
 CAMPAIGNS, SPECIMENS, RUNS = 200, 3, 3
+PAGE, MARKS = DOCS / "measuring.md", ("<!-- coverage -->", "<!-- end of coverage -->")
 STORED = DOCS / "coverage.json"
 
 RATE, LOOP_RATE = 100.0, 2000.0
@@ -124,6 +125,29 @@ def counted(resin: str, campaigns: int = CAMPAIGNS) -> dict[str, dict[str, dict[
         }
         for pressure, figures in held.items()
     }  # fmt: skip
+
+
+def table(data: dict[str, Any]) -> list[str]:
+    """How often the interval of each figure held its true value: over all cells, and in the best and worst of them."""
+    cells: dict[str, list[tuple[float, str]]] = {}
+    for resin, pressures in data["resins"].items():
+        for pressure, figures in pressures.items():
+            for key, entry in figures.items():
+                cells.setdefault(key, []).append((entry["held"], f"{resin}, {pressure} kPa"))
+    rows = ["| figure | held | least, where | most |", "|---|---|---|---|"]
+    for figure in FIGURES:
+        if figure.key in cells:
+            found = cells[figure.key]
+            mean, (least, where) = float(np.mean([held for held, _ in found])), min(found)
+            rows.append(f"| `{figure.key}` | {mean:.1%} | {least:.1%}, {where} | {max(found)[0]:.1%} |")
+    return rows
+
+
+def write_page(data: dict[str, Any]) -> None:
+    """Put the table between the page's marks."""
+    text = PAGE.read_text(encoding="utf-8")
+    head, tail = text.split(MARKS[0])[0], text.split(MARKS[1])[1]
+    PAGE.write_text("\n".join([head + MARKS[0], "", *table(data), "", MARKS[1] + tail]), encoding="utf-8")
 
 
 def main(campaigns: int = CAMPAIGNS) -> None:

@@ -6,7 +6,7 @@ import json
 
 import numpy as np
 import pytest
-from benchmarks import laws, peers
+from benchmarks import coverage, laws, peers
 from benchmarks.chart import DOCS, contact_section, inflation_section
 from benchmarks.felupe_sweep import felupe_limit
 from benchmarks.meshing import OURS, manifold_solid, plain_grid
@@ -15,6 +15,8 @@ from benchmarks.pages.speed_chart import front
 from benchmarks.scenes import PAPER, SCENES
 from benchmarks.speed_accuracy import METHODS, extrapolate, limit, run
 from benchmarks.theory import table_s1
+
+from pneutouch.bench.figure import BY_KEY
 
 
 def page() -> str:
@@ -111,3 +113,30 @@ def test_the_peers_are_given_a_fair_outline(evaluated):
         assert solid.distance(middle).max() <= 0.05
         # The kernel moves a vertex by rounding where it cuts.
         assert solid.distance(vertices).max() < 1e-5
+
+
+def test_intervals_of_simulated_campaigns_hold_what_they_say():
+    """The stored coverage is on the page; every figure's intervals hold the truth in 90 to 99 % of the campaigns."""
+    data = stored("coverage.json")
+    assert "\n".join(coverage.table(data)) in (DOCS / "measuring.md").read_text(encoding="utf-8")
+    assert set(data["resins"]) == set(coverage.RESINS) and data["campaigns"] == 200
+    for key in BY_KEY:
+        held = [f[key]["held"] for pressures in data["resins"].values() for f in pressures.values() if key in f]
+        if held:
+            assert 0.90 <= np.mean(held) <= 0.99, key
+            # 200 campaigns of one cell: three standard deviations of a share of 0.93.
+            assert min(held) >= 0.86, key
+
+
+def test_the_stored_coverage_is_what_the_code_gives_today():
+    """Four campaigns again: whether each interval held is decided by the code alone."""
+    cell = coverage.cell("FLX9960")
+    first, again = (coverage.campaign(cell, 0) for _ in range(2))
+    for one, other in zip(first, again, strict=True):
+        assert {key: e.value for key, e in one.figures.items()} == {key: e.value for key, e in other.figures.items()}
+    held = []
+    for number in range(4):
+        for group in coverage.campaign(cell, number):
+            true = cell.truth[group.key.driving_pressure_kPa]
+            held += [e.holds(true[key]) for key, e in group.figures.items() if key in true and e.low is not None]
+    assert np.mean(held) > 0.8

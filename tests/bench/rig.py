@@ -103,4 +103,4 @@ def write(path: Path, samples, header=HEADER, separator=",", before="", decimals
 def small(kind="steps", depths=(1.0, 3.0, 5.0), sensor=Sensor(), **faults):
     """A quick run of three indentations."""
     what = replace(protocol(kind, 9.25), depths=depths, rest=4.0, hold=2.4)
-    return record(kind, sensor, Faults(rate=1000.0, **faults), what=what)
+    return record(kind, sensor, Faults(**{"rate": 1000.0, **faults}), what=what)

@@ -115,3 +115,21 @@ def test_a_leak_run_goes_through_blocks():
     assert rate == pytest.approx(22 * KPA / 3600 * np.exp(-300 / 3600), rel=2e-3) and 0 < error < 0.01 * rate
     with pytest.raises(InputError, match=r"leak\.csv: a leak run of 5 points"):
         leak_rate(blocks_of(Path("leak.csv"), time[:5], time[:5], time[:5], pressure[:5]))
+
+
+@pytest.mark.parametrize("end", ["", "\n", "\r\n"])
+def test_the_last_row_of_a_typed_table_counts(tmp_path, end):
+    path = tmp_path / "injection.csv"
+    path.write_text("volume_mL,pressure_kPa\n0,0\n0.1,4\n0.2,8\n0.5,19.5" + end, newline="")
+    volume, pressure = read_injection(path, COLUMNS)
+    assert volume == pytest.approx(np.array([0, 0.1, 0.2, 0.5]) * ML) and pressure[-1] == pytest.approx(19.5 * KPA)
+    path.write_text("volume_mL,pressure_kPa\n0,0\n0.1,4\n0.2,8\n0.5,")
+    with pytest.raises(InputError, match="row 5: the file ends within this row"):
+        read_injection(path, COLUMNS)
+
+
+def test_volumes_that_overflow_are_named(tmp_path):
+    path = tmp_path / "injection.csv"
+    path.write_text("volume_mL,pressure_kPa\n0,0\n0.1,4\n3e307,8\n")
+    with pytest.raises(InputError, match="row 4: column volume_mL: 3e\\+307 mL: no instrument reads that"):
+        read_injection(path, COLUMNS)

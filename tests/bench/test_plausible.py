@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pneutouch.bench.curve import curve_of
-from pneutouch.bench.plausible import Expected, check_plausible, mixed
+from pneutouch.bench.plausible import Expected, check_leak, check_plausible, mixed
 from pneutouch.bench.reading import read_blocks
 from pneutouch.bench.record import Curve
 from pneutouch.errors import InputError
@@ -174,3 +174,60 @@ def test_runs_alike_and_other_sensors_are_left_alone(factors):
     stiffer = ideal(lambda d: 3 * SENSOR.force(d), name="B1")
     inflated = ideal(lambda d: 2 * SENSOR.force(d), driving=22.0)
     assert mixed([*alike, stiffer, inflated]) == []
+
+
+@pytest.mark.parametrize(
+    ("factor", "told"), [((1, -1, 1), "columns.force.sign"), ((1, 1, -1), "columns.pressure.sign"), ((-1, 1, 1), "position.sign")]
+)  # fmt: skip
+def test_signs_are_told_without_a_prediction(factor, told):
+    with pytest.raises(InputError, match=told):
+        check_plausible(ideal(factor=factor), COLUMNS, None, Path("run.csv"))
+
+
+def test_without_a_prediction_time_and_driving_pressure_are_asked_about_and_magnitudes_not(tmp_path, samples):
+    assert analyse(tmp_path, samples, expected=None) == ()
+    assert check_plausible(ideal(factor=(1, 20.0, 1)), COLUMNS, None, Path("run.csv")) == ()
+    refused(tmp_path, samples * np.array([[1e3], [1], [1], [1]]), "is the column in ms?", expected=None)
+    (told,) = analyse(tmp_path, samples, sensor=replace(SENSOR, driving=22 * KPA), expected=None)
+    assert "driving_pressure_kPa = 22" in told
+
+
+@pytest.mark.parametrize("expected", [EXPECTED, None])
+def test_holds_that_no_unit_explains_are_a_question(tmp_path, samples, expected):
+    slow = samples * np.array([[125.0], [1], [1], [1]])
+    (told,) = analyse(tmp_path, slow, expected=expected)
+    assert "column time_s: holds last 3e+02 s" in told and "another protocol" in told
+
+
+def leak(tmp_path, driving=22.0, top=100.0, start=22.0, constant=3600.0):
+    """Questions about 300 s of a line that begins at ``start`` kPa, read by a gauge that stops at ``top``."""
+    time = np.arange(0, 300, 0.1)
+    rng = np.random.default_rng(3)
+    pressure = np.minimum(start * np.exp(-time / constant) + rng.normal(0, 0.03, time.size), top)
+    path = tmp_path / "leak.csv"
+    np.savetxt(path, np.stack([time, pressure], axis=1), "%.5f", ",", header="time_s,pressure_kPa", comments="")
+    run = run_of("leak").model_copy(update={"driving_pressure_kPa": driving})
+    return check_leak(read_blocks(path, COLUMNS, RIG, plate=False), run, RIG)
+
+
+def test_a_leak_run_at_its_pressure_is_left_alone(tmp_path):
+    assert leak(tmp_path) == ()
+    assert leak(tmp_path, constant=30.0) == ()  # a great leak is a finding, no fault of the file
+
+
+def test_a_leak_run_at_another_pressure(tmp_path):
+    for driving in (12.0, 0.0):
+        (told,) = leak(tmp_path, driving)
+        assert "leak.csv" in told and "begins at 22 kPa" in told and f"driving_pressure_kPa = {driving:g}" in told
+    for start in (2.0, 90.0):
+        with pytest.raises(InputError, match=r"leak\.csv: a leak run that begins at .*driving_pressure_kPa = 22"):
+            leak(tmp_path, start=start)
+
+
+def test_a_leak_run_that_is_clipped(tmp_path):
+    (told,) = leak(tmp_path, 99.0, start=100.0, top=100.0, constant=3600.0)
+    assert "are clipped" in told
+    with pytest.raises(
+        InputError, match=r"leak\.csv: a leak run of 300 s of which 300 s are clipped .*range of 100 kPa"
+    ):
+        leak(tmp_path, 99.0, start=105.0, top=100.0, constant=1e5)

@@ -13,7 +13,6 @@ import pytest
 from pneutouch.bench.blocks import blocks_of
 from pneutouch.bench.curve import WAY_POINTS, curve_of
 from pneutouch.bench.protocol import HOLD, protocol
-from pneutouch.bench.record import Doubt
 from pneutouch.bench.segment import excursions, position_noise
 from pneutouch.errors import InputError
 from pneutouch.mechanics.response import figures
@@ -191,34 +190,6 @@ def test_a_plate_that_stays_or_goes_the_wrong_way():
         curve(samples)
     with pytest.raises(InputError, match="no plate"):
         curve(small(), "leak")
-
-
-def test_clipped_points_are_left_out_and_told():
-    samples = small()
-    blocks = blocks_of(FILE, *samples)
-    third = curve(samples).indents[2]
-    clipped = replace(blocks, doubts=(Doubt(third.hold[0], third.hold[1], "force clipped: at the top", False),))
-    found = curve_of(run_of(), clipped, Rig())
-    assert found.indentation.size == 3
-    assert any(
-        why.startswith("indentation 3, ") and "left out: force clipped" in why for why in whys(found, used=False)
-    )
-    everywhere = replace(blocks, doubts=(Doubt(0.0, 1e3, "force clipped", False),))
-    with pytest.raises(InputError, match=r"none of 3 indentations can be used: .*clipped"):
-        curve_of(run_of(), everywhere, Rig())
-
-
-def test_a_gap_in_what_is_read_leaves_the_point_out_and_elsewhere_not():
-    samples = small()
-    one = curve(samples).indents[1]
-    time = samples[0]
-    lost = (time > one.read[0] - 0.05) & (time < one.read[1])
-    assert curve(samples[:, ~lost]).indentation.size == 4  # the stretch read moves to what is left of the hold
-    lost = (time > one.hold[0] + 0.3) & (time < one.hold[0] + 0.9)
-    kept = curve(samples[:, ~lost])
-    assert kept.indentation.size == 4
-    assert kept.force == pytest.approx(curve(samples).force, abs=1e-3)
-    assert any(why.startswith("gap: ") for why in whys(kept))
 
 
 def test_holds_that_are_short_or_not_settled():

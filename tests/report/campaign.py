@@ -109,7 +109,7 @@ def measured_of(
 
 
 def _ageing(resins: tuple[str, ...], pressures: tuple[float, ...]):
-    paper = {"TangoPlus": -14.8, "FLX9950": -17.0, "FLX9970": -34.9}
+    paper = {"TangoPlus": 14.8, "FLX9950": -17.0, "FLX9970": -34.9}
     return tuple(
         (resin, p, "12 months", -9.1 - k, -15.0, -3.2, paper.get(resin))
         for k, p in enumerate(pressures)

@@ -164,7 +164,7 @@ def test_ageing_stands_beside_the_papers(library):
     files = measured_datasheet(aged)
     for text in (words_of(files["measured-datasheet.html"]), text_of(files["measured-datasheet.pdf"])):
         assert "Ageing" in text
-        assert f"12 months {MINUS}9.1 {MINUS}15.0 to {MINUS}3.2 {MINUS}14.8" in text
+        assert f"12 months {MINUS}9.1 {MINUS}15.0 to {MINUS}3.2 ± 14.8" in text
         assert "Ages fresh and 12 months" in text
     assert files["measured-datasheet.html"].decode().count("<svg") == 4
 

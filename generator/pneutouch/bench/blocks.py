@@ -24,8 +24,9 @@ MOST_BLOCKS = 400_000
 MISSED, GAP = 1.5, 0.1
 """A step of more than so many sampling periods has lost samples; one longer than this, in s, is a gap of its own."""
 
-MOST_GAPS = 20
-"""Gaps listed one by one; what is beyond is summed up."""
+ISOLATED, RARE = 2, 1e-3
+"""Missed samples of which never more than the first are missed together, and in all less than the second as a share of the
+run's, are a note: our choice. No block loses more than a few of its samples, and its mean moves within its noise."""
 
 _NAMES = {"time": "time", "position": "position", "force": "force", "pressure": "pressure"}
 _ROUNDING = 1e-6
@@ -51,7 +52,7 @@ class Collector:
     _last: float = 0.0
     _samples: int = 0
     _missed: list[tuple[float, float, int]] = field(default_factory=list)
-    _short: list[int] = field(default_factory=lambda: [0, 0])
+    _short: list[int] = field(default_factory=lambda: [0, 0, 0])
 
     def take(self, rows: Array, samples: Array) -> None:
         """Takes samples (4, n): time, position, force, pressure, and their rows (n,). Raises InputError where time does not run on."""
@@ -94,8 +95,10 @@ class Collector:
         self._missed += [
             (float(joined[k]), float(joined[k + 1]), max(int(n), 1)) for k, n in zip(at[long], lost[long], strict=True)
         ]
-        self._short[0] += int(np.maximum(lost[~long], 1).sum())
-        self._short[1] += int((~long).sum())
+        short = np.maximum(lost[~long], 1)
+        self._short[0] += int(short.sum())
+        self._short[1] += short.size
+        self._short[2] = max(self._short[2], int(short.max(initial=0)))
 
     def _average(self, samples: Array, end: bool = False) -> None:
         """Averages the blocks that are whole and holds the last back, for more of it may come."""
@@ -136,17 +139,12 @@ class Collector:
         )  # fmt: skip
 
     def _gaps(self) -> list[Doubt]:
-        found = [
-            Doubt(start, end, f"gap: {count} samples missing", False) for start, end, count in self._missed[:MOST_GAPS]
-        ]
-        more = self._missed[MOST_GAPS:]
-        if more:
-            count = sum(lost for *_, lost in more)
-            found.append(Doubt(more[0][0], more[-1][1], f"{len(more)} more gaps: {count} samples missing", True))
-        if self._short[0]:
-            count, times = self._short
+        found = [Doubt(start, end, f"gap: {count} samples missing", False, "gap") for start, end, count in self._missed]
+        count, times, longest = self._short
+        if count:
             told = f"{count} of {self._samples + count} samples missed, in {times} places of at most {GAP:g} s"
-            found.append(Doubt(self._first or 0.0, self._last, told, True))
+            rare = longest <= ISOLATED and count < RARE * (self._samples + count)
+            found.append(Doubt(self._first or 0.0, self._last, told, True, "note" if rare else "other"))
         return found
 
 

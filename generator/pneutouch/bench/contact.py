@@ -24,7 +24,7 @@ FIRST, CLEARLY = 0.01, 20.0
 """The way in is fitted up to this share of the run's greatest force, or so many noise standard deviations if that is more. A
 dome's force grows a hundredfold over its range, and only its first hundredth is of one power of the travel."""
 
-BENDS = np.linspace(0.0, 1.0, 21)
+BENDS = tuple(np.linspace(0.0, 1.0, 21).tolist())
 """F ~ (1 - w) x + w x^2 near contact, x the travel over that of the fitted stretch: w = 0 for a shell or an inflated membrane,
 which begin straight, w = 1 for a dome whose stiffness grows from none; between them lies a solid sphere (Hertz, x^1.5) to a
 few hundredths of the stretch. One w is fitted for all of a run."""
@@ -125,7 +125,8 @@ def onsets(
     if not real:
         return [None] * len(parts)
     length = float(np.median([way.length for way in real]))
-    bend = BENDS[[int(np.argmin(np.sum([_search(way, BENDS, length)[1] for way in real], axis=0)))]]
+    bends = np.array(BENDS)
+    bend = bends[[int(np.argmin(np.sum([_search(way, bends, length)[1] for way in real], axis=0)))]]
     fits = [None if way is None else float(_search(way, bend, length)[0][0]) for way in ways]
     errors = [
         np.inf if way is None or fit is None else _error(way, fit, float(bend[0]), length)

@@ -12,7 +12,7 @@ from typing import BinaryIO, NamedTuple
 
 import numpy as np
 
-from pneutouch.bench.table import Chunk, places
+from pneutouch.bench.chunk import Chunk, places
 from pneutouch.errors import InputError
 from pneutouch.meridian.segments import Array
 
@@ -36,7 +36,7 @@ def csv_chunks(path: Path, names: Sequence[str]) -> Iterator[Chunk]:
     """Chunks of a UTF-8 file with commas, semicolons or tabs and decimal points; see `table.chunks`.
 
     Comment lines (``#``) before the header and a byte order mark are passed over, empty lines skipped but counted. A
-    last row without a line end is left out where it is whole, for its last number may be cut.
+    last row without a line end is given apart where it is whole, for its last number may be cut.
     """
     size = path.stat().st_size
     with path.open("rb") as stream:
@@ -58,8 +58,8 @@ def csv_chunks(path: Path, names: Sequence[str]) -> Iterator[Chunk]:
             left = (size - read + len(rest)) * lines / len(data)
             yield Chunk(rows, values, min((read - len(rest)) / size, 1.0), round(row - 2 + left))
         if rest.strip():
-            _check_end(rest, row, layout)
-            yield Chunk(np.empty(0), np.empty((len(names), 0)), 1.0, row - 2, cut=True)
+            last = _last(rest, row, layout)
+            yield Chunk(np.empty(0), np.empty((len(names), 0)), 1.0, row - 1, last)
 
 
 def _header(path: Path, stream: BinaryIO, names: Sequence[str]) -> _Layout:
@@ -76,6 +76,8 @@ def _header(path: Path, stream: BinaryIO, names: Sequence[str]) -> _Layout:
             raise InputError(f"{path}: row 1: over {_LONGEST_LINE} bytes without a line end; not a CSV file")
         if text.strip() and not text.lstrip().startswith("#"):
             break
+    if "\r" in text.rstrip("\r\n"):
+        raise InputError(f"{path}: row 1: carriage returns within it; rows must end in line feeds: save it as CSV anew")
     headers = {separator: _cells(text, separator) for separator in _SEPARATORS}
     separator = max(_SEPARATORS, key=lambda key: (sum(name in headers[key] for name in names), len(headers[key])))
     header = headers[separator]
@@ -97,7 +99,17 @@ def _text(path: Path, data: bytes, row: int) -> str:
 
 
 def _cells(line: str, separator: str) -> list[str]:
-    return [cell.strip() for cell in next(csv.reader([line], delimiter=separator), [])]
+    if '"' not in line:
+        return [cell.strip() for cell in line.split(separator)]
+    try:
+        return [cell.strip() for cell in next(csv.reader([line.rstrip("\r\n")], delimiter=separator), [])]
+    except csv.Error:
+        return [cell.strip() for cell in line.split(separator)]
+
+
+def _blank(line: str, separator: str) -> bool:
+    """Whether a line is one that the parser passes over: of spaces and tabs alone, but not of separators."""
+    return not line.strip(" \r\t" if separator != "\t" else " \r")
 
 
 def _parse(data: bytes, row: int, layout: _Layout) -> tuple[Array, Array, int]:
@@ -133,22 +145,28 @@ def _parse(data: bytes, row: int, layout: _Layout) -> tuple[Array, Array, int]:
 def _check_widths(data: bytes, row: int, layout: _Layout) -> Array:
     """Places of the lines that are not empty. Raises InputError for one with too few or too many fields."""
     kept = []
-    for k, line in enumerate(data.decode("utf-8").splitlines()):
-        if not line.strip():
+    # Rows are what line feeds end: other marks that Unicode takes for line ends are a cell's own.
+    for k, line in enumerate(data.decode("utf-8").split("\n")[:-1]):
+        if _blank(line, layout.separator):
             continue
-        count = len(_cells(line, layout.separator)) if '"' in line else line.count(layout.separator) + 1
-        if count != layout.width:
-            comma = " Decimals must have a point." if count > layout.width and layout.separator == "," else ""
-            raise InputError(f"{layout.path}: row {row + k}: {count} fields; the header has {layout.width}.{comma}")
+        if "\r" in line.rstrip("\r"):
+            raise InputError(f"{layout.path}: row {row + k}: a carriage return within it; rows must end in line feeds")
+        _check_width(len(_cells(line, layout.separator)), row + k, layout)
         kept.append(k)
     return np.array(kept, float)
 
 
+def _check_width(count: int, row: int, layout: _Layout) -> None:
+    if count != layout.width:
+        comma = " Decimals must have a point." if count > layout.width and layout.separator == "," else ""
+        raise InputError(f"{layout.path}: row {row}: {count} fields; the header has {layout.width}.{comma}")
+
+
 def _tell_fault(data: bytes, row: int, layout: _Layout) -> None:
     """Reads slowly what could not be read quickly, for the row and the cell."""
-    lines = data.decode("utf-8").splitlines()
+    lines = data.decode("utf-8").split("\n")[:-1]
     for k, line in enumerate(lines):
-        if not line.strip():
+        if _blank(line, layout.separator):
             continue
         cells = _cells(line, layout.separator)
         for name, place in zip(layout.names, layout.places, strict=True):
@@ -161,11 +179,17 @@ def _tell_fault(data: bytes, row: int, layout: _Layout) -> None:
     raise InputError(f"{layout.path}: rows {row} to {row + len(lines) - 1}: cannot be read as columns of numbers")
 
 
-def _check_end(rest: bytes, row: int, layout: _Layout) -> None:
-    cells = _cells(_text(layout.path, rest, row), layout.separator)
-    whole = len(cells) >= layout.width and all(_NUMBER.fullmatch(cells[place]) for place in layout.places)
-    if not whole:
+def _last(rest: bytes, row: int, layout: _Layout) -> Array:
+    """Values (k, 1) of a last row without a line end. Raises InputError where it is not whole."""
+    text = _text(layout.path, rest, row)
+    cells = _cells(text, layout.separator)
+    if len(cells) < layout.width or not all(_NUMBER.fullmatch(cells[place]) for place in layout.places):
         raise InputError(
-            f"{layout.path}: row {row}: the file ends within this row, '{rest[:60].decode().strip()}'; it is cut off: "
+            f"{layout.path}: row {row}: the file ends within this row, '{text.strip()[:60]}'; it is cut off: "
             "copy it anew, or delete its last row"
         )
+    _check_width(len(cells), row, layout)
+    values = np.array([[float(cells[place])] for place in layout.places])
+    if not np.isfinite(values).all():
+        _tell_fault(rest + b"\n", row, layout)
+    return values

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from pneutouch.bench.contact import BEFORE, Baseline, baseline
-from pneutouch.bench.doubts import doubts_of, untrusted
+from pneutouch.bench.doubts import doubts_of, listed, untrusted
 from pneutouch.bench.indents import Found, find_indents
 from pneutouch.bench.record import Blocks, Curve, Doubt
 from pneutouch.errors import InputError
@@ -37,7 +37,7 @@ def curve_of(run: Run, blocks: Blocks, rig: Rig) -> Curve:
     touched = [k for k, contact in enumerate(found.contacts) if contact is not None]
     if not touched:
         raise InputError(_no_contact(blocks, found))
-    doubts = [*blocks.doubts, *_travel(blocks, rig), *doubts_of(run, blocks, found)]
+    doubts = [*listed(blocks.doubts), *_travel(blocks, rig), *doubts_of(run, blocks, found)]
     kept, left_out = _kept(blocks, found, touched)
     doubts += left_out
     if not kept:

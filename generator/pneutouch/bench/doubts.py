@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Sequence
+from types import MappingProxyType
 
 import numpy as np
 
@@ -26,22 +28,41 @@ LEAK = 0.02
 SAME_DEPTH = 0.03
 """mm within which two indentations are of one depth: some standard deviations of an onset (0.004 to 0.01 mm in the tests)."""
 
+MOST = 20
+"""Gaps listed one by one, and clipped stretches, and spikes: our choice, so that a list can be read."""
+
+_MANY = MappingProxyType({"gap": "gaps", "clipped": "clipped stretches", "spike": "spikes"})
+
 _SURE = 4.0
 """Standard errors that a change must have before it is told: one false alarm in 10^4."""
 
 
 def untrusted(blocks: Blocks, indent: Indent, before: float) -> str | None:
     """Why an indentation cannot be used: something clipped before contact or while read, or half of the read samples gone."""
+    lost = 0.0
     for doubt in blocks.doubts:
         if doubt.used:
             continue
         in_read = min(doubt.end, indent.read[1]) - max(doubt.start, indent.read[0])
-        if doubt.why.startswith("gap"):
-            if in_read > 0.5 * (indent.read[1] - indent.read[0]):
-                return "most of its samples are missing"
+        if doubt.kind == "gap":
+            lost += max(in_read, 0.0)
         elif in_read >= 0 or (doubt.end >= indent.contact - before and doubt.start <= indent.contact):
             return doubt.why
-    return None
+    return "most of its samples are missing" if lost > 0.5 * (indent.read[1] - indent.read[0]) else None
+
+
+def listed(doubts: Sequence[Doubt]) -> list[Doubt]:
+    """Doubts as they are listed: of gaps, clipped stretches and spikes the first `MOST` of each, the others summed up."""
+    found = [doubt for doubt in doubts if doubt.kind not in _MANY]
+    for kind, name in _MANY.items():
+        alike = [doubt for doubt in doubts if doubt.kind == kind]
+        found += alike[:MOST]
+        more = alike[MOST:]
+        if more:
+            lasts = sum(doubt.end - doubt.start for doubt in more)
+            first, last = min(doubt.start for doubt in more), max(doubt.end for doubt in more)
+            found.append(Doubt(first, last, f"{len(more)} more {name}: {lasts:.3g} s in all", False, more[0].kind))
+    return found
 
 
 def doubts_of(run: Run, blocks: Blocks, found: Found) -> list[Doubt]:

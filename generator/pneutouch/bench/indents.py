@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pneutouch.bench.blocks import GAP
 from pneutouch.bench.contact import BEFORE, Baseline, Onset, baseline, first_baseline, onsets, threshold
 from pneutouch.bench.record import Blocks, Indent
 from pneutouch.bench.segment import Excursion, excursions
@@ -81,6 +82,15 @@ def read_window(blocks: Blocks, hold: tuple[int, int]) -> tuple[int, int]:
     return max(start, begin), last + 1
 
 
+def _read_times(blocks: Blocks, hold: tuple[int, int]) -> tuple[float, float]:
+    """When the window read in a hold begins and ends, s: of the blocks that are there, or before a gap that swallows its begin."""
+    start, end = read_window(blocks, hold)
+    length = min(READ * float(blocks.time[hold[1] - 1] - blocks.time[hold[0]]), READ_LONGEST)
+    first, last = float(blocks.time[start]), float(blocks.time[end - 1])
+    lost = first - (last - length) > max(GAP, 2 * blocks.size / blocks.rate)
+    return (last - length if lost else first), last
+
+
 def _just_before(blocks: Blocks, base: Baseline, contact: Onset | None) -> Baseline:
     """The same over the last `BEFORE` seconds before contact, a block short of it."""
     if contact is None:
@@ -100,7 +110,7 @@ def _indent(
     return Indent(
         contact=math.nan if contact is None else contact.time,
         hold=(float(blocks.time[one.hold[0]]), float(blocks.time[one.hold[1] - 1])),
-        read=(float(blocks.time[start]), float(blocks.time[end - 1])),
+        read=_read_times(blocks, one.hold),
         release=math.nan if contact is None else _release(blocks, one, base, max(RELEASED * sign * force, least), sign),
         onset=math.nan if contact is None else contact.position,
         indentation=math.nan if contact is None else float(blocks.position[at].mean()) - onset, force=force,

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pneutouch.bench.reading import scale
+from pneutouch.bench.reading import scaled
 from pneutouch.bench.record import Blocks
 from pneutouch.bench.statistics import Mean
 from pneutouch.bench.table import whole
@@ -33,7 +33,7 @@ def read_injection(path: Path, columns: Columns) -> tuple[Array, Array]:
     pressure that does not rise with it.
     """
     rows, (volume, pressure) = whole(path, [columns.volume.name, columns.pressure.name])
-    volume, pressure = volume * scale(columns, "volume"), pressure * scale(columns, "pressure")
+    volume, pressure = scaled(path, columns, ("volume", "pressure"), rows, np.stack([volume, pressure]))
     if rows.size < LEAST_POINTS:
         raise InputError(f"{path}: {rows.size} rows; at least {LEAST_POINTS}, so that a line and its error can be told")
     if np.ptp(volume) <= 0:

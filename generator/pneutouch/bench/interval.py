@@ -1,12 +1,12 @@
-"""Intervals of few measurements: of a mean by the bootstrap over specimens, of a standard deviation by chi-square.
+"""Intervals of few measurements: of a mean over specimens by Student's t, of a standard deviation by chi-square.
 
 Three specimens with three runs each are what a lab has. The percentile bootstrap of three values covers far less than it
-states (tests/bench/test_interval.py measures about 75 % for 95 %), so the bootstrap gives the standard error alone: it is
-widened by sqrt(n/(n-1)), which the bootstrap of n values lacks, and taken t times with n - 1 degrees of freedom (Hesterberg,
-Am. Stat. 69, 371-386, 2015, DOI 10.1080/00031305.2015.1089789, sections 4.5 and 5.3). Specimens are drawn with
-replacement and keep their runs: drawing runs as well would count their scatter twice (Davison & Hinkley, Bootstrap Methods,
-1997, section 3.8). The bootstrap of a standard deviation of three is no better for being widened; chi-square is exact for
-normal values.
+states (tests/bench/test_interval.py measures about 75 % for 95 %). What Hesterberg (Am. Stat. 69, 371-386, 2015, DOI
+10.1080/00031305.2015.1089789, sections 4.5 and 5.3) makes of it for few values is its standard error, widened by
+sqrt(n/(n-1)), times t with n - 1 degrees of freedom. Of a mean the bootstrap's standard error is known without a draw,
+sqrt((n-1)/n) s/sqrt(n), so that this is s/sqrt(n) times t. Specimens are what is drawn, with all their runs: drawing runs as
+well would count their scatter twice (Davison & Hinkley, Bootstrap Methods, 1997, section 3.8). The bootstrap of a standard
+deviation of three is no better for being widened; chi-square is exact for normal values.
 """
 
 from __future__ import annotations
@@ -15,15 +15,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pneutouch.meridian.segments import Array
 
 LEVEL = 0.95
 """Of every interval."""
-
-RESAMPLES = 2000
-_SEED = 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +32,7 @@ class Estimate:
         high: Upper end, likewise.
         specimens: Number of specimens behind it.
         runs: Number of runs behind it.
-        over: What was drawn: "specimens", "runs", or "" where nothing could be.
+        over: What the interval is over: "specimens", "runs", or "" where there is none.
     """
 
     value: float
@@ -64,7 +60,7 @@ def mean_of(groups: Sequence[Array]) -> Estimate:
     value = float(drawn.mean())
     if drawn.size < 2:
         return Estimate(value, None, None, len(groups), runs, "")
-    half = _quantile(drawn.size - 1) * _standard_error(drawn)
+    half = _quantile(drawn.size - 1) * float(drawn.std(ddof=1)) / np.sqrt(drawn.size)
     return Estimate(value, value - half, value + half, len(groups), runs, over)
 
 
@@ -112,16 +108,3 @@ def _quantile(freedom: int) -> float:
     from scipy.special import stdtrit
 
     return float(stdtrit(freedom, 0.5 * (1 + LEVEL)))
-
-
-def _standard_error(values: Array) -> float:
-    """Of the mean, by the bootstrap, without its narrowness."""
-    size = values.size
-    return float(np.std(values[_draws(size)].mean(axis=1)) * np.sqrt(size / (size - 1)))
-
-
-def _draws(size: int) -> NDArray[np.intp]:
-    """Resamples (m, size): every one that there is where they are few, else ``RESAMPLES`` by a fixed seed."""
-    if size**size <= RESAMPLES:
-        return np.stack(np.meshgrid(*[np.arange(size)] * size, indexing="ij"), axis=-1).reshape(-1, size)
-    return np.random.default_rng(_SEED).integers(0, size, (RESAMPLES, size))

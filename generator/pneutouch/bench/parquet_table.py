@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from pneutouch.bench.table import Chunk, places
+from pneutouch.bench.chunk import Chunk, places
 from pneutouch.errors import InputError
+from pneutouch.meridian.segments import Array
 
 BATCH = 2**17
 """Rows at once: as many as a chunk of a CSV file holds."""
+
+_EXACT = 2.0**53
 
 
 def parquet_chunks(path: Path, names: Sequence[str]) -> Iterator[Chunk]:
@@ -34,10 +38,8 @@ def parquet_chunks(path: Path, names: Sequence[str]) -> Iterator[Chunk]:
                     raise InputError(f"{path}: column {name}: holds {kind}; must be numbers")
             row, total = 2, file.metadata.num_rows
             for batch in file.iter_batches(BATCH, columns=list(names), use_threads=False):
-                values = np.stack([
-                    batch.column(name).cast(pa.float64()).to_numpy(zero_copy_only=False) for name in names
-                ])  # fmt: skip
                 rows = row + np.arange(batch.num_rows, dtype=float)
+                values = np.stack([_floats(path, name, batch.column(name), row) for name in names])
                 if not np.isfinite(values).all():
                     column, at = np.argwhere(~np.isfinite(values))[0]
                     told = "empty or no finite number"
@@ -47,3 +49,19 @@ def parquet_chunks(path: Path, names: Sequence[str]) -> Iterator[Chunk]:
     except pa.ArrowException as error:
         told = str(error).splitlines()[0][:120]
         raise InputError(f"{path}: no whole parquet file: {told}; cut off, or another kind of file?") from None
+
+
+def _floats(path: Path, name: str, column: Any, row: int) -> Array:
+    """A column (n,) of which the first number stands in ``row``. Raises InputError for whole numbers that a float cannot hold."""
+    import pyarrow as pa
+
+    try:
+        found: Array = column.cast(pa.float64()).to_numpy(zero_copy_only=False)
+    except pa.ArrowInvalid:
+        rounded = column.cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False)
+        at = int(np.argmax(np.abs(rounded) > _EXACT))
+        raise InputError(
+            f"{path}: row {row + at}: column {name}: {column[at].as_py()} is beyond 2^53, up to which whole numbers are exact; "
+            "must be counted from the run's begin, or be stored as floating point"
+        ) from None
+    return found

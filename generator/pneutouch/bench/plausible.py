@@ -10,12 +10,13 @@ import numpy as np
 
 from pneutouch.bench.mixed import mixed
 from pneutouch.bench.protocol import HOLD, RELAXATION
-from pneutouch.bench.record import Curve
+from pneutouch.bench.record import Blocks, Curve
 from pneutouch.errors import InputError
-from pneutouch.spec.campaign import UNITS, Columns
+from pneutouch.meridian.segments import Array
+from pneutouch.spec.campaign import UNITS, Columns, Rig, Run
 from pneutouch.units import KPA
 
-__all__ = ["Expected", "check_plausible", "mixed"]
+__all__ = ["Expected", "check_leak", "check_plausible", "mixed"]
 
 FAR = 3.0
 """Factor from the prediction beyond which something is asked: our choice. The solid's predictions meet the paper's table with a
@@ -34,29 +35,81 @@ _RESTS = 0.05
 """Share of the greatest force or rise by which points may be negative: noise about the origin."""
 
 _HOLD_FAR = 50.0
+_WHY_TIME = "holds of another protocol, another kind of run, or another column?"
+
+_START = 1.0
+"""Seconds in which a line that leaks has lost little, and whose mean the noise of a gauge does not move: our choice."""
+
 _SHAPE = 1.5
-"""Exponent of force and rise over depth by which a prediction is carried to a shallower depth (Hertz); only a factor counts."""
+"""Exponent of force and rise over depth by which a prediction without a curve is carried to a shallower depth (Hertz)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Expected:
-    """The prediction of a run: force (N) and rise (MPa) at a depth (mm), and the sensitivity (MPa/N)."""
+    """The prediction of a run: force (N) and rise (MPa) at a depth (mm), and the sensitivity (MPa/N).
+
+    ``curve`` are indentations (ascending, mm), forces and rises on the way there, (n,) each, where they are known.
+    """
 
     depth: float
     force: float
     rise: float
     sensitivity: float
+    curve: tuple[Array, Array, Array] | None = None
+
+    def at(self, depth: float) -> tuple[float, float]:
+        """Force and rise at a depth up to the prediction's."""
+        if self.curve is None:
+            share = (depth / self.depth) ** _SHAPE
+            return self.force * share, self.rise * share
+        travel, force, rise = self.curve
+        return float(np.interp(depth, travel, force)), float(np.interp(depth, travel, rise))
 
 
-def check_plausible(curve: Curve, columns: Columns, expected: Expected, file: Path) -> tuple[str, ...]:
+def check_plausible(curve: Curve, columns: Columns, expected: Expected | None, file: Path) -> tuple[str, ...]:
     """Questions about a run that may be right all the same.
 
-    Raises InputError for what cannot be: a sign that is wrong, force and pressure swapped, a magnitude that is off by
-    more than `FAR` and right in another unit of `spec.campaign.UNITS`.
+    Without a prediction (``expected`` None) only signs, times and the driving pressure are looked at. Raises InputError for
+    what cannot be: a sign that is wrong, force and pressure swapped, a magnitude that is off by more than `FAR` and right in
+    another unit of `spec.campaign.UNITS`.
     """
     _check_signs(curve, columns, file)
-    _check_swap(curve, columns, expected, file)
-    _check_time(curve, columns, file)
+    if expected is not None:
+        _check_swap(curve, columns, expected, file)
+    time = _check_time(curve, columns, file)
+    magnitudes = [] if expected is None else _magnitudes(curve, columns, expected, file)
+    return tuple(text for text in (*magnitudes, time, _driving(curve, file, columns)) if text is not None)
+
+
+def check_leak(blocks: Blocks, run: Run, rig: Rig) -> tuple[str, ...]:
+    """Questions about a leak run that may be right all the same; its pressure is judged by its first `_START` seconds.
+
+    Raises InputError where the pressure is at the end of the gauge's range (`reading.CLIPPED`) or at a flat top for more than
+    half of the run, or begins at more than `FAR` times or less than 1 / `FAR` of the driving pressure that the campaign says.
+    """
+    told: list[str] = []
+    lost = [doubt for doubt in blocks.doubts if doubt.kind == "clipped"]
+    length, at = float(np.ptp(blocks.time)), sum(doubt.end - doubt.start for doubt in lost)
+    if at > 0.5 * length:
+        raise InputError(
+            f"{blocks.file}: a leak run of {length:.3g} s of which {at:.3g} s are clipped ({lost[0].why}); the gauge has a range of "
+            f"{rig.pressure_range_kPa:g} kPa; must be run within it"
+        )
+    if lost:
+        told.append(f"{blocks.file}: {at:.2g} s of {length:.3g} s are clipped ({lost[0].why}); is the leak greater?")
+    count = int(np.searchsorted(blocks.time, blocks.time[0] + _START))
+    read, stated = float(np.median(blocks.pressure[: max(count, 1)])) / KPA, run.driving_pressure_kPa
+    if abs(read - stated) <= max(RESET_KPA, RESET_SHARE * stated):
+        return tuple(told)
+    said = (
+        f"{blocks.file}: a leak run that begins at {read:.3g} kPa; the campaign says driving_pressure_kPa = {stated:g}"
+    )
+    if stated > 0 and not stated / FAR <= read <= stated * FAR:
+        raise InputError(f"{said}; the unit of the pressure (columns.pressure.unit), or another run's file?")
+    return (*told, f"{said}; was it left out, is the gauge not zeroed, or does the line lose it at once?")
+
+
+def _magnitudes(curve: Curve, columns: Columns, expected: Expected, file: Path) -> list[str | None]:
     depth = float(curve.indentation[-1])
     ratio = depth / expected.depth
     told = [
@@ -69,12 +122,13 @@ def check_plausible(curve: Curve, columns: Columns, expected: Expected, file: Pa
             f"the prediction goes to {_number(expected.depth)} mm",
         )
     ]
+    # Where the travel itself is in doubt, the ends are compared.
     reach = min(depth, expected.depth) if told[0] is None else depth
-    share = (reach / expected.depth) ** _SHAPE if told[0] is None else 1.0
-    for key, values, predicted, unit, name in (
-        ("force", curve.force, expected.force, 1.0, "N"), ("pressure", curve.rise, expected.rise, KPA, "kPa")
+    force, rise = expected.at(reach) if told[0] is None else (expected.force, expected.rise)
+    for key, values, target, unit, name in (
+        ("force", curve.force, force, 1.0, "N"), ("pressure", curve.rise, rise, KPA, "kPa")
     ):  # fmt: skip
-        measured, target = float(np.interp(reach, curve.indentation, values)), predicted * share
+        measured = float(np.interp(reach, curve.indentation, values))
         what = "reads" if key == "force" else "rises by"
         reads = f"{what} {_number(measured / unit)} {name} at {_number(reach)} mm"
         told.append(
@@ -82,7 +136,7 @@ def check_plausible(curve: Curve, columns: Columns, expected: Expected, file: Pa
                 file, columns, key, measured / target, reads, f"the prediction has {_number(target / unit)} {name}"
             )
         )
-    return tuple(text for text in (*told, _driving(curve, file, columns)) if text is not None)
+    return told
 
 
 def _number(value: float) -> str:
@@ -104,7 +158,8 @@ def _magnitude(
     if nearest != column.unit and off[nearest] < math.log(UNIT_NEAR):
         same = " or ".join(unit for unit in off if math.isclose(UNITS[key][unit], UNITS[key][nearest]))
         raise InputError(f"{said}; is the column in {same}? set columns.{key}.unit")
-    return f"{said}; no unit explains that: another resin or design, a smaller plate, or a wrong calibration?"
+    why = _WHY_TIME if key == "time" else "another resin or design, a smaller plate, or a wrong calibration?"
+    return f"{said}; no unit explains that: {why}"
 
 
 def _check_signs(curve: Curve, columns: Columns, file: Path) -> None:
@@ -131,10 +186,10 @@ def _check_swap(curve: Curve, columns: Columns, expected: Expected, file: Path) 
     """
     force_unit, pressure_unit = UNITS["force"][columns.force.unit], UNITS["pressure"][columns.pressure.unit]
     depth = min(float(curve.indentation[-1]), expected.depth)
-    share = (depth / expected.depth) ** _SHAPE
+    predicted = expected.at(max(depth, 0.0))
     force = float(np.interp(depth, curve.indentation, curve.force)) / force_unit
     rise = float(np.interp(depth, curve.indentation, curve.rise)) / pressure_unit
-    wanted_force, wanted_rise = expected.force * share / force_unit, expected.rise * share / pressure_unit
+    wanted_force, wanted_rise = predicted[0] / force_unit, predicted[1] / pressure_unit
     if min(force, rise, wanted_force, wanted_rise) <= 0:
         return
     as_said = abs(math.log(force / wanted_force)) + abs(math.log(rise / wanted_rise))
@@ -154,16 +209,16 @@ def _check_swap(curve: Curve, columns: Columns, expected: Expected, file: Path) 
         )
 
 
-def _check_time(curve: Curve, columns: Columns, file: Path) -> None:
+def _check_time(curve: Curve, columns: Columns, file: Path) -> str | None:
     """A hold's length tells a wrong unit of time, where the unit is wrong by far: holds may well be a few times the paper's."""
     if curve.run.kind == "loop" or not curve.indents:
-        return
+        return None
     length = float(np.median([one.hold[1] - one.hold[0] for one in curve.indents]))
     usual = RELAXATION if curve.run.kind == "relaxation" else HOLD
     if 1 / _HOLD_FAR <= length / usual <= _HOLD_FAR:
-        return
+        return None
     reads = f"holds last {_number(length)} s"
-    _magnitude(file, columns, "time", length / usual, reads, f"the protocol has {usual:g} s")
+    return _magnitude(file, columns, "time", length / usual, reads, f"the protocol has {usual:g} s")
 
 
 def _driving(curve: Curve, file: Path, columns: Columns) -> str | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,7 +21,14 @@ CLIPPED = 0.98
 """Share of an instrument's range at which it is taken for clipped: our choice, makers specify up to the range."""
 
 BEYOND = 1.2
-"""No instrument reads on beyond this share of its range: then the unit or the stated range is wrong, and nothing is clipped."""
+"""No instrument reads on beyond this share of its range: where a channel does for long, its unit or the stated range is wrong
+and nothing is clipped at that range; where it does for a moment, that is a fault of the line."""
+
+SPIKE, FEW = 0.1, 3
+"""A moment is shorter than this, in s, or than so many blocks if that is longer: our choice, a plate stays longer."""
+
+GREATEST = 1e100
+"""In inner units; what is beyond no instrument reads, and its square would overflow."""
 
 FLAT, ALIKE = 0.1, 0.05
 """A flat top lasts longer than this, in s, and less than this share of the other blocks repeats the one before: a coarse
@@ -52,15 +59,15 @@ def read_blocks(
     """
     names = {key: getattr(columns, key).name for key in _CHANNELS}
     read = [place for place, key in enumerate(_CHANNELS) if plate or key in ("time", "pressure")]
-    factor = np.array([[scale(columns, _CHANNELS[place])] for place in read])
+    keys = [_CHANNELS[place] for place in read]
     collector = Collector(path, names=names)
     cut = False
-    for chunk in chunks(path, [names[_CHANNELS[place]] for place in read]):
+    for chunk in chunks(path, [names[key] for key in keys]):
         collector.total = chunk.total
         samples = np.zeros((len(_CHANNELS), chunk.rows.size))
-        samples[read] = chunk.values * factor
+        samples[read] = scaled(path, columns, keys, chunk.rows, chunk.values)
         collector.take(chunk.rows, samples)
-        cut = cut or chunk.cut
+        cut = cut or chunk.last is not None
         progress(chunk.share)
     blocks = collector.blocks()
     end = float(blocks.time[-1])
@@ -72,10 +79,22 @@ def read_blocks(
     return replace(blocks, doubts=(*blocks.doubts, *doubts))
 
 
-def scale(columns: Columns, key: str) -> float:
-    """What a column's numbers are to be multiplied with for inner units, its sign included."""
-    column = getattr(columns, key)
-    return float(UNITS[key][column.unit] * column.sign)
+def scaled(path: Path, columns: Columns, keys: Sequence[str], rows: Array, values: Array) -> Array:
+    """Values (k, n) of the columns ``keys`` in inner units and with their signs; ``rows`` (n,) are their places in the file.
+
+    Raises InputError, naming column and row, for a number beyond `GREATEST`.
+    """
+    factor = np.array([[UNITS[key][getattr(columns, key).unit] * getattr(columns, key).sign] for key in keys])
+    with np.errstate(over="ignore"):
+        found: Array = values * factor
+    if not (np.abs(found) <= GREATEST).all():
+        place, at = np.argwhere(~(np.abs(found) <= GREATEST))[0]
+        column = getattr(columns, keys[place])
+        raise InputError(
+            f"{path}: row {rows[at]:.0f}: column {column.name}: {values[place, at]:.3g} {column.unit}: no instrument reads that; must "
+            "be a measured number"
+        )
+    return found
 
 
 def _check_alive(blocks: Blocks, names: dict[str, str]) -> None:
@@ -88,6 +107,9 @@ def _check_alive(blocks: Blocks, names: dict[str, str]) -> None:
         if blocks.size > 1 and np.ptp(blocks.force) > _PRESSED * noise:
             raise InputError(f"{blocks.file}: column {names['position']}: {said} while the force changes{ask}")
         return
+    # Across a gap the plate has moved far between two blocks; that is no motion that was recorded.
+    steps = np.diff(blocks.time, prepend=blocks.time[0] - np.median(np.diff(blocks.time)))
+    moved = np.where(steps <= 2 * np.median(steps), moved, 0.0)
     moving = moved > 0.1 * moved.max()
     for key, values, spread in (
         ("force", blocks.force, blocks.force_spread), ("pressure", blocks.pressure, blocks.pressure_spread)
@@ -101,21 +123,44 @@ def _clipped(
     blocks: Blocks, key: str, values: Array, extreme: Array, top: float, unit: float, name: str
 ) -> list[Doubt]:  # fmt: skip
     """Stretches at the end of an instrument's range, or at a flat top below it."""
-    highest = float(extreme.max()) / unit
-    if highest > BEYOND * top:
-        told = f"{key} goes to {highest:.4g} {name}, beyond the rig's range of {top:g}: is its unit right, or the rig's range?"
+    beyond = extreme / unit > BEYOND * top
+    spikes = _short(blocks, beyond)
+    if (beyond & ~spikes).any():
+        told = (
+            f"{key} goes to {extreme.max() / unit:.4g} {name}, beyond the rig's range of {top:g}: is its unit right, or the "
+            "rig's range?"
+        )
         return [Doubt(float(blocks.time[0]), float(blocks.time[-1]), told, True)]
     found = [
-        Doubt(start, end, f"{key} clipped: at {CLIPPED:g} of the range of {top:g} {name} or beyond", False)
-        for start, end in _stretches(blocks, extreme / unit >= CLIPPED * top)
+        Doubt(start, end, f"{key} clipped: at {CLIPPED:g} of the range of {top:g} {name} or beyond", False, "clipped")
+        for start, end in _stretches(blocks, (extreme / unit >= CLIPPED * top) & ~spikes)
     ]
-    flat = _flat_top(blocks, values, getattr(blocks, f"{key}_spread"), extreme)
-    if found or not flat.any():
-        return found
+    rest = np.where(spikes, 0.0, extreme)
+    flat = _flat_top(blocks, values, getattr(blocks, f"{key}_spread"), rest)
+    if not found:
+        told = f"{key} clipped: a flat top at {rest.max() / unit:.4g} {name}"
+        found = [Doubt(start, end, told, False, "clipped") for start, end in _stretches(blocks, flat)]
+    return [*found, *_spikes(blocks, key, extreme / unit, spikes, f"{name}, beyond the rig's range of {top:g}")]
+
+
+def _short(blocks: Blocks, beyond: Flags) -> Flags:
+    """Which of the flagged blocks, (n,), are in stretches so short that no plate makes them."""
+    most = max(SPIKE * blocks.rate / blocks.size, FEW)
+    short: Flags = np.zeros(beyond.size, bool)
+    for start, end in _runs(beyond):
+        short[start:end] = end - start < most
+    return short
+
+
+def _spikes(blocks: Blocks, key: str, extreme: Array, spikes: Flags, told: str) -> list[Doubt]:
+    width = blocks.size / blocks.rate / 2
     return [
-        Doubt(start, end, f"{key} clipped: a flat top at {highest:.4g} {name}", False)
-        for start, end in _stretches(blocks, flat)
-    ]
+        Doubt(
+            float(blocks.time[start]) - width, float(blocks.time[end - 1]) + width,
+            f"{key} spike: {extreme[start:end].max():.4g} {told}, for a moment: a fault of the line?", False, "spike",
+        )
+        for start, end in _runs(spikes)
+    ]  # fmt: skip
 
 
 def _flat_top(blocks: Blocks, values: Array, spread: Array, extreme: Array) -> Flags:

@@ -4,22 +4,26 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from pneutouch.meridian.segments import Array
 from pneutouch.spec.campaign import Run
+
+DoubtKind = Literal["gap", "clipped", "spike", "note", "other"]
 
 
 class Doubt(NamedTuple):
     """A stretch of a run that is not to be trusted, or not as it should be: seconds, and why. Never dropped silently.
 
-    ``used`` says whether it is used all the same.
+    ``used`` says whether it is used all the same, ``kind`` what it is: a gap, a channel at its end, a reading beyond what
+    the instrument has, a note of what is usual, or another.
     """
 
     start: float
     end: float
     why: str
     used: bool
+    kind: DoubtKind = "other"
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,6 +15,12 @@ from pneutouch.meridian.segments import Array
 _MONTH = 365.25 / 12
 """Days."""
 
+FRESH = 7.0
+"""Days up to which a print is fresh: our choice; the paper measured within 72 hours."""
+
+_APART = 3.0, 0.05
+"""Ages further apart than so many days, or this share of the younger, are two: a campaign lasts some days."""
+
 _POOL: dict[Pooled, Callable[[Sequence[Array]], Estimate]] = {
     "mean": mean_of, "within": spread_within, "between": spread_between,
 }  # fmt: skip
@@ -22,16 +28,18 @@ _POOL: dict[Pooled, Callable[[Sequence[Array]], Estimate]] = {
 
 @dataclass(frozen=True, order=True, slots=True)
 class Key:
-    """What the runs of a group have in common: resin, age in months, driving pressure in kPa."""
+    """What the runs of a group have in common: resin, mean age in days (0 where fresh), driving pressure in kPa."""
 
     resin: str
-    age_months: int
+    age_days: float
     driving_pressure_kPa: float  # noqa: N815
 
     @property
     def age(self) -> str:
         """The age in words."""
-        return "fresh" if self.age_months == 0 else f"{self.age_months} months"
+        if self.age_days == 0:
+            return "fresh"
+        return f"{self.age_days:.0f} days" if self.age_days < 2 * _MONTH else f"{self.age_days / _MONTH:.0f} months"
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,12 +63,25 @@ class Group:
 
 def summarize(curves: Iterable[Curve]) -> list[Group]:
     """Groups in the order of resin, age and pressure."""
+    every = list(curves)
+    ages = _ages({curve.run.age_days for curve in every})
     sorted_in: dict[Key, list[Curve]] = {}
-    for curve in curves:
+    for curve in every:
         run = curve.run
-        key = Key(run.resin, round(run.age_days / _MONTH), run.driving_pressure_kPa)
+        key = Key(run.resin, ages[run.age_days], run.driving_pressure_kPa)
         sorted_in.setdefault(key, []).append(curve)
     return [_group(key, sorted_in[key]) for key in sorted(sorted_in)]
+
+
+def _ages(days: set[float]) -> dict[float, float]:
+    """The age of its group for each age: ages near one another are one group, called by their mean."""
+    groups: list[list[float]] = []
+    for age in sorted(days):
+        if groups and (age <= FRESH or age - groups[-1][-1] <= max(_APART[0], _APART[1] * groups[-1][-1]) < age):
+            groups[-1].append(age)
+        else:
+            groups.append([age])
+    return {age: 0.0 if group[0] <= FRESH else float(np.mean(group)) for group in groups for age in group}
 
 
 def _group(key: Key, curves: list[Curve]) -> Group:

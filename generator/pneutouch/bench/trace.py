@@ -5,16 +5,22 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pneutouch.bench.record import Blocks
 from pneutouch.meridian.segments import Array
 
 MOST = 3000
-"""Points of a trace: more than a page shows."""
+"""Points of a trace: more than a page shows. Even, as two are kept of each stretch."""
 
 
 class Trace(NamedTuple):
-    """Every k-th block of a run, (n,): s, mm, N, MPa."""
+    """A run thinned, (n,): s, mm, N, MPa.
+
+    Two points stand for each stretch of it: time and position are those of its first and its last block, force and
+    pressure its least and greatest, whichever came first before the other. So a spike or a short clip is seen, at most
+    a stretch off its time.
+    """
 
     time: Array
     position: Array
@@ -23,6 +29,23 @@ class Trace(NamedTuple):
 
 
 def trace(blocks: Blocks) -> Trace:
-    """The blocks thinned evenly to at most `MOST`."""
-    every = max(1, int(np.ceil(blocks.time.size / MOST)))
-    return Trace(*(np.array(part[::every]) for part in (blocks.time, blocks.position, blocks.force, blocks.pressure)))
+    """The blocks as they are where they are at most `MOST`, else thinned evenly to that."""
+    size = blocks.time.size
+    if size <= MOST:
+        return Trace(blocks.time.copy(), blocks.position.copy(), blocks.force.copy(), blocks.pressure.copy())
+    edges = np.linspace(0, size, MOST // 2 + 1).astype(int)
+    ends = np.stack([edges[:-1], edges[1:] - 1], axis=1).ravel()
+    return Trace(blocks.time[ends], blocks.position[ends], _span(blocks.force, edges), _span(blocks.pressure, edges))
+
+
+def _span(values: Array, edges: NDArray[np.int_]) -> Array:
+    """Least and greatest of the stretches between ``edges`` (m + 1,), in the order in which they come, (2 m,)."""
+    starts = edges[:-1]
+    within = np.repeat(np.arange(starts.size), np.diff(edges))
+    place = np.arange(values.size)
+    low, high = np.minimum.reduceat(values, starts), np.maximum.reduceat(values, starts)
+    never = values.size
+    first_low = np.minimum.reduceat(np.where(values == low[within], place, never), starts)
+    first_high = np.minimum.reduceat(np.where(values == high[within], place, never), starts)
+    falls = first_high < first_low
+    return np.stack([np.where(falls, high, low), np.where(falls, low, high)], axis=1).ravel()

@@ -15,7 +15,7 @@ def calibrate(
     data: Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="Folder of a campaign, or its campaign file.")],
     design: Annotated[str | None, typer.Option(metavar="DESIGN", help="Design that the sensor was made to.", show_default="the campaign's")] = None,
     sensor: Annotated[str | None, typer.Option(metavar="NAME", help="Sensor of the campaign.", show_default="its only one")] = None,
-    fit: Annotated[str, typer.Option(metavar="NAMES", help="What to fit: modulus, wall, dead-volume, offset.")] = "modulus,dead-volume",
+    fit: Annotated[str, typer.Option(metavar="NAMES", help="What to fit: modulus, wall, dead-volume, offset.")] = "modulus,dead-volume,wall,offset",
     hold_out: Annotated[list[float] | None, typer.Option(metavar="KPA", help="Driving pressure to predict by the others; may be repeated.")] = None,
     no_priors: Annotated[bool, typer.Option("--no-priors", help="Leave aside what is known before measuring.")] = False,
     save: Annotated[str | None, typer.Option(metavar="NAME", help="Write resin and design of this name into the working folder.")] = None,
@@ -25,12 +25,14 @@ def calibrate(
 ) -> None:  # fmt: skip
     """Fit modulus, wall, dead volume and contact offset to a sensor's runs."""
     with reporting():
+        from pneutouch.cli.progress import bar
         from pneutouch.pipeline.calibrate_run import Asked, run_calibration
 
         asked = Asked(
             data, design, sensor, tuple(fit.split(",")), tuple(hold_out or ()), not no_priors, save, shadow, out
         )
-        document = run_calibration(asked)
+        with bar("MB read") as progress:
+            document = run_calibration(asked, progress=progress)
         if json:
             print_json(document)
         else:
@@ -38,4 +40,4 @@ def calibrate(
 
             typer.echo(calibration_text(document))
         if document["failures"]:
-            raise typer.Exit(2)
+            raise typer.Exit(3)

@@ -28,7 +28,7 @@ def measured_text(document: dict[str, Any]) -> str:
 
 def _doubts(runs: list[dict[str, Any]]) -> list[str]:
     """How many stretches were left out, and how many are noted but used."""
-    every = [doubt for run in runs for doubt in run["doubts"]]
+    every = [doubt for run in runs for doubt in run["doubts"] if doubt["kind"] != "note"]
     left = sum(not doubt["used"] for doubt in every)
     if not every:
         return []

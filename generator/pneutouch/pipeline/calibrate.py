@@ -78,7 +78,7 @@ class Calibration:
 
 
 def calibrate(
-    observations: Observations, scene: Scene, names: Sequence[str] = ("modulus", "dead-volume"), *, priors: bool = True,
+    observations: Observations, scene: Scene, names: Sequence[str] = NAMES, *, priors: bool = True,
     hold_out: Sequence[float] = (), sensor: str = "", title: str = "", notes: Sequence[str] = (),
 ) -> Calibration:  # fmt: skip
     """Fit the parameters ``names`` of a design to observations, and predict the pressures ``hold_out`` (kPa) by the others.
@@ -181,6 +181,10 @@ def _goodness(found: Fit) -> dict[str, Any]:
         "points_used": int(found.solution.use.sum()),
         "points_left_out": int(found.left_out.sum() + found.injections_left_out.sum()),
         "scatter_over_stated": {"force": force, "pressure": rise, "injection": injection},
+        "model_leaves_out_share_of_reading": dict(
+            zip(("force", "pressure", "injection"), (float(x) for x in found.sizes), strict=True)
+        ),
+        "considered": [NAMES[k] for k in found.parameters.others],
         "variance_of_runs_over_points": found.run_factor, "interval_from_runs": found.covariance.clustered,
     }  # fmt: skip
 

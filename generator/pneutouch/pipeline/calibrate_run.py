@@ -10,7 +10,9 @@ from pneutouch.catalogue import Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.pipeline.calibrate import calibrate, observations_of
 from pneutouch.pipeline.calibrate_files import prepare, save, write_calibration
-from pneutouch.pipeline.characterize.load import load_curves
+from pneutouch.pipeline.characterize.load import Progress, load_curves
+from pneutouch.pipeline.characterize.predicted import answers
+from pneutouch.pipeline.characterize.run import sound
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +30,9 @@ class Asked:
     out: Path
 
 
-def run_calibration(asked: Asked, shelves: Library | None = None) -> dict[str, Any]:
+def run_calibration(
+    asked: Asked, shelves: Library | None = None, progress: Progress = lambda done, total: None
+) -> dict[str, Any]:
     """Read, fit and write; the calibration's document with ``written`` and ``failures``. Raises InputError.
 
     Everything is checked before the first file is written.
@@ -36,14 +40,17 @@ def run_calibration(asked: Asked, shelves: Library | None = None) -> dict[str, A
     library = shelves or Library.default()
     if asked.shadow and asked.save is None:
         raise InputError("--shadow: goes with --save NAME")
-    loaded = load_curves(asked.data)
+    loaded = load_curves(asked.data, progress=progress)
     design = asked.design or loaded.campaign.design
     if design is None:
         raise InputError(f"{asked.data}: names no design; give --design")
-    scene = load_scene(design, library=library)
-    sensor, observations, notes = observations_of(
-        loaded.campaign, loaded.curves, loaded.injections, scene, asked.sensor
-    )
+    scene = load_scene(design, loaded.campaign.assignments, library)
+    pairs = [(curve.run.resin, curve.run.driving_pressure_kPa) for curve in loaded.curves]
+    expected = answers(design, loaded.campaign.assignments, pairs, "atlas", library)
+    curves, refused, questions = sound(loaded, expected)
+    sensor, observations, notes = observations_of(loaded.campaign, curves, loaded.injections, scene, asked.sensor)
+    own = {curve.run.file for curve in observations.curves}
+    notes = [*notes, *(f"{file}: {text}" for file, text in questions if file in own)]
     found = calibrate(
         observations, scene, asked.names, priors=asked.priors, hold_out=asked.hold_out, sensor=sensor,
         title=loaded.campaign.title, notes=notes,
@@ -54,4 +61,8 @@ def run_calibration(asked: Asked, shelves: Library | None = None) -> dict[str, A
     if saved is not None:
         save(saved)
         written += saved.paths
-    return {**found.document, "written": written, "failures": [list(failure) for failure in loaded.failures]}
+    return {
+        **found.document,
+        "written": written,
+        "failures": [list(failure) for failure in (*loaded.failures, *refused)],
+    }

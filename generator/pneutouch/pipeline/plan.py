@@ -96,7 +96,7 @@ def make_plan(
         "warnings": [w.document() for w in travel_warnings(depths, rig)] + warnings,
     }  # fmt: skip
     campaign = Campaign(
-        title=f"Campaign of {scene.design.document.title}"[:120], design=design, ambient_pressure_kPa=pneumatics.ambient_pressure_kPa,
+        title=f"Campaign of {scene.design.document.title}"[:120], design=design, assignments=list(assignments or []), ambient_pressure_kPa=pneumatics.ambient_pressure_kPa,
         rig=rig, runs=[Run(**{key: run[key] for key in ("file", "kind", "sensor", "resin", "driving_pressure_kPa", "run")}) for run in listed],
     )  # fmt: skip
     return Plan(str(document["name"]), document, campaign)

@@ -83,7 +83,7 @@ def simulate(
     folder = out / name
     with replacing(folder) as fresh:
         writer = _Writer(fresh)
-        _write_all(design, subjects, asked, writer, progress)
+        _write_all((design, list(assignments or [])), subjects, asked, writer, progress)
         inputs = _inputs(subjects, asked)
         writer.put(MANIFEST, json_bytes({
             "name": name, "inputs": inputs, "input_hash": input_hash(inputs, __version__), "versions": versions(),
@@ -106,7 +106,9 @@ class _Writer:
         self.files[name] = {"sha256": digest(content), "bytes": len(content)}
 
 
-def _write_all(design: str, subjects: list[Resin], asked: Asked, writer: _Writer, progress: Progress) -> None:
+def _write_all(
+    named: tuple[str, list[str]], subjects: list[Resin], asked: Asked, writer: _Writer, progress: Progress
+) -> None:
     runs: list[Run] = []
     truth: dict[str, Any] = {"specimens": {}, "populations": [], "notes": []}
     total = len(subjects) * asked.specimens * len(asked.ages)
@@ -121,7 +123,7 @@ def _write_all(design: str, subjects: list[Resin], asked: Asked, writer: _Writer
     truth.pop("done", None)
     scene, model = subjects[0].scene, subjects[0].truth
     writer.put("campaign.toml", campaign_toml(Campaign(
-        title=f"Simulated campaign of {scene.name}"[:120], lab="none: simulated by pneutouch", design=design, simulated=True,
+        title=f"Simulated campaign of {scene.name}"[:120], lab="none: simulated by pneutouch", design=named[0], assignments=named[1], simulated=True,
         ambient_pressure_kPa=scene.design.pneumatics.ambient_pressure_kPa,
         rig=Rig(name="simulated: the paper's instruments", rate_Hz=asked.rate), runs=runs,
     ), MARK))  # fmt: skip

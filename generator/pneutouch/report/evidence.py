@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pneutouch.bench.record import Curve
+from pneutouch.bench.record import Curve, Doubt
 from pneutouch.bench.trace import Trace
 from pneutouch.report.style import ACCENT, FAINT, INK, MUTED, figure, svg
 from pneutouch.units import KPA
@@ -43,10 +43,15 @@ def _mark(ax: Axes, curve: Curve) -> None:
         ax.axvspan(*indent.read, color=ACCENT, alpha=0.35, lw=0)
         if np.isfinite(indent.contact):
             ax.axvline(indent.contact, color=MUTED, lw=0.5, ls=":")
-    for doubt in curve.doubts:
+    for doubt in _told(curve):
         ax.axvspan(
             doubt.start, max(doubt.end, doubt.start + 1e-3), facecolor="none", edgecolor=INK, hatch="////", lw=0.3
         )
+
+
+def _told(curve: Curve) -> list[Doubt]:
+    """What is marked: a note is of all the run, and would hide it."""
+    return [doubt for doubt in curve.doubts if doubt.kind != "note"]
 
 
 def _key(ax: Axes, curve: Curve) -> None:
@@ -56,6 +61,6 @@ def _key(ax: Axes, curve: Curve) -> None:
     handles = [
         Patch(facecolor=ACCENT, alpha=0.35, label="read"), Line2D([], [], color=MUTED, lw=0.8, ls=":", label="first contact"),
     ]  # fmt: skip
-    if curve.doubts:
+    if _told(curve):
         handles.append(Patch(facecolor="none", edgecolor=FAINT, hatch="////", label="doubtful"))
     ax.legend(handles=handles, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, borderaxespad=0.2)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import datetime
+import os
+from pathlib import PurePosixPath
 from typing import Literal
 
 from pydantic import Field, model_validator
@@ -100,6 +102,9 @@ class Campaign(Table):
     title: Printable = Field(default="Measurement campaign", max_length=120, description="Title of the measured sheet.")
     lab: Printable = Field(default="", max_length=120, description="Who measured.")
     design: str | None = Field(default=None, min_length=1, description="Design of the sensors, where no flag names it.")
+    assignments: list[str] = Field(
+        default=[], max_length=100, description="What changes the design, TABLE.KEY=VALUE each."
+    )
     simulated: bool = Field(default=False, description="Whether a program made the files: said on every sheet.")
     ambient_pressure_kPa: float | None = number(  # noqa: N815
         None, unit="kPa", low=20, high=1000, help="Absolute pressure in the laboratory; left out: the design's."
@@ -115,7 +120,8 @@ class Campaign(Table):
         resins: dict[str, str] = {}
         for place, run in enumerate(self.runs):
             key = (run.kind, run.sensor, run.driving_pressure_kPa, run.run, run.age_days)
-            same_file, same_run = files.setdefault(run.file, place), keys.setdefault(key, place)
+            file = str(PurePosixPath(os.path.normpath(run.file)))
+            same_file, same_run = files.setdefault(file, place), keys.setdefault(key, place)
             if same_file != place:
                 raise ValueError(
                     f"runs[{place}].file = {run.file!r}: is that of runs[{same_file}] too; must be there once"

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from pneutouch.bench.calibrate import NAMES, Observations, fit
+from pneutouch.bench.calibrate.discrepancy import FLOOR
 from pneutouch.bench.calibrate.gains import gain_shifts
 from pneutouch.bench.calibrate.goodness import misses, residuals
 from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, OFFSET, WALL
@@ -56,15 +57,20 @@ def test_derivatives_are_those_of_the_model(library):
         assert np.linalg.norm(change - said) < 0.05 * np.linalg.norm(change), NAMES[k]
 
 
-def cover(library, trials, runs, pressures, priors):
+def cover(library, trials, runs, pressures, priors, floor=FLOOR):
     """Share of the trials whose intervals of modulus and dead volume hold the truth, the truth drawn anew each time."""
     rng = np.random.default_rng(11)
     parameters = chosen(library, "modulus", "dead-volume", priors=priors)
     hits = np.zeros(2)
     for _ in range(trials):
         dead = DESIGNED.dead_volume + parameters.belief[DEAD] * rng.normal()
-        truth = other(shear_modulus=0.2 * np.exp(0.2 * rng.normal()), dead_volume=dead)
-        found = fit(Observations(curves(truth, pressures, runs, rng)), DESIGNED, parameters)
+        # What is believed of wall and contact counts with priors, and so it is drawn.
+        wall = np.sqrt(3.0) * parameters.belief[WALL] * rng.uniform(-1, 1) if priors else 0.0
+        offset = abs(parameters.belief[OFFSET] * rng.normal()) if priors else 0.0
+        modulus = 0.2 * np.exp(0.2 * rng.normal())
+        truth = other(shear_modulus=modulus, dead_volume=dead, wall_thickness=DESIGNED.wall_thickness * np.exp(wall))
+        seen = Observations(curves(truth, pressures, runs, rng, offset=offset))
+        found = fit(seen, DESIGNED, parameters, floor)
         at = coordinates(truth)[[MODULUS, DEAD]]
         hits += np.abs(found.solution.at - at) <= found.half_width
     return hits / trials
@@ -81,20 +87,22 @@ def test_intervals_hold_the_truth(library):
     (2, (0.0, 12.0, 22.0), True), (2, (0.0, 12.0, 22.0), False), (3, (0.0, 12.0, 22.0), False), (2, (0.0, 22.0), False),
 ])  # fmt: skip
 def test_intervals_hold_the_truth_in_200_trials(library, runs, pressures, priors):
-    share = cover(library, 200, runs, pressures, priors)
+    """The atlas's own sensors: nothing is left out, and none is said to be."""
+    share = cover(library, 200, runs, pressures, priors, np.zeros(3))
     assert np.all(share >= 0.90)
-    assert np.all(share <= 0.99)
+    assert np.all(share <= 0.995)
 
 
 def test_intervals_know_that_runs_differ(library):
     """Gains that differ between runs widen the interval; points alone, however many, would not show it."""
     truth, rng = other(shear_modulus=0.2), np.random.default_rng(5)
     pressures, parameters = (0.0, 12.0, 22.0), chosen(library, "modulus", "dead-volume", priors=False)
-    same = fit(Observations(curves(truth, pressures, 3, rng, gain=0.0)), DESIGNED, parameters)
-    differ = fit(Observations(curves(truth, pressures, 3, rng, gain=0.02)), DESIGNED, parameters)
+    none = np.zeros(3)
+    same = fit(Observations(curves(truth, pressures, 3, rng, gain=0.0)), DESIGNED, parameters, none)
+    differ = fit(Observations(curves(truth, pressures, 3, rng, gain=0.02)), DESIGNED, parameters, none)
     assert differ.half_width[0] > 3 * same.half_width[0]
     finer = other(shear_modulus=0.2, steps=52)
-    more = fit(Observations(curves(finer, pressures, 3, rng, gain=0.02)), DESIGNED, parameters)
+    more = fit(Observations(curves(finer, pressures, 3, rng, gain=0.02)), DESIGNED, parameters, none)
     assert more.half_width[0] > 0.5 * differ.half_width[0]
 
 

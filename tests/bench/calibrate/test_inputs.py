@@ -8,9 +8,12 @@ import numpy as np
 import pytest
 
 from pneutouch.bench.calibrate import Injection, Observations, fit
+from pneutouch.bench.calibrate.discrepancy import TRAVEL, shared_of
+from pneutouch.bench.calibrate.observations import points_of
 from pneutouch.bench.calibrate.parameters import parse_names
-from pneutouch.bench.record import Curve
+from pneutouch.bench.record import Curve, Indent
 from pneutouch.errors import InputError
+from pneutouch.spec.campaign import Rig
 from tests.bench.calibrate.sensors import DESIGNED, chosen, curves, exact, run
 
 
@@ -65,15 +68,29 @@ def test_names_of_parameters_are_checked(names, words):
         parse_names(names)
 
 
-def test_a_first_contact_that_is_not_sure_weighs_steep_points_less(library):
-    """A contact that is the middle of three 0.1 mm apart is known to 0.1 mm over root 3, times the stiffness in force."""
-    from pneutouch.bench.calibrate.observations import points_of
-    from pneutouch.bench.record import Indent
-
+def test_a_first_contact_that_is_not_sure_moves_force_and_rise_of_its_run_together(library):
+    """A contact that is the middle of three 0.1 mm apart is known to 0.1 mm over root 3, a little worse than their mean."""
     (clean,) = exact(DESIGNED, (22.0,))
     indents = tuple(Indent(0.0, (1.0, 5.0), (4.0, 5.0), 6.0, 0.1 * k, 1.0, 0.0, 0.0, 0.022, 0.0) for k in (-1, 0, 1))
-    sure = points_of(Observations((clean,)))
-    wandering = points_of(Observations((replace(clean, indents=indents),)))
-    added = np.sqrt(wandering.force_error**2 - sure.force_error**2)[0]
-    stiffness = np.gradient(clean.force[1:], clean.indentation[1:])
-    assert added == pytest.approx(0.1 / np.sqrt(3) * stiffness, rel=0.01)
+    sure = shared_of(points_of(Observations((clean,))))
+    points = points_of(Observations((replace(clean, indents=indents), replace(clean, indents=indents))))
+    wandering = shared_of(points)
+    assert (sure.kind < TRAVEL).all()
+    columns = wandering.columns[:, wandering.kind == TRAVEL]
+    assert columns.shape[1] == 2
+    force, rise = (columns[:, 0].reshape(2, 2, -1)[k, 0] for k in (0, 1))
+    for column, values in ((force, clean.force), (rise, clean.rise)):
+        slope = np.gradient(values, clean.indentation)[1:]
+        assert column == pytest.approx(0.1 / np.sqrt(3) * np.sqrt(0.5 * np.pi) * slope, rel=1e-6)
+    assert not columns[points.clusters == 1, 0].any()
+
+
+def test_forces_at_the_end_of_the_sensors_range_are_not_fitted(library):
+    """A force sensor that stops at 5 N would make the dome soft; the points before that give the modulus."""
+    truth = replace(DESIGNED, shear_modulus=0.2)
+    seen = exact(truth, (0.0, 22.0))
+    cut = tuple(replace(curve, force=np.minimum(curve.force, 5.0)) for curve in seen)
+    observations = Observations(cut, rig=Rig(force_range_N=5.0))
+    found = fit(observations, DESIGNED, chosen(library, "modulus", priors=False))
+    assert found.full[0] == pytest.approx(np.log(0.2), abs=2e-3)
+    assert max(curve.force.max() for curve in seen) > 10.0

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pneutouch.bench.calibrate.discrepancy import shared_of
 from pneutouch.bench.calibrate.fit import Fit
 from pneutouch.bench.calibrate.inject import free_pressure
 from pneutouch.bench.calibrate.model import Model
@@ -14,6 +15,7 @@ from pneutouch.bench.calibrate.observations import ATLAS_FORCE, ATLAS_PRESSURE, 
 from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, NAMES, WALL
 from pneutouch.bench.protocol import REPETITIONS, SHARE
 from pneutouch.mechanics.atlas.table import REST_VOLUME, shipped
+from pneutouch.mechanics.limits import RATED_SHARE, limits
 from pneutouch.meridian.segments import Array
 from pneutouch.units import KPA
 
@@ -64,11 +66,13 @@ def further_tests(fit: Fit) -> list[Further]:
     now += (1.0 if fit.parameters.priors else _RIDGE) * np.eye(places.size)
     before = np.linalg.inv(now)
     worst = np.linalg.eigh(before)[1][:, -1]
+    # What is believed of parameters not fitted stays as it is: the test is of those that are.
+    stays = (fit.covariance.considered**2).sum(axis=1)[places]
     found = []
     for what, gained in _candidates(fit):
         after = np.linalg.inv(now + gained[np.ix_(numbers, numbers)] * scale)
         width = np.full(fit.solution.at.size, np.nan)
-        width[places] = _QUANTILE * np.sqrt(np.diag(after)) * belief
+        width[places] = _QUANTILE * np.sqrt(np.diag(after) * belief**2 + stays)
         found.append(Further(what, float(np.sqrt((worst @ before @ worst) / (worst @ after @ worst))), width))
     return sorted(found, key=lambda test: -test.gain)
 
@@ -78,7 +82,7 @@ def _candidates(fit: Fit) -> Iterator[tuple[str, Array]]:
     full, size = fit.full, fit.sensor.inner_radius
     slices = shipped().slices(np.array([np.exp(full[WALL]) / size]), ())
     limit = float(slices.limit_pressure[0]) * float(np.exp(full[MODULUS]))
-    highest = min(_LIMIT_SHARE * limit, 0.5 * fit.sensor.gauge_limit)
+    highest = min(_LIMIT_SHARE * limit, 0.5 * fit.sensor.gauge_limit, _rated(fit))
     measured = fit.points.driving
     depth = SHARE * size
     for pressure in (0.0, 0.5 * highest, highest):
@@ -94,6 +98,13 @@ def _candidates(fit: Fit) -> Iterator[tuple[str, Array]]:
         yield "air injected with a rigid cap in place of the dome (the dead volume alone)", _alone(DEAD, spread)
     yield "a tensile coupon of the same print (the modulus alone)", _alone(MODULUS, COUPON)
     yield "the wall measured with a caliper", _alone(WALL, CALIPER / float(np.exp(full[WALL])))
+
+
+def _rated(fit: Fit) -> float:
+    """The pressure that the sensor is rated at, as designed and as estimated whichever is less."""
+    full = fit.full
+    built = replace(fit.sensor, shear_modulus=float(np.exp(full[MODULUS])), wall_thickness=float(np.exp(full[WALL])))
+    return RATED_SHARE * min(limits(fit.sensor).lowest, limits(built).lowest)
 
 
 def _alone(number: int, spread: float) -> Array:
@@ -115,7 +126,8 @@ def _indented(fit: Fit, full: Array, pressure: float, depth: float) -> Array:
     """Repeated runs at one pressure, scattering as the runs measured do."""
     row = np.linspace(0.0, depth, _STEPS + 1)[None, 1:]
     one, none = np.ones_like(row), np.zeros((0, 0))
-    points = Points(row, one, one, one, one, one > 0, np.array([pressure]), none, none, none, none > 0)
+    points = Points(row, one, one, one, one, one > 0, np.array([pressure]), none, none, none, none > 0, np.zeros(1),
+                    np.zeros(1, dtype=int))  # fmt: skip
     values, derivatives = _looked(fit, full, points)
     half = row.size
     force = np.hypot(fit.observations.rig.force_resolution_N / np.sqrt(12.0), ATLAS_FORCE * np.abs(values[:half]).max())
@@ -123,8 +135,7 @@ def _indented(fit: Fit, full: Array, pressure: float, depth: float) -> Array:
     error = np.repeat([force, rise] * fit.channel_factor[:2], half)
     # Where no scatter between runs was seen, a run is taken to be worth a point: its points all move together.
     together = fit.run_factor if fit.points.there.any() and fit.covariance.clustered else float(half)
-    scaled = derivatives / error[:, None]
-    return np.asarray(scaled.T @ scaled) * REPETITIONS / together
+    return _said(fit, points, values, derivatives, np.diag(error**2 * together / REPETITIONS))
 
 
 def _volume(fit: Fit, full: Array, pressure: float) -> float:
@@ -143,9 +154,16 @@ def _injected(fit: Fit, full: Array, volume: float) -> Array:
     """An injection in steps, all its volumes wrong by one factor."""
     row = np.linspace(0.0, volume, _STEPS + 1)[None, 1:]
     one, none = np.ones_like(row), np.zeros((0, 0))
-    points = Points(none, none, none, none, none, none > 0, np.zeros(0), row, one, one, one > 0)
+    points = Points(none, none, none, none, none, none > 0, np.zeros(0), row, one, one, one > 0, np.zeros(0),
+                    np.zeros(0, dtype=int))  # fmt: skip
     values, derivatives = _looked(fit, full, points)
     by_volume = np.gradient(values, row[0]) * row[0] * SYRINGE
     error = np.hypot(READING, ATLAS_PRESSURE * np.abs(values).max()) * fit.channel_factor[2]
     noise = np.diag(np.full(row.size, error**2)) + np.outer(by_volume, by_volume)
-    return np.asarray(derivatives.T @ np.linalg.solve(noise, derivatives))
+    return _said(fit, points, values, derivatives, noise)
+
+
+def _said(fit: Fit, points: Points, values: Array, derivatives: Array, noise: Array) -> Array:
+    """Information of values with errors ``noise``, (N, N), and with what the model leaves out as the runs measured show it."""
+    shared = shared_of(points.with_values(values)).sized(fit.sizes)
+    return np.asarray(derivatives.T @ np.linalg.solve(noise + shared @ shared.T, derivatives))

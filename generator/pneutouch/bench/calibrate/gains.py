@@ -29,12 +29,14 @@ def gain_shifts(fit: Fit) -> tuple[Array, Array]:
 def _shift(fit: Fit, residual: Array) -> Array:
     """Step of the estimates for a change of the residuals in N and MPa."""
     free = np.flatnonzero(~fit.solution.bound)
-    jacobian = fit.solution.jacobian[:, free]
+    change = np.where(fit.solution.use, residual / fit.problem.errors, 0.0)
+    whole = fit.problem.whitened(np.column_stack([change, fit.solution.jacobian[:, free]]), fit.solution.use)
+    jacobian = whole[:, 1:]
     normal = jacobian.T @ jacobian + np.diag(fit.problem.weight[free])
     scale = np.sqrt(np.maximum(np.diag(normal), 1e-30))
     normal += 1e-12 * np.diag(scale**2)
     shift = np.zeros(fit.solution.at.size)
     # The estimates follow readings that are too high: what is found is minus the correction.
-    right = jacobian.T @ np.where(fit.solution.use, residual / fit.problem.errors, 0.0)
+    right = jacobian.T @ whole[:, 0]
     shift[free] = np.linalg.solve(normal, right)
     return np.asarray(shift)

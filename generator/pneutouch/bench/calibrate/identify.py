@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.bench.calibrate.fit import Fit
+from pneutouch.bench.calibrate.intervals import information
 from pneutouch.bench.calibrate.parameters import LOGARITHMIC
 from pneutouch.meridian.segments import Array
 
@@ -34,7 +35,7 @@ class Ambiguity:
     Attributes:
         members: Their numbers.
         correlation: Greatest correlation among them, in the data alone, with its sign.
-        alone: Standard deviation of each by the data alone; of modulus and wall relative, of the dead volume mm3, of the
+        alone: Standard deviation of each by the scatter of the data alone, were the model true; of modulus and wall relative, of the dead volume mm3, of the
             offset mm.
         given: The same were the others known.
         combination: Exponents of modulus and wall in the product that is known, where they are the members; else None.
@@ -66,7 +67,9 @@ def identify(fit: Fit) -> Identified:
     seen = np.abs(fit.solution.jacobian).max(axis=0) > 0
     places = np.flatnonzero(seen)
     numbers, known = fitted[places], fit.covariance.information[np.ix_(places, places)]
-    found = _groups(known, numbers, fit.parameters.belief[numbers]) if places.size > 1 else []
+    # What leans on what is a matter of the model's curves; how sure it leaves each, of all that is uncertain.
+    curves = information(fit.solution.jacobian[:, places])
+    found = _groups(curves, known, numbers, fit.parameters.belief[numbers]) if places.size > 1 else []
     grouped = {k for group in found for k in group.members}
     unseen = [
         int(k) for place, k in enumerate(fitted)
@@ -84,16 +87,20 @@ def _left(fit: Fit, place: int, seen: bool) -> float:
     return float(np.sqrt(np.linalg.inv(whole)[place, place]))
 
 
-def _groups(known: Array, numbers: Array, belief: Array) -> list[Ambiguity]:
-    """Sets of parameters along the directions that the information ``known``, (n, n), holds least of."""
-    scale = np.sqrt(np.diag(known))
-    values, vectors = np.linalg.eigh(known / np.outer(scale, scale))
+def _groups(curves: Array, known: Array, numbers: Array, belief: Array) -> list[Ambiguity]:
+    """Sets of parameters along the directions that the curves, by their information (n, n), hold least of.
+
+    ``known``, (n, n), is the information with what many values share taken into account.
+    """
+    scale = np.sqrt(np.diag(curves))
+    values, vectors = np.linalg.eigh(curves / np.outer(scale, scale))
     covariance = (vectors / np.maximum(values, _LEAST)) @ vectors.T / np.outer(scale, scale)
     spread = np.sqrt(np.diag(covariance))
     correlation = covariance / np.outer(spread, spread) - np.eye(numbers.size)
     sets = [np.flatnonzero(np.abs(v) > _MEMBER) for v in vectors[:, values < 1.0 - CORRELATED].T]
     # Three or four together always lean on one another; it matters where a belief is still needed.
-    sets = [places for places in sets if (spread / belief)[places].max() > _NEEDED]
+    alone = _spreads(known)
+    sets = [places for places in sets if (alone / belief)[places].max() > _NEEDED]
     sets += [np.array(pair) for pair in np.argwhere(np.triu(np.abs(correlation) > CORRELATED))]
     found: list[Ambiguity] = []
     for places in sorted(sets, key=len, reverse=True):
@@ -107,6 +114,13 @@ def _groups(known: Array, numbers: Array, belief: Array) -> list[Ambiguity]:
             _product(covariance[np.ix_(places, places)], numbers[places]),
         ))  # fmt: skip
     return found
+
+
+def _spreads(known: Array) -> Array:
+    """Standard deviations (n,) by information (n, n)."""
+    scale = np.sqrt(np.diag(known))
+    values, vectors = np.linalg.eigh(known / np.outer(scale, scale))
+    return np.asarray(np.sqrt(((vectors**2) / np.maximum(values, _LEAST)).sum(axis=1)) / scale)
 
 
 def _product(covariance: Array, numbers: Array) -> float | None:

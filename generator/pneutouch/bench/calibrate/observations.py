@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -21,6 +22,9 @@ ATLAS_FORCE, ATLAS_PRESSURE = 0.0011, 0.0004
 READING = 0.05 * KPA
 """Least standard deviation of a pressure point, MPa: our choice, half of the 0.1 kPa that such gauges show; the paper gives
 the resolution of its force sensor alone."""
+
+_RANGE = 0.99
+"""Share of the force sensor's range from which on a reading may be cut off: our choice, the zero is taken off it."""
 
 _AVERAGED = 100
 """Greatest number of samples whose noise is taken to average out in a point: our choice, for noise is not white."""
@@ -67,6 +71,7 @@ class Points(NamedTuple):
 
     travel, force, rise, force_error, rise_error, there: (c, m) mm, N, MPa, standard deviations, and whether it is a point.
     driving: (c,). volume, pressure, pressure_error, known: (i, n) mm3, MPa, MPa, and whether it is a point.
+    travel_error, group: (c,) standard deviation of the run's first contact, mm, and number of its driving pressure.
     """
 
     travel: Array
@@ -80,6 +85,18 @@ class Points(NamedTuple):
     pressure: Array
     pressure_error: Array
     known: Flags
+    travel_error: Array
+    group: Array
+
+    @property
+    def force_slope(self) -> Array:
+        """Force by travel, (c, m) N/mm."""
+        return _slopes(self.travel, self.force)
+
+    @property
+    def rise_slope(self) -> Array:
+        """Rise by travel, (c, m) MPa/mm."""
+        return _slopes(self.travel, self.rise)
 
     @property
     def values(self) -> Array:
@@ -90,6 +107,22 @@ class Points(NamedTuple):
     def errors(self) -> Array:
         """Their standard deviations, (N,)."""
         return np.concatenate([self.force_error.ravel(), self.rise_error.ravel(), self.pressure_error.ravel()])
+
+    @property
+    def full_scale(self) -> Array:
+        """Greatest reading of each value's run and channel, (N,)."""
+        parts = self.force, self.rise, self.pressure
+        return np.concatenate([
+            np.broadcast_to(np.abs(part).max(axis=1, initial=0.0)[:, None], part.shape).ravel() for part in parts
+        ])  # fmt: skip
+
+    def with_values(self, values: Array) -> Points:
+        """The same points with other values, (N,)."""
+        force, rise, pressure = np.split(values, [self.force.size, 2 * self.force.size])
+        return self._replace(
+            force=force.reshape(self.force.shape), rise=rise.reshape(self.rise.shape),
+            pressure=pressure.reshape(self.pressure.shape),
+        )  # fmt: skip
 
     @property
     def use(self) -> Flags:
@@ -122,9 +155,10 @@ def points_of(observations: Observations) -> Points:
     volume, pressure, pressure_error, known = _padded(injections, 3)
     # What a gauge reads a little below zero before contact is zero: the dome is not sucked in.
     driving = np.array([max(curve.driving, 0.0) for curve in observations.curves])
+    group = np.array([observations.pressures.index(curve.run.driving_pressure_kPa) for curve in observations.curves])
     found = Points(
         travel, force, rise, force_error, rise_error, there.astype(bool), driving, volume, pressure, pressure_error,
-        known.astype(bool),
+        known.astype(bool), _travel_errors(observations.curves), group,
     )  # fmt: skip
     if found.there.sum() + found.known.sum() < 2:
         raise InputError("calibrate: one point is not enough; there must be at least two beside the origin")
@@ -133,7 +167,7 @@ def points_of(observations: Observations) -> Points:
 
 def _curve(curve: Curve, rig: Rig) -> tuple[Array, ...]:
     """Travel, force, rise and their errors; the origin is no measurement but the definition of zero."""
-    loaded = curve.indentation > 0
+    loaded = (curve.indentation > 0) & ~clipped(curve, rig)
     x, force, rise = curve.indentation[loaded], curve.force[loaded], curve.rise[loaded]
     if not x.size:
         raise InputError(f"calibrate: {curve.run.file}: no point beyond first contact; there must be at least one")
@@ -146,18 +180,40 @@ def _curve(curve: Curve, rig: Rig) -> tuple[Array, ...]:
     noise = np.nan_to_num(np.array(curve.noise)) / np.sqrt(np.clip(samples, 1.0, _AVERAGED))
     # A resolution is a rectangle as wide as itself (JCGM 100, F.2.2.1).
     reading = rig.force_resolution_N / np.sqrt(12.0)
-    missed = _travel_error(curve)
-    by_travel = [np.abs(np.gradient(y, x)) * missed if x.size > 1 else np.zeros(1) for y in (force, rise)]
     force_error = np.sqrt(noise[0] ** 2 + reading**2 + (ATLAS_FORCE * np.abs(force).max()) ** 2)
     rise_error = np.sqrt(noise[1] ** 2 + READING**2 + (ATLAS_PRESSURE * np.abs(rise).max()) ** 2)
-    return x, force, rise, np.hypot(force_error, by_travel[0]), np.hypot(rise_error, by_travel[1])
+    return x, force, rise, np.full(x.size, force_error), np.full(x.size, rise_error)
 
 
-def _travel_error(curve: Curve) -> float:
-    """Standard error of a run's first contact, mm: of the indentations that it is the middle of."""
-    onsets = np.array([indent.onset for indent in curve.indents])
-    onsets = onsets[np.isfinite(onsets)][:EARLY]
-    return float(np.std(onsets, ddof=1) / np.sqrt(onsets.size)) if onsets.size > 1 else 0.0
+def clipped(curve: Curve, rig: Rig) -> Flags:
+    """Points at the end of the force sensor's range, (n,): it reads no more, whatever there is."""
+    return np.asarray(np.abs(curve.force) >= _RANGE * rig.force_range_N)
+
+
+def _travel_errors(curves: Sequence[Curve]) -> Array:
+    """Standard errors of the runs' first contacts, mm, (c,): of the indentations that each is the middle of.
+
+    The spread is that of all runs together: of a few indentations it would be far too small as often as too large.
+    """
+    found = []
+    for curve in curves:
+        onsets = np.array([indent.onset for indent in curve.indents])
+        found.append(onsets[np.isfinite(onsets)][:EARLY])
+    free = sum(max(onsets.size - 1, 0) for onsets in found)
+    squares = sum(float(((onsets - onsets.mean()) ** 2).sum()) for onsets in found if onsets.size > 1)
+    spread = np.sqrt(squares / free) if free else 0.0
+    # A middle is less sure than a mean, by pi/2 in variance for many normal values.
+    return np.array([spread * np.sqrt(0.5 * np.pi / max(onsets.size, 1)) for onsets in found])
+
+
+def _slopes(travel: Array, values: Array) -> Array:
+    """Slopes along each row, (c, m); of repeated travels, which only pad, zero."""
+    found = np.zeros_like(values)
+    for row, (x, y) in enumerate(zip(travel, values, strict=True)):
+        at = np.concatenate([[0.0], np.unique(x)])
+        slope = np.gradient(np.concatenate([[0.0], y[: at.size - 1]]), at)[1:]
+        found[row, : slope.size] = slope
+    return found
 
 
 def _injection(injection: Injection) -> tuple[Array, ...]:

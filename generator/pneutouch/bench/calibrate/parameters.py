@@ -9,6 +9,7 @@ import numpy as np
 
 from pneutouch.errors import InputError, nearest
 from pneutouch.mechanics.atlas.batches import batch_of
+from pneutouch.mechanics.atlas.press import Flags
 from pneutouch.mechanics.atlas.table import REST_VOLUME, shipped
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.uncertainty.source import Source
@@ -52,6 +53,7 @@ class Parameters:
         start: Design values; what is not fitted keeps them.
         low, high: Bounds.
         belief: Standard deviations believed beforehand around ``start``.
+        even: Which of the beliefs are even within bounds; the others are normal.
         step: Finite difference steps.
         origin: Where each belief comes from.
         priors: Whether the beliefs count in the fit.
@@ -62,9 +64,15 @@ class Parameters:
     low: Array
     high: Array
     belief: Array
+    even: Flags
     step: Array
     origin: tuple[str, ...]
     priors: bool
+
+    @property
+    def others(self) -> tuple[int, ...]:
+        """Numbers of those that are not fitted but believed uncertain; none where the beliefs do not count."""
+        return tuple(k for k in range(len(NAMES)) if k not in self.fitted) if self.priors else ()
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -105,15 +113,16 @@ def parameters(
     low = [np.log(sensor.ambient_pressure / recipe.stiffest), np.log(recipe.thinnest * size), 0.0, -OFFSET_BOUND]
     high = [np.log(_STIFFEST), np.log(recipe.thickest * size), _LARGEST, OFFSET_BOUND]
     start = [np.log(sensor.shear_modulus), np.log(sensor.wall_thickness), sensor.dead_volume, 0.0]
-    belief, origin = _beliefs(sensor, material, printer)
+    belief, even, origin = _beliefs(sensor, material, printer)
     return Parameters(
-        parse_names(names), np.array(start), np.array(low), np.array(high), belief,
+        parse_names(names), np.array(start), np.array(low), np.array(high), belief, even,
         np.array([1e-3, 1e-3, 1e-3 * (rest + sensor.dead_volume), 1e-3 * size]), origin, priors,
     )  # fmt: skip
 
 
-def _beliefs(sensor: Sensor, material: Material, printer: Printer) -> tuple[Array, tuple[str, ...]]:
-    """Standard deviations in the coordinates and where they come from: the sources of every prediction's uncertainty."""
+def _beliefs(sensor: Sensor, material: Material, printer: Printer) -> tuple[Array, Flags, tuple[str, ...]]:
+    """Standard deviations in the coordinates, which are even, and where they come from: the sources of every prediction's
+    uncertainty."""
     built = build_sources(batch_of(sensor, [0.0]), printer)
     groups = (
         modulus_sources(material, np.zeros(1, dtype=bool)),
@@ -123,7 +132,8 @@ def _beliefs(sensor: Sensor, material: Material, printer: Printer) -> tuple[Arra
     found = [_together(group) for group in groups]
     offset = (OFFSET_PRIOR, f"normal, {OFFSET_PRIOR:g} mm: our choice, what is lost of the first touch below the noise")
     spreads, origins = zip(*found, offset, strict=True)
-    return np.array(spreads), tuple(origins)
+    even = [len(group) == 1 and group[0].distribution.endswith("rectangular") for group in groups]
+    return np.array(spreads), np.array([*even, False]), tuple(origins)
 
 
 def _together(sources: Sequence[Source]) -> tuple[float, str]:

@@ -29,6 +29,7 @@ class Solution:
     Attributes:
         at: Coordinates of the fitted parameters.
         residual: Model less measured over the standard deviation, 0 where not used, (N,).
+        own: What is left of it once what many values share is taken off, (N,).
         jacobian: Its derivatives, (N, k).
         model: Values of the model, (N,).
         use: Points that were used, (N,).
@@ -38,6 +39,7 @@ class Solution:
 
     at: Array
     residual: Array
+    own: Array
     jacobian: Array
     model: Array
     use: Flags
@@ -46,10 +48,12 @@ class Solution:
 
 
 class Problem:
-    """Residuals and derivatives; ``errors`` are the standard deviations that weigh the values."""
+    """Residuals and derivatives; ``errors`` (N,) are the standard deviations that weigh the values, each for itself, ``shared``
+    (N, q) what unknowns of unit variance add to many of them together."""
 
-    def __init__(self, model: Model, chosen: Parameters, errors: Array) -> None:
+    def __init__(self, model: Model, chosen: Parameters, errors: Array, shared: Array) -> None:
         self.model, self.chosen, self.errors = model, chosen, errors
+        self.shared = shared / errors[:, None]
         fitted = list(chosen.fitted)
         self.low, self.high, self.step = chosen.low[fitted], chosen.high[fitted], chosen.step[fitted]
         self.centre, belief = chosen.start[fitted], chosen.belief[fitted]
@@ -75,9 +79,18 @@ class Problem:
         )
         return bool((after < (1 - _MOST_LOST) * before).any())
 
+    def whitened(self, rows: Array, use: Flags) -> Array:
+        """Columns of ``rows`` (N, j) as columns (n + q, j) whose products are those weighed by the inverse covariance.
+
+        With b the unknowns that suit a column best, they are what b leaves of it, then b itself.
+        """
+        shared, seen = self.shared[use], rows[use]
+        best = np.linalg.solve(np.eye(shared.shape[1]) + shared.T @ shared, shared.T @ seen)
+        return np.vstack([seen - shared @ best, best])
+
     def cost(self, residual: Array, use: Flags, at: Array) -> float:
         """Sum of squares, beliefs included."""
-        return float((residual[use] ** 2).sum() + (self.weight * (at - self.centre) ** 2).sum())
+        return float((self.whitened(residual[:, None], use) ** 2).sum() + (self.weight * (at - self.centre) ** 2).sum())
 
 
 def solve(problem: Problem, start: Array) -> Solution:
@@ -134,14 +147,17 @@ def _descend(problem: Problem, at: Array) -> Solution:
             f"calibrate: no least sum of squares within {_ROUNDS} steps; fit fewer parameters with --fit"
         )
     keep = use[:, None]
-    return Solution(at, np.where(use, residual, 0.0), np.where(keep, jacobian, 0.0), values, use, bound, rounds)
+    own = np.zeros_like(residual)
+    own[use] = problem.whitened(residual[:, None], use)[: int(use.sum()), 0]
+    return Solution(at, np.where(use, residual, 0.0), own, np.where(keep, jacobian, 0.0), values, use, bound, rounds)
 
 
 def _step(
     problem: Problem, at: Array, residual: Array, jacobian: Array, use: Flags, damping: float
 ) -> tuple[Array, Flags, float]:  # fmt: skip
     """The damped step, which parameters it holds on their bounds, and by how much it is to lower the cost."""
-    r, j = residual[use], jacobian[use]
+    whole = problem.whitened(np.column_stack([residual, jacobian]), use)
+    r, j = whole[:, 0], whole[:, 1:]
     slope = j.T @ r + problem.weight * (at - problem.centre)
     normal = j.T @ j + np.diag(problem.weight)
     size = np.diag(normal).copy()

@@ -13,17 +13,19 @@ from pneutouch.bench.calibrate.goodness import Miss
 from pneutouch.bench.calibrate.held_out import HeldOut
 from pneutouch.bench.calibrate.identify import UNSEEN, Ambiguity, Identified
 from pneutouch.bench.calibrate.intervals import LEAST_RUNS
+from pneutouch.bench.calibrate.observations import clipped
 from pneutouch.bench.calibrate.parameters import DEAD, LOGARITHMIC
 from pneutouch.units import ML
 
+CHANNELS = ("force", "pressure rise", "injection's pressure")
 WORDS = ("shear modulus", "wall thickness", "dead volume", "contact offset")
 _WORTH = 1.2
 """A test that shrinks the worst interval by less than this is not told: our choice."""
 _FAR = 2.0
 """Prior standard deviations from the design from which on an estimate is remarked: our choice, one in twenty by chance."""
 _MANY = 100.0
-_CHI = 2.0
-"""Chi-squared per degree of freedom above which runs scatter more than reading and atlas explain: our choice."""
+_MOVED = 0.2
+"""Share of an interval's half width below which a wrong gauge's effect is not told: our choice."""
 
 
 def amount(k: int, deviation: float) -> str:
@@ -38,15 +40,36 @@ def amount(k: int, deviation: float) -> str:
 def sentences(
     fit: Fit, identified: Identified, further: Sequence[Further], missed: Sequence[Miss], held_out: Sequence[HeldOut]
 ) -> list[str]:  # fmt: skip
-    """What a reader must know beside the numbers, one sentence each."""
-    return [
-        *_left_out(fit), *_bounds(fit), *_far(fit), *_basis(fit), *_open(fit, identified), *_tests(fit, identified, further),
-        *_fitness(fit, missed), *_shared(fit), *(_held(one) for one in held_out),
-    ]  # fmt: skip
+    """What a reader must know beside the numbers: at most one sentence of a kind."""
+    kinds = (
+        _left_out(fit), _bounds(fit), _far(fit), _counted(fit) + _basis(fit), _open(fit, identified),
+        _tests(fit, identified, further), _fitness(fit, missed), [_held(one) for one in held_out],
+    )  # fmt: skip
+    return ["; ".join(kind) for kind in kinds if kind]
+
+
+def _counted(fit: Fit) -> list[str]:
+    """What is in the intervals beside the scatter."""
+    used = np.unique(fit.points.channels[fit.solution.use])
+    sizes = ", ".join(f"{(fit.sizes[c]):.1%} of the {CHANNELS[c]}" for c in used)
+    found = [f"the intervals hold what the model leaves out ({sizes})"]
+    others = _joined([WORDS[k] for k in fit.parameters.others]) if fit.parameters.others else ""
+    if others:
+        found.append(f"and what is believed of {others}, not fitted")
+    elif not fit.parameters.priors and len(fit.parameters.fitted) < len(WORDS):
+        found.append("without priors only what is fitted is uncertain: the rest is taken to be as designed")
+    moved = _shared(fit)
+    return [*found, *([f"but no wrong gauge: {'; '.join(moved)}"] if moved else [])]
 
 
 def _left_out(fit: Fit) -> list[str]:
     found = []
+    over = [(curve.run.label, int(clipped(curve, fit.observations.rig).sum())) for curve in fit.observations.curves]
+    if any(count for _, count in over):
+        found.append(
+            f"{sum(count for _, count in over)} points at the end of the force sensor's range are left out "
+            f"({_few([label for label, count in over if count])})"
+        )
     for curve, lost, travel in zip(fit.observations.curves, fit.left_out, fit.points.travel, strict=True):
         if lost.any():
             found.append(
@@ -85,21 +108,18 @@ def _basis(fit: Fit) -> list[str]:
     found = []
     if not fit.covariance.clustered:
         runs = fit.covariance.runs
-        why = f"{runs} run{'s'[: runs != 1]}, fewer than {LEAST_RUNS}" if runs < LEAST_RUNS else (
-            f"{runs} runs for {len(fit.parameters.fitted)} parameters"
-        )  # fmt: skip
+        why = f"{runs} run{'s'[: runs != 1]}, fewer than {LEAST_RUNS}" if runs < LEAST_RUNS else "no pressure twice"
         found.append(
-            f"the intervals rest on the scatter of the points and the instruments alone ({why}): how runs differ is not in them, "
-            "and it is more; measure more runs"
+            f"they rest on the scatter of the points and the instruments alone ({why}): how runs differ is not in them; measure "
+            "more runs"
         )
-    else:
-        for k, run in zip(fit.parameters.fitted, fit.covariance.alone, strict=True):
-            if run >= 0:
-                label = [curve.run.label for curve in fit.observations.curves]
-                label += [injection.label for injection in fit.observations.injections]
-                found.append(
-                    f"{WORDS[k]}: rests on one run ({label[run]}), which is taken to scatter as the others do; repeat it"
-                )
+    labels = [curve.run.label for curve in fit.observations.curves]
+    labels += [injection.label for injection in fit.observations.injections]
+    for run in sorted({int(run) for run in fit.covariance.alone if run >= 0 and fit.covariance.clustered}):
+        words = _joined(
+            [WORDS[k] for k, one in zip(fit.parameters.fitted, fit.covariance.alone, strict=True) if one == run]
+        )
+        found.append(f"{words} rest on one run ({labels[run]}), taken to scatter as the others do; repeat it")
     return found
 
 
@@ -115,41 +135,26 @@ def _open(fit: Fit, identified: Identified) -> list[str]:
 
 def _apart(group: Ambiguity) -> str:
     names = _joined([WORDS[k] for k in group.members])
-    each = "; ".join(
-        f"{WORDS[k]} alone ± {_spread(k, alone)}, with the other{'s'[: len(group.members) > 2]} known ± {_spread(k, given)}"
-        for k, alone, given in zip(group.members, group.alone, group.given, strict=True)
-    )
     product = (
         f"; what is known is modulus × wall^{group.combination:.2f}"
         if group.combination is not None and group.combination > 0
         else ""
     )
+    wider = float(np.max(group.alone / group.given))
     return (
-        f"{names}: the data cannot tell them apart (correlation {group.correlation:+.3f}); standard deviations by the data: "
-        f"{each}{product}"
+        f"{names}: the data cannot tell them apart (correlation {group.correlation:+.3f}, {_times(wider)} less sure than with the "
+        f"other{'s'[: len(group.members) > 2]} known){product}"
     )
-
-
-def _spread(k: int, deviation: float) -> str:
-    """A standard deviation in words; what no prior bounds may be immense."""
-    return "anything" if LOGARITHMIC[k] and deviation > np.log(100.0) else amount(k, deviation)
 
 
 def _tests(fit: Fit, identified: Identified, further: Sequence[Further]) -> list[str]:
     if identified.clear:
         return []
     helpful = [test for test in further if test.gain > _WORTH][:2]
-    found = []
-    for place, test in enumerate(helpful):
-        widths = ", ".join(
-            f"{WORDS[k]} ± {amount(k, width)}"
-            for k, width in zip(fit.parameters.fitted, test.half_width, strict=True) if np.isfinite(width)
-        )  # fmt: skip
-        found.append(
-            f"{'to tell them apart, measure' if place == 0 else 'or'}: {test.what}; the widest interval would shrink "
-            f"{_times(test.gain)}, 95 % intervals then about {widths}"
-        )
-    return found
+    return [
+        f"{'to tell them apart, measure' if place == 0 else 'or'}: {test.what} (the widest interval would shrink {_times(test.gain)})"
+        for place, test in enumerate(helpful)
+    ]
 
 
 def _times(gain: float) -> str:
@@ -157,18 +162,15 @@ def _times(gain: float) -> str:
 
 
 def _fitness(fit: Fit, missed: Sequence[Miss]) -> list[str]:
+    """Where the model misses, one clause a pressure: its greatest miss."""
     found = []
-    if fit.freedom and fit.chi_squared / fit.freedom > _CHI:
+    for pressure in sorted({miss.pressure for miss in missed}):
+        miss = max((m for m in missed if m.pressure == pressure), key=lambda m: abs(m.share))
         found.append(
-            f"chi-squared per degree of freedom is {fit.chi_squared / fit.freedom:.1f}: the residuals are larger than reading and "
-            "atlas explain (runs that differ, or a model that misses); the intervals are widened by it"
+            f"{pressure:g} kPa: {miss.channel} {abs(miss.share):.1%} of full scale too {'high' if miss.share > 0 else 'low'} "
+            f"from {miss.start:.2f} to {miss.end:.2f} mm"
         )
-    found += [
-        f"the model misses at {miss.pressure:g} kPa: {miss.channel} {abs(miss.share):.1%} of full scale too "
-        f"{'high' if miss.share > 0 else 'low'} from {miss.start:.2f} to {miss.end:.2f} mm, in all runs alike; no interval holds that"
-        for miss in missed
-    ]
-    return found
+    return [f"the model misses in all runs alike, {'; '.join(found)}"] if found else []
 
 
 def _shared(fit: Fit) -> list[str]:
@@ -176,11 +178,15 @@ def _shared(fit: Fit) -> list[str]:
     for what, shift in zip(("force", "pressure"), gain_shifts(fit), strict=True):
         moved = ", ".join(
             f"{WORDS[k]} {'+' if d >= 0 else '-'}{amount(k, abs(d))}"
-            for k, d in zip(fit.parameters.fitted, shift, strict=True) if d
+            for k, d in zip(fit.parameters.fitted, shift, strict=True) if abs(d) > _MOVED * fit.half_width[fit.parameters.fitted.index(k)]
         )  # fmt: skip
         if moved:
-            found.append(f"not in the intervals: a {what} reading 1 % too high in all runs moves {moved}")
+            found.append(f"a {what} reading 1 % too high in all runs moves {moved}")
     return found
+
+
+def _few(labels: Sequence[str]) -> str:
+    return ", ".join(labels[:3]) + (f" and {len(labels) - 3} more" if len(labels) > 3 else "")
 
 
 def _held(one: HeldOut) -> str:

@@ -84,8 +84,7 @@ def loading(curve: PressCurve, steps: Protocol, wall: Wall) -> tuple[Array, Arra
 def specimen_figures(curve: PressCurve, truth: Truth, inner_radius: float, rate: float) -> dict[str, float | None]:
     """Figures of one specimen at one driving pressure without noise, by key.
 
-    Relaxation is the wall's alone: the rig's drift is not in it. Drift is the rig's alone: the wall's recovery after a press,
-    which a reading without contact shows too, is not in it.
+    Relaxation is as the rig reads it, its drift in it. Drift is the rig's alone: the wall's recovery after a press is not in it.
     """
     steps = truth.protocol("steps", inner_radius, curve.reach)
     depth, force, rise = loading(curve, steps, truth.wall)

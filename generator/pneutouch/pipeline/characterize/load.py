@@ -8,6 +8,7 @@ from pathlib import Path
 
 from pneutouch.bench.curve import curve_of
 from pneutouch.bench.injection import leak_rate, read_injection
+from pneutouch.bench.plausible import check_leak
 from pneutouch.bench.reading import read_blocks
 from pneutouch.bench.record import Curve
 from pneutouch.bench.trace import Trace, trace
@@ -25,6 +26,7 @@ Progress = Callable[[int, int], None]
 """Told the megabytes read and the megabytes there are."""
 
 _MEGABYTE = 1e6
+_LONGEST = 60
 
 _NEAR_KPA, _NEAR_SHARE = 1.0, 0.1
 """How far a pressure read before contact may be from one of the design's to be taken for it: a reset's scatter."""
@@ -42,6 +44,7 @@ class Loaded:
         injections: Run, volumes (mm3) and pressures (MPa) of the injection runs.
         leaks: Run, leak rate and its standard error (MPa/s) of the leak runs.
         failures: Files that could not be read, with the message.
+        questions: What looks wrong in runs without a plate: file, and the question.
     """
 
     campaign: Campaign
@@ -51,6 +54,7 @@ class Loaded:
     injections: tuple[tuple[Run, Array, Array], ...]
     leaks: tuple[tuple[Run, float, float], ...]
     failures: tuple[tuple[str, str], ...]
+    questions: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass
@@ -60,6 +64,7 @@ class _Gathered:
     injections: list[tuple[Run, Array, Array]] = field(default_factory=list)
     leaks: list[tuple[Run, float, float]] = field(default_factory=list)
     failures: list[tuple[str, str]] = field(default_factory=list)
+    questions: list[tuple[str, str]] = field(default_factory=list)
 
 
 def campaign_of(data: Path) -> tuple[Campaign, Path]:
@@ -99,7 +104,7 @@ def load_curves(data: Path, scene: Scene | None = None, progress: Progress = lam
         campaign = campaign.model_copy(update={"runs": [curve.run for curve in gathered.curves]})
     return Loaded(
         campaign, folder, tuple(gathered.curves), gathered.traces, tuple(gathered.injections), tuple(gathered.leaks),
-        tuple(gathered.failures),
+        tuple(gathered.failures), tuple(gathered.questions),
     )  # fmt: skip
 
 
@@ -139,6 +144,7 @@ def _read(
     blocks = read_blocks(path, campaign.columns, campaign.rig, progress, plate=run.kind != "leak")
     gathered.traces[run.file] = trace(blocks)
     if run.kind == "leak":
+        gathered.questions += [(run.file, text) for text in check_leak(blocks, run, campaign.rig)]
         gathered.leaks.append((run, *leak_rate(blocks)))
     else:
         gathered.curves.append(curve_of(run, blocks, campaign.rig))
@@ -147,8 +153,8 @@ def _read(
 def _single(data: Path, scene: Scene | None) -> Campaign:
     if scene is None:
         raise InputError(f"{data}: a single file needs its sensor; give --design")
-    run = Run(file=data.name, sensor=data.stem, resin=resin_of(scene))
-    return Campaign(title=f"Run {data.name}", runs=[run])
+    run = Run(file=data.name, sensor=data.stem[:_LONGEST], resin=resin_of(scene))
+    return Campaign(title=f"Run {data.name}"[:_LONGEST], runs=[run])
 
 
 def _at_its_pressure(curve: Curve, scene: Scene) -> Curve:

@@ -7,15 +7,21 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from pneutouch.bench.plausible import Expected
 from pneutouch.bench.summary import Group
 from pneutouch.catalogue import Library
 from pneutouch.errors import PneutouchError
 from pneutouch.mechanics.prediction import State
+from pneutouch.mechanics.response import Figures, figures
+from pneutouch.meridian.segments import Array
 from pneutouch.pipeline.evaluate import Evaluation, evaluate
 from pneutouch.report.measured import Beside
 from pneutouch.spec.campaign import AS_DESIGNED
 from pneutouch.units import KPA
+
+_ROUNDING, _LEAST_POINTS = 1e-9, 3
 
 _OF_STATE = ("sensitivity_kPa_per_N", "stiffness_N_per_mm")
 """Figures whose uncertainty goes by the same name; the force at the greatest depth is the range's end's."""
@@ -39,10 +45,11 @@ class Answer:
         state = self.state
         if state is None or state.figures is None:
             return None
-        figures, kept = state.figures, state.indentation <= state.range_end * (1 + 1e-12)
+        own, kept = state.figures, state.indentation <= state.range_end * (1 + 1e-12)
         return Expected(
-            depth=float(state.indentation[kept][-1]), force=figures.force_range[1],
-            rise=float(state.pressure_rise[kept][-1]), sensitivity=figures.sensitivity * KPA,
+            depth=float(state.indentation[kept][-1]), force=own.force_range[1],
+            rise=float(state.pressure_rise[kept][-1]), sensitivity=own.sensitivity * KPA,
+            curve=(state.indentation[kept], state.force[kept], state.pressure_rise[kept]),
         )  # fmt: skip
 
 
@@ -82,18 +89,43 @@ def _evaluated(
 
 
 def beside(group: Group, answer: Answer) -> Beside:
-    """A group beside its prediction."""
+    """A group beside its prediction, which is of a fresh print."""
     state = answer.state
     if state is None or answer.evaluation is None:
         return Beside(group, group.key.resin, None, {}, {}, answer.why)
-    sure = answer.evaluation.uncertainty[answer.place]
     label = answer.evaluation.scene.membrane_material.title
-    return Beside(group, label, state, sure, _figures(state, sure))
+    if group.key.age_days > 0:
+        return Beside(group, label, None, {}, {}, "predictions are of fresh prints; see predict --aged")
+    sure = answer.evaluation.uncertainty[answer.place]
+    return Beside(group, label, state, sure, _figures(state, sure, depths_of(group)))
 
 
-def _figures(state: State, sure: dict[str, Any]) -> dict[str, tuple[float, float | None, float | None]]:
-    got, known = state.figures, sure.get("figures", {})
-    if got is None:
+def depths_of(group: Group) -> Array | None:
+    """The depths at which a group was measured, mm: those of its shallowest steps run; None without one."""
+    curves = [curve.indentation for curve in group.of_kind("steps") if curve.indentation.size > 1]
+    return min(curves, key=lambda depths: float(depths[-1])) if curves else None
+
+
+def read_at(state: State, depths: Array) -> Figures | None:
+    """The predicted curve's figures at measured depths, as far as its range goes: S belongs to the range it is fitted over."""
+    from scipy.interpolate import PchipInterpolator
+
+    kept = state.indentation <= state.range_end * (1 + _ROUNDING)
+    travel, first = np.unique(state.indentation[kept], return_index=True)
+    if travel.size < _LEAST_POINTS:
+        return None
+    at = depths[depths <= state.range_end * (1 + _ROUNDING)]
+    curves = np.stack([state.force[kept][first], state.pressure_rise[kept][first]], axis=1)
+    force, rise = PchipInterpolator(travel, curves)(np.minimum(at, travel[-1])).T
+    return figures(at, force, rise / KPA)
+
+
+def _figures(
+    state: State, sure: dict[str, Any], depths: Array | None
+) -> dict[str, tuple[float, float | None, float | None]]:
+    own, known = state.figures, sure.get("figures", {})
+    got = own if depths is None else read_at(state, depths)
+    if got is None or own is None:
         return {}
     plain = {
         "sensitivity_kPa_per_N": got.sensitivity, "sensitivity_through_origin_kPa_per_N": got.sensitivity_through_origin,
@@ -106,5 +138,7 @@ def _figures(state: State, sure: dict[str, Any]) -> dict[str, tuple[float, float
     found: dict[str, tuple[float, float | None, float | None]] = {}
     for key, value in plain.items():
         ends = known.get(names.get(key, ""))
-        found[key] = (value, None, None) if ends is None else (value, ends["low"], ends["high"])
+        # The relative uncertainty is that of the whole range.
+        scale = 0.0 if ends is None else value / ends["value"]
+        found[key] = (value, None, None) if ends is None else (value, scale * ends["low"], scale * ends["high"])
     return found

@@ -51,8 +51,8 @@ class Outcome:
 
     @property
     def missed(self) -> bool:
-        """Whether a wish of the target was measured not to be met."""
-        return any(verdict.passed is False for verdict in self.measured.verdicts)
+        """Whether a wish of the target was not shown to be met."""
+        return any(verdict.passed is not True for verdict in self.measured.verdicts)
 
 
 def characterize(
@@ -65,29 +65,31 @@ def characterize(
     be read; files that fail are listed in the outcome.
     """
     shelves = library or Library.default()
-    name = design or _design_of(data)
+    name, own = (design, []) if design is not None else _design_of(data)
     wanted = None if target is None else validate(Target, read_toml(target), str(target))
-    given = list(assignments or [])
+    given = [*own, *(assignments or [])]
     loaded = load_curves(data, load_scene(name, given, shelves), progress)
     if loaded.campaign.ambient_pressure_kPa is not None and not any("ambient_pressure_kPa" in one for one in given):
         given.append(f"pneumatics.ambient_pressure_kPa={loaded.campaign.ambient_pressure_kPa}")
     _check_resins(data, loaded, shelves)
     pairs = [(curve.run.resin, curve.run.driving_pressure_kPa) for curve in loaded.curves]
     model_says = answers(name, given, pairs, model, shelves)
-    curves, failures, questions = _sound(loaded, model_says)
+    curves, failures, questions = sound(loaded, model_says)
     groups = summarize(curves)
     scene = load_scene(name, given, shelves)
+    pushed, unread = injections(loaded, scene)
     measured = Measured(
         campaign=loaded.campaign, scene=scene, folder=loaded.folder,
         besides=tuple(beside(group, _answer(model_says, group.key.resin, group.key.driving_pressure_kPa)) for group in groups),
-        curves=tuple(curves), failures=(*loaded.failures, *failures), questions=questions,
-        verdicts=() if wanted is None else verdicts(wanted, groups), injections=injections(loaded, scene),
+        curves=tuple(curves), failures=(*loaded.failures, *failures, *unread), questions=questions,
+        verdicts=() if wanted is None else verdicts(wanted, groups), injections=pushed,
         ageing=ageing(groups, shelves), model=model, input_hash=_hash(loaded, scene.design.model_dump(mode="json")),
     )  # fmt: skip
     return Outcome(measured, loaded.traces, f"{_stem(data)}-measured")
 
 
-def _design_of(data: Path) -> str:
+def _design_of(data: Path) -> tuple[str, list[str]]:
+    """The design that a campaign names, and what changes it."""
     if not (data.is_dir() or data.suffix == ".toml"):
         if not data.exists():
             raise InputError(f"{data}: no such file or folder")
@@ -95,7 +97,8 @@ def _design_of(data: Path) -> str:
     campaign, folder = campaign_of(data)
     if campaign.design is None:
         raise InputError(f'{folder}: the campaign names no design; give --design, or design = "..." in its file')
-    return campaign.design
+    beside = folder / campaign.design
+    return (str(beside) if beside.suffix == ".toml" and beside.is_file() else campaign.design), campaign.assignments
 
 
 def _stem(data: Path) -> str:
@@ -113,7 +116,7 @@ def _answer(found: Mapping[tuple[str, float], Answer], resin: str, pressure: flo
     return found.get((resin, pressure), Answer(None, 0, "not predicted"))
 
 
-def _sound(
+def sound(
     loaded: Loaded, model_says: Mapping[tuple[str, float], Answer]
 ) -> tuple[list[Curve], list[tuple[str, str]], tuple[tuple[str, str], ...]]:
     """Curves that may be what they say, those that cannot with the reason, and what is to be asked of the others."""
@@ -124,14 +127,13 @@ def _sound(
         run = curve.run
         expected = _answer(model_says, run.resin, run.driving_pressure_kPa).expected()
         try:
-            if expected is not None:
-                asked = check_plausible(curve, loaded.campaign.columns, expected, loaded.folder / run.file)
-                questions += [(run.file, text) for text in asked]
+            asked = check_plausible(curve, loaded.campaign.columns, expected, loaded.folder / run.file)
+            questions += [(run.file, text) for text in asked]
             kept.append(curve)
         except InputError as error:
             failures.append((run.file, str(error)))
     questions += [(curve.run.file, why) for curve, why in mixed(kept)]
-    return kept, failures, tuple(questions)
+    return kept, failures, (*loaded.questions, *questions)
 
 
 def _hash(loaded: Loaded, design: Any) -> str:
@@ -142,10 +144,12 @@ def _hash(loaded: Loaded, design: Any) -> str:
 
 
 def _file_digest(path: Path) -> str | None:
-    if not path.is_file():
+    try:
+        with path.open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except OSError:
+        # A file that cannot be read is among the failures.
         return None
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def write(outcome: Outcome, out: Path, evidence: str = "doubtful") -> Path:
@@ -161,7 +165,8 @@ def write(outcome: Outcome, out: Path, evidence: str = "doubtful") -> Path:
         "points.csv": points_csv(measured.curves), "segments.csv": segments_csv(measured.curves),
     }  # fmt: skip
     for curve in _shown(measured, evidence):
-        path = f"evidence/{Path(curve.run.file).with_suffix('.svg').as_posix().replace('/', '-')}"
+        number = measured.campaign.runs.index(curve.run) + 1
+        path = f"evidence/{number:03d}-{Path(curve.run.file).stem}.svg"
         files[path] = evidence_svg(curve, outcome.traces[curve.run.file], measured.campaign.simulated).encode()
     files[MANIFEST] = json_bytes({
         "name": outcome.name, "input_hash": measured.input_hash, "versions": versions(),
@@ -177,7 +182,7 @@ def _shown(measured: Measured, evidence: str) -> list[Curve]:
     if evidence == "none":
         return []
     first = {(b.group.key, curve.run.kind): curve for b in measured.besides for curve in reversed(b.group.curves)}
-    doubtful = {curve.run.file for curve in measured.curves if curve.doubts}
+    doubtful = {curve.run.file for curve in measured.curves if any(doubt.kind != "note" for doubt in curve.doubts)}
     asked = {file for file, _ in measured.questions}
     chosen = {curve.run.file for curve in first.values()} | doubtful | asked
     return [curve for curve in measured.curves if curve.run.file in chosen]

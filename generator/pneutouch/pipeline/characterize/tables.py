@@ -5,13 +5,11 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterable, Sequence
-from pathlib import Path
 from typing import Any
 
 from pneutouch.bench.injection import dead_volume_of_cap
 from pneutouch.bench.record import Curve
 from pneutouch.catalogue import Scene
-from pneutouch.errors import InputError
 from pneutouch.pipeline.characterize.load import Loaded
 from pneutouch.spec.campaign import Run
 from pneutouch.units import KPA, ML
@@ -79,25 +77,30 @@ def _csv(head: Sequence[str], rows: Iterable[Sequence[Any]]) -> bytes:
     return buffer.getvalue().encode()
 
 
-def injections(loaded: Loaded, scene: Scene) -> tuple[tuple[str, str, float, float | None, str], ...]:
-    """Leak rates, and the dead volume that an injection would mean if the line were rigid.
+Injection = tuple[str, str, float, float | None, str]
+
+
+def injections(loaded: Loaded, scene: Scene) -> tuple[tuple[Injection, ...], list[tuple[str, str]]]:
+    """Leak rates, and the dead volume that an injection would mean if the line were rigid; files that say neither, and why.
 
     An injection into a sensor swells the dome, so that what it says of the dead volume alone is an upper bound; `calibrate`
     takes the dome into account.
     """
-    found: list[tuple[str, str, float, float | None, str]] = [
+    failures = []
+    found: list[Injection] = [
         (run.sensor, f"leak, {_when(run)}", 60 * rate / KPA, 60 * error / KPA, "kPa/min")
         for run, rate, error in loaded.leaks
     ]
-    ambient = loaded.campaign.ambient_pressure_kPa or scene.design.pneumatics.ambient_pressure_kPa
+    ambient = scene.design.pneumatics.ambient_pressure_kPa
     for run, volume, pressure in loaded.injections:
         try:
             total = dead_volume_of_cap(volume, pressure, ambient * KPA)
         except ValueError as error:
-            raise InputError(f"{loaded.folder / Path(run.file)}: {error}") from None
+            failures.append((run.file, f"{loaded.folder / run.file}: {error}"))
+            continue
         name = f"gas volume as if rigid, {_when(run)}"
         found.append((run.sensor, name, total.value / ML, total.spread / ML, "mL"))
-    return tuple(found)
+    return tuple(found), failures
 
 
 def _when(run: Run) -> str:

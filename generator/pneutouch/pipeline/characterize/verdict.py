@@ -17,18 +17,32 @@ from pneutouch.spec.target import Target, Wanted
 
 _INFINITE = float("inf")
 
+_SAME_KPA = 1e-6
+
+_YEAR = 300.0, 430.0
+"""Ages in days beside which the paper's change in a year is set."""
+
 
 def verdicts(target: Target, groups: Sequence[Group]) -> tuple[Verdict, ...]:
-    """Every wish of a target against every group it speaks of; a size is no matter of measurement here."""
+    """Every wish of a target against every group it speaks of; a size is no matter of measurement here.
+
+    A wish that no group answers is not decided.
+    """
     wanted = target.target
     found = []
-    for group in groups:
-        where = f"{group.key.resin}, {group.key.age}, {group.key.driving_pressure_kPa:g} kPa"
-        for what, key, low, high, text in _wishes(wanted):
-            only = wanted.driving_pressure_kPa
-            if key in group.figures and (only is None or only == group.key.driving_pressure_kPa):
-                estimate = group.figures[key]
-                found.append(Verdict(f"{what}, {where}", text, _said(estimate), _passed(estimate, low, high)))
+    for what, key, low, high, text in _wishes(wanted):
+        only = wanted.driving_pressure_kPa
+        answers = [
+            group for group in groups
+            if key in group.figures and (only is None or np.isclose(only, group.key.driving_pressure_kPa, atol=_SAME_KPA))
+        ]  # fmt: skip
+        for group in answers:
+            where = f"{group.key.resin}, {group.key.age}, {group.key.driving_pressure_kPa:g} kPa"
+            estimate = group.figures[key]
+            found.append(Verdict(f"{what}, {where}", text, _said(estimate), _passed(estimate, low, high)))
+        if not answers:
+            where = "" if only is None else f", {only:g} kPa"
+            found.append(Verdict(f"{what}{where}", text, "not measured", None))
     return tuple(found)
 
 
@@ -50,20 +64,18 @@ def _wishes(wanted: Wanted) -> list[tuple[str, str, float, float, str]]:
 
 def _said(estimate: Estimate) -> str:
     if estimate.low is None or estimate.high is None:
-        return f"{estimate.value:.4g} (no interval)"
-    return f"{estimate.value:.4g} ({estimate.low:.4g} to {estimate.high:.4g})"
+        return f"{estimate.value:.4g} (one run: no interval)"
+    own = "" if estimate.over == "specimens" else ", this specimen alone"
+    return f"{estimate.value:.4g} ({estimate.low:.4g} to {estimate.high:.4g}{own})"
 
 
 def _passed(estimate: Estimate, low: float, high: float) -> bool | None:
-    """Whether the whole interval, or without one the value, lies inside; None where it lies on both sides."""
-    ends = (
-        (estimate.value, estimate.value)
-        if estimate.low is None or estimate.high is None
-        else (estimate.low, estimate.high)
-    )
-    if low <= ends[0] and ends[1] <= high:
+    """Whether the whole interval lies inside; None where it lies on both sides, or there is none."""
+    if estimate.low is None or estimate.high is None:
+        return None
+    if low <= estimate.low and estimate.high <= high:
         return True
-    return False if ends[1] < low or ends[0] > high else None
+    return False if estimate.high < low or estimate.low > high else None
 
 
 Change = tuple[str, float, str, float, float | None, float | None, float | None]
@@ -78,10 +90,11 @@ def ageing(groups: Sequence[Group], library: Library) -> tuple[Change, ...]:
     by_sensor: Callable[[Group], tuple[str, float]] = lambda group: (group.key.resin, group.key.driving_pressure_kPa)  # noqa: E731
     found: list[Change] = []
     for (resin, pressure), some in groupby(sorted(known, key=by_sensor), key=by_sensor):
-        fresh, *aged = sorted(some, key=lambda group: group.key.age_months)
-        if fresh.key.age_months == 0:
-            published = _published(resin, library)
-            found += [(resin, pressure, group.key.age, *_change(fresh, group), published) for group in aged]
+        fresh, *aged = sorted(some, key=lambda group: group.key.age_days)
+        if fresh.key.age_days == 0:
+            for group in aged:
+                published = _published(resin, library) if _YEAR[0] <= group.key.age_days <= _YEAR[1] else None
+                found.append((resin, pressure, group.key.age, *_change(fresh, group), published))
     return tuple(found)
 
 

@@ -63,7 +63,7 @@ def verdict(measured: Measured) -> dict[str, Any]:
 def _notes(measured: Measured) -> list[str]:
     """What is to be said under the verdicts."""
     failed, runs = len(measured.failures), len(measured.campaign.runs)
-    doubts = sum(len(curve.doubts) for curve in measured.curves)
+    doubts = sum(doubt.kind != "note" for curve in measured.curves for doubt in curve.doubts)
     notes = []
     if any(v.passed is None for v in measured.verdicts):
         notes.append("Not decided: the interval holds values on both sides of the limit; more specimens would tell.")
@@ -106,7 +106,7 @@ def _where(measured: Measured, beside: Beside) -> str:
     """A group in words: its resin and age where there are several."""
     key, keys = beside.group.key, [other.group.key for other in measured.besides]
     resin = [beside.label] if len({other.resin for other in keys}) > 1 else []
-    age = [key.age] if key.age_months or len({other.age_months for other in keys}) > 1 else []
+    age = [key.age] if key.age_days or len({other.age_days for other in keys}) > 1 else []
     return ", ".join([*resin, f"{key.driving_pressure_kPa:g} kPa", *age])
 
 
@@ -182,14 +182,14 @@ def conditions(measured: Measured) -> list[list[str]]:
         ["Sampling", f"{rig.rate_Hz:g} Hz"],
         ["Ambient pressure", air],
         ["Runs", listed([f"{count} {kind}" for kind, count in sorted(kinds.items())])],
-        ["Ages", listed(list({b.group.key.age_months: b.group.key.age for b in sorted(measured.besides, key=_age)}.values())) or "none"],
+        ["Ages", listed(list({b.group.key.age_days: b.group.key.age for b in sorted(measured.besides, key=_age)}.values())) or "none"],
         ["Driving pressure as read", _as_read(measured)],
         ["Predicted by", measured.model],
     ]  # fmt: skip
 
 
-def _age(beside: Beside) -> int:
-    return beside.group.key.age_months
+def _age(beside: Beside) -> float:
+    return beside.group.key.age_days
 
 
 def _as_read(measured: Measured) -> str:

@@ -68,9 +68,9 @@ class Panel:
         return sorted({beside.group.key.driving_pressure_kPa for beside in self.besides})
 
     @cached_property
-    def ages(self) -> list[int]:
+    def ages(self) -> list[float]:
         """Ages in months, ascending."""
-        return sorted({beside.group.key.age_months for beside in self.besides})
+        return sorted({beside.group.key.age_days for beside in self.besides})
 
     def tone(self, beside: Beside) -> tuple[str, Any]:
         """Colour and line style of a group's driving pressure: the same in every panel."""
@@ -79,7 +79,7 @@ class Panel:
     def spots(self, beside: Beside, curve: Curve) -> dict[str, Any]:
         """How the points of a run are drawn."""
         color, _ = self.tone(beside)
-        young = beside.group.key.age_months == self.ages[0]
+        young = beside.group.key.age_days == self.ages[0]
         marker = MARKERS[self.sensors.index(curve.run.sensor) % len(MARKERS)]
         return {"ls": "", "marker": marker, "ms": 2.6, "mew": 0.5, "mec": color, "mfc": color if young else "white"}
 

@@ -65,11 +65,11 @@ def sensitivities(panels: Sequence[Panel]) -> Plot | None:
 
 def _ages(panels: Sequence[Panel]) -> list[str]:
     """Ages in words, the youngest first."""
-    return list({b.group.key.age_months: b.group.key.age for p in panels for b in sorted(p.besides, key=_age)}.values())
+    return list({b.group.key.age_days: b.group.key.age for p in panels for b in sorted(p.besides, key=_age)}.values())
 
 
-def _age(beside: Beside) -> int:
-    return beside.group.key.age_months
+def _age(beside: Beside) -> float:
+    return beside.group.key.age_days
 
 
 def _spot(k: int) -> dict[str, Any]:

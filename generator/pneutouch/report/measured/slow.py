@@ -136,14 +136,14 @@ def ageings(measured: Measured) -> Plot | None:
             if paper is not None:
                 first = all(row[6] is None for row in rows[:k])
                 ax.plot(
-                    paper,
-                    k,
+                    [-paper, paper],
+                    [k, k],
                     ls="",
                     marker=MARKERS[3],
                     color=INK,
                     mfc="white",
                     ms=4.2,
-                    label="paper, one year" if first else None,
+                    label="paper, one year (sign not given)" if first else None,
                 )
         ax.axvline(0, color=INK, lw=0.6)
         ax.set_yticks(range(len(rows)), [_short(row) for row in rows])

@@ -111,9 +111,9 @@ def _of_sensor(beside: Beside, sensor: str) -> Row:
 
 
 def ageing(measured: Measured) -> list[Row]:
-    """Resin, driving pressure, age, change in percent, interval, the paper's."""
+    """Resin, driving pressure, age, change in percent, interval, the paper's, whose sign is not given."""
     return [
-        [resin, f"{pressure:g}", age, signed(change), _percent(low, high), signed(paper)]
+        [resin, f"{pressure:g}", age, signed(change), _percent(low, high), DASH if paper is None else f"± {paper:.3g}"]
         for resin, pressure, age, change, low, high, paper in measured.ageing
     ]
 
@@ -132,10 +132,10 @@ def injections(measured: Measured) -> tuple[list[Row], str]:
 
 
 def doubts(measured: Measured) -> tuple[list[Row], str]:
-    """Stretches not to be trusted: file, seconds, why, used or not."""
+    """Stretches not to be trusted: file, seconds, why, used or not; mere notes are in figures.json."""
     rows = [
         [curve.run.file, f"{doubt.start:.2f} to {doubt.end:.2f}", doubt.why, said(doubt.used)]
-        for curve in measured.curves for doubt in curve.doubts
+        for curve in measured.curves for doubt in curve.doubts if doubt.kind != "note"
     ]  # fmt: skip
     return cut(rows, MOST)
 

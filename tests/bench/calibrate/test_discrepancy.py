@@ -1,0 +1,95 @@
+"""What the model leaves out is in the intervals: walls that remember, walls that are not as designed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.stats import norm
+
+from pneutouch.bench.calibrate import NAMES, Observations, fit, parameters
+from pneutouch.bench.calibrate.discrepancy import FLOOR
+from pneutouch.bench.calibrate.intervals import _half
+from pneutouch.bench.calibrate.parameters import WALL
+from tests.bench.calibrate.sensors import DESIGNED, chosen, curves, other
+from tests.bench.calibrate.simulated import designed, held, trial
+
+BOTH = (NAMES, ("modulus", "dead-volume"))
+PLANS = (((0.0, 22.0), 2), ((0.0, 22.0), 3), ((0.0, 12.0, 22.0), 2), ((0.0, 12.0, 22.0), 3))
+
+
+def shares(library, resins, trials, plans, model="atlas"):
+    """Share of the trials whose intervals of modulus and dead volume hold the truth, (parameter sets, 2)."""
+    hits, count = np.zeros((len(BOTH), 2)), 0
+    for resin in resins:
+        nominal, material = designed(library, resin), library.load("materials", resin)
+        printer = library.load("printers", "objet260-connex")
+        chosen = [parameters(nominal, material, printer, names) for names in BOTH]
+        for number in range(trials):
+            rng = np.random.default_rng([number, *resin.encode()])
+            one = trial(nominal, *plans[number % len(plans)], rng, model)
+            hits += [held(one, nominal, names)[1] for names in chosen]
+            count += 1
+    return hits / count
+
+
+def test_intervals_hold_the_truth_of_simulated_sensors(library):
+    """Of 24 trials at 95 %, fewer than 17 are hit with a chance of 1.4e-5."""
+    assert np.all(shares(library, ("TangoPlus", "FLX9960"), 12, PLANS[:1]) >= 17 / 24)
+
+
+@pytest.mark.slow
+def test_intervals_hold_the_truth_of_200_simulated_sensors(library):
+    found = shares(library, ("TangoPlus", "FLX9960"), 100, PLANS)
+    assert np.all(found >= 0.90)
+    assert np.all(found <= 0.995)
+
+
+@pytest.mark.slow
+def test_intervals_hold_the_truth_of_the_solids_sensors(library):
+    """Of 8 trials at 95 %, fewer than 5 are hit with a chance of 4e-4."""
+    assert np.all(shares(library, ("TangoPlus", "FLX9960"), 4, PLANS, "solid") >= 5 / 8)
+
+
+@pytest.mark.parametrize("share", [0.03, 0.08])
+def test_a_misfit_at_one_pressure_is_sized_by_the_residuals(library, share):
+    """A force that deviates by half a wave along the travel, at one pressure, is found as large as it is, to a factor of two."""
+    clean = curves(other(shear_modulus=0.2), (0.0, 12.0, 22.0), 3, np.random.default_rng(6), 0.002)
+    waved = tuple(
+        replace(
+            c,
+            force=c.force
+            * (1 + share * np.sqrt(2) * np.cos(np.pi * c.indentation / 6.5) * (c.run.driving_pressure_kPa == 12)),
+        )
+        for c in clean
+    )
+    known = chosen(library, "modulus", "dead-volume")
+    calm, found = fit(Observations(clean), DESIGNED, known), fit(Observations(waved), DESIGNED, known)
+    assert calm.sizes == pytest.approx(FLOOR)
+    assert 0.4 * share < found.sizes[0] < 2.5 * share
+    assert abs(found.full[0] - np.log(0.2)) < found.half_width[0]
+
+
+def test_a_wall_that_is_not_fitted_counts_with_priors_alone(library):
+    """A wall off by 0.08 mm moves the modulus; its bounds are in the interval, unless priors are left aside."""
+    truth = other(shear_modulus=0.2, wall_thickness=1.58)
+    seen = Observations(curves(truth, (0.0, 12.0, 22.0), 3, np.random.default_rng(3), 0.002))
+    names = ("modulus", "dead-volume")
+    told, bare = (fit(seen, DESIGNED, chosen(library, *names, priors=priors)) for priors in (True, False))
+    off = abs(told.solution.at[0] - np.log(0.2))
+    assert bare.half_width[0] < off < told.half_width[0]
+    assert not bare.covariance.considered.any()
+    moved = told.covariance.considered[0, WALL] / told.parameters.belief[WALL]
+    thick = fit(seen, other(wall_thickness=1.58), chosen(library, *names, sensor=other(wall_thickness=1.58)))
+    said = moved * np.log(1.5 / 1.58)
+    assert thick.solution.at[0] - told.solution.at[0] == pytest.approx(-said, rel=0.25)
+
+
+@pytest.mark.parametrize(("deviation", "bound"), [(1.0, 1e-9), (1.0, 0.5), (1.0, 1.0), (0.3, 1.0), (1e-9, 1.0)])
+def test_an_even_error_and_a_normal_one_together(deviation, bound):
+    """Against a sum over many even values; of one alone its own quantile."""
+    half = _half(deviation, bound)
+    at = bound * (2 * (np.arange(20000) + 0.5) / 20000 - 1)
+    inside = np.mean(norm.cdf((half - at) / deviation) - norm.cdf((-half - at) / deviation))
+    assert inside == pytest.approx(0.95, abs=1e-4)

@@ -1,0 +1,101 @@
+"""Records with gaps, clips and spikes: the points that they spoil are left out and told, the others stay."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pneutouch.bench.blocks import blocks_of
+from pneutouch.bench.curve import curve_of
+from pneutouch.bench.doubts import MOST
+from pneutouch.bench.reading import read_blocks
+from pneutouch.bench.record import Doubt
+from pneutouch.errors import InputError
+from pneutouch.spec.campaign import Columns, Rig
+from tests.bench.rig import Dome, Sensor, run_of, small, write
+
+FILE = Path("run.csv")
+LAWS = [Sensor(0.6, 1.0), Sensor(0.25, 1.5), Sensor(0.12, 1.8), Dome()]
+
+
+def curve(samples, kind="steps", sensor=LAWS[1], rig=None, **more):
+    return curve_of(run_of(kind, sensor), blocks_of(FILE, *samples, **more), rig or Rig())
+
+
+def whys(found, used=None):
+    return [doubt.why for doubt in found.doubts if used is None or doubt.used == used]
+
+
+def test_clipped_points_are_left_out_and_told():
+    samples = small()
+    blocks = blocks_of(FILE, *samples)
+    third = curve(samples).indents[2]
+    clipped = replace(blocks, doubts=(Doubt(third.hold[0], third.hold[1], "force clipped: at the top", False),))
+    found = curve_of(run_of(), clipped, Rig())
+    assert found.indentation.size == 3
+    assert any(
+        why.startswith("indentation 3, ") and "left out: force clipped" in why for why in whys(found, used=False)
+    )
+    everywhere = replace(blocks, doubts=(Doubt(0.0, 1e3, "force clipped", False),))
+    with pytest.raises(InputError, match=r"none of 3 indentations can be used: .*clipped"):
+        curve_of(run_of(), everywhere, Rig())
+
+
+def test_a_gap_in_what_is_read_leaves_the_point_out_and_elsewhere_not():
+    samples = small()
+    one = curve(samples).indents[1]
+    time = samples[0]
+    lost = (time > one.read[0] - 0.05) & (time < one.read[1])
+    gone = curve(samples[:, ~lost])
+    assert gone.indentation.size == 3
+    assert any("left out: most of its samples are missing" in why for why in whys(gone, used=False))
+    lost = (time > one.hold[0] + 0.3) & (time < one.hold[0] + 0.9)
+    kept = curve(samples[:, ~lost])
+    assert kept.indentation.size == 4
+    assert kept.force == pytest.approx(curve(samples).force, abs=1e-3)
+    assert any(why.startswith("gap: ") for why in whys(kept))
+
+
+@pytest.mark.parametrize("first", [-1.0, 0.0, 0.2, 0.45])
+def test_a_gap_that_swallows_the_begin_of_the_window(first):
+    """What is left of it, down to a block, does not stand for it."""
+    samples = small()
+    one = curve(samples).indents[1]
+    begin, end = one.read
+    time, whole = samples[0], end - begin
+    lost = (time > begin + first * whole) & (time < end - 0.02)
+    found = curve(samples[:, ~lost])
+    assert found.indentation.size == 3
+    assert found.indents[1].read == (pytest.approx(begin, abs=0.03), pytest.approx(end, abs=0.03))
+    lost = (time > begin + 0.6 * whole) & (time < end)
+    assert curve(samples[:, ~lost]).indentation.size == 4
+
+
+def test_gaps_beyond_those_listed_count_too():
+    samples = small(depths=(1.0, 2.0, 3.0, 4.0, 5.0))
+    one, time = curve(samples).indents[-1], samples[0]
+    keep = np.ones(time.size, bool)
+    for start in np.arange(0.3, 0.3 + 0.5 * (MOST + 4), 0.5):
+        keep[(time > start) & (time < start + 0.15)] = False
+    # Two gaps in the window, each less than half of it.
+    whole = one.read[1] - one.read[0]
+    for start in (0.1, 0.55):
+        keep[(time > one.read[0] + start * whole) & (time < one.read[0] + (start + 0.4) * whole)] = False
+    found = curve(samples[:, keep])
+    assert any(why.startswith("indentation 5, ") and "missing" in why for why in whys(found, used=False))
+    listed = [doubt for doubt in found.doubts if doubt.kind == "gap"]
+    assert len(listed) == MOST + 1 and sum("6 more gaps: " in doubt.why for doubt in listed) == 1
+
+
+def test_a_spike_while_read_leaves_the_point_out_and_elsewhere_not(tmp_path):
+    samples = small()
+    one = curve(samples).indents[1]
+    for at, size in ((one.read[0] + 0.1, 3), (one.hold[0] + 0.3, 4)):
+        spiked = samples.copy()
+        spiked[2, np.searchsorted(samples[0], at)] = 60.0
+        blocks = read_blocks(write(tmp_path / "run.csv", spiked), Columns(), Rig())
+        found = curve_of(run_of(), blocks, Rig())
+        assert found.indentation.size == size and any("force spike: 60 N" in why for why in whys(found))

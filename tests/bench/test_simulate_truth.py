@@ -1,0 +1,133 @@
+"""What a simulated specimen's figures are said to be, against quiet records, derivatives and what was declared."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pneutouch.bench.protocol import protocol
+from pneutouch.bench.simulate import (
+    RigModel,
+    Scatter,
+    Specimens,
+    Truth,
+    Wall,
+    population,
+    press_curves,
+    simulate_run,
+    specimen_figures,
+)
+from pneutouch.bench.simulate.curve import Pressed
+from pneutouch.bench.simulate.scatter import ageing_factor, stiffened
+from pneutouch.mechanics import Sensor
+from pneutouch.mechanics.atlas.batches import batch_of
+from pneutouch.mechanics.atlas.respond import respond
+from pneutouch.units import KPA
+from tests.bench.truths import NO_WALL, R0, ends, paper_pressed, paper_sensor, rng
+
+
+@pytest.fixture(scope="module")
+def sensor() -> Sensor:
+    return paper_sensor()
+
+
+@pytest.fixture(scope="module")
+def pressed() -> Pressed:
+    return paper_pressed()
+
+
+@pytest.fixture(scope="module")
+def atlas(sensor) -> Pressed:
+    return press_curves(sensor, [0.0, 22 * KPA], 0.75 * R0, "atlas", steps=28)
+
+
+def test_relaxation_truth_is_what_the_quiet_record_says(pressed):
+    truth, curve = Truth(rest=2.0, rig=RigModel.perfect()), pressed.curves[1]
+    said = specimen_figures(curve, truth, R0, 100.0)
+    test = truth.protocol("relaxation", R0, curve.reach)
+    record = simulate_run(curve, test, RigModel.perfect(), 100.0, rng(), wall=truth.wall, scatter=Scatter.none())
+    since = record.time - test.way()[0][2]
+    # The stop and the release fall between samples.
+    time = np.geomspace(1.0, 599.9, 400)
+    for name, values in (("force", record.force), ("pressure", record.pressure - curve.driving)):
+        level = np.interp(time, since, values)
+        assert said[f"relaxation_{name}_percent"] == pytest.approx(100 * (level[0] - level[-1]) / level[0], rel=2e-3)
+        slope = np.polyfit(np.log10(time), level, 1)[0]
+        assert said[f"relaxation_{name}_percent_per_decade"] == pytest.approx(-100 * slope / level[0], rel=2e-3)
+        assert said[f"relaxation_{name}_percent"] > 0
+
+
+def test_loading_truth_is_what_the_quiet_record_says(pressed):
+    truth, curve = Truth(rest=2.0), pressed.curves[0]
+    said = specimen_figures(curve, truth, R0, 100.0)
+    test = truth.protocol("steps", R0, curve.reach)
+    record = simulate_run(curve, test, RigModel.perfect(), 200.0, rng(), wall=truth.wall, scatter=Scatter.none())
+    at = ends(test, 200.0)
+    force, rise = (
+        np.append(0.0, record.force[at]),
+        np.append(0.0, record.pressure[at] - record.pressure[np.floor(test.way()[0][1::4] * 200.0 + 1e-6).astype(int)])
+        / KPA,
+    )
+    assert said["sensitivity_kPa_per_N"] == pytest.approx(np.polyfit(force, rise, 1)[0], rel=2e-4)
+    assert said["force_range_N"] == pytest.approx(force[-1], rel=2e-4)
+    assert said["sensitivity_through_origin_kPa_per_N"] == pytest.approx(force @ rise / (force @ force), rel=2e-4)
+    assert said["stiffness_N_per_mm"] == pytest.approx(force[-1] / test.depths[-1], rel=2e-4)
+
+
+def test_hysteresis_comes_from_memory_alone_and_grows_with_it(pressed):
+    found = [
+        specimen_figures(pressed.curves[0], Truth(wall=Wall((g,), (0.0,), (1.0,)), rest=2.0), R0, 100.0)
+        for g in (0.0, 0.01, 0.02)
+    ]
+    width = [one["hysteresis_width_percent"] for one in found]
+    assert width[0] < 0.02 and width[2] == pytest.approx(2 * width[1], rel=0.1) and width[1] > 0.3
+
+
+def test_population_spreads_as_the_derivative_says(sensor, atlas):
+    """To first order the spread of a figure is its logarithmic derivative by the modulus times the modulus' spread."""
+    truth = Truth(scatter=replace(Scatter.none(), modulus=0.04, gain=0.002), wall=NO_WALL, rest=2.0)
+    found = population(atlas, 1, truth, 100.0, (7,))
+    depths = np.append(0.0, protocol("steps", R0).depths)
+
+    def slope(factor: float) -> float:
+        one = respond(batch_of(replace(stiffened(sensor, factor), gauge_limit=np.inf), [22 * KPA]), 56)
+        force, rise = (np.interp(depths, one.indentation[0], x[0]) for x in (one.force, one.rise))
+        return float(np.polyfit(force, rise / KPA, 1)[0])
+
+    by_modulus = (slope(1.02) - slope(0.98)) / (np.log(1.02) - np.log(0.98))
+    assert found.count == 4000
+    assert found.figures["part_to_part_kPa_per_N"] == pytest.approx(abs(by_modulus) * 0.04, rel=0.06)
+    assert found.figures["sensitivity_kPa_per_N"] == pytest.approx(slope(1.0), rel=2e-3)
+    assert found.figures["repeatability_kPa_per_N"] == pytest.approx(0.002 * slope(1.0), rel=2e-3)
+
+
+def test_population_without_scatter_is_the_nominal_sensor(pressed):
+    truth = Truth(scatter=Scatter.none(), rest=2.0, specimens=20)
+    found = population(pressed, 0, truth, 100.0, (0,))
+    nominal = specimen_figures(pressed.curves[0], truth, R0, 100.0)
+    for key, value in nominal.items():
+        if value is None:
+            assert found.figures[key] is None, key
+        else:
+            assert found.figures[key] == pytest.approx(value, rel=1e-9), key
+    assert max(found.spread.values()) < 1e-9
+
+
+def test_specimens_are_drawn_as_declared():
+    scatter = Scatter(modulus=0.04, wall=0.1, dead_volume=20.0)
+    some = Specimens.draw(scatter, 20_000, rng(2))
+    assert np.log(some.modulus).std() == pytest.approx(0.04, rel=0.03)
+    assert np.abs(some.wall).max() <= 0.1 and some.wall.std() == pytest.approx(0.1 / np.sqrt(3), rel=0.03)
+    assert some.dead_volume.min() >= 0 and some.dead_volume.mean() == pytest.approx(10.0, rel=0.03)
+
+
+def test_a_year_changes_every_modulus_and_no_exponent(sensor):
+    scatter = replace(Scatter(), ageing=0.1)
+    assert [ageing_factor(scatter, days) for days in (0.0, 365.0, 3650.0)] == pytest.approx(
+        [1.0, np.exp(0.1), np.exp(0.1)]
+    )
+    ogden = replace(sensor, law=("ogden", (0.1, 2.5, 0.02, -3.0)))
+    assert stiffened(ogden, 2.0).law == ("ogden", (0.2, 2.5, 0.04, -3.0))
+    assert stiffened(ogden, 2.0).material.mu == pytest.approx(2 * ogden.material.mu)

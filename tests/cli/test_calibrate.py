@@ -1,0 +1,101 @@
+"""``pneutouch calibrate`` as a user meets it: a simulated campaign in, estimates, files and exit codes out."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+
+import pytest
+from typer.testing import CliRunner
+
+from pneutouch.cli import calibrate, simulate
+from pneutouch.cli.app import app
+from pneutouch.cli.calibrate_text import calibration_text
+from pneutouch.pipeline.evaluate import evaluate
+from pneutouch.spec.toml_text import toml_text
+
+assert calibrate and simulate
+
+DEAD = "pneumatics.dead_volume_mL=0.3"
+
+
+def run(*arguments: str):
+    return CliRunner().invoke(app, list(arguments))
+
+
+@pytest.fixture(scope="module")
+def campaign(tmp_path_factory):
+    """One specimen of one resin, two pressures, two runs each and an injection; the design states the air behind it."""
+    out = tmp_path_factory.mktemp("simulated")
+    result = run(
+        "simulate", "paper-dome", "--set", DEAD, "--resins", "TangoPlus", "--specimens", "1", "--pressures", "0,22",
+        "--runs", "2", "--kinds", "steps,injection", "--rest", "10", "--model", "atlas", "--out", str(out),
+    )  # fmt: skip
+    assert result.exit_code == 0, result.stderr
+    return out / "paper-dome-campaign"
+
+
+@pytest.fixture
+def place(tmp_path, monkeypatch, library):
+    """A working folder of its own, with a design that states the dead volume."""
+    content = tomllib.loads(library.shelf("designs")["paper-dome"].read_text())
+    content["pneumatics"]["dead_volume_mL"] = 0.3
+    (tmp_path / "designs").mkdir()
+    (tmp_path / "designs" / "mine.toml").write_text(toml_text(content))
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def files(folder):
+    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
+
+
+def test_the_truth_is_in_the_intervals_and_the_files_predict(campaign, place):
+    words = ("calibrate", str(campaign), "--design", "mine", "--save", "dome-1", "--out", "out")
+    result = run(*words, "--json")
+    assert result.exit_code == 0, result.stderr
+    said = json.loads(result.stdout)
+    truth = json.loads((campaign / "truth.json").read_text())["specimens"]["TangoPlus-1"]
+    found = {estimate["key"]: estimate for estimate in said["estimates"]}
+    assert list(found) == ["shear_modulus_MPa", "wall_thickness_mm", "dead_volume_mL", "contact_offset_mm"]
+    for key in ("shear_modulus_MPa", "wall_thickness_mm", "dead_volume_mL"):
+        low, high = found[key]["interval_95"]
+        assert low <= truth[key] <= high, key
+    assert len(said["told"]) <= 6
+    assert "simulated" in said["told"][0]
+    assert said["written"][1:] == ["printprofiles/materials/dome-1.toml", "designs/dome-1.toml"]
+    text = calibration_text(said)
+    assert f"shear_modulus_MPa  {found['shear_modulus_MPa']['value']:.4g}" in text
+
+    scene = evaluate("dome-1", model="atlas").scene
+    assert scene.design.membrane.wall_thickness_mm == pytest.approx(found["wall_thickness_mm"]["value"], rel=1e-3)
+    predicted = run("predict", "dome-1", "--model", "atlas", "--json")
+    assert predicted.exit_code == 0, predicted.stderr
+    state = json.loads(predicted.stdout)["states"][0]
+    measured = truth["pressures"]["0"]["sensitivity_kPa_per_N"]
+    assert state["sensitivity_kPa_per_N"] == pytest.approx(measured, rel=0.03)
+
+
+def test_a_part_of_the_parameters_says_what_else_counts(campaign, place):
+    words = ("calibrate", str(campaign), "--design", "mine", "--fit", "modulus,dead-volume", "--out", "out", "--json")
+    counted, bare = (json.loads(run(*words, *more).stdout) for more in ((), ("--no-priors",)))
+    (line,) = [line for line in counted["told"] if "the intervals hold" in line]
+    assert "what is believed of wall thickness and contact offset" in line
+    assert counted["fit"]["considered"] == ["wall", "offset"]
+    assert any("without priors only what is fitted is uncertain" in line for line in bare["told"])
+    width = [one["estimates"][0]["interval_95"][1] - one["estimates"][0]["interval_95"][0] for one in (counted, bare)]
+    assert width[0] > 1.5 * width[1]
+
+
+@pytest.mark.parametrize(("words", "message"), [
+    (("--sensor", "B"), "--sensor B: no such sensor in the campaign; there are TangoPlus-1"),
+    (("--fit", "moduls"), "--fit moduls: no such parameter. Did you mean modulus"),
+    (("--hold-out", "5"), "--hold-out 5: no run at this driving pressure; measured: 0, 22 kPa"),
+    (("--save", "TangoPlus"), "which the new file would hide; give another name, or --shadow"),
+    (("--shadow",), "--shadow: goes with --save NAME"),
+])  # fmt: skip
+def test_wrong_words_end_with_two_and_nothing_written(words, message, campaign, place):
+    before = files(place)
+    result = run("calibrate", str(campaign), "--design", "mine", "--out", "out", *words)
+    assert result.exit_code == 2 and message in result.stderr.replace("\n", " "), result.stderr
+    assert files(place) == before
