@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: venv demo test lint check-slow chart chart-meshes texture-page coverage-page voxel-page atlas atlas-page lock clean
+.PHONY: venv demo test lint check-slow chart chart-meshes texture-page coverage-page voxel-page mixing-page atlas atlas-page lock clean
 
 venv: $(VENV)/.dev
 
@@ -59,6 +59,10 @@ texture-page: $(VENV)/.dev
 # How often the intervals of simulated campaigns hold the truth; writes docs/coverage.json and the table of docs/measuring.md.
 coverage-page: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.coverage
+
+# The mixing curve between its bounds; writes docs/mixing.md and its chart.
+mixing-page: $(VENV)/.dev
+	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.mixing_page
 
 # The shipped table of the solid's answers; goes on where it was stopped. Its page presses 2,000 sensors by both.
 atlas: $(VENV)/.dev

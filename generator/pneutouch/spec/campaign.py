@@ -15,7 +15,7 @@ from pneutouch.spec.fields import Table, number
 RunKind = Literal["steps", "saturation", "loop", "relaxation", "leak", "injection"]
 """What a run is; see `bench.protocol`. Leak and injection need no plate."""
 
-AS_DESIGNED = "as designed"
+AS_DESIGNED = "as-designed"
 """In place of a resin's name: the membrane as the design has it, which may be a mix that no file names."""
 
 UNITS: dict[str, dict[str, float]] = {
