@@ -119,8 +119,9 @@ def verdict(rows: list[dict[str, Any]]) -> list[str]:
         f"Blue noise is what stacks are made with: at most {max(of(blue, 'cube')):.2%} off in any cube, against "
         f"{max(of(diffused, 'cube')):.2%} by error diffusion, which is {slower:.0f} times slower here because its rows wait for "
         "one another. Blue noise needs nothing from its neighbours, so the same voxel gets the same droplet whatever is around "
-        "it, and a droplet once there stays as the fraction grows. Its block repeats every 1.3 mm, which can be seen in a single "
-        f"layer; as single waves that is at most {middling:.1f} times white noise's power from 0.1 to 0.9 and "
+        "it, and a droplet once there stays as the fraction grows. Its block of 1.3 mm is rolled anew wherever it stands: side by "
+        "side as it is, it would come out as a pattern of that size, of more than a thousand times white noise's power in one "
+        f"wave. The seams cost some evenness. Its single waves longer than 0.4 mm have at most {middling:.1f} times white noise's power from 0.1 to 0.9 and "
         f"{max(of(blue, 'peak')):.0f} times where droplets are rare, against {max(of(diffused, 'peak')):.0f} by error diffusion "
         "and the 6 to 8 that white noise itself reaches by chance."
     ]  # fmt: skip

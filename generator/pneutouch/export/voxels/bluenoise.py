@@ -1,7 +1,8 @@
 """Blue noise in three dimensions: thresholds for which any share of the voxels below lies evenly and without pattern.
 
-Void and cluster (R. Ulichney, Proc. SPIE 1913, 332-343, 1993, DOI 10.1117/12.152707) on a block that repeats, with
-distances in mm: voxels are not cubes. Energies are whole numbers, so that every machine ranks alike.
+Void and cluster (R. Ulichney, Proc. SPIE 1913, 332-343, 1993, DOI 10.1117/12.152707) on a block that closes on itself, with
+distances in mm: voxels are not cubes. Energies are whole numbers, so that every machine ranks alike. Block stands beside
+block, each rolled by an amount of its own: side by side as they are they would show as a pattern of the block's size.
 """
 
 from __future__ import annotations
@@ -100,17 +101,41 @@ def void_and_cluster(shape: tuple[int, int, int], pitch: tuple[float, float, flo
 
 @dataclass(frozen=True)
 class Thresholds:
-    """Thresholds between 0 and 1, ``values`` of the block along z, y, x, repeated in space."""
+    """Thresholds between 0 and 1, ``values`` of the block along z, y, x; each block in space is rolled by its own shifts."""
 
     values: Array
+    seed: int = 0
 
     def layer(self, number: int, rows: slice, columns: slice) -> Array:
-        """Thresholds (rows, columns) of part of a layer."""
-        block = self.values[number % self.values.shape[0]]
-        row = np.arange(rows.start, rows.stop) % block.shape[0]
-        column = np.arange(columns.start, columns.stop) % block.shape[1]
-        part: Array = block[np.ix_(row, column)]
+        """Thresholds (rows, columns) of part of a layer; the same whatever part is asked for."""
+        depth, height, width = self.values.shape
+        row, column = np.arange(rows.start, rows.stop), np.arange(columns.start, columns.stop)
+        blocks = row[0] // height, column[0] // width
+        grid = np.meshgrid(
+            np.arange(blocks[0], row[-1] // height + 1), np.arange(blocks[1], column[-1] // width + 1), indexing="ij"
+        )
+        shift = _shifts(number // depth, grid[0], grid[1], self.seed)
+        at = np.ix_(row // height - blocks[0], column // width - blocks[1])
+        z = (number + shift[0] % depth)[at] % depth
+        y = (row[:, None] + (shift[1] % height)[at]) % height
+        x = (column[None, :] + (shift[2] % width)[at]) % width
+        part: Array = self.values[z, y, x]
         return part
+
+
+def _shifts(block: int, row: Ranks, column: Ranks, seed: int) -> tuple[Ranks, Ranks, Ranks]:
+    """Three whole numbers from 0 to 2^20 for blocks of space, arrays of one shape: mixed bits of their place.
+
+    The mixer is splitmix64 (Steele, Lea and Flood, OOPSLA 2014, DOI 10.1145/2660193.2660195): the same on every machine.
+    """
+    place = (np.uint64(seed + 1) << np.uint64(48)) + (np.uint64(block + 1) << np.uint64(32))
+    mixed = place + (row.astype(np.uint64) << np.uint64(16)) + column.astype(np.uint64)
+    mixed = mixed * np.uint64(0x9E3779B97F4A7C15)
+    mixed = (mixed ^ (mixed >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    mixed = (mixed ^ (mixed >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    mixed ^= mixed >> np.uint64(31)
+    parts = [((mixed >> np.uint64(20 * k)) & np.uint64(2**20 - 1)).astype(np.int64) for k in range(3)]
+    return parts[0], parts[1], parts[2]
 
 
 @lru_cache(maxsize=2)
@@ -119,4 +144,4 @@ def thresholds(pitch: tuple[float, float, float], seed: int) -> Thresholds:
     ranks = void_and_cluster(BLOCK, (pitch[2], pitch[1], pitch[0]), seed)
     values = (ranks + 0.5) / ranks.size
     values.setflags(write=False)
-    return Thresholds(values)
+    return Thresholds(values, seed)

@@ -17,7 +17,7 @@ MANIFEST = "stack.json"
 FORMAT = 1
 """Number of the form that manifests have; a stack of another form is refused."""
 
-METHOD = "void and cluster: thresholds of blue noise in three dimensions, soft skin made up for beneath"
+METHOD = "void and cluster: thresholds of blue noise in three dimensions, block by block rolled, soft skin made up for beneath"
 
 SHORT = 1e-3
 """Difference of fractions over a body beyond which it is said that what was asked for is not met."""
