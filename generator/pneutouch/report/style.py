@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 import io
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -53,7 +55,16 @@ def svg(drawn: Figure) -> str:
     buffer = io.StringIO()
     drawn.savefig(buffer, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
     text = buffer.getvalue()
-    return text[text.index("<svg") :]
+    return _named_by_content(text[text.index("<svg") :])
+
+
+def _named_by_content(text: str) -> str:
+    """Clip paths called by what they are as printed: their own names follow digits of the layout that no drawing repeats."""
+    names = {
+        old: "p" + hashlib.sha256(" ".join(content.split()).encode()).hexdigest()[:10]
+        for old, content in re.findall(r'<clipPath id="(p[0-9a-f]+)">(.*?)</clipPath>', text, re.DOTALL)
+    }
+    return re.sub(r'(?<=id=")p[0-9a-f]+(?=")|(?<=url\(#)p[0-9a-f]+(?=\))', lambda at: names.get(at[0], at[0]), text)
 
 
 Label = tuple[float, float, str, dict[str, Any]]
