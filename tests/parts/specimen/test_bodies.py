@@ -55,7 +55,7 @@ def test_struts_at_three_fractions(kind, share, cell):
     check(at, pattern)
 
 
-@pytest.mark.parametrize("share", range(3))
+@pytest.mark.parametrize("share", [pytest.param(0, marks=pytest.mark.slow), 1, pytest.param(2, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("form", ["sheet", "network"])
 @pytest.mark.parametrize("kind", SURFACES)
 def test_surfaces_at_three_fractions(kind, form, share):
