@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from benchmarks.scenes import Scene
+from pneutouch.arrays import Array
 from pneutouch.mechanics.events import range_end
 from pneutouch.mechanics.membrane import membrane_states
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.solid import Press, Solid, dome, indent, inflate, state_at
 from pneutouch.mechanics.solid_states import _curve, _events
-from pneutouch.meridian.segments import Array
 from pneutouch.units import KPA
 
 _FINE_STEPS = 140

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from benchmarks.atlas_presses import Gap, compare_all, random_cases
+from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.recipe import RECIPE, axes
 from pneutouch.mechanics.atlas.table import SHIPPED
-from pneutouch.meridian.segments import Array
 from pneutouch.report.style import INK, figure, svg
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.press import Batch
 from pneutouch.mechanics.atlas.press import Press as Lookup
 from pneutouch.mechanics.atlas.recipe import RECIPE
@@ -20,7 +21,6 @@ from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.solid import Press, Solid, dome, indent, inflate, state_at
 from pneutouch.mechanics.solid_states import _curve, _events
-from pneutouch.meridian.segments import Array
 from pneutouch.units import KPA
 
 STEPS = 14

@@ -14,9 +14,9 @@ from scipy.interpolate import CubicSpline
 from scipy.sparse import bmat, csr_matrix
 from scipy.sparse.linalg import splu
 
+from pneutouch.arrays import Array
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.solid import SolidMesh, dome
-from pneutouch.meridian.segments import Array
 
 _TOP = 1.9
 _COUNTS = (6, 8, 12, 18, 27, 40)

@@ -9,13 +9,13 @@ import numpy as np
 
 from benchmarks.answer import Answer, solid_answer
 from benchmarks.scenes import Scene
+from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.atlas.press import Press
 from pneutouch.mechanics.atlas.respond import BREAK, BUCKLING, EDGE, ENDS, OUTSIDE, respond
 from pneutouch.mechanics.atlas.table import Slices, shipped
 from pneutouch.mechanics.atlas_states import outside_atlas
 from pneutouch.mechanics.ladder import DEFAULT_TOLERANCE, climb
-from pneutouch.meridian.segments import Array
 
 ATLAS, AUTO = "atlas", f"auto at {DEFAULT_TOLERANCE:.0%}"
 RUNG_METHODS = (ATLAS, AUTO)

@@ -21,9 +21,9 @@ from benchmarks.rungs import (
     why_no_answer,
 )
 from benchmarks.scenes import SCENES, Scene
+from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas_states import outside_atlas
 from pneutouch.mechanics.limits import limit_point
-from pneutouch.meridian.segments import Array
 from pneutouch.units import KPA
 
 REFINEMENTS = ((32, 2), (64, 4), (128, 8))

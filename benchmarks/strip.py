@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from pneutouch.meridian.segments import Array
+from pneutouch.arrays import Array
 
 VERO = 2500.0 / 2.7, 0.35
 """Shear modulus in MPa and Poisson ratio of the bars: printprofiles/materials/VeroClear.toml; the ratio is assumed."""

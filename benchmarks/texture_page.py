@@ -11,17 +11,17 @@ import numpy as np
 
 from benchmarks.strip import AGILUS, Row, Strip, harmonic
 from benchmarks.texture_text import page
+from pneutouch.arrays import Array
 from pneutouch.catalogue import Library
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.uncertainty import batch_of
-from pneutouch.meridian.segments import Array
-from pneutouch.pipeline.scan import Asked, run_scan
-from pneutouch.pipeline.scan_document import document, spectra
-from pneutouch.pipeline.separate import separating
 from pneutouch.report.style import ACCENT, INK, LINES, MARKERS, MUTED, figure, svg
 from pneutouch.texture.separate import Pattern, amplitudes, noise_amplitude, recommend
 from pneutouch.texture.substrate import Bars, Matrix, Substrate, amplitude
 from pneutouch.units import KPA
+from pneutouch.workflows.scan.document import document, spectra
+from pneutouch.workflows.scan.run import Asked, run_scan
+from pneutouch.workflows.scan.separate import separating
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"

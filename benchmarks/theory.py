@@ -6,9 +6,9 @@ import json
 from dataclasses import dataclass, replace
 
 from pneutouch.catalogue import Library
+from pneutouch.evaluation.table_s1 import PRESSURES, SHIPPED, compute_errors, fingerprint, measured
 from pneutouch.mechanics import predict
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.pipeline.table_s1 import PRESSURES, SHIPPED, compute_errors, fingerprint, measured
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA, ML
 

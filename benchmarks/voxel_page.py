@@ -18,9 +18,9 @@ from benchmarks.voxel_text import page
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.export.voxels.read import read_stack
 from pneutouch.parts import assemble
-from pneutouch.pipeline.show_voxels import draw
-from pneutouch.pipeline.voxels import plan_voxels, write_voxels
 from pneutouch.report.style import ACCENT, INK, LINES, MARKERS, MUTED, figure, svg
+from pneutouch.workflows.build.voxels import plan_voxels, write_voxels
+from pneutouch.workflows.show.voxels import draw
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"

@@ -13,8 +13,8 @@ import pytest
 from hypothesis import settings
 
 from pneutouch.catalogue import Library
-from pneutouch.pipeline import Evaluation, evaluate
-from pneutouch.pipeline import build as build_design
+from pneutouch.evaluation import Evaluation, evaluate
+from pneutouch.workflows.build import build as build_design
 
 ROOT = Path(__file__).resolve().parents[1]
 

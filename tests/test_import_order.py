@@ -10,9 +10,21 @@ import pneutouch
 PACKAGE = Path(pneutouch.__file__).parent
 
 LAYERS = [
-    {"errors", "units"}, {"spec"}, {"catalogue"}, {"meridian"}, {"body"}, {"parts", "mechanics"},
-    {"printability", "selection", "bench", "texture"}, {"export", "report"}, {"pipeline"}, {"cli", "studio"},
-]  # fmt: skip
+    {"errors", "units", "arrays"},
+    {"spec"},
+    {"catalogue"},
+    {"meridian"},
+    {"body"},
+    {"parts", "mechanics"},
+    {"printability", "selection", "bench", "texture"},
+    {"export"},
+    {"evaluation"},
+    {"report"},
+    {"output"},
+    {"workflows"},
+    {"api"},
+    {"cli", "studio"},
+]
 RANK = {name: rank for rank, names in enumerate(LAYERS) for name in names}
 APART = [{"parts", "mechanics"}]
 

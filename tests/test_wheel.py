@@ -29,7 +29,7 @@ def unpacked(tmp_path_factory):
 def test_designs_profiles_parts_templates_and_fonts_are_inside(unpacked):
     for name in (
         "data/designs/paper-dome.toml", "data/printprofiles/objet260-connex.toml", "data/printprofiles/materials/FLX9960.toml",
-        "parts/ports/barb-4x2.5.toml", "report/templates/datasheet.typ", "report/fonts/Inter-Regular.otf", "report/fonts/OFL.txt",
+        "parts/ports/barb-4x2.5.toml", "report/templates/datasheet.typ", "parts/lettering/fonts/Inter-Regular.otf", "parts/lettering/fonts/OFL.txt",
     ):  # fmt: skip
         assert (unpacked / "pneutouch" / name).is_file(), name
 
@@ -38,7 +38,7 @@ def test_the_installed_package_predicts_without_the_checkout(unpacked, tmp_path)
     code = (
         f"import sys; sys.path.insert(0, {str(unpacked)!r}); import pneutouch\n"
         f"assert pneutouch.__file__.startswith({str(unpacked)!r})\n"
-        "from pneutouch.pipeline import evaluate\n"
+        "from pneutouch.evaluation import evaluate\n"
         "e = evaluate('paper-dome'); assert e.scene.where.startswith(sys.path[0]), e.scene.where\n"
         "print(round(1e3 * e.prediction.limit_point.driving_pressure, 2))"
     )

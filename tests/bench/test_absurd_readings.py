@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
 from pneutouch.parts.coupons.gauge import rows
-from pneutouch.pipeline.coupons.results import enter_results, evaluate_results
 from pneutouch.spec.coupon import Results
 from pneutouch.spec.printer import HOLE_UNDERSIZE_MM
 from pneutouch.spec.toml_text import toml_text
+from pneutouch.workflows.coupons.results import enter_results, evaluate_results
 from tests.conftest import ROOT
 
 LIBRARY = Library((ROOT,))

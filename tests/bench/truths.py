@@ -14,9 +14,9 @@ from pneutouch.bench.simulate import (
 )
 from pneutouch.bench.simulate.curve import Pressed
 from pneutouch.catalogue import Library, load_scene
+from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.mechanics import Sensor
 from pneutouch.parts import assemble
-from pneutouch.pipeline.evaluate import sensor_of
 from pneutouch.units import KPA
 from tests.conftest import ROOT
 

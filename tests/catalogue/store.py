@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from pneutouch.catalogue import Library, load_scene
+from pneutouch.evaluation import evaluate
 from pneutouch.parts import Assembly, assemble
-from pneutouch.pipeline import evaluate
 
 ROOT = Path(__file__).resolve().parents[2]
 STORED = Path(__file__).with_name("stored.json")

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 from pneutouch.cli import calibrate, simulate
 from pneutouch.cli.app import app
 from pneutouch.cli.calibrate_text import calibration_text
-from pneutouch.pipeline.evaluate import evaluate
+from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.spec.toml_text import toml_text
 
 assert calibrate and simulate

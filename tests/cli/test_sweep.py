@@ -11,10 +11,10 @@ import shlex
 import pytest
 import xarray
 
-from pneutouch.pipeline.sweep.variables import POINT, STATE
+from pneutouch.workflows.sweep.variables import POINT, STATE
 from tests.cli.test_commands import HEAVY, modules_after
 from tests.conftest import ROOT
-from tests.pipeline.sweep.conftest import cluster
+from tests.workflows.sweep.conftest import cluster
 
 __all__ = ["cluster"]
 

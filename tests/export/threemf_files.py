@@ -12,7 +12,7 @@ from urllib.parse import quote, unquote
 
 import lib3mf
 
-from pneutouch.pipeline.recipe import input_hash
+from pneutouch.output.recipe import input_hash
 
 MODEL = "3D/3dmodel.model"
 

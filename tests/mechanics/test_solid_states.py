@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from pneutouch.errors import BeyondLimitError, InputError
+from pneutouch.evaluation.table_s1 import SHIPPED, compute_errors, fingerprint, sensitivity_error
 from pneutouch.mechanics import predict
-from pneutouch.pipeline.table_s1 import SHIPPED, compute_errors, fingerprint, sensitivity_error
 from pneutouch.spec.material import Material
 from pneutouch.spec.quantity import Quantity
 from tests.mechanics.test_contact import PAPER

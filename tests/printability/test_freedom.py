@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pneutouch.pipeline.subject import subject_of
+from pneutouch.evaluation.subject import subject_of
 from pneutouch.printability import SensorContext, check
 
 

@@ -13,8 +13,8 @@ from manifold3d import Manifold
 
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.errors import InputError
+from pneutouch.evaluation.subject import subject_of
 from pneutouch.parts import assemble
-from pneutouch.pipeline.subject import subject_of
 from pneutouch.printability import Item, Subject, check
 from pneutouch.printability.check import RULES
 from pneutouch.printability.rules.contact_faces import overlap_volume, shared_area

@@ -10,12 +10,12 @@ import numpy as np
 from pneutouch.bench.record import Curve, Doubt
 from pneutouch.bench.summary import Group, summarize
 from pneutouch.catalogue import Library, load_scene
+from pneutouch.evaluation.evaluate import sensor_of
+from pneutouch.evaluation.variants import in_resin
 from pneutouch.mechanics.atlas_states import atlas_result
 from pneutouch.mechanics.prediction import State
 from pneutouch.parts import assemble
-from pneutouch.pipeline.evaluate import sensor_of
 from pneutouch.report.measured import Beside, Measured, Verdict
-from pneutouch.report.variants import in_resin
 from pneutouch.spec.campaign import Campaign, Run
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA

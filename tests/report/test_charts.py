@@ -10,19 +10,19 @@ import pytest
 from matplotlib.figure import Figure
 
 from pneutouch.errors import InputError
+from pneutouch.evaluation.charts import tradeoff, tuning
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.uncertainty import batch_of
-from pneutouch.pipeline.design_charts import tradeoff, tuning
-from pneutouch.pipeline.select import select
-from pneutouch.pipeline.select_charts import tradeoff as selected_tradeoff
-from pneutouch.pipeline.select_charts import tuning as selected_tuning
-from pneutouch.pipeline.select_charts import write_charts
 from pneutouch.report.certainty import SENSITIVITY, ends, shares
 from pneutouch.report.shares import OTHERS, ranked, share_bars
 from pneutouch.report.tradeoff import tradeoff_chart
 from pneutouch.report.tuning import tuning_chart
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA
+from pneutouch.workflows.select.charts import tradeoff as selected_tradeoff
+from pneutouch.workflows.select.charts import tuning as selected_tuning
+from pneutouch.workflows.select.charts import write_charts
+from pneutouch.workflows.select.run import select
 
 SIZE = (86.0, 62.0)
 TARGET = {

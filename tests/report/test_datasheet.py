@@ -99,7 +99,7 @@ def test_the_air_on_the_sheet_is_computed_and_no_longer_a_fixed_factor(evaluated
 
 
 def test_model_and_why_it_was_taken_stand_on_the_sheet(evaluated):
-    from pneutouch.pipeline import evaluate
+    from pneutouch.evaluation import evaluate
     from pneutouch.report.certainty import how_sure
 
     chosen = evaluate("paper-dome", model="auto", tolerance=0.02)
@@ -112,7 +112,7 @@ def test_model_and_why_it_was_taken_stand_on_the_sheet(evaluated):
 
 
 def test_without_the_solid_the_sheet_says_where_shapes_come_from(evaluated, tmp_path):
-    from pneutouch.pipeline import build
+    from pneutouch.workflows.build import build
 
     page = (build(evaluated("fingertip-dome", model="atlas"), tmp_path) / "datasheet.html").read_text(encoding="utf-8")
     assert "build with --model solid" in page
@@ -121,7 +121,8 @@ def test_without_the_solid_the_sheet_says_where_shapes_come_from(evaluated, tmp_
 
 
 def test_a_sensor_outside_the_atlas_says_so_on_its_sheet(tmp_path):
-    from pneutouch.pipeline import build, evaluate
+    from pneutouch.evaluation import evaluate
+    from pneutouch.workflows.build import build
 
     evaluation = evaluate("fingertip-dome", ["pneumatics.driving_pressures_kPa=[10]"], clamp="flange")
     page = (build(evaluation, tmp_path) / "datasheet.html").read_text(encoding="utf-8")
@@ -169,9 +170,9 @@ def test_a_resin_that_cannot_be_solved_does_not_stop_the_sheet(evaluated, librar
 
 
 def test_resins_are_compared_by_the_atlas_as_respond_has_them(evaluated, library):
+    from pneutouch.evaluation.variants import drawn_by, in_resin, resin_curves
     from pneutouch.mechanics.atlas.respond import respond
     from pneutouch.mechanics.uncertainty import batch_of
-    from pneutouch.report.variants import drawn_by, in_resin, resin_curves
     from pneutouch.spec.material import Material
 
     sensor, materials = evaluated("paper-dome").sensor, library.all("materials", Material)
@@ -189,7 +190,7 @@ def test_resins_are_compared_by_the_atlas_as_respond_has_them(evaluated, library
 
 
 def test_a_resin_outside_the_atlas_is_drawn_by_the_solid_and_the_caption_says_so(evaluated, library):
-    from pneutouch.report.variants import drawn_by, resin_curves
+    from pneutouch.evaluation.variants import drawn_by, resin_curves
     from pneutouch.spec.material import Material
 
     tango, hard = (library.load("materials", name) for name in ("TangoPlus", "FLX9960"))
@@ -254,8 +255,8 @@ def test_print_sheet_names_files_resins_machines_and_the_measured_deviation(buil
 
 
 def test_seven_resins_are_compared_and_stop_at_their_own_limits(evaluated, library):
+    from pneutouch.evaluation.variants import resin_curves
     from pneutouch.mechanics.limits import limits
-    from pneutouch.report.variants import resin_curves
     from pneutouch.spec.material import Material
 
     sensor = evaluated("paper-dome").sensor

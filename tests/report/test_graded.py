@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pneutouch.pipeline.evaluate import evaluate
+from pneutouch.evaluation.evaluate import evaluate
+from pneutouch.evaluation.variants import in_resin
 from pneutouch.report.graded_sheet import graded_figures
-from pneutouch.report.variants import in_resin
 
 SHALLOW = ["indentation.depth_mm=3", "indentation.steps=6", "pneumatics.driving_pressures_kPa=[0, 12]"]
 

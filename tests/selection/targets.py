@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from pneutouch.pipeline.select import Selection, select
 from pneutouch.spec.target import Given, Setting, Target, Wanted, Weights
+from pneutouch.workflows.select.run import Selection, select
 
 FINGERTIP = {
     "sensitivity_kPa_per_N": 1.9, "driving_pressure_kPa": 12.0, "force_range_N": 15.0, "max_diameter_mm": 25.0,

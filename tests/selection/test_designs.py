@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.mechanics import predict
-from pneutouch.pipeline.evaluate import evaluate
-from pneutouch.pipeline.select import Selection
-from pneutouch.pipeline.select_document import document
 from pneutouch.selection import Choice
 from pneutouch.units import KPA
+from pneutouch.workflows.select.document import document
+from pneutouch.workflows.select.run import Selection
 from tests.selection.targets import FINGERTIP, answer
 
 

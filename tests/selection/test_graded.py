@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from pneutouch.catalogue import Library
-from pneutouch.pipeline.select import select
-from pneutouch.pipeline.select_mix import pair_of
 from pneutouch.selection.grade_search import Search, Trial, Wish, grade_search, shares
 from pneutouch.selection.mixes import levels
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA
+from pneutouch.workflows.select.mix import pair_of
+from pneutouch.workflows.select.run import select
 
 LEVELS = np.array([0.0, 0.17, 0.4, 0.67])
 SAME = Wish(1.9, 0.02, (0.0, 0.022), 0.02, None, False)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from pneutouch.errors import InputError
-from pneutouch.pipeline.select_document import document
+from pneutouch.workflows.select.document import document
 from tests.selection.targets import FINGERTIP, answer
 
 KEYS = {

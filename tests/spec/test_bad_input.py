@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.errors import InputError
-from pneutouch.pipeline import evaluate
+from pneutouch.evaluation import evaluate
 from pneutouch.spec.design import Design
 from pneutouch.spec.read import validate
 

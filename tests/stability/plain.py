@@ -10,15 +10,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Array
 from pneutouch.mechanics.solid import Solid
 from pneutouch.mechanics.solid.banded import solve
 from pneutouch.mechanics.solid.elements import Scheme
 from pneutouch.mechanics.solid.newton import Scene, State, evaluate, full_tangent
 from pneutouch.mechanics.solid.supply import Regulator, Supply
 
-Array = NDArray[np.float64]
 Converged = Callable[[State], bool]
 
 #: Plain displacement elements: four-node cells, two by two points, J taken at every point (order=1 in `dome`).

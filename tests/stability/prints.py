@@ -9,9 +9,9 @@ import numpy as np
 from pneutouch.body import Body
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.errors import InputError
+from pneutouch.evaluation.subject import subject_of
 from pneutouch.export.threemf import threemf
 from pneutouch.parts import Assembly, assemble
-from pneutouch.pipeline.subject import subject_of
 from pneutouch.printability import Finding, check
 from pneutouch.printability.rules.contact_faces import overlap_volume
 from tests.conftest import ROOT

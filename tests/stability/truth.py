@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Array
 from pneutouch.mechanics.solid import Event, FreeState, Indentation, Press, PressState, Solid, indent
 from pneutouch.mechanics.solid.contact import RIM, Plate
 from pneutouch.mechanics.solid.newton import Scene, Stalled, State, evaluate, full_tangent, minimise
 from pneutouch.mechanics.solid.supply import Gas, Regulator
-
-Array = NDArray[np.float64]
 
 #: Events that end a path because the branch ends there.
 ENDS_BRANCH = ("snap", "clamp_fold")

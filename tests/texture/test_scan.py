@@ -173,7 +173,7 @@ def test_separation_takes_the_states_that_lean_most():
 
 @pytest.mark.parametrize("seed", range(1, 6))
 def test_the_stiff_state_shows_both_patterns_whatever_the_noise(seed, library):
-    from pneutouch.pipeline.scan import Asked, run_scan
+    from pneutouch.workflows.scan.run import Asked, run_scan
 
     (seen,) = run_scan("texture-specimen", "paper-dome", Asked(pressures=(0.022,), seed=seed), library=library).seen
     for found, true in zip(seen.detections, (4 / 3, 2 / 3, 2 / 3), strict=True):
@@ -182,7 +182,7 @@ def test_the_stiff_state_shows_both_patterns_whatever_the_noise(seed, library):
 
 
 def test_a_sensor_held_at_a_force_rises_over_a_bar(library):
-    from pneutouch.pipeline.scan import Asked, run_scan
+    from pneutouch.workflows.scan.run import Asked, run_scan
 
     run = run_scan("texture-specimen", "paper-dome", Asked(pressures=(0.022,), control="force"), library=library)
     scan = run.seen[0].scan

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.bench.record import Blocks, Doubt
 from pneutouch.errors import InputError
-from pneutouch.meridian.segments import Array
 
 BLOCK_RATE = 100.0
 """Blocks a second: our choice; a plate at 5 mm/s moves 0.05 mm in one, and ten minutes are 60 000 blocks."""

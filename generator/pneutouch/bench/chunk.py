@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from pneutouch.arrays import Array
 from pneutouch.errors import InputError, nearest
-from pneutouch.meridian.segments import Array
 
 
 class Chunk(NamedTuple):

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.bench.record import Blocks
 from pneutouch.bench.segment import Excursion
-from pneutouch.meridian.segments import Array
 
 BEFORE = 1.0
 """Seconds before contact over which force and pressure without contact are read: after a reset has settled, and long

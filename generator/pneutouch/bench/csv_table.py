@@ -12,9 +12,9 @@ from typing import BinaryIO, NamedTuple
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.bench.chunk import Chunk, places
 from pneutouch.errors import InputError
-from pneutouch.meridian.segments import Array
 
 CHUNK = 4 * 2**20
 """Bytes parsed at once: about 100 000 rows; larger ones are not faster and take more memory."""

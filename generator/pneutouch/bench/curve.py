@@ -7,12 +7,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.bench.contact import BEFORE, Baseline, baseline
 from pneutouch.bench.doubts import doubts_of, listed, untrusted
 from pneutouch.bench.indents import Found, find_indents
 from pneutouch.bench.record import Blocks, Curve, Doubt
 from pneutouch.errors import InputError
-from pneutouch.meridian.segments import Array
 from pneutouch.spec.campaign import Rig, Run
 
 WAY_POINTS = 25

@@ -8,9 +8,9 @@ from typing import Literal
 import numpy as np
 from numpy.polynomial.legendre import legvander
 
+from pneutouch.arrays import Array
 from pneutouch.bench.record import Curve
 from pneutouch.mechanics.response import figures, hysteresis
-from pneutouch.meridian.segments import Array
 from pneutouch.units import KPA
 
 Pooled = Literal["mean", "within", "between"]

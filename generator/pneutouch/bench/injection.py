@@ -8,12 +8,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.bench.reading import scaled
 from pneutouch.bench.record import Blocks
 from pneutouch.bench.statistics import Mean
 from pneutouch.bench.table import whole
 from pneutouch.errors import InputError
-from pneutouch.meridian.segments import Array
 from pneutouch.spec.campaign import Columns
 
 LEAST_POINTS = 3

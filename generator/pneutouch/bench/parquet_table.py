@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.bench.chunk import Chunk, places
 from pneutouch.errors import InputError
-from pneutouch.meridian.segments import Array
 
 BATCH = 2**17
 """Rows at once: as many as a chunk of a CSV file holds."""

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.bench.mixed import mixed
 from pneutouch.bench.protocol import HOLD, RELAXATION
 from pneutouch.bench.record import Blocks, Curve
 from pneutouch.errors import InputError
-from pneutouch.meridian.segments import Array
 from pneutouch.spec.campaign import UNITS, Columns, Rig, Run
 from pneutouch.units import KPA
 

@@ -7,13 +7,12 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Array, Flags
 from pneutouch.bench.blocks import Collector
 from pneutouch.bench.record import Blocks, Doubt
 from pneutouch.bench.table import chunks
 from pneutouch.errors import InputError
-from pneutouch.meridian.segments import Array
 from pneutouch.spec.campaign import UNITS, Columns, Rig
 from pneutouch.units import KPA
 
@@ -33,8 +32,6 @@ GREATEST = 1e100
 FLAT, ALIKE = 0.1, 0.05
 """A flat top lasts longer than this, in s, and less than this share of the other blocks repeats the one before: a coarse
 or noiseless channel repeats everywhere. Our choice."""
-
-Flags = NDArray[np.bool_]
 
 _PRESSED = 30.0
 """Noise standard deviations by which the force must change to say that something moved: our choice."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal, NamedTuple
 
-from pneutouch.meridian.segments import Array
+from pneutouch.arrays import Array
 from pneutouch.spec.campaign import Run
 
 DoubtKind = Literal["gap", "clipped", "spike", "note", "other"]

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.bench.record import Blocks
 from pneutouch.errors import InputError
-from pneutouch.meridian.segments import Array
 
 NOISE = 5.0
 """Standard deviations of the position within which the plate is taken to stay: a false alarm in a million."""

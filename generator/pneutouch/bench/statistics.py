@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pneutouch.meridian.segments import Array
+from pneutouch.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)

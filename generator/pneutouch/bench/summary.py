@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.bench.figure import FIGURES, Pooled, run_figures
 from pneutouch.bench.interval import Estimate, mean_of, spread_between, spread_within, widened
 from pneutouch.bench.record import Curve
-from pneutouch.meridian.segments import Array
 
 _MONTH = 365.25 / 12
 """Days."""

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.bench.chunk import Chunk
 from pneutouch.bench.csv_table import csv_chunks
 from pneutouch.bench.parquet_table import parquet_chunks
 from pneutouch.errors import InputError
-from pneutouch.meridian.segments import Array
 
 
 def chunks(path: Path, names: Sequence[str]) -> Iterator[Chunk]:

@@ -5,10 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Array, Indices
 from pneutouch.bench.record import Blocks
-from pneutouch.meridian.segments import Array
 
 MOST = 3000
 """Points of a trace: more than a page shows. Even, as two are kept of each stretch."""
@@ -38,7 +37,7 @@ def trace(blocks: Blocks) -> Trace:
     return Trace(blocks.time[ends], blocks.position[ends], _span(blocks.force, edges), _span(blocks.pressure, edges))
 
 
-def _span(values: Array, edges: NDArray[np.int_]) -> Array:
+def _span(values: Array, edges: Indices) -> Array:
     """Least and greatest of the stretches between ``edges`` (m + 1,), in the order in which they come, (2 m,)."""
     starts = edges[:-1]
     within = np.repeat(np.arange(starts.size), np.diff(edges))

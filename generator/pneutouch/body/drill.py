@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pneutouch.body.revolve import Rings, Triangles, Vertices, circle_count, widen
+from pneutouch.arrays import Array, Indices
+from pneutouch.body.revolve import Rings, circle_count, widen
 
 if TYPE_CHECKING:
     from pneutouch.body.shapes import Bore
@@ -34,7 +35,7 @@ class _Hole:
     upper: int
 
 
-def drilled(rings: Rings, bores: tuple[Bore, ...], tolerance: float) -> tuple[Vertices, Triangles] | None:
+def drilled(rings: Rings, bores: tuple[Bore, ...], tolerance: float) -> tuple[Array, Indices] | None:
     """The turned body with its bores, or None where a bore does not run between flat faces and must be cut.
 
     Half of ``tolerance`` (mm) went into the rings; a bore takes all of it, for it is straight.
@@ -86,13 +87,13 @@ def _holds(rings: Rings, k: int, bore: Bore, height: float) -> bool:
     return clear_inside and centre + bore.radius < outer - _CLEAR
 
 
-def _circle(bore: Bore, count: int, height: float) -> Vertices:
+def _circle(bore: Bore, count: int, height: float) -> Array:
     angle = 2 * np.pi * np.arange(count) / count
     radius = bore.radius * widen(count)
     return np.column_stack([bore.x + radius * np.cos(angle), bore.y + radius * np.sin(angle), np.full(count, height)])
 
 
-def _perforated(points: Vertices, rings: Rings, k: int, holes: list[_Hole]) -> Triangles:
+def _perforated(points: Array, rings: Rings, k: int, holes: list[_Hole]) -> Indices:
     """A flat strip with holes, facing the way the strip did."""
     from manifold3d import triangulate
 
@@ -108,12 +109,12 @@ def _perforated(points: Vertices, rings: Rings, k: int, holes: list[_Hole]) -> T
         loops.append(np.arange(start, start + hole.count)[::-1])
     index = np.concatenate(loops)
     flat = triangulate([np.ascontiguousarray(points[loop, :2]) for loop in loops])
-    found: Triangles = index[np.asarray(flat)].astype(np.int64)
+    found: Indices = index[np.asarray(flat)].astype(np.int64)
     # A meridian runs counter-clockwise: it goes inwards over a face that looks up.
     return found if inwards else found[:, ::-1]
 
 
-def _wall(hole: _Hole) -> list[Triangles]:
+def _wall(hole: _Hole) -> list[Indices]:
     """The wall of a hole, facing its axis, and its bottom if it has one."""
     k = np.arange(hole.count)
     after = (k + 1) % hole.count

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Array, Indices
 from pneutouch.spec.material import Material
 
 
@@ -21,11 +21,11 @@ class Body:
     name: str
     role: str
     material: Material
-    vertices: NDArray[np.float64]
-    triangles: NDArray[np.int64]
+    vertices: Array
+    triangles: Indices
 
     @property
-    def corners(self) -> NDArray[np.float64]:
+    def corners(self) -> Array:
         """Triangle corners, shape (m, 3, 3)."""
         return self.vertices[self.triangles]
 
@@ -36,7 +36,7 @@ class Body:
         return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
 
     @property
-    def bounds(self) -> NDArray[np.float64]:
+    def bounds(self) -> Array:
         """Smallest and largest corner, shape (2, 3), mm."""
         return np.array([self.vertices.min(axis=0), self.vertices.max(axis=0)])
 
@@ -59,7 +59,7 @@ class Body:
 
         return Manifold(Mesh64(np.ascontiguousarray(self.vertices), self.triangles.astype(np.uint64)))
 
-    def moved(self, offset: NDArray[np.float64]) -> Body:
+    def moved(self, offset: Array) -> Body:
         """The body shifted by ``offset`` (3,), mm."""
         return replace(self, vertices=self.vertices + offset)
 
@@ -67,9 +67,9 @@ class Body:
         """The body turned by half a turn about the x axis."""
         return replace(self, vertices=self.vertices * np.array([1.0, -1.0, -1.0]))
 
-    def surface_points(self, parts: int = 4) -> NDArray[np.float64]:
+    def surface_points(self, parts: int = 4) -> Array:
         """Points spread over every triangle, edges and corners included, for measuring deviation."""
         grid = [(i, j) for i in range(parts + 1) for j in range(parts + 1 - i)]
         weights = np.array([(i, j, parts - i - j) for i, j in grid], float) / parts
-        points: NDArray[np.float64] = np.einsum("wk,mkd->mwd", weights, self.corners).reshape(-1, 3)
+        points: Array = np.einsum("wk,mkd->mwd", weights, self.corners).reshape(-1, 3)
         return points

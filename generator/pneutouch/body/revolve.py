@@ -13,16 +13,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Array, Indices
 from pneutouch.meridian import Meridian, Ring, sample
-
-Vertices = NDArray[np.float64]
-Triangles = NDArray[np.int64]
 
 
 def circle_count(radius: float, error: float, lean: float = 1.0) -> int:
-    """Vertices, a multiple of four, that keep a widened polygon within ``error`` mm of its circle."""
+    """Array, a multiple of four, that keep a widened polygon within ``error`` mm of its circle."""
     if radius <= 0:
         return 1
     # widen() moves a vertex out by r theta^2/12 to leading order, theta being the angle between vertices.
@@ -52,9 +49,9 @@ class Rings:
     rings: list[Ring]
     counts: list[int]
     starts: list[int]
-    vertices: Vertices
+    vertices: Array
     pairs: list[tuple[int, int]]
-    strips: list[Triangles]
+    strips: list[Indices]
 
 
 def revolve_rings(meridian: Meridian, tolerance: float) -> Rings:
@@ -80,20 +77,20 @@ def revolve_rings(meridian: Meridian, tolerance: float) -> Rings:
     return Rings(rings, counts, starts, vertices, pairs, strips)
 
 
-def revolve(meridian: Meridian, tolerance: float) -> tuple[Vertices, Triangles]:
+def revolve(meridian: Meridian, tolerance: float) -> tuple[Array, Indices]:
     """Mesh a solid of revolution within ``tolerance`` mm: vertices (n, 3) in mm, triangles (m, 3) facing outwards."""
     made = revolve_rings(meridian, tolerance)
     return made.vertices, np.concatenate(made.strips)
 
 
-def _ring_points(ring: Ring, count: int) -> Vertices:
+def _ring_points(ring: Ring, count: int) -> Array:
     angle = 2 * np.pi * np.arange(count) / count
     radius = ring.radius * widen(count)
     return np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.full(count, ring.height)])
 
 
-def _zip(first: int, n: int, second: int, m: int) -> Triangles:
-    """Triangles between two rings that start at vertex ``first`` (``n`` of them) and ``second`` (``m``).
+def _zip(first: int, n: int, second: int, m: int) -> Indices:
+    """Indices between two rings that start at vertex ``first`` (``n`` of them) and ``second`` (``m``).
 
     Walks both rings at once, always stepping on the one whose next vertex comes first.
     """

@@ -9,15 +9,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Array, Flags
 from pneutouch.body.shapes import Bore, Prism, Shape, Turned
 from pneutouch.body.solid import Solid
 from pneutouch.meridian import Meridian
 from pneutouch.meridian.crossings import Rise, crossings, encloses, rises
-from pneutouch.meridian.segments import Array
-
-Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)

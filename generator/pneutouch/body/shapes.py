@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from typing import Literal, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pneutouch.body.revolve import Triangles, Vertices, circle_count, revolve, widen
+from pneutouch.arrays import Array, Flags, Indices
+from pneutouch.body.revolve import circle_count, revolve, widen
 from pneutouch.meridian import Arc, Meridian, Point, Segment, polygon
-from pneutouch.meridian.segments import Array
 
 Vector = tuple[float, float, float]
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
@@ -48,7 +47,7 @@ class Shape(Protocol):
     def volume(self) -> float:
         """Exact volume, mm3."""
 
-    def mesh(self, tolerance: float) -> tuple[Vertices, Triangles]:
+    def mesh(self, tolerance: float) -> tuple[Array, Indices]:
         """Closed mesh within ``tolerance``."""
 
     def distance(self, points: Array) -> Array:
@@ -66,7 +65,7 @@ class Turned:
         """Exact volume, mm3."""
         return self.meridian.volume()
 
-    def mesh(self, tolerance: float) -> tuple[Vertices, Triangles]:
+    def mesh(self, tolerance: float) -> tuple[Array, Indices]:
         """Closed mesh within ``tolerance`` mm."""
         vertices, triangles = revolve(self.meridian, tolerance)
         return (vertices if self.frame == Frame() else self.frame.out(vertices)), triangles
@@ -93,7 +92,7 @@ class Prism:
         """Exact volume, mm3."""
         return self.area() * (self.high - self.low)
 
-    def mesh(self, tolerance: float) -> tuple[Vertices, Triangles]:
+    def mesh(self, tolerance: float) -> tuple[Array, Indices]:
         """Closed mesh within ``tolerance`` mm."""
         from manifold3d import CrossSection
 
@@ -128,7 +127,7 @@ class Bore:
         """Volume removed, mm3."""
         return math.pi * self.radius**2 * (self.high - self.low)
 
-    def mesh(self, tolerance: float) -> tuple[Vertices, Triangles]:
+    def mesh(self, tolerance: float) -> tuple[Array, Indices]:
         """The drill: it reaches 1 mm past open faces, so that no two faces coincide."""
         count = circle_count(self.radius, tolerance)
         angle = 2 * np.pi * np.arange(count) / count
@@ -188,7 +187,7 @@ def _under(piece: Segment) -> float:
     return 0.5 * (x0 + x1) * (y1 - y0)
 
 
-def _inside(points: Array, outline: list[Point]) -> NDArray[np.bool_]:
+def _inside(points: Array, outline: list[Point]) -> Flags:
     """Whether points (n, 2) lie inside a polygon, by crossings of a ray."""
     odd = np.zeros(len(points), bool)
     x, y = points.T

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from pneutouch.arrays import Array, Indices
 from pneutouch.body.drill import drilled
 from pneutouch.body.mesh import Body
-from pneutouch.body.revolve import Triangles, Vertices, revolve_rings
+from pneutouch.body.revolve import revolve_rings
 from pneutouch.body.shapes import Bore, Feature, Prism, Shape
 from pneutouch.meridian import Meridian
-from pneutouch.meridian.segments import Array
 from pneutouch.spec.material import Material
 from pneutouch.units import grams
 
@@ -68,7 +68,7 @@ class Solid:
             vertices, triangles = _combined((vertices, triangles), parts, [tool.mesh(tolerance) for tool in tools])
         return Body(self.name, self.role, self.material, vertices, triangles)
 
-    def _drilled(self, tolerance: float) -> tuple[tuple[Vertices, Triangles], tuple[Bore, ...]]:
+    def _drilled(self, tolerance: float) -> tuple[tuple[Array, Indices], tuple[Bore, ...]]:
         """The mesh of the base, and the bores that still have to be cut; most are built into flat faces."""
         if not isinstance(self.base, Meridian):
             return self.base.mesh(tolerance), self.bores
@@ -80,12 +80,12 @@ class Solid:
 
 
 def _combined(
-    base: tuple[Vertices, Triangles], adds: list[tuple[Vertices, Triangles]], cuts: list[tuple[Vertices, Triangles]]
-) -> tuple[Vertices, Triangles]:
+    base: tuple[Array, Indices], adds: list[tuple[Array, Indices]], cuts: list[tuple[Array, Indices]]
+) -> tuple[Array, Indices]:
     """Join and cut in one batch each."""
     from manifold3d import Manifold, Mesh64, OpType
 
-    def manifold(mesh: tuple[Vertices, Triangles]) -> Any:
+    def manifold(mesh: tuple[Array, Indices]) -> Any:
         return Manifold(Mesh64(mesh[0], mesh[1].astype(np.uint64)))
 
     whole = manifold(base)

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from pneutouch.catalogue.along import Along, Array
+from pneutouch.arrays import Array
+from pneutouch.catalogue.along import Along
 from pneutouch.catalogue.library import Library
 from pneutouch.errors import InputError
 from pneutouch.spec.grade import Grade

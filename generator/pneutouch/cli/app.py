@@ -98,8 +98,8 @@ def predict(
 ) -> None:  # fmt: skip
     """Predict the figures alone, and how sure they are."""
     with reporting():
-        from pneutouch.pipeline.evaluate import evaluate
-        from pneutouch.pipeline.viscous import full_document
+        from pneutouch.evaluation.document import full_document
+        from pneutouch.evaluation.evaluate import evaluate
 
         evaluation = evaluate(design, set_, closure=closure, clamp=clamp, aged=aged, **rung(model, tolerance))
         document = full_document(evaluation, monte_carlo)
@@ -136,7 +136,7 @@ def new(
 ) -> None:
     """Write a commented design file."""
     with reporting():
-        from pneutouch.pipeline.new import new_design
+        from pneutouch.output.new import new_design
 
         typer.echo(str(new_design(name, out)))
 
@@ -168,7 +168,7 @@ def refuse_flags(context: typer.Context, flags: Mapping[str, str], what: str, fi
 
 def print_json(document: Any) -> None:
     """Print a document as JSON on stdout."""
-    from pneutouch.pipeline.files import json_bytes
+    from pneutouch.output.files import json_bytes
 
     typer.echo(json_bytes(document).decode(), nl=False)
 

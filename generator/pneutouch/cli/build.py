@@ -27,9 +27,9 @@ from pneutouch.cli.app import (
 from pneutouch.cli.progress import bar
 
 if TYPE_CHECKING:
-    from pneutouch.pipeline.evaluate import Evaluation
-    from pneutouch.pipeline.voxels import VoxelPlan
+    from pneutouch.evaluation.evaluate import Evaluation
     from pneutouch.printability import Finding
+    from pneutouch.workflows.build.voxels import VoxelPlan
 
 _FLAGS = {"set_": "--set", **{key: f"--{key}" for key in ("model", "tolerance", "closure", "clamp")}}
 
@@ -88,7 +88,7 @@ def check(
     """Check printability and mechanical limits; exit 1 where a rule is broken."""
     with reporting():
         if _is_specimen(design):
-            from pneutouch.pipeline.specimen.build import check_specimen
+            from pneutouch.workflows.specimen.build import check_specimen
 
             refuse_flags(context, _VOXEL_FLAGS, "a specimen, which has no membrane", design)
             findings = check_specimen(design, set_, deep=deep)
@@ -96,7 +96,7 @@ def check(
             evaluation = _evaluated(design, set_)
             findings = [*evaluation.findings, *(evaluation.deep_findings() if deep else [])]
             if voxels:
-                from pneutouch.pipeline.voxels import plan_voxels
+                from pneutouch.workflows.build.voxels import plan_voxels
 
                 findings += plan_voxels(evaluation.assembly).findings
         broken = any(finding.severity == "error" for finding in findings)
@@ -111,20 +111,20 @@ def check(
 
 
 def _evaluated(design: str, set_: list[str] | None, **asked: Any) -> Evaluation:
-    from pneutouch.pipeline.evaluate import evaluate
+    from pneutouch.evaluation.evaluate import evaluate
 
     return evaluate(design, set_, **asked)
 
 
 def _is_specimen(design: str) -> bool:
     from pneutouch.catalogue import Library
-    from pneutouch.pipeline.specimen.load import specimen_file
+    from pneutouch.workflows.specimen.load import specimen_file
 
     return not design.lower().endswith(".3mf") and specimen_file(design, Library.default()) is not None
 
 
 def _build_specimen(design: str, out: Path, set_: list[str] | None) -> tuple[str, Path, list[Finding]]:
-    from pneutouch.pipeline.specimen.build import STEPS, build_specimen
+    from pneutouch.workflows.specimen.build import STEPS, build_specimen
 
     with _progress(STEPS) as report:
         folder, findings = build_specimen(design, out, set_, progress=report)
@@ -132,9 +132,9 @@ def _build_specimen(design: str, out: Path, set_: list[str] | None) -> tuple[str
 
 
 def _build_sensor(evaluation: Evaluation, out: Path) -> tuple[str, Path, list[Finding]]:
-    from pneutouch.pipeline.build import STEPS
-    from pneutouch.pipeline.build import build as run
-    from pneutouch.pipeline.files import check_writable
+    from pneutouch.output.files import check_writable
+    from pneutouch.workflows.build.run import STEPS
+    from pneutouch.workflows.build.run import build as run
 
     check_writable(out / evaluation.scene.name)
     with _progress(STEPS) as report:
@@ -144,7 +144,7 @@ def _build_sensor(evaluation: Evaluation, out: Path) -> tuple[str, Path, list[Fi
 
 def _planned(evaluation: Evaluation, out: Path, mode: str | None) -> VoxelPlan:
     """The plan of the voxel stack; what is wrong with it is said before anything is built."""
-    from pneutouch.pipeline.voxels import check_stack_folder, plan_voxels, stack_folder
+    from pneutouch.workflows.build.voxels import check_stack_folder, plan_voxels, stack_folder
 
     plan = plan_voxels(evaluation.assembly, mode=mode)
     plan.refuse()
@@ -153,8 +153,8 @@ def _planned(evaluation: Evaluation, out: Path, mode: str | None) -> VoxelPlan:
 
 
 def _write_voxels(plan: VoxelPlan, evaluation: Evaluation, out: Path) -> Path:
-    from pneutouch.pipeline.build import input_hash
-    from pneutouch.pipeline.voxels import write_voxels
+    from pneutouch.workflows.build.run import input_hash
+    from pneutouch.workflows.build.voxels import write_voxels
 
     with bar("voxels") as report:
         folder, notes = write_voxels(plan, out, input_hash(evaluation), report)
@@ -166,8 +166,8 @@ def _write_voxels(plan: VoxelPlan, evaluation: Evaluation, out: Path) -> Path:
 def _from_3mf(file: str, context: typer.Context) -> Evaluation:
     """Evaluate the recipe of a 3MF; says on stderr what was of another version when it was made."""
     from pneutouch.export.threemf_read import read_threemf
-    from pneutouch.pipeline.recipe import evaluate_recipe
-    from pneutouch.pipeline.recipe_read import other_versions, read_recipe
+    from pneutouch.output.recipe import evaluate_recipe
+    from pneutouch.output.recipe_read import other_versions, read_recipe
 
     why = "a 3MF: its recipe fixes the design and the model; build from a design file to change them"
     refuse_flags(context, _FLAGS, why, file)

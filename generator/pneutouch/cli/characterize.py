@@ -23,8 +23,8 @@ def characterize(
     with reporting():
         from pneutouch.cli.progress import bar
         from pneutouch.errors import InputError, nearest
-        from pneutouch.pipeline.characterize.run import EVIDENCE, write
-        from pneutouch.pipeline.characterize.run import characterize as run
+        from pneutouch.workflows.characterize.run import EVIDENCE, write
+        from pneutouch.workflows.characterize.run import characterize as run
 
         if evidence not in EVIDENCE:
             raise InputError(f"--evidence {evidence}: unknown.{nearest(evidence, EVIDENCE)}")

@@ -10,7 +10,7 @@ import typer
 from pneutouch.cli.app import JsonOption, app, print_json, reporting
 
 if TYPE_CHECKING:
-    from pneutouch.pipeline.coupons.order import Asked
+    from pneutouch.workflows.coupons.order import Asked
 
 _FLAGS = {
     "profile": "--profile",
@@ -40,7 +40,7 @@ def coupons(
         if results is not None:
             _enter(results, out or Path(), given, json)
             return
-        from pneutouch.pipeline.coupons.build import build_coupons
+        from pneutouch.workflows.coupons.build import build_coupons
 
         folder, document = build_coupons(_asked(given), out or Path("outputs"))
         if json:
@@ -56,7 +56,7 @@ def _enter(path: Path, out: Path, given: dict[str, Any], json: bool) -> None:
     if given:
         flags = ", ".join(_FLAGS[key] for key in given)
         raise InputError(f"--results {path}: {flags} cannot be given with it: the file says what was measured")
-    from pneutouch.pipeline.coupons.results import enter_results
+    from pneutouch.workflows.coupons.results import enter_results
 
     document = enter_results(path, out)
     if json:
@@ -70,7 +70,7 @@ def _enter(path: Path, out: Path, given: dict[str, Any], json: bool) -> None:
 def _asked(given: dict[str, Any]) -> Asked:
     """What the flags ask for. Raises InputError for copies that are not a number."""
     from pneutouch.errors import InputError
-    from pneutouch.pipeline.coupons.order import Asked
+    from pneutouch.workflows.coupons.order import Asked
 
     copies = {}
     for word in _words(given.get("copies")):

@@ -16,16 +16,16 @@ from pneutouch.spec.target import Target
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
-    from pneutouch.pipeline.select_graded import GradedSelection
     from pneutouch.selection.grade_search import Trial
+    from pneutouch.workflows.select.graded import GradedSelection
 
 
 def select_graded(
     target: Target, where: str, write: str | None, out: Path, *, json: bool, refused: list[str]
 ) -> None:  # fmt: skip
     """Search, show and save a grade. Exits 1 where none meets the target; ``refused`` are flags that do not go with it."""
-    from pneutouch.pipeline import graded_document as shown
-    from pneutouch.pipeline.select_graded import select_graded as run
+    from pneutouch.workflows.select import graded_document as shown
+    from pneutouch.workflows.select.graded import select_graded as run
 
     if refused:
         raise InputError(f"{', '.join(f'--{flag}' for flag in refused)} cannot be given with --graded")
@@ -46,7 +46,7 @@ def select_graded(
 
 def graded_text(selection: GradedSelection) -> str:
     """The grade and the constant membranes of its size, or what is missed."""
-    from pneutouch.pipeline.graded_document import missed
+    from pneutouch.workflows.select.graded_document import missed
 
     best, sensor, wish = selection.search.best, selection.sensor, selection.wish
     pressures = [f"{p / KPA:g} kPa" for p in wish.pressures]

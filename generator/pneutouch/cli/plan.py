@@ -23,7 +23,7 @@ def plan(
 ) -> None:  # fmt: skip
     """Plan a measurement campaign: every run and step, what it must read, and where the rig cannot follow."""
     with reporting():
-        from pneutouch.pipeline.plan import make_plan, rig_of, write_plan
+        from pneutouch.workflows.plan.run import make_plan, rig_of, write_plan
 
         found = make_plan(
             design,

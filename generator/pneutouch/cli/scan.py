@@ -10,7 +10,7 @@ import typer
 from pneutouch.cli.app import JsonOption, OutOption, SetOption, app, print_json, refuse_flags, reporting
 
 if TYPE_CHECKING:
-    from pneutouch.pipeline.scan import Asked
+    from pneutouch.workflows.scan.run import Asked
 
 
 _NOT_SEPARATING = {key: f"--{key}" for key in ("pressures", "control", "seed", "data")}
@@ -38,8 +38,8 @@ def scan(
             refuse_flags(context, _NOT_SEPARATING, "--separate, which scans nothing", specimen)
             _separate(specimen, design, separate, asked, set_, json=json)
             return
-        from pneutouch.pipeline.scan import run_scan, write_scan
-        from pneutouch.pipeline.scan_document import document
+        from pneutouch.workflows.scan.document import document
+        from pneutouch.workflows.scan.run import run_scan, write_scan
 
         run = run_scan(specimen, design, asked, set_)
         folder = write_scan(run, out)
@@ -56,9 +56,9 @@ def _asked(
     pressures: str, preload: float, speed: float | None, control: str, noise: float | None, seed: int, data: list[Path]
 ) -> Asked:
     from pneutouch.errors import InputError
-    from pneutouch.pipeline.scan import Asked
     from pneutouch.texture.scan import NOISE
     from pneutouch.units import KPA
+    from pneutouch.workflows.scan.run import Asked
 
     try:
         listed = tuple(float(part) * KPA for part in pressures.split(",") if part.strip())
@@ -68,7 +68,7 @@ def _asked(
 
 
 def _separate(specimen: str, design: str, text: str, asked: Asked, set_: list[str] | None, *, json: bool) -> None:
-    from pneutouch.pipeline.separate import separating
+    from pneutouch.workflows.scan.separate import separating
 
     found = separating(specimen, design, text, asked, set_)
     if json:

@@ -59,9 +59,9 @@ def select(
     """Find designs for a target; exit 1 where there is none."""
     values = {key: value for key, value in locals().items() if key in _FLAGS and value is not None}
     with reporting():
-        from pneutouch.pipeline import select_document as shown
-        from pneutouch.pipeline.new import check_name
-        from pneutouch.pipeline.select import select as run
+        from pneutouch.output.new import check_name
+        from pneutouch.workflows.select import document as shown
+        from pneutouch.workflows.select.run import select as run
 
         if write is not None:
             check_name(write, out)
@@ -75,7 +75,7 @@ def select(
             choice = shown.pick(selection, pick)
             path = shown.write_choice(selection, choice, write, out) if write is not None else None
         if charts is not None:
-            from pneutouch.pipeline.select_charts import write_charts
+            from pneutouch.workflows.select.charts import write_charts
 
             write_charts(selection, charts, choice)
         if json:

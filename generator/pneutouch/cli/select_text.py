@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pneutouch.cli.text import columns
 from pneutouch.mechanics.atlas.respond import DEPTH, ENDS
-from pneutouch.pipeline.select import Selection
-from pneutouch.pipeline.select_document import would_need
 from pneutouch.selection import Choice
 from pneutouch.units import KPA
+from pneutouch.workflows.select.document import would_need
+from pneutouch.workflows.select.run import Selection
 
 _HEAD = [
     "",

@@ -21,12 +21,12 @@ def show(
     with reporting():
         if file.is_dir() and file.suffix.lower() != ".3mf":
             from pneutouch.cli.show_text import stack_text as text
-            from pneutouch.pipeline.show_voxels import show_stack
+            from pneutouch.workflows.show.voxels import show_stack
 
             document = show_stack(file, out)
         else:
             from pneutouch.cli.show_text import show_text as text
-            from pneutouch.pipeline.show import show as run
+            from pneutouch.workflows.show.package import show as run
 
             refuse_flags(context, {"out": "--out"}, "a 3MF, which has no sections", str(file))
             document = run(file)

@@ -11,7 +11,7 @@ from pneutouch.cli.app import DesignArgument, JsonOption, OutOption, SetOption, 
 from pneutouch.cli.progress import bar
 
 if TYPE_CHECKING:
-    from pneutouch.pipeline.simulate import Asked
+    from pneutouch.workflows.simulate.run import Asked
 
 ResinsOption = Annotated[
     str, typer.Option("--resins", metavar="NAME,NAME", help="Resins of the dome, or all of the paper's; left out: the design's.")
@@ -38,7 +38,7 @@ def simulate(
     """Simulate a measurement campaign: records with known truth, always labelled as simulated."""
     with reporting():
         from pneutouch.bench.simulate import Truth
-        from pneutouch.pipeline.simulate import Asked, simulate
+        from pneutouch.workflows.simulate.run import Asked, simulate
 
         asked = Asked(
             resins=words(resins), specimens=specimens, runs=runs, kinds=words(kinds), rate=rate, seed=seed, model=model,

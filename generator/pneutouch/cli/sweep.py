@@ -13,7 +13,7 @@ from pneutouch.cli.progress import bar
 from pneutouch.errors import InputError
 
 if TYPE_CHECKING:
-    from pneutouch.pipeline.sweep import Outcome, Plan
+    from pneutouch.workflows.sweep import Outcome, Plan
 
 _MODEL_HELP = "Rung of the ladder of models; solid where neither this nor the file says."
 
@@ -48,8 +48,8 @@ def sweep(
     with reporting():
         # Before numpy loads: the processes take the cores, and results must not depend on how many there are.
         os.environ["OMP_NUM_THREADS"] = "1"
-        from pneutouch.pipeline.sweep import sweep as run
-        from pneutouch.pipeline.sweep.run import Machines
+        from pneutouch.workflows.sweep import sweep as run
+        from pneutouch.workflows.sweep.run import Machines
 
         plan = _plan(file, design, over or [], set_ or [], {"model": model, "closure": closure, "clamp": clamp})
         target = Path("outputs") / f"{plan.name}.nc" if out is None else out
@@ -61,7 +61,7 @@ def sweep(
 def _plan(
     file: Path | None, design: str | None, over: list[str], set_: list[str], options: dict[str, str | None]
 ) -> Plan:
-    from pneutouch.pipeline.sweep import plan_of_file, plan_of_flags
+    from pneutouch.workflows.sweep import plan_of_file, plan_of_flags
 
     if file is not None and (design is not None or over):
         raise InputError(f"{file}: a sweep file and {'--over' if over else '--design'}: give one or the other")

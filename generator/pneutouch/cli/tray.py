@@ -11,8 +11,8 @@ from pneutouch.cli.app import JsonOption, OutOption, SetOption, app, print_json,
 from pneutouch.errors import InputError
 
 if TYPE_CHECKING:
-    from pneutouch.pipeline.tray.lay import Laid
-    from pneutouch.pipeline.tray.order import Order
+    from pneutouch.workflows.tray.lay import Laid
+    from pneutouch.workflows.tray.order import Order
 
 
 @app.command()
@@ -31,9 +31,9 @@ def tray(
 ) -> None:  # fmt: skip
     """Lay many sensors out on one tray: print files, part marks and a label list."""
     with reporting():
-        from pneutouch.pipeline.files import check_writable
-        from pneutouch.pipeline.tray.lay import lay
-        from pneutouch.pipeline.tray.write import document, write_tray
+        from pneutouch.output.files import check_writable
+        from pneutouch.workflows.tray.lay import lay
+        from pneutouch.workflows.tray.write import document, write_tray
 
         order = _order(what, over or [], copies, set_ or [], {"profile": profile, "marks": marks})
         folder = out / order.name
@@ -51,7 +51,7 @@ def tray(
 
 def _order(what: list[str], over: list[str], copies: int | None, set_: list[str], head: dict[str, str | None]) -> Order:
     """From a tray file where the one word given is a file with an [[entry]], else from designs and flags."""
-    from pneutouch.pipeline.tray.order import is_tray_file, order_of_file, order_of_flags
+    from pneutouch.workflows.tray.order import is_tray_file, order_of_file, order_of_flags
 
     if len(what) == 1 and is_tray_file(Path(what[0])):
         if over or copies is not None:
@@ -66,7 +66,7 @@ def _tell(step: str) -> None:
 
 def _text(laid: Laid) -> str:
     """A line a job: what to load, how full it is."""
-    from pneutouch.pipeline.tray.lay import counted, fill
+    from pneutouch.workflows.tray.lay import counted, fill
 
     lines = [f"{laid.printer.title}: {counted(laid.parts)}, {laid.resin_note}"]
     for job in laid.jobs:

@@ -6,11 +6,11 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from pneutouch.arrays import Array
 from pneutouch.body import Bore, Frame, Prism, Solid, Turned
 from pneutouch.body.shapes import Shape
 from pneutouch.export.step_text import canonical
 from pneutouch.meridian import Arc, Meridian, Segment
-from pneutouch.meridian.segments import Array
 
 if TYPE_CHECKING:
     import cadquery as cq

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pneutouch.arrays import Array, Indices
 from pneutouch.errors import InputError
 from pneutouch.export.threemf import read_strictly
 from pneutouch.export.threemf_metadata import NAMESPACE, metadata_of
@@ -41,11 +42,11 @@ class StoredBody:
     material: str | None
     colour: str | None
     mix: dict[str, float]
-    vertices: NDArray[np.float64]
-    triangles: NDArray[np.int64]
+    vertices: Array
+    triangles: Indices
 
     @property
-    def size(self) -> NDArray[np.float64]:
+    def size(self) -> Array:
         """Extent (3,) along x, y and z, mm."""
         return np.ptp(self.vertices, axis=0) if len(self.vertices) else np.zeros(3)
 
@@ -151,10 +152,10 @@ def _material(wrapper: Any, model: Any, mesh: Any) -> tuple[str | None, str | No
     return " + ".join(f"{ratio:.3g} {name}" for name, ratio in mix.items()), _hex(colour), mix
 
 
-def _rgb(wrapper: Any, colour: Any) -> NDArray[np.float64]:
+def _rgb(wrapper: Any, colour: Any) -> Array:
     return np.array(wrapper.ColorToRGBA(colour)[:3], float)
 
 
-def _hex(colour: NDArray[np.float64]) -> str:
+def _hex(colour: Array) -> str:
     red, green, blue = np.clip(np.round(colour), 0, 255).astype(int)
     return f"#{red:02X}{green:02X}{blue:02X}"

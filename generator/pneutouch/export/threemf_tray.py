@@ -10,11 +10,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from pneutouch.arrays import Array
 from pneutouch.body import Body
 from pneutouch.export.threemf import content_of, mesh_object, name_uuid
 from pneutouch.export.threemf_materials import Materials
 from pneutouch.export.threemf_metadata import add_metadata
-from pneutouch.meridian.segments import Array
 
 
 @dataclass(frozen=True)

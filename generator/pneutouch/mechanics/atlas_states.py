@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.errors import BeyondLimitError
 from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.atlas.press import Press, Track
@@ -19,7 +20,6 @@ from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.events import CREASE, OVERHANG, Point, crossing
 from pneutouch.mechanics.solid.indent import DETAIL
-from pneutouch.meridian.segments import Array
 from pneutouch.units import KPA
 
 _DETAIL = {

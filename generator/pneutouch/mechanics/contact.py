@@ -18,12 +18,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.mechanics.cap import PressedCap, pressed_cap
 from pneutouch.mechanics.gas import TrappedGas
 from pneutouch.mechanics.membrane_energy import energy_slope
 from pneutouch.mechanics.roots import bisect
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.meridian.segments import Array
 
 
 @dataclass(frozen=True, slots=True)

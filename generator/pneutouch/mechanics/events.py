@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.mechanics.contact import Pressed
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.meridian.segments import Array
 
 _NEAR_BASE = 0.98
 """Share of R0 at which the contact counts as having reached the base; beyond it the free arc has no room."""

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.mechanics.inflation import LIMIT_HEIGHT, LIMIT_PRESSURE, relative_height
-from pneutouch.meridian.segments import Array
 
 RISING_BRANCH = np.array([
     (0.0, 1.0), (0.487184, 1.066291), (0.816153, 1.134059), (1.204673, 1.255874), (1.398748, 1.360730),

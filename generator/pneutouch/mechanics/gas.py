@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from pneutouch.meridian.segments import Array
+from pneutouch.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pneutouch.meridian.segments import Array
+from pneutouch.arrays import Array
 
 
 def hermite(at: Array, x: Array, y: Array, slope: Array) -> Array:

@@ -14,9 +14,9 @@ import math
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.errors import BeyondLimitError, ComputationError
 from pneutouch.mechanics.roots import bisect
-from pneutouch.meridian.segments import Array
 
 _HIGHEST = 1e6
 """Largest x searched on the falling branch; p R0/(mu t0) is 4e-6 there."""

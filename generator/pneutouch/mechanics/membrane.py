@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.mechanics.contact import Pressed, press
 from pneutouch.mechanics.events import events, range_end
 from pneutouch.mechanics.exact_membrane import height_errors, limit_point_errors
@@ -15,7 +16,6 @@ from pneutouch.mechanics.limits import limit_point, limits
 from pneutouch.mechanics.prediction import InflationCurve, Result, State
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.meridian.segments import Array
 from pneutouch.units import KPA
 
 

@@ -5,7 +5,7 @@ With thickness stretch lambda and in-plane stretches lambda**-1/2, W = C1 (lambd
 
 from __future__ import annotations
 
-from pneutouch.meridian.segments import Array
+from pneutouch.arrays import Array
 
 
 def energy(shear_modulus: float, thickness_stretch: Array) -> Array:

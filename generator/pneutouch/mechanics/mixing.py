@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from pneutouch.meridian.segments import Array
+from pneutouch.arrays import Array
 from pneutouch.spec.material import Material
 
 Law = Callable[[Array, float, float], Array]

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.errors import InputError, nearest
 from pneutouch.mechanics.contact import CLOSURES
 from pneutouch.mechanics.ladder import DEFAULT_TOLERANCE, DISCRETISATION, MODELS, NUMERICAL, TABULATION, climb
 from pneutouch.mechanics.membrane import error_against_exact_membrane, membrane_result
 from pneutouch.mechanics.prediction import Prediction, Result
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.meridian.segments import Array
 from pneutouch.units import KPA, ML
 
 if TYPE_CHECKING:

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.mechanics.events import Event
 from pneutouch.mechanics.limits import LimitPoint, Limits
 from pneutouch.mechanics.response import Figures, tangent_stiffness
-from pneutouch.meridian.segments import Array
 from pneutouch.units import KPA, ML
 
 _DIGITS = 12

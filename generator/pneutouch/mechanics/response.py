@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pneutouch.meridian.segments import Array
+from pneutouch.arrays import Array
 
 _LEAST_POINTS = 3
 _SATURATED = 0.5

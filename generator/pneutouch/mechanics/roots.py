@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from pneutouch.meridian.segments import Array
+from pneutouch.arrays import Array
 
 _HALVINGS = 60
 """2**-60 of the bracket: below the rounding of any root of its size."""

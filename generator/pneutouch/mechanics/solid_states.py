@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from pneutouch.arrays import Array, Index
 from pneutouch.mechanics.events import Event, range_end
 from pneutouch.mechanics.hermite import hermite
 from pneutouch.mechanics.limits import LimitPoint, Limits
@@ -27,9 +28,7 @@ from pneutouch.mechanics.solid import (
     printed_dome,
     state_at,
 )
-from pneutouch.mechanics.solid.mesh import Index
 from pneutouch.meridian.arc import arc_share
-from pneutouch.meridian.segments import Array
 from pneutouch.units import KPA
 
 _PAST_LIMIT = 1.6

@@ -12,11 +12,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pneutouch.meridian.segments import Arc, Array, Line, Segment
-
-Flags = NDArray[np.bool_]
+from pneutouch.arrays import Array, Flags
+from pneutouch.meridian.segments import Arc, Line, Segment
 
 _ON_AXIS = 1e-9
 """A crossing nearer to the axis than this (mm) is on it."""

@@ -8,7 +8,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from pneutouch.meridian.segments import Array, Point, Segment
+from pneutouch.arrays import Array
+from pneutouch.meridian.segments import Point, Segment
 
 _CLOSED = 1e-9
 """Ends that should meet are computed from the same numbers: they may differ by rounding alone (mm)."""

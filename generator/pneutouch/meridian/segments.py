@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from pneutouch.arrays import Array
 
 Point = tuple[float, float]
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,9 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.body import Body, Solid
 from pneutouch.catalogue import Scene
-from pneutouch.meridian.segments import Array
 from pneutouch.parts.connector import rigid_solids
 from pneutouch.parts.gas import glue_volume, internal_volume
 from pneutouch.parts.layout import Layout, lay_out

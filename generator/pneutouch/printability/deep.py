@@ -7,9 +7,9 @@ from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.body import Body
 from pneutouch.errors import InputError
-from pneutouch.meridian.segments import Array
 from pneutouch.printability.finding import Excess, Finding, Severity
 from pneutouch.printability.subject import Exact
 from pneutouch.units import UM

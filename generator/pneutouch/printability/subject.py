@@ -23,15 +23,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
+from pneutouch.arrays import Array, Flags
 from pneutouch.body import Body
-from pneutouch.meridian.segments import Array
 from pneutouch.spec.printer import Mode, Printer
 
 Point = tuple[float, float, float]
-Flags = NDArray[np.bool_]
 
 
 class Exact(Protocol):

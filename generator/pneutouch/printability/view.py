@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from pneutouch.arrays import Array, Flags
 from pneutouch.body import Body
-from pneutouch.meridian.segments import Array
 from pneutouch.printability.measure.cavities import Pocket, balls, pockets, seen, unseen
 from pneutouch.printability.measure.chords import Chords, Side, chords, refined
 from pneutouch.printability.measure.samples import Samples, sample
@@ -17,7 +17,7 @@ from pneutouch.printability.measure.shells import Hollow, voids
 from pneutouch.printability.measure.surface import Surface
 from pneutouch.printability.measure.thin import Place, thin_places
 from pneutouch.printability.measure.voxels import Voxels, build_frame, fill
-from pneutouch.printability.subject import Flags, Item, Point, Subject
+from pneutouch.printability.subject import Item, Point, Subject
 from pneutouch.spec.printer import Feature, Printer
 
 if TYPE_CHECKING:

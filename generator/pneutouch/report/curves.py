@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pneutouch.arrays import Array
+from pneutouch.evaluation.variants import ResinCurve
 from pneutouch.mechanics import Prediction, Sensor, State
-from pneutouch.meridian.segments import Array
 from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MARKERS, MUTED, figure, label_ends, svg
-from pneutouch.report.variants import ResinCurve
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:

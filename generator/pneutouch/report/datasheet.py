@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pneutouch.evaluation.variants import ResinCurve, drawn_by, resin_curves
 from pneutouch.export.scene import cut_open
 from pneutouch.mechanics import Sensor
 from pneutouch.report import curves, pages, relaxation
@@ -13,7 +14,6 @@ from pneutouch.report.shares import share_bars
 from pneutouch.report.sheet import Sheet
 from pneutouch.report.tradeoff import tradeoff_chart
 from pneutouch.report.tuning import tuning_chart
-from pneutouch.report.variants import ResinCurve, drawn_by, resin_curves
 from pneutouch.units import KPA
 
 _LEAST_SPAN = 22 * KPA

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pneutouch.report.style import FONTS
+from pneutouch.parts.lettering.glyphs import FONTS
 
 TEMPLATES = Path(__file__).parent / "templates"
 

@@ -9,8 +9,8 @@ import io
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Array
 from pneutouch.body import Body
 
 _LIGHT = np.array([-0.35, -0.55, 0.76])
@@ -40,14 +40,14 @@ def picture(bodies: tuple[Body, ...], width: int = 900, height: int = 640) -> by
     return buffer.getvalue()
 
 
-def _view(turn: float, tilt: float) -> NDArray[np.float64]:
+def _view(turn: float, tilt: float) -> Array:
     """Rotation whose rows are right, up and towards the viewer."""
     towards = np.array([math.cos(tilt) * math.cos(turn), math.cos(tilt) * math.sin(turn), math.sin(tilt)])
     right = np.array([-math.sin(turn), math.cos(turn), 0.0])
     return np.array([right, np.cross(towards, right), towards])
 
 
-def _shades(body: Body) -> NDArray[np.float64]:
+def _shades(body: Body) -> Array:
     """One colour a triangle: ambient, diffuse from the upper left, a little from below."""
     a, b, c = np.moveaxis(body.corners, 1, 0)
     normal = np.cross(b - a, c - a)
@@ -55,13 +55,11 @@ def _shades(body: Body) -> NDArray[np.float64]:
     diffuse = np.clip(normal @ (_LIGHT / np.linalg.norm(_LIGHT)), 0, 1)
     base = np.array(list(bytes.fromhex(body.material.colour[1:]))) / 255
     shade = 0.42 + 0.62 * diffuse + 0.05 * normal[:, 2]
-    lit: NDArray[np.float64] = np.clip(shade[:, None] * base, 0, 1)
+    lit: Array = np.clip(shade[:, None] * base, 0, 1)
     return lit
 
 
-def _fill(
-    image: NDArray[np.float64], depth: NDArray[np.float64], corner: NDArray[np.float64], colour: NDArray[np.float64]
-) -> None:
+def _fill(image: Array, depth: Array, corner: Array, colour: Array) -> None:
     """Paint one triangle where it lies in front; ``corner`` (3, 3) is in pixels and depth."""
     (x0, y0), (x1, y1) = np.floor(corner[:, :2].min(axis=0)).astype(int), np.ceil(corner[:, :2].max(axis=0)).astype(int)
     xs, ys = np.arange(x0, x1 + 1) + 0.5, np.arange(y0, y1 + 1) + 0.5

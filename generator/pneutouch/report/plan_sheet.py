@@ -25,7 +25,7 @@ _AMISS = (
 
 
 def plan_sheet(plan: dict[str, Any]) -> str:
-    """Markdown of a plan's document (see `pipeline.plan`)."""
+    """Markdown of a plan's document (see `workflows.plan`)."""
     return "\n".join([
         f"# Test plan: {_escaped(plan['title'])}", "", *_head(plan),
         "## Warnings", "", *_warnings(plan), "",

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.bench.calibrate.goodness import Residuals
-from pneutouch.meridian.segments import Array
 from pneutouch.report.style import ACCENT, FAINT, INK, LINES, MARKERS, MUTED, figure, svg
 from pneutouch.units import KPA, ML
 

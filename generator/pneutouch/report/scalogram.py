@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pneutouch.meridian.segments import Array
+from pneutouch.arrays import Array
 from pneutouch.report.style import ACCENT, BOLD, INK, LINES, MUTED, figure, label_ends, plain_ticks, svg
 from pneutouch.texture.scalogram import Scalogram
 from pneutouch.texture.signal import Signal

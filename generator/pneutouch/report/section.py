@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.body import Body, Bore, Solid
-from pneutouch.meridian.segments import Array
 from pneutouch.parts import Assembly
 from pneutouch.report.dimension import THIN, circle
 from pneutouch.report.style import INK, MUTED

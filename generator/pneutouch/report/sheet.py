@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from pneutouch import __version__
 from pneutouch.catalogue import Scene
+from pneutouch.evaluation.chart_data import TradeOff, Tuning
 from pneutouch.mechanics import Prediction
 from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.mechanics.prediction import State
@@ -17,8 +18,6 @@ from pneutouch.printability.estimate import JobEstimate
 from pneutouch.report import ordering, prose
 from pneutouch.report.certainty import how_sure, interval
 from pneutouch.report.environment import NOT_TESTED, environment
-from pneutouch.report.tradeoff import TradeOff
-from pneutouch.report.tuning import Tuning
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA, ML
 

@@ -7,8 +7,9 @@ import io
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from pneutouch.parts.lettering.glyphs import FONTS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.patheffects import AbstractPathEffect
 
-FONTS = Path(__file__).parent / "fonts"
 BOLD: dict[str, Any] = {"family": "Inter Semi Bold", "weight": 600}
 INK, ACCENT, MUTED, FAINT = "#16212B", "#0B5C8A", "#6C7A86", "#C9D1D8"
 MM = 1 / 25.4

@@ -2,50 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
+from pneutouch.evaluation.chart_data import Spot, TradeOff
 from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MUTED, Label, figure, label_points, plain_ticks, svg
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-    from pneutouch.selection.front import Front
-
-
-class Spot(NamedTuple):
-    """A design on the chart: title of its resin, what to call it, kPa/N and N."""
-
-    resin: str
-    label: str
-    sensitivity: float
-    force: float
-
-
-@dataclass(frozen=True)
-class TradeOff:
-    """Fronts at one driving pressure.
-
-    Attributes:
-        fronts: One a resin; empty ones are left out.
-        pressure: Driving pressure, kPa.
-        gauge: Pressure rise that the pressure sensor has left, kPa.
-        window: Least and greatest sensitivity wanted (kPa/N), None where free.
-        force: Least force range wanted, N; None where free.
-        spots: Designs, the first picked out.
-    """
-
-    fronts: tuple[Front, ...]
-    pressure: float
-    gauge: float
-    spots: tuple[Spot, ...]
-    window: tuple[float, float] | None = None
-    force: float | None = None
-
-    @property
-    def known(self) -> tuple[Front, ...]:
-        """The fronts with a line to draw."""
-        return tuple(front for front in self.fronts if front.sensitivity.size > 1)
 
 
 def tradeoff_chart(tradeoff: TradeOff, size: tuple[float, float]) -> str:

@@ -2,45 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pneutouch.meridian.segments import Array
+from pneutouch.evaluation.chart_data import Tuning
 from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MUTED, Label, figure, halo, label_ends, svg
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-
-class TuningCurve(NamedTuple):
-    """Sensitivity (kPa/N) over driving pressure (kPa), (n,) each."""
-
-    label: str
-    pressure: Array
-    sensitivity: Array
-
-
-@dataclass(frozen=True)
-class Tuning:
-    """One design's curve from no pressure to its rated one.
-
-    Attributes:
-        chosen: The curve.
-        low: Lower end of its k = 2 interval, kPa/N, (n,).
-        high: Upper end, (n,).
-        working: Driving pressures it is meant for and the sensitivities there, kPa to kPa/N.
-        others: Designs to compare with.
-        published: Measured sensitivities of this very sensor, kPa to kPa/N.
-    """
-
-    chosen: TuningCurve
-    low: Array
-    high: Array
-    working: dict[float, float]
-    others: tuple[TuningCurve, ...] = ()
-    published: tuple[tuple[float, float], ...] = ()
 
 
 def tuning_chart(tuning: Tuning, size: tuple[float, float]) -> str:

@@ -6,12 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Array, Flags, Index
 from pneutouch.mechanics.atlas.press import Batch
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.limits import RATED_SHARE
-from pneutouch.meridian.segments import Array
 from pneutouch.selection.pool import WISHES, Pool, evaluated, margins
 from pneutouch.selection.problem import Problem, Resin
 from pneutouch.selection.search import search
@@ -106,7 +105,7 @@ def _room(room: dict[str, Array]) -> Array:
     return np.asarray(np.minimum(np.min(rest, axis=0), 1.0))
 
 
-def _shortlist(pool: Pool, room: dict[str, Array], fits: NDArray[np.bool_]) -> NDArray[np.intp]:
+def _shortlist(pool: Pool, room: dict[str, Array], fits: Flags) -> Index:
     """For each resin a few candidates that are not nearly the same, those with the most room first."""
     least = _room(room) + 0.5 * room.get("sensitivity", np.zeros_like(pool.radius))
     chosen: list[int] = []

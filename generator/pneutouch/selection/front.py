@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pneutouch.meridian.segments import Array
+from pneutouch.arrays import Array, Index
 from pneutouch.selection.pool import Pool, evaluated, joined, margins
 from pneutouch.selection.problem import Problem, Resin
 
@@ -71,7 +70,7 @@ def _room(problem: Problem, pool: Pool) -> Array:
     return np.asarray(np.min(rest, axis=0) + 1e-9)
 
 
-def _best(problem: Problem, pool: Pool) -> NDArray[np.intp]:
+def _best(problem: Problem, pool: Pool) -> Index:
     """At each level the candidate of most force that is at least so sensitive and keeps every limit, (few,)."""
     good = np.flatnonzero(_room(problem, pool) >= 0.0)
     if good.size == 0:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pneutouch.meridian.segments import Array
+from pneutouch.arrays import Array
 
 ENOUGH = 0.5
 """A trial that uses no more than this share of every tolerance ends a search for the same sensitivity."""

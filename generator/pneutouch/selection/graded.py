@@ -6,12 +6,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.catalogue.mixture import Mixing
 from pneutouch.errors import ComputationError
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.meridian.segments import Array
 from pneutouch.selection.grade_search import Trial, Wish, cost
 from pneutouch.selection.problem import Problem, Resin
 

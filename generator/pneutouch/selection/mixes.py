@@ -6,10 +6,9 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Array, Index
 from pneutouch.catalogue.mixture import Mixing
-from pneutouch.meridian.segments import Array
 from pneutouch.selection.pool import Pool, evaluated, margins
 from pneutouch.selection.problem import Problem, Resin
 
@@ -55,7 +54,7 @@ def _fraction(resin: Resin) -> float:
     return resin.grade.fractions[0]
 
 
-def _best(problem: Problem, pool: Pool) -> NDArray[np.intp]:
+def _best(problem: Problem, pool: Pool) -> Index:
     """Candidates with the most room, one a fraction at most."""
     room = [margin for name, margin in margins(problem, pool).items() if name != "sensitivity"]
     order = np.argsort(-np.minimum(np.min(room, axis=0), 1.0), kind="stable")

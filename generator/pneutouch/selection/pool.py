@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Array, Flags, Index
 from pneutouch.mechanics.atlas.respond import BREAK, OUTSIDE, Response, respond
 from pneutouch.mechanics.limits import RATED_SHARE
-from pneutouch.meridian.segments import Array
 from pneutouch.selection.problem import Problem
 
 WISHES = ("sensitivity", "force range", "stiffness", "outer diameter")
@@ -25,7 +24,7 @@ class Pool(NamedTuple):
     pressure: Array
     response: Response
 
-    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Pool:
+    def take(self, rows: Index | Flags) -> Pool:
         """Some of the candidates."""
         return Pool(self.resin[rows], self.radius[rows], self.wall[rows], self.pressure[rows], self.response.take(rows))
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.press import Batch
 from pneutouch.mechanics.atlas.recipe import Recipe
-from pneutouch.meridian.segments import Array
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
 

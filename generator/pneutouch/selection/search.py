@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.limits import RATED_SHARE
-from pneutouch.meridian.segments import Array
 from pneutouch.selection.pool import Pool, evaluated, joined
 from pneutouch.selection.problem import Problem
 

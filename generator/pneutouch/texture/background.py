@@ -12,9 +12,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pneutouch.meridian.segments import Array
+from pneutouch.arrays import Array, Flags
 from pneutouch.texture.morse import Morse
 
 DEGREE = 3
@@ -30,7 +29,7 @@ class Fitter:
 
     rate: float
     taper: Array
-    bins: NDArray[np.bool_]
+    bins: Flags
     low: float
     high: float
 

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.errors import BeyondLimitError, InputError
 from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.atlas.press import Batch, Press, Track
@@ -18,7 +19,6 @@ from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.atlas_states import outside_atlas
 from pneutouch.mechanics.hermite import hermite
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.meridian.segments import Array
 from pneutouch.units import KPA
 
 _COLUMNS = 61

@@ -7,10 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Array, Flags
 from pneutouch.errors import InputError
-from pneutouch.meridian.segments import Array
 from pneutouch.texture.background import DEGREE, Fitter, detrended, fitter
 from pneutouch.texture.morse import HIGHEST_SHARE, MORSE, VOICES, time_average
 from pneutouch.texture.scalogram import Ridge, ridge
@@ -86,7 +85,7 @@ class _Reader:
     fitter: Fitter
     asked: float
     voices: Array
-    quiet: NDArray[np.bool_]
+    quiet: Flags
 
     def read(self, values: Array) -> tuple[Ridge, Array]:
         """Highest point in the band and floor, (...) each, of records (..., n)."""

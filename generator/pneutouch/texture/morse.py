@@ -13,11 +13,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pneutouch.meridian.segments import Array
+from pneutouch.arrays import Array, Complex
 
-Complex = NDArray[np.complex128]
 Boundary = Literal["reflect", "zero"]
 
 VOICES = 10

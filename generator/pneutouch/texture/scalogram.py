@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Array, Complex, Flags
 from pneutouch.errors import InputError
-from pneutouch.meridian.segments import Array
-from pneutouch.texture.morse import MORSE, VOICES, Boundary, Complex, Morse, transform, voices
+from pneutouch.texture.morse import MORSE, VOICES, Boundary, Morse, transform, voices
 from pneutouch.texture.signal import Signal, decimated
 
 
@@ -30,7 +29,7 @@ class Scalogram:
         return np.abs(self.values)
 
     @property
-    def inside(self) -> NDArray[np.bool_]:
+    def inside(self) -> Flags:
         """Where the record's ends do not reach, (k, n): an e-folding time or more from both."""
         edge = self.wavelet.e_folding(self.frequency)[:, None]
         both = (self.time - self.time[0] >= edge) & (self.time[-1] - self.time >= edge)
@@ -42,7 +41,7 @@ class Ridge(NamedTuple):
 
     frequency: Array
     amplitude: Array
-    inner: NDArray[np.bool_]
+    inner: Flags
 
 
 def scalogram(

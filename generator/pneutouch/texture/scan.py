@@ -16,8 +16,8 @@ from typing import Literal
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.errors import InputError
-from pneutouch.meridian.segments import Array
 from pneutouch.texture.contact import Touch
 from pneutouch.texture.signal import Signal
 from pneutouch.texture.substrate import Bars, Substrate

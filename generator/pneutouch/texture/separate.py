@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.errors import InputError
 from pneutouch.mechanics.atlas.press import Batch
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.uncertainty import batch_of
-from pneutouch.meridian.segments import Array
 from pneutouch.texture.contact import touches
 from pneutouch.texture.morse import MORSE
 from pneutouch.texture.scan import NOISE, RATE

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.errors import InputError
-from pneutouch.meridian.segments import Array
 from pneutouch.units import KPA
 
 OVERSAMPLING = 5.0

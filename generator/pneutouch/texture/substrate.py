@@ -23,7 +23,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pneutouch.meridian.segments import Array
+from pneutouch.arrays import Array
 
 _HIGHEST = 40.0
 _STEP = 0.05

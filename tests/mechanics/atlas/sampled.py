@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.press import Batch
 from pneutouch.mechanics.atlas.table import Slices, shipped
-from pneutouch.meridian.segments import Array
 
 
 def batch(**values: float | list[float]) -> Batch:

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.bench.calibrate.observations import Points
-from pneutouch.meridian.segments import Array
 
 FLOOR = np.array([0.01, 0.005, 0.005])
 """Least standard deviation of what the model leaves out, as a share of force, of pressure rise and of an injection's pressure.

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pneutouch.arrays import Array, Flags
 from pneutouch.bench.calibrate.discrepancy import FLOOR, Shared, shared_of, sizes_of
 from pneutouch.bench.calibrate.intervals import Covariance, covariance, factor, half_widths
 from pneutouch.bench.calibrate.model import Model
@@ -13,10 +14,8 @@ from pneutouch.bench.calibrate.observations import Observations, Points, points_
 from pneutouch.bench.calibrate.parameters import MODULUS, NAMES, Parameters
 from pneutouch.bench.calibrate.solve import Problem, Solution, solve
 from pneutouch.errors import InputError
-from pneutouch.mechanics.atlas.press import Flags
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.meridian.segments import Array
 
 _START_SHARE = 0.9
 """The search begins where the greatest driving pressure is at most this share of the limit pressure: our choice."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.bench.calibrate.discrepancy import shared_of
 from pneutouch.bench.calibrate.fit import Fit
 from pneutouch.bench.calibrate.inject import free_pressure
@@ -16,7 +17,6 @@ from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, NAMES, WALL
 from pneutouch.bench.protocol import REPETITIONS, SHARE
 from pneutouch.mechanics.atlas.table import REST_VOLUME, shipped
 from pneutouch.mechanics.limits import RATED_SHARE, limits
-from pneutouch.meridian.segments import Array
 from pneutouch.units import KPA
 
 COUPON = 0.03

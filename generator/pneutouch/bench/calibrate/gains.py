@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.bench.calibrate.fit import Fit
 from pneutouch.bench.calibrate.model import Model
-from pneutouch.meridian.segments import Array
 
 GAIN = 0.01
 

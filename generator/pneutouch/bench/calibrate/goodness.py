@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.bench.calibrate.fit import Fit
-from pneutouch.meridian.segments import Array
 
 MISSED = 0.005
 """Least residual over full scale that is called a miss: our choice, a few times the atlas's own error."""

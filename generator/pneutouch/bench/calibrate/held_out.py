@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.bench.calibrate.fit import fit
 from pneutouch.bench.calibrate.model import Model
 from pneutouch.bench.calibrate.observations import Observations, points_of
@@ -13,7 +14,6 @@ from pneutouch.bench.calibrate.parameters import Parameters
 from pneutouch.errors import InputError
 from pneutouch.mechanics.response import lines
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.meridian.segments import Array
 from pneutouch.units import KPA
 
 

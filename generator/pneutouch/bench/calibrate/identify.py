@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.bench.calibrate.fit import Fit
 from pneutouch.bench.calibrate.intervals import information
 from pneutouch.bench.calibrate.parameters import LOGARITHMIC
-from pneutouch.meridian.segments import Array
 
 CORRELATED = 0.95
 """Correlation from which on two parameters count as not told apart: our choice; alone each is 3 times less sure than with

@@ -9,11 +9,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Array, Flags, Index
 from pneutouch.bench.calibrate.solve import Problem, Solution
-from pneutouch.mechanics.atlas.press import Flags
-from pneutouch.meridian.segments import Array
 
 LEAST_RUNS = 3
 """Fewer runs say nothing of how runs scatter."""
@@ -205,7 +203,7 @@ def _freedom(problem: Problem, found: Solution) -> int:
     return int(clusters.size - groups) if clusters.size >= LEAST_RUNS else 0
 
 
-def _rows(problem: Problem, found: Solution, free: NDArray[np.intp]) -> Rows:
+def _rows(problem: Problem, found: Solution, free: Index) -> Rows:
     shared = np.where(found.use[:, None], problem.shared, 0.0)
     weight = np.concatenate([problem.weight[free], np.ones(shared.shape[1])])
     jacobian = np.hstack([found.jacobian[:, free], shared])
@@ -232,13 +230,13 @@ def _at_least(meat: Array, data: Array, normal: Array, held: Array, run_factor: 
     return np.asarray(back @ (least + (axes * np.maximum(seen, 0.0)) @ axes.T) @ back)
 
 
-def _placed(part: Array, free: NDArray[np.intp], k: int) -> Array:
+def _placed(part: Array, free: Index, k: int) -> Array:
     whole = np.full((k, k), np.nan)
     whole[np.ix_(free, free)] = part
     return whole
 
 
-def _spread(part: Array, free: NDArray[np.intp], k: int, missing: float = np.nan) -> Array:
+def _spread(part: Array, free: Index, k: int, missing: float = np.nan) -> Array:
     whole = np.full(k, missing)
     whole[free] = part
     return whole

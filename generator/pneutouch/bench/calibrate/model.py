@@ -7,15 +7,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pneutouch.arrays import Array, Flags, Index
 from pneutouch.bench.calibrate.inject import injected
 from pneutouch.bench.calibrate.observations import Points
 from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, OFFSET, WALL
 from pneutouch.errors import InputError
-from pneutouch.mechanics.atlas.press import Batch, Flags, Press
+from pneutouch.mechanics.atlas.press import Batch, Press
 from pneutouch.mechanics.atlas.table import Slices, shipped
 from pneutouch.mechanics.atlas_states import outside_atlas
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.meridian.segments import Array
 
 _GAP = 0.08
 """Longest step of the plate in R0; where points are further apart, the press goes by steps between them."""
@@ -54,7 +54,7 @@ class Model:
         pressure, fine = self._injections(sets, slices, k)
         return np.hstack([force, rise, pressure]), np.hstack([ok, ok, fine])
 
-    def _curves(self, sets: Array, slices: Slices, k: NDArray[np.intp]) -> tuple[Array, Array, Flags]:
+    def _curves(self, sets: Array, slices: Slices, k: Index) -> tuple[Array, Array, Flags]:
         (c, m), s, size = self.points.travel.shape, len(sets), self.sensor.inner_radius
         if not c:
             return np.zeros((s, 0)), np.zeros((s, 0)), np.zeros((s, 0), dtype=bool)
@@ -86,7 +86,7 @@ class Model:
             all_of(self.sensor.plate_radius), all_of(np.inf), all_of(np.inf),
         )  # fmt: skip
 
-    def _injections(self, sets: Array, slices: Slices, k: NDArray[np.intp]) -> tuple[Array, Flags]:
+    def _injections(self, sets: Array, slices: Slices, k: Index) -> tuple[Array, Flags]:
         """Gauge pressures after the injections, (s, i n)."""
         volume, s = self.points.volume.ravel(), len(sets)
         if not volume.size:

@@ -8,11 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pneutouch.arrays import Array, Flags
 from pneutouch.bench.indents import EARLY
 from pneutouch.bench.record import Curve
 from pneutouch.errors import InputError
-from pneutouch.mechanics.atlas.press import Flags
-from pneutouch.meridian.segments import Array
 from pneutouch.spec.campaign import Rig
 from pneutouch.units import KPA, STANDARD_ATMOSPHERE
 

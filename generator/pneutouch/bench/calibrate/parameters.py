@@ -7,15 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pneutouch.arrays import Array, Flags
 from pneutouch.errors import InputError, nearest
 from pneutouch.mechanics.atlas.batches import batch_of
-from pneutouch.mechanics.atlas.press import Flags
 from pneutouch.mechanics.atlas.table import REST_VOLUME, shipped
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.uncertainty.source import Source
 from pneutouch.mechanics.uncertainty.sources.build import build_sources
 from pneutouch.mechanics.uncertainty.sources.modulus import modulus_sources
-from pneutouch.meridian.segments import Array
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 from pneutouch.units import ML

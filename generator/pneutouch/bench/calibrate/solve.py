@@ -6,11 +6,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pneutouch.arrays import Array, Flags
 from pneutouch.bench.calibrate.model import Model
 from pneutouch.bench.calibrate.parameters import Parameters
 from pneutouch.errors import ComputationError
-from pneutouch.mechanics.atlas.press import Flags
-from pneutouch.meridian.segments import Array
 
 _ROUNDS = 60
 _DAMPING = 1e-3

@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.errors import InputError
 from pneutouch.mechanics import Sensor, State, predict
 from pneutouch.mechanics.limits import Limits
 from pneutouch.mechanics.prediction import InflationCurve
-from pneutouch.meridian.segments import Array
 from pneutouch.units import KPA
 
 STEPS = 56

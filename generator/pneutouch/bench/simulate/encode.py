@@ -6,8 +6,8 @@ import io
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.errors import InputError
-from pneutouch.meridian.segments import Array
 
 LEAK_SECONDS = 600.0
 """How long a leak run lasts: our choice, as long as the relaxation run."""

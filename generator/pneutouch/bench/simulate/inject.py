@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.mechanics.prediction import InflationCurve
-from pneutouch.meridian.segments import Array
 
 _GRID = 4000
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.bench.simulate.parameter import parameter
-from pneutouch.meridian.segments import Array
 from pneutouch.texture.scan import NOISE, STEP
 from pneutouch.units import GAUGE_LIMIT, KPA
 

@@ -7,12 +7,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.bench.protocol import Protocol
 from pneutouch.bench.simulate.curve import PressCurve
 from pneutouch.bench.simulate.rig import RigModel
 from pneutouch.bench.simulate.scatter import Scatter
 from pneutouch.bench.simulate.wall import Wall
-from pneutouch.meridian.segments import Array
 
 WALL, SCATTER = Wall(), Scatter()
 

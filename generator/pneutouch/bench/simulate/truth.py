@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.bench.protocol import Protocol, protocol
 from pneutouch.bench.simulate.curve import PressCurve, Pressed
 from pneutouch.bench.simulate.rig import MINUTE, RigModel
@@ -17,7 +18,6 @@ from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.atlas.respond import DEPTH, respond
 from pneutouch.mechanics.response import Lines, figures, hysteresis, lines
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.meridian.segments import Array
 from pneutouch.units import KPA
 
 SPECIMENS = 4000

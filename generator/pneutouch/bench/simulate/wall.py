@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.bench.protocol import Protocol
 from pneutouch.bench.simulate.parameter import parameter
-from pneutouch.meridian.segments import Array
 
 _OWN = "the simulator's own, no data published; small, as the paper's Fig. S1 shows"
 

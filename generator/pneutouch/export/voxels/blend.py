@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
 from pneutouch.meridian.arc import arc_share
-from pneutouch.meridian.segments import Array
 from pneutouch.spec.material import Material
 from pneutouch.spec.mixing import MixingCurve
 

@@ -11,11 +11,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pneutouch.meridian.segments import Array
-
-Ranks = NDArray[np.int64]
+from pneutouch.arrays import Array, Indices
 
 BLOCK = (48, 16, 32)
 """Voxels of the block along z, y, x: at 27 um layers about 1.3 mm each way; our choice, ranked in about a second."""
@@ -74,8 +71,8 @@ class _Field:
         return int(self.energy.argmax())
 
 
-def void_and_cluster(shape: tuple[int, int, int], pitch: tuple[float, float, float], seed: int) -> Ranks:
-    """Ranks 0 to n - 1 of a block's voxels, ``shape`` and ``pitch`` (mm) along z, y, x."""
+def void_and_cluster(shape: tuple[int, int, int], pitch: tuple[float, float, float], seed: int) -> Indices:
+    """Indices 0 to n - 1 of a block's voxels, ``shape`` and ``pitch`` (mm) along z, y, x."""
     field = _Field(shape, pitch, seed)
     count = int(_START * len(field.on))
     for _ in range(count):
@@ -123,7 +120,7 @@ class Thresholds:
         return part
 
 
-def _shifts(block: int, row: Ranks, column: Ranks, seed: int) -> tuple[Ranks, Ranks, Ranks]:
+def _shifts(block: int, row: Indices, column: Indices, seed: int) -> tuple[Indices, Indices, Indices]:
     """Three whole numbers from 0 to 2^20 for blocks of space, arrays of one shape: mixed bits of their place.
 
     The mixer is splitmix64 (Steele, Lea and Flood, OOPSLA 2014, DOI 10.1145/2660193.2660195): the same on every machine.

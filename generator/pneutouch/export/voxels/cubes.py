@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pneutouch.meridian.segments import Array
+from pneutouch.arrays import Array, Flags, Singles
 
 
 @dataclass(frozen=True)
@@ -27,7 +26,7 @@ class Cubes:
         """A number for every cube."""
         return np.zeros(tuple(-(-n // e) for n, e in zip(self.shape, self.edge, strict=True)))
 
-    def add(self, totals: Array, layer: int, values: Array | NDArray[np.bool_] | NDArray[np.float32]) -> None:
+    def add(self, totals: Array, layer: int, values: Array | Flags | Singles) -> None:
         """Add a layer's values (rows, columns) to the totals of their cubes."""
         _, rows, columns = self.edge
         summed = np.add.reduceat(values.astype(np.float32), np.arange(0, values.shape[0], rows), axis=0)

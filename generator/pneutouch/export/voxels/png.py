@@ -8,13 +8,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Labels, Pixels
 from pneutouch.errors import InputError
 from pneutouch.export.voxels.raster import INCH
-
-Labels = NDArray[np.uint8]
-Pixels = NDArray[np.uint32]
 
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
 _LEVEL = 3

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.body.section import Inside, Window
-from pneutouch.meridian.segments import Array
 from pneutouch.units import UM
 
 INCH = 25.4

@@ -12,9 +12,10 @@ from typing import Any
 
 import numpy as np
 
+from pneutouch.arrays import Labels, Pixels
 from pneutouch.errors import InputError
 from pneutouch.export.voxels.manifest import FORMAT, MANIFEST, slice_name, whole_hash
-from pneutouch.export.voxels.png import Labels, Pixels, decode, table
+from pneutouch.export.voxels.png import decode, table
 
 LEAST_SLICES = 30
 MOST_COLOURS = 6

@@ -10,11 +10,9 @@ from collections.abc import Callable, Iterable
 from typing import Generic, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-Flags = NDArray[np.bool_]
+from pneutouch.arrays import Flags, Singles
 
-Singles = NDArray[np.float32]
 Item = TypeVar("Item")
 
 LEAST_REACH, MOST_REACH = 0.12, 0.4

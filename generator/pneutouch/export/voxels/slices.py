@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from pneutouch.arrays import Flags, Labels, Singles
 from pneutouch.body.section import Window
 from pneutouch.export.voxels.bluenoise import thresholds
 from pneutouch.export.voxels.cubes import Cubes
 from pneutouch.export.voxels.job import VoxelBody, VoxelJob
-from pneutouch.export.voxels.png import Labels
-from pneutouch.export.voxels.skin import Flags, MadeUp, Recent, Singles, interior, reach_for
+from pneutouch.export.voxels.skin import MadeUp, Recent, interior, reach_for
 
 CUBE = 1.0
 """Edge in mm of the cubes in which the dither is held against what it was given."""

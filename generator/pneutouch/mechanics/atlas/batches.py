@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.press import Batch
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.meridian.segments import Array
 
 
 def batch_of(sensor: Sensor, driving_pressures: Sequence[float] | Array) -> Batch:

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import solve_triangular
 
+from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.recipe import STORED, Axes, Recipe, axes, flattened
 from pneutouch.mechanics.atlas.spline import Axis, roughness
 from pneutouch.mechanics.atlas.survey import Survey
-from pneutouch.meridian.segments import Array
 
 _SMOOTH = 1.0e-5
 """Weight of the coefficients' roughness: decides only where no state supports them."""

@@ -7,15 +7,11 @@ from dataclasses import dataclass, fields
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pneutouch.mechanics.atlas.spline import Index
+from pneutouch.arrays import Array, Flags, Index
 from pneutouch.mechanics.atlas.table import REST_VOLUME, Point, Slices
 from pneutouch.mechanics.solid.contact import flat_radius
 from pneutouch.mechanics.solid.mesh import longest_outer_edge
-from pneutouch.meridian.segments import Array
-
-Flags = NDArray[np.bool_]
 
 _NEWTON = 8
 _LONGEST = 0.05

@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.spline import Axis
-from pneutouch.meridian.segments import Array
 
 _HOLDING = ("stiffest", "degree", "volume_cells", "volume_stretch", "depth_cells")
 

@@ -7,13 +7,11 @@ from dataclasses import fields
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pneutouch.mechanics.atlas.press import Batch, Flags, Press, Track
-from pneutouch.mechanics.atlas.spline import Index
+from pneutouch.arrays import Array, Flags, Index
+from pneutouch.mechanics.atlas.press import Batch, Press, Track
 from pneutouch.mechanics.atlas.table import REST_VOLUME, Atlas, shipped
 from pneutouch.mechanics.response import Lines, lines
-from pneutouch.meridian.segments import Array
 from pneutouch.units import KPA
 
 ENDS = ("depth", "plate edge", "gauge range", "break strain", "inward buckling", "outside the atlas")
@@ -38,7 +36,7 @@ class Response(NamedTuple):
     """
 
     lines: Lines
-    ends: NDArray[np.intp]
+    ends: Index
     near_buckling: Flags
     range_end: Array
     limit_pressure: Array
@@ -146,7 +144,7 @@ def _margins(press: Press, track: Track) -> Array:
     return np.stack([edge, gauge, tear])
 
 
-def _first_end(press: Press, indentation: Array, track: Track) -> tuple[Array, NDArray[np.intp]]:
+def _first_end(press: Press, indentation: Array, track: Track) -> tuple[Array, Index]:
     """Plate travel (R0) at which each range ends, and why."""
     broken = (_margins(press, track) > 0.0).any(axis=0) | ~track.ok
     hit = np.flatnonzero(broken.any(axis=1))
@@ -163,7 +161,7 @@ def _first_end(press: Press, indentation: Array, track: Track) -> tuple[Array, N
     return end, ends
 
 
-def _closed_in(press: Press, nu: Array, low: Array, high: Array) -> tuple[Array, NDArray[np.intp]]:
+def _closed_in(press: Press, nu: Array, low: Array, high: Array) -> tuple[Array, Index]:
     """Close in on the first end between a sound travel and one past it; the last sound travel, and the reason.
 
     By false position with halved weights (Illinois) on the greatest margin, by halves where the state itself is lost.
@@ -185,7 +183,7 @@ def _closed_in(press: Press, nu: Array, low: Array, high: Array) -> tuple[Array,
     return np.where(np.abs(after) < np.abs(before), high, low), ends
 
 
-def _worst(press: Press, nu: Array, indentation: Array) -> tuple[Array, NDArray[np.intp], Array]:
+def _worst(press: Press, nu: Array, indentation: Array) -> tuple[Array, Index, Array]:
     """Greatest margin at plate travels (n,), infinite where the state is lost; its reason; and the volume nu."""
     height = press.apex - indentation
     found = press.solve(nu, height)

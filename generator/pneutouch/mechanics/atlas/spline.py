@@ -6,11 +6,8 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pneutouch.meridian.segments import Array
-
-Index = NDArray[np.intp]
+from pneutouch.arrays import Array, Index
 
 
 @lru_cache

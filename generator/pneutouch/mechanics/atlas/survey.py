@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.recipe import STORED, STRETCHES, Recipe
 from pneutouch.mechanics.atlas.surveyor import Equilibrium, Pressed, Surveyor
-from pneutouch.meridian.segments import Array
 
 _NEAR_ZERO = 0.3
 """Below this share of the limit pressure, a pressure that rises as the plate goes up belongs to a buckled wall."""

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
 from pneutouch.mechanics.atlas.recipe import Recipe
 from pneutouch.mechanics.laws import neo_hookean
@@ -17,7 +18,6 @@ from pneutouch.mechanics.solid.inflate import FreeState, Inflation, at_volume, s
 from pneutouch.mechanics.solid.newton import Scene, Stalled, State, minimise, stability
 from pneutouch.mechanics.solid.supply import Gas, Liquid, Regulator, Supply
 from pneutouch.mechanics.solid.walker import Walker
-from pneutouch.meridian.segments import Array
 
 _HOLDS = (1.0e3, 1.0e2, 1.0e4)
 """Stiffnesses in mu/R0^3 that hold the volume, tried in turn; the state keeps the volume it really has."""

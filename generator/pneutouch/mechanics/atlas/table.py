@@ -9,11 +9,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Array, Flags, Index
 from pneutouch.mechanics.atlas.recipe import FIELDS, Axes, Recipe, axes, parts, unflattened
-from pneutouch.mechanics.atlas.spline import Index
-from pneutouch.meridian.segments import Array
 
 SHIPPED = Path(__file__).with_name("atlas.npz")
 
@@ -33,8 +31,8 @@ class Point(NamedTuple):
     by_volume: Array
     by_height: Array
     force_by_height: Array
-    supported: NDArray[np.bool_]
-    folded: NDArray[np.bool_]
+    supported: Flags
+    folded: Flags
 
     def each(self, change: Callable[[Any], Any]) -> Point:
         """The same of changed arrays."""
@@ -52,7 +50,7 @@ class Slices:
     limit_pressure: Array
     apex: Array
     potential: Array
-    support: NDArray[np.bool_]
+    support: Flags
     rest_apex: Array
     fold_from: Array
     fold_volume: Array
@@ -89,7 +87,7 @@ class Slices:
             self.support[k, cell, depth], self.folded(k, nu, height),
         )  # fmt: skip
 
-    def folded(self, k: Index, nu: Array, height: Array) -> NDArray[np.bool_]:
+    def folded(self, k: Index, nu: Array, height: Array) -> Flags:
         """Whether the wall has buckled before volumes nu and plate heights, (n,)."""
         depth = self.rest_apex[k] - height
         deep = depth > self.fold_from[k]
@@ -148,7 +146,7 @@ class Atlas:
 
         nodes = np.log(self.recipe.wall_ratios)
         below = np.clip(np.searchsorted(nodes, np.log(wall_ratio), side="right") - 1, 0, nodes.size - 2)
-        support: NDArray[np.bool_] = self._tables["support"].astype(bool)
+        support: Flags = self._tables["support"].astype(bool)
         share = ((np.log(wall_ratio) - nodes[below]) / (nodes[below + 1] - nodes[below]))[:, None]
 
         def between(name: str) -> Array:

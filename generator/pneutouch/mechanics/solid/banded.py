@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import lapack
 from scipy.sparse import csr_array
 
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
+from pneutouch.arrays import Array, Index
 
 
 class Pattern:

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Array, Index
 from pneutouch.mechanics.solid.elements import line_shapes
-from pneutouch.mechanics.solid.mesh import Index
-
-Array = NDArray[np.float64]
 
 
 class Cavity:

@@ -5,13 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Array, Flags
 from pneutouch.mechanics.solid.elements import line_shapes
 from pneutouch.mechanics.solid.mesh import SolidMesh
-
-Array = NDArray[np.float64]
-
 
 #: Curvature radius of the plate's rim over the plate's radius (0.5 mm at 30 mm diameter, assumed: the paper has none).
 #: A mesh whose outer edges are longer rounds it to their length.
@@ -109,7 +106,7 @@ class Contact:
         out[:, 0::2] = -(load * slope) @ self.shape
         return out
 
-    def hessian(self, touch: Touch, active: NDArray[np.bool_]) -> Array:
+    def hessian(self, touch: Touch, active: Flags) -> Array:
         """Second derivative with `active` points (n_edges, n_points) in contact, (n_edges, 2 n, 2 n)."""
         stiff = np.where(active, self.stiffness, 0.0) * self.weight
         n = self._n // 2

@@ -5,11 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pneutouch.mechanics.solid.mesh import Index
-
-Array = NDArray[np.float64]
+from pneutouch.arrays import Array, Index
 
 _CORNERS = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)], dtype=float)
 _MIDDLES = np.array([(0, -1), (1, 0), (0, 1), (-1, 0)], dtype=float)

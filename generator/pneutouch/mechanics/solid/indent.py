@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Array
 from pneutouch.mechanics.response import Figures, figures
 from pneutouch.mechanics.solid.contact import Plate, flat_radius, rim_radius
 from pneutouch.mechanics.solid.errors import UnreachableLoadError
@@ -27,8 +27,6 @@ from pneutouch.mechanics.solid.stress import Probe
 from pneutouch.mechanics.solid.supply import Gas
 from pneutouch.mechanics.solid.walker import Spot, Walker
 from pneutouch.units import KPA
-
-Array = NDArray[np.float64]
 
 #: A pressure this far below absolute vacuum, in mu, is rounding.
 _ROUNDING = 1.0e-9

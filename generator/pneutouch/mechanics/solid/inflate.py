@@ -6,14 +6,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Array
 from pneutouch.mechanics.solid.errors import NoConvergenceError, UnreachableLoadError
 from pneutouch.mechanics.solid.model import Solid
 from pneutouch.mechanics.solid.newton import Outcome, Scene, Stalled, State, minimise, stability
 from pneutouch.mechanics.solid.supply import Liquid, Regulator
-
-Array = NDArray[np.float64]
 
 #: Volume control is this stiff, in mu/R0^3: far above -dp/dV of any dome, so the total tangent stays definite.
 _LIQUID = 30.0

@@ -5,10 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
+from pneutouch.arrays import Array, Index
 
 #: Walls up to this share of R0 need one cell across (S within 0.2 % of a refined mesh), thicker ones two. The atlas begins
 #: above it, so that one family of meshes serves all of its box.

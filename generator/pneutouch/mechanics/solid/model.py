@@ -6,19 +6,17 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
+from pneutouch.arrays import Array, Index
 from pneutouch.mechanics.laws.hyperelastic import Hyperelastic
 from pneutouch.mechanics.laws.strain import Strain
 from pneutouch.mechanics.solid.banded import Pattern
 from pneutouch.mechanics.solid.cavity import Cavity
 from pneutouch.mechanics.solid.contact import Contact
 from pneutouch.mechanics.solid.elements import DEFAULT_SCHEME, Scheme, gauss_square, pressure_modes, strain_operator
-from pneutouch.mechanics.solid.mesh import Index, SolidMesh
-
-Array = NDArray[np.float64]
+from pneutouch.mechanics.solid.mesh import SolidMesh
 
 Grade = Callable[[Array, Array], Array]
 

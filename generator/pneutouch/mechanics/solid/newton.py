@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Array, Flags
 from pneutouch.mechanics.solid.banded import negative_pivots, solve
 from pneutouch.mechanics.solid.contact import Plate, Touch
 from pneutouch.mechanics.solid.model import Local, Solid
 from pneutouch.mechanics.solid.supply import Filling, Supply
-
-Array = NDArray[np.float64]
 
 #: Converged: unbalanced force below this share of the forces that balance (wall, gas, plate).
 RESIDUAL = 1.0e-9
@@ -119,7 +117,7 @@ def full_tangent(scene: Scene, state: State) -> Array:
     return band if state.touch is None else band + _contact_band(scene, state.touch, state.touch.traction > 0.0)
 
 
-def _contact_band(scene: Scene, touch: Touch, active: NDArray[np.bool_]) -> Array:
+def _contact_band(scene: Scene, touch: Touch, active: Flags) -> Array:
     return scene.solid.contact_pattern.matrix([scene.solid.contact.hessian(touch, active)])
 
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from pneutouch.arrays import Array, Index
 from pneutouch.mechanics.solid.mesh import (
-    Array,
-    Index,
     SolidMesh,
     arc_cells,
     boundary,

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Array
 from pneutouch.mechanics.laws.strain import Strain
 from pneutouch.mechanics.solid.elements import strain_operator
 from pneutouch.mechanics.solid.inflate import Inflation, between, pressure_between
 from pneutouch.mechanics.solid.model import Solid
-
-Array = NDArray[np.float64]
 
 #: Within this many wall thicknesses of a clamped node the elastic stress is singular and says nothing; left out.
 CLAMP_REACH = 0.5

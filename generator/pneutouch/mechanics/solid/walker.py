@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Array
 from pneutouch.mechanics.solid.contact import Plate
 from pneutouch.mechanics.solid.errors import NoConvergenceError
 from pneutouch.mechanics.solid.model import Solid
 from pneutouch.mechanics.solid.newton import Scene, Stalled, State, minimise, stability
 from pneutouch.mechanics.solid.supply import Supply
-
-Array = NDArray[np.float64]
 
 #: Longest plate travel in one solve, in R0: longer steps can land on another branch.
 LONGEST = 0.06

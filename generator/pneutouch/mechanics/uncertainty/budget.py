@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
-from numpy.typing import NDArray
-
+from pneutouch.arrays import Flags
 from pneutouch.mechanics.atlas.press import Batch
 from pneutouch.mechanics.uncertainty.propagate import Budget, propagate
 from pneutouch.mechanics.uncertainty.sources import sources
@@ -17,7 +15,7 @@ from pneutouch.spec.printer import Printer
 
 def budget(
     batch: Batch, material: Material, printer: Printer, *,
-    near_paper: NDArray[np.bool_] | bool, errors: ModelErrors, numerical: Mapping[str, float], aged: bool = True,
+    near_paper: Flags | bool, errors: ModelErrors, numerical: Mapping[str, float], aged: bool = True,
 ) -> Budget:  # fmt: skip
     """How sure the figures of n sensors are that share a resin and a printer.
 

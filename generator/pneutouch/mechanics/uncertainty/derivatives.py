@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Array, Flags
 from pneutouch.mechanics.atlas.press import Batch
 from pneutouch.mechanics.uncertainty.neighbours import joined, log_figures, moved, unit_step
 from pneutouch.mechanics.uncertainty.source import DEAD, INPUTS
-from pneutouch.meridian.segments import Array
 
 STEP = 0.02
 """Half of the central difference, relative. Below it the noise of tabulated ends of ranges grows (the buckling edge is
@@ -41,7 +40,7 @@ class Derivatives:
     elasticities: Array
     local: Array
     slopes: Array
-    one_sided: NDArray[np.bool_]
+    one_sided: Flags
 
 
 def derivatives(batch: Batch, standard: Array, kurtosis: Array, step: float = STEP) -> Derivatives:
@@ -80,7 +79,7 @@ def _slope(up: Array, down: Array) -> Array:
     return np.where(np.isnan(both), 0.0, both)
 
 
-def _over_spread(up: Array, down: Array, kurtosis: Array) -> tuple[Array, NDArray[np.bool_]]:
+def _over_spread(up: Array, down: Array, kurtosis: Array) -> tuple[Array, Flags]:
     """Standard deviation of ln figure over an input's spread, and where it is known.
 
     By the three-point rule at sqrt(kurtosis) standard uncertainties, weights 1/(2 kurtosis), which has the first five

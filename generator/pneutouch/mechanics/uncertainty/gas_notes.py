@@ -6,12 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pneutouch.mechanics.atlas.press import Batch, Flags, Press
+from pneutouch.arrays import Array, Flags, Index
+from pneutouch.mechanics.atlas.press import Batch, Press
 from pneutouch.mechanics.atlas.respond import respond
-from pneutouch.mechanics.atlas.spline import Index
 from pneutouch.mechanics.response import lines
 from pneutouch.mechanics.uncertainty.neighbours import neighbourhood
-from pneutouch.meridian.segments import Array
 from pneutouch.units import KPA
 
 ADIABATIC = 1.4

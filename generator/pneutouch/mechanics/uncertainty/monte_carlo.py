@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.press import Batch
 from pneutouch.mechanics.uncertainty.neighbours import log_figures, moved
 from pneutouch.mechanics.uncertainty.source import DEAD, FIGURE, FIGURES, INPUTS, Source
-from pneutouch.meridian.segments import Array
 
 _COVERED = 0.9545
 """Share of a normal distribution within two standard deviations."""

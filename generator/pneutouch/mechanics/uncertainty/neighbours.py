@@ -7,11 +7,11 @@ from functools import cache
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.press import Batch
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.atlas.table import REST_VOLUME, Atlas, shipped
 from pneutouch.mechanics.uncertainty.source import DEAD, FIGURES, INPUTS
-from pneutouch.meridian.segments import Array
 from pneutouch.units import KPA
 
 _MARGIN = 0.001

@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Array, Flags
 from pneutouch.mechanics.atlas.press import Batch
 from pneutouch.mechanics.uncertainty.derivatives import Derivatives, derivatives
 from pneutouch.mechanics.uncertainty.source import FIGURE, FIGURES, INPUTS, Source
-from pneutouch.meridian.segments import Array
 
 COVERAGE = 2.0
 """k: about 95 % where many sources of one size add up."""
@@ -69,7 +68,7 @@ class Budget:
         return np.asarray(np.where(exact, 0.0, self.variances / np.where(exact, 1.0, total)))
 
     @property
-    def nonlinear(self) -> NDArray[np.bool_]:
+    def nonlinear(self) -> Flags:
         """Figures whose uncertainty differs from the derivatives' alone by more than 5 %, (figures, n).
 
         There the response bends within the spread of an input, mostly because another event ends the range; the figure's
@@ -80,7 +79,7 @@ class Budget:
             return np.asarray((np.abs(combined - self.linear) > _BENT * combined) & (combined > _NOTHING))
 
     @property
-    def doubtful(self) -> NDArray[np.bool_]:
+    def doubtful(self) -> Flags:
         """Sensors that within their uncertainty leave the atlas or pass their limit point, (n,)."""
         return np.asarray(self.derivatives.one_sided.any(axis=0))
 

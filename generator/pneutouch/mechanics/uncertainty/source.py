@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pneutouch.meridian.segments import Array
+from pneutouch.arrays import Array, Flags
 
 FIGURES = (
     "sensitivity_kPa_per_N", "limit_pressure_kPa", "stiffness_N_per_mm", "force_at_range_end_N", "range_end_mm",
@@ -49,7 +48,7 @@ class Source:
     acts_on: str
     standard: Array
     distribution: Distribution
-    counts: NDArray[np.bool_]
+    counts: Flags
     origin: str
     known: bool
     freedom: float = np.inf
@@ -83,7 +82,7 @@ class Source:
         }
 
 
-def counting(size: int, *, only: tuple[int, ...] = (), without: tuple[int, ...] = ()) -> NDArray[np.bool_]:
+def counting(size: int, *, only: tuple[int, ...] = (), without: tuple[int, ...] = ()) -> Flags:
     """Which figures count, (figures, size): all, or ``only`` these, or all ``without`` these."""
     flags = np.full((len(FIGURES), size), not only)
     flags[list(only)] = True

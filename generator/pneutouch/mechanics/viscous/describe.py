@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.atlas_states import outside_atlas
@@ -15,7 +16,6 @@ from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.viscous.known import ageing_ratio
 from pneutouch.mechanics.viscous.prony import prony_series, relaxed
 from pneutouch.mechanics.viscous.runs import Loop, Relaxation, loop, relaxation
-from pneutouch.meridian.segments import Array
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
 

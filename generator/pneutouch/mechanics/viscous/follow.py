@@ -16,9 +16,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pneutouch.mechanics.atlas.press import Flags, Press
+from pneutouch.arrays import Array, Flags
+from pneutouch.mechanics.atlas.press import Press
 from pneutouch.mechanics.atlas.table import Point
-from pneutouch.meridian.segments import Array
 
 _NEWTON = 10
 _LONGEST, _LAST_STEP = 0.05, 1.0e-4

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.meridian.segments import Array
 from pneutouch.spec.material import Material
 
 _SHORT = 1.0e-4

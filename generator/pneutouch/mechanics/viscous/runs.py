@@ -8,6 +8,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.atlas.press import Press
 from pneutouch.mechanics.atlas.table import Atlas, shipped
@@ -15,7 +16,6 @@ from pneutouch.mechanics.response import hysteresis
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.viscous.follow import Path, follow
 from pneutouch.mechanics.viscous.prony import Prony
-from pneutouch.meridian.segments import Array
 
 _Run = TypeVar("_Run")
 

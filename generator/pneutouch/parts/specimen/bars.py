@@ -7,9 +7,9 @@ from itertools import pairwise
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.body import Frame, Prism, Solid
 from pneutouch.meridian import Line
-from pneutouch.meridian.segments import Array
 from pneutouch.parts.specimen.family import DECIMALS, Family, Ground, Pattern, along, check_count, check_least, heights
 from pneutouch.parts.specimen.mesh import Box, Mesh
 from pneutouch.spec.specimen import Bars

@@ -6,13 +6,9 @@ import itertools
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Array, Flags, Indices
 from pneutouch.errors import ComputationError
-from pneutouch.meridian.segments import Array
-from pneutouch.parts.specimen.mesh import Triangles
-
-Edges = NDArray[np.int64]
 
 Side = tuple[int, int]
 """A side of a box: axis, and 0 for its low or 1 for its high end."""
@@ -20,10 +16,10 @@ Side = tuple[int, int]
 SIDES: tuple[Side, ...] = tuple(itertools.product(range(3), range(2)))
 
 _LARGE = 400
-"""Edges from which a region is cut into parts."""
+"""Indices from which a region is cut into parts."""
 
 _PART = 80
-"""Edges of a part."""
+"""Indices of a part."""
 
 _ROOM = 1e-3
 """Least width in mm of a gap that a cut runs through."""
@@ -35,11 +31,11 @@ _DECIMALS = 4
 """Cuts stand on a grid of 0.1 um, so that those of two sides are either at one place or visibly apart."""
 
 
-def boundary(triangles: Triangles, size: int) -> Edges:
+def boundary(triangles: Indices, size: int) -> Indices:
     """Directed edges (n, 2) that triangles have in one direction only; ``size`` is the number of vertices."""
     edges = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
     forth, back = edges[:, 0] * size + edges[:, 1], edges[:, 1] * size + edges[:, 0]
-    found: Edges = edges[~np.isin(forth, back)]
+    found: Indices = edges[~np.isin(forth, back)]
     return found
 
 
@@ -58,7 +54,7 @@ def cut_places(spans: Array) -> list[float]:
     return places
 
 
-def rim(points: Array, ends: Array, side: Side) -> list[Edges]:
+def rim(points: Array, ends: Array, side: Side) -> list[Indices]:
     """Vertices along the four edges of a box's side, counter-clockwise seen from outside; ``ends`` (2, 3) is the box.
 
     Each run ends with the corner that the next begins with, where the corners are among ``points`` (n, 3).
@@ -80,8 +76,8 @@ def plane(side: Side) -> tuple[int, int]:
     return ((axis + 1) % 3, (axis + 2) % 3) if end else ((axis + 2) % 3, (axis + 1) % 3)
 
 
-def triangulated(points: Array, edges: Edges) -> Triangles:
-    """Triangles (m, 3) of the region left of directed ``edges`` (n, 2) among plane ``points`` (k, 2); no new vertices.
+def triangulated(points: Array, edges: Indices) -> Indices:
+    """Indices (m, 3) of the region left of directed ``edges`` (n, 2) among plane ``points`` (k, 2); no new vertices.
 
     Raises ComputationError where the edges bound no region.
     """
@@ -95,7 +91,7 @@ def triangulated(points: Array, edges: Edges) -> Triangles:
     return np.concatenate(found) if found else np.zeros((0, 3), np.int64)
 
 
-def _loops(points: Array, edges: Edges) -> list[Edges]:
+def _loops(points: Array, edges: Indices) -> list[Indices]:
     """The edges chained to loops; where several meet in a point, the leftmost turn keeps loops from crossing."""
     leaving: dict[int, list[int]] = {}
     for a, b in edges.tolist():
@@ -134,11 +130,11 @@ def _leftmost(points: Array, before: int, here: int, ways: list[int]) -> int:
 class _Group:
     """An outer loop with the holes in it."""
 
-    outer: Edges
-    holes: list[Edges]
+    outer: Indices
+    holes: list[Indices]
 
 
-def _grouped(points: Array, loops: list[Edges]) -> list[_Group]:
+def _grouped(points: Array, loops: list[Indices]) -> list[_Group]:
     """Outer loops, each with its holes: those of the smallest outer loop around them."""
     if not loops:
         return []
@@ -154,7 +150,7 @@ def _grouped(points: Array, loops: list[Edges]) -> list[_Group]:
     holes = np.flatnonzero(areas <= 0)
     for chunk in np.array_split(holes, 1 + len(holes) // _CHUNK):
         within = (lows[outer] <= lows[chunk, None]) & (highs[outer] >= highs[chunk, None])
-        around: NDArray[np.bool_] = np.asarray(within.all(axis=2))
+        around: Flags = np.asarray(within.all(axis=2))
         for k, row in zip(chunk.tolist(), around, strict=True):
             inside = np.flatnonzero(row).tolist()
             if len(inside) > 1:
@@ -163,7 +159,7 @@ def _grouped(points: Array, loops: list[Edges]) -> list[_Group]:
     return groups
 
 
-def _shifted(index: Edges, starts: Edges) -> Edges:
+def _shifted(index: Indices, starts: Indices) -> Indices:
     """The vertex after each one in its loop."""
     after = np.roll(index, -1)
     after[np.append(starts[1:], len(index)) - 1] = index[starts]
@@ -179,16 +175,16 @@ def _holds(outline: Array, line: Array) -> bool:
     return bool(np.count_nonzero(crosses) % 2)
 
 
-def _filled(points: Array, group: _Group) -> Triangles:
+def _filled(points: Array, group: _Group) -> Indices:
     from manifold3d import triangulate
 
     outer = group.outer
     if not group.holes and len(outer) == 4 and _convex(points[outer]):
-        quad: Triangles = outer[np.array([[0, 1, 2], [0, 2, 3]])]
+        quad: Indices = outer[np.array([[0, 1, 2], [0, 2, 3]])]
         return quad
     loops = [outer, *group.holes]
     flat = triangulate([np.ascontiguousarray(points[loop]) for loop in loops])
-    found: Triangles = np.concatenate(loops)[np.asarray(flat)].astype(np.int64)
+    found: Indices = np.concatenate(loops)[np.asarray(flat)].astype(np.int64)
     return found
 
 

@@ -11,11 +11,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pneutouch.meridian.segments import Array
-from pneutouch.parts.specimen.faces import SIDES, Edges, Side, boundary, plane, rim, triangulated
-from pneutouch.parts.specimen.mesh import Box, Mesh, Triangles
+from pneutouch.arrays import Array, Flags, Indices
+from pneutouch.parts.specimen.faces import SIDES, Side, boundary, plane, rim, triangulated
+from pneutouch.parts.specimen.mesh import Box, Mesh
 
 _NEAREST = 0.01
 """A vertex keeps this share of its edge from the edge's ends: nearer, triangles vanish when a file rounds them."""
@@ -105,10 +104,8 @@ def _facing(corner: Array, face: list[tuple[int, int]], inside: list[int]) -> li
     return face if outwards else face[::-1]
 
 
-def _crossed(
-    below: NDArray[np.bool_], path: tuple[int, ...], tables: dict[int, list[list[tuple[int, int]]]]
-) -> list[Edges]:
-    """Triangles in one tetrahedron of every cube, each corner as the key of the grid edge that it lies on."""
+def _crossed(below: Flags, path: tuple[int, ...], tables: dict[int, list[list[tuple[int, int]]]]) -> list[Indices]:
+    """Indices in one tetrahedron of every cube, each corner as the key of the grid edge that it lies on."""
     strides = np.array([below.shape[1] * below.shape[2], below.shape[2], 1])
     steps = np.zeros((4, 3), np.int64)
     for k, axis in enumerate(path):
@@ -131,14 +128,14 @@ def _crossed(
     return found
 
 
-def _key(node: Edges, steps: Edges, strides: Edges, low: int, high: int) -> Edges:
+def _key(node: Indices, steps: Indices, strides: Indices, low: int, high: int) -> Indices:
     """A grid edge as one number: its lower node, and which axes it runs along as three bits."""
     towards = int((steps[high] - steps[low]) @ np.array([4, 2, 1]))
-    key: Edges = (node + steps[low] @ strides) * 8 + towards
+    key: Indices = (node + steps[low] @ strides) * 8 + towards
     return key
 
 
-def _places(grid: Grid, wave: Wave, values: Array, level: float, keys: Edges) -> Array:
+def _places(grid: Grid, wave: Wave, values: Array, level: float, keys: Indices) -> Array:
     lower = np.stack(np.unravel_index(keys // 8, grid.shape), axis=1)
     step = np.stack([keys >> 2 & 1, keys >> 1 & 1, keys & 1], axis=1)
     upper = lower + step
@@ -158,7 +155,7 @@ def _places(grid: Grid, wave: Wave, values: Array, level: float, keys: Edges) ->
     return placed
 
 
-def _closed(surface: Mesh, box: Box, inside: NDArray[np.bool_]) -> Mesh:
+def _closed(surface: Mesh, box: Box, inside: Flags) -> Mesh:
     """The surface with caps on the box's sides; ``inside`` (8,) says which corners of the box belong to the body."""
     ends = np.array([box.low, box.high])
     corners = np.array(list(itertools.product(*ends.T)))
@@ -169,8 +166,8 @@ def _closed(surface: Mesh, box: Box, inside: NDArray[np.bool_]) -> Mesh:
     return Mesh(points, np.concatenate([surface.triangles, *caps])).compact()
 
 
-def _cap(points: Array, ends: Array, open_edges: Edges, side: Side, inside: NDArray[np.bool_], first: int) -> Triangles:
-    """Triangles of the body on one side of the box."""
+def _cap(points: Array, ends: Array, open_edges: Indices, side: Side, inside: Flags, first: int) -> Indices:
+    """Indices of the body on one side of the box."""
     axis, end = side
     on = (points[open_edges][:, :, axis] == ends[end, axis]).all(axis=1)
     edges = [open_edges[on][:, ::-1]]

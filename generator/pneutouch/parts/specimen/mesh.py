@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pneutouch.meridian.segments import Array
+from pneutouch.arrays import Array, Indices
 
 Point = tuple[float, float, float]
-Triangles = NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +36,7 @@ class Mesh:
     """``vertices`` (n, 3) in mm and ``triangles`` (m, 3), counter-clockwise seen from outside."""
 
     vertices: Array
-    triangles: Triangles
+    triangles: Indices
 
     @property
     def volume(self) -> float:
@@ -60,7 +58,7 @@ class Mesh:
         return Mesh(self.vertices[used], number[self.triangles].astype(np.int64))
 
 
-def _paired(triangles: Triangles, size: int) -> bool:
+def _paired(triangles: Indices, size: int) -> bool:
     edges = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
     forth, back = edges[:, 0] * size + edges[:, 1], edges[:, 1] * size + edges[:, 0]
     return len(np.unique(forth)) == len(forth) and bool(np.array_equal(np.sort(forth), np.sort(back)))

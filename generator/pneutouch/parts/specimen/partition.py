@@ -10,9 +10,9 @@ import itertools
 
 import numpy as np
 
-from pneutouch.meridian.segments import Array
-from pneutouch.parts.specimen.faces import SIDES, Edges, Side, boundary, cut_places, plane, rim, triangulated
-from pneutouch.parts.specimen.mesh import Box, Mesh, Point, Triangles
+from pneutouch.arrays import Array, Indices
+from pneutouch.parts.specimen.faces import SIDES, Side, boundary, cut_places, plane, rim, triangulated
+from pneutouch.parts.specimen.mesh import Box, Mesh, Point
 
 
 def complement(box: Box, inclusion: Mesh) -> Mesh:
@@ -49,7 +49,7 @@ class _Partition:
         at = self._inclusion.vertices[:, axis] == self._ends[end, axis]
         return np.asarray(at[self._inclusion.triangles].all(axis=1))
 
-    def _outline(self, side: Side) -> Edges:
+    def _outline(self, side: Side) -> Indices:
         """Directed edges of the footprints on a side."""
         return boundary(self._inclusion.triangles[self._footprints[side]], len(self._inclusion.vertices))
 
@@ -73,8 +73,8 @@ class _Partition:
         """Number of an extra vertex; two sides that are cut at one place share it."""
         return self._extra.setdefault((point[0], point[1], point[2]), len(self._vertices) + len(self._extra))
 
-    def _rest(self, side: Side) -> Triangles:
-        """Triangles of a side around the footprints, facing outwards."""
+    def _rest(self, side: Side) -> Indices:
+        """Indices of a side around the footprints, facing outwards."""
         size, outline = len(self._vertices), self._outline(side)
         runs = rim(self._vertices, self._ends, side)
         around = np.concatenate([np.column_stack([run[:-1], run[1:]]) for run in runs])

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from pneutouch.arrays import Array, Indices
 from pneutouch.body.revolve import circle_count, widen
-from pneutouch.meridian.segments import Array
-from pneutouch.parts.specimen.faces import Edges, boundary, triangulated
-from pneutouch.parts.specimen.mesh import Box, Mesh, Triangles
+from pneutouch.parts.specimen.faces import boundary, triangulated
+from pneutouch.parts.specimen.mesh import Box, Mesh
 
 CORNER = 0.5
 """Share of the border that the cut corner takes at x = y = 0: it says which way round the specimen lies."""
@@ -36,7 +36,7 @@ def plate(
     under = [made.taken(body, top) for body in bodies]
     edges = [boundary(np.concatenate(under), len(made))]
     edges[0] = edges[0][:, ::-1] if len(edges[0]) else edges[0]
-    bottom_edges: list[Edges] = []
+    bottom_edges: list[Indices] = []
     around = outline(block, border)
     high, low = made.ring(around, top), made.ring(around, top - thickness)
     edges.append(_loop(high))
@@ -50,7 +50,7 @@ def plate(
         edges.append(_loop(mouth)[:, ::-1])
         bottom_edges.append(_loop(end)[:, ::-1])
         made.wall(mouth, end)
-    floor: list[Edges] = []
+    floor: list[Indices] = []
     for line in letters:
         mouth, end = made.ring(line, top), made.ring(line, top - depth)
         edges.append(_loop(mouth)[:, ::-1])
@@ -68,7 +68,7 @@ class _Mesh:
         self._parts: list[Array] = []
         self._size = 0
         self._known: dict[tuple[float, ...], int] = {}
-        self.walls: list[Triangles] = []
+        self.walls: list[Indices] = []
 
     def __len__(self) -> int:
         return self._size
@@ -77,8 +77,8 @@ class _Mesh:
         """All vertices, (n, 3)."""
         return np.concatenate(self._parts)
 
-    def taken(self, body: Mesh, top: float) -> Triangles:
-        """Triangles of a body on the plane z = ``top``, turned round; bodies share their vertices by position."""
+    def taken(self, body: Mesh, top: float) -> Indices:
+        """Indices of a body on the plane z = ``top``, turned round; bodies share their vertices by position."""
         flat = body.triangles[(body.vertices[:, 2] == top)[body.triangles].all(axis=1)]
         used = np.unique(flat)
         number = np.zeros(len(body.vertices), np.int64)
@@ -91,16 +91,16 @@ class _Mesh:
             number[k] = self._known[key]
         if fresh:
             self._add(np.array(fresh))
-        turned: Triangles = number[flat][:, ::-1]
+        turned: Indices = number[flat][:, ::-1]
         return turned
 
-    def ring(self, line: Array, height: float) -> Edges:
+    def ring(self, line: Array, height: float) -> Indices:
         """Numbers of a loop's vertices at a height."""
         start = self._size
         self._add(np.column_stack([line, np.full(len(line), height)]))
         return np.arange(start, self._size)
 
-    def wall(self, low: Edges, high: Edges) -> None:
+    def wall(self, low: Indices, high: Indices) -> None:
         """The strip between two rings, facing right of their way where the first one is the lower."""
         a, b = low, np.roll(low, -1)
         c, d = high, np.roll(high, -1)
@@ -118,9 +118,9 @@ def outline(block: Box, border: float) -> Array:
     return np.array([[left + cut, near], [right, near], [right, far], [left, far], [left, near + cut]])
 
 
-def _loop(ring: Edges) -> Edges:
+def _loop(ring: Indices) -> Indices:
     return np.column_stack([ring, np.roll(ring, -1)])
 
 
-def _up(points: Array, edges: Sequence[Edges]) -> Triangles:
+def _up(points: Array, edges: Sequence[Indices]) -> Indices:
     return triangulated(points[:, :2], np.concatenate(list(edges)))

@@ -7,9 +7,9 @@ import math
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.body.revolve import circle_count
 from pneutouch.errors import ComputationError
-from pneutouch.meridian.segments import Array
 from pneutouch.parts.specimen.family import Family, Ground, Pattern, along, check_count, check_least, heights
 from pneutouch.parts.specimen.mesh import Box, Mesh
 from pneutouch.parts.specimen.struts import STRUTS, Lattice, fill, half_cells, octant

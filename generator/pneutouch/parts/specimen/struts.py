@@ -17,11 +17,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Array, Flags, Indices
 from pneutouch.body.revolve import circle_count, widen
 from pneutouch.errors import ComputationError
-from pneutouch.meridian.segments import Array
 from pneutouch.parts.specimen.mesh import Box, Mesh, snapped
 from pneutouch.parts.specimen.partition import complement
 
@@ -172,7 +171,7 @@ def tiled(piece: Mesh, half: float, counts: tuple[int, int, int], origin: Array)
     return Mesh(place.reshape(-1, 3)[first] + origin, kept).compact()
 
 
-def _inner(code: NDArray[np.int64], sizes: list[int]) -> NDArray[np.bool_]:
+def _inner(code: Indices, sizes: list[int]) -> Flags:
     """Triangles (octants, triangles) that lie on a plane between two octants: both have them, so neither keeps them."""
     inner = np.zeros(code.shape[:2], bool)
     for axis in range(3):

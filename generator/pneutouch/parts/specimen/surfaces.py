@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from pneutouch.meridian.segments import Array
+from pneutouch.arrays import Array
 from pneutouch.parts.specimen.marching import Grid, between, level_set
 from pneutouch.parts.specimen.mesh import Box, Mesh
 

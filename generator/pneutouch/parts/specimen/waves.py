@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from pneutouch.meridian.segments import Array
+from pneutouch.arrays import Array
 from pneutouch.parts.specimen.family import DECIMALS, Family, Ground, Pattern, along, check_count, check_least
 from pneutouch.parts.specimen.mesh import Box, Mesh
 from pneutouch.spec.specimen import RandomPhase, Sinusoid

@@ -8,9 +8,9 @@ from typing import Any, cast
 
 import numpy as np
 
-from pneutouch.meridian.segments import Array
+from pneutouch.arrays import Array, Flags
 from pneutouch.printability.measure.voxels import Voxels
-from pneutouch.printability.subject import Flags, Point
+from pneutouch.printability.subject import Point
 
 NARROW = 0.7
 """Share of a hollow's width below which its opening is a neck."""

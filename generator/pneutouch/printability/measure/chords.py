@@ -14,10 +14,10 @@ from typing import Any, Literal, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from pneutouch.meridian.segments import Array
+from pneutouch.arrays import Array, Flags, Indices
 from pneutouch.printability.measure.rays import neighbours
 from pneutouch.printability.measure.samples import Samples
-from pneutouch.printability.measure.surface import Indices, Surface
+from pneutouch.printability.measure.surface import Surface
 
 Side = Literal["inside", "outside"]
 
@@ -136,7 +136,7 @@ def _lines(manifold: Any, surface: Surface, middles: Array, directions: Array, l
     )
 
 
-def continues(manifold: Any, surface: Surface, found: Chords) -> NDArray[np.bool_]:
+def continues(manifold: Any, surface: Surface, found: Chords) -> Flags:
     """Whether the place goes on along its axis, (n,): at both ends as narrow a width further on, or
     ended before that.
 

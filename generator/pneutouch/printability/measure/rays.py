@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from pneutouch.meridian.segments import Array
-from pneutouch.printability.measure.surface import Indices
+from pneutouch.arrays import Array, Indices
 
 _SELF = 1e-7
 """A hit this near the middle of a line (mm) is the surface that its middle lies on."""

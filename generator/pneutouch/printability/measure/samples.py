@@ -7,8 +7,8 @@ from typing import cast
 
 import numpy as np
 
-from pneutouch.meridian.segments import Array
-from pneutouch.printability.measure.surface import Indices, Surface
+from pneutouch.arrays import Array, Indices
+from pneutouch.printability.measure.surface import Surface
 
 SPACING = 0.5
 """Points lie about this far apart, mm, on parts small enough."""

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from pneutouch.meridian.segments import Array
+from pneutouch.arrays import Array
 from pneutouch.printability.subject import Point
 
 _NOTHING = 1e-6

@@ -7,11 +7,8 @@ from functools import cached_property
 from typing import cast
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pneutouch.meridian.segments import Array
-
-Indices = NDArray[np.int64]
+from pneutouch.arrays import Array, Flags, Indices
 
 CREASE = np.radians(40.0)
 """Edges that turn more are drawn edges; less, they approximate a curve: nine sides and more count as round."""
@@ -89,10 +86,10 @@ class Surface:
         return Edges(ends[pairs[:, 0]], faces, np.where(flat, 0.0, np.where(convex, turn, -turn)))
 
     @cached_property
-    def creases(self) -> NDArray[np.bool_]:
+    def creases(self) -> Flags:
         """Which edges are drawn ones, (e,)."""
         edges, turn = self.edges, np.abs(self.edges.turn)
-        drawn: NDArray[np.bool_] = turn >= CREASE
+        drawn: Flags = turn >= CREASE
         rows = np.flatnonzero(drawn & (turn <= _OCTAGON))
         if len(rows):
             flat = self._joined(turn < _FLAT)
@@ -102,7 +99,7 @@ class Surface:
             drawn[rows] = high > (1 + _EQUAL) * low
         return drawn
 
-    def _joined(self, smooth: NDArray[np.bool_]) -> Indices:
+    def _joined(self, smooth: Flags) -> Indices:
         """Number of the group of each triangle, (m,), where groups are joined over given edges."""
         from scipy.sparse import coo_array
         from scipy.sparse.csgraph import connected_components

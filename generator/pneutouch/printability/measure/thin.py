@@ -12,10 +12,10 @@ from typing import Any, Literal
 
 import numpy as np
 
-from pneutouch.meridian.segments import Array
+from pneutouch.arrays import Array, Flags, Indices
 from pneutouch.printability.measure.chords import FLANK, Chords, Side, continues, described
-from pneutouch.printability.measure.surface import Indices, Surface
-from pneutouch.printability.subject import Flags, Point
+from pneutouch.printability.measure.surface import Surface
+from pneutouch.printability.subject import Point
 
 Kind = Literal["wall", "pin", "hole", "channel", "gap", "raised", "engraved"]
 

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pneutouch.meridian.segments import Array
-from pneutouch.printability.measure.surface import Indices
+from pneutouch.arrays import Array, Flags, Indices
 
 PITCH = 0.25
 """Edge of a cube, mm, on parts small enough."""
@@ -67,7 +66,7 @@ def fill(parts: list[Array], frame: Array, most: int = MOST) -> Voxels:
     return Voxels(label, pitch, origin, frame)
 
 
-def _filled(corners: Array, shape: tuple[int, ...]) -> NDArray[np.bool_]:
+def _filled(corners: Array, shape: tuple[int, ...]) -> Flags:
     """Cubes with their centres at whole numbers that lie inside, by counting the crossings below each."""
     flat = corners[:, :, :2]
     low = np.ceil(flat.min(axis=1)).astype(np.int64)

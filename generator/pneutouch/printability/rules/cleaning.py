@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from pneutouch.arrays import Flags, Indices
 from pneutouch.printability.finding import Excess, Finding, Severity
 from pneutouch.printability.measure.cavities import NARROW, Pocket, overhangs
 from pneutouch.printability.measure.rays import first_hits
-from pneutouch.printability.measure.surface import Indices
-from pneutouch.printability.subject import Flags, Point
+from pneutouch.printability.subject import Point
 from pneutouch.printability.view import Job, View
 
 _VENDOR = "vendor, objet.com Tips and Tricks: a confined hollow is not cleanable; "

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.body import Body
-from pneutouch.meridian.segments import Array
 from pneutouch.printability.finding import Excess, Finding
 from pneutouch.printability.sizes import spot
 from pneutouch.printability.subject import Joint

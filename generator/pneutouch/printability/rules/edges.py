@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.body import Body
-from pneutouch.meridian.segments import Array
 from pneutouch.printability.finding import Excess, Finding
 from pneutouch.printability.sizes import spot
 from pneutouch.printability.view import Part, View

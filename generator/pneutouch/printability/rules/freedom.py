@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pneutouch.meridian.segments import Array
+from pneutouch.arrays import Array
 from pneutouch.printability.finding import Excess, Finding
 from pneutouch.printability.view import Part, View
 from pneutouch.units import KPA

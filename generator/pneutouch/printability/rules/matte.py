@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from pneutouch.meridian.segments import Array
+from pneutouch.arrays import Array, Flags
 from pneutouch.printability.finding import Excess, Finding
 from pneutouch.printability.measure.rays import first_hits
 from pneutouch.printability.sizes import spot
-from pneutouch.printability.subject import Flags
 from pneutouch.printability.view import Job, Part, View
 
 _SOURCE = "vendor: faces that support touches come out matte (DOC-37004 p. 5-34); share allowed: own, unverified"

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.bench.record import Curve
 from pneutouch.mechanics.prediction import State
-from pneutouch.meridian.segments import Array
 from pneutouch.report.measured.beside import Beside
 from pneutouch.report.measured.panels import Panel, Plot, band_of, ends_of, key, lines_of, multiples, some
 from pneutouch.report.style import FAINT, INK, LINES, MARKERS, MUTED

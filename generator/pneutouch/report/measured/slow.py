@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.bench.figure import FIRST
 from pneutouch.bench.record import Curve
-from pneutouch.meridian.segments import Array
 from pneutouch.report.measured.beside import Measured
 from pneutouch.report.measured.panels import NARROW, TONES, Panel, Plot, ends_of, key, multiples, some
 from pneutouch.report.style import INK, LINES, MARKERS, MUTED, figure, plain_ticks, svg

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Flags
 from pneutouch.mechanics.atlas.press import Batch
 from pneutouch.mechanics.uncertainty.source import Source
 from pneutouch.mechanics.uncertainty.sources.build import build_sources
@@ -18,7 +18,7 @@ from pneutouch.spec.printer import Printer
 
 def sources(
     batch: Batch, material: Material, printer: Printer, *,
-    near_paper: NDArray[np.bool_] | bool, errors: ModelErrors, numerical: Mapping[str, float], aged: bool = True,
+    near_paper: Flags | bool, errors: ModelErrors, numerical: Mapping[str, float], aged: bool = True,
 ) -> list[Source]:  # fmt: skip
     """Sources that count for at least one figure of one sensor; see `budget` for the arguments."""
     size = len(batch)

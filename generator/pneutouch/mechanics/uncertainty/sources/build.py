@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.press import Batch
 from pneutouch.mechanics.uncertainty.source import Distribution, Source, counting
-from pneutouch.meridian.segments import Array
 from pneutouch.spec.printer import Printer
 from pneutouch.units import KPA
 

@@ -6,15 +6,14 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Array, Flags
 from pneutouch.errors import InputError
 from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.uncertainty.neighbours import joined
 from pneutouch.mechanics.uncertainty.source import FIGURE, FIGURES, SENSITIVITY, Source, counting
-from pneutouch.meridian.segments import Array
 from pneutouch.spec.material import Material, Measured
 from pneutouch.units import KPA
 
@@ -65,7 +64,7 @@ def _spread(errors: tuple[float, ...]) -> float:
     return float(np.sqrt(np.mean(np.log1p(errors) ** 2)))
 
 
-def model_sources(near: NDArray[np.bool_], errors: ModelErrors) -> list[Source]:
+def model_sources(near: Flags, errors: ModelErrors) -> list[Source]:
     """The model's error in sensitivity: the resin's own near the paper's sensor, elsewhere the pool's; (n,) flags.
 
     A resin left out of the pool keeps its own error everywhere. Nothing of the kind is known for the other figures.

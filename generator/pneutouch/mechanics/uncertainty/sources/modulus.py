@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pneutouch.arrays import Array, Flags
 from pneutouch.catalogue.mixture import FROM_CURVE
 from pneutouch.mechanics.uncertainty.hardness import logarithmic_change, logarithmic_slope, shore_a
 from pneutouch.mechanics.uncertainty.source import SENSITIVITY, Source, counting
-from pneutouch.meridian.segments import Array
 from pneutouch.spec.material import Material
 from pneutouch.spec.quantity import Quantity
 
@@ -39,7 +38,7 @@ def _filled(value: float, size: int) -> Array:
     return np.full(size, value)
 
 
-def modulus_sources(material: Material, validated: NDArray[np.bool_]) -> list[Source]:
+def modulus_sources(material: Material, validated: Flags) -> list[Source]:
     """Sources on the shear modulus of n sensors in one resin.
 
     ``validated``, (n,), says where the model's error on a sensor was measured in this resin: that error contains the
@@ -81,7 +80,7 @@ def _log_rectangular(factor: float) -> float:
     return float(np.log(factor) / np.sqrt(12.0))
 
 
-def _published(modulus: Quantity, validated: NDArray[np.bool_]) -> Source:
+def _published(modulus: Quantity, validated: Flags) -> Source:
     known = modulus.low is not None and modulus.high is not None
     factor = modulus.most / modulus.least if known else ASSUMED_FACTOR
     standard = _log_rectangular(factor)

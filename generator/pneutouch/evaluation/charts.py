@@ -1,0 +1,82 @@
+"""What a datasheet sets one design in: its air, its trade-off and its tuning, by the atlas, which must know the sensor."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pneutouch.evaluation.chart_data import Spot, TradeOff, Tuning
+from pneutouch.evaluation.tuning import curve, interval
+from pneutouch.evaluation.variants import in_resin
+from pneutouch.mechanics.atlas.table import shipped
+from pneutouch.mechanics.atlas_states import outside_atlas
+from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.uncertainty import GasNotes, batch_of, gas_notes
+from pneutouch.selection import Problem, Resin
+from pneutouch.selection.front import front
+from pneutouch.units import KPA
+
+if TYPE_CHECKING:
+    from pneutouch.evaluation.evaluate import Evaluation
+
+
+def air(evaluation: Evaluation) -> GasNotes:
+    """What temperature and speed do to the sealed air, one entry a state."""
+    return gas_notes(batch_of(evaluation.sensor, [state.driving_pressure for state in evaluation.prediction.states]))
+
+
+def tuning(evaluation: Evaluation, highest: float) -> Tuning | None:
+    """The design's sensitivity from no driving pressure to ``highest`` (MPa); None where the atlas has no curve.
+
+    The sensitivities at its own driving pressures are those of the prediction's rung.
+    """
+    scene, sensor, prediction = evaluation.scene, evaluation.sensor, evaluation.prediction
+    drawn = curve(sensor, highest, "this design")
+    if drawn is None:
+        return None
+    materials = list(evaluation.resins.values())
+    low, high = interval(sensor, drawn, scene.membrane_material, materials, scene.printer, prediction.model)
+    working = {s.driving_pressure / KPA: s.figures.sensitivity for s in prediction.states if s.figures}
+    return Tuning(drawn, low, high, working)
+
+
+def tradeoff(evaluation: Evaluation) -> TradeOff | None:
+    """Fronts at the design's highest driving pressure in every resin that its printer runs and the atlas knows.
+
+    None where the prediction has no figures there.
+    """
+    state = evaluation.prediction.states[-1]
+    if state.figures is None:
+        return None
+    problem = _problem(evaluation, state.driving_pressure)
+    saturation, end = state.figures.saturation_force, state.figures.force_range[1]
+    force = end if saturation is None else min(end, saturation)
+    return TradeOff(
+        tuple(front(problem)), state.driving_pressure / KPA, (problem.gauge_limit - state.driving_pressure) / KPA,
+        (Spot(evaluation.scene.membrane_material.title, f"this design, {force:.3g} N", state.figures.sensitivity, force),),
+    )  # fmt: skip
+
+
+def _problem(evaluation: Evaluation, pressure: float) -> Problem:
+    """Everything of the design but its resin, radius and wall."""
+    sensor, printer, recipe = evaluation.sensor, evaluation.scene.printer, shipped().recipe
+    wall = printer.smallest.wall("elastomer")
+    return Problem(
+        resins=_resins(evaluation), sensitivity=None, tolerance=1.0, driving_pressure=pressure, force_range=None,
+        stiffness=(None, None), max_diameter=None, inner_radius=None, wall_thickness=None,
+        least_wall=wall.least or wall.recommended, ambient_pressure=sensor.ambient_pressure,
+        dead_volume=lambda radius: np.full_like(radius, sensor.dead_volume), plate_radius=sensor.plate_radius,
+        gauge_limit=sensor.gauge_limit, depth_share=min(sensor.depth / sensor.inner_radius, recipe.deepest),
+        steps=sensor.steps, recipe=recipe,
+    )  # fmt: skip
+
+
+def _resins(evaluation: Evaluation) -> tuple[Resin, ...]:
+    found = []
+    for name, material in evaluation.resins.items():
+        runs = evaluation.scene.printer.mode_for(material) is not None
+        if runs and outside_atlas(in_resin(evaluation.sensor, material)) is None:
+            own = material_sensor(material)
+            found.append(Resin(name, material, own.shear_modulus, own.break_stretch or np.inf))
+    return tuple(found)

@@ -1,0 +1,49 @@
+"""What relaxation does to a predicted sensor, and what a prediction says with it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from pneutouch.evaluation.uncertainty import prediction_document
+from pneutouch.mechanics.viscous.known import AGED, ageing_ratio, unknown
+
+if TYPE_CHECKING:
+    from pneutouch.evaluation.evaluate import Evaluation
+
+_DIGITS = 6
+"""Significant digits: more than the figures have, fewer than differ between processors."""
+
+
+def viscous(evaluation: Evaluation) -> dict[str, Any]:
+    """Relaxation and hysteresis of every state, see `mechanics.viscous.describe`; or ``{"unknown": why}``."""
+    sensor, material, prediction = evaluation.sensor, evaluation.scene.membrane_material, evaluation.prediction
+    why = unknown(sensor, material, prediction.model)
+    if why is not None:
+        return {"unknown": why}
+    # Through the atlas this loads scipy, which a prediction by the membrane must not pay for.
+    from pneutouch.mechanics.viscous.describe import chosen_depth, describe
+
+    depth = chosen_depth(sensor, [state.range_end for state in prediction.states])
+    if not depth > 0:
+        return {"unknown": "a state has no range"}
+    found = describe(sensor, material, [state.driving_pressure for state in prediction.states], depth)
+    return _rounded(found.document())  # type: ignore[no-any-return]
+
+
+def full_document(evaluation: Evaluation, samples: int = 0) -> dict[str, Any]:
+    """`uncertainty.prediction_document` with ``viscous``, and ``aged`` where the prediction is of an aged sensor."""
+    content = {**prediction_document(evaluation, samples), "viscous": viscous(evaluation)}
+    if evaluation.asked.aged:
+        ratio = ageing_ratio(evaluation.scene.membrane_material)
+        content["aged"] = {"modulus_ratio": _rounded(ratio), "assumes": AGED}
+    return content
+
+
+def _rounded(value: Any) -> Any:
+    if isinstance(value, float):
+        return float(f"{value:.{_DIGITS}g}")
+    if isinstance(value, dict):
+        return {key: _rounded(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_rounded(item) for item in value]
+    return value

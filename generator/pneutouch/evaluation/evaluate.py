@@ -1,0 +1,193 @@
+"""A design evaluated: drawn, predicted, and refused where it cannot be."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from pneutouch.catalogue import Library, Scene, load_scene
+from pneutouch.errors import BeyondLimitError, InputError, nearest
+from pneutouch.evaluation.subject import subject_of
+from pneutouch.evaluation.table_s1 import sensitivity_error
+from pneutouch.mechanics import Prediction, Sensor, predict
+from pneutouch.mechanics.ladder import DEFAULT_TOLERANCE
+from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.viscous.known import AGED, ageing_ratio
+from pneutouch.parts import Assembly, assemble
+from pneutouch.printability import Finding, SensorContext, check
+from pneutouch.printability.estimate import JobEstimate, estimate
+from pneutouch.spec.material import Material
+from pneutouch.units import KPA
+
+CLAMPS = ("base", "flange")
+"""Where the solid is held."""
+
+
+Resins = dict[str, Material]
+
+
+@dataclass(frozen=True)
+class Asked:
+    """How a prediction was asked for: the rung, the membrane's closure, the clamp and what ``auto`` must meet.
+
+    ``aged`` asks for the sensor after a year; a recipe does not carry it: what is printed is fresh.
+    """
+
+    model: str = "solid"
+    closure: str = "variational"
+    clamp: str = "base"
+    tolerance: float = DEFAULT_TOLERANCE
+    aged: bool = False
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """A scene with its bodies and its prediction; findings are made when asked for."""
+
+    scene: Scene
+    assembly: Assembly
+    sensor: Sensor
+    prediction: Prediction
+    asked: Asked
+    find_resins: Callable[[], Resins]
+
+    @cached_property
+    def resins(self) -> Resins:
+        """Elastomers by name that the design is compared with and the model's error is taken from."""
+        return self.find_resins()
+
+    @cached_property
+    def findings(self) -> list[Finding]:
+        """What the rules say."""
+        return check(subject_of(self.assembly), SensorContext(self.prediction, self.sensor))
+
+    @cached_property
+    def estimates(self) -> tuple[JobEstimate, ...]:
+        """What each print job takes: resin, support, layers, time."""
+        return tuple(estimate(subject_of(self.assembly)))
+
+    def deep_findings(self) -> list[Finding]:
+        """What pymeshlab, an independent reader, says of the meshes. Raises InputError where it is not installed."""
+        from pneutouch.printability.deep import inspect
+
+        tolerance, solids = self.scene.mesh_tolerance, self.assembly.solids
+        pairs = zip(self.assembly.bodies, solids, strict=True)
+        return [finding for body, solid in pairs for finding in inspect(body, solid, tolerance)]
+
+    @cached_property
+    def uncertainty(self) -> tuple[dict[str, Any], ...]:
+        """How sure the figures of each state are; a sweep that does not ask does not pay."""
+        from pneutouch.evaluation.uncertainty import documents
+
+        return documents(self)
+
+
+def evaluate(
+    name: str, assignments: list[str] | None = None, *,
+    model: str = "solid", closure: str = "variational", clamp: str = "base", tolerance: float = DEFAULT_TOLERANCE,
+    library: Library | None = None, aged: bool = False,
+) -> Evaluation:  # fmt: skip
+    """Load, draw and predict a design given by name or path. Raises InputError where it cannot work.
+
+    ``tolerance`` is what ``model="auto"`` must meet. ``clamp`` says where the solid is held: at the "base" plane, as in the paper, or at the "flange", as printed.
+    ``aged`` shifts the resin's modulus by its hardness after a year (docs/ageing.md).
+    """
+    if clamp not in CLAMPS:
+        raise InputError(f"--clamp {clamp}: unknown.{nearest(clamp, CLAMPS)}")
+    shelves = library or Library.default()
+    scene = load_scene(name, assignments, shelves)
+    return evaluate_scene(scene, lambda: elastomers(shelves), Asked(model, closure, clamp, tolerance, aged))
+
+
+def evaluate_scene(scene: Scene, find_resins: Callable[[], Resins], asked: Asked) -> Evaluation:
+    """Draw and predict a scene; ``find_resins`` gives the resins to compare with, when they are needed.
+
+    Raises InputError where the scene cannot work.
+    """
+    assembly = assemble(scene)
+    sensor = sensor_of(assembly, asked.clamp)
+    if asked.aged:
+        sensor, shift = _aged(scene, sensor)
+    pressures = [p * KPA for p in scene.design.pneumatics.driving_pressures_kPa]
+    try:
+        prediction = predict(
+            scene.name, sensor, pressures, model=asked.model, closure=asked.closure, tolerance=asked.tolerance,
+            sensitivity_error=lambda rung: sensitivity_error(scene.membrane_material, sensor, rung, asked.closure),
+        )  # fmt: skip
+    except BeyondLimitError as error:
+        raise _beyond_limit(scene, error) from None
+    _check_plate(scene, prediction)
+    if asked.aged:
+        prediction = replace(prediction, assumptions=(*prediction.assumptions, shift))
+    return Evaluation(scene, assembly, sensor, prediction, asked, find_resins)
+
+
+def elastomers(library: Library) -> Resins:
+    """Every elastomer of a library, by name."""
+    materials = library.all("materials", Material)
+    return {name: material for name, material in materials.items() if material.kind == "elastomer"}
+
+
+def sensor_of(assembly: Assembly, clamp: str = "base") -> Sensor:
+    """The mechanics' view of an assembly: mm and MPa."""
+    layout = assembly.layout
+    design = assembly.scene.design
+    return replace(
+        _material_sensor(assembly.scene),
+        inner_radius=layout.inner_radius,
+        wall_thickness=layout.wall,
+        ambient_pressure=design.pneumatics.ambient_pressure_kPa * KPA,
+        dead_volume=assembly.dead_volume,
+        plate_radius=0.5 * design.indentation.plate_diameter_mm,
+        depth=design.depth_mm,
+        steps=design.indentation.steps,
+        flange=(layout.flange_width, layout.flange_thickness) if clamp == "flange" else None,
+    )
+
+
+def _material_sensor(scene: Scene) -> Sensor:
+    """The paper's sensor in the scene's resin; a law that makes no solid is the material file's fault."""
+    try:
+        return material_sensor(scene.membrane_material)
+    except InputError as error:
+        raise InputError(f"{scene.where}: membrane.material = {scene.design.membrane.material!r}: {error}") from None
+
+
+def _aged(scene: Scene, sensor: Sensor) -> tuple[Sensor, str]:
+    """The sensor after a year, and what is assumed of it. Raises InputError where the resin's hardness then is not known."""
+    material = scene.membrane_material
+    try:
+        ratio = ageing_ratio(material)
+    except InputError as error:
+        raise InputError(f"{scene.where}: membrane.material = {scene.design.membrane.material!r}: {error}") from None
+    assert material.shore_a is not None and material.shore_a_one_year is not None
+    said = f"Shore A {material.shore_a.nominal:g} to {material.shore_a_one_year.nominal:g}"
+    shifted = replace(sensor, shear_modulus=ratio * sensor.shear_modulus)
+    return shifted, f"aged one year: {said}, modulus times {ratio:.3f}. {AGED}"
+
+
+def _beyond_limit(scene: Scene, error: BeyondLimitError) -> InputError:
+    """The limit point in terms of the design file."""
+    pressures = scene.design.pneumatics.driving_pressures_kPa
+    k = int(np.argmin([abs(p - error.pressure / KPA) for p in pressures]))
+    return InputError(
+        f"{scene.where}: pneumatics.driving_pressures_kPa[{k}] = {pressures[k]:g}: beyond the limit point, where "
+        f"the dome snaps; with this resin, wall and radius it must be at most {error.limit / KPA:.2f} kPa"
+    )
+
+
+def _check_plate(scene: Scene, prediction: Prediction) -> None:
+    """Refuse a plate whose edge would dig into the dome within the depth."""
+    for state in prediction.states:
+        ending = [event for event in state.events if event.ends_range]
+        if ending and ending[0].kind == "plate edge":
+            raise InputError(
+                f"{scene.where}: indentation.plate_diameter_mm = {scene.design.indentation.plate_diameter_mm:g}: the contact "
+                f"reaches the plate's edge at {ending[0].indentation:.2f} mm of indentation; it must be wider than the "
+                f"contact (twice membrane.inner_radius_mm = {2 * scene.design.membrane.inner_radius_mm:g} mm is safe), or "
+                f"indentation.depth_mm less"
+            )

@@ -1,0 +1,78 @@
+"""One design in several resins: what a campaign is planned for and simulated with."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from pneutouch.bench.simulate import Truth, press_curves
+from pneutouch.bench.simulate.curve import Pressed
+from pneutouch.catalogue import Library, Scene, load_scene
+from pneutouch.errors import BeyondLimitError, InputError, nearest
+from pneutouch.evaluation.evaluate import elastomers, sensor_of
+from pneutouch.mechanics import Sensor
+from pneutouch.mechanics.uncertainty.hardness import logarithmic_change
+from pneutouch.parts import assemble
+from pneutouch.spec.campaign import AS_DESIGNED
+from pneutouch.units import KPA
+
+TRUTH = Truth()
+
+ALL = ("all",)
+"""Instead of names: the resins of the paper's Table S1."""
+
+
+@dataclass(frozen=True)
+class Resin:
+    """A resin's scene and nominal sensor, and the simulator's truth with that printer and that resin's ageing."""
+
+    name: str
+    scene: Scene
+    sensor: Sensor
+    truth: Truth
+
+
+def resins_of(
+    design: str, assignments: list[str] | None, resins: Sequence[str], truth: Truth = TRUTH, library: Library | None = None
+) -> list[Resin]:  # fmt: skip
+    """The design in each resin; none given: its own, "all": those of the paper's Table S1. Raises InputError."""
+    shelves = library or Library.default()
+    own = load_scene(design, assignments, shelves)
+    known = elastomers(shelves)
+    names = list(resins) or [resin_of(own)]
+    if tuple(names) == ALL:
+        names = sorted(
+            (name for name, material in known.items() if material.measured is not None),
+            key=lambda name: known[name].shear_modulus_MPa.nominal,  # type: ignore[union-attr]
+        )
+    found = []
+    for name in names:
+        if name not in known and name != AS_DESIGNED:
+            raise InputError(f"--resins {name}: no such elastomer.{nearest(name, known)}")
+        if names.count(name) > 1:
+            raise InputError(f"--resins {name}: named twice; must be there once")
+        change = [] if name == AS_DESIGNED else [f"membrane.material={name}"]
+        scene = load_scene(design, [*(assignments or []), *change], shelves)
+        material = scene.membrane_material
+        new, old = material.shore_a, material.shore_a_one_year
+        ageing = 0.0 if new is None or old is None else logarithmic_change(new.nominal, old.nominal)
+        scatter = replace(truth.scatter, wall=scene.printer.accuracy_mm.nominal, ageing=ageing)
+        found.append(Resin(name, scene, sensor_of(assemble(scene)), replace(truth, scatter=scatter)))
+    return found
+
+
+def resin_of(scene: Scene) -> str:
+    """How a campaign calls the membrane of a design: its resin, or as designed where it is a mix."""
+    chosen = scene.design.membrane.material
+    return chosen if isinstance(chosen, str) else AS_DESIGNED
+
+
+def pressed(resin: str, sensor: Sensor, pressures: Sequence[float], depth: float, model: str) -> Pressed:
+    """`press_curves` at ascending pressures in MPa; beyond the limit point InputError says how far one may go."""
+    try:
+        return press_curves(sensor, pressures, depth, model)
+    except BeyondLimitError as error:
+        raise InputError(
+            f"{resin}: driving pressure {error.pressure / KPA:g} kPa is beyond the limit point, where the dome snaps; it must be "
+            f"less than {error.limit / KPA:.2f} kPa"
+        ) from None

@@ -1,0 +1,58 @@
+"""A sensor as the print rules look at it: its bodies on their machines, and where they must meet."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from pneutouch.arrays import Array, Flags
+from pneutouch.parts import Assembly
+from pneutouch.printability.subject import Item, Joint, Subject
+
+_HINTS = {
+    "membrane": {
+        "walls": "raise membrane.wall_thickness_mm",
+        "envelope": "take a smaller membrane.inner_radius_mm or another print.profile",
+        "resins": "take another membrane.material or print.profile",
+    },
+    "connector": {
+        "walls": "take another connector.seat, connector.port or print.connector_profile",
+        "pins": "take another connector.port or print.connector_profile",
+        "holes": "drill after printing, or take another connector.port or print.connector_profile",
+        "channels": "push a drill or wire through after printing, or take a connector.port with a wider bore",
+        "envelope": "take a smaller membrane.inner_radius_mm, another connector.mount or print.connector_profile",
+        "resins": "take another connector.material or print.connector_profile",
+    },
+}
+"""What in the design would fix what a rule finds, by body; a ring and a plug are designed as the connector is."""
+
+
+def subject_of(assembly: Assembly) -> Subject:
+    """The bodies of a sensor with their machines, as they stand in them, and the faces that membrane and connector share."""
+    scene, layout = assembly.scene, assembly.layout
+    items = []
+    for body, solid in zip(assembly.bodies, assembly.solids, strict=True):
+        printer, mode = assembly.machine(body.name)
+        items.append(
+            Item(
+                body, printer, mode, solid, up=(0.0, 0.0, 1.0 if assembly.stands_up(body.name) else -1.0), job=assembly.job(body.name),
+                sensing=_outer_wall(assembly) if body.name == "membrane" else None,
+                hints=_HINTS.get(body.name, _HINTS["connector"]),
+            )
+        )  # fmt: skip
+    where = (layout.flange_radius, 0.0, layout.plate_high)
+    area = assembly.seat_area
+    joints = (Joint("membrane", "connector", area, where),) if area > 0 else ()
+    return Subject(tuple(items), joints, scene.name)
+
+
+def _outer_wall(assembly: Assembly) -> Callable[[Array], Flags]:
+    """Whether surface points (n, 3) lie on the dome's outer wall: what touches the world must not be matte."""
+    radius, slack = assembly.layout.outer_radius, 2 * assembly.scene.mesh_tolerance
+
+    def on_wall(points: Array) -> Flags:
+        found: Flags = np.abs(np.linalg.norm(points, axis=1) - radius) <= slack
+        return found & (points[:, 2] > slack)
+
+    return on_wall

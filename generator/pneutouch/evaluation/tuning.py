@@ -1,0 +1,55 @@
+"""A sensor's sensitivity over the driving pressure, with its interval, by the atlas."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.evaluation.chart_data import TuningCurve
+from pneutouch.evaluation.uncertainty import known
+from pneutouch.mechanics import Sensor
+from pneutouch.mechanics.atlas.respond import OUTSIDE, respond
+from pneutouch.mechanics.limits import RATED_SHARE
+from pneutouch.mechanics.uncertainty import FIGURES, batch_of
+from pneutouch.spec.material import Material
+from pneutouch.spec.printer import Printer
+from pneutouch.units import KPA
+
+POINTS = 41
+"""Driving pressures of a curve."""
+
+_BUDGETS = 7
+"""Driving pressures at which the interval is worked out; its logarithm is straight between them."""
+
+_SENSITIVITY = FIGURES.index("sensitivity_kPa_per_N")
+
+
+def curve(sensor: Sensor, highest: float, label: str) -> TuningCurve | None:
+    """From no driving pressure to ``highest`` (MPa), or to `RATED_SHARE` of the limit point where that comes first.
+
+    The sensor must lie in the atlas. Pressures at which it has no answer are left out; None where fewer than two are left.
+    """
+    limit = float(respond(batch_of(sensor, [0.0]), sensor.steps).limit_pressure[0])
+    pressures = np.linspace(0.0, min(highest, RATED_SHARE * limit), POINTS)
+    response = respond(batch_of(sensor, pressures.tolist()), sensor.steps)
+    kept = np.isfinite(response.lines.sensitivity) & (response.ends != OUTSIDE)
+    if kept.sum() < 2:
+        return None
+    return TuningCurve(label, pressures[kept] / KPA, response.lines.sensitivity[kept])
+
+
+def interval(
+    sensor: Sensor, drawn: TuningCurve, material: Material, materials: Sequence[Material], printer: Printer, rung: str
+) -> tuple[Array, Array]:
+    """Lower and upper end of a curve's k = 2 interval, kPa/N, (n,) each.
+
+    ``materials`` are all that there are; ``rung`` gives the numerical error.
+    """
+    at = np.linspace(drawn.pressure[0], drawn.pressure[-1], _BUDGETS)
+    found = known(sensor, (at * KPA).tolist(), material, materials, printer, rung)
+    widths = found.budget.expanded[_SENSITIVITY]
+    good = np.isfinite(widths)
+    width = np.interp(drawn.pressure, at[good], widths[good])
+    return drawn.sensitivity * np.exp(-width), drawn.sensitivity * np.exp(width)

@@ -1,0 +1,152 @@
+"""How sure a prediction is, state by state: the budget at its driving pressures, with the figures of its own rung."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from pneutouch.evaluation.graded_uncertainty import even_wall, notes_on
+from pneutouch.evaluation.table_s1 import is_near_paper
+from pneutouch.mechanics import Sensor, State
+from pneutouch.mechanics.ladder import DISCRETISATION, NUMERICAL
+from pneutouch.spec.material import Material
+from pneutouch.spec.printer import Printer
+from pneutouch.units import KPA
+
+if TYPE_CHECKING:
+    from pneutouch.evaluation.evaluate import Evaluation
+    from pneutouch.mechanics.atlas.press import Batch
+    from pneutouch.mechanics.uncertainty import Budget
+
+# The uncertainty, through the atlas, loads scipy; a prediction by the membrane alone must not pay for that.
+
+Document = dict[str, Any]
+
+_DIGITS = 6
+"""Significant digits of an uncertainty: more than it has, fewer than differ between processors."""
+
+_NOTHING = 1e-9
+"""Numbers below this are rounding: a range that ends at the depth has no uncertainty."""
+
+_TREND = (
+    f"the membrane's sensitivity follows the trend only, up to {1 + NUMERICAL['membrane']:.0f} times off the solid's; "
+    "take --model atlas, solid or auto"
+)
+
+
+@dataclass(frozen=True)
+class Known:
+    """A sensor at n driving pressures as the atlas takes it, and its budget."""
+
+    batch: Batch
+    budget: Budget
+
+
+def unknown(sensor: Sensor, rung: str) -> str | None:
+    """Why nothing can be said of how sure a rung's prediction is, or None where it can."""
+    if rung == "membrane":
+        return _TREND
+    from pneutouch.mechanics.atlas_states import outside_atlas
+
+    why = outside_atlas(sensor)
+    return None if why is None else f"the sensor is outside the atlas: {why}"
+
+
+def known(
+    sensor: Sensor, pressures: Sequence[float], material: Material, materials: Sequence[Material], printer: Printer,
+    rung: str,
+) -> Known:  # fmt: skip
+    """The budget of a sensor inside the atlas at driving pressures (MPa).
+
+    ``materials`` are all that there are: the model's error is taken from those that were measured. ``rung`` gives the
+    numerical error.
+    """
+    from pneutouch.mechanics.uncertainty import batch_of, budget, model_errors
+
+    batch = batch_of(sensor, pressures)
+    found = budget(
+        batch, material, printer, near_paper=is_near_paper(sensor), errors=model_errors(material, materials),
+        numerical={
+            "sensitivity_kPa_per_N": NUMERICAL[rung], "limit_pressure_kPa": DISCRETISATION["limit_pressure_relative"]
+        },
+    )  # fmt: skip
+    return Known(batch, found)
+
+
+def documents(evaluation: Evaluation, samples: int = 0) -> tuple[Document, ...]:
+    """One document a state: see `mechanics.uncertainty.document`, with its ``summary``; or ``{"unknown": why}``.
+
+    ``samples`` > 0 adds ``monte_carlo``: the same sources sampled that often, the 95.45 % interval of every figure.
+    """
+    states, rung = evaluation.prediction.states, evaluation.prediction.model
+    sensor = even_wall(evaluation.sensor)
+    why = unknown(sensor, rung)
+    if why is not None:
+        return tuple({"unknown": why} for _ in states)
+    from pneutouch.mechanics.uncertainty import document, gas_text, text
+
+    scene = evaluation.scene
+    found = known(
+        sensor, [state.driving_pressure for state in states], scene.membrane_material,
+        list(evaluation.resins.values()), scene.printer, rung,
+    )  # fmt: skip
+    content = []
+    for row, (state, notes) in enumerate(zip(states, gas_text(found.batch), strict=True)):
+        values = _values(evaluation, state)
+        said = document(found.budget, row, values, (*notes_on(evaluation.sensor), *notes))
+        lacking = said["figures"].keys() - values.keys()
+        for name in lacking:
+            del said["figures"][name], said["elasticities"][name]
+        more = {"monte_carlo": _sampled(found, row, samples, said["figures"])} if samples else {}
+        content.append(_rounded({**said, "summary": text(found.budget, row), **more}))
+    return tuple(content)
+
+
+def prediction_document(evaluation: Evaluation, samples: int = 0) -> Document:
+    """The prediction as ``predict --json`` prints it, every state with its ``uncertainty``."""
+    content = evaluation.prediction.document()
+    found = documents(evaluation, samples) if samples else evaluation.uncertainty
+    return {
+        **content,
+        "states": [{**state, "uncertainty": own} for state, own in zip(content["states"], found, strict=True)],
+    }
+
+
+def _values(evaluation: Evaluation, state: State) -> dict[str, float]:
+    """The figures of the budget as the rung has them; without those it lacks."""
+    peak, figures = evaluation.prediction.limits.limit_point, state.figures
+    return {
+        **({} if peak is None else {"limit_pressure_kPa": peak / KPA}),
+        **({} if figures is None else {
+            "sensitivity_kPa_per_N": figures.sensitivity, "stiffness_N_per_mm": figures.stiffness,
+            "force_at_range_end_N": figures.force_range[1],
+        }),
+        "range_end_mm": state.range_end,
+        "apex_height_outer_mm": state.apex_outer,
+    }  # fmt: skip
+
+
+def _sampled(found: Known, row: int, samples: int, figures: Document) -> Document:
+    """The 95.45 % intervals of the samples about the rung's figures, and the share of samples without a figure."""
+    from pneutouch.mechanics.uncertainty import FIGURES, monte_carlo
+
+    drawn = monte_carlo(found.batch, found.budget.sources, row, samples)
+    intervals = {}
+    for i, name in enumerate(FIGURES):
+        if name in figures and drawn.lost[i] < 1:
+            scale = figures[name]["value"] / float(found.budget.values[i, row])
+            intervals[name] = {
+                "low": scale * float(drawn.low[i]), "high": scale * float(drawn.high[i]), "lost": float(drawn.lost[i]),
+            }  # fmt: skip
+    return {"samples": samples, "figures": intervals}
+
+
+def _rounded(value: Any) -> Any:
+    if isinstance(value, float):
+        return float(f"{value:.{_DIGITS}g}") if abs(value) >= _NOTHING else 0.0
+    if isinstance(value, dict):
+        return {key: _rounded(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_rounded(item) for item in value]
+    return value

@@ -1,0 +1,112 @@
+"""The same sensor in every resin: the curves that show what the offline parameter does."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.errors import ComputationError
+from pneutouch.mechanics import Sensor, predict
+from pneutouch.mechanics.limits import limit_point
+from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.spec.material import Material
+from pneutouch.units import KPA
+
+_POINTS = {"membrane": 12, "atlas": 25, "solid": 4}
+"""Driving pressures a curve is computed at: the solid costs a tenth of a second each."""
+
+_MARGIN = 0.95
+"""Curves stop at this share of a resin's own limit."""
+
+_LIMIT_SHARE = {"membrane": 1.0, "solid": 0.8}
+"""A safe share of the membrane's limit pressure: thick compressible walls reach theirs earlier."""
+
+
+class ResinCurve(NamedTuple):
+    """Sensitivity (kPa/N) over driving pressure (kPa), (n,) each, and the rung that drew it."""
+
+    pressure: Array
+    sensitivity: Array
+    rung: str
+
+
+def in_resin(sensor: Sensor, material: Material) -> Sensor:
+    """The same sensor in another resin, with that resin's law and break strain."""
+    resin = material_sensor(material)
+    return replace(
+        sensor, shear_modulus=resin.shear_modulus, poisson_ratio=resin.poisson_ratio, law=resin.law,
+        break_stretch=resin.break_stretch, grade=resin.grade,
+    )  # fmt: skip
+
+
+def resin_curves(
+    sensor: Sensor, materials: dict[str, Material], highest: float, model: str, closure: str | None
+) -> dict[str, ResinCurve]:
+    """Sensitivity over driving pressure, from 0 to ``highest`` (MPa), by resin title.
+
+    Each curve stops short of its own resin's limit point. A sheet of the membrane's is drawn by the membrane, any other
+    by the atlas where the sensor is inside it, by the solid where not.
+    """
+    variants = {m.title: in_resin(sensor, m) for m in materials.values() if m.kind == "elastomer"}
+    looked_up = {} if model == "membrane" else _by_atlas(variants, highest)
+    rung = "membrane" if model == "membrane" else "solid"
+    curves = {}
+    for title, variant in variants.items():
+        found = looked_up.get(title) or _by_rung(variant, highest, rung, closure)
+        if found is not None:
+            curves[title] = found
+    return curves
+
+
+def _by_atlas(variants: dict[str, Sensor], highest: float) -> dict[str, ResinCurve]:
+    """Curves of the resins that the atlas knows, all in one call; without points that it does not."""
+    from pneutouch.mechanics.atlas.batches import batch_of
+    from pneutouch.mechanics.atlas.respond import EDGE, OUTSIDE, respond
+    from pneutouch.mechanics.atlas.table import shipped
+    from pneutouch.mechanics.atlas_states import outside_atlas
+    from pneutouch.mechanics.uncertainty.neighbours import joined
+
+    inside = {title: variant for title, variant in variants.items() if outside_atlas(variant) is None}
+    if not inside:
+        return {}
+    walls = np.array([variant.wall_thickness / variant.inner_radius for variant in inside.values()])
+    limits = shipped().slices(walls, ()).limit_pressure * np.array([v.shear_modulus for v in inside.values()])
+    share = np.linspace(0.0, 1.0, _POINTS["atlas"])
+    grids = [min(highest, _MARGIN * float(limit)) * share for limit in limits]
+    steps = next(iter(inside.values())).steps
+    response = respond(joined([batch_of(v, grid) for v, grid in zip(inside.values(), grids, strict=True)]), steps)
+    known = np.isfinite(response.lines.sensitivity) & ~np.isin(response.ends, (OUTSIDE, EDGE))
+    rows = zip(
+        inside, grids, response.lines.sensitivity.reshape(-1, share.size), known.reshape(-1, share.size), strict=True
+    )
+    return {
+        title: ResinCurve(grid[kept] / KPA, values[kept], "atlas") for title, grid, values, kept in rows if kept.sum() > 1
+    }  # fmt: skip
+
+
+def _by_rung(variant: Sensor, highest: float, rung: str, closure: str | None) -> ResinCurve | None:
+    """One resin's curve by a rung of its own; None where this geometry cannot be solved in it, which must not stop the
+    sheet."""
+    top = min(highest, _MARGIN * _LIMIT_SHARE[rung] * limit_point(variant).driving_pressure)
+    pressures = np.linspace(0.0, top, _POINTS[rung])
+    try:
+        states = predict("", variant, pressures.tolist(), model=rung, closure=closure or "variational").states
+    except ComputationError:
+        return None
+    values = [(p / KPA, s.figures.sensitivity) for p, s in zip(pressures, states, strict=True) if s.figures]
+    if not values:
+        return None
+    x, y = zip(*values, strict=True)
+    return ResinCurve(np.array(x), np.array(y), rung)
+
+
+def drawn_by(curves: dict[str, ResinCurve]) -> str:
+    """Which rung drew which resins, in words."""
+    rungs = sorted({curve.rung for curve in curves.values()})
+    if len(rungs) == 1:
+        return f"drawn by the {rungs[0]}"
+    solid = ", ".join(title for title, curve in curves.items() if curve.rung != "atlas")
+    return f"drawn by the atlas, {solid} by the solid"

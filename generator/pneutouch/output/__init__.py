@@ -1,0 +1,1 @@
+"""The only code that writes folders: files, manifest, recipe, new design files."""

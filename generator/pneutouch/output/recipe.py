@@ -1,0 +1,92 @@
+"""A recipe: everything that a build follows from, as data that a 3MF carries and from which it can be redone."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import json
+from dataclasses import dataclass, fields
+from typing import Any
+
+from pneutouch import __version__
+from pneutouch.catalogue import Scene
+from pneutouch.errors import InputError
+from pneutouch.evaluation.evaluate import Asked, Evaluation, Resins, evaluate_scene
+from pneutouch.output.files import digest, json_bytes
+
+FORMAT = 1
+"""Number of the form that recipes have; a recipe of another form is refused."""
+
+LIBRARIES = ("numpy", "manifold3d", "trimesh", "lib3mf", "cadquery", "matplotlib", "jinja2", "typst")
+"""Libraries whose versions the bytes of a build depend on."""
+
+SETTINGS = ("model", "closure", "clamp", "tolerance")
+"""Names of the settings among a recipe's inputs."""
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """A scene with every name resolved, the resins it is compared with, and how its prediction is asked for.
+
+    ``version`` is that of the pneutouch that made it.
+    """
+
+    scene: Scene
+    resins: Resins
+    asked: Asked
+    version: str = __version__
+
+    @staticmethod
+    def of(evaluation: Evaluation) -> Recipe:
+        """The recipe that an evaluation followed."""
+        return Recipe(evaluation.scene, evaluation.resins, evaluation.asked)
+
+    def inputs(self) -> dict[str, Any]:
+        """Everything that the result follows from, as data; what the rung asked for does not use is null."""
+        asked = self.asked
+        return {
+            "model": asked.model,
+            "closure": asked.closure if asked.model in ("membrane", "auto") else None,
+            "clamp": asked.clamp,
+            "tolerance": asked.tolerance if asked.model == "auto" else None,
+            **{key: _data(getattr(self.scene, key)) for key in scene_shelves()},
+            "compared_resins": {name: _data(material) for name, material in self.resins.items()},
+        }
+
+    def document(self) -> dict[str, Any]:
+        """The recipe as data."""
+        return {"format": FORMAT, "name": self.scene.name, "version": self.version, "inputs": self.inputs()}
+
+    def text(self) -> str:
+        """The recipe as JSON on one line, ASCII alone: no reader of XML can change it."""
+        return json.dumps(self.document(), sort_keys=True, allow_nan=False, separators=(",", ":"))
+
+
+def evaluate_recipe(recipe: Recipe) -> Evaluation:
+    """Draw and predict what a recipe says; no library is looked at. Raises InputError that names the recipe's file."""
+    where = recipe.scene.where
+    try:
+        return evaluate_scene(recipe.scene, lambda: recipe.resins, recipe.asked)
+    except InputError as error:
+        if str(error).startswith(where):
+            raise
+        raise InputError(f"{where}: {error}") from None
+
+
+def input_hash(inputs: dict[str, Any], version: str) -> str:
+    """First twelve digits of the SHA-256 of the inputs and the version."""
+    return digest(json_bytes({"inputs": inputs, "version": version}))[:12]
+
+
+def versions() -> dict[str, str]:
+    """The versions that the bytes of a build depend on."""
+    return {"pneutouch": __version__, **{name: importlib.metadata.version(name) for name in LIBRARIES}}
+
+
+def scene_shelves() -> dict[str, str]:
+    """Fields of a scene with the catalogue's kind that each is of: ``membrane_material`` is one of the materials."""
+    names = [field.name for field in fields(Scene) if field.name not in ("name", "where")]
+    return {name: f"{name.rpartition('_')[2]}s" for name in names}
+
+
+def _data(model: Any) -> Any:
+    return None if model is None else model.model_dump(mode="json")

@@ -1,0 +1,165 @@
+"""Read a recipe that a 3MF carries: nothing in it is believed before it is validated."""
+
+from __future__ import annotations
+
+import datetime
+import json
+import math
+from collections.abc import Collection
+from dataclasses import replace
+from typing import Any, NoReturn
+
+from pneutouch import __version__
+from pneutouch.catalogue import KINDS, Scene, check_scene
+from pneutouch.errors import InputError, nearest
+from pneutouch.evaluation.evaluate import CLAMPS, Asked, Resins
+from pneutouch.export.threemf_read import Package
+from pneutouch.mechanics.contact import CLOSURES
+from pneutouch.mechanics.ladder import MODELS
+from pneutouch.output.recipe import FORMAT, SETTINGS, Recipe, input_hash, scene_shelves, versions
+from pneutouch.spec.fields import Table
+from pneutouch.spec.read import validate
+
+FINEST_STEP = 1e-3
+"""Finest step in mm that a recipe's printers may have: none prints finer, and meshes grow without bound."""
+
+
+def read_recipe(package: Package) -> Recipe:
+    """The recipe of a 3MF. Raises InputError where there is none, where it is damaged, altered or of wrong values."""
+    where = str(package.path)
+    if package.recipe is None:
+        raise InputError(
+            f"{where}: holds no recipe, so it cannot be rebuilt; give a 3MF that pneutouch build wrote, or a design file"
+        )
+    head = _head(package.recipe, f"{where}: recipe")
+    inputs, shelves = head.inputs, scene_shelves()
+    _check_keys(inputs, {*shelves, *SETTINGS, "compared_resins"}, f"{where}: recipe: inputs")
+    parts = {key: _part(kind, inputs[key], f"{where}: recipe: {key}") for key, kind in shelves.items()}
+    scene = Scene(name=head.name, where=where, **parts)
+    resins = _resins(inputs["compared_resins"], f"{where}: recipe: compared_resins")
+    asked = _asked(inputs, f"{where}: recipe")
+    check_scene(replace(scene, where=f"{where}: recipe"))
+    _check_steps(scene, f"{where}: recipe")
+    if package.metadata.get("input-hash") != input_hash(inputs, head.version):
+        raise InputError(
+            f"{where}: recipe: altered or damaged: it does not match the input hash that stands beside it; "
+            "take the file as it was built, or build from a design file"
+        )
+    return Recipe(scene, resins, asked, head.version)
+
+
+class _Head(Table):
+    """The outermost table of a recipe."""
+
+    format: int
+    name: str
+    version: str
+    inputs: dict[str, Any]
+
+
+def _head(text: str, where: str) -> _Head:
+    try:
+        content = json.loads(text, parse_constant=_no_number)
+    except (ValueError, RecursionError) as error:
+        why = "nested too deep" if isinstance(error, RecursionError) else str(error)
+        raise InputError(f"{where}: damaged, not valid JSON: {why}; take the file as it was built") from None
+    if not isinstance(content, dict):
+        raise InputError(f"{where}: damaged: must be a table")
+    if content.get("format", FORMAT) != FORMAT:
+        raise InputError(f"{where}: of form {content['format']!r}; pneutouch {__version__} reads form {FORMAT}")
+    head = validate(_Head, content, where)
+    name = head.name
+    if not name.isprintable() or not name.strip(". ") or "/" in name or "\\" in name or len(name.encode()) > 200:
+        raise InputError(f"{where}: name = {name!r}: must be a plain file name, for it names the output folder")
+    if not head.version.isprintable() or len(head.version) > 40:
+        raise InputError(f"{where}: version = {head.version[:60]!r}: must be a version number")
+    return head
+
+
+def _no_number(word: str) -> NoReturn:
+    raise ValueError(f"{word} is not a number")
+
+
+def _check_keys(content: dict[str, Any], known: set[str], where: str) -> None:
+    for key in sorted(content.keys() - known):
+        raise InputError(f"{where}: {key}: unknown.{nearest(key, known)}")
+    for key in sorted(known - content.keys()):
+        raise InputError(f"{where}: {key}: missing")
+
+
+def _part(kind: str, content: Any, where: str) -> Any:
+    """One thing of a kind, validated as its file would be."""
+    if not isinstance(content, dict):
+        raise InputError(f"{where} = {str(content)[:60]!r}: must be a table")
+    return KINDS[kind].validate(_dated(content) if kind == "designs" else content, where)
+
+
+def _dated(content: dict[str, Any]) -> dict[str, Any]:
+    """A design with its date as TOML gives it; JSON has no dates. What is no date is left for the validation."""
+    document = content.get("document")
+    if not isinstance(document, dict) or not isinstance(document.get("date"), str):
+        return content
+    try:
+        date: Any = datetime.date.fromisoformat(document["date"])
+    except ValueError:
+        return content
+    return {**content, "document": {**document, "date": date}}
+
+
+def _resins(content: Any, where: str) -> Resins:
+    if not isinstance(content, dict):
+        raise InputError(f"{where}: must be a table of materials")
+    resins = {name: _part("materials", content[name], f"{where}.{name}") for name in sorted(content)}
+    for name, material in resins.items():
+        if material.kind != "elastomer":
+            raise InputError(f"{where}.{name}: {material.label} is {material.kind}; it must be elastomer")
+    return resins
+
+
+def _asked(inputs: dict[str, Any], where: str) -> Asked:
+    """How the prediction is asked for; what is null keeps its default, which the rung does not use."""
+    model = _one_of(inputs, "model", MODELS, where)
+    needed = {"closure": model in ("membrane", "auto"), "tolerance": model == "auto"}
+    given: dict[str, Any] = {"model": model, "clamp": _one_of(inputs, "clamp", CLAMPS, where)}
+    for key, used in needed.items():
+        if used == (inputs[key] is None):
+            raise InputError(
+                f"{where}: {key} = {inputs[key]!r}: must {'' if used else 'not '}be given with model {model}"
+            )
+    if needed["closure"]:
+        given["closure"] = _one_of(inputs, "closure", CLOSURES, where)
+    if needed["tolerance"]:
+        value = inputs["tolerance"]
+        if type(value) not in (int, float) or not (math.isfinite(value) and 0 < value < 100):
+            raise InputError(f"{where}: tolerance = {str(value)[:60]}: must be a positive share, such as 0.02")
+        given["tolerance"] = float(value)
+    return Asked(**given)
+
+
+def _one_of(inputs: dict[str, Any], key: str, known: Collection[str], where: str) -> str:
+    value = inputs[key]
+    if not isinstance(value, str) or value not in known:
+        raise InputError(f"{where}: {key} = {str(value)[:60]!r}: unknown.{nearest(str(value)[:60], known)}")
+    return value
+
+
+def _check_steps(scene: Scene, where: str) -> None:
+    """Steps that no printer makes would make meshes without bounds."""
+    if scene.mesh_tolerance < FINEST_STEP:
+        raise InputError(
+            f"{where}: the printers step by {scene.mesh_tolerance:g} mm; their steps must be at least {FINEST_STEP:g} mm"
+        )
+
+
+def other_versions(package: Package, recipe: Recipe) -> list[str]:
+    """What made a 3MF and is of another version here, in words: ``pneutouch 0.1 (here 0.2)``."""
+    try:
+        recorded = json.loads(package.metadata.get("versions", "{}"))
+    except (ValueError, RecursionError):
+        recorded = {}
+    made = {**(recorded if isinstance(recorded, dict) else {}), "pneutouch": recipe.version}
+    return [
+        f"{name} {str(made[name])[:40]} (here {here})"
+        for name, here in versions().items()
+        if made.get(name, here) != here
+    ]

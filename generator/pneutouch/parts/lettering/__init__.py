@@ -1,0 +1,1 @@
+"""Labels on bodies: glyphs, the faces that take them, tally grooves, and the marked body."""

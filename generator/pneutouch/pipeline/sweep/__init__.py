@@ -1,7 +1,0 @@
-"""Many designs to one dataset: planned, computed in pieces that survive a kill, written whole or not at all."""
-
-from pneutouch.pipeline.sweep.plan import Axis, Plan
-from pneutouch.pipeline.sweep.read import plan_of_file, plan_of_flags
-from pneutouch.pipeline.sweep.run import Outcome, sweep
-
-__all__ = ["Axis", "Outcome", "Plan", "plan_of_file", "plan_of_flags", "sweep"]

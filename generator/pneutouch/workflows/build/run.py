@@ -1,0 +1,157 @@
+"""Build a design: print files, prediction, datasheet, print sheet and manifest, in one folder."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from pneutouch import __version__
+from pneutouch.body import Body
+from pneutouch.errors import InputError, RuleBrokenError
+from pneutouch.evaluation.document import full_document
+from pneutouch.evaluation.evaluate import Evaluation
+from pneutouch.evaluation.uncertainty import unknown
+from pneutouch.export.scene import cut_open, glb, stl, viewer_html
+from pneutouch.export.step import step
+from pneutouch.export.threemf import threemf
+from pneutouch.export.threemf_read import RECIPE
+from pneutouch.output.files import MANIFEST, check_writable, digest, json_bytes, write_folder
+from pneutouch.output.recipe import Recipe, versions
+from pneutouch.output.recipe import input_hash as hash_of
+from pneutouch.report import Sheet, datasheet, print_sheet
+from pneutouch.report.picture import picture
+from pneutouch.units import KPA, ML
+
+Progress = Callable[[str], None]
+
+STEPS = ("rules", "meshes", "3MF", "STL", "GLB", "STEP", "datasheet", "files")
+"""The steps that a build reports, in order."""
+
+_THUMBNAIL_PIXELS = 256
+"""Width and height of the picture in the 3MF."""
+
+
+def build(evaluation: Evaluation, out: Path, progress: Progress = lambda step: None) -> Path:
+    """Write everything a design gives into ``out/<name>/`` and return that folder.
+
+    Raises RuleBrokenError, with nothing written, where a rule is broken. The same input gives the same bytes.
+    """
+    scene, assembly = evaluation.scene, evaluation.assembly
+    if evaluation.asked.aged:
+        raise InputError(f"{scene.where}: an aged prediction is for reading; a build is of a fresh print")
+    folder = out / scene.name
+    check_writable(folder)
+    progress("rules")
+    refuse(evaluation)
+    progress("meshes")
+    bodies = tuple(body.moved(assembly.print_offset) for body in assembly.bodies)
+    files: dict[str, bytes] = {"prediction.json": json_bytes(full_document(evaluation))}
+    progress("3MF")
+    files[f"{scene.name}.3mf"] = threemf(
+        scene.name, bodies, _metadata(evaluation, bodies), _thumbnail(evaluation)
+    )  # fmt: skip
+    progress("STL")
+    files |= {f"stl/{body.name}.stl": stl(body) for body in bodies}
+    progress("GLB")
+    files[f"{scene.name}.glb"] = glb(bodies)
+    progress("STEP")
+    files[f"{scene.name}.step"] = step(scene.name, assembly.solids, assembly.print_offset)
+    progress("datasheet")
+    sheet = _sheet(evaluation)
+    files |= datasheet(sheet, evaluation.sensor, viewer_html(bodies))
+    files["print-sheet.md"] = print_sheet(sheet).encode()
+    progress("files")
+    files[MANIFEST] = json_bytes(_manifest(evaluation, bodies, files))
+    write_folder(folder, files)
+    return folder
+
+
+def _sheet(evaluation: Evaluation) -> Sheet:
+    """What the datasheet is made from; the air and the charts only where the atlas knows the sensor."""
+    prediction, sensor = evaluation.prediction, evaluation.sensor
+    sheet = Sheet(
+        evaluation.scene, evaluation.assembly, prediction, evaluation.findings, input_hash(evaluation),
+        evaluation.resins, evaluation.uncertainty, evaluation.estimates,
+    )  # fmt: skip
+    if unknown(sensor, prediction.model) is not None:
+        return sheet
+    # Through the atlas these load scipy, which a prediction by the membrane must not pay for.
+    from pneutouch.evaluation.charts import air, tradeoff, tuning
+
+    tuned = tuning(evaluation, sheet.rated_pressure() * KPA)
+    if tuned is not None:
+        tuned = replace(tuned, published=tuple(sheet.published().items()))
+    return replace(sheet, gas=air(evaluation), tradeoff=tradeoff(evaluation), tuning=tuned)
+
+
+def refuse(evaluation: Evaluation) -> None:
+    """Raise RuleBrokenError where a finding is an error."""
+    errors = [finding for finding in evaluation.findings if finding.severity == "error"]
+    if errors:
+        lines = [f"{evaluation.scene.where}: {f.rule}: {f.message}; {f.fix}" for f in errors]
+        raise RuleBrokenError("\n".join(lines))
+
+
+def inputs(evaluation: Evaluation) -> dict[str, Any]:
+    """Everything that the result follows from: design, materials, printers and parts, as data."""
+    return Recipe.of(evaluation).inputs()
+
+
+def input_hash(evaluation: Evaluation) -> str:
+    """First twelve digits of the SHA-256 of the inputs and the version."""
+    return hash_of(inputs(evaluation), __version__)
+
+
+def _metadata(evaluation: Evaluation, bodies: tuple[Body, ...]) -> dict[str, str]:
+    scene = evaluation.scene
+    return {
+        "Title": scene.design.document.title,
+        "Application": f"pneutouch {__version__}",
+        "Description": f"Pneumatic touch sensor {scene.name}: assembly of {_and(bodies)}",
+        RECIPE: Recipe.of(evaluation).text(),
+        "versions": json_bytes(versions()).decode(),
+        "input-hash": input_hash(evaluation),
+        "mesh-tolerance-mm": f"{scene.mesh_tolerance:g}",
+    }
+
+
+def _and(bodies: tuple[Body, ...]) -> str:
+    *first, last = [body.name for body in bodies]
+    return f"{', '.join(first)} and {last}" if first else last
+
+
+def _thumbnail(evaluation: Evaluation) -> bytes:
+    """PNG of the bodies cut open; meshes within an eighth of a pixel do."""
+    assembly = evaluation.assembly
+    extent = max(float((body.bounds[1] - body.bounds[0]).max()) for body in assembly.bodies)
+    tolerance = max(evaluation.scene.mesh_tolerance, extent / _THUMBNAIL_PIXELS / 8)
+    return picture(
+        tuple(cut_open(solid.mesh(tolerance)) for solid in assembly.solids), _THUMBNAIL_PIXELS, _THUMBNAIL_PIXELS
+    )
+
+
+def _manifest(evaluation: Evaluation, bodies: tuple[Body, ...], files: dict[str, bytes]) -> dict[str, Any]:
+    assembly = evaluation.assembly
+    return {
+        "name": evaluation.scene.name,
+        "inputs": inputs(evaluation),
+        "input_hash": input_hash(evaluation),
+        "versions": versions(),
+        "print_frame_offset_mm": assembly.print_offset.tolist(),
+        "mesh": {
+            body.name: {
+                "tolerance_mm": evaluation.scene.mesh_tolerance,
+                "measured_deviation_mm": round(assembly.deviation(original), 6),
+                "triangles": len(body.triangles),
+                "volume_mm3": round(body.volume, 3),
+                "exact_volume_mm3": round(solid.volume, 3),
+            }
+            for body, original, solid in zip(bodies, assembly.bodies, assembly.solids, strict=True)
+        },
+        "findings": [finding.document() for finding in evaluation.findings],
+        "estimates": [job.document() for job in evaluation.estimates],
+        "glue_mL": assembly.glue_volume / ML,
+        "files": {name: {"sha256": digest(content), "bytes": len(content)} for name, content in sorted(files.items())},
+    }

@@ -1,0 +1,168 @@
+"""A voxel stack of a design: the bodies printed with the membrane, one PNG a layer, in a folder of its own."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import tempfile
+import zlib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pneutouch import __version__
+from pneutouch.catalogue import Library
+from pneutouch.errors import InputError, nearest
+from pneutouch.export.voxels.blend import blend
+from pneutouch.export.voxels.job import BACKGROUND, VoxelBody, VoxelJob
+from pneutouch.export.voxels.manifest import MANIFEST, manifest, shortfalls, slice_name
+from pneutouch.export.voxels.png import encode, table
+from pneutouch.export.voxels.raster import raster
+from pneutouch.export.voxels.slices import Slicer
+from pneutouch.output.files import check_writable, digest, exchange, json_bytes
+from pneutouch.parts import Assembly
+from pneutouch.printability import Finding
+from pneutouch.printability.rules.voxels import check_stack
+from pneutouch.spec.printer import Mode
+
+Progress = Callable[[int, int], None]
+"""Called with the slices written and all of them."""
+
+SEED = 1
+
+_SLICE = re.compile(r".*_[0-9]+\.png")
+
+
+@dataclass(frozen=True)
+class VoxelPlan:
+    """What a stack will be, before it is made: the job, its mode, and what the rules say of it."""
+
+    assembly: Assembly
+    job: VoxelJob
+    mode: Mode
+    findings: tuple[Finding, ...]
+
+    def refuse(self) -> None:
+        """Raise InputError where a rule is broken; it names the design file and the key."""
+        scene = self.assembly.scene
+        for finding in self.findings:
+            if finding.severity == "error":
+                head = f"{scene.where}: print.profile = {scene.design.print.profile!r}"
+                raise InputError(f"{head}: {finding.message}; {finding.fix}")
+
+
+def plan_voxels(
+    assembly: Assembly, *, mode: str | None = None, library: Library | None = None, coarser: float = 1.0
+) -> VoxelPlan:
+    """Plan the stack of the print job that the membrane is in; ``mode`` names a print mode, else it is the design's.
+
+    Raises InputError for an unknown mode and for a mix that nobody knows.
+    """
+    scene = assembly.scene
+    printer, _ = assembly.machine("membrane")
+    chosen = _mode(assembly, mode)
+    shelves = library or Library.default()
+    solids = [solid for solid in assembly.solids if assembly.job(solid.name) == assembly.job("membrane")]
+    names = {"membrane": scene.design.membrane.material, "connector": scene.design.connector.material}
+    bodies = []
+    for solid in solids:
+        table_name = "membrane" if solid.name == "membrane" else "connector"
+        mixed = blend(solid.material, str(names[table_name]), shelves, f"{scene.where}: {table_name}.material")
+        bodies.append(VoxelBody(solid, mixed))
+    grid = raster(
+        [body.inside for body in bodies], printer.resolution.dpi, chosen.layer_height_um,
+        upright=assembly.stands_up("membrane"), coarser=coarser,
+    )  # fmt: skip
+    job = VoxelJob(tuple(bodies), grid, tuple(printer.resins), SEED)
+    found = check_stack(printer, chosen, job.used, len(grid.z), grid.size, "membrane")
+    return VoxelPlan(assembly, job, chosen, tuple(found))
+
+
+def stack_folder(out: Path, name: str) -> Path:
+    """The folder of a design's stack, beside its output folder."""
+    return out / f"{name}-voxels"
+
+
+def write_voxels(
+    plan: VoxelPlan, out: Path, input_hash: str, progress: Progress = lambda done, all_: None
+) -> tuple[Path, list[str]]:
+    """Write the stack into ``out/<name>-voxels/``; returns the folder, and a line for each fraction that is not met.
+
+    The folder appears whole or not at all. Raises InputError where a rule is broken, with nothing written, and where
+    the folder cannot be written.
+    """
+    plan.refuse()
+    scene = plan.assembly.scene
+    printer, _ = plan.assembly.machine("membrane")
+    about = {
+        "name": scene.name, "input_hash": input_hash, "printer": printer.title, "mode": plan.mode.name,
+        "orientation": scene.design.print.orientation, "versions": {"pneutouch": __version__, "zlib": zlib.ZLIB_RUNTIME_VERSION},
+        "print_frame_offset_mm": plan.assembly.print_offset.tolist(),
+    }  # fmt: skip
+    folder = stack_folder(out, scene.name)
+    slicer = write_stack(plan.job, folder, f"{scene.name}_", about, progress)
+    return folder, shortfalls(plan.job, slicer)
+
+
+def write_stack(
+    job: VoxelJob, folder: Path, prefix: str, about: Mapping[str, Any], progress: Progress = lambda done, all_: None
+) -> Slicer:
+    """Slice a job into a hidden folder and rename that to ``folder``. One slice at a time is in memory.
+
+    Raises InputError that names the folder where it cannot be written, the disk is full, or somebody else's files lie
+    in it; nothing is left behind then, and an earlier stack stays.
+    """
+    check_stack_folder(folder)
+    fresh: Path | None = None
+    try:
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        fresh = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
+        slicer = Slicer(job)
+        hashes = []
+        colours = table([BACKGROUND, *job.colours.values()])
+        for number, labels in enumerate(slicer):
+            content = encode(labels, colours, job.raster.dpi)
+            (fresh / slice_name(prefix, number)).write_bytes(content)
+            hashes.append(digest(content))
+            progress(number + 1, len(job.raster.z))
+        (fresh / MANIFEST).write_bytes(json_bytes(manifest(job, slicer, hashes, about, prefix)))
+        fresh.chmod(0o755)
+        if folder.exists():
+            exchange(folder, fresh)
+        else:
+            fresh.rename(folder)
+        return slicer
+    except OSError as error:
+        raise InputError(
+            f"--out: {folder}: {error.strerror or error}; no stack was written, and an earlier one is unchanged"
+        ) from None
+    finally:
+        if fresh is not None:
+            shutil.rmtree(fresh, ignore_errors=True)
+
+
+def check_stack_folder(folder: Path) -> None:
+    """Raise InputError where a stack cannot be written into ``folder`` or somebody else's files lie in it."""
+    if not folder.is_dir() or folder.is_symlink() or not any(folder.iterdir()):
+        check_writable(folder)
+        return
+    if not (folder / MANIFEST).is_file():
+        raise InputError(
+            f"--out: {folder} holds files but no {MANIFEST}: not written by pneutouch; give another folder"
+        )
+    foreign = next(
+        (path for path in sorted(folder.iterdir()) if path.name != MANIFEST and not _SLICE.fullmatch(path.name)), None
+    )
+    if foreign is not None:
+        raise InputError(f"--out: {foreign} is not of the stack that is to be written anew; move it elsewhere")
+
+
+def _mode(assembly: Assembly, name: str | None) -> Mode:
+    printer, own = assembly.machine("membrane")
+    if name is None:
+        return own
+    found = next((mode for mode in printer.mode if mode.name.lower() == name.lower()), None)
+    if found is None:
+        raise InputError(f"--voxel-mode {name}: unknown.{nearest(name, [mode.name for mode in printer.mode])}")
+    return found

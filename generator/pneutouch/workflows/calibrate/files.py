@@ -1,0 +1,166 @@
+"""A calibration as files: its folder, and the resin and design that predict, select and build take."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pneutouch.bench.finding import rounded
+from pneutouch.catalogue import KINDS, Library
+from pneutouch.errors import InputError
+from pneutouch.output.files import MANIFEST, check_writable, digest, json_bytes, write_folder
+from pneutouch.report.residuals import residual_chart
+from pneutouch.spec.read import read_toml
+from pneutouch.spec.toml_text import toml_text
+from pneutouch.workflows.calibrate.fit import Calibration
+from pneutouch.workflows.coupons.profile import Profile, write_profiles
+
+HEAD = "# Written by pneutouch calibrate"
+"""First words of every file that is ours to overwrite."""
+
+_CHART = (160.0, 110.0)
+"""Width and height of the residual chart, mm."""
+_TWO_SIDED = 1.96
+_SMALL = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Saved:
+    """What ``--save`` writes."""
+
+    files: tuple[Profile, ...]
+
+    @property
+    def paths(self) -> list[str]:
+        """Paths of the files."""
+        return [str(file.path) for file in self.files]
+
+
+def write_calibration(found: Calibration, out: Path) -> Path:
+    """Write calibration.json and residuals.svg into ``out/<design>-<sensor>-calibration``. Raises InputError."""
+    name = re.sub(r"[^A-Za-z0-9_-]+", "-", f"{found.scene.name}-{found.sensor or 'sensor'}-calibration")
+    folder = out / name
+    check_writable(folder)
+    files = {
+        "calibration.json": json_bytes(found.document), "residuals.svg": residual_chart(found.residuals, _CHART).encode(),
+    }  # fmt: skip
+    listed = {path: digest(content) for path, content in sorted(files.items())}
+    write_folder(folder, {**files, MANIFEST: json_bytes({"files": listed})})
+    return folder
+
+
+def prepare(found: Calibration, name: str, root: Path, shelves: Library, *, shadow: bool = False) -> Saved:
+    """Check and word the files of ``name`` under ``root``: the resin where its modulus was fitted, and the design.
+
+    Nothing is written. Raises InputError for a bad name, one that would hide another resin or design (unless ``shadow``), a file
+    that the command did not write, and estimates that have no interval.
+    """
+    if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]*", name):
+        raise InputError(f"--save {name}: use letters, digits, - and _, starting with a letter or digit")
+    by_name = {estimate["parameter"]: estimate for estimate in found.estimates}
+    files = []
+    if "modulus" in by_name:
+        files.append(_material(found, by_name["modulus"], _place("materials", name, root, shelves, shadow), shelves))
+    files.append(_design(found, by_name, name, _place("designs", name, root, shelves, shadow)))
+    return Saved(tuple(files))
+
+
+def save(saved: Saved) -> None:
+    """Write what `prepare` made. Raises InputError where a folder cannot be written."""
+    write_profiles(saved.files)
+
+
+def _place(kind: str, name: str, root: Path, shelves: Library, shadow: bool) -> Path:
+    path = root / KINDS[kind].folder / f"{name}.toml"
+    other = shelves.shelf(kind).get(name)
+    if other is not None and other.resolve() != path.resolve() and not shadow:
+        raise InputError(
+            f"--save {name}: {other} is of this name, which the new file would hide; give another name, or --shadow to hide it"
+        )
+    if path.is_symlink() or path.exists():
+        ours = path.is_file() and not path.is_symlink() and _is_ours(path)
+        if not ours:
+            raise InputError(
+                f"{path}: was not written by pneutouch calibrate, so it is left as it is; move it away or give another --save"
+            )
+    return path
+
+
+def _is_ours(path: Path) -> bool:
+    with path.open(encoding="utf-8", errors="replace") as file:
+        return file.readline().startswith(HEAD)
+
+
+def _head(found: Calibration, lines: list[str]) -> str:
+    first = f"{HEAD} from {_origin(found)}. Edit this line away and the command will no longer overwrite the file."
+    return "".join(f"{line}\n" for line in [first, *(f"# {line}" for line in lines)])
+
+
+def _origin(found: Calibration) -> str:
+    runs, pushed = len(found.fit.observations.curves), len(found.fit.observations.injections)
+    counts = f"{runs} curves" + (f", {pushed} injections" if pushed else "")
+    return f"sensor {found.sensor or 'unnamed'}, {found.title or 'unnamed campaign'}, {counts}"
+
+
+def _material(found: Calibration, estimate: dict[str, Any], path: Path, shelves: Library) -> Profile:
+    interval = estimate["interval_95"]
+    if interval is None:
+        raise InputError(
+            "--save: the shear modulus has no interval (on its bound, or not seen): there is no resin to save"
+        )
+    base = found.scene.design.membrane.material
+    if not isinstance(base, str):
+        raise InputError(
+            f"--save: {base.label} is a mix of two resins; a modulus can be saved of a resin that has a file"
+        )
+    content = read_toml(shelves.shelf("materials")[base])
+    before = content["shear_modulus_MPa"]
+    # A material file holds one standard deviation; read with k = 2 it gives this interval back.
+    spread = 0.5 * (interval[1] - interval[0]) / _TWO_SIDED
+    wording = (
+        f"calibrated on {_origin(found)}; 95 % interval {interval[0]:.4g} to {interval[1]:.4g} MPa; "
+        f"{'priors counted' if found.fit.parameters.priors else 'no priors'}; before {before.get('value', 'a range')}: {base}.toml"
+    )
+    content["shear_modulus_MPa"] = {"value": rounded(estimate["value"]), "spread": rounded(spread), "source": wording}
+    content["title"] = f"{content['title']}, {path.stem}"
+    # What the paper measured was measured on another print: it says nothing of the error of this modulus.
+    content.pop("measured", None)
+    KINDS["materials"].validate(content, str(path))
+    head = _head(
+        found,
+        [f"{base} with the shear modulus of the sensor in hand; the paper's measurements of {base} are not in it."],
+    )
+    changes = [{"file": str(path), "key": "shear_modulus_MPa", "before": before, "after": content["shear_modulus_MPa"]}]
+    return Profile(path, head + toml_text(content), changes)
+
+
+def _design(found: Calibration, by_name: dict[str, dict[str, Any]], name: str, path: Path) -> Profile:
+    design = found.scene.design
+    content = design.model_dump(exclude_none=True)
+    lines, changes = [], []
+    for parameter, table, key, value in (
+        ("wall", "membrane", "wall_thickness_mm", lambda x: rounded(x)),
+        ("dead-volume", "pneumatics", "dead_volume_mL", lambda x: round(x, _SMALL)),
+    ):
+        if parameter in by_name:
+            lines.append(_said(by_name[parameter]))
+            before = content[table].get(key)
+            content[table][key] = value(by_name[parameter]["value"])
+            changes.append({"file": str(path), "key": f"{table}.{key}", "before": before, "after": content[table][key]})
+    if "offset" in by_name:
+        lines.append(f"{_said(by_name['offset'])}; of the measurement, not of the sensor: not in this file.")
+    if "modulus" in by_name:
+        changes.append(
+            {"file": str(path), "key": "membrane.material", "before": design.membrane.material, "after": name}
+        )
+        content["membrane"]["material"] = name
+    KINDS["designs"].validate(content, str(path))
+    return Profile(path, _head(found, lines) + toml_text(content), changes)
+
+
+def _said(estimate: dict[str, Any]) -> str:
+    interval = estimate["interval_95"]
+    sure = "no interval" if interval is None else f"95 % interval {interval[0]:.4g} to {interval[1]:.4g}"
+    return f"{estimate['key']} = {estimate['value']:.4g}, {sure}; designed {estimate['designed']:.4g}"

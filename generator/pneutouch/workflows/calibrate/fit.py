@@ -1,0 +1,232 @@
+"""A campaign and a design to the sensor in hand: what its modulus, wall, dead volume and contact offset are, and how sure."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.bench.calibrate import NAMES, Fit, HeldOut, Injection, Observations, fit, parameters, predict_held_out
+from pneutouch.bench.calibrate.further import Further, further_tests
+from pneutouch.bench.calibrate.goodness import Miss, Residuals, misses, residuals
+from pneutouch.bench.calibrate.identify import Ambiguity, Identified, identify
+from pneutouch.bench.calibrate.parameters import DEAD, KEYS, LOGARITHMIC, UNITS, outside_value
+from pneutouch.bench.calibrate.tell import sentences
+from pneutouch.bench.record import Curve
+from pneutouch.catalogue import Scene
+from pneutouch.errors import InputError
+from pneutouch.evaluation.evaluate import sensor_of
+from pneutouch.parts import assemble
+from pneutouch.spec.campaign import Campaign, Run
+from pneutouch.units import KPA, ML
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """A sensor calibrated.
+
+    Attributes:
+        scene: The design it was made to.
+        sensor, title: Name of the specimen and of the campaign.
+        fit, residuals, misses, identified, further, held_out: See `bench.calibrate`.
+        notes: Remarks on what was read.
+    """
+
+    scene: Scene
+    sensor: str
+    title: str
+    fit: Fit
+    residuals: tuple[Residuals, ...]
+    misses: list[Miss]
+    identified: Identified
+    further: list[Further]
+    held_out: tuple[HeldOut, ...]
+    notes: tuple[str, ...] = ()
+
+    @property
+    def told(self) -> list[str]:
+        """What a reader must know beside the numbers."""
+        return [*self.notes, *sentences(self.fit, self.identified, self.further, self.misses, self.held_out)]
+
+    @property
+    def estimates(self) -> list[dict[str, Any]]:
+        """One entry a fitted parameter: value, 95 % interval or None, prior; in the unit it leaves with."""
+        return [_estimate(self.fit, place) for place in range(len(self.fit.parameters.fitted))]
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """The calibration as data."""
+        return {
+            "design": self.scene.name, "sensor": self.sensor, "campaign": self.title,
+            "runs": len(self.fit.observations.curves), "injections": len(self.fit.observations.injections),
+            "driving_pressures_kPa": list(self.fit.observations.pressures),
+            "ambient_pressure_kPa": self.fit.observations.ambient / KPA,
+            "estimates": self.estimates, "correlation": _correlation(self.fit), "fit": _goodness(self.fit),
+            "residuals": [_residual(run) for run in self.residuals],
+            "misses": [
+                {"driving_pressure_kPa": m.pressure, "channel": m.channel, "from_mm": m.start, "to_mm": m.end, "share": m.share}
+                for m in self.misses
+            ],
+            "not_told_apart": [_ambiguity(group) for group in self.identified.ambiguities],
+            "not_seen": [NAMES[k] for k in self.identified.unseen],
+            "further_tests": [_further(self.fit, test) for test in self.further],
+            "held_out": [_held_out(one) for one in self.held_out], "told": self.told,
+        }  # fmt: skip
+
+
+def calibrate(
+    observations: Observations, scene: Scene, names: Sequence[str] = NAMES, *, priors: bool = True,
+    hold_out: Sequence[float] = (), sensor: str = "", title: str = "", notes: Sequence[str] = (),
+) -> Calibration:  # fmt: skip
+    """Fit the parameters ``names`` of a design to observations, and predict the pressures ``hold_out`` (kPa) by the others.
+
+    Raises InputError for what cannot be fitted, ComputationError where no fit is found.
+    """
+    built = sensor_of(assemble(scene))
+    # The depth is the design's wish; what the atlas has of the measured travels is decided point by point.
+    built = replace(built, ambient_pressure=observations.ambient, depth=min(built.depth, 0.75 * built.inner_radius))
+    chosen = parameters(built, scene.membrane_material, scene.printer, names, priors=priors)
+    found = fit(observations, built, chosen)
+    held = tuple(predict_held_out(observations, built, chosen, pressure) for pressure in hold_out)
+    return Calibration(
+        scene,
+        sensor,
+        title,
+        found,
+        residuals(found),
+        misses(found),
+        identify(found),
+        further_tests(found),
+        held,
+        tuple(notes),
+    )
+
+
+def observations_of(
+    campaign: Campaign, curves: Sequence[Curve], injections: Sequence[tuple[Run, Array, Array]], scene: Scene,
+    sensor: str | None = None,
+) -> tuple[str, Observations, list[str]]:  # fmt: skip
+    """The sensor's name, its runs of kinds steps and injection, and remarks.
+
+    Raises InputError where the campaign holds several sensors and none is named, or not the one named, or nothing of it.
+    """
+    known = sorted({run.sensor for run in campaign.runs})
+    if sensor is None and len(known) > 1:
+        raise InputError(f"--sensor: the campaign holds {', '.join(known)}; name one")
+    chosen = known[0] if sensor is None else sensor
+    if chosen not in known:
+        raise InputError(f"--sensor {chosen}: no such sensor in the campaign; there are {', '.join(known)}")
+    steps = tuple(curve for curve in curves if curve.run.sensor == chosen and curve.run.kind == "steps")
+    pushed = [found for found in injections if found[0].sensor == chosen]
+    for run, _, _ in pushed:
+        if run.driving_pressure_kPa:
+            raise InputError(
+                f"{run.file}: driving_pressure_kPa = {run.driving_pressure_kPa:g}: an injection must begin at ambient pressure, 0"
+            )
+    if not steps and not pushed:
+        raise InputError(f"--sensor {chosen}: no readable run of kind steps or injection; there must be at least one")
+    given = campaign.ambient_pressure_kPa
+    ambient = (scene.design.pneumatics.ambient_pressure_kPa if given is None else given) * KPA
+    blown = tuple(Injection(run.label, volume, pressure) for run, volume, pressure in pushed)
+    return chosen, Observations(steps, blown, ambient, campaign.rig), _remarks(campaign, scene, chosen)
+
+
+def _remarks(campaign: Campaign, scene: Scene, sensor: str) -> list[str]:
+    resin = next(run.resin for run in campaign.runs if run.sensor == sensor)
+    found = ["the campaign's files are simulated, not measured"] if campaign.simulated else []
+    if resin != scene.design.membrane.material:
+        found.append(
+            f"the campaign says that {sensor} is of {resin}, the design says {scene.design.membrane.material}: the design's resin "
+            "gives the start and the prior of the modulus"
+        )
+    return found
+
+
+def _estimate(found: Fit, place: int) -> dict[str, Any]:
+    k = found.parameters.fitted[place]
+    at, half = float(found.solution.at[place]), float(found.half_width[place])
+    interval = None
+    if np.isfinite(half):
+        low = at - half if k != DEAD else max(at - half, 0.0)
+        interval = [outside_value(k, low), outside_value(k, at + half)]
+    belief = float(found.parameters.belief[k])
+    return {
+        "parameter": NAMES[k], "key": KEYS[k], "unit": UNITS[k], "value": outside_value(k, at), "interval_95": interval,
+        "on_bound": bool(found.solution.bound[place]), "designed": outside_value(k, float(found.parameters.start[k])),
+        "prior": {
+            "counted": found.parameters.priors, "standard_deviation": belief / (ML if k == DEAD else 1.0),
+            "relative": bool(LOGARITHMIC[k]), "source": found.parameters.origin[k],
+        },
+    }  # fmt: skip
+
+
+def _correlation(found: Fit) -> dict[str, Any]:
+    matrix = found.covariance.matrix
+    spread = np.sqrt(np.diag(matrix))
+    scaled = matrix / np.outer(spread, spread)
+    return {
+        "parameters": list(found.parameters.names),
+        "matrix": [[float(x) if np.isfinite(x) else None for x in row] for row in scaled],
+    }
+
+
+def _goodness(found: Fit) -> dict[str, Any]:
+    force, rise, injection = (float(x) for x in found.channel_factor)
+    return {
+        "chi_squared": found.chi_squared, "degrees_of_freedom": found.freedom,
+        "chi_squared_per_degree": found.chi_squared / found.freedom if found.freedom else None,
+        "points_used": int(found.solution.use.sum()),
+        "points_left_out": int(found.left_out.sum() + found.injections_left_out.sum()),
+        "scatter_over_stated": {"force": force, "pressure": rise, "injection": injection},
+        "model_leaves_out_share_of_reading": dict(
+            zip(("force", "pressure", "injection"), (float(x) for x in found.sizes), strict=True)
+        ),
+        "considered": [NAMES[k] for k in found.parameters.others],
+        "variance_of_runs_over_points": found.run_factor, "interval_from_runs": found.covariance.clustered,
+    }  # fmt: skip
+
+
+def _residual(run: Residuals) -> dict[str, Any]:
+    return {
+        "run": run.label, "driving_pressure_kPa": _number(run.pressure),
+        "force_share_of_full_scale": _number(run.force_error), "pressure_share_of_full_scale": _number(run.rise_error),
+    }  # fmt: skip
+
+
+def _ambiguity(group: Ambiguity) -> dict[str, Any]:
+    return {
+        "parameters": [NAMES[k] for k in group.members], "correlation": group.correlation,
+        "standard_deviation_alone": [_leaving(k, x) for k, x in zip(group.members, group.alone, strict=True)],
+        "standard_deviation_others_known": [_leaving(k, x) for k, x in zip(group.members, group.given, strict=True)],
+        "modulus_times_wall_to_the": group.combination,
+    }  # fmt: skip
+
+
+def _further(found: Fit, test: Further) -> dict[str, Any]:
+    widths = zip(found.parameters.fitted, test.half_width, strict=True)
+    return {
+        "test": test.what, "widest_interval_shrinks": test.gain,
+        "expected_half_widths": {NAMES[k]: _leaving(k, width) for k, width in widths},
+    }  # fmt: skip
+
+
+def _held_out(one: HeldOut) -> dict[str, Any]:
+    return {
+        "driving_pressure_kPa": one.pressure, "sensitivity_measured_kPa_per_N": one.measured,
+        "sensitivity_predicted_kPa_per_N": one.predicted, "sensitivity_error": one.error,
+        "force_rms_share": one.force_error, "force_greatest_share": one.force_worst,
+        "pressure_rms_share": one.rise_error, "pressure_greatest_share": one.rise_worst,
+        "points": one.points, "points_left_out": one.left_out,
+    }  # fmt: skip
+
+
+def _leaving(k: int, deviation: float) -> float | None:
+    """A deviation as it leaves: relative (of the logarithm), mL, or mm."""
+    return _number(float(deviation) / (ML if k == DEAD else 1.0))
+
+
+def _number(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None

@@ -1,0 +1,68 @@
+"""The command behind ``pneutouch calibrate``: a campaign's folder in, its calibration and files out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pneutouch.catalogue import Library, load_scene
+from pneutouch.errors import InputError
+from pneutouch.workflows.calibrate.files import prepare, save, write_calibration
+from pneutouch.workflows.calibrate.fit import calibrate, observations_of
+from pneutouch.workflows.characterize.load import Progress, load_curves
+from pneutouch.workflows.characterize.predicted import answers
+from pneutouch.workflows.characterize.run import sound
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """What the flags ask for: see the command."""
+
+    data: Path
+    design: str | None
+    sensor: str | None
+    names: tuple[str, ...]
+    hold_out: tuple[float, ...]
+    priors: bool
+    save: str | None
+    shadow: bool
+    out: Path
+
+
+def run_calibration(
+    asked: Asked, shelves: Library | None = None, progress: Progress = lambda done, total: None
+) -> dict[str, Any]:
+    """Read, fit and write; the calibration's document with ``written`` and ``failures``. Raises InputError.
+
+    Everything is checked before the first file is written.
+    """
+    library = shelves or Library.default()
+    if asked.shadow and asked.save is None:
+        raise InputError("--shadow: goes with --save NAME")
+    loaded = load_curves(asked.data, progress=progress)
+    design = asked.design or loaded.campaign.design
+    if design is None:
+        raise InputError(f"{asked.data}: names no design; give --design")
+    scene = load_scene(design, loaded.campaign.assignments, library)
+    pairs = [(curve.run.resin, curve.run.driving_pressure_kPa) for curve in loaded.curves]
+    expected = answers(design, loaded.campaign.assignments, pairs, "atlas", library)
+    curves, refused, questions = sound(loaded, expected)
+    sensor, observations, notes = observations_of(loaded.campaign, curves, loaded.injections, scene, asked.sensor)
+    own = {curve.run.file for curve in observations.curves}
+    notes = [*notes, *(f"{file}: {text}" for file, text in questions if file in own)]
+    found = calibrate(
+        observations, scene, asked.names, priors=asked.priors, hold_out=asked.hold_out, sensor=sensor,
+        title=loaded.campaign.title, notes=notes,
+    )  # fmt: skip
+    saved = None if asked.save is None else prepare(found, asked.save, Path(), library, shadow=asked.shadow)
+    folder = write_calibration(found, asked.out)
+    written = [str(folder)]
+    if saved is not None:
+        save(saved)
+        written += saved.paths
+    return {
+        **found.document,
+        "written": written,
+        "failures": [list(failure) for failure in (*loaded.failures, *refused)],
+    }

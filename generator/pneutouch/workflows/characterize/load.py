@@ -1,0 +1,166 @@
+"""A campaign's folder, or one file, to curves; a file that fails does not stop the others."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from pneutouch.arrays import Array
+from pneutouch.bench.curve import curve_of
+from pneutouch.bench.injection import leak_rate, read_injection
+from pneutouch.bench.plausible import check_leak
+from pneutouch.bench.reading import read_blocks
+from pneutouch.bench.record import Curve
+from pneutouch.bench.trace import Trace, trace
+from pneutouch.catalogue import Scene
+from pneutouch.errors import InputError, PneutouchError
+from pneutouch.evaluation.resins import resin_of
+from pneutouch.spec.campaign import Campaign, Run
+from pneutouch.spec.read import read_toml, validate
+from pneutouch.units import KPA
+
+CAMPAIGN = "campaign.toml"
+
+Progress = Callable[[int, int], None]
+"""Told the megabytes read and the megabytes there are."""
+
+_MEGABYTE = 1e6
+_LONGEST = 60
+
+_NEAR_KPA, _NEAR_SHARE = 1.0, 0.1
+"""How far a pressure read before contact may be from one of the design's to be taken for it: a reset's scatter."""
+
+
+@dataclass(frozen=True)
+class Loaded:
+    """What a campaign's files hold.
+
+    Attributes:
+        campaign: The campaign; of a single file one that holds it alone.
+        folder: Where its files lie.
+        curves: Of every run with a plate that could be read, in the campaign's order.
+        traces: The same runs thinned for plotting, by file.
+        injections: Run, volumes (mm3) and pressures (MPa) of the injection runs.
+        leaks: Run, leak rate and its standard error (MPa/s) of the leak runs.
+        failures: Files that could not be read, with the message.
+        questions: What looks wrong in runs without a plate: file, and the question.
+    """
+
+    campaign: Campaign
+    folder: Path
+    curves: tuple[Curve, ...]
+    traces: dict[str, Trace]
+    injections: tuple[tuple[Run, Array, Array], ...]
+    leaks: tuple[tuple[Run, float, float], ...]
+    failures: tuple[tuple[str, str], ...]
+    questions: tuple[tuple[str, str], ...] = ()
+
+
+@dataclass
+class _Gathered:
+    curves: list[Curve] = field(default_factory=list)
+    traces: dict[str, Trace] = field(default_factory=dict)
+    injections: list[tuple[Run, Array, Array]] = field(default_factory=list)
+    leaks: list[tuple[Run, float, float]] = field(default_factory=list)
+    failures: list[tuple[str, str]] = field(default_factory=list)
+    questions: list[tuple[str, str]] = field(default_factory=list)
+
+
+def campaign_of(data: Path) -> tuple[Campaign, Path]:
+    """The campaign of a folder or of its campaign file. Raises InputError."""
+    path = data / CAMPAIGN if data.is_dir() else data
+    if data.is_dir() and not path.is_file():
+        raise InputError(f"{data}: holds no {CAMPAIGN}; `pneutouch plan` writes one to be filled in")
+    return validate(Campaign, read_toml(path), str(path)), path.parent
+
+
+def load_curves(data: Path, scene: Scene | None = None, progress: Progress = lambda done, total: None) -> Loaded:
+    """Read a campaign's folder, its campaign file, or one CSV or parquet file of a steps run.
+
+    A single file is of the design's resin and of that of its driving pressures that was read before contact; ``scene``
+    is the design then. Raises InputError where the campaign itself is wrong, or none of its files can be read.
+    """
+    if data.is_dir() or data.suffix == ".toml":
+        campaign, folder = campaign_of(data)
+    else:
+        campaign, folder = _single(data, scene), data.parent
+    gathered = _Gathered()
+    meter = _Meter(progress, sum(_size(folder / run.file) for run in campaign.runs))
+    for run in campaign.runs:
+        size = _size(folder / run.file)
+        try:
+            _read(run, campaign, folder, gathered, meter.within(size))
+        except PneutouchError as error:
+            gathered.failures.append((run.file, str(error)))
+        meter.past(size)
+    if not (gathered.curves or gathered.injections or gathered.leaks):
+        raise InputError(
+            "\n".join([f"{data}: none of its files can be read", *(text for _, text in gathered.failures)])
+        )
+    if not (data.is_dir() or data.suffix == ".toml"):
+        assert scene is not None
+        gathered.curves = [_at_its_pressure(curve, scene) for curve in gathered.curves]
+        campaign = campaign.model_copy(update={"runs": [curve.run for curve in gathered.curves]})
+    return Loaded(
+        campaign, folder, tuple(gathered.curves), gathered.traces, tuple(gathered.injections), tuple(gathered.leaks),
+        tuple(gathered.failures), tuple(gathered.questions),
+    )  # fmt: skip
+
+
+class _Meter:
+    """Bytes read of all files, told in megabytes."""
+
+    def __init__(self, progress: Progress, total: int) -> None:
+        self._progress, self._total, self._before = progress, total, 0
+
+    def within(self, size: int) -> Callable[[float], None]:
+        """Takes the share read of the file at work."""
+        before = self._before
+        return lambda share: self._tell(before + share * size)
+
+    def past(self, size: int) -> None:
+        """The file at work is done with."""
+        self._before += size
+        self._tell(self._before)
+
+    def _tell(self, done: float) -> None:
+        self._progress(round(done / _MEGABYTE), max(round(self._total / _MEGABYTE), 1))
+
+
+def _size(path: Path) -> int:
+    return path.stat().st_size if path.is_file() else 0
+
+
+def _read(
+    run: Run, campaign: Campaign, folder: Path, gathered: _Gathered, progress: Callable[[float], None]
+) -> None:  # fmt: skip
+    path = folder / run.file
+    if not path.is_file():
+        raise InputError(f"{path}: no such file; the campaign names it as {run.label}")
+    if run.kind == "injection":
+        gathered.injections.append((run, *read_injection(path, campaign.columns)))
+        return
+    blocks = read_blocks(path, campaign.columns, campaign.rig, progress, plate=run.kind != "leak")
+    gathered.traces[run.file] = trace(blocks)
+    if run.kind == "leak":
+        gathered.questions += [(run.file, text) for text in check_leak(blocks, run, campaign.rig)]
+        gathered.leaks.append((run, *leak_rate(blocks)))
+    else:
+        gathered.curves.append(curve_of(run, blocks, campaign.rig))
+
+
+def _single(data: Path, scene: Scene | None) -> Campaign:
+    if scene is None:
+        raise InputError(f"{data}: a single file needs its sensor; give --design")
+    run = Run(file=data.name, sensor=data.stem[:_LONGEST], resin=resin_of(scene))
+    return Campaign(title=f"Run {data.name}"[:_LONGEST], runs=[run])
+
+
+def _at_its_pressure(curve: Curve, scene: Scene) -> Curve:
+    """A single file's curve under that of the design's pressures that it was read at, else the read one."""
+    read = curve.driving / KPA
+    nearest = min(scene.design.pneumatics.driving_pressures_kPa, key=lambda p: abs(p - read))
+    near = abs(nearest - read) <= max(_NEAR_KPA, _NEAR_SHARE * nearest)
+    found = nearest if near else round(max(read, 0.0), 1)
+    return replace(curve, run=curve.run.model_copy(update={"driving_pressure_kPa": found}))

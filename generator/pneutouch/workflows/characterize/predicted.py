@@ -1,0 +1,144 @@
+"""The prediction beside each group of runs, and what the files look like against it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.bench.plausible import Expected
+from pneutouch.bench.summary import Group
+from pneutouch.catalogue import Library
+from pneutouch.errors import PneutouchError
+from pneutouch.evaluation.evaluate import Evaluation, evaluate
+from pneutouch.mechanics.prediction import State
+from pneutouch.mechanics.response import Figures, figures
+from pneutouch.report.measured import Beside
+from pneutouch.spec.campaign import AS_DESIGNED
+from pneutouch.units import KPA
+
+_ROUNDING, _LEAST_POINTS = 1e-9, 3
+
+_OF_STATE = ("sensitivity_kPa_per_N", "stiffness_N_per_mm")
+"""Figures whose uncertainty goes by the same name; the force at the greatest depth is the range's end's."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What the model says of a resin at a driving pressure (kPa); ``why`` where it says nothing."""
+
+    evaluation: Evaluation | None
+    place: int
+    why: str = ""
+
+    @property
+    def state(self) -> State | None:
+        """The predicted state."""
+        return None if self.evaluation is None else self.evaluation.prediction.states[self.place]
+
+    def expected(self) -> Expected | None:
+        """What the files should read at the end of the range; None where nothing is known."""
+        state = self.state
+        if state is None or state.figures is None:
+            return None
+        own, kept = state.figures, state.indentation <= state.range_end * (1 + 1e-12)
+        return Expected(
+            depth=float(state.indentation[kept][-1]), force=own.force_range[1],
+            rise=float(state.pressure_rise[kept][-1]), sensitivity=own.sensitivity * KPA,
+            curve=(state.indentation[kept], state.force[kept], state.pressure_rise[kept]),
+        )  # fmt: skip
+
+
+def answers(
+    design: str, assignments: list[str], wanted: Iterable[tuple[str, float]], model: str, library: Library
+) -> dict[tuple[str, float], Answer]:
+    """Predict the design in every (resin, driving pressure in kPa) wanted, resin by resin.
+
+    Where a resin's pressures cannot be predicted together each is tried alone; one beyond the limit has a reason in the
+    place of a state.
+    """
+    found: dict[tuple[str, float], Answer] = {}
+    pairs = sorted(set(wanted))
+    for resin in dict.fromkeys(resin for resin, _ in pairs):
+        pressures = [p for name, p in pairs if name == resin]
+        try:
+            evaluation = _evaluated(design, assignments, resin, pressures, model, library)
+            found |= {(resin, p): Answer(evaluation, k) for k, p in enumerate(pressures)}
+        except PneutouchError:
+            found |= {(resin, p): _alone(design, assignments, resin, p, model, library) for p in pressures}
+    return found
+
+
+def _alone(design: str, assignments: list[str], resin: str, pressure: float, model: str, library: Library) -> Answer:
+    try:
+        return Answer(_evaluated(design, assignments, resin, [pressure], model, library), 0)
+    except PneutouchError as error:
+        return Answer(None, 0, str(error))
+
+
+def _evaluated(
+    design: str, assignments: list[str], resin: str, pressures: list[float], model: str, library: Library
+) -> Evaluation:  # fmt: skip
+    change = [] if resin == AS_DESIGNED else [f"membrane.material={json.dumps(resin)}"]
+    own = [*change, f"pneumatics.driving_pressures_kPa={json.dumps(pressures)}"]
+    return evaluate(design, [*assignments, *own], model=model, library=library)
+
+
+def beside(group: Group, answer: Answer) -> Beside:
+    """A group beside its prediction, which is of a fresh print."""
+    state = answer.state
+    if state is None or answer.evaluation is None:
+        return Beside(group, group.key.resin, None, {}, {}, answer.why)
+    label = answer.evaluation.scene.membrane_material.title
+    if group.key.age_days > 0:
+        return Beside(group, label, None, {}, {}, "predictions are of fresh prints; see predict --aged")
+    sure = answer.evaluation.uncertainty[answer.place]
+    return Beside(group, label, state, sure, _figures(state, sure, depths_of(group)))
+
+
+def depths_of(group: Group) -> Array | None:
+    """The depths at which a group was measured, mm: those of its shallowest steps run; None without one."""
+    curves = [curve.indentation for curve in group.of_kind("steps") if curve.indentation.size > 1]
+    return min(curves, key=lambda depths: float(depths[-1])) if curves else None
+
+
+def read_at(state: State, depths: Array) -> Figures | None:
+    """The predicted curve's figures at measured depths, as far as its range goes: S belongs to the range it is fitted over."""
+    from scipy.interpolate import PchipInterpolator
+
+    kept = state.indentation <= state.range_end * (1 + _ROUNDING)
+    travel, first = np.unique(state.indentation[kept], return_index=True)
+    if travel.size < _LEAST_POINTS:
+        return None
+    at = depths[depths <= state.range_end * (1 + _ROUNDING)]
+    curves = np.stack([state.force[kept][first], state.pressure_rise[kept][first]], axis=1)
+    force, rise = PchipInterpolator(travel, curves)(np.minimum(at, travel[-1])).T
+    return figures(at, force, rise / KPA)
+
+
+def _figures(
+    state: State, sure: dict[str, Any], depths: Array | None
+) -> dict[str, tuple[float, float | None, float | None]]:
+    own, known = state.figures, sure.get("figures", {})
+    got = own if depths is None else read_at(state, depths)
+    if got is None or own is None:
+        return {}
+    plain = {
+        "sensitivity_kPa_per_N": got.sensitivity, "sensitivity_through_origin_kPa_per_N": got.sensitivity_through_origin,
+        "r_squared": got.r_squared, "nonlinearity_percent": 100 * got.nonlinearity, "stiffness_N_per_mm": got.stiffness,
+        "force_range_N": got.force_range[1],
+    }  # fmt: skip
+    if got.saturation_force is not None:
+        plain["saturation_force_N"] = got.saturation_force
+    names = {**{name: name for name in _OF_STATE}, "force_range_N": "force_at_range_end_N"}
+    found: dict[str, tuple[float, float | None, float | None]] = {}
+    for key, value in plain.items():
+        ends = known.get(names.get(key, ""))
+        # The relative uncertainty is that of the whole range.
+        scale = 0.0 if ends is None else value / ends["value"]
+        found[key] = (value, None, None) if ends is None else (value, scale * ends["low"], scale * ends["high"])
+    return found

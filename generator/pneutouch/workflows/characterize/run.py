@@ -1,0 +1,188 @@
+"""A campaign characterized: read, made figures, set beside the prediction, written."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pneutouch import __version__
+from pneutouch.bench.plausible import check_plausible, mixed
+from pneutouch.bench.record import Curve
+from pneutouch.bench.summary import summarize
+from pneutouch.bench.trace import Trace
+from pneutouch.catalogue import Library, load_scene
+from pneutouch.errors import InputError
+from pneutouch.output.files import MANIFEST, check_writable, digest, json_bytes, write_folder
+from pneutouch.output.recipe import input_hash, versions
+from pneutouch.report.measured import Measured
+from pneutouch.spec.campaign import AS_DESIGNED
+from pneutouch.spec.read import read_toml, validate
+from pneutouch.spec.target import Target
+from pneutouch.workflows.characterize.document import document
+from pneutouch.workflows.characterize.load import Loaded, Progress, campaign_of, load_curves
+from pneutouch.workflows.characterize.predicted import Answer, answers, beside
+from pneutouch.workflows.characterize.tables import injections, points_csv, segments_csv
+from pneutouch.workflows.characterize.verdict import ageing, verdicts
+
+EVIDENCE = ("doubtful", "all", "none")
+"""Of which runs the evidence is plotted: of those with doubts and one of each group, of all, of none."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a campaign: the sheet's content, the folder written, and the traces of the runs by file."""
+
+    measured: Measured
+    traces: Mapping[str, Trace]
+    name: str
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """The figures as data."""
+        return document(self.measured)
+
+    @property
+    def failed(self) -> bool:
+        """Whether a file could not be read."""
+        return bool(self.measured.failures)
+
+    @property
+    def missed(self) -> bool:
+        """Whether a wish of the target was not shown to be met."""
+        return any(verdict.passed is not True for verdict in self.measured.verdicts)
+
+
+def characterize(
+    data: Path, design: str | None = None, assignments: list[str] | None = None, *, target: Path | None = None,
+    model: str = "solid", library: Library | None = None, progress: Progress = lambda done, total: None,
+) -> Outcome:  # fmt: skip
+    """Read a campaign's folder or one file, and set its figures beside the prediction of its design.
+
+    ``design`` comes before the one that the campaign names; ``assignments`` change it. Raises InputError where nothing can
+    be read; files that fail are listed in the outcome.
+    """
+    shelves = library or Library.default()
+    name, own = (design, []) if design is not None else _design_of(data)
+    wanted = None if target is None else validate(Target, read_toml(target), str(target))
+    given = [*own, *(assignments or [])]
+    loaded = load_curves(data, load_scene(name, given, shelves), progress)
+    if loaded.campaign.ambient_pressure_kPa is not None and not any("ambient_pressure_kPa" in one for one in given):
+        given.append(f"pneumatics.ambient_pressure_kPa={loaded.campaign.ambient_pressure_kPa}")
+    _check_resins(data, loaded, shelves)
+    pairs = [(curve.run.resin, curve.run.driving_pressure_kPa) for curve in loaded.curves]
+    model_says = answers(name, given, pairs, model, shelves)
+    curves, failures, questions = sound(loaded, model_says)
+    groups = summarize(curves)
+    scene = load_scene(name, given, shelves)
+    pushed, unread = injections(loaded, scene)
+    measured = Measured(
+        campaign=loaded.campaign, scene=scene, folder=loaded.folder,
+        besides=tuple(beside(group, _answer(model_says, group.key.resin, group.key.driving_pressure_kPa)) for group in groups),
+        curves=tuple(curves), failures=(*loaded.failures, *failures, *unread), questions=questions,
+        verdicts=() if wanted is None else verdicts(wanted, groups), injections=pushed,
+        ageing=ageing(groups, shelves), model=model, input_hash=_hash(loaded, scene.design.model_dump(mode="json")),
+    )  # fmt: skip
+    return Outcome(measured, loaded.traces, f"{_stem(data)}-measured")
+
+
+def _design_of(data: Path) -> tuple[str, list[str]]:
+    """The design that a campaign names, and what changes it."""
+    if not (data.is_dir() or data.suffix == ".toml"):
+        if not data.exists():
+            raise InputError(f"{data}: no such file or folder")
+        raise InputError(f"{data}: a single file needs its sensor; give --design")
+    campaign, folder = campaign_of(data)
+    if campaign.design is None:
+        raise InputError(f'{folder}: the campaign names no design; give --design, or design = "..." in its file')
+    beside = folder / campaign.design
+    return (str(beside) if beside.suffix == ".toml" and beside.is_file() else campaign.design), campaign.assignments
+
+
+def _stem(data: Path) -> str:
+    path = data.resolve()
+    return path.parent.name if path.name == "campaign.toml" else path.stem if path.is_file() else path.name
+
+
+def _check_resins(data: Path, loaded: Loaded, shelves: Library) -> None:
+    for place, run in enumerate(loaded.campaign.runs):
+        if run.resin != AS_DESIGNED:
+            shelves.load("materials", run.resin, asked_by=f"{data}: runs[{place}].resin")
+
+
+def _answer(found: Mapping[tuple[str, float], Answer], resin: str, pressure: float) -> Answer:
+    return found.get((resin, pressure), Answer(None, 0, "not predicted"))
+
+
+def sound(
+    loaded: Loaded, model_says: Mapping[tuple[str, float], Answer]
+) -> tuple[list[Curve], list[tuple[str, str]], tuple[tuple[str, str], ...]]:
+    """Curves that may be what they say, those that cannot with the reason, and what is to be asked of the others."""
+    kept: list[Curve] = []
+    failures: list[tuple[str, str]] = []
+    questions: list[tuple[str, str]] = []
+    for curve in loaded.curves:
+        run = curve.run
+        expected = _answer(model_says, run.resin, run.driving_pressure_kPa).expected()
+        try:
+            asked = check_plausible(curve, loaded.campaign.columns, expected, loaded.folder / run.file)
+            questions += [(run.file, text) for text in asked]
+            kept.append(curve)
+        except InputError as error:
+            failures.append((run.file, str(error)))
+    questions += [(curve.run.file, why) for curve, why in mixed(kept)]
+    return kept, failures, (*loaded.questions, *questions)
+
+
+def _hash(loaded: Loaded, design: Any) -> str:
+    files = {run.file: _file_digest(loaded.folder / run.file) for run in loaded.campaign.runs}
+    return input_hash(
+        {"campaign": loaded.campaign.model_dump(mode="json"), "design": design, "files": files}, __version__
+    )
+
+
+def _file_digest(path: Path) -> str | None:
+    try:
+        with path.open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except OSError:
+        # A file that cannot be read is among the failures.
+        return None
+
+
+def write(outcome: Outcome, out: Path, evidence: str = "doubtful") -> Path:
+    """Write the measured datasheet, the figures, the points and the evidence; returns the folder."""
+    from pneutouch.report.evidence import evidence_svg
+    from pneutouch.report.measured.sheet import measured_datasheet
+
+    folder = out / outcome.name
+    check_writable(folder)
+    measured = outcome.measured
+    files = {
+        **measured_datasheet(measured), "figures.json": json_bytes(outcome.document),
+        "points.csv": points_csv(measured.curves), "segments.csv": segments_csv(measured.curves),
+    }  # fmt: skip
+    for curve in _shown(measured, evidence):
+        number = measured.campaign.runs.index(curve.run) + 1
+        path = f"evidence/{number:03d}-{Path(curve.run.file).stem}.svg"
+        files[path] = evidence_svg(curve, outcome.traces[curve.run.file], measured.campaign.simulated).encode()
+    files[MANIFEST] = json_bytes({
+        "name": outcome.name, "input_hash": measured.input_hash, "versions": versions(),
+        "files": {name: {"sha256": digest(content), "bytes": len(content)} for name, content in sorted(files.items())},
+    })  # fmt: skip
+    write_folder(folder, files)
+    return folder
+
+
+def _shown(measured: Measured, evidence: str) -> list[Curve]:
+    if evidence == "all":
+        return list(measured.curves)
+    if evidence == "none":
+        return []
+    first = {(b.group.key, curve.run.kind): curve for b in measured.besides for curve in reversed(b.group.curves)}
+    doubtful = {curve.run.file for curve in measured.curves if any(doubt.kind != "note" for doubt in curve.doubts)}
+    asked = {file for file, _ in measured.questions}
+    chosen = {curve.run.file for curve in first.values()} | doubtful | asked
+    return [curve for curve in measured.curves if curve.run.file in chosen]

@@ -1,0 +1,108 @@
+"""The small tables of a characterization: points, segments, and what leak and injection runs say."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from pneutouch.bench.injection import dead_volume_of_cap
+from pneutouch.bench.record import Curve
+from pneutouch.catalogue import Scene
+from pneutouch.spec.campaign import Run
+from pneutouch.units import KPA, ML
+from pneutouch.workflows.characterize.load import Loaded
+
+_RUN = ("file", "sensor", "resin", "driving_pressure_kPa", "run", "age_days")
+
+
+def points_csv(curves: Iterable[Curve]) -> bytes:
+    """Every loading point of every run: indentation, force, pressure rise."""
+    rows = [
+        [*_of(curve), f"{d:.6g}", f"{f:.6g}", f"{p / KPA:.6g}"]
+        for curve in curves
+        for d, f, p in zip(curve.indentation, curve.force, curve.rise, strict=True)
+    ]
+    return _csv((*_RUN, "indentation_mm", "contact_force_N", "pressure_rise_kPa"), rows)
+
+
+def segments_csv(curves: Iterable[Curve]) -> bytes:
+    """Every indentation found, with the seconds that were read; what is doubtful stands with its reason."""
+    rows = []
+    for curve in curves:
+        for i in curve.indents:
+            times = (i.contact, *i.hold, *i.read, i.release)
+            rows.append(
+                [
+                    *_of(curve),
+                    "indentation",
+                    *(f"{t:.4f}" for t in times),
+                    f"{i.onset:.5g}",
+                    f"{i.driving / KPA:.5g}",
+                    "",
+                    "",
+                ]
+            )
+        for doubt in curve.doubts:
+            blank = [""] * 6
+            rows.append(
+                [
+                    *_of(curve),
+                    "doubt",
+                    f"{doubt.start:.4f}",
+                    f"{doubt.end:.4f}",
+                    *blank,
+                    doubt.why,
+                    "used" if doubt.used else "left out",
+                ]
+            )
+    head = (
+        *_RUN, "what", "contact_or_start_s", "hold_start_or_end_s", "hold_end_s", "read_start_s", "read_end_s", "release_s",
+        "onset_mm", "driving_kPa", "why", "used",
+    )  # fmt: skip
+    return _csv(head, rows)
+
+
+def _of(curve: Curve) -> list[Any]:
+    run = curve.run
+    return [run.file, run.sensor, run.resin, f"{run.driving_pressure_kPa:g}", run.run, f"{run.age_days:g}"]
+
+
+def _csv(head: Sequence[str], rows: Iterable[Sequence[Any]]) -> bytes:
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    writer.writerow(head)
+    writer.writerows(rows)
+    return buffer.getvalue().encode()
+
+
+Injection = tuple[str, str, float, float | None, str]
+
+
+def injections(loaded: Loaded, scene: Scene) -> tuple[tuple[Injection, ...], list[tuple[str, str]]]:
+    """Leak rates, and the dead volume that an injection would mean if the line were rigid; files that say neither, and why.
+
+    An injection into a sensor swells the dome, so that what it says of the dead volume alone is an upper bound; `calibrate`
+    takes the dome into account.
+    """
+    failures = []
+    found: list[Injection] = [
+        (run.sensor, f"leak, {_when(run)}", 60 * rate / KPA, 60 * error / KPA, "kPa/min")
+        for run, rate, error in loaded.leaks
+    ]
+    ambient = scene.design.pneumatics.ambient_pressure_kPa
+    for run, volume, pressure in loaded.injections:
+        try:
+            total = dead_volume_of_cap(volume, pressure, ambient * KPA)
+        except ValueError as error:
+            failures.append((run.file, f"{loaded.folder / run.file}: {error}"))
+            continue
+        name = f"gas volume as if rigid, {_when(run)}"
+        found.append((run.sensor, name, total.value / ML, total.spread / ML, "mL"))
+    return tuple(found), failures
+
+
+def _when(run: Run) -> str:
+    """What tells runs of one sensor and kind apart."""
+    return f"{run.driving_pressure_kPa:g} kPa, run {run.run}" + (f", {run.age_days:g} d" if run.age_days else "")

@@ -1,0 +1,105 @@
+"""Write a set of coupons: STL, 3MF, the print-and-measure sheet, the results file to fill in, and a manifest."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from pneutouch import __version__
+from pneutouch.body import Body
+from pneutouch.catalogue import Library
+from pneutouch.errors import InputError
+from pneutouch.export.scene import stl
+from pneutouch.export.threemf import threemf
+from pneutouch.output.files import MANIFEST, check_writable, digest, json_bytes, write_folder
+from pneutouch.output.recipe import input_hash, versions
+from pneutouch.workflows.coupons.lay import Piece, lay
+from pneutouch.workflows.coupons.order import Asked, Order, order
+from pneutouch.workflows.coupons.sheet import sheet, stl_name
+from pneutouch.workflows.coupons.template import results_template
+
+RESULTS = "results.toml"
+
+
+def build_coupons(asked: Asked, out: Path, library: Library | None = None) -> tuple[Path, dict[str, Any]]:
+    """Write the coupons asked for into ``out/coupons-<printer>/``; the folder and what lies in it, as data.
+
+    Raises InputError for what is unknown or does not fit the tray, and rather than lose readings in the folder. The same input gives the same bytes.
+    """
+    found = order(asked, library)
+    folder = out / found.name
+    check_writable(folder)
+    _check_unfilled(folder)
+    trays = {name: lay(name, items) for name, items in found.machines().items()}
+    files: dict[str, bytes] = {}
+    for name, pieces in trays.items():
+        bodies = tuple(body for piece in pieces for body in piece.copies())
+        title = found.name if name == found.profile else name
+        files[f"{title}.3mf"] = threemf(title, bodies, _metadata(found, name, bodies))
+        files |= {f"stl/{stl_name(piece, found)}": stl(piece.body) for piece in pieces}
+    files["measure.md"] = sheet(found, trays).encode()
+    files[RESULTS] = results_template(found).encode()
+    files[MANIFEST] = json_bytes(_manifest(found, trays, files))
+    write_folder(folder, files)
+    return folder, {"name": found.name, "coupons": _coupons(trays)}
+
+
+def inputs(found: Order) -> dict[str, Any]:
+    """Everything that the coupons follow from, as data."""
+    scene = found.scene
+    return {
+        "profile": found.profile,
+        "design": None if scene is None else scene.design.model_dump(mode="json"),
+        "items": [
+            {
+                "coupon": item.coupon.name, "about": item.about, "copies": item.copies, "printer": item.printer_name,
+                "material": item.material.model_dump(mode="json"),
+            }
+            for item in found.items
+        ],
+        "printers": {name: items[0].printer.model_dump(mode="json") for name, items in found.machines().items()},
+    }  # fmt: skip
+
+
+def _check_unfilled(folder: Path) -> None:
+    """Refuse to write over a results file that somebody has filled in."""
+    path = folder / RESULTS
+    if not path.is_file():
+        return
+    written = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))["files"].get(RESULTS, {}).get("sha256")
+    if digest(path.read_bytes()) != written:
+        raise InputError(f"--out: {path} has been filled in; move it away first, or give another folder")
+
+
+def _metadata(found: Order, name: str, bodies: tuple[Body, ...]) -> dict[str, str]:
+    return {
+        "Title": f"Coupons for {name}",
+        "Application": f"pneutouch {__version__}",
+        "Description": f"{len(bodies)} coupons to print and measure; see measure.md",
+        "input-hash": input_hash(inputs(found), __version__),
+    }
+
+
+def _coupons(trays: Mapping[str, tuple[Piece, ...]]) -> list[dict[str, Any]]:
+    return [
+        {
+            "coupon": piece.item.coupon.name, "piece": piece.body.name, "material": piece.item.material.title,
+            "printer": name, "copies": len(piece.places), "places_mm": [list(place) for place in piece.places],
+            "size_mm": [round(length, 3) for length in piece.size], "exact_volume_mm3": round(piece.solid.volume, 3),
+            "volume_mm3": round(piece.body.volume, 3), "measured_deviation_mm": round(piece.deviation, 6),
+        }
+        for name, pieces in trays.items() for piece in pieces
+    ]  # fmt: skip
+
+
+def _manifest(found: Order, trays: Mapping[str, tuple[Piece, ...]], files: dict[str, bytes]) -> dict[str, Any]:
+    return {
+        "name": found.name,
+        "inputs": inputs(found),
+        "input_hash": input_hash(inputs(found), __version__),
+        "versions": versions(),
+        "coupons": _coupons(trays),
+        "files": {name: {"sha256": digest(content), "bytes": len(content)} for name, content in sorted(files.items())},
+    }

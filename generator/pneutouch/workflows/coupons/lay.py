@@ -1,0 +1,86 @@
+"""Coupons on a printer's tray: side by side in rows, never turned, because a gauge's x and y are the machine's."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pneutouch.body import Body, Solid
+from pneutouch.errors import InputError
+from pneutouch.spec.printer import Mode, Printer
+from pneutouch.workflows.coupons.order import Item
+
+MARGIN, SPACING = 5.0, 5.0
+"""mm around the tray, and between bounding boxes: room for a spatula; Objet trays refuse boxes that touch (DOC-37004)."""
+
+
+@dataclass(frozen=True)
+class Piece:
+    """One solid of an item, its mesh lying on z = 0 with its least x and y at 0, and where its copies go."""
+
+    item: Item
+    solid: Solid
+    body: Body
+    deviation: float
+    places: tuple[tuple[float, float], ...] = ()
+
+    @property
+    def size(self) -> tuple[float, float, float]:
+        """Of the bounding box, mm."""
+        x, y, z = (self.body.bounds[1] - self.body.bounds[0]).tolist()
+        return x, y, z
+
+    def copies(self) -> tuple[Body, ...]:
+        """The bodies in their places, numbered."""
+        return tuple(
+            replace(self.body, name=f"{self.body.name}-{k}").moved(np.array([x, y, 0.0]))
+            for k, (x, y) in enumerate(self.places, start=1)
+        )
+
+
+def lay(printer_name: str, items: tuple[Item, ...]) -> tuple[Piece, ...]:
+    """The pieces of one machine with their places. Raises InputError for what does not fit, or not in one job."""
+    printer = items[0].printer
+    mode = job_mode(printer_name, items)
+    pieces = [_piece(item, solid, printer, mode) for item in items for solid in item.coupon.draw(item.ground)]
+    room = printer.envelope_mm
+    x = y = MARGIN
+    depth = 0.0
+    placed: dict[int, list[tuple[float, float]]] = {k: [] for k in range(len(pieces))}
+    # The deepest first, so that a row wastes little; equal ones stay in the order of the sheet.
+    for k in sorted(range(len(pieces)), key=lambda k: -pieces[k].size[1]):
+        wide, deep, high = pieces[k].size
+        for _ in range(pieces[k].item.copies):
+            if x > MARGIN and x + wide + MARGIN > room.x:
+                x, y, depth = MARGIN, y + depth + SPACING, 0.0
+            if x + wide + MARGIN > room.x or y + deep + MARGIN > room.y or high > room.z:
+                raise InputError(
+                    f"{printer_name}: {pieces[k].body.name} is {wide:.1f} x {deep:.1f} x {high:.1f} mm and no longer fits the tray of "
+                    f"{room.x:g} x {room.y:g} x {room.z:g} mm beside the others; take fewer --copies, --only some, or fewer --material"
+                )
+            placed[k].append((round(x, 3), round(y, 3)))
+            x, depth = x + wide + SPACING, max(depth, deep)
+    return tuple(replace(piece, places=tuple(placed[k])) for k, piece in enumerate(pieces))
+
+
+def job_mode(printer_name: str, items: tuple[Item, ...]) -> Mode:
+    """The mode that prints everything in one job. Raises InputError where there is none."""
+    printer = items[0].printer
+    mode = printer.mode_for(*(item.material for item in items))
+    if mode is None:
+        names = ", ".join(dict.fromkeys(item.about for item in items))
+        raise InputError(
+            f"{printer_name}: {names} do not run in one job on the {printer.title}, which holds {printer.resins_at_once} resins; "
+            "ask for fewer --material at a time"
+        )
+    return mode
+
+
+def _piece(item: Item, solid: Solid, printer: Printer, mode: Mode) -> Piece:
+    mesh = solid.mesh(printer.finest_step(mode))
+    deviation = float(solid.distance(mesh.surface_points()).max())
+    if item.coupon.turned_over:
+        mesh = replace(mesh, vertices=mesh.vertices * np.array([1.0, -1.0, -1.0]))
+    body = replace(mesh, name=f"{solid.name}-{item.about}").moved(-mesh.bounds[0])
+    return Piece(item, solid, body, deviation)

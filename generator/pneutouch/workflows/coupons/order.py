@@ -1,0 +1,185 @@
+"""Which coupons are asked for, each on its machine and in its material."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from pneutouch.catalogue import Library, Scene, load_scene
+from pneutouch.errors import InputError, nearest
+from pneutouch.parts.coupons import COUPONS, Coupon, Ground, Nominal
+from pneutouch.spec.design import Membrane, Print
+from pneutouch.spec.material import Material
+from pneutouch.spec.printer import Printer
+from pneutouch.workflows.coupons.blends import Blend, blends
+
+MOST_COPIES = 100
+
+MIXED = ("puck", "dumbbell")
+"""Coupons that there are of a mix."""
+
+MIXED_COPIES = 2
+"""Of each fraction: the least that a spread can be told from, two pucks making the 6 mm under the durometer."""
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What the user asked for; what is None is chosen."""
+
+    profile: str | None = None
+    materials: Sequence[str] = ()
+    design: str | None = None
+    only: Sequence[str] = ()
+    copies: Mapping[str, int] = field(default_factory=dict)
+    mixing: Sequence[str] = ()
+
+
+@dataclass(frozen=True)
+class Item:
+    """One coupon to print: ``about`` is the material or design that the results file files it under.
+
+    ``blend`` is given where it is of two resins in a known fraction, and then says where it is filed.
+    """
+
+    coupon: Coupon
+    about: str
+    printer_name: str
+    printer: Printer
+    ground: Ground
+    copies: int
+    blend: Blend | None = None
+
+    @property
+    def material(self) -> Material:
+        """What it is printed in."""
+        return self.ground.material
+
+    @property
+    def nominals(self) -> tuple[Nominal, ...]:
+        """What is measured on it; of a mixed puck the hardness alone, for a mixing curve has no density."""
+        found = self.coupon.nominals(self.ground)
+        return found if self.blend is None or self.coupon.name != MIXED[0] else found[:1]
+
+
+@dataclass(frozen=True)
+class Order:
+    """Everything to print. ``name`` is the folder's; ``profile`` the printer asked for."""
+
+    name: str
+    profile: str
+    scene: Scene | None
+    items: tuple[Item, ...]
+
+    def machines(self) -> dict[str, tuple[Item, ...]]:
+        """Items by printer, the one asked for first."""
+        names = dict.fromkeys((self.profile, *(item.printer_name for item in self.items)))
+        found = {name: tuple(item for item in self.items if item.printer_name == name) for name in names}
+        return {name: items for name, items in found.items() if items}
+
+
+def order(asked: Asked, library: Library | None = None) -> Order:
+    """Resolve every name. Raises InputError for what is unknown, contradicts, or does not run on the machine."""
+    shelves = library or Library.default()
+    scene = None if asked.design is None else load_scene(asked.design, [], shelves)
+    profile = asked.profile or (Print().profile if scene is None else scene.design.print.profile)
+    printer: Printer = shelves.load("printers", profile, asked_by="--profile")
+    families = _families(asked)
+    items: list[Item] = []
+    for name in _materials(asked, scene, printer, profile, shelves):
+        material: Material = shelves.load("materials", name, asked_by="--material")
+        if printer.mode_for(material) is None:
+            raise InputError(
+                f"--material {name}: the {printer.title} cannot run {material.label}; it runs {', '.join(printer.resins)}"
+            )
+        items += [
+            Item(coupon, name, profile, printer, Ground(material, scene), _copies(asked, coupon))
+            for coupon in families
+            if coupon.belongs != "design" and material.kind in coupon.kinds
+        ]
+    items += _of_mixing(asked, profile, printer, families, shelves)
+    if scene is not None:
+        items += _of_design(asked, scene, profile, families)
+    _check_any(asked, families, items)
+    pairs = dict.fromkeys(item.blend.pair for item in items if item.blend is not None)
+    names = ["coupons", profile, *([scene.name] if scene else []), *pairs]
+    return Order("-".join(names), profile, scene, tuple(items))
+
+
+def _families(asked: Asked) -> list[Coupon]:
+    for word in (*asked.only, *asked.copies):
+        if word not in COUPONS:
+            flag = "--only" if word in asked.only else "--copies"
+            raise InputError(f"{flag} {word}: no such coupon.{nearest(word, COUPONS)}")
+    for word, count in asked.copies.items():
+        if not 1 <= count <= MOST_COPIES:
+            raise InputError(f"--copies {word}={count}: must be from 1 to {MOST_COPIES}")
+    chosen = [COUPONS[name] for name in COUPONS if not asked.only or name in asked.only]
+    needs = [coupon.name for coupon in chosen if coupon.belongs == "design"]
+    if asked.only and needs and asked.design is None:
+        raise InputError(f"--only {needs[0]}: the {COUPONS[needs[0]].title} belongs to a design; give --design")
+    return [coupon for coupon in chosen if coupon.belongs != "design" or asked.design is not None]
+
+
+def _materials(asked: Asked, scene: Scene | None, printer: Printer, profile: str, shelves: Library) -> list[str]:
+    """As asked; else the design's membrane; else the default resin where the printer runs it, else its first."""
+    if asked.materials or asked.mixing:
+        return list(dict.fromkeys(asked.materials))
+    if scene is not None and scene.design.print.profile == profile:
+        chosen = scene.design.membrane.material
+        return [chosen] if isinstance(chosen, str) else [chosen.from_]
+    runs = [name for name, one in shelves.all("materials", Material).items() if printer.mode_for(one) is not None]
+    if not runs:
+        raise InputError(f"--profile {profile}: no known material runs on the {printer.title}; give --material")
+    usual = Membrane().material
+    return [usual if usual in runs else runs[0]]
+
+
+def _of_mixing(asked: Asked, profile: str, printer: Printer, families: list[Coupon], shelves: Library) -> list[Item]:
+    """The mixing set: every fraction of each pair; pucks alone unless dumbbells are asked for, which take a large tray."""
+    chosen = [
+        coupon for coupon in families
+        if coupon.name in MIXED and (coupon.name in asked.only or (not asked.only and coupon.name == MIXED[0]))
+    ]  # fmt: skip
+    found = []
+    for pair in dict.fromkeys(asked.mixing):
+        for blend in blends(pair, shelves):
+            if printer.mode_for(blend.material) is None:
+                raise InputError(
+                    f"--mixing {pair}: the {printer.title} cannot run {blend.material.label}; it runs {', '.join(printer.resins)}"
+                )
+            found += [
+                Item(
+                    coupon, blend.about, profile, printer, Ground(blend.material),
+                    asked.copies.get(coupon.name, MIXED_COPIES), blend,
+                )
+                for coupon in chosen
+            ]  # fmt: skip
+    return found
+
+
+def _of_design(asked: Asked, scene: Scene, profile: str, families: list[Coupon]) -> list[Item]:
+    """Cap and plug, and the gauge of the connector's machine where that is another one."""
+    machine, printer = scene.design.print.connector_profile, scene.connector_printer
+    ground, material = Ground(scene.connector_material, scene), scene.design.connector.material
+    found = []
+    for coupon in families:
+        if coupon.belongs == "design":
+            found.append(Item(coupon, scene.name, machine, printer, ground, _copies(asked, coupon)))
+        elif coupon.belongs == "printer" and machine != profile:
+            found.append(Item(coupon, material, machine, printer, ground, _copies(asked, coupon)))
+    return found
+
+
+def _copies(asked: Asked, coupon: Coupon) -> int:
+    return asked.copies.get(coupon.name, coupon.copies)
+
+
+def _check_any(asked: Asked, families: list[Coupon], items: list[Item]) -> None:
+    made = {item.coupon.name for item in items}
+    for coupon in families:
+        if asked.only and coupon.name not in made:
+            raise InputError(
+                f"--only {coupon.name}: the {coupon.title} is for {' or '.join(coupon.kinds)}; give another --material"
+            )
+    if not items:
+        raise InputError("nothing to print; give another --only")

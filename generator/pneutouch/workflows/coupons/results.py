@@ -1,0 +1,103 @@
+"""Measured coupons to figures, and to profiles of the lab's own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from pneutouch.bench.finding import Found, Said
+from pneutouch.bench.machine import gauges
+from pneutouch.bench.resin import dumbbell, puck
+from pneutouch.bench.volume import leak, volume
+from pneutouch.catalogue import KINDS, Library, load_scene
+from pneutouch.errors import InputError
+from pneutouch.spec.coupon import Gauge, Results, read_results
+from pneutouch.spec.material import Material
+from pneutouch.spec.printer import Printer
+from pneutouch.spec.read import read_toml
+from pneutouch.workflows.coupons.mixing import local_curve
+from pneutouch.workflows.coupons.profile import Profile, base_file, local_profiles, write_profiles
+
+
+def enter_results(path: Path, out: Path, library: Library | None = None) -> dict[str, Any]:
+    """Read a results file, compute, and write local profiles under ``out``; what was found and written, as data.
+
+    Raises InputError for a bad file, for one without readings, and rather than overwrite a profile that is not ours.
+    """
+    shelves = library or Library.default()
+    results = read_results(path)
+    found = evaluate_results(results, str(path), shelves)
+    here = Said(str(path), results.lab, results.date)
+    curves = [local_curve(pair, read, here, shelves, out, found) for pair, read in results.mixing.items()]
+    if not (found.changes or found.figures or found.notes):
+        raise InputError(f"{path}: nothing measured: every list is empty; fill in some readings")
+    said = Said(path.name, results.lab, results.date)
+    profiles = local_profiles(found.changes, said, shelves, out) + [curve for curve in curves if curve is not None]
+    write_profiles(profiles)
+    return _document(results, found, profiles)
+
+
+def evaluate_results(results: Results, where: str, shelves: Library) -> Found:
+    """Figures and changed quantities of a results file; ``where`` is the file, for messages."""
+    found, said = Found(), Said(where, results.lab, results.date)
+    for name, read in results.puck.items():
+        puck(name, _material(name, f"{where}: puck", shelves), read, said, found)
+    for name, pulled in results.dumbbell.items():
+        dumbbell(name, _material(name, f"{where}: dumbbell", shelves), pulled, said, found)
+    for name, by_material in results.gauge.items():
+        _gauges(name, by_material, said, shelves, found)
+    for name in dict.fromkeys((*results.leak_cap, *results.volume_plug)):
+        cap, plug = results.leak_cap.get(name), results.volume_plug.get(name)
+        scene = load_scene(_design(name, where, shelves), [], shelves)
+        if cap is not None:
+            leak(name, cap, 0.0 if plug is None else plug.gauge_accuracy_kPa, said, found)
+        if plug is not None and (plug.pressure_kPa or plug.water_g):
+            volume(name, scene, cap, plug, said, found)
+    return found
+
+
+def _gauges(name: str, by_material: Mapping[str, Gauge], said: Said, shelves: Library, found: Found) -> None:
+    printer: Printer = _shipped("printers", name, f"{said.where}: gauge", shelves)
+    measured = []
+    for material_name, gauge in by_material.items():
+        material = _material(material_name, f"{said.where}: gauge.{name}", shelves)
+        if printer.mode_for(material) is None:
+            raise InputError(
+                f"{said.where}: gauge.{name}.{material_name}: the {printer.title} cannot run {material.label}; it runs "
+                f"{', '.join(printer.resins)}"
+            )
+        measured.append((material_name, material, gauge))
+    gauges(name, printer, measured, said, found)
+
+
+def _material(name: str, asked_by: str, shelves: Library) -> Material:
+    found: Material = _shipped("materials", name, asked_by, shelves)
+    return found
+
+
+def _shipped(shelf: str, name: str, asked_by: str, shelves: Library) -> Any:
+    """A profile as it was before the command wrote one. Raises InputError where the name is unknown."""
+    shelves.load(shelf, name, asked_by=asked_by)
+    path = base_file(shelf, name, shelves)
+    return KINDS[shelf].validate(read_toml(path), str(path))
+
+
+def _design(name: str, where: str, shelves: Library) -> str:
+    if name not in shelves.shelf("designs"):
+        shelves.load("designs", name, asked_by=f"{where}: leak-cap or volume-plug")
+    return name
+
+
+def _document(results: Results, found: Found, profiles: list[Profile]) -> dict[str, Any]:
+    return {
+        "lab": results.lab,
+        "date": results.date.isoformat(),
+        "written": [str(profile.path) for profile in profiles],
+        "changes": [change for profile in profiles for change in profile.changes],
+        "figures": [
+            {"about": f.about, "name": f.name, "value": f.value, "spread": f.spread, "count": f.count}
+            for f in found.figures
+        ],
+        "notes": found.notes,
+    }

@@ -1,0 +1,118 @@
+"""The print-and-measure sheet: what to print and how, what to measure with what, cells to fill, formulas."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from pneutouch.parts.coupons import Coupon, Nominal
+from pneutouch.workflows.coupons.lay import Piece, job_mode
+from pneutouch.workflows.coupons.order import Item, Order
+
+_CELLS = 5
+"""Readings on one line."""
+
+
+def sheet(order: Order, trays: Mapping[str, tuple[Piece, ...]]) -> str:
+    """Markdown for the operator and the bench."""
+    lines = [
+        f"# Coupons: print and measure ({order.name})", "",
+        "Print, measure, write the readings into `results.toml`, then run `pneutouch coupons --results results.toml` in the "
+        "folder of your designs: it writes profiles of your own machine and resins, which come before the shipped ones.", "",
+        "Lab: ______________________  Date: ______________  Room: _____ °C  Printed on: ______________", "",
+        "## Print", "",
+    ]  # fmt: skip
+    for name, pieces in trays.items():
+        lines += _printing(name, pieces, order)
+    lines += ["## Measure", ""]
+    for coupon in dict.fromkeys(item.coupon for item in order.items):
+        lines += _measuring(coupon, [item for item in order.items if item.coupon is coupon])
+    return "\n".join(lines)
+
+
+def _printing(name: str, pieces: tuple[Piece, ...], order: Order) -> list[str]:
+    printer = pieces[0].item.printer
+    mode = job_mode(name, tuple(piece.item for piece in pieces))
+    rows = [
+        f"| {piece.body.name} | {len(piece.places)} | stl/{stl_name(piece, order)} | {piece.item.material.label} | "
+        f"{' x '.join(f'{length:.1f}' for length in piece.size)} | {piece.solid.mass:.2f} g | {_places(piece)} |"
+        for piece in pieces
+    ]
+    return [
+        f"### {printer.title} (`{name}`)", "",
+        f"`{order.name if name == order.profile else name}.3mf`: all copies in place, one material an object; mode {mode.name}, "
+        f"{mode.layer_height_um:g} µm. **Choose the material of each object by hand**; pieces of one shape are told apart by "
+        "their place on the tray alone, so bag and label them as they come off.", "",
+        "| piece | copies | file | material | size, mm | mass each | middle of each on the tray, mm |",
+        "|---|---|---|---|---|---|---|", *rows, "",
+        *_mixes(pieces), f"Support: {printer.support}. Do not turn the pieces.", "",
+    ]  # fmt: skip
+
+
+def _mixes(pieces: tuple[Piece, ...]) -> list[str]:
+    """How a machine that takes catalogue materials alone gets a mix."""
+    if not any(piece.item.blend is not None for piece in pieces):
+        return []
+    return [
+        "Mixed pieces are composites of two base resins in the 3MF, in volume fractions. No catalogue material has a known "
+        "fraction: do not choose one in their place. Where the machine's program takes no composites, print them droplet by "
+        "droplet from voxel slices of the same fractions.", "",
+    ]  # fmt: skip
+
+
+def stl_name(piece: Piece, order: Order) -> str:
+    """File of a piece; that of another machine than the one asked for says which."""
+    item = piece.item
+    return (
+        f"{piece.body.name}.stl" if item.printer_name == order.profile else f"{item.printer_name}-{piece.body.name}.stl"
+    )
+
+
+def _places(piece: Piece) -> str:
+    wide, deep, _ = piece.size
+    return ", ".join(f"({x + 0.5 * wide:.0f}, {y + 0.5 * deep:.0f})" for x, y in piece.places)
+
+
+def _measuring(coupon: Coupon, items: list[Item]) -> list[str]:
+    lines = [f"### {coupon.title[0].upper()}{coupon.title[1:]}", ""]
+    lines += [*(f"{k}. {step}" for k, step in enumerate(coupon.steps, start=1)), ""]
+    for item in items:
+        on = f" on {item.printer_name}" if coupon.belongs == "printer" else ""
+        lines += [f"**{item.about}**{on}", "", *_table(item), ""]
+    return [*lines, "Formulas:", "", *(f"- {formula}" for formula in coupon.formulas), ""]
+
+
+def _table(item: Item) -> list[str]:
+    """Cells to fill: a line a feature and copy; where a feature has many sizes, a line a size."""
+    nominals = item.nominals
+    if len({nominal.feature for nominal in nominals}) < len(nominals):
+        return _sizes(nominals)
+    cells = min(_CELLS, max(nominal.readings for nominal in nominals))
+    copies = range(1, item.copies + 1)
+    rows = [
+        "| copy | feature | nominal | instrument |" + "".join(f" {k} |" for k in range(1, cells + 1)),
+        "|" + "---|" * (cells + 4),
+    ]
+    for copy in copies:
+        for nominal in nominals:
+            for start in range(0, nominal.readings, cells):
+                free = min(cells, nominal.readings - start)
+                blank = "".join(["     |"] * free + [" – |"] * (cells - free))
+                rows.append(f"| {copy} | {nominal.feature} | {_drawn(nominal)} | {nominal.instrument} |{blank}")
+    return rows
+
+
+def _sizes(nominals: tuple[Nominal, ...]) -> list[str]:
+    """The sizes of each feature, and what measures it."""
+    instruments = {nominal.feature: nominal.instrument for nominal in nominals}
+    said = [f"- {feature}: {instrument}" for feature, instrument in instruments.items()]
+    most = max(nominal.readings for nominal in nominals)
+    rows = [
+        "| feature | nominal |" + "".join(f" {k} |" for k in range(1, most + 1)) + " came out |",
+        "|" + "---|" * (most + 3),
+    ]
+    rows += [f"| {nominal.feature} | {_drawn(nominal)} |" + "     |" * (most + 1) for nominal in nominals]
+    return [*said, "", *rows]
+
+
+def _drawn(nominal: Nominal) -> str:
+    return nominal.unit if nominal.value is None else f"{nominal.value:.4g} {nominal.unit}"

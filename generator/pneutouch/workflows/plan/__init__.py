@@ -1,0 +1,1 @@
+"""How to measure a printed sensor, and what to expect."""

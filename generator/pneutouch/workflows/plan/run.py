@@ -1,0 +1,233 @@
+"""A test plan: every run of a campaign in order, what it must read, and where the rig cannot follow."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pneutouch import __version__
+from pneutouch.bench.protocol import CLEARANCE, REPETITIONS, Protocol, protocol
+from pneutouch.bench.simulate.curve import Pressed
+from pneutouch.bench.simulate.encode import LEAK_SECONDS
+from pneutouch.catalogue import Library
+from pneutouch.errors import InputError
+from pneutouch.evaluation.resins import Resin, pressed, resins_of
+from pneutouch.output.files import MANIFEST, check_writable, digest, json_bytes, write_folder
+from pneutouch.output.recipe import input_hash, versions
+from pneutouch.report.plan_sheet import plan_sheet
+from pneutouch.spec.campaign import Campaign, Rig, Run, RunKind
+from pneutouch.spec.read import read_toml, validate
+from pneutouch.units import KPA, ML
+from pneutouch.workflows.plan.expected import curve_warnings, injection, leak_limit, points, travel_warnings
+from pneutouch.workflows.simulate.run import campaign_toml
+
+PAPER = Rig()
+
+SATURATION = (0.0, 12.0)
+"""Driving pressures of the saturation test, kPa (paper, section 3-C)."""
+
+FILL, PUSH, SETTLE = 30.0, 2.0, 20.0
+"""Seconds: to fill before a leak run, to push one volume, and to let it settle: our choice; air compressed warms and cools again."""
+
+_REST = (("wait", 0.2), ("vent", 0.2), ("set_pressure", 0.2), ("wait", 0.4))
+"""A rest with reset, in shares of it: our choice; the last share lets the pressure settle."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A plan as data (`document`), as a campaign file to be filled and as a sheet to be printed."""
+
+    name: str
+    document: dict[str, Any]
+    campaign: Campaign
+
+    @property
+    def sheet(self) -> str:
+        """Markdown for the laboratory."""
+        return plan_sheet(self.document)
+
+
+def rig_of(file: Path | None) -> Rig:
+    """The rig of a TOML file with a [rig] table; without a file the paper's. Raises InputError."""
+    if file is None:
+        return Rig()
+    content = read_toml(file)
+    if not isinstance(content.get("rig"), dict):
+        raise InputError(f"{file}: rig: missing; give a [rig] table, such as [rig] and below it force_range_N = 50.0")
+    return validate(Rig, content["rig"], f"{file}: rig")
+
+
+def make_plan(
+    design: str, assignments: list[str] | None = None, *, resins: tuple[str, ...] = (), specimens: int = 3,
+    rig: Rig = PAPER, rig_name: str = "", library: Library | None = None,
+) -> Plan:  # fmt: skip
+    """Plan a campaign of the paper's tests for a design in each resin. Raises InputError for what cannot be."""
+    if not 1 <= specimens <= 1000:
+        raise InputError(f"--specimens {specimens}: must be from 1 to 1000")
+    subjects = resins_of(design, assignments, resins, library=library)
+    scene = subjects[0].scene
+    tests = plated_tests(subjects[0])
+    curves = {s.name: _pressed(s, tests) for s in subjects}
+    listed: list[dict[str, Any]] = []
+    for subject in subjects:
+        for k in range(specimens):
+            listed += _runs(subject, f"{subject.name}-{k + 1}", tests, curves[subject.name], rig, len(listed))
+    warnings = [w.document() for s in subjects for w in _warnings(s, curves[s.name], tests, rig)]
+    depths = tuple(depth for test, _ in tests.values() for depth in test.depths)
+    pneumatics, membrane = scene.design.pneumatics, scene.design.membrane
+    document = {
+        "name": f"{scene.name}-plan", "design": scene.name, "title": scene.design.document.title,
+        "inner_radius_mm": membrane.inner_radius_mm, "wall_thickness_mm": membrane.wall_thickness_mm,
+        "ambient_pressure_kPa": pneumatics.ambient_pressure_kPa, "driving_pressures_kPa": pneumatics.driving_pressures_kPa,
+        "dead_volume_mL": subjects[0].sensor.dead_volume / ML, "clearance_mm": CLEARANCE,
+        "plate_diameter_mm": scene.design.indentation.plate_diameter_mm,
+        "rig": {**rig.model_dump(mode="json"), "file": rig_name or None},
+        "sensors": [{"sensor": f"{s.name}-{k + 1}", "resin": s.name} for s in subjects for k in range(specimens)],
+        "resins": [_expected(s, curves[s.name], tests, rig) for s in subjects],
+        "tests": {
+            kind: {
+                "depths_mm": list(t.depths), "hold_s": t.hold, "rest_s": t.rest, "reset": t.reset, "speed_mm_per_s": t.speed,
+                "duration_s": t.duration, "driving_pressures_kPa": list(at), "runs": _times(kind),
+            } for kind, (t, at) in tests.items()
+        },
+        "runs": listed, "total_s": sum(run["duration_s"] for run in listed),
+        "warnings": [w.document() for w in travel_warnings(depths, rig)] + warnings,
+    }  # fmt: skip
+    campaign = Campaign(
+        title=f"Campaign of {scene.design.document.title}"[:120], design=design, assignments=list(assignments or []), ambient_pressure_kPa=pneumatics.ambient_pressure_kPa,
+        rig=rig, runs=[Run(**{key: run[key] for key in ("file", "kind", "sensor", "resin", "driving_pressure_kPa", "run")}) for run in listed],
+    )  # fmt: skip
+    return Plan(str(document["name"]), document, campaign)
+
+
+def write_plan(plan: Plan, out: Path) -> Path:
+    """Write ``out/<design>-plan/``: plan.json, plan.md, campaign.toml, manifest; the same input, the same bytes."""
+    folder = out / plan.name
+    check_writable(folder)
+    note = "# Fill in lab, and date and age_days of every run; measured files go where `file` says."
+    files = {
+        "plan.json": json_bytes(plan.document), "plan.md": plan.sheet.encode(),
+        "campaign.toml": campaign_toml(plan.campaign, note),
+    }  # fmt: skip
+    inputs = {key: plan.document[key] for key in ("design", "rig", "sensors", "tests")}
+    manifest = {
+        "name": plan.name, "inputs": inputs, "input_hash": input_hash(inputs, __version__), "versions": versions(),
+        "files": {name: {"sha256": digest(data), "bytes": len(data)} for name, data in sorted(files.items())},
+    }  # fmt: skip
+    write_folder(folder, {**files, MANIFEST: json_bytes(manifest)})
+    return folder
+
+
+Tests = Mapping[RunKind, tuple[Protocol, tuple[float, ...]]]
+
+
+def plated_tests(subject: Resin) -> Tests:
+    """Protocol and driving pressures (kPa) of each kind of run with a plate, in the order in which they are run."""
+    driving = tuple(subject.scene.design.pneumatics.driving_pressures_kPa)
+    top = min(SATURATION[-1], driving[-1])
+    pressures: dict[RunKind, tuple[float, ...]] = {
+        "steps": driving, "loop": driving, "saturation": tuple(sorted({SATURATION[0], top})),
+        "relaxation": tuple(sorted({0.0, driving[-1]})),
+    }  # fmt: skip
+    return {kind: (protocol(kind, subject.sensor.inner_radius), at) for kind, at in pressures.items()}
+
+
+def _times(kind: str) -> int:
+    return REPETITIONS if kind in ("steps", "saturation") else 1
+
+
+def _pressed(subject: Resin, tests: Tests) -> Pressed:
+    pressures = sorted({p for _, at in tests.values() for p in at})
+    depth = max(depth for test, _ in tests.values() for depth in test.depths)
+    return pressed(subject.name, subject.sensor, [p * KPA for p in pressures], depth, "auto")
+
+
+def _warnings(subject: Resin, found: Pressed, tests: Tests, rig: Rig) -> Iterator[Any]:
+    for curve in found.curves:
+        here: dict[str, Protocol] = {
+            k: t for k, (t, at) in tests.items() if any(abs(p * KPA - curve.driving) < 1e-12 for p in at)
+        }
+        yield from curve_warnings(subject.name, found, curve, here, rig)
+
+
+def _expected(subject: Resin, found: Pressed, tests: Tests, rig: Rig) -> dict[str, Any]:
+    """What one resin must read: at every depth of every kind, after injected air, and the leak it may have."""
+    depths = tuple(sorted({depth for test, _ in tests.values() for depth in test.depths}))
+    states = [
+        {
+            "driving_pressure_kPa": curve.driving / KPA, "points": points(curve, depths), "range_end_mm": curve.reach,
+            "range_ends_by": None if curve.ends is None else curve.ends[0],
+        } for curve in found.curves
+    ]  # fmt: skip
+    steps = tests["steps"][0]
+    rises = [points(curve, steps.depths[:1])[0]["pressure_rise_kPa"] for curve in found.curves]
+    least = min((rise for rise in rises if rise is not None), default=None)
+    return {
+        "resin": subject.name, "model": found.model, "states": states, "injection": injection(found, rig),
+        "limit_kPa": found.limits.lowest / KPA, "limit_by": found.limits.binding,
+        "leak_limit_kPa_per_min": None if least is None else leak_limit(least, steps),
+    }  # fmt: skip
+
+
+def _runs(subject: Resin, sensor: str, tests: Tests, found: Pressed, rig: Rig, before: int) -> list[dict[str, Any]]:
+    """Every run of one specimen in order: leak and dead volume first, relaxation last, for it strains the wall longest."""
+    top = max(subject.scene.design.pneumatics.driving_pressures_kPa)
+    volume = injection(found, rig)["sensor_volume_mL"]
+    planned: list[tuple[str, float, int, list[dict[str, Any]], list[Any]]] = [("leak", top, 1, _leak(top, rig), [])]
+    if volume is not None:
+        planned.append(("injection", 0.0, 1, _inject(volume), []))
+    curves = {round(curve.driving / KPA, 9): curve for curve in found.curves}
+    for kind, (test, pressures) in tests.items():
+        for pressure in pressures:
+            said = points(curves[round(pressure, 9)], tuple(dict.fromkeys(test.depths)))
+            planned += [(kind, pressure, n + 1, steps_of(test, pressure, rig), said) for n in range(_times(kind))]
+    return [
+        {
+            "number": before + place, "kind": kind, "sensor": sensor, "resin": subject.name, "driving_pressure_kPa": pressure, "run": n,
+            "file": f"runs/{sensor}-{pressure:g}kPa-{kind}-{n}.csv", "steps": steps, "expected": said,
+            "duration_s": sum(step["seconds"] for step in steps),
+        } for place, (kind, pressure, n, steps, said) in enumerate(planned, start=1)
+    ]  # fmt: skip
+
+
+def _step(action: str, value: float | None, unit: str, seconds: float) -> dict[str, Any]:
+    return {"action": action, "value": value, "unit": unit, "seconds": seconds}
+
+
+def steps_of(test: Protocol, pressure: float, rig: Rig) -> list[dict[str, Any]]:
+    """What rig and hand do in one run with a plate; travels count from first contact, below zero the plate is clear."""
+    steps = [_step("record", rig.rate_Hz, "Hz", 0.0)]
+    for k, depth in enumerate(test.depths):
+        if test.reset:
+            values = {"wait": (None, ""), "vent": (0.0, "kPa"), "set_pressure": (pressure, "kPa")}
+            steps += [_step(action, *values[action], share * test.rest) for action, share in _REST]
+        else:
+            steps.append(
+                _step("set_pressure", pressure, "kPa", test.rest) if k == 0 else _step("wait", None, "", test.rest)
+            )
+        seconds = (depth + CLEARANCE) / test.speed
+        steps.append(_step("move", depth, "mm", seconds))
+        if test.hold > 0:
+            steps.append(_step("hold", depth, "mm", test.hold))
+        steps.append(_step("move", -CLEARANCE, "mm", seconds))
+    return steps
+
+
+def _leak(pressure: float, rig: Rig) -> list[dict[str, Any]]:
+    return [
+        _step("set_pressure", pressure, "kPa", FILL), _step("record", rig.rate_Hz, "Hz", 0.0),
+        _step("wait", None, "", LEAK_SECONDS),
+    ]  # fmt: skip
+
+
+def _inject(volume: float) -> list[dict[str, Any]]:
+    steps = [_step("vent", 0.0, "kPa", SETTLE)]
+    for share in (0.2, 0.4, 0.6, 0.8, 1.0):
+        steps += [
+            _step("inject", share * volume, "mL", PUSH),
+            _step("wait", None, "", SETTLE),
+            _step("record", None, "", 0.0),
+        ]
+    return steps

@@ -1,0 +1,1 @@
+"""A texture scanned by a sensor, and domes that separate two textures."""

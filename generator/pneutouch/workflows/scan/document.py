@@ -1,0 +1,154 @@
+"""A scan as the document that ``scan --json`` prints and ``scan.json`` keeps, and as its figure."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from pneutouch.report.scalogram import Scanned, scalogram_chart
+from pneutouch.texture.detect import Detection
+from pneutouch.texture.scalogram import scalogram
+from pneutouch.texture.scan import NOISE, RATE, STEP, pressure_amplitude
+from pneutouch.texture.separate import noise_amplitude
+from pneutouch.texture.signal import Signal, decimated
+from pneutouch.texture.substrate import FIRST_ZERO, Bars, patch_filter
+from pneutouch.units import GAUGE_LIMIT, KPA
+from pneutouch.workflows.scan.run import ScanRun, Seen
+from pneutouch.workflows.specimen.build import inputs as specimen_inputs
+
+ASSUMPTIONS = (
+    "the dome's flat-plate contact, frictionless; uniform pressure over the patch; no inertia, no relaxation",
+    "the specimen is linear elastic and bonded to a rigid floor; its bars stand still and its surface is flat: no relief",
+    "amplitudes of single patterns are 1.15 to 1.35 times those of finite elements at pitch 6 mm under a small patch and up to 4.4 times at "
+    "3 mm; near a zero of the patch filter they say no more than 'small' (docs/texture.md)",
+    f"noise: white, {NOISE / KPA:g} kPa rms a sample unless given, in steps of {STEP / KPA:.4f} kPa: assumed, the paper states none",
+    "air at constant temperature (Boyle) with the design's dead volume",
+)
+
+_DIGITS = 7
+
+
+def document(run: ScanRun) -> dict[str, Any]:
+    """Everything said of a scan; names carry their units."""
+    found = {
+        "specimen": run.specimen.name, "design": run.design.name, "control": run.asked.control,
+        "preload_N": run.asked.preload, "speed_mm_per_s": run.way.speed, "path_mm": [run.way.start, run.way.end],
+        "sampling_Hz": RATE, "kept_Hz": 5 * run.kept, "noise_kPa": run.asked.noise / KPA, "seed": run.asked.seed,
+        "range_kPa": GAUGE_LIMIT / KPA,
+        "patterns": [_pattern(run, row) for row in run.bars],
+        "states": [_state(run, number, seen) for number, seen in enumerate(run.seen)],
+        "assumptions": list(ASSUMPTIONS),
+    }  # fmt: skip
+    return {key: _rounded(value) for key, value in found.items()}
+
+
+def inputs(run: ScanRun) -> dict[str, Any]:
+    """Everything that the result follows from, as data; measured signals by their file names."""
+    design = run.design
+    asked = run.asked
+    return {
+        "specimen": specimen_inputs(run.specimen), "design": design.design.model_dump(mode="json"),
+        "membrane": design.membrane_material.model_dump(mode="json"), "dead_volume_mm3": _rounded(run.sensor.dead_volume),
+        "pressures_kPa": [_rounded(p / KPA) for p in asked.pressures], "preload_N": asked.preload, "control": asked.control,
+        "speed_mm_per_s": run.way.speed, "noise_kPa": asked.noise / KPA, "seed": asked.seed,
+        "data": [path.name for path in asked.data],
+    }  # fmt: skip
+
+
+def spectra(run: ScanRun) -> str:
+    """Signals and scalograms side by side, SVG; the signals as the voices see them: less their mean, slow enough to show."""
+    frequencies = sorted(set(run.frequencies.values()))
+    low, high = frequencies[0] / 2.0, frequencies[-1] * 2.0
+    states = []
+    for seen in run.seen:
+        kept = decimated(seen.signal, high)
+        mean = float(kept.pressure.mean())
+        shown = Signal(kept.start, kept.step, kept.pressure - mean)
+        states.append(Scanned(f"{seen.label}, about {mean / KPA:.3g} kPa", shown, scalogram(seen.signal, low, high)))
+    return scalogram_chart(states, {_names(run, frequency): frequency for frequency in frequencies})
+
+
+def _names(run: ScanRun, frequency: float) -> str:
+    names = [name for name, own in run.frequencies.items() if own == frequency]
+    return (
+        names[0] if len(names) == 1 else " + ".join([names[0], *(name.removeprefix("pattern ") for name in names[1:])])
+    )
+
+
+def _pattern(run: ScanRun, row: Bars) -> dict[str, Any]:
+    frequency = run.frequencies[row.name]
+    young = run.specimen.inclusion.young_modulus_MPa
+    return {
+        "name": row.name, "pitch_mm": row.pitch, "width_mm": row.width, "height_mm": row.height, "depth_mm": row.depth,
+        "from_mm": float(row.edges.min()), "to_mm": float(row.edges.max()), "frequency_Hz": frequency,
+        "bending_length_mm": None if young is None else row.bending_length(young.nominal, run.matrix.shear_modulus),
+        "noise_amplitude_kPa": noise_amplitude(frequency, run.asked.noise) / KPA,
+    }  # fmt: skip
+
+
+def _state(run: ScanRun, number: int, seen: Seen) -> dict[str, Any]:
+    found: dict[str, Any] = {
+        "label": seen.label,
+        "signal": f"signal-{number + 1}.csv",
+        "duration_s": seen.signal.duration,
+    }
+    at = seen.touch
+    if at is not None and seen.substrate is not None and seen.scan is not None:
+        found |= {
+            "driving_pressure_kPa": at.driving_pressure / KPA, "contact_radius_mm": at.contact_radius,
+            "indentation_mm": at.indentation, "stiffness_N_per_mm": at.stiffness,
+            "pressure_slope_kPa_per_mm": at.pressure_slope / KPA, "pressure_kPa": at.pressure / KPA, "model": at.model,
+            "specimen_compliance_mm_per_N": float(seen.substrate.compliance(4096).mean()),
+            "clipped": bool(abs(seen.signal.pressure).max() >= GAUGE_LIMIT),
+            "notes": _notes(run.bars, at.contact_radius),
+        }  # fmt: skip
+    detections: Sequence[Detection | None] = seen.detections or [None] * len(run.bars)
+    found["patterns"] = [_found(run, seen, row, one) for row, one in zip(run.bars, detections, strict=True)]
+    return found
+
+
+def _found(run: ScanRun, seen: Seen, row: Bars, found: Detection | None) -> dict[str, Any]:
+    """One pattern in one signal. Patterns of one pitch share what is found: a spectrum does not tell them apart."""
+    text: dict[str, Any] = {"name": row.name, "true_frequency_Hz": run.frequencies[row.name]}
+    if seen.touch is not None and seen.substrate is not None:
+        swing = pressure_amplitude(seen.touch, seen.substrate, row, run.way.control)
+        relief = abs(seen.substrate.amplitude(row)) * seen.touch.preload
+        # Relief goes through the patch alone.
+        felt = abs(float(patch_filter(np.asarray(2.0 * math.pi / row.pitch), seen.touch.contact_radius)))
+        text |= {
+            "model_amplitude_kPa": swing / KPA,
+            "sinking_amplitude_um": relief * 1e3,
+            "relief_equivalent_um": 1e3 * relief / felt,
+        }
+    if found is None:
+        return text | {"found": False}
+    return text | {
+        "found": found.found, "found_frequency_Hz": found.frequency, "amplitude_kPa": found.amplitude / KPA,
+        "noise_floor_kPa": found.floor / KPA, "detection_figure": found.ratio, "threshold": found.threshold,
+        "p_value": found.p_value, "level": found.level,
+        "frequency_error_relative": found.frequency / found.asked - 1.0,
+    }  # fmt: skip
+
+
+def _notes(bars: Sequence[Bars], radius: float) -> list[str]:
+    """What the patch makes of the patterns' pitches."""
+    near = sorted({row.pitch for row in bars if row.pitch < 4.0 * radius})
+    if not near:
+        return []
+    blind = 2.0 * math.pi / FIRST_ZERO * radius
+    return [
+        f"pitches {', '.join(f'{pitch:g}' for pitch in near)} mm are below twice the patch ({4 * radius:.2f} mm), which averages "
+        f"over them; of bars at the surface it feels nothing at a pitch of {blind:.2f} mm"
+    ]
+
+
+def _rounded(value: Any) -> Any:
+    """Numbers to `_DIGITS` digits: rounding of the last bits differs between processors."""
+    if isinstance(value, float):
+        return float(f"{value:.{_DIGITS}g}")
+    if isinstance(value, dict):
+        return {key: _rounded(item) for key, item in value.items()}
+    return [_rounded(item) for item in value] if isinstance(value, list) else value

@@ -1,0 +1,262 @@
+"""A sensor's scan over a specimen: both loaded, scanned at each driving pressure, patterns looked for, all written."""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pneutouch import __version__
+from pneutouch.catalogue import Library, Scene, load_scene
+from pneutouch.errors import InputError, nearest
+from pneutouch.evaluation.evaluate import sensor_of
+from pneutouch.mechanics import Sensor
+from pneutouch.output.files import MANIFEST, check_writable, digest, json_bytes, write_folder
+from pneutouch.output.recipe import input_hash, versions
+from pneutouch.parts import assemble
+from pneutouch.parts.specimen.bars import places
+from pneutouch.spec.specimen import Bars as BarLayer
+from pneutouch.texture.contact import Touch, touch
+from pneutouch.texture.detect import Detection, detect, least_duration
+from pneutouch.texture.record import read_signal
+from pneutouch.texture.scan import CONTROLS, NOISE, PRELOAD, Recorder, Scan, Way, scan
+from pneutouch.texture.signal import Signal, decimated
+from pneutouch.texture.substrate import Bars, Matrix, Substrate
+from pneutouch.units import KPA
+from pneutouch.workflows.specimen.draw import draw
+from pneutouch.workflows.specimen.load import SpecimenScene, load_specimen, specimen_file
+
+KEPT = 20.0
+"""Highest frequency of the signals in CSV files, Hz, or twice the highest pattern's; they keep five times as many samples."""
+
+SPEEDS = (0.01, 1000.0)
+"""Slowest and fastest scan, mm/s: a 60 mm path then lasts 1.7 h and 0.06 s."""
+
+MOST_NOISE = 100.0 * KPA
+"""Noise as large as the gauge's range, MPa rms."""
+
+PRESSURES = (0.0, 22.0 * KPA)
+"""The soft and the stiff state of the paper's section 5, MPa."""
+
+
+@dataclass(frozen=True)
+class Asked:
+    """How a scan was asked for: pressures in MPa, N, mm/s (None: the specimen's), MPa rms, measured signals."""
+
+    pressures: tuple[float, ...] = PRESSURES
+    preload: float = PRELOAD
+    speed: float | None = None
+    control: str = "height"
+    noise: float = NOISE
+    seed: int = 0
+    data: tuple[Path, ...] = field(default=())
+
+
+@dataclass(frozen=True)
+class Seen:
+    """One signal, simulated or measured, with what was detected in it; touch, substrate and scan of a simulated one."""
+
+    label: str
+    signal: Signal
+    detections: tuple[Detection, ...]
+    touch: Touch | None = None
+    substrate: Substrate | None = None
+    scan: Scan | None = None
+
+
+@dataclass(frozen=True)
+class ScanRun:
+    """A whole run; ``frequencies`` are the patterns' at the speed of the scan, Hz, by name."""
+
+    specimen: SpecimenScene
+    design: Scene
+    sensor: Sensor
+    matrix: Matrix
+    bars: tuple[Bars, ...]
+    asked: Asked
+    way: Way
+    frequencies: dict[str, float]
+    seen: tuple[Seen, ...]
+
+    @property
+    def name(self) -> str:
+        """Name of the output folder."""
+        return f"{self.specimen.name}-{self.design.name}-scan"
+
+    @property
+    def kept(self) -> float:
+        """Highest frequency that the signals are written for, Hz."""
+        return max(KEPT, 2 * max(self.frequencies.values(), default=0.0))
+
+
+def run_scan(
+    specimen: str, design: str, asked: Asked = Asked(), assignments: list[str] | None = None, library: Library | None = None
+) -> ScanRun:  # fmt: skip
+    """Scan a specimen with a sensor, both by name or path; ``assignments`` change the design.
+
+    Raises InputError for what cannot be: see `texture.contact`, `texture.scan`, `texture.detect`.
+    """
+    shelves = library or Library.default()
+    check_asked(asked)
+    ground, scene, sensor = load_both(specimen, design, assignments, shelves)
+    if asked.speed is not None:
+        ground = replace(ground, specimen=_at_speed(ground, asked.speed))
+    speed = ground.specimen.scan.speed_mm_per_s
+    bars, matrix = bars_of(ground), matrix_of(ground)
+    states = [touch(sensor, pressure, asked.preload) for pressure in asked.pressures]
+    margin = max((state.contact_radius for state in states), default=0.0)
+    length = ground.specimen.block.length_mm
+    way = Way(margin, length - margin, speed, asked.control)  # type: ignore[arg-type]
+    frequencies = {row.name: speed / row.pitch for row in bars}
+    _check_length(ground, way, frequencies)
+    simulated = [
+        _simulated(state, Substrate(matrix, bars, length, state.contact_radius), way, asked, frequencies)
+        for state in states
+    ]
+    measured = [_measured(path, frequencies) for path in asked.data]
+    return ScanRun(ground, scene, sensor, matrix, bars, asked, way, frequencies, (*simulated, *measured))
+
+
+def load_both(
+    specimen: str, design: str, assignments: list[str] | None, library: Library, scanned: bool = True
+) -> tuple[SpecimenScene, Scene, Sensor]:
+    """A specimen and a sensor; one that is ``scanned`` is checked as it is for printing.
+
+    Raises InputError, also where one is the other.
+    """
+    ground = load_specimen(specimen, None, library)
+    if specimen_file(design, library) is not None:
+        raise InputError(f"--design {design}: is a specimen; give the name or path of a sensor's design")
+    matrix_of(ground)
+    if scanned:
+        bars_of(ground)
+        draw(ground)
+    scene = load_scene(design, assignments, library)
+    return ground, scene, sensor_of(assemble(scene))
+
+
+def bars_of(ground: SpecimenScene) -> tuple[Bars, ...]:
+    """The specimen's rows of bars. Raises InputError for layers of another kind, which the scan model does not know."""
+    found = []
+    for number, layer in enumerate(ground.specimen.layer):
+        if not isinstance(layer, BarLayer):
+            raise InputError(
+                f"{ground.where}: layer[{number}].kind = {layer.kind!r}: the scan model knows bars alone; with --data, "
+                "measured signals of any specimen can be read against a specimen of bars with the same pitches"
+            )
+        left = places(layer, ground.ground)
+        edges = np.stack([left, left + layer.width_mm], axis=1)
+        pitch = layer.pitch(ground.specimen.scan.speed_mm_per_s)
+        name = layer.name or f"layer {number + 1}"
+        found.append(Bars(name, pitch, layer.width_mm, layer.height_mm, layer.depth_mm, edges))
+    names = [row.name for row in found]
+    if len(set(names)) < len(names):
+        raise InputError(f"{ground.where}: layer: two patterns have one name; give each its own")
+    return tuple(found)
+
+
+def matrix_of(ground: SpecimenScene) -> Matrix:
+    """The block's matrix. Raises InputError for one without a shear modulus."""
+    modulus, poisson = ground.matrix.shear_modulus_MPa, ground.matrix.poisson_ratio
+    if modulus is None or poisson is None:
+        raise InputError(
+            f"{ground.where}: block.matrix = {ground.specimen.block.matrix!r}: has no shear modulus; the scan model "
+            "takes a soft matrix with stiff bars"
+        )
+    return Matrix(ground.specimen.block.height_mm, modulus.nominal, poisson.nominal)
+
+
+def _at_speed(ground: SpecimenScene, speed: float) -> Any:
+    """The specimen at another speed; the bars stay where the file's own speed put them."""
+    own = ground.specimen.scan.speed_mm_per_s
+    layers = [
+        layer.model_copy(update={"pitch_mm": layer.pitch(own), "target_frequency_Hz": None})
+        if isinstance(layer, BarLayer) else layer for layer in ground.specimen.layer
+    ]  # fmt: skip
+    update = {"scan": ground.specimen.scan.model_copy(update={"speed_mm_per_s": speed}), "layer": layers}
+    return ground.specimen.model_copy(update=update)
+
+
+def check_asked(asked: Asked) -> None:
+    """Raise InputError for an option that no scan can have, in the words of the command line."""
+    if asked.control not in CONTROLS:
+        raise InputError(f"--control {asked.control}: unknown.{nearest(asked.control, CONTROLS)}")
+    if not math.isfinite(asked.preload) or asked.preload <= 0:
+        raise InputError(f"--preload {asked.preload:g}: must be a force above 0 N")
+    if asked.speed is not None and not SPEEDS[0] <= asked.speed <= SPEEDS[1]:
+        raise InputError(f"--speed {asked.speed:g}: must be from {SPEEDS[0]:g} to {SPEEDS[1]:g} mm/s")
+    if not 0 <= asked.noise <= MOST_NOISE:
+        raise InputError(f"--noise {asked.noise / KPA:g}: must be from 0 to {MOST_NOISE / KPA:g} kPa")
+    if not asked.pressures and not asked.data:
+        raise InputError("--pressures: none given, and no --data; nothing to scan")
+
+
+def _check_length(ground: SpecimenScene, way: Way, frequencies: dict[str, float]) -> None:
+    """Refuse a path too short to tell a pattern's frequency, in terms of the specimen."""
+    lasts = (way.end - way.start) / way.speed
+    for name, frequency in frequencies.items():
+        needed = least_duration(frequency)
+        if lasts < needed:
+            raise InputError(
+                f"{ground.where}: {name}: {frequency:.4g} Hz at {way.speed:g} mm/s: the path of {max(way.end - way.start, 0):.4g} mm "
+                f"between the block's ends lasts {max(lasts, 0):.4g} s and must last {needed:.4g} s; block.length_mm must be at least "
+                f"{needed * way.speed + 2 * way.start:.4g}"
+            )
+
+
+def _detected(signal: Signal, frequencies: dict[str, float], where: str) -> tuple[Detection, ...]:
+    """One detection for each pattern; patterns of one pitch are one line in a spectrum."""
+    asked = sorted(set(frequencies.values()))
+    if np.ptp(signal.pressure) == 0:
+        return ()
+    by = dict(zip(asked, detect(signal, asked, where=where), strict=True))
+    return tuple(by[frequency] for frequency in frequencies.values())
+
+
+def _simulated(state: Touch, substrate: Substrate, way: Way, asked: Asked, frequencies: dict[str, float]) -> Seen:
+    found = scan(state, substrate, way, Recorder(noise=asked.noise, seed=asked.seed))
+    label = f"{state.driving_pressure / KPA:g} kPa"
+    return Seen(label, found.signal, _detected(found.signal, frequencies, label), state, substrate, found)
+
+
+def _measured(path: Path, frequencies: dict[str, float]) -> Seen:
+    signal = read_signal(path)
+    return Seen(path.name, signal, _detected(signal, frequencies, str(path)))
+
+
+def write_scan(run: ScanRun, out: Path) -> Path:
+    """Write signals, document, figure and manifest into ``out/<specimen>-<design>-scan/``; the same input, the same bytes."""
+    from pneutouch.workflows.scan.document import document, inputs, spectra
+
+    folder = out / run.name
+    check_writable(folder)
+    files = {"scan.json": json_bytes(document(run)), "scan.svg": spectra(run).encode()}
+    for number, seen in enumerate(run.seen):
+        files[f"signal-{number + 1}.csv"] = signal_csv(seen, run.bars, run.kept)
+    content = inputs(run)
+    manifest = {
+        "name": run.name, "inputs": content, "input_hash": input_hash(content, __version__), "versions": versions(),
+        "files": {name: {"sha256": digest(data), "bytes": len(data)} for name, data in sorted(files.items())},
+    }  # fmt: skip
+    write_folder(folder, {**files, MANIFEST: json_bytes(manifest)})
+    return folder
+
+
+def signal_csv(seen: Seen, bars: Sequence[Bars], highest: float) -> bytes:
+    """A signal decimated for ``highest`` Hz; a simulated one with place, noiseless pressure and true patterns."""
+    kept = decimated(seen.signal, highest)
+    columns = {"time_s": kept.time, "pressure_kPa": kept.pressure / KPA}
+    if seen.scan is not None:
+        every = np.searchsorted(seen.signal.time, kept.time - 0.5 * seen.signal.step)
+        columns["place_mm"] = seen.scan.place[every]
+        columns["noiseless_kPa"] = seen.scan.clean[every] / KPA
+        columns |= {f"bar_{k + 1}": row.covers(seen.scan.place[every]) for k, row in enumerate(bars)}
+    text = io.StringIO()
+    text.write(",".join(columns) + "\n")
+    np.savetxt(text, np.stack(list(columns.values()), axis=1), fmt="%.9g", delimiter=",")
+    return text.getvalue().encode()

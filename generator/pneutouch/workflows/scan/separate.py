@@ -1,0 +1,122 @@
+"""Which dome tells two patterns of a specimen apart: candidates over radius, wall, resin and driving pressure."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.catalogue import Library, Scene
+from pneutouch.errors import InputError
+from pneutouch.evaluation.evaluate import elastomers
+from pneutouch.mechanics.atlas.press import Batch
+from pneutouch.mechanics.atlas.table import shipped
+from pneutouch.mechanics.limits import RATED_SHARE
+from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.sensor import Sensor
+from pneutouch.texture.separate import Pattern, Separation, noise_amplitude, separate
+from pneutouch.units import KPA
+from pneutouch.workflows.scan.run import Asked, check_asked, load_both, matrix_of
+
+_RADII, _RATIOS, _PRESSURES = 8, 8, 9
+_SMALLEST, _LARGEST = 4.0, 20.0
+"""Inner radii looked at, mm."""
+_SHOWN = 8
+
+
+@dataclass(frozen=True)
+class Domes:
+    """Candidates, (n,) each: resin by number in ``names``, mm, and one row a driving pressure."""
+
+    names: tuple[str, ...]
+    resin: Array
+    radius: Array
+    wall: Array
+    dome: Array
+    batch: Batch
+
+
+def parse_patterns(text: str) -> tuple[Pattern, Pattern]:
+    """Two patterns out of ``PITCH1@DEPTH1,PITCH2@DEPTH2`` in mm. Raises InputError."""
+    number = r"\s*(\d+(?:\.\d+)?)\s*"
+    match = re.fullmatch(f"{number}@{number},{number}@{number}", text)
+    if match is None:
+        raise InputError(f"--separate {text}: must be PITCH1@DEPTH1,PITCH2@DEPTH2 in mm, such as 3@0,6@2")
+    a, b, c, d = (float(part) for part in match.groups())
+    if min(a, c) <= 0:
+        raise InputError(f"--separate {text}: a pitch must be more than 0 mm")
+    if (a, b) == (c, d):
+        raise InputError(f"--separate {text}: both patterns are the same; there is nothing to tell apart")
+    return Pattern(a, b), Pattern(c, d)
+
+
+def separating(
+    specimen: str, design: str, text: str, asked: Asked, assignments: list[str] | None = None,
+    library: Library | None = None,
+) -> dict[str, Any]:  # fmt: skip
+    """The domes that best tell two patterns apart, as a document; the specimen gives matrix and speed, the design the rest."""
+    shelves = library or Library.default()
+    check_asked(asked)
+    patterns = parse_patterns(text)
+    ground, scene, sensor = load_both(specimen, design, assignments, shelves, scanned=False)
+    speed = ground.specimen.scan.speed_mm_per_s if asked.speed is None else asked.speed
+    floor = tuple(noise_amplitude(speed / pattern.pitch, asked.noise) for pattern in patterns)
+    domes = candidates(scene, sensor, shelves)
+    found = separate(domes.batch, domes.dome, asked.preload, matrix_of(ground), patterns, (floor[0], floor[1]))
+    return {
+        "patterns": [{"pitch_mm": p.pitch, "depth_mm": p.depth, "frequency_Hz": speed / p.pitch,
+                      "noise_amplitude_kPa": f / KPA} for p, f in zip(patterns, floor, strict=True)],
+        "candidates": len(domes.batch), "preload_N": asked.preload,
+        "domes": [_dome(domes, found, k) for k in range(min(_SHOWN, len(found.dome)))],
+    }  # fmt: skip
+
+
+def _dome(domes: Domes, found: Separation, k: int) -> dict[str, Any]:
+    row = int(np.flatnonzero(domes.dome == found.dome[k])[0])
+    return {
+        "rank": k + 1, "resin": domes.names[int(domes.resin[row])], "inner_radius_mm": float(round(domes.radius[row], 2)),
+        "wall_thickness_mm": float(round(domes.wall[row], 2)), "contrast": float(f"{found.contrast[k]:.4g}"),
+        "states": [
+            {"driving_pressure_kPa": float(f"{found.pressures[k, i] / KPA:.4g}"), "for_pattern": i + 1,
+             "amplitudes_kPa": [float(f"{a / KPA:.4g}") for a in found.amplitudes[k, i]]} for i in (0, 1)
+        ],
+    }  # fmt: skip
+
+
+def candidates(scene: Scene, sensor: Sensor, library: Library) -> Domes:
+    """A grid over the resins that the design's printer runs and the atlas knows, wall ratio, radius and pressure."""
+    recipe, feature = shipped().recipe, scene.printer.smallest.wall("elastomer")
+    least = feature.least or feature.recommended
+    resins = {
+        name: own for name, material in sorted(elastomers(library).items())
+        if scene.printer.mode_for(material) is not None and (own := material_sensor(material)).law is None
+        and own.poisson_ratio == recipe.poisson_ratio and sensor.ambient_pressure <= recipe.stiffest * own.shear_modulus
+    }  # fmt: skip
+    if not resins:
+        raise InputError(f"{scene.where}: print.profile: the {scene.printer.title} runs no resin that the atlas knows")
+    ratios = np.geomspace(recipe.thinnest, recipe.thickest, _RATIOS)
+    mu = np.array([own.shear_modulus for own in resins.values()])
+    resin, ratio, radius, share = _grid(
+        np.arange(len(resins), dtype=float), ratios, np.geomspace(_SMALLEST, _LARGEST, _RADII),
+        np.linspace(0.0, RATED_SHARE, _PRESSURES),
+    )  # fmt: skip
+    limit = np.interp(ratio, ratios, shipped().slices(ratios, ()).limit_pressure) * mu[resin.astype(int)]
+    pressure = share * np.minimum(limit, sensor.gauge_limit)
+    keep = ratio * radius >= least
+    dome = np.repeat(np.arange(resin.size // _PRESSURES, dtype=float), _PRESSURES)[keep]
+    resin, ratio, radius, pressure = resin[keep], ratio[keep], radius[keep], pressure[keep]
+    ones = np.ones(radius.size)
+    batch = Batch(
+        radius, ratio * radius, mu[resin.astype(int)], ones * sensor.ambient_pressure, ones * sensor.dead_volume, pressure,
+        radius * min(sensor.depth / sensor.inner_radius, recipe.deepest), ones * sensor.plate_radius,
+        ones * sensor.gauge_limit, ones * np.inf,
+    )  # fmt: skip
+    return Domes(tuple(resins), resin, radius, ratio * radius, dome, batch)
+
+
+def _grid(*axes: Array) -> list[Array]:
+    """Every combination, one array an axis; the last axis runs fastest."""
+    return [np.asarray(grid, float).ravel() for grid in np.meshgrid(*axes, indexing="ij")]

@@ -1,0 +1,113 @@
+"""The charts of a selection: what its target costs, and how far the chosen design can be tuned."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+
+from pneutouch.catalogue import Library
+from pneutouch.errors import InputError
+from pneutouch.evaluation.chart_data import Spot, TradeOff, Tuning
+from pneutouch.evaluation.tuning import curve, interval
+from pneutouch.report.tradeoff import tradeoff_chart
+from pneutouch.report.tuning import tuning_chart
+from pneutouch.selection import Choice
+from pneutouch.selection.front import front
+from pneutouch.spec.material import Material
+from pneutouch.units import KPA
+from pneutouch.workflows.select.run import Selection
+
+_SIZE = (130.0, 90.0)
+"""Width and height of a chart, mm."""
+
+_DESIGNS = 5
+"""Designs marked on the trade-off, and resins drawn beside the chosen one on the tuning chart."""
+
+
+def write_charts(
+    selection: Selection, folder: Path, chosen: Choice | None = None, library: Library | None = None
+) -> list[Path]:
+    """Write ``trade-off.svg``, and ``tuning.svg`` of a chosen design, else the best, where there is one.
+
+    Returns what was written.
+
+    Raises InputError where the folder cannot be written.
+    """
+    charts = {"trade-off.svg": tradeoff_chart(tradeoff(selection), _SIZE)}
+    found = tuning(selection, library or Library.default(), chosen)
+    if found is not None:
+        charts["tuning.svg"] = tuning_chart(found, _SIZE)
+    return [_write(folder / name, text) for name, text in charts.items()]
+
+
+def tradeoff(selection: Selection) -> TradeOff:
+    """Fronts at the target's driving pressure, the best design's where that is free; its window and the designs in it."""
+    problem, designs = selection.problem, _best(selection)
+    pressure = problem.driving_pressure
+    if pressure is None:
+        pressure = float(designs[0].pool.pressure[0]) if designs else 0.0
+    wanted = problem.sensitivity
+    # Of a mix the fronts of the designs' own fractions: those of all that were tried lie side by side.
+    mixed = any(resin.grade is not None for resin in problem.resins)
+    resins = tuple(choice.resin for choice in designs) if mixed and designs else problem.resins
+    return TradeOff(
+        tuple(front(replace(problem, driving_pressure=pressure, resins=resins))), pressure / KPA, (problem.gauge_limit - pressure) / KPA,
+        tuple(_spot(rank, choice) for rank, choice in enumerate(designs, start=1)),
+        None if wanted is None else (wanted * (1 - problem.tolerance), wanted * (1 + problem.tolerance)),
+        problem.force_range,
+    )  # fmt: skip
+
+
+def tuning(selection: Selection, library: Library, chosen: Choice | None = None) -> Tuning | None:
+    """A design's curve to its rated pressure (the best's, where none is chosen), and those of other resins as far."""
+    designs = _best(selection)
+    if not designs:
+        return None
+    chosen = chosen or designs[0]
+    material = chosen.resin.material
+    drawn = curve(selection.sensor_of(chosen), chosen.rated, material.title)
+    if drawn is None:
+        return None
+    low, high = interval(
+        selection.sensor_of(chosen), drawn, material, list(library.all("materials", Material).values()),
+        selection.base.printer, "atlas",
+    )  # fmt: skip
+    others = (
+        curve(selection.sensor_of(choice), min(choice.rated, chosen.rated), choice.resin.material.title)
+        for choice in designs
+        if choice.resin.name != chosen.resin.name
+    )
+    working = {float(chosen.pool.pressure[0]) / KPA: float(chosen.pool.response.lines.sensitivity[0])}
+    return Tuning(drawn, low, high, working, tuple(other for other in others if other is not None))
+
+
+def _best(selection: Selection) -> list[Choice]:
+    """The best design of each resin, best resin first."""
+    first: dict[str, Choice] = {}
+    for choice in selection.answer.designs:
+        first.setdefault(choice.resin.name, choice)
+    return list(first.values())[:_DESIGNS]
+
+
+def _spot(rank: int, choice: Choice) -> Spot:
+    title, force = choice.resin.material.title, float(choice.pool.force[0])
+    return Spot(title, f"{rank}  {title}, {force:.3g} N", float(choice.pool.response.lines.sensitivity[0]), force)
+
+
+def _write(path: Path, text: str) -> Path:
+    """Write a file beside its place and rename it into it."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, beside = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+        try:
+            with os.fdopen(handle, "w", encoding="utf-8") as file:
+                file.write(text)
+            Path(beside).chmod(0o644)
+            Path(beside).replace(path)
+        finally:
+            Path(beside).unlink(missing_ok=True)
+    except OSError as error:
+        raise InputError(f"--charts: {path}: {error.strerror}; give a folder you may write to") from None
+    return path

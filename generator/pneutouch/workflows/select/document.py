@@ -1,0 +1,114 @@
+"""A selection as data and as text; and the chosen design as a file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pneutouch.errors import InputError
+from pneutouch.mechanics.atlas.respond import ENDS
+from pneutouch.output.new import write_design
+from pneutouch.selection import Choice, Way
+from pneutouch.spec.design import Design
+from pneutouch.spec.read import override, validate
+from pneutouch.spec.template import design_template
+from pneutouch.units import KPA, ML
+from pneutouch.workflows.select.run import Confirmation, Selection
+
+
+def document(selection: Selection) -> dict[str, Any]:
+    """The selection as ``select --json`` prints it."""
+    answer = selection.answer
+    confirmed = [*selection.confirmed, *[None] * (len(answer.designs) - len(selection.confirmed))]
+    return {
+        "target": selection.target.model_dump(mode="json"),
+        "base": selection.base.where,
+        "met": bool(answer.designs),
+        "candidates": answer.candidates,
+        "designs": [
+            {"rank": rank, "runner_up": _is_runner_up(answer.designs, rank - 1), **_choice(selection, choice, solid)}
+            for rank, (choice, solid) in enumerate(zip(answer.designs, confirmed, strict=True), start=1)
+        ],
+        "nearest": None if answer.nearest is None else _choice(selection, answer.nearest, None),
+        "give_up": [
+            {"wish": way.wish, "would_need": would_need(selection, way), "design": _choice(selection, way.best, None)}
+            for way in answer.ways
+        ],
+        "left_out": selection.left_out,
+    }  # fmt: skip
+
+
+def _is_runner_up(designs: list[Choice], index: int) -> bool:
+    return any(designs[index].resin.name == other.resin.name for other in designs[:index])
+
+
+def _choice(selection: Selection, choice: Choice, solid: Confirmation | None) -> dict[str, Any]:
+    pool, lines = choice.pool, choice.pool.response.lines
+    sensitivity = float(lines.sensitivity[0])
+    batch = selection.problem.batch(pool.resin, pool.radius, pool.wall, pool.pressure)
+    return {
+        "material": choice.resin.name,
+        "mix": None if choice.resin.grade is None else choice.resin.grade.model_dump(by_alias=True, exclude_none=True),
+        "inner_radius_mm": float(pool.radius[0]),
+        "wall_thickness_mm": float(pool.wall[0]),
+        "driving_pressure_kPa": float(pool.pressure[0]) / KPA,
+        "outer_diameter_mm": 2 * float(pool.radius[0] + pool.wall[0]),
+        "dead_volume_mL": float(batch.dead_volume[0]) / ML,
+        "sensitivity_kPa_per_N": sensitivity,
+        "expanded_uncertainty_kPa_per_N": sensitivity * choice.expanded,
+        "expanded_uncertainty_relative": choice.expanded,
+        "coverage_factor": 2,
+        "r_squared": float(lines.r_squared[0]),
+        "force_range_N": [0.0, float(pool.force[0])],
+        "range_end_mm": float(pool.response.range_end[0]),
+        "range_ends_with": ENDS[int(pool.response.ends[0])],
+        "stiffness_N_per_mm": float(lines.stiffness[0]),
+        "limit_point_kPa": float(pool.response.limit_pressure[0]) / KPA,
+        "rated_pressure_kPa": choice.rated / KPA,
+        "sensitivity_at_0kPa_and_rated_kPa_per_N": list(choice.span),
+        "margins": {name: room if np.isfinite(room) else None for name, room in choice.room.items()},
+        "binding": choice.binding,
+        "model": "atlas",
+        "solid": None if solid is None else {
+            "sensitivity_kPa_per_N": solid.sensitivity, "within_expanded_uncertainty": solid.within,
+        },
+        "set": selection.assignments(choice),
+    }  # fmt: skip
+
+
+def would_need(selection: Selection, way: Way) -> str:
+    """What a wish would have to be for the best design without it."""
+    pool, lines = way.best.pool, way.best.pool.response.lines
+    if way.wish == "sensitivity":
+        return f"{float(lines.sensitivity[0]):.3g} kPa/N instead of {selection.problem.sensitivity:g}"
+    if way.wish == "force range":
+        return f"{float(pool.force[0]):.3g} N instead of {selection.problem.force_range:g}"
+    if way.wish == "stiffness":
+        return f"{float(lines.stiffness[0]):.3g} N/mm"
+    return f"{2 * float(pool.radius[0] + pool.wall[0]):.4g} mm instead of {selection.problem.max_diameter:g}"
+
+
+def write_choice(selection: Selection, choice: Choice, name: str, folder: Path) -> Path:
+    """Save a choice as ``folder/name.toml``, a design that ``build`` takes; never over a file."""
+    return write_assigned(selection.base.design, selection.assignments(choice), name, folder)
+
+
+def write_assigned(design: Design, assignments: list[str], name: str, folder: Path) -> Path:
+    """Save a design with ``table.key=value`` assignments as ``folder/name.toml``; never over a file."""
+    base = design.model_dump(by_alias=True)
+    content = override(base, assignments, Design)
+    content["document"] = {**base["document"], "title": name}
+    content["pneumatics"]["driving_pressures_kPa"] = [float(p) for p in content["pneumatics"]["driving_pressures_kPa"]]
+    chosen = validate(Design, content, name)
+    note = "Every key may be left out; it then takes its default."
+    return write_design(name, folder, design_template(name, chosen.model_dump(by_alias=True), note))
+
+
+def pick(selection: Selection, rank: int) -> Choice:
+    """The design of a rank, from 1. Raises InputError where there is none."""
+    designs = selection.answer.designs
+    if not 1 <= rank <= len(designs):
+        raise InputError(f"--pick {rank}: must be from 1 to {len(designs)}")
+    return designs[rank - 1]

@@ -1,0 +1,173 @@
+"""``select --graded``: a target that no constant mix meets to a grade that does, beside the constant ones of its size."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pneutouch.catalogue import Library, Scene
+from pneutouch.errors import InputError
+from pneutouch.evaluation.evaluate import sensor_of
+from pneutouch.mechanics.atlas.table import shipped
+from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.sensor import Sensor
+from pneutouch.parts import assemble
+from pneutouch.selection.grade_search import Progress, Search, Trial, Wish, grade_search, shares
+from pneutouch.selection.graded import Constant, middle_wall, nearest_fraction, trial_of
+from pneutouch.selection.mixes import levels
+from pneutouch.selection.problem import Problem
+from pneutouch.spec.grade import Grade
+from pneutouch.spec.material import Material
+from pneutouch.spec.target import Target
+from pneutouch.units import KPA
+from pneutouch.workflows.select.mix import Pair
+from pneutouch.workflows.select.run import base_scene, grade_text, pair_asked, problem_of
+
+_LEVELS = 4
+"""Fractions of the scan at pole and rim: moduli 3 times apart for TangoPlus and VeroClear, 16 trials."""
+_TRIALS = 48
+
+
+@dataclass(frozen=True)
+class GradedSelection:
+    """A search for a grade with everything needed to show and write it.
+
+    sensor: the base's, with the radius and wall searched at. constants: catalogue resins and, last, the nearest constant mix.
+    solves: solid solves in all.
+    """
+
+    target: Target
+    base: Scene
+    sensor: Sensor
+    pair: Pair
+    wish: Wish
+    search: Search
+    constants: tuple[Constant, ...]
+    left_out: dict[str, str]
+
+    @property
+    def solves(self) -> int:
+        """Solid solves in all, each inflated once and pressed at every pressure of the wish."""
+        return len(self.search.trials) + len(self.constants)
+
+    @property
+    def nearest(self) -> Constant:
+        """The constant mix nearest to the wish."""
+        return self.constants[-1]
+
+    @property
+    def grade(self) -> Grade:
+        """The best grade."""
+        return self.pair.grade(self.search.best.pole, self.search.best.rim)
+
+    def meets(self, trial: Trial) -> bool:
+        """Whether a membrane keeps every tolerance and limit."""
+        return max(shares(self.wish, trial).values()) <= 1.0
+
+    def assignments(self) -> list[str]:
+        """What turns the base design into the graded one, as ``table.key=value``."""
+        setting = self.target.setting
+        pressures = sorted({0.0, *(round(p / KPA, 6) for p in self.wish.pressures)})
+        found = {
+            "membrane.material": grade_text(self.grade), "membrane.inner_radius_mm": f"{self.sensor.inner_radius:.6g}",
+            "membrane.wall_thickness_mm": f"{self.sensor.wall_thickness:.6g}",
+            "pneumatics.driving_pressures_kPa": pressures, "print.profile": setting.profile,
+            "pneumatics.tube_length_mm": setting.tube_length_mm, "pneumatics.dead_volume_mL": setting.dead_volume_mL,
+        }  # fmt: skip
+        return [f"{key}={value}" for key, value in found.items() if value is not None]
+
+
+def select_graded(
+    target: Target, where: str, library: Library | None = None, progress: Progress = lambda trial, done, most: None,
+    trials: int | None = None,
+) -> GradedSelection:  # fmt: skip
+    """Answer a target that asks for a grade. Raises InputError where it names what there is not.
+
+    ``where`` names the file in messages; ``trials`` bounds the solid solves of the search.
+    """
+    shelves = library or Library.default()
+    scene = base_scene(target, where, shelves)
+    pair = pair_asked(target, where, scene.printer, shelves)
+    assert pair is not None
+    wish, base = _wish(target), sensor_of(assemble(scene))
+    problem = problem_of(target, scene, base, (pair.resin(float(levels(pair.law, 3)[1])),))
+    sensor = replace(base, wall_thickness=_wall(target, where, wish, problem, base))
+
+    def solve(pole: float, rim: float) -> Trial:
+        return trial_of(_in(sensor, pair.material(pair.grade(pole, rim))), wish.pressures, pole, rim)
+
+    found = grade_search(wish, levels(pair.law, _LEVELS), solve, progress, trials or _TRIALS)
+    constants, left_out = _catalogue(scene, sensor, wish, shelves)
+    nearest = _nearest(wish, problem, pair, sensor, found)
+    return GradedSelection(target, scene, sensor, pair, wish, found, (*constants, nearest), left_out)
+
+
+def _wish(target: Target) -> Wish:
+    wanted = target.target
+    assert wanted.sensitivity_kPa_per_N is not None
+    both = wanted.same_sensitivity_at_kPa
+    pressures = both if both is not None else [wanted.driving_pressure_kPa or 0.0]
+    return Wish(
+        wanted.sensitivity_kPa_per_N, wanted.tolerance_percent / 100, tuple(p * KPA for p in pressures),
+        None if both is None else wanted.same_within_percent / 100, wanted.force_range_N, wanted.widest_range,
+    )  # fmt: skip
+
+
+def _wall(target: Target, where: str, wish: Wish, problem: Problem, base: Sensor) -> float:
+    """The wall given; else that with which the mix of middle modulus has the sensitivity, else the base's."""
+    radius, room = base.inner_radius, target.target.max_diameter_mm
+    thickest = np.inf if room is None else 0.5 * room - radius
+    wall = target.given.wall_thickness_mm
+    if wall is None:
+        wall = middle_wall(wish, problem, radius, thickest) or base.wall_thickness
+    if wall > thickest + 1e-9:
+        raise InputError(
+            f"{where}: target.max_diameter_mm = {room:g}: a dome of inner radius {radius:g} mm and wall {wall:g} mm is "
+            f"{2 * (radius + wall):g} mm wide; give a smaller given.inner_radius_mm"
+        )
+    if wall < problem.least_wall:
+        raise InputError(
+            f"{where}: given.wall_thickness_mm = {wall:g}: the printer's least wall is {problem.least_wall:g} mm"
+        )
+    return wall
+
+
+def _in(sensor: Sensor, material: Material) -> Sensor:
+    """The sensor in another material."""
+    own = material_sensor(material)
+    return replace(
+        sensor, shear_modulus=own.shear_modulus, poisson_ratio=own.poisson_ratio, law=own.law, grade=own.grade,
+        break_stretch=own.break_stretch,
+    )  # fmt: skip
+
+
+def _catalogue(scene: Scene, sensor: Sensor, wish: Wish, library: Library) -> tuple[list[Constant], dict[str, str]]:
+    """Every elastomer of the catalogue at this size, softest first, and why the others are left out."""
+    found, out = [], {}
+    for name, material in library.all("materials", Material).items():
+        if material.kind != "elastomer":
+            continue
+        if scene.printer.mode_for(material) is None:
+            out[name] = f"the {scene.printer.title} cannot run it"
+        else:
+            found.append((material_sensor(material).shear_modulus, name, material))
+    order = sorted(found, key=lambda entry: entry[:2])
+    return [Constant(name, None, trial_of(_in(sensor, m), wish.pressures)) for _, name, m in order], out
+
+
+def _nearest(wish: Wish, problem: Problem, pair: Pair, sensor: Sensor, found: Search) -> Constant:
+    """The constant mix nearest to the wish: found by the atlas, else the nearest of those tried; solved by the solid."""
+    middle, recipe = problem.resins[0].material, shipped().recipe
+    fraction = None
+    soft = float(pair.law.modulus_at(np.array(0.0)))
+    if (
+        material_sensor(middle).poisson_ratio == recipe.poisson_ratio
+        and sensor.ambient_pressure <= recipe.stiffest * soft
+    ):
+        fraction = nearest_fraction(wish, problem, pair.law, (sensor.inner_radius, sensor.wall_thickness))
+    if fraction is None:
+        even = [trial for trial in found.trials if trial.pole == trial.rim]
+        fraction = min(even, key=lambda trial: max(shares(wish, trial).values())).pole
+    grade = pair.grade(round(fraction, 4))
+    return Constant(grade.label, grade.fractions[0], trial_of(_in(sensor, pair.material(grade)), wish.pressures))

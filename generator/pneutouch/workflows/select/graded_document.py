@@ -1,0 +1,83 @@
+"""A search for a grade as data, and the grade as a design file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pneutouch.selection.grade_search import Trial, shares
+from pneutouch.units import KPA, ML
+from pneutouch.workflows.select.document import write_assigned
+from pneutouch.workflows.select.graded import GradedSelection
+
+
+def graded_document(selection: GradedSelection) -> dict[str, Any]:
+    """The search as ``select --graded --json`` prints it; ``share_used`` is at most 1 where a tolerance or limit is kept."""
+    search, sensor = selection.search, selection.sensor
+    return {
+        "target": selection.target.model_dump(mode="json"),
+        "base": selection.base.where,
+        "met": search.met,
+        "design": {
+            "material": selection.grade.model_dump(by_alias=True, exclude_none=True),
+            "inner_radius_mm": sensor.inner_radius,
+            "wall_thickness_mm": sensor.wall_thickness,
+            "dead_volume_mL": sensor.dead_volume / ML,
+            **_figures(selection, search.best),
+            "share_used": shares(selection.wish, search.best),
+            "set": selection.assignments(),
+        },
+        "constant": [
+            {"name": constant.name, "fraction": constant.fraction, **_figures(selection, constant.trial)}
+            for constant in selection.constants
+        ],
+        "nearest_constant_mix": selection.nearest.name,
+        "cost": {"solid_solves": selection.solves, "grades_tried": len(search.trials)},
+        "model": "solid",
+        "left_out": selection.left_out,
+    }
+
+
+def _figures(selection: GradedSelection, trial: Trial) -> dict[str, Any]:
+    return {
+        "driving_pressures_kPa": [p / KPA for p in selection.wish.pressures],
+        "sensitivity_kPa_per_N": _known(trial.sensitivity),
+        "difference_percent": _known((100 * trial.difference,))[0],
+        "force_range_end_N": _known(trial.force),
+        "range_ends_with": list(trial.ends),
+        "rated_pressure_kPa": None if trial.note else trial.rated / KPA,
+        "meets": selection.meets(trial),
+        "why_not": trial.note or None,
+    }
+
+
+def _known(values: tuple[float, ...]) -> list[float | None]:
+    return [float(value) if np.isfinite(value) else None for value in values]
+
+
+def missed(selection: GradedSelection) -> list[str]:
+    """What the best grade misses, and how far it can be moved at this size, in words."""
+    wish, best = selection.wish, selection.search.best
+    values = ", ".join(f"{value:.3f}" for value in best.sensitivity)
+    said = {
+        "sensitivity": f"{values} kPa/N instead of {wish.sensitivity:g} within {100 * wish.tolerance:g} %",
+        "same sensitivity": f"{100 * best.difference:+.1f} % apart instead of {100 * (wish.same_within or 0):g} %",
+        "rated pressure": f"{best.rated / KPA:.1f} kPa, less than {max(wish.pressures) / KPA:g} kPa",
+        "force range": f"{best.reach:.3g} N instead of {wish.force or 0:g}",
+        "no figures": best.note or "no straight part to fit",
+    }
+    lines = [f"{name}: {said[name]}" for name, used in shares(wish, best).items() if used > 1.0]
+    known = np.array([trial.sensitivity for trial in selection.search.trials if np.isfinite(trial.sensitivity).all()])
+    if known.size:
+        lines.append(
+            f"all grades tried of this size have {known[:, 0].min():.2f} to {known[:, 0].max():.2f} kPa/N at "
+            f"{wish.pressures[0] / KPA:g} kPa"
+        )
+    return lines
+
+
+def write_graded(selection: GradedSelection, name: str, folder: Path) -> Path:
+    """Save the grade as ``folder/name.toml``, a design that ``build`` takes; never over a file."""
+    return write_assigned(selection.base.design, selection.assignments(), name, folder)

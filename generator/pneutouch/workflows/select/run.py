@@ -1,0 +1,271 @@
+"""A target to designs: resolves its names, searches, confirms the best by the solid, writes the chosen one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.catalogue import Library, Scene, default_scene, load_scene
+from pneutouch.errors import InputError, PneutouchError
+from pneutouch.evaluation.evaluate import sensor_of
+from pneutouch.evaluation.table_s1 import is_near_paper
+from pneutouch.mechanics.atlas.press import Batch
+from pneutouch.mechanics.atlas.table import shipped
+from pneutouch.mechanics.ladder import NUMERICAL
+from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.uncertainty import ModelErrors, budget, model_errors
+from pneutouch.mechanics.uncertainty.source import FIGURES, SENSITIVITY
+from pneutouch.parts import assemble
+from pneutouch.selection import Answer, Choice, Problem, Resin, choose
+from pneutouch.selection.mixes import met_by_fraction
+from pneutouch.selection.pool import Pool
+from pneutouch.spec.design import Design
+from pneutouch.spec.grade import Grade
+from pneutouch.spec.material import Material
+from pneutouch.spec.printer import Printer
+from pneutouch.spec.read import read_toml, validate
+from pneutouch.spec.target import Target
+from pneutouch.spec.toml_text import value_text
+from pneutouch.units import KPA
+from pneutouch.workflows.select.mix import USUAL, Pair, mix_resins, pair_of
+
+_CONFIRMED = 3
+"""Designs that the solid is asked about."""
+_DEAD_VOLUMES = 8
+"""Radii at which the connector is drawn for its dead volume; between them it is straight."""
+
+
+@dataclass(frozen=True)
+class Confirmation:
+    """What the solid says of a design: sensitivity (kPa/N) and whether it lies within the stated uncertainty."""
+
+    sensitivity: float
+    within: bool
+
+
+@dataclass(frozen=True)
+class Selection:
+    """An answer with everything needed to show, check and write it. left_out: resins and why."""
+
+    target: Target
+    base: Scene
+    sensor: Sensor
+    problem: Problem
+    answer: Answer
+    left_out: dict[str, str]
+    confirmed: tuple[Confirmation, ...]
+
+    def assignments(self, choice: Choice) -> list[str]:
+        """What turns the base design into a choice, as ``table.key=value``."""
+        pressure = float(choice.pool.pressure[0]) / KPA
+        pressures = sorted({0.0, round(pressure, 6)})
+        found = [
+            f"membrane.material={_written(choice.resin)}",
+            f"membrane.inner_radius_mm={float(choice.pool.radius[0]):.6g}",
+            f"membrane.wall_thickness_mm={float(choice.pool.wall[0]):.6g}",
+            f"pneumatics.driving_pressures_kPa={pressures}",
+        ]
+        if self.base.design.indentation.depth_mm is not None:
+            # A depth in millimetres belongs to the base's own dome: it goes with the radius.
+            found.append(f"indentation.depth_mm={self.problem.depth_share * float(choice.pool.radius[0]):.8g}")
+        return found + self._setting
+
+    def sensor_of(self, choice: Choice) -> Sensor:
+        """A choice as a sensor, in everything else the base design's."""
+        pool, resin = choice.pool, choice.resin
+        batch = self.problem.batch(pool.resin, pool.radius, pool.wall, pool.pressure)
+        return replace(
+            _like(self.sensor, batch, 0), depth=float(batch.depth[0]), shear_modulus=resin.shear_modulus, law=None,
+            poisson_ratio=self.problem.recipe.poisson_ratio,
+            break_stretch=None if np.isinf(resin.break_stretch) else resin.break_stretch,
+        )  # fmt: skip
+
+    @cached_property
+    def _setting(self) -> list[str]:
+        setting = self.target.setting
+        values = {
+            "print.profile": setting.profile, "pneumatics.tube_length_mm": setting.tube_length_mm,
+            "pneumatics.dead_volume_mL": setting.dead_volume_mL,
+        }  # fmt: skip
+        return [f"{key}={value}" for key, value in values.items() if value is not None]
+
+
+def select(target: Target, where: str, library: Library | None = None) -> Selection:
+    """Answer a target. Raises InputError where it names what there is not; ``where`` names the file in messages."""
+    shelves = library or Library.default()
+    scene = base_scene(target, where, shelves)
+    sensor = sensor_of(assemble(scene))
+    pair = pair_asked(target, where, scene.printer, shelves)
+    if pair is None:
+        resins, left_out = _resins(target, where, scene, sensor, shelves)
+    else:
+        resins, left_out = mix_resins(pair, sensor.ambient_pressure, shipped().recipe)
+    problem = problem_of(target, scene, sensor, resins)
+    answer = choose(
+        problem, (target.weights.robustness, target.weights.tunability), _uncertainty(scene, sensor, shelves),
+        None if pair is None else _refined(pair),
+    )  # fmt: skip
+    found = Selection(target, scene, sensor, problem, answer, left_out, ())
+    return replace(found, confirmed=tuple(_confirm(found, choice) for choice in answer.designs[:_CONFIRMED]))
+
+
+def _written(resin: Resin) -> str:
+    """A resin as a design names it: by its name, or as the mix that it is."""
+    return resin.name if resin.grade is None else grade_text(resin.grade)
+
+
+def grade_text(grade: Grade) -> str:
+    """A grade as a design file has it."""
+    return value_text(grade.model_dump(by_alias=True, exclude_none=True))
+
+
+def pair_asked(target: Target, where: str, printer: Printer, library: Library) -> Pair | None:
+    """The pair to mix: the one named, the usual one for a grade; None where resins are to be chosen from."""
+    given = target.given
+    if given.mix is None and not given.graded:
+        return None
+    return pair_of(given.mix or USUAL, printer, library, where, asked=given.mix is not None)
+
+
+def _refined(pair: Pair) -> Callable[[Problem, Pool], tuple[Problem, Pool]]:
+    return lambda problem, pool: met_by_fraction(problem, pool, pair.law, pair.resin)
+
+
+def base_scene(target: Target, where: str, library: Library) -> Scene:
+    """The scene that gives everything the target does not; its own dome is replaced by the candidates'."""
+    setting, given = target.setting, target.given
+    values = {
+        "print.profile": setting.profile, "pneumatics.tube_length_mm": setting.tube_length_mm,
+        "pneumatics.dead_volume_mL": setting.dead_volume_mL, "membrane.inner_radius_mm": given.inner_radius_mm,
+        "membrane.wall_thickness_mm": given.wall_thickness_mm,
+    }  # fmt: skip
+    changes = [f"{key}={value}" for key, value in values.items() if value is not None]
+    changes.append(f"membrane.material={_some_resin(target, where, library)}")
+    try:
+        return load_scene(setting.base, changes, library) if setting.base else default_scene(changes, library)
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
+
+
+def _some_resin(target: Target, where: str, library: Library) -> str:
+    """A resin that the base can be drawn with: the first of those allowed that its printer runs, else simply the first."""
+    setting = target.setting
+    profile = setting.profile
+    if profile is None:
+        base = library.design_file(setting.base) if setting.base else None
+        design = validate(Design, read_toml(base), str(base)) if base else Design()
+        profile = design.print.profile
+    printer: Printer = library.load("printers", profile, asked_by=f"{where}: setting.profile")
+    pair = pair_asked(target, where, printer, library)
+    names = [pair.soft] if pair else target.given.materials or sorted(library.shelf("materials"))
+    loaded = {name: library.load("materials", name, asked_by=f"{where}: given.materials") for name in names}
+    for name in target.given.materials or []:
+        if loaded[name].kind != "elastomer":
+            raise InputError(f"{where}: given.materials: {name} is {loaded[name].kind}; it must be an elastomer")
+    runs = [name for name, m in loaded.items() if m.kind == "elastomer" and printer.mode_for(m) is not None]
+    if not runs:
+        raise InputError(
+            f"{where}: the {printer.title} runs none of {', '.join(names)}; give other materials or profile"
+        )
+    return runs[0]
+
+
+def _resins(
+    target: Target, where: str, scene: Scene, sensor: Sensor, library: Library
+) -> tuple[tuple[Resin, ...], dict[str, str]]:
+    """Resins the printer runs and the atlas knows, and why the others are left out."""
+    known = library.all("materials", Material)
+    names = target.given.materials or sorted(name for name, m in known.items() if m.kind == "elastomer")
+    recipe, resins, out = shipped().recipe, [], {}
+    for name in names:
+        material = library.load("materials", name, asked_by=f"{where}: given.materials")
+        own = material_sensor(material)
+        if scene.printer.mode_for(material) is None:
+            out[name] = f"the {scene.printer.title} cannot run it"
+        elif own.law is not None or own.poisson_ratio != recipe.poisson_ratio:
+            out[name] = "the atlas knows neither its law nor its Poisson ratio"
+        elif sensor.ambient_pressure > recipe.stiffest * own.shear_modulus:
+            out[name] = "it is too soft for the atlas in so high an ambient pressure"
+        else:
+            resins.append(Resin(name, material, own.shear_modulus, own.break_stretch or np.inf))
+    return tuple(resins), out
+
+
+def problem_of(target: Target, scene: Scene, sensor: Sensor, resins: tuple[Resin, ...]) -> Problem:
+    """The search in numbers, on a base with its sensor."""
+    wanted, given = target.target, target.given
+    feature = scene.printer.smallest.wall("elastomer")
+    return Problem(
+        resins=resins, sensitivity=wanted.sensitivity_kPa_per_N, tolerance=wanted.tolerance_percent / 100,
+        driving_pressure=None if wanted.driving_pressure_kPa is None else wanted.driving_pressure_kPa * KPA,
+        force_range=wanted.force_range_N, stiffness=(wanted.stiffness_least_N_per_mm, wanted.stiffness_most_N_per_mm),
+        max_diameter=wanted.max_diameter_mm, inner_radius=given.inner_radius_mm, wall_thickness=given.wall_thickness_mm,
+        least_wall=feature.least or feature.recommended, ambient_pressure=sensor.ambient_pressure,
+        dead_volume=_dead_volume(scene, sensor), plate_radius=sensor.plate_radius, gauge_limit=sensor.gauge_limit,
+        depth_share=min(sensor.depth / sensor.inner_radius, shipped().recipe.deepest), steps=sensor.steps,
+        recipe=shipped().recipe,
+    )  # fmt: skip
+
+
+def _dead_volume(scene: Scene, sensor: Sensor) -> Callable[[Array], Array]:
+    """Dead volume (mm3) over the inner radius: drawn at a few radii where the connector's channel follows it."""
+    if scene.design.pneumatics.dead_volume_mL is not None:
+        return lambda radius: np.full_like(radius, sensor.dead_volume)
+    radii = np.geomspace(2.0, 60.0, _DEAD_VOLUMES)
+    known = [(radius, volume) for radius in radii if (volume := _drawn(scene, float(radius))) is not None]
+    if not known:
+        return lambda radius: np.full_like(radius, sensor.dead_volume)
+    at, volumes = np.array(known).T
+    return lambda radius: np.interp(radius, at, volumes)
+
+
+def _drawn(scene: Scene, radius: float) -> float | None:
+    """Dead volume of the scene's connector on another dome, or None where it cannot be drawn."""
+    membrane = scene.design.membrane.model_copy(
+        update={"inner_radius_mm": radius, "wall_thickness_mm": 0.15 * radius}
+    )  # fmt: skip
+    try:
+        return assemble(replace(scene, design=scene.design.model_copy(update={"membrane": membrane}))).dead_volume
+    except PneutouchError:
+        return None
+
+
+def _uncertainty(scene: Scene, sensor: Sensor, library: Library) -> Callable[[Resin, Batch], Array]:
+    materials = library.all("materials", Material)
+    known = {
+        name: model_errors(material, materials.values()) for name, material in materials.items() if material.measured
+    }
+
+    def relative(resin: Resin, batch: Batch) -> Array:
+        errors = known.get(resin.name) or ModelErrors(pool=next(iter(known.values())).pool if known else ())
+        near = np.array([is_near_paper(_like(sensor, batch, i)) for i in range(len(batch))])
+        found = budget(
+            batch, resin.material, scene.printer, near_paper=near, errors=errors,
+            numerical={FIGURES[SENSITIVITY]: NUMERICAL["atlas"]},
+        )  # fmt: skip
+        return np.asarray(found.expanded[SENSITIVITY])
+
+    return relative
+
+
+def _like(sensor: Sensor, batch: Batch, i: int) -> Sensor:
+    return replace(
+        sensor, inner_radius=float(batch.inner_radius[i]), wall_thickness=float(batch.wall_thickness[i]),
+        dead_volume=float(batch.dead_volume[i]), flange=None,
+    )  # fmt: skip
+
+
+def _confirm(selection: Selection, choice: Choice) -> Confirmation:
+    """The solid's sensitivity beside the atlas's."""
+    from pneutouch.mechanics.solid_states import solid_result
+
+    figures = solid_result(selection.sensor_of(choice), choice.pool.pressure).states[0].figures
+    if figures is None:
+        return Confirmation(float("nan"), False)
+    stated = float(choice.pool.response.lines.sensitivity[0])
+    return Confirmation(figures.sensitivity, bool(abs(np.log(figures.sensitivity / stated)) <= choice.expanded))

@@ -1,0 +1,1 @@
+"""What a 3MF or a voxel stack holds."""

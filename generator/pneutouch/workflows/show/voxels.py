@@ -1,0 +1,67 @@
+"""What a voxel stack holds, as data and as a picture."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pneutouch.arrays import Labels
+from pneutouch.errors import InputError
+from pneutouch.export.voxels.png import encode
+from pneutouch.export.voxels.read import Stack, read_stack
+
+_BACKGROUND = np.uint32(0xFFFFFFFF)
+"""White in the picture, where the stack has black."""
+
+
+def show_stack(folder: Path, picture: Path | None = None) -> dict[str, Any]:
+    """The content of a stack, all its rules checked, voxels counted in the slices; ``picture`` takes a PNG of two sections.
+
+    Raises InputError for a stack that breaks a rule and for a picture that cannot be written.
+    """
+    stack = read_stack(folder)
+    if picture is not None:
+        try:
+            draw(stack, picture)
+        except OSError as error:
+            raise InputError(f"--out: {picture}: {error.strerror or error}") from None
+    return document(stack)
+
+
+def document(stack: Stack) -> dict[str, Any]:
+    """Sizes, counts, volumes and fractions; those of the slices, not of the manifest."""
+    held, filled = stack.manifest, max(1, sum(stack.counts.values()))
+    keys = ("name", "printer", "mode", "prefix", "pixels", "layers", "dpi", "pixel_um", "layer_um", "size_mm", "bodies",
+            "dither", "assumptions", "input_hash", "sha256")  # fmt: skip
+    return {
+        "stack": str(stack.folder),
+        **{key: held[key] for key in keys if key in held},
+        "resins": {
+            resin: {
+                "rgba": held["resins"][resin]["rgba"], "voxels": count, "volume_mm3": round(count * stack.voxel, 6),
+                "share_of_the_print": round(count / filled, 9),
+            }
+            for resin, count in stack.counts.items()
+        },
+    }  # fmt: skip
+
+
+def draw(stack: Stack, path: Path) -> None:
+    """A PNG of the section through the middle (x across, z up) above the middle slice (x across, y up), to one scale."""
+    x, y = stack.manifest["pixel_um"]
+    upper = _stretched(stack.section[::-1], stack.manifest["layer_um"] / x)
+    lower = _stretched(stack.labels(stack.manifest["layers"] // 2), y / x)
+    gap = np.zeros((max(8, upper.shape[1] // 40), upper.shape[1]), np.uint8)
+    colours = stack.colours.copy()
+    colours[0] = _BACKGROUND
+    across = stack.manifest["dpi"][0]
+    path.write_bytes(encode(np.concatenate([upper, gap, lower]), colours, (across, across)))
+
+
+def _stretched(labels: Labels, ratio: float) -> Labels:
+    """Rows repeated or left out so that a row is as tall as a column is wide: no colour is blended."""
+    rows = max(1, round(len(labels) * ratio))
+    source = np.minimum(((np.arange(rows) + 0.5) / ratio).astype(np.int64), len(labels) - 1)
+    return labels[source]

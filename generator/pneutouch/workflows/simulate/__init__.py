@@ -1,0 +1,5 @@
+"""Simulated measurements of a design."""
+
+from pneutouch.workflows.simulate.run import campaign_toml
+
+__all__ = ["campaign_toml"]

@@ -1,0 +1,272 @@
+"""A campaign that was never measured: simulated runs of known sensors in a folder that reads like a measured one."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, get_args
+
+import numpy as np
+
+from pneutouch import __version__
+from pneutouch.arrays import Array
+from pneutouch.bench.simulate import (
+    Population,
+    Samples,
+    Specimens,
+    Truth,
+    population,
+    simulate_leak,
+    simulate_run,
+    specimen_figures,
+)
+from pneutouch.bench.simulate.curve import Pressed
+from pneutouch.bench.simulate.encode import LEAK_SECONDS, MARK, encoded
+from pneutouch.bench.simulate.inject import sensor_pressure
+from pneutouch.bench.simulate.parameter import parameters
+from pneutouch.bench.simulate.truth import aged
+from pneutouch.catalogue import Library
+from pneutouch.errors import InputError, nearest
+from pneutouch.evaluation.resins import Resin, pressed, resins_of
+from pneutouch.mechanics import Sensor
+from pneutouch.output.files import MANIFEST, digest, json_bytes, replacing
+from pneutouch.output.recipe import input_hash, versions
+from pneutouch.spec.campaign import Campaign, Rig, Run, RunKind
+from pneutouch.spec.read import validate
+from pneutouch.spec.toml_text import toml_text
+from pneutouch.units import KPA, ML
+
+KINDS: tuple[str, ...] = get_args(RunKind)
+PRESSED = ("steps", "saturation", "loop", "relaxation")
+"""Kinds of run with a plate."""
+
+REPEATED = ("steps", "saturation")
+"""Kinds that are run as often as asked for; the others once."""
+
+PUSHED = np.linspace(0.0, 0.5, 11) * ML
+"""Volumes of an injection run, mm3: 0 to 0.5 mL, our choice."""
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What shall be simulated. Pressures in kPa (None: the design's), rate in Hz, ages in days."""
+
+    resins: tuple[str, ...] = ()
+    specimens: int = 3
+    pressures: tuple[float, ...] | None = None
+    runs: int = 3
+    kinds: tuple[str, ...] = ("steps", "loop", "relaxation")
+    rate: float = 100.0
+    seed: int = 0
+    model: str = "solid"
+    ages: tuple[float, ...] = (0.0,)
+    parquet: bool = False
+    truth: Truth = field(default_factory=Truth)
+
+
+Progress = Callable[[int, int], None]
+
+
+def simulate(
+    design: str, out: Path, assignments: list[str] | None = None, asked: Asked = Asked(), library: Library | None = None,
+    progress: Progress = lambda done, total: None,
+) -> Path:  # fmt: skip
+    """Write ``out/<design>-campaign/``: campaign.toml, runs, truth.json, manifest; the same input, the same bytes.
+
+    Runs are written to a hidden folder beside as they are made. Raises InputError for what cannot be.
+    """
+    _check(asked)
+    subjects = resins_of(design, assignments, asked.resins, asked.truth, library)
+    name = f"{subjects[0].scene.name}-campaign"
+    folder = out / name
+    with replacing(folder) as fresh:
+        writer = _Writer(fresh)
+        _write_all((design, list(assignments or [])), subjects, asked, writer, progress)
+        inputs = _inputs(subjects, asked)
+        writer.put(MANIFEST, json_bytes({
+            "name": name, "inputs": inputs, "input_hash": input_hash(inputs, __version__), "versions": versions(),
+            "files": dict(sorted(writer.files.items())),
+        }))  # fmt: skip
+    return folder
+
+
+class _Writer:
+    """Writes files into a folder and keeps their digests."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.files: dict[str, dict[str, Any]] = {}
+
+    def put(self, name: str, content: bytes) -> None:
+        path = self.folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
+        self.files[name] = {"sha256": digest(content), "bytes": len(content)}
+
+
+def _write_all(
+    named: tuple[str, list[str]], subjects: list[Resin], asked: Asked, writer: _Writer, progress: Progress
+) -> None:
+    runs: list[Run] = []
+    truth: dict[str, Any] = {"specimens": {}, "populations": [], "notes": []}
+    total = len(subjects) * asked.specimens * len(asked.ages)
+    for subject in subjects:
+        for age in asked.ages:
+            truth["populations"] += _populations(subject, age, asked)
+            for k in range(asked.specimens):
+                for run, content in _specimen(subject, age, k, asked, truth):
+                    runs.append(run)
+                    writer.put(run.file, content)
+                progress(truth["done"], total)
+    truth.pop("done", None)
+    scene, model = subjects[0].scene, subjects[0].truth
+    writer.put("campaign.toml", campaign_toml(Campaign(
+        title=f"Simulated campaign of {scene.name}"[:120], lab="none: simulated by pneutouch", design=named[0], assignments=named[1], simulated=True,
+        ambient_pressure_kPa=scene.design.pneumatics.ambient_pressure_kPa,
+        rig=Rig(name="simulated: the paper's instruments", rate_Hz=asked.rate), runs=runs,
+    ), MARK))  # fmt: skip
+    writer.put("truth.json", json_bytes({
+        **truth, "simulated": True, "design": scene.name, "model": asked.model, "seed": asked.seed, "rate_Hz": asked.rate,
+        "parameters": {
+            subject.name: {part: parameters(getattr(subject.truth, part)) for part in ("scatter", "rig", "wall")}
+            for subject in subjects
+        },
+        "rest_s": model.rest,
+    }))  # fmt: skip
+
+
+def campaign_toml(campaign: Campaign, comment: str) -> bytes:
+    """A campaign as a file; raises InputError where it would not be read again."""
+    content = campaign.model_dump(mode="python", exclude_none=True)
+    validate(Campaign, content, "campaign.toml")
+    return f"{comment}\n{toml_text(content)}".encode()
+
+
+def _pressures(subject: Resin, asked: Asked) -> list[float]:
+    """Driving pressures in kPa."""
+    given = subject.scene.design.pneumatics.driving_pressures_kPa if asked.pressures is None else asked.pressures
+    return sorted(given)
+
+
+def _depth(subject: Resin, asked: Asked) -> float:
+    """The deepest plate travel of the kinds asked for, mm."""
+    reach = subject.sensor.inner_radius
+    kinds = [kind for kind in asked.kinds if kind in PRESSED] or ["steps"]
+    return max(max(subject.truth.protocol(kind, reach, np.inf).depths) for kind in kinds)
+
+
+def _pressed(subject: Resin, sensor: Sensor, asked: Asked, who: str) -> Pressed:
+    return pressed(who, sensor, [p * KPA for p in _pressures(subject, asked)], _depth(subject, asked), asked.model)
+
+
+def _populations(subject: Resin, age: float, asked: Asked) -> Iterator[dict[str, Any]]:
+    nominal = _pressed(subject, aged(subject.sensor, subject.truth, age), asked, subject.name)
+    for k, pressure in enumerate(_pressures(subject, asked)):
+        found: Population = population(nominal, k, subject.truth, asked.rate, (asked.seed, _number(subject.name)))
+        yield {
+            "resin": subject.name, "age_days": age, "driving_pressure_kPa": pressure, "figures": found.figures,
+            "spread": found.spread, "count": found.count, "basis": found.basis,
+        }  # fmt: skip
+
+
+def _specimen(subject: Resin, age: float, k: int, asked: Asked, truth: dict[str, Any]) -> Iterator[tuple[Run, bytes]]:
+    """Every run of one specimen at one age, and what is true of it."""
+    name = f"{subject.name}-{k + 1}"
+    drawn = Specimens.draw(subject.truth.scatter, 1, np.random.default_rng([asked.seed, _number(subject.name), k]))
+    sensor = aged(drawn.sensor(subject.sensor, 0), subject.truth, age)
+    found = _pressed(subject, sensor, asked, name)
+    known: dict[str, Any] = {
+        "resin": subject.name, "age_days": age, "shear_modulus_MPa": sensor.material.mu, "pressures": {},
+        "wall_thickness_mm": sensor.wall_thickness, "dead_volume_mL": sensor.dead_volume / ML, "model": found.model,
+    }  # fmt: skip
+    truth["specimens"][_label(name, age, asked)] = known
+    truth["done"] = truth.get("done", 0) + 1
+    for place, (pressure, curve) in enumerate(zip(_pressures(subject, asked), found.curves, strict=True)):
+        known["pressures"][f"{pressure:g}"] = {
+            **specimen_figures(curve, subject.truth, sensor.inner_radius, asked.rate),
+            "range_end_mm": curve.reach, "range_ends_by": None if curve.ends is None else curve.ends[0],
+        }  # fmt: skip
+        for kind in asked.kinds:
+            if kind == "injection" and place > 0:
+                continue
+            for number in range(1, (asked.runs if kind in REPEATED else 1) + 1):
+                at = 0.0 if kind == "injection" else pressure
+                run = Run(
+                    file=f"runs/{_label(name, age, asked)}-{at:g}kPa-{kind}-{number}.{'parquet' if asked.parquet else 'csv'}",
+                    kind=kind,  # type: ignore[arg-type]
+                    sensor=name, resin=subject.name, driving_pressure_kPa=at, run=number, age_days=age,
+                )  # fmt: skip
+                key = [_number(subject.name), k, round(1e3 * age), round(1e6 * pressure), KINDS.index(kind), number]
+                rng = np.random.default_rng([asked.seed, *key])
+                if kind in PRESSED:
+                    _note_end(run, subject, curve.reach, curve.ends, truth)
+                yield run, encoded(_columns(kind, subject, found, place, asked, rng), parquet=asked.parquet)
+
+
+def _note_end(run: Run, subject: Resin, reach: float, ends: tuple[str, float] | None, truth: dict[str, Any]) -> None:
+    wanted = max(subject.truth.protocol(run.kind, subject.sensor.inner_radius, np.inf).depths)
+    if ends is not None and wanted > reach * (1 + 1e-9):
+        truth["notes"].append(f"{run.label}: stops at {reach:.2f} mm instead of {wanted:.2f} mm, before {ends[0]}")
+
+
+def _columns(
+    kind: str, subject: Resin, found: Pressed, place: int, asked: Asked, rng: np.random.Generator
+) -> dict[str, Array]:
+    """The columns of one run in the units of its file."""
+    truth, curve, sensor = subject.truth, found.curves[place], found.sensor
+    if kind == "injection":
+        pressure = sensor_pressure(PUSHED, found.inflation, sensor.dead_volume, sensor.ambient_pressure)
+        read = pressure + truth.rig.noise(asked.rate)[1] * rng.standard_normal(PUSHED.size)
+        keep = np.isfinite(pressure)
+        return {"volume_mL": PUSHED[keep] / ML, "pressure_kPa": truth.rig.stepped(read[keep]) / KPA}
+    if kind == "leak":
+        still = simulate_leak(curve.driving, LEAK_SECONDS, truth.rig, asked.rate, rng)
+        return {"time_s": still.time, "pressure_kPa": still.pressure / KPA}
+    asked_for = truth.protocol(kind, sensor.inner_radius, curve.reach)
+    record: Samples = simulate_run(curve, asked_for, truth.rig, asked.rate, rng, wall=truth.wall, scatter=truth.scatter)
+    return {
+        "time_s": record.time, "position_mm": record.position, "force_N": record.force, "pressure_kPa": record.pressure / KPA,
+    }  # fmt: skip
+
+
+def _label(name: str, age: float, asked: Asked) -> str:
+    return name if asked.ages == (0.0,) else f"{name}-{age:g}d"
+
+
+def _number(name: str) -> int:
+    """A number for a name, so that a resin's specimens do not depend on which others are simulated."""
+    return zlib.crc32(name.encode())
+
+
+def _inputs(subjects: list[Resin], asked: Asked) -> dict[str, Any]:
+    first = subjects[0]
+    return {
+        "design": first.scene.design.model_dump(mode="json"),
+        "resins": {subject.name: subject.scene.membrane_material.model_dump(mode="json") for subject in subjects},
+        "asked": {
+            key: value for key in ("specimens", "pressures", "runs", "kinds", "rate", "seed", "model", "ages", "parquet")
+            if (value := getattr(asked, key)) is not None
+        },
+        "parameters": {part: parameters(getattr(first.truth, part)) for part in ("scatter", "rig", "wall")},
+        "rest": first.truth.rest,
+    }  # fmt: skip
+
+
+def _check(asked: Asked) -> None:
+    """Raise InputError for what cannot be simulated."""
+    bounds = (
+        ("--specimens", asked.specimens, 1, 1000), ("--runs", asked.runs, 1, 1000), ("--rate", asked.rate, 10.0, 1e5),
+        *(("--pressures", p, 0.0, 1000.0) for p in asked.pressures or ()), *(("--ages", a, 0.0, 36_500.0) for a in asked.ages),
+        *((("--rest", asked.truth.rest, 0.2, 3600.0),) if asked.truth.rest is not None else ()),
+    )  # fmt: skip
+    for flag, value, low, high in bounds:
+        if not low <= value <= high:
+            raise InputError(f"{flag} {value:g}: must be from {low:g} to {high:g}")
+    for flag, values in (("--pressures", asked.pressures), ("--ages", asked.ages), ("--kinds", asked.kinds)):
+        if values is not None and (not values or len(set(values)) != len(values)):
+            raise InputError(f"{flag} {','.join(map(str, values))}: must name at least one, and each once")
+    for kind in asked.kinds:
+        if kind not in KINDS:
+            raise InputError(f"--kinds {kind}: unknown.{nearest(kind, KINDS)}")

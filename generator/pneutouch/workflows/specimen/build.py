@@ -1,0 +1,160 @@
+"""Build a specimen: 3MF, STL, GLB, STEP where the shapes are exact, drawing, print sheet, pattern truth and manifest."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+from pneutouch import __version__
+from pneutouch.body import Bore, Feature, Prism, Solid
+from pneutouch.catalogue import Library
+from pneutouch.export.scene import glb, stl
+from pneutouch.export.threemf import threemf
+from pneutouch.meridian import Line
+from pneutouch.output.files import MANIFEST, check_writable, digest, json_bytes, write_folder
+from pneutouch.output.recipe import input_hash, versions
+from pneutouch.parts.specimen.plate import holes, outline
+from pneutouch.printability import Finding
+from pneutouch.workflows.specimen.draw import Drawn, draw
+from pneutouch.workflows.specimen.drawing import drawing_svg
+from pneutouch.workflows.specimen.findings import findings, refuse
+from pneutouch.workflows.specimen.load import SpecimenScene, load_specimen
+from pneutouch.workflows.specimen.sheet import sheet
+from pneutouch.workflows.specimen.truth import truth
+
+Progress = Callable[[str], None]
+
+STEPS = ("bodies", "rules", "3MF", "STL", "GLB", "STEP", "drawing", "files")
+"""The steps that a build reports, in order."""
+
+
+def build_specimen(
+    name: str, out: Path, assignments: list[str] | None = None, library: Library | None = None,
+    progress: Progress = lambda step: None,
+) -> tuple[Path, list[Finding]]:  # fmt: skip
+    """Write everything a specimen, by name or path, gives into ``out/<name>/``; that folder and what the rules say.
+
+    Raises InputError for what cannot be, RuleBrokenError, with nothing written, where a rule is broken. The same input
+    gives the same bytes.
+    """
+    scene = load_specimen(name, assignments, library)
+    folder = out / scene.name
+    check_writable(folder)
+    progress("bodies")
+    drawn = draw(scene)
+    progress("rules")
+    found = findings(drawn)
+    refuse(drawn, found)
+    files = _files(drawn, found, progress)
+    progress("files")
+    files[MANIFEST] = json_bytes(_manifest(drawn, found, files))
+    write_folder(folder, files)
+    return folder, found
+
+
+def check_specimen(
+    name: str, assignments: list[str] | None = None, library: Library | None = None, *, deep: bool = False
+) -> list[Finding]:
+    """What the print rules say of a specimen, and pymeshlab too where it is asked. Raises InputError for what cannot be."""
+    drawn = draw(load_specimen(name, assignments, library))
+    found = findings(drawn)
+    if deep:
+        from pneutouch.printability.deep import inspect
+
+        found += [finding for body in drawn.bodies for finding in inspect(body)]
+    return found
+
+
+def inputs(scene: SpecimenScene) -> dict[str, Any]:
+    """Everything that the result follows from, as data."""
+    return {
+        "specimen": scene.specimen.model_dump(mode="json"),
+        "matrix": scene.matrix.model_dump(mode="json"),
+        "inclusion": scene.inclusion.model_dump(mode="json"),
+        "frame": None if scene.frame is None else scene.frame.model_dump(mode="json"),
+        "printer": scene.printer.model_dump(mode="json"),
+    }
+
+
+def solids(drawn: Drawn) -> tuple[Solid, ...]:
+    """The exact shapes of block and patterns in the block's frame; none where a pattern has no exact shape."""
+    bars = [solid for pattern in drawn.patterns for solid in pattern.solids]
+    if not all(pattern.solids for pattern in drawn.patterns):
+        return ()
+    (x0, y0, low), (x1, y1, high) = drawn.scene.block.low, drawn.scene.block.high
+    around = _polygon([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
+    cuts = tuple(Feature(bar.base, bar.volume) for bar in bars if isinstance(bar.base, Prism))
+    block = Solid("matrix", "matrix", drawn.scene.matrix, Prism(around, low, high), cuts=cuts)
+    return (block, *bars, *_frame_solid(drawn))
+
+
+def _frame_solid(drawn: Drawn) -> tuple[Solid, ...]:
+    """The frame without its letters."""
+    frame, material, block = drawn.scene.specimen.frame, drawn.scene.frame, drawn.scene.block
+    if frame is None or material is None:
+        return ()
+    top, radius = block.low[2], 0.5 * frame.hole_diameter_mm
+    low = top - frame.thickness_mm
+    bores = tuple(Bore(x, y, radius, low, top) for x, y in holes(block, frame.border_mm))
+    corners = [(float(x), float(y)) for x, y in outline(block, frame.border_mm)]
+    return (Solid("frame", "frame", material, Prism(_polygon(corners), low, top), bores),)
+
+
+def _polygon(corners: list[tuple[float, float]]) -> tuple[Line, ...]:
+    return tuple(Line(a, b, "") for a, b in pairwise([*corners, corners[0]]))
+
+
+def _files(drawn: Drawn, found: list[Finding], progress: Progress) -> dict[str, bytes]:
+    scene, bodies = drawn.scene, drawn.printed
+    whole = input_hash(inputs(scene), __version__)
+    progress("3MF")
+    files = {f"{scene.name}.3mf": threemf(scene.name, bodies, _metadata(drawn, whole))}
+    progress("STL")
+    files |= {f"stl/{body.name}.stl": stl(body) for body in bodies}
+    progress("GLB")
+    files[f"{scene.name}.glb"] = glb(bodies)
+    progress("STEP")
+    exact = solids(drawn)
+    if exact:
+        from pneutouch.export.step import step
+
+        files[f"{scene.name}.step"] = step(scene.name, exact, drawn.offset)
+    progress("drawing")
+    files["drawing.svg"] = drawing_svg(drawn)
+    files["print-sheet.md"] = sheet(drawn, found, whole).encode()
+    files["specimen.json"] = json_bytes(truth(drawn))
+    return files
+
+
+def _metadata(drawn: Drawn, whole: str) -> dict[str, str]:
+    scene = drawn.scene
+    return {
+        "Title": scene.specimen.document.title,
+        "Application": f"pneutouch {__version__}",
+        "Description": f"Texture specimen {scene.name}: assembly of {', '.join(body.name for body in drawn.bodies)}",
+        "versions": json_bytes(versions()).decode(),
+        "input-hash": whole,
+        "mesh-tolerance-mm": f"{scene.tolerance:g}",
+    }
+
+
+def _manifest(drawn: Drawn, found: list[Finding], files: dict[str, bytes]) -> dict[str, Any]:
+    scene = drawn.scene
+    content = inputs(scene)
+    return {
+        "name": scene.name,
+        "inputs": content,
+        "input_hash": input_hash(content, __version__),
+        "versions": versions(),
+        "print_frame_offset_mm": drawn.offset.tolist(),
+        "mesh": {
+            body.name: {
+                "tolerance_mm": scene.tolerance, "triangles": len(body.triangles), "volume_mm3": round(body.volume, 3),
+            }
+            for body in drawn.bodies
+        },
+        "findings": [finding.document() for finding in found],
+        "files": {name: {"sha256": digest(content), "bytes": len(content)} for name, content in sorted(files.items())},
+    }  # fmt: skip

@@ -1,0 +1,136 @@
+"""A specimen drawn: its patterns, and the two or three closed bodies that share their faces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.body import Body
+from pneutouch.errors import ComputationError, InputError
+from pneutouch.parts.lettering.glyphs import lettering, rounded
+from pneutouch.parts.specimen import FAMILIES, Box, Mesh, Pattern, complement
+from pneutouch.parts.specimen.family import MOST_TRIANGLES, check_inside
+from pneutouch.parts.specimen.mesh import joined
+from pneutouch.parts.specimen.plate import plate
+from pneutouch.spec.material import Material
+from pneutouch.spec.specimen import Frame
+from pneutouch.workflows.specimen.load import SpecimenScene
+
+_MARK = 1.2
+"""Letters are cut this many times as deep as the printer's recommended detail."""
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """The patterns in the order of the file, and the bodies in the block's frame, mm: matrix, inclusion, frame."""
+
+    scene: SpecimenScene
+    patterns: tuple[Pattern, ...]
+    bodies: tuple[Body, ...]
+
+    @cached_property
+    def offset(self) -> Array:
+        """Shift (3,) in mm to the print frame, in which all coordinates are positive."""
+        shift: Array = -np.min([body.bounds[0] for body in self.bodies], axis=0) + 0.0
+        return shift
+
+    @property
+    def printed(self) -> tuple[Body, ...]:
+        """The bodies in the print frame."""
+        return tuple(body.moved(self.offset) for body in self.bodies)
+
+
+def draw(scene: SpecimenScene) -> Drawn:
+    """Draw every layer and part the block among the bodies.
+
+    Raises InputError for layers that cannot be or meet one another, ComputationError where a body is not closed.
+    """
+    patterns = _patterns(scene)
+    whole = joined([pattern.mesh for pattern in patterns])
+    meshes = [("matrix", scene.matrix, complement(scene.block, whole)), ("inclusion", scene.inclusion, whole)]
+    if scene.specimen.frame is not None and scene.frame is not None:
+        under = _frame(scene, scene.specimen.frame, scene.frame, [mesh for _, _, mesh in meshes])
+        meshes.append(("frame", scene.frame, under))
+    bodies = tuple(Body(name, name, material, mesh.vertices, mesh.triangles) for name, material, mesh in meshes)
+    for body in bodies:
+        if not body.is_closed() or not body.welded().is_closed():
+            raise ComputationError(
+                f"{scene.where}: the {body.name} does not come out closed; change a pitch, cell or depth by 0.01 mm, or report it"
+            )
+    return Drawn(scene, patterns, bodies)
+
+
+def _patterns(scene: SpecimenScene) -> tuple[Pattern, ...]:
+    ground, layers = scene.ground, scene.specimen.layer
+    boxes: list[Box] = []
+    for number, layer in enumerate(layers):
+        box = FAMILIES[layer.kind].box(layer, ground, number)
+        check_inside(box, ground, number, layer)
+        for other, earlier in enumerate(boxes):
+            gap = box.gap(earlier)
+            if gap < 1e-3:
+                meet = "overlaps" if gap < 0 else "touches" if gap == 0 else "comes within a micrometre of"
+                raise ground.refuse(
+                    number, "depth_mm", layer.depth_mm, f"{meet} layer[{other}], which reaches from {_span(earlier.low)} to "
+                    f"{_span(earlier.high)} mm; change depth_mm, start_mm or end_mm until matrix lies between them",
+                )  # fmt: skip
+        boxes.append(box)
+    found = tuple(FAMILIES[layer.kind].draw(layer, ground, number) for number, layer in enumerate(layers))
+    total = sum(len(pattern.mesh.triangles) for pattern in found)
+    if total > MOST_TRIANGLES:
+        raise InputError(
+            f"{scene.where}: layer: all patterns together take {total / 1e6:.1f} million triangles; the most is "
+            f"{MOST_TRIANGLES / 1e6:g} million, so take larger cells"
+        )
+    return found
+
+
+def _span(corner: tuple[float, float, float]) -> str:
+    return "(" + ", ".join(f"{value:.4g}" for value in corner) + ")"
+
+
+def _frame(scene: SpecimenScene, frame: Frame, material: Material, bodies: list[Mesh]) -> Mesh:
+    """The plate, with its letters between the block and the near edge."""
+    where, smallest = scene.where, scene.printer.smallest
+    land = 0.5 * (frame.border_mm - frame.hole_diameter_mm)
+    least = smallest.wall(material.kind).least or smallest.wall(material.kind).recommended
+    if land < least:
+        raise InputError(
+            f"{where}: frame.hole_diameter_mm = {frame.hole_diameter_mm:g}: leaves {land:.3g} mm beside the hole; it must be at most "
+            f"{frame.border_mm - 2 * least:.3g} mm, or raise frame.border_mm"
+        )
+    letters, depth = _letters(scene, frame)
+    return plate(
+        scene.block,
+        bodies,
+        frame.border_mm,
+        frame.thickness_mm,
+        frame.hole_diameter_mm,
+        scene.tolerance,
+        letters,
+        depth,
+    )
+
+
+def _letters(scene: SpecimenScene, frame: Frame) -> tuple[list[Array], float]:
+    if not frame.mark:
+        return [], 0.0
+    least = scene.printer.smallest.emboss_mm.recommended
+    depth, room = _MARK * least, frame.border_mm - 2.0
+    shape = rounded(lettering(frame.mark, min(5.0, room), _MARK * least))
+    low, bottom, high, top = shape.bounds()
+    free = scene.block.high[0]
+    if high - low > free or top - bottom > room or room < 2.0:
+        raise InputError(
+            f"{scene.where}: frame.mark = {frame.mark!r}: {high - low:.1f} x {top - bottom:.1f} mm have no room on {free:g} x {room:g} mm; "
+            "take fewer letters, or raise frame.border_mm"
+        )
+    if frame.thickness_mm - depth < least:
+        raise InputError(
+            f"{scene.where}: frame.thickness_mm = {frame.thickness_mm:g}: letters {depth:g} mm deep need at least {depth + least:g} mm"
+        )
+    middle = np.array([0.5 * free, -0.5 * frame.border_mm])
+    return [np.asarray(line) + middle for line in shape.to_polygons()], depth

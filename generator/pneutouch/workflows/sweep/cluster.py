@@ -1,0 +1,137 @@
+"""Chunks computed on a Dask cluster that is there already."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import tempfile
+from asyncio import CancelledError
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pneutouch import __version__
+from pneutouch.errors import ComputationError, InputError, PneutouchError
+from pneutouch.output.files import digest
+from pneutouch.workflows.sweep.study import Study
+from pneutouch.workflows.sweep.work import Chunk, Record, compute, unpack
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+_PATIENCE = 6
+"""Seconds to wait for the scheduler, and again for a worker."""
+
+_QUEUED = 3
+"""Chunks sent ahead a core of the cluster: more only lengthen what a stop throws away."""
+
+
+def on_cluster(study: Study, chunks: list[Chunk], address: str) -> Iterator[list[Record]]:
+    """Compute chunks on the cluster of a scheduler; records come in the order in which chunks are done.
+
+    A chunk whose worker is lost is computed again elsewhere by Dask. Raises InputError where there is no cluster
+    that can do this work, ComputationError where it is lost on the way.
+    """
+    try:
+        with _connected(address) as client:
+            yield from _computed(client, study, chunks, address)
+    except PneutouchError:
+        raise
+    # Dask says that its scheduler is gone by whatever it was doing at that moment: a dozen kinds of error.
+    except (Exception, CancelledError) as error:
+        raise ComputationError(f"--scheduler {address}: the connection was lost ({type(error).__name__})") from None
+
+
+def _computed(client: Client, study: Study, chunks: list[Chunk], address: str) -> Iterator[list[Record]]:
+    from distributed import as_completed
+
+    waiting = iter(chunks)
+    running = as_completed(loop=client.loop, raise_errors=False)
+    free = _QUEUED * max(1, sum(client.nthreads().values()))
+    while True:
+        while free and (chunk := next(waiting, None)) is not None:
+            # Named by all that goes in: Dask gives two tasks of one name one result.
+            key = f"pneutouch-{digest(repr((study.fingerprint, chunk)).encode())}"
+            running.add(client.submit(compute_there, chunk, study.files, __version__, key=key))
+            free -= 1
+        if running.is_empty():
+            return
+        future = next(running)
+        free += 1
+        yield _result(future, address)
+
+
+def compute_there(chunk: Chunk, files: dict[str, str], version: str) -> list[Record]:
+    """Compute a chunk on a machine that may have nothing of the user's: the files come with it."""
+    if version != __version__:
+        raise InputError(f"a worker has pneutouch {__version__}, this is {version}; they must be the same")
+    with tempfile.TemporaryDirectory(prefix="pneutouch-") as folder:
+        unpack(files, Path(folder))
+        return compute(chunk, Path(folder))
+
+
+def _result(future: Any, address: str) -> list[Record]:
+    """A chunk's records; what went wrong on the way, in words."""
+    if future.status == "finished":
+        found: list[Record] = future.result()
+        return found
+    error = future.exception() if future.status == "error" else None
+    if isinstance(error, InputError):
+        raise InputError(f"--scheduler {address}: {error}")
+    if isinstance(error, ImportError):
+        raise InputError(
+            f"--scheduler {address}: a worker cannot load pneutouch {__version__} ({error}); install it there"
+        )
+    why = "the connection was lost" if error is None else f"{type(error).__name__}: {error}"
+    raise ComputationError(f"--scheduler {address}: a piece of the sweep was not computed: {why}")
+
+
+@contextlib.contextmanager
+def _connected(address: str) -> Iterator[Client]:
+    """A client of the scheduler with at least one worker behind it."""
+    try:
+        from distributed import Client
+    except ImportError:
+        raise InputError(
+            f"--scheduler {address}: needs Dask, which is not installed: pip install pneutouch[cluster]"
+        ) from None
+    # Dask tells its troubles on stderr as they happen; they are told here, once and in words.
+    for name in ("distributed", "distributed.client", "distributed.core", "distributed.comm", "tornado.application"):
+        logging.getLogger(name).setLevel(logging.CRITICAL + 1)
+    _require_scheduler(address)
+    client = Client(address, timeout=_PATIENCE, set_as_default=False)
+    try:
+        try:
+            client.wait_for_workers(1, timeout=_PATIENCE)
+        except TimeoutError:
+            raise InputError(f"--scheduler {address}: has no worker; start some with: dask worker {address}") from None
+        yield client
+    finally:
+        with contextlib.suppress(Exception):
+            client.close(timeout=2)
+
+
+def _require_scheduler(address: str) -> None:
+    """Raise InputError where no scheduler answers. Asked before a client is made: one that fails to connect takes
+    a quarter of a minute to go away, and says so with a traceback."""
+    try:
+        kind = asyncio.run(asyncio.wait_for(_identity(address), _PATIENCE))
+    except (OSError, ValueError) as error:
+        kind = (str(error) or f"no answer within {_PATIENCE} s").splitlines()[0]
+    # What listens there may be no Dask at all, and its bytes be taken for anything, even a length beyond all memory.
+    except Exception:
+        kind = "what listens there speaks another language"
+    if kind != "Scheduler":
+        raise InputError(
+            f"--scheduler {address}: no Dask scheduler answers there ({kind}); give the address that it printed when "
+            "it started, such as tcp://host:8786"
+        )
+
+
+async def _identity(address: str) -> str:
+    from distributed import rpc
+    from distributed.security import Security
+
+    async with rpc(address, connection_args=Security().get_connection_args("client"), timeout=_PATIENCE) as remote:
+        return str((await remote.identity())["type"])

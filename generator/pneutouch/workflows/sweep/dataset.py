@@ -1,0 +1,150 @@
+"""Records to one xarray dataset, and that to the bytes of a netCDF file.
+
+netCDF-3 with 64-bit offsets, by scipy: it needs no further library here, every tool reads it, and it holds no clock.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pneutouch import __version__
+from pneutouch.errors import InputError
+from pneutouch.spec.design import Design
+from pneutouch.spec.fields import declaration, table_of
+from pneutouch.workflows.sweep.plan import PRESSURES
+from pneutouch.workflows.sweep.study import Study
+from pneutouch.workflows.sweep.variables import POINT, STATE, Variable
+from pneutouch.workflows.sweep.work import Record
+
+if TYPE_CHECKING:
+    import xarray
+
+PRESSURE = "driving_pressure_kPa"
+"""The dimension of the driving pressures: all that any point asks for."""
+
+
+def dataset(study: Study, records: dict[int, Record]) -> xarray.Dataset:
+    """The dataset of a finished sweep: ``records`` holds every point.
+
+    Dimensions are those of the grid, or ``point``, and the driving pressure. Numbers that are not there are NaN,
+    texts empty.
+    """
+    import xarray
+
+    plan = study.plan
+    asked = [study.point(i).pressures for i in range(plan.count)]
+    pressures = sorted({p for each in asked for p in each})
+    rows = _by_pressure(asked, pressures, records)
+    shape, dims = plan.shape, plan.dimensions
+    content: dict[str, Any] = {}
+    for variable in STATE:
+        values = [[row.get(variable.name) for row in each] for each in rows]
+        content[variable.name] = _variable(variable, values, (*shape, len(pressures)), (*dims, PRESSURE))
+    for variable in POINT:
+        values = [records[i]["values"].get(variable.name) for i in range(plan.count)]
+        content[variable.name] = _variable(variable, values, shape, dims)
+    coordinates = {
+        PRESSURE: (PRESSURE, np.array(pressures), {"units": "kPa", "long_name": "gauge pressure before contact", "key": PRESSURES}),
+        **_coordinates(study),
+    }  # fmt: skip
+    return xarray.Dataset(content, coordinates, _attributes(study, rows, content))
+
+
+def netcdf(content: xarray.Dataset) -> bytes:
+    """The dataset as a netCDF file."""
+    return bytes(content.to_netcdf(None, engine="scipy", format="NETCDF3_64BIT"))
+
+
+def stored_fingerprint(path: Path) -> str:
+    """Fingerprint of a finished sweep's file, read whole. Raises InputError where it is none, or damaged."""
+    import xarray
+
+    try:
+        with xarray.open_dataset(path, engine="scipy") as found:
+            return str(found.load().attrs["input_hash"])
+    # scipy meets a truncated file with whatever its arrays make of it.
+    except Exception:
+        raise InputError(
+            f"--out: {path}: not a dataset that pneutouch sweep wrote, or damaged; move it away or give another --out"
+        ) from None
+
+
+def stored_states(path: Path) -> list[str]:
+    """Status of every state of a finished sweep's file."""
+    import xarray
+
+    with xarray.open_dataset(path, engine="scipy") as found:
+        states: list[str] = found["status"].values.ravel().tolist()
+        return states
+
+
+def _by_pressure(
+    asked: list[tuple[float, ...]], pressures: list[float], records: dict[int, Record]
+) -> list[list[dict[str, Any]]]:  # fmt: skip
+    """States of every point, one for each pressure of the dimension; empty where a point did not ask for it."""
+    rows = []
+    for index, own in enumerate(asked):
+        found = dict(zip(own, records[index]["states"], strict=True))
+        rows.append([found.get(p, {}) for p in pressures])
+    return rows
+
+
+def _variable(variable: Variable, values: Any, shape: tuple[int, ...], dims: tuple[str, ...]) -> Any:
+    names = {"long_name": variable.long_name}
+    if variable.text:
+        texts = np.array(["" if v is None else v for v in np.array(values, object).ravel()], object)
+        return dims, texts.reshape(shape), names
+    return dims, np.array(values, float).reshape(shape), {"units": variable.units, **names}
+
+
+def _coordinates(study: Study) -> dict[str, Any]:
+    """Values of the varied fields: along their own dimension in a grid, along ``point`` in a list."""
+    plan = study.plan
+    if plan.axes:
+        return {axis.name: (axis.name, *_column(axis.key, axis.values)) for axis in plan.axes}
+    found: dict[str, Any] = {
+        "point": ("point", np.arange(plan.count, dtype=np.int32), {"long_name": "number in the list"})
+    }
+    for key in plan.varied:
+        if key != PRESSURES:
+            table, field = key.split(".")
+            default = plan.settings.get(key, getattr(getattr(study.base, table), field))
+            values = [point.get(key, default) for point in plan.points]
+            found[key.replace(".", "_")] = ("point", *_column(key, values))
+    return found
+
+
+def _column(key: str, values: Sequence[Any]) -> tuple[Any, dict[str, str]]:
+    """Values of one field, with what its declaration says of it."""
+    table_name, field = key.split(".")
+    table = table_of(Design, table_name)
+    assert table is not None
+    said = declaration(table, field)
+    names = {"long_name": said.help, "key": key}
+    if said.registry is not None:
+        return np.array(values, object), names
+    if table.model_fields[field].annotation is int:
+        return np.array(values, np.int32), {"units": said.unit or "1", **names}
+    return np.array(values, float), {"units": said.unit or "1", **names}
+
+
+def _attributes(study: Study, rows: list[list[dict[str, Any]]], content: dict[str, Any]) -> dict[str, str]:
+    plan = study.plan
+    bases = sorted({text for text in content["error_sensitivity_basis"][1].ravel() if text})
+    design = study.base.model_dump(mode="json")
+    return {
+        "title": f"pneutouch sweep {plan.name}",
+        "pneutouch_version": __version__,
+        "model": plan.model,
+        **({"closure": plan.closure} if plan.model == "membrane" else {"clamp": plan.clamp}),
+        "base_design": study.name,
+        "base_design_content": json.dumps(design, sort_keys=True, ensure_ascii=False),
+        "set_for_all_points": json.dumps(plan.settings, sort_keys=True, ensure_ascii=False),
+        "input_hash": study.fingerprint,
+        "error_estimate": "\n".join(bases) or "no point was predicted",
+    }

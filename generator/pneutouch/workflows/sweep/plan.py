@@ -1,0 +1,125 @@
+"""A plan: which fields of a design are varied, over which values, and what each point of the sweep is."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+
+from pneutouch.errors import InputError, nearest
+from pneutouch.evaluation.evaluate import CLAMPS
+from pneutouch.mechanics import MODELS
+from pneutouch.mechanics.contact import CLOSURES
+from pneutouch.spec.design import Design
+from pneutouch.spec.fields import table_of
+
+PRESSURES = "pneumatics.driving_pressures_kPa"
+"""The one field that is a dimension of every sweep: a prediction gives all its states at once."""
+
+MAX_POINTS = 100_000
+
+Value = float | int | str | list[float]
+Settings = dict[str, Value]
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """One field of the design, ``table.key``, and the values it takes."""
+
+    key: str
+    values: tuple[float | int | str, ...]
+
+    @property
+    def name(self) -> str:
+        """Name of the dimension: ``membrane.material`` becomes ``membrane_material``, a name in any language."""
+        return self.key.replace(".", "_")
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """A base design, what is set for all points, and either the ``axes`` of a grid or a list of ``points``.
+
+    ``where`` names the sweep file or the flags, for messages; ``design`` is a name or a path.
+    """
+
+    name: str
+    where: str
+    design: str
+    settings: Settings
+    axes: tuple[Axis, ...] = ()
+    points: tuple[Settings, ...] = ()
+    model: str = "solid"
+    closure: str = "variational"
+    clamp: str = "base"
+
+    def __post_init__(self) -> None:
+        """Raise InputError where the plan contradicts itself or names what does not exist."""
+        for option, value, known in (
+            ("model", self.model, MODELS), ("closure", self.closure, CLOSURES), ("clamp", self.clamp, CLAMPS),
+        ):  # fmt: skip
+            if value not in known:
+                raise InputError(f"{self.where}: {option} = {value!r}: unknown.{nearest(value, known)}")
+        if bool(self.axes) == bool(self.points):
+            raise InputError(f"{self.where}: give either a grid or a list of points, one of them and not both")
+        varied = [axis.key for axis in self.axes] + [key for point in self.points for key in point]
+        for key in (*self.settings, *varied):
+            _check_key(self.where, key)
+        for key in dict.fromkeys(varied):
+            if key in self.settings:
+                raise InputError(f"{self.where}: {key} = {self.settings[key]!r}: set for all points and varied too")
+        if self.count > MAX_POINTS:
+            raise InputError(f"{self.where}: {self.count} points; it must be at most {MAX_POINTS}")
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Lengths of the dimensions that number the points."""
+        return tuple(len(axis.values) for axis in self.axes) if self.axes else (len(self.points),)
+
+    @property
+    def dimensions(self) -> tuple[str, ...]:
+        """Names of the dimensions that number the points."""
+        return tuple(axis.name for axis in self.axes) if self.axes else ("point",)
+
+    @property
+    def count(self) -> int:
+        """Number of points."""
+        return math.prod(self.shape)
+
+    @property
+    def varied(self) -> tuple[str, ...]:
+        """The fields that differ between points, in the order written."""
+        keys = [axis.key for axis in self.axes] or [key for point in self.points for key in point]
+        return tuple(dict.fromkeys(keys))
+
+    def position(self, index: int) -> tuple[int, ...]:
+        """Place of a point along every dimension; the last varies fastest."""
+        found = []
+        for length in reversed(self.shape):
+            index, here = divmod(index, length)
+            found.append(here)
+        return tuple(reversed(found))
+
+    def overrides(self, index: int) -> Settings:
+        """All that a point sets, what is set for all points included."""
+        if self.points:
+            return {**self.settings, **self.points[index]}
+        place = self.position(index)
+        return {**self.settings, **{axis.key: axis.values[k] for axis, k in zip(self.axes, place, strict=True)}}
+
+
+def assignments(settings: Settings) -> list[str]:
+    """Settings as ``--set`` takes them; JSON of numbers, texts and lists is TOML."""
+    return [f"{key}={json.dumps(value)}" for key, value in settings.items()]
+
+
+def _check_key(where: str, key: str) -> None:
+    table_name, dot, field = key.partition(".")
+    table = table_of(Design, table_name)
+    if not dot:
+        raise InputError(f"{where}: {key}: write table.key, such as membrane.wall_thickness_mm")
+    if table is None:
+        raise InputError(f"{where}: {key}: unknown table {table_name}.{nearest(table_name, Design.model_fields)}")
+    if field not in table.model_fields:
+        raise InputError(f"{where}: {key}: unknown key.{nearest(field, table.model_fields)}")
+    if table_name == "document":
+        raise InputError(f"{where}: {key}: no prediction depends on it; sweep over another table")

@@ -1,0 +1,182 @@
+"""A plan from a sweep file or from the flags of the command line."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from pneutouch.errors import InputError, nearest
+from pneutouch.spec.read import read_toml
+from pneutouch.workflows.sweep.plan import PRESSURES, Axis, Plan, Settings, Value
+
+KEYS = ("design", "model", "closure", "clamp", "set", "grid", "point")
+"""What a sweep file may hold."""
+
+MAX_VALUES = 10_000
+
+_RANGE = {"from", "to", "count"}
+
+
+def plan_of_file(path: Path, assignments: list[str] | None = None, **options: str | None) -> Plan:
+    """Read a sweep file; ``assignments`` and ``options`` (model, closure, clamp) come before what it says.
+
+    Raises InputError naming file, key and value.
+    """
+    where, content = str(path), read_toml(path)
+    for key in content:
+        if key not in KEYS:
+            raise InputError(f"{where}: {key}: unknown key.{nearest(key, KEYS)}")
+    words = {key: _text(where, key, content[key]) for key in KEYS[:4] if key in content}
+    words |= {key: value for key, value in options.items() if value is not None}
+    design = words.pop("design", "")
+    if not design:
+        raise InputError(f'{where}: design: missing; name the base design, such as design = "paper-dome"')
+    if design.endswith(".toml"):
+        design = str(path.parent / design)
+    fixed = {key: _value(where, key, v) for key, v in _flat(where, "set", content.get("set", {})).items()}
+    grid = {key: _values(where, key, v) for key, v in _flat(where, "grid", content.get("grid", {})).items()}
+    entries = content.get("point", [])
+    if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
+        raise InputError(f"{where}: point: must be a list of tables, each headed [[point]]")
+    points = tuple(
+        {key: _value(where, f"point[{k}]: {key}", v) for key, v in _flat(where, f"point[{k}]", entry).items()}
+        for k, entry in enumerate(entries)
+    )
+    fixed |= _assigned(assignments or [])
+    return _plan(path.stem, where, design, fixed, grid, points, words)
+
+
+def plan_of_flags(
+    design: str, over: list[str], assignments: list[str] | None = None, **options: str | None
+) -> Plan:  # fmt: skip
+    """A grid from ``--over table.key=VALUES``: values with commas between, or ``from:to:count``."""
+    grid: dict[str, list[Any]] = {}
+    for text in over:
+        key, equals, values = (part.strip() for part in text.partition("="))
+        if not equals or not values:
+            raise InputError(f"--over {text}: write table.key=VALUES, such as membrane.wall_thickness_mm=1:2:5")
+        if key in grid:
+            raise InputError(f"--over {text}: {key} is given twice")
+        grid[key] = _values("--over", key, _flag_values(text, values))
+    words = {key: value for key, value in options.items() if value is not None}
+    return _plan(f"{Path(design).stem}-sweep", "--over", design, _assigned(assignments or []), grid, (), words)
+
+
+def _plan(
+    name: str, where: str, design: str, fixed: Settings, grid: dict[str, list[Any]], points: tuple[Settings, ...],
+    words: dict[str, str],
+) -> Plan:  # fmt: skip
+    """The plan; a grid's driving pressures become those of every point, for they are a dimension already."""
+    if PRESSURES in grid:
+        if PRESSURES in fixed:
+            raise InputError(f"{where}: {PRESSURES} = {fixed[PRESSURES]!r}: set for all points and varied too")
+        fixed = {**fixed, PRESSURES: grid[PRESSURES]}
+    axes = tuple(Axis(key, tuple(values)) for key, values in grid.items() if key != PRESSURES)
+    return Plan(name, where, design, fixed, axes, points or (({},) if PRESSURES in grid and not axes else ()), **words)
+
+
+def spread(where: str, key: str, start: Any, stop: Any, count: Any) -> list[float | int]:
+    """``count`` values at equal distances, both ends included; whole numbers where all of them are."""
+    shown = f"{where}: {key}: from {start} to {stop} count {count}"
+    if any(
+        isinstance(end, bool) or not isinstance(end, int | float) or not math.isfinite(end) for end in (start, stop)
+    ):
+        raise InputError(f"{shown}: the ends must be finite numbers")
+    if isinstance(count, bool) or not isinstance(count, int) or not 2 <= count <= MAX_VALUES:
+        raise InputError(f"{shown}: the count must be a whole number from 2 to {MAX_VALUES}")
+    # Twelve digits: the values are read and selected by people, and 1.1 must be 1.1.
+    inner = [float(f"{start + (stop - start) * (k / (count - 1)):.12g}") for k in range(1, count - 1)]
+    values: list[float | int] = [start, *inner, stop]
+    if isinstance(start, int) and isinstance(stop, int) and all(float(v).is_integer() for v in values):
+        return [int(v) for v in values]
+    return [float(v) for v in values]
+
+
+def _values(where: str, key: str, given: Any) -> list[Any]:
+    """The values of one axis: a list, or a table ``{from, to, count}``."""
+    if isinstance(given, dict):
+        if set(given) != _RANGE:
+            raise InputError(f"{where}: {key} = {given!r}: a range has the keys from, to and count")
+        given = spread(where, key, given["from"], given["to"], given["count"])
+    if not isinstance(given, list) or not 1 <= len(given) <= MAX_VALUES:
+        raise InputError(
+            f"{where}: {key} = {given!r}: must be a list of 1 to {MAX_VALUES} values, or {{from=, to=, count=}}"
+        )
+    values = [_scalar(where, f"{key}[{k}]", value) for k, value in enumerate(given)]
+    seen: set[Any] = set()
+    for k, value in enumerate(values):
+        if value in seen:
+            raise InputError(f"{where}: {key}[{k}] = {value!r}: every value may appear once only")
+        seen.add(value)
+    return values
+
+
+def _value(where: str, key: str, given: Any) -> Value:
+    """The value of one field at one point: a number, a text, or a list of numbers."""
+    if isinstance(given, list):
+        return [_scalar(where, f"{key}[{k}]", value) for k, value in enumerate(given)]  # type: ignore[misc]
+    return _scalar(where, key, given)
+
+
+def _scalar(where: str, key: str, given: Any) -> float | int | str:
+    number = isinstance(given, int | float) and not isinstance(given, bool) and math.isfinite(given)
+    if not number and not isinstance(given, str):
+        raise InputError(f"{where}: {key} = {given!r}: must be a finite number or a name")
+    return given  # type: ignore[no-any-return]
+
+
+def _flat(where: str, table: str, given: Any) -> dict[str, Any]:
+    """Keys as ``table.key``, whether they were written with quotes or TOML made tables of the dots."""
+    if not isinstance(given, dict):
+        raise InputError(f"{where}: {table} = {given!r}: must be a table")
+    flat: dict[str, Any] = {}
+    for key, value in given.items():
+        inner = (
+            {f"{key}.{k}": v for k, v in value.items()} if isinstance(value, dict) and "." not in key else {key: value}
+        )
+        for name, item in inner.items():
+            if name in flat:
+                raise InputError(f"{where}: {table}: {name} is given twice")
+            flat[name] = item
+    return flat
+
+
+def _assigned(assignments: list[str]) -> Settings:
+    found: Settings = {}
+    for text in assignments:
+        key, equals, value = (part.strip() for part in text.partition("="))
+        if not equals:
+            raise InputError(f"--set {text}: write table.key=value, such as membrane.material=FLX9960")
+        found[key] = _value("--set", key, _toml(value))
+    return found
+
+
+def _flag_values(flag: str, text: str) -> Any:
+    """The values of ``--over``: a range, a TOML list without its brackets or with them, or bare words."""
+    parts = text.split(":")
+    if len(parts) == 3:
+        start, stop, count = (_toml(part.strip()) for part in parts)
+        return {"from": start, "to": stop, "count": count}
+    listed = _toml(text if text.startswith("[") else f"[{text}]")
+    if isinstance(listed, list):
+        return listed
+    if len(parts) > 1:
+        raise InputError(f"--over {flag}: a range is written from:to:count, such as 1:2:5")
+    return [_toml(part.strip()) for part in text.split(",")]
+
+
+def _toml(text: str) -> Any:
+    """A TOML value, or the text itself where it is a bare word."""
+    try:
+        found = tomllib.loads(f"value = {text}")
+    except tomllib.TOMLDecodeError:
+        return text
+    return found["value"] if set(found) == {"value"} else text
+
+
+def _text(where: str, key: str, given: Any) -> str:
+    if not isinstance(given, str) or not given:
+        raise InputError(f"{where}: {key} = {given!r}: must be a name")
+    return given

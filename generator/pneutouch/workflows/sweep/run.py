@@ -1,0 +1,140 @@
+"""Run a sweep: resolve, go on where it stopped, compute, write the dataset, clear up."""
+
+from __future__ import annotations
+
+import contextlib
+from collections import Counter
+from collections.abc import Callable, Generator, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from pneutouch.catalogue import Library
+from pneutouch.errors import ComputationError, InputError
+from pneutouch.workflows.sweep.cluster import on_cluster
+from pneutouch.workflows.sweep.dataset import dataset, netcdf, stored_fingerprint, stored_states
+from pneutouch.workflows.sweep.journal import Journal
+from pneutouch.workflows.sweep.local import cores, in_pool, in_process
+from pneutouch.workflows.sweep.plan import Plan
+from pneutouch.workflows.sweep.study import Study, study
+from pneutouch.workflows.sweep.work import Record, chunks, unpack
+from pneutouch.workflows.sweep.workfolder import WorkFolder
+
+Progress = Callable[[int, int], None]
+"""Told how many points are done, of how many."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """A finished sweep: its file, how many points it has, how many of them were ``computed`` by this call, and how
+    many states are ok, refused or failed."""
+
+    path: Path
+    points: int
+    computed: int
+    states: dict[str, int]
+    input_hash: str
+
+
+@dataclass(frozen=True, slots=True)
+class Machines:
+    """Where a sweep is computed: ``workers`` processes here (None: one a core), or the cluster of ``scheduler``."""
+
+    workers: int | None = None
+    scheduler: str | None = None
+
+
+def sweep(
+    plan: Plan, out: Path, machines: Machines = Machines(), *,
+    fresh: bool = False, progress: Progress = lambda done, total: None, library: Library | None = None,
+) -> Outcome:  # fmt: skip
+    """Compute every point of a plan and write the dataset to ``out``; returns what was done.
+
+    Progress is kept in ``out`` with ``.parts`` added. A sweep that was stopped, in whatever way, goes on there and
+    ends with the same bytes. ``fresh`` forgets progress and replaces another sweep's dataset.
+
+    Raises InputError before any work starts, ComputationError where it stopped on the way, its progress kept.
+    """
+    if machines.workers is not None and machines.workers < 1:
+        raise InputError(f"--workers {machines.workers}: must be at least 1")
+    resolved = study(plan, library or Library.default())
+    with WorkFolder(out) as folder:
+        journal = Journal(folder.journal, resolved.fingerprint)
+        records = {} if fresh else journal.read()
+        if _is_there(resolved, out, fresh=fresh, resumed=bool(records)):
+            folder.finish(None)
+            return _outcome(resolved, out, 0, stored_states(out))
+        if fresh:
+            folder.restart()
+        before = len(records)
+        with _keeping(folder, records, plan.count):
+            _compute(resolved, machines, folder, journal, records, progress)
+            content = dataset(resolved, records)
+            folder.finish(netcdf(content))
+        return _outcome(resolved, out, plan.count - before, content["status"].values.ravel().tolist())
+
+
+def _is_there(study: Study, out: Path, *, fresh: bool, resumed: bool) -> bool:
+    """Whether ``out`` is this sweep's dataset already. Raises InputError where it is something to be kept."""
+    if not out.exists():
+        return False
+    found = stored_fingerprint(out)
+    if found == study.fingerprint:
+        return not fresh
+    if not fresh and not resumed:
+        raise InputError(
+            f"--out: {out} is the dataset of another sweep (input hash {found[:12]}, this one {study.fingerprint[:12]}); "
+            "--fresh replaces it, or give another --out"
+        )
+    return False
+
+
+def _compute(
+    study: Study, machines: Machines, folder: WorkFolder, journal: Journal, records: dict[int, Record], progress: Progress
+) -> None:  # fmt: skip
+    """Fill ``records`` with every point, each kept in the journal as soon as it is done."""
+    total = study.plan.count
+    progress(len(records), total)
+    with contextlib.closing(_batches(study, machines, folder, records)) as batches:
+        for batch in batches:
+            journal.append(batch)
+            records.update((record["point"], record) for record in batch)
+            progress(len(records), total)
+
+
+@contextlib.contextmanager
+def _keeping(folder: WorkFolder, records: dict[int, Record], total: int) -> Iterator[None]:
+    """Say of whatever stops the work how far it came, and that it goes on from there."""
+    try:
+        yield
+    except (KeyboardInterrupt, ComputationError, OSError) as error:
+        why = "interrupted" if isinstance(error, KeyboardInterrupt) else str(error)
+        if isinstance(error, OSError):
+            why = f"{error.filename or folder.path}: cannot be written: {error.strerror or error}"
+        raise ComputationError(
+            f"{why}\n{len(records)} of {total} points are done and kept in {folder.path}; the same command"
+            " (without --fresh) goes on from there"
+        ) from None
+
+
+def _batches(
+    study: Study, machines: Machines, folder: WorkFolder, records: dict[int, Record]
+) -> Generator[list[Record], None, None]:
+    """Records of the points that are missing, as they are done."""
+    pieces = chunks(study, [i for i in range(study.plan.count) if i not in records])
+    workers = min(machines.workers or cores(), len(pieces))
+    if machines.scheduler is not None:
+        yield from on_cluster(study, pieces, machines.scheduler)
+        return
+    unpack(study.files, folder.files)
+    yield from in_pool(pieces, folder.files, workers) if workers > 1 else in_process(pieces, folder.files)
+
+
+def _outcome(study: Study, out: Path, computed: int, states: list[str]) -> Outcome:
+    counted = Counter(states)
+    return Outcome(
+        out,
+        study.plan.count,
+        computed,
+        {name: counted[name] for name in ("ok", "refused", "failed")},
+        study.fingerprint,
+    )

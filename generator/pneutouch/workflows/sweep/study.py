@@ -1,0 +1,149 @@
+"""A plan with every name in it resolved: checked before any work starts, and carrying all that the work reads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from pneutouch import __version__
+from pneutouch.catalogue import KINDS, Library, load_scene
+from pneutouch.errors import InputError
+from pneutouch.output.files import digest, json_bytes
+from pneutouch.spec.design import Design
+from pneutouch.spec.fields import declaration, table_of
+from pneutouch.spec.read import read_toml, validate
+from pneutouch.workflows.sweep.plan import PRESSURES, Plan, assignments
+from pneutouch.workflows.sweep.shelves import Shelves
+
+
+@dataclass(frozen=True, slots=True)
+class Point:
+    """One design of a sweep: its number, its ``table.key=value`` overrides, and its driving pressures in kPa."""
+
+    index: int
+    assignments: tuple[str, ...]
+    pressures: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Study:
+    """A checked plan. ``base`` is the design file alone; ``files`` (path to text) is a library of what it names.
+
+    The work reads ``files`` and not the shelves: a sweep does not notice when somebody edits a material while it
+    runs, and a machine of a cluster needs no copy of the user's folder. ``fingerprint`` is the SHA-256 of all that
+    the figures follow from.
+    """
+
+    plan: Plan
+    name: str
+    base: Design
+    files: dict[str, str]
+    fingerprint: str
+
+    def point(self, index: int) -> Point:
+        """The point of a number."""
+        settings = self.plan.overrides(index)
+        given = settings.pop(PRESSURES, self.base.pneumatics.driving_pressures_kPa)
+        assert isinstance(given, list)
+        return Point(index, tuple(assignments(settings)), tuple(sorted(float(p) for p in given)))
+
+
+def study(plan: Plan, library: Library) -> Study:
+    """Resolve and check a plan; raises InputError naming file, key and value.
+
+    A value that fits no point at all is a mistake. A combination that does not fit, such as a thick wall on a
+    small radius in one corner of a grid, is a result: the dataset records it as refused.
+    """
+    library = Shelves(library.folders)
+    path = library.design_file(plan.design)
+    base = validate(Design, read_toml(path), str(path))
+    _check(plan, library)
+    files, things = {f"designs/{path.stem}.toml": path.read_text(encoding="utf-8-sig")}, {}
+    names = _names(plan, base)
+    # A design that names no tube takes one of its port's.
+    names |= {("tubes", tube) for kind, name in names if kind == "ports" for tube in library.load(kind, name).tubes}
+    for kind, name in sorted(names):
+        source = library.shelf(kind)[name]
+        files[f"{KINDS[kind].folder}/{name}.toml"] = source.read_text(encoding="utf-8-sig")
+        things[f"{kind}/{name}"] = library.load(kind, name).model_dump(mode="json")
+    facts = {
+        "version": __version__, "model": plan.model, "closure": plan.closure, "clamp": plan.clamp,
+        "name": path.stem, "design": base.model_dump(mode="json"), "things": things, "settings": plan.settings,
+        "axes": [[axis.key, axis.values] for axis in plan.axes], "points": plan.points,
+    }  # fmt: skip
+    return Study(plan, path.stem, base, files, digest(json_bytes(facts)))
+
+
+def _names(plan: Plan, base: Design) -> set[tuple[str, str]]:
+    """Kind and name of everything that a point of the sweep may name."""
+    found: set[tuple[str, str]] = set()
+    for table_name in Design.model_fields:
+        table = table_of(Design, table_name)
+        assert table is not None
+        for field in table.model_fields:
+            kind, key = declaration(table, field).registry, f"{table_name}.{field}"
+            if kind is not None:
+                given = plan.settings.get(key, getattr(getattr(base, table_name), field))
+                found |= {(kind, name) for name in _chosen(plan, key, given) if name is not None}
+    return found
+
+
+def _chosen(plan: Plan, key: str, default: Any) -> list[Any]:
+    """The values that a field has at any point; ``default`` where a point says nothing."""
+    for axis in plan.axes:
+        if axis.key == key:
+            return list(axis.values)
+    return [point.get(key, default) for point in plan.points] or [default]
+
+
+def _check(plan: Plan, library: Library) -> None:
+    """Raise InputError where a value fits no point: first down a diagonal that passes every value, then by value."""
+    if plan.points:
+        for index, point in enumerate(plan.points):
+            fault = _fault(plan, index, library)
+            if fault:
+                raise InputError(f"{plan.where}: point[{index}] = {point}: {fault}")
+        return
+    strides = [_stride(plan.shape, k) for k in range(len(plan.axes))]
+    fits: set[tuple[int, int]] = set()
+    for step in range(max(plan.shape)):
+        place = [step % length for length in plan.shape]
+        if _fault(plan, sum(p * s for p, s in zip(place, strides, strict=True)), library) is None:
+            fits |= set(enumerate(place))
+    for k, axis in enumerate(plan.axes):
+        for position, value in enumerate(axis.values):
+            if (k, position) not in fits:
+                indices = (i for i in range(plan.count) if i // strides[k] % plan.shape[k] == position)
+                fault = _common_fault(plan, indices, library)
+                if fault:
+                    raise InputError(
+                        f"{plan.where}: {axis.key} = {value!r}: no point of the sweep can have it: {fault}"
+                    )
+
+
+def _stride(shape: tuple[int, ...], k: int) -> int:
+    stride = 1
+    for length in shape[k + 1 :]:
+        stride *= length
+    return stride
+
+
+def _common_fault(plan: Plan, indices: Iterable[int], library: Library) -> str | None:
+    """Why none of the points is possible, in the words of the first, or None where one is."""
+    first = None
+    for index in indices:
+        fault = _fault(plan, index, library)
+        if fault is None:
+            return None
+        first = first or fault
+    return first
+
+
+def _fault(plan: Plan, index: int, library: Library) -> str | None:
+    """Why a point is not a design, or None."""
+    try:
+        load_scene(plan.design, assignments(plan.overrides(index)), library)
+    except InputError as error:
+        return str(error)
+    return None

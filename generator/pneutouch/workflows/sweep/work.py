@@ -1,0 +1,113 @@
+"""The work itself: a chunk of points in, a list of records out. Runs in this process, in others, or on a cluster.
+
+A rung that takes many points at once has its place in ``compute``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from pneutouch.catalogue import Library
+from pneutouch.errors import BeyondLimitError, InputError, PneutouchError
+from pneutouch.evaluation.evaluate import evaluate
+from pneutouch.units import KPA
+from pneutouch.workflows.sweep.plan import PRESSURES, assignments
+from pneutouch.workflows.sweep.shelves import Shelves
+from pneutouch.workflows.sweep.study import Point, Study
+from pneutouch.workflows.sweep.variables import point_values, state_values
+
+CHUNK_POINTS = {"membrane": 32}
+"""Points handed out at once: about half a second of work, so that a stop loses and a slow machine delays little."""
+
+Record = dict[str, Any]
+"""A finished point as plain data: ``point`` (its number), ``states`` in order of driving pressure, ``values``."""
+
+
+@dataclass(frozen=True, slots=True)
+class Chunk:
+    """Points to compute alike: which design and rung."""
+
+    points: tuple[Point, ...]
+    design: str
+    model: str
+    closure: str
+    clamp: str
+
+
+def chunks(study: Study, indices: list[int]) -> list[Chunk]:
+    """The points of these numbers, cut into chunks."""
+    plan, size = study.plan, CHUNK_POINTS.get(study.plan.model, 1)
+    return [
+        Chunk(
+            tuple(study.point(i) for i in indices[start : start + size]), study.name,
+            plan.model, plan.closure, plan.clamp,
+        )
+        for start in range(0, len(indices), size)
+    ]  # fmt: skip
+
+
+def unpack(files: dict[str, str], folder: Path) -> None:
+    """Write a study's files where ``compute`` finds them."""
+    for name, text in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+
+
+def compute(chunk: Chunk, folder: Path) -> list[Record]:
+    """Predict every point of a chunk from the files in ``folder``; a point that cannot be is a record too."""
+    library = Shelves((folder,))
+    return [_record(chunk, point, library) for point in chunk.points]
+
+
+def _record(chunk: Chunk, point: Point, library: Library) -> Record:
+    """One point. Driving pressures beyond the limit are refused one by one, and the rest is predicted."""
+    left = point
+    states: list[dict[str, Any]] = []
+    refused: list[dict[str, Any]] = []
+    values: dict[str, Any] = {}
+    while left.pressures:
+        try:
+            states, values = _predicted(chunk, left, library)
+            break
+        except InputError as error:
+            # evaluate says the limit in words; the numbers are in the error that it was made from.
+            beyond = error.__context__
+            if not isinstance(beyond, BeyondLimitError):
+                states = _stopped("refused", str(error), len(left.pressures), library)
+                break
+            kept = [p for p in left.pressures[:-1] if p * KPA < min(beyond.limit, beyond.pressure)]
+            text = (
+                f"driving pressure beyond the limit point, where the dome snaps: at most {beyond.limit / KPA:.2f} kPa"
+            )
+            refused += _stopped("refused", text, len(left.pressures) - len(kept), library)
+            values = {"limit_point_kPa": float(f"{beyond.limit / KPA:.12g}")}
+            left = replace(left, pressures=tuple(kept))
+        except PneutouchError as error:
+            states = _stopped("failed", str(error), len(left.pressures), library)
+            break
+        except (MemoryError, OSError):
+            raise
+        except Exception as error:
+            # One point that meets a fault of ours must not cost the others, which may be hours of work.
+            text = f"internal fault ({type(error).__name__}: {error}); please report it with the design"
+            states = _stopped("failed", text, len(left.pressures), library)
+            break
+    return {"point": point.index, "states": states + refused, "values": values}
+
+
+def _predicted(chunk: Chunk, point: Point, library: Library) -> tuple[list[dict[str, Any]], dict[str, Any]]:
+    pressures = assignments({PRESSURES: list(point.pressures)})
+    prediction = evaluate(
+        chunk.design, [*point.assignments, *pressures], model=chunk.model, closure=chunk.closure, clamp=chunk.clamp,
+        library=library,
+    ).prediction.document()  # fmt: skip
+    return [state_values(state) for state in prediction["states"]], point_values(prediction)
+
+
+def _stopped(status: str, message: str, count: int, library: Library) -> list[dict[str, Any]]:
+    """States without figures. The folder of the files is a temporary one, so messages name the file alone."""
+    folder = f"{library.folders[0]}/"
+    return [{"status": status, "message": message.replace(folder, "")} for _ in range(count)]

@@ -1,0 +1,117 @@
+"""The work folder beside the output: one process at a time, and nothing left of it at the end."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+import shutil
+from io import FileIO
+from pathlib import Path
+from types import TracebackType
+
+from pneutouch.errors import InputError
+from pneutouch.workflows.sweep.journal import replace_whole
+
+_LOCK, _JOURNAL, _FILES, _DATASET = "lock", "journal", "inputs", "dataset"
+_OURS = {_LOCK, _JOURNAL, f"{_JOURNAL}.new", _FILES, _DATASET}
+
+
+class WorkFolder:
+    """``OUT.parts/``, held by a lock from entering to leaving the context.
+
+    The lock is the kernel's and ends with its process however that ends; the number in the file is for the message.
+    """
+
+    def __init__(self, out: Path) -> None:
+        self.out, self.path = out, out.with_name(f"{out.name}.parts")
+        self.journal, self.files = self.path / _JOURNAL, self.path / _FILES
+        self._lock: FileIO | None = None
+
+    def __enter__(self) -> WorkFolder:
+        """Make and lock the folder. Raises InputError where it cannot be, or is held, or is somebody else's."""
+        check_output(self.out)
+        try:
+            while self._lock is None:
+                self.path.mkdir(parents=True, exist_ok=True)
+                foreign = sorted(path.name for path in self.path.iterdir() if path.name not in _OURS)
+                if foreign:
+                    raise InputError(f"--out: {self.path} holds {foreign[0]}, which no sweep wrote; give another --out")
+                self._lock = self._take()
+        except OSError as error:
+            raise InputError(f"--out: {self.path}: {error.strerror}; give a file where you may write") from None
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Let go of the lock; a folder without progress in it is removed."""
+        assert self._lock is not None
+        if not self.journal.exists() or self.journal.stat().st_size == 0:
+            self._clear()
+        self._lock.close()
+
+    def restart(self) -> None:
+        """Forget all progress."""
+        self.journal.unlink(missing_ok=True)
+
+    def finish(self, content: bytes | None) -> None:
+        """Put the dataset in its place, whole, then remove the folder; None leaves the dataset that is there."""
+        if content is not None:
+            replace_whole(self.path / _DATASET, self.out, content)
+            _sync_folder(self.out.parent)
+        self.journal.unlink(missing_ok=True)
+
+    def _clear(self) -> None:
+        shutil.rmtree(self.files, ignore_errors=True)
+        for name in (_JOURNAL, f"{_JOURNAL}.new", _DATASET, _LOCK):
+            (self.path / name).unlink(missing_ok=True)
+        with contextlib.suppress(OSError):
+            self.path.rmdir()
+
+    def _take(self) -> FileIO | None:
+        """The lock, or None where its file was removed by a sweep that ended between opening and locking it."""
+        try:
+            file = FileIO(os.open(self.path / _LOCK, os.O_RDWR | os.O_CREAT, 0o644), "r+")
+        except FileNotFoundError:
+            return None
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            if self._is_current(file):
+                file.truncate(0)
+                file.write(f"{os.getpid()}\n".encode())
+                return file
+        except BlockingIOError:
+            holder = file.read(20).decode(errors="replace").strip() or "another process"
+            file.close()
+            raise InputError(
+                f"--out: {self.out}: process {holder} is sweeping into it; wait for it, or give another --out"
+            ) from None
+        file.close()
+        return None
+
+    def _is_current(self, file: FileIO) -> bool:
+        try:
+            return os.path.samestat(os.fstat(file.fileno()), (self.path / _LOCK).stat())
+        except FileNotFoundError:
+            return False
+
+
+def check_output(out: Path) -> None:
+    """Raise InputError where ``out`` cannot be a dataset's file."""
+    if out.suffix != ".nc":
+        raise InputError(f"--out: {out}: a dataset is a netCDF file; give a name that ends in .nc")
+    if out.is_symlink() or (out.exists() and not out.is_file()):
+        raise InputError(f"--out: {out} is not a plain file; give the name of a file")
+    parent = next(path for path in out.absolute().parents if path.exists())
+    if not parent.is_dir() or not os.access(parent, os.W_OK | os.X_OK):
+        raise InputError(f"--out: {parent} is no folder that you may write to; give a file in one")
+
+
+def _sync_folder(folder: Path) -> None:
+    """Make a rename in this folder last through a power cut."""
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)

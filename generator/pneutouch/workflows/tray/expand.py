@@ -1,0 +1,130 @@
+"""A tray's entries as designs, one a value, and the bodies of each that the tray's printer prints."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from pneutouch.body import Solid
+from pneutouch.catalogue import Library, load_scene
+from pneutouch.errors import InputError
+from pneutouch.parts import Assembly, assemble
+from pneutouch.spec.material import Material
+from pneutouch.spec.printer import Printer
+from pneutouch.spec.tray import Entry, Setting
+from pneutouch.workflows.tray.order import Order, assignments
+
+LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ"
+"""Without I and O, which read as 1 and 0."""
+
+MOST_PARTS = 2000
+"""More bodies than this are a mistake: a tray holds some hundred."""
+
+
+@dataclass(frozen=True)
+class Value:
+    """One design of a tray. ``index`` counts from 1 and ``letter`` says it; ``key`` and ``value`` are what was varied."""
+
+    index: int
+    letter: str
+    design: str
+    key: str | None
+    value: Setting | None
+    copies: int
+    assembly: Assembly
+
+
+@dataclass(frozen=True)
+class Piece:
+    """What of a value is printed as one: a body, or the bodies of an assembly grown in one print."""
+
+    value: Value
+    solids: tuple[Solid, ...]
+
+    @property
+    def materials(self) -> tuple[Material, ...]:
+        """Materials of the bodies."""
+        return tuple(solid.material for solid in self.solids)
+
+
+@dataclass(frozen=True)
+class Expanded:
+    """All pieces of a tray for its printer, and in words what is left out and why."""
+
+    printer: Printer
+    profile: str
+    pieces: tuple[Piece, ...]
+    left_out: tuple[str, ...]
+
+
+def expand(order: Order, library: Library | None = None) -> Expanded:
+    """Load and draw every design of a tray; nothing is predicted. Raises InputError where one is wrong or none is left."""
+    shelves = library or Library.default()
+    values = [value for entry in order.tray.entry for value in _values(order, entry, shelves)]
+    values = [Value(**{**vars(value), "index": k, "letter": letter(k)}) for k, value in enumerate(values, start=1)]
+    profile = order.tray.tray.profile or values[0].assembly.scene.design.print.profile
+    printer = shelves.load("printers", profile, asked_by=f"{order.where}: tray.profile")
+    pieces: list[Piece] = []
+    notes: list[str] = []
+    for value in values:
+        mine, others = _pieces(value, printer, order)
+        pieces += mine
+        notes += others
+    left_out = tuple(dict.fromkeys(notes))
+    if not pieces:
+        raise InputError(
+            f"{order.where}: nothing is left for the {printer.title}: {'; '.join(left_out) or 'no design has such a body'}; "
+            f"give another tray.profile or tray.bodies, or set print.profile to {profile!r}"
+        )
+    if sum(len(piece.solids) * piece.value.copies for piece in pieces) > MOST_PARTS:
+        raise InputError(f"{order.where}: more than {MOST_PARTS} bodies; take fewer copies")
+    return Expanded(printer, profile, tuple(pieces), left_out)
+
+
+def letter(index: int) -> str:
+    """The letters of a value: A to Z without I and O, then AA, AB ..."""
+    text = ""
+    while index > 0:
+        index, digit = divmod(index - 1, len(LETTERS))
+        text = LETTERS[digit] + text
+    return text
+
+
+def _values(order: Order, entry: Entry, library: Library) -> list[Value]:
+    key = next(iter(entry.over), None)
+    found = []
+    for value in entry.over[key] if key is not None else [None]:
+        settings = {**entry.set, **({key: value} if key is not None and value is not None else {})}
+        assembly = _assembly(order, entry, settings, library)
+        found.append(Value(0, "", entry.design, key, value, entry.copies, assembly))
+    return found
+
+
+def _assembly(order: Order, entry: Entry, settings: dict[str, Any], library: Library) -> Assembly:
+    try:
+        return assemble(load_scene(order.design(entry.design), [*assignments(settings), *order.overrides], library))
+    except InputError as error:
+        text = str(error).removeprefix("--set ")
+        raise InputError(f"{order.where}: entry {entry.design!r}: {text}") from None
+
+
+def _pieces(value: Value, printer: Printer, order: Order) -> tuple[list[Piece], list[str]]:
+    """The pieces of a value by print job, and notes of what is left out."""
+    assembly, wanted = value.assembly, order.tray.tray.bodies
+    groups: dict[str, list[Solid]] = {}
+    for solid in assembly.solids:
+        groups.setdefault(assembly.job(solid.name), []).append(solid)
+    pieces, notes = [], []
+    for solids in groups.values():
+        names = [solid.name for solid in solids]
+        asked = [name for name in names if wanted is None or name in wanted]
+        machine, _ = assembly.machine(names[0])
+        if not asked:
+            continue
+        if machine != printer:
+            notes.append(f"{' and '.join(names)} of {value.design}: for the {machine.title}")
+            continue
+        if asked != names:
+            notes.append(f"{' and '.join(names)} of {value.design} grow in one print: all of it is on the tray")
+        pieces.append(Piece(value, tuple(solids)))
+    return pieces, notes

@@ -1,0 +1,226 @@
+"""A tray laid out: its parts meshed once a geometry, marked, packed, and split into jobs by resin."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.body import Body, Solid
+from pneutouch.catalogue import Library
+from pneutouch.errors import ComputationError, InputError
+from pneutouch.parts.lettering.mark import Mark, Marker, shape_of
+from pneutouch.spec.printer import Mode, Printer
+from pneutouch.units import UM
+from pneutouch.workflows.tray.expand import Expanded, Piece, Value, expand
+from pneutouch.workflows.tray.order import Order
+from pneutouch.workflows.tray.pack import Place, Room, pack
+from pneutouch.workflows.tray.resins import changes, jobs
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """One part of a tray. Its bodies (named ``label-role``) lie in one frame with the smallest corner at the origin."""
+
+    label: str
+    value: Value
+    copy: int
+    solids: tuple[Solid, ...]
+    bodies: tuple[Body, ...]
+    marks: tuple[Mark, ...]
+    place: Place
+
+    @property
+    def name(self) -> str:
+        """Name on the tray: two parts of one sensor share a label."""
+        return self.bodies[0].name
+
+    @property
+    def size(self) -> Array:
+        """Extent (3,) in its own frame, mm."""
+        size: Array = np.max([body.bounds[1] for body in self.bodies], axis=0)
+        return size
+
+    @property
+    def footprint(self) -> tuple[float, float]:
+        """Extent along x and y on the tray, mm."""
+        x, y, _ = self.size
+        return (float(y), float(x)) if self.place.turned else (float(x), float(y))
+
+    @property
+    def transform(self) -> Array:
+        """Rows (4, 3): the images of the x, y and z axes, and the shift in mm, from its frame to the tray's."""
+        place = self.place
+        if not place.turned:
+            return np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [place.x, place.y, 0]], float)
+        return np.array([[0, 1, 0], [-1, 0, 0], [0, 0, 1], [place.x + self.size[1], place.y, 0]], float)
+
+    def on_tray(self) -> tuple[Body, ...]:
+        """The bodies in the tray's frame."""
+        axes, shift = self.transform[:3], self.transform[3]
+        return tuple(replace(body, vertices=body.vertices @ axes + shift) for body in self.bodies)
+
+
+@dataclass(frozen=True, eq=False)
+class Job:
+    """One run of the printer: a mode, the resins loaded, and parts on the tray."""
+
+    mode: Mode
+    resins: tuple[str, ...]
+    parts: tuple[Part, ...]
+
+    @property
+    def height(self) -> float:
+        """Height of the tallest part, mm."""
+        return max(float(part.size[2]) for part in self.parts)
+
+    @property
+    def layers(self) -> int:
+        """Layers of the tallest part."""
+        return layers(self.height, self.mode)
+
+
+@dataclass(frozen=True, eq=False)
+class Laid:
+    """A tray ready to be written."""
+
+    order: Order
+    expanded: Expanded
+    jobs: tuple[Job, ...]
+
+    @property
+    def printer(self) -> Printer:
+        """The machine."""
+        return self.expanded.printer
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """All parts, job after job."""
+        return tuple(part for job in self.jobs for part in job.parts)
+
+    @property
+    def resin_note(self) -> str:
+        """How often the resin is changed, in words."""
+        if len(self.jobs) == 1:
+            return "one job, no resin change"
+        count = changes([frozenset(job.resins) for job in self.jobs])
+        return f"{len(self.jobs)} jobs in this order, {count} {'resin' if count == 1 else 'resins'} loaded anew between them"
+
+    def name(self, job: Job) -> str:
+        """Name of a job's files."""
+        name = self.order.name
+        return name if len(self.jobs) == 1 else f"{name}-{self.jobs.index(job) + 1}"
+
+
+def lay(order: Order, library: Library | None = None, progress: Progress = lambda step: None) -> Laid:
+    """Draw, group, mesh, mark and pack what a tray asks for. Raises InputError where it cannot be or does not fit."""
+    progress("designs")
+    expanded = expand(order, library)
+    pieces, printer = expanded.pieces, expanded.printer
+    groups = jobs([piece.materials for piece in pieces], printer, order.where)
+    labels = [f"{p.value.letter}{copy}" for p in pieces for copy in range(1, p.value.copies + 1)]
+    marker = Marker(printer, order.tray.tray.marks, labels)
+    laid = []
+    for group in groups:
+        progress("parts")
+        laid.append(_job([pieces[k] for k in group], printer, marker, order))
+    return Laid(order, expanded, tuple(laid))
+
+
+def counted(parts: Sequence[Part]) -> str:
+    """How many parts, in words."""
+    return f"{len(parts)} part{'' if len(parts) == 1 else 's'}"
+
+
+def layers(height: float, mode: Mode) -> int:
+    """Layers of a mode in a height in mm; a micrometre too much is rounding."""
+    return math.ceil((height - UM) / (UM * mode.layer_height_um))
+
+
+def fill(job: Job, printer: Printer) -> dict[str, float]:
+    """Shares of the envelope's footprint: of the parts' bounding boxes, and of their true outlines."""
+    whole = printer.envelope_mm.x * printer.envelope_mm.y
+    boxes = sum(part.footprint[0] * part.footprint[1] for part in job.parts)
+    areas: dict[Any, float] = {}
+    true = 0.0
+    for part in job.parts:
+        key = tuple(map(shape_of, part.solids))
+        if key not in areas:
+            areas[key] = outline(part.bodies).area()
+        true += areas[key]
+    return {"bounding_boxes": boxes / whole, "outlines": true / whole}
+
+
+def outline(bodies: Sequence[Body]) -> Any:
+    """What bodies cover seen from above, as a CrossSection."""
+    from manifold3d import CrossSection, OpType
+
+    return CrossSection.batch_boolean([body.manifold().project() for body in bodies], OpType.Add)
+
+
+def _job(pieces: list[Piece], printer: Printer, marker: Marker, order: Order) -> Job:
+    mode = printer.mode_for(*(material for piece in pieces for material in piece.materials))
+    assert mode is not None
+    tolerance = printer.finest_step(mode)
+    meshes: dict[Any, Body] = {}
+    parts = []
+    for piece in pieces:
+        for solid in piece.solids:
+            if shape_of(solid) not in meshes:
+                meshes[shape_of(solid)] = solid.mesh(tolerance)
+        plain = [replace(meshes[shape_of(solid)], material=solid.material) for solid in piece.solids]
+        parts += [_part(piece, plain, copy, marker) for copy in range(1, piece.value.copies + 1)]
+    _check_height(parts, printer, order.where)
+    head, room = order.tray.tray, printer.envelope_mm
+    places = pack([_box(part) for part in parts], Room(room.x, room.y, head.margin_mm, head.spacing_mm), order.where)
+    parts = [replace(part, place=place) for part, place in zip(parts, places, strict=True)]
+    for part in parts:
+        _check_closed(part)
+    resins = dict.fromkeys(resin for piece in pieces for material in piece.materials for resin in material.base_resins)
+    return Job(mode, tuple(sorted(resins)), tuple(parts))
+
+
+def _part(piece: Piece, plain: list[Body], copy: int, marker: Marker) -> Part:
+    """A part with its marks, at the origin. In an assembly the rigid body is marked, and the membrane left alone."""
+    value, label = piece.value, f"{piece.value.letter}{copy}"
+    bodies, marks = [], []
+    for solid, body in zip(piece.solids, plain, strict=True):
+        done, mark = body, Mark("none", note="marked on the connector")
+        if solid.role != "membrane" or len(piece.solids) == 1:
+            done, mark = marker.marked(value.assembly, solid, body, label, (value.index, copy))
+        stood = done if value.assembly.stands_up(solid.name) else done.turned_over()
+        bodies.append(replace(stood, name=f"{label}-{solid.name}"))
+        marks.append(mark)
+    low = np.min([body.bounds[0] for body in bodies], axis=0)
+    moved = tuple(body.moved(-low) for body in bodies)
+    return Part(label, value, copy, piece.solids, moved, tuple(marks), Place(0.0, 0.0, False))
+
+
+def _box(part: Part) -> tuple[float, float]:
+    """Width and depth in whole micrometres, rounded up."""
+    x, y, _ = part.size
+    return math.ceil(x / UM - 1e-6) * UM, math.ceil(y / UM - 1e-6) * UM
+
+
+def _check_height(parts: list[Part], printer: Printer, where: str) -> None:
+    for part in parts:
+        if part.size[2] > printer.envelope_mm.z:
+            raise InputError(
+                f"{where}: {part.name} of {part.value.design} is {part.size[2]:.1f} mm tall; the {printer.title} "
+                f"builds {printer.envelope_mm.z:g} mm"
+            )
+
+
+def _check_closed(part: Part) -> None:
+    """Readers of STL merge vertices in float32, in the tray's frame."""
+    for body in part.on_tray():
+        if not body.welded().is_closed():
+            raise ComputationError(
+                f"{body.name} of {part.value.design}: its mesh does not close; please report the design"
+            )

@@ -1,0 +1,49 @@
+"""The print rules over a tray: each distinct shape once, in the mode of its job, with its mark."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from pneutouch.errors import RuleBrokenError
+from pneutouch.parts.lettering.mark import shape_of
+from pneutouch.printability import Finding, check
+from pneutouch.workflows.tray.lay import Laid
+from pneutouch.workflows.tray.subject import subject
+
+
+@dataclass(frozen=True, slots=True)
+class TrayFinding:
+    """A finding on a part, and the labels of all parts of the same shape."""
+
+    labels: tuple[str, ...]
+    finding: Finding
+
+    @property
+    def text(self) -> str:
+        """One line: where it holds, what it is and what would fix it."""
+        found = self.finding
+        parts = self.labels[0] if len(self.labels) == 1 else f"{self.labels[0]} and {len(self.labels) - 1} more"
+        return f"{found.severity}: {parts}: {found.rule}: {found.message}; {found.fix}"
+
+
+def findings(laid: Laid) -> tuple[TrayFinding, ...]:
+    """What the rules say, errors first. Copies, and resins of one kind in one shape, are judged by the first of them."""
+    found = []
+    for job in laid.jobs:
+        alike: dict[object, list[int]] = {}
+        for k, part in enumerate(job.parts):
+            kinds = tuple((shape_of(solid), solid.material.kind) for solid in part.solids)
+            alike.setdefault(kinds, []).append(k)
+        for places in alike.values():
+            labels = tuple(job.parts[k].label for k in places)
+            judged = check(subject(job.parts[places[0]], laid.printer, job.mode))
+            found += [TrayFinding(labels, finding) for finding in judged]
+    order = ("error", "warning", "note")
+    return tuple(sorted(found, key=lambda one: order.index(one.finding.severity)))
+
+
+def refuse(laid: Laid, found: tuple[TrayFinding, ...]) -> None:
+    """Raise RuleBrokenError where a finding is an error."""
+    broken = [f"{laid.order.where}: {one.text}" for one in found if one.finding.severity == "error"]
+    if broken:
+        raise RuleBrokenError("\n".join(broken))

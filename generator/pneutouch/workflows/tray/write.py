@@ -1,0 +1,126 @@
+"""Write a tray's folder: 3MF, STL, label lists, views from above and the manifest, whole or not at all."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from pneutouch import __version__
+from pneutouch.body import Body
+from pneutouch.export.scene import stl
+from pneutouch.export.threemf_tray import Item, threemf_tray
+from pneutouch.output.files import MANIFEST, check_writable, digest, json_bytes, write_folder
+from pneutouch.output.recipe import scene_shelves, versions
+from pneutouch.workflows.tray.labels import labels_csv, labels_md, rows
+from pneutouch.workflows.tray.lay import Job, Laid, Part, Progress, counted, fill
+from pneutouch.workflows.tray.rules import TrayFinding, findings, refuse
+from pneutouch.workflows.tray.view import tray_svg
+
+TRAY_RECIPE = "tray-recipe"
+"""Name of the metadata entry that holds what a tray follows from."""
+
+
+def write_tray(laid: Laid, folder: Path, progress: Progress = lambda step: None) -> Path:
+    """Write everything of a tray into ``folder`` and return it. The same input gives the same bytes.
+
+    Raises RuleBrokenError, with nothing written, where a part breaks a print rule.
+    """
+    check_writable(folder)
+    progress("rules")
+    found = findings(laid)
+    refuse(laid, found)
+    files: dict[str, bytes] = {}
+    recipe = json.dumps(inputs(laid), sort_keys=True, allow_nan=False, separators=(",", ":"))
+    for job in laid.jobs:
+        name = laid.name(job)
+        progress("3MF")
+        files[f"{name}.3mf"] = threemf_tray(name, [_item(part) for part in job.parts], _metadata(laid, job, recipe))
+        progress("STL")
+        files |= {f"stl/{body.name}.stl": stl(body) for part in job.parts for body in part.on_tray()}
+        progress("view")
+        files["tray.svg" if len(laid.jobs) == 1 else f"tray-{laid.jobs.index(job) + 1}.svg"] = tray_svg(laid, job)
+    files["labels.csv"], files["labels.md"] = labels_csv(laid), labels_md(laid, found)
+    progress("files")
+    files[MANIFEST] = json_bytes(_manifest(laid, files, found))
+    write_folder(folder, files)
+    return folder
+
+
+def document(laid: Laid, folder: Path) -> dict[str, Any]:
+    """What ``pneutouch tray --json`` prints."""
+    return {
+        "tray": laid.order.name, "folder": str(folder), "printer": laid.printer.title, "parts": len(laid.parts),
+        "resin_changes": laid.resin_note, "left_out": list(laid.expanded.left_out),
+        "jobs": [_said(laid, job) for job in laid.jobs], "labels": rows(laid),
+    }  # fmt: skip
+
+
+def inputs(laid: Laid) -> dict[str, Any]:
+    """Everything that a tray follows from: what was asked for, the printer, and each value's scene resolved.
+
+    ``values`` say by letter which of ``things`` each scene is made of: they share most of them.
+    """
+    values = {piece.value.letter: piece.value for piece in laid.expanded.pieces}
+    things: dict[str, Any] = {}
+
+    def kept(model: Any) -> str | None:
+        if model is None:
+            return None
+        content = model.model_dump(mode="json")
+        name = digest(json_bytes(content))[:12]
+        things[name] = content
+        return name
+
+    scenes = {
+        letter: {key: kept(getattr(value.assembly.scene, key)) for key in scene_shelves()}
+        for letter, value in values.items()
+    }
+    return {
+        "tray": laid.order.tray.model_dump(mode="json"), "overrides": list(laid.order.overrides),
+        "printer": kept(laid.printer), "version": __version__, "values": scenes, "things": things,
+    }  # fmt: skip
+
+
+def _item(part: Part) -> Item:
+    """Copies without marks are one shape: their object carries the value's letter instead of the label."""
+    if any(mark.kind != "none" for mark in part.marks):
+        return Item(part.name, part.name, part.bodies, part.transform)
+    letter = part.value.letter
+    bodies = tuple(_named(body, f"{letter}-{solid.name}") for body, solid in zip(part.bodies, part.solids, strict=True))
+    return Item(part.name, bodies[0].name, bodies, part.transform)
+
+
+def _named(body: Body, name: str) -> Body:
+    return Body(name, body.role, body.material, body.vertices, body.triangles)
+
+
+def _metadata(laid: Laid, job: Job, recipe: str) -> dict[str, str]:
+    return {
+        "Title": laid.order.tray.tray.title,
+        "Application": f"pneutouch {__version__}",
+        "Description": f"Tray {laid.name(job)} for the {laid.printer.title}: {counted(job.parts)}, mode {job.mode.name}",
+        TRAY_RECIPE: recipe,
+        "resins": " + ".join(job.resins),
+        "mesh-tolerance-mm": f"{laid.printer.finest_step(job.mode):g}",
+    }
+
+
+def _said(laid: Laid, job: Job) -> dict[str, Any]:
+    return {
+        "name": laid.name(job), "mode": job.mode.name, "layer_height_um": job.mode.layer_height_um,
+        "layers": job.layers, "height_mm": round(job.height, 3), "resins": list(job.resins), "parts": len(job.parts),
+        "mesh_tolerance_mm": laid.printer.finest_step(job.mode),
+        "fill": {key: round(share, 4) for key, share in fill(job, laid.printer).items()},
+    }  # fmt: skip
+
+
+def _manifest(laid: Laid, files: dict[str, bytes], found: tuple[TrayFinding, ...]) -> dict[str, Any]:
+    content = inputs(laid)
+    return {
+        "name": laid.order.name, "inputs": content, "input_hash": digest(json_bytes(content))[:12],
+        "versions": versions(), "jobs": [_said(laid, job) for job in laid.jobs],
+        "left_out": list(laid.expanded.left_out), "resin_changes": laid.resin_note,
+        "findings": [{"labels": list(one.labels), **one.finding.document()} for one in found],
+        "files": {name: {"sha256": digest(content), "bytes": len(content)} for name, content in sorted(files.items())},
+    }  # fmt: skip

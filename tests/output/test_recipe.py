@@ -1,0 +1,168 @@
+"""The recipe in a 3MF: it is everything, it comes back exactly, and one that was tampered with is refused."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from pneutouch.catalogue import KINDS, Library, Scene, load_scene
+from pneutouch.errors import InputError
+from pneutouch.evaluation import evaluate
+from pneutouch.evaluation.evaluate import Asked, elastomers
+from pneutouch.export.threemf import threemf
+from pneutouch.export.threemf_read import Package, read_threemf
+from pneutouch.output.recipe import Recipe, evaluate_recipe, scene_shelves
+from pneutouch.output.recipe import input_hash as hash_of
+from pneutouch.output.recipe_read import read_recipe
+from pneutouch.parts import assemble
+from pneutouch.workflows.build import build
+from pneutouch.workflows.build.run import input_hash
+from tests.conftest import ROOT
+from tests.export.threemf_files import recipe_in
+
+DESIGNS = sorted(path.stem for path in (ROOT / "designs").glob("*.toml"))
+
+
+def content(folder: Path) -> dict[str, bytes]:
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def package_of(recipe: Recipe, name="x.3mf") -> Package:
+    """A package as reading gives it, without the file."""
+    metadata = {"input-hash": hash_of(recipe.inputs(), recipe.version)}
+    return Package(Path(name), (), metadata, recipe.text(), False, ())
+
+
+def renamed(scene: Scene) -> Scene:
+    return dataclasses.replace(scene, where="x.3mf")
+
+
+def test_every_field_of_a_scene_has_its_shelf():
+    shelves = scene_shelves()
+    assert set(shelves.values()) <= set(KINDS)
+    assert {*shelves, "name", "where"} == {field.name for field in dataclasses.fields(Scene)}
+
+
+@pytest.mark.parametrize("name", DESIGNS)
+def test_the_recipe_of_every_design_comes_back_as_it_went(name, library):
+    scene = load_scene(name, [], library)
+    recipe = Recipe(scene, elastomers(library), Asked("auto", "printed", "flange", 0.031))
+    back = read_recipe(package_of(recipe))
+    assert back == dataclasses.replace(recipe, scene=renamed(scene))
+    assert back.text() == recipe.text()
+
+
+@pytest.mark.parametrize("kind", ["ports", "seats", "mounts"])
+def test_every_part_comes_back(kind, library):
+    key = {"ports": "port", "seats": "seat", "mounts": "mount"}[kind]
+    scene = load_scene("paper-dome", [], library)
+    for name in library.shelf(kind):
+        changed = dataclasses.replace(scene, **{key: library.load(kind, name)})
+        if changed.seat.family == "one-piece":
+            continue
+        assert read_recipe(package_of(Recipe(changed, {}, Asked()))).scene == renamed(changed)
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    radius=st.floats(2, 100), share=st.floats(0.06, 0.5), tolerance=st.floats(0.011, 99),
+    pressures=st.lists(st.floats(0, 1000), min_size=1, max_size=5, unique=True), title=st.text("aé漢&<\"' ", max_size=20),
+)  # fmt: skip
+def test_numbers_and_text_come_back_exactly(library, radius, share, tolerance, pressures, title):
+    changes = [
+        f"membrane.inner_radius_mm={radius!r}", f"membrane.wall_thickness_mm={min(radius * share, 50)!r}",
+        f"pneumatics.driving_pressures_kPa={pressures!r}", f"document.title={json.dumps(title, ensure_ascii=False)}",
+    ]  # fmt: skip
+    scene = load_scene("paper-dome", changes, library)
+    recipe = Recipe(scene, {}, Asked("auto", tolerance=tolerance))
+    assert read_recipe(package_of(recipe)) == dataclasses.replace(recipe, scene=renamed(scene))
+
+
+def test_settings_that_the_rung_does_not_use_do_not_change_the_inputs(library):
+    scene = load_scene("paper-dome", [], library)
+    plain = Recipe(scene, {}, Asked("solid")).inputs()
+    assert Recipe(scene, {}, Asked("solid", closure="printed", tolerance=0.5)).inputs() == plain
+    assert Recipe(scene, {}, Asked("membrane", closure="printed")).inputs()["closure"] == "printed"
+    assert Recipe(scene, {}, Asked("auto", tolerance=0.5)).inputs()["tolerance"] == 0.5
+
+
+def test_the_input_hash_in_the_file_is_that_of_the_recipe_in_it(built, evaluated):
+    path = built("fingertip-dome") / "fingertip-dome.3mf"
+    recipe, recorded = recipe_in(path), read_threemf(path).metadata["input-hash"]
+    assert recorded == input_hash(evaluated("fingertip-dome")) == hash_of(recipe["inputs"], recipe["version"])
+    manifest = json.loads((path.parent / "manifest.json").read_text())
+    assert manifest["inputs"] == recipe["inputs"]
+    assert manifest["input_hash"] == recorded
+
+
+def test_a_recipe_with_a_hundred_resins_comes_back(tmp_path, library):
+    """Too long for one entry of metadata."""
+    resin = library.load("materials", "TangoPlus")
+    recipe = Recipe(load_scene("paper-dome", [], library), {f"{k:03}": resin for k in range(100)}, Asked())
+    path, metadata = (
+        tmp_path / "x.3mf",
+        {"recipe": recipe.text(), "input-hash": hash_of(recipe.inputs(), recipe.version)},
+    )
+    path.write_bytes(threemf("x", assemble(recipe.scene).bodies, metadata))
+    back = read_recipe(read_threemf(path))
+    assert len(recipe.text()) > 2**17
+    assert back.resins == recipe.resins
+    assert back.text() == recipe.text()
+
+
+def rebuilt(path: Path, out: Path) -> dict[str, bytes]:
+    return content(build(evaluate_recipe(read_recipe(read_threemf(path))), out))
+
+
+def test_a_3mf_builds_again_to_the_same_bytes_without_any_library(built, tmp_path, monkeypatch):
+    path = built("fingertip-dome") / "fingertip-dome.3mf"
+
+    def refuse(*_, **__):
+        raise AssertionError("the library was looked at")
+
+    for method in ("shelf", "load", "all", "default", "design_file"):
+        monkeypatch.setattr(Library, method, refuse)
+    copy = tmp_path / "renamed by a user.3MF"
+    copy.write_bytes(path.read_bytes())
+    assert rebuilt(copy, tmp_path / "out") == content(path.parent)
+
+
+def test_what_was_asked_of_auto_is_asked_again(library, tmp_path):
+    changes = ["pneumatics.driving_pressures_kPa=[0, 5]", "document.date=2026-11-21"]
+    evaluation = evaluate("paper-dome", changes, model="auto", tolerance=0.03, library=library)
+    assert evaluation.prediction.model == "atlas"
+    folder = build(evaluation, tmp_path / "one")
+    again = rebuilt(folder / "paper-dome.3mf", tmp_path / "two")
+    assert again == content(folder)
+    assert "meets 3.0%" in json.loads(again["prediction.json"])["error_estimate"]["rung"]
+
+
+def test_a_changed_library_does_not_change_a_rebuild_but_does_change_a_build(tmp_path, library):
+    """A lab's own resin with a mix: its file is changed after the build, and every other material thrown out."""
+    folder = tmp_path / "printprofiles/materials"
+    folder.mkdir(parents=True)
+    text = (ROOT / "printprofiles/materials/FLX9940.toml").read_text()
+    mix = '\n[mix]\nsource = "weighed cartridges"\n[mix.fractions]\nTangoPlus = 0.75\nVeroClear = 0.25\n'
+    (folder / "FLX9940.toml").write_text(text + mix)
+    shelves = Library((tmp_path, ROOT))
+    changes = ["membrane.material=FLX9940", "pneumatics.driving_pressures_kPa=[0]"]
+    before = build(evaluate("paper-dome", changes, model="atlas", library=shelves), tmp_path / "before")
+    assert sorted(read_threemf(before / "paper-dome.3mf").bodies[0].mix.values()) == [0.25, 0.75]
+    (folder / "FLX9940.toml").write_text(text)
+    after = build(evaluate("paper-dome", changes, model="atlas", library=shelves), tmp_path / "after")
+    assert (after / "paper-dome.3mf").read_bytes() != (before / "paper-dome.3mf").read_bytes()
+    assert rebuilt(before / "paper-dome.3mf", tmp_path / "again") == content(before)
+
+
+def test_without_a_recipe_there_is_nothing_to_rebuild(tmp_path, evaluated):
+    path = tmp_path / "plain.3mf"
+    path.write_bytes(threemf("x", evaluated("paper-dome").assembly.bodies, {"Title": "t"}))
+    package = read_threemf(path)
+    assert package.recipe is None
+    with pytest.raises(InputError, match=r"plain\.3mf: holds no recipe, so it cannot be rebuilt; give"):
+        read_recipe(package)

@@ -1,0 +1,189 @@
+"""A small simulated campaign, whole and damaged, from its files to figures beside the prediction."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import tomllib
+from dataclasses import replace
+
+import pandas
+import pytest
+
+from pneutouch.bench.simulate import Truth
+from pneutouch.errors import InputError
+from pneutouch.spec.campaign import Campaign
+from pneutouch.spec.toml_text import toml_text
+from pneutouch.workflows.characterize.run import characterize
+from pneutouch.workflows.simulate.run import Asked, simulate
+
+ASKED = Asked(
+    specimens=2, pressures=(0.0, 22.0), runs=1, kinds=("steps", "injection", "leak"), model="atlas", truth=Truth(rest=5.0)
+)  # fmt: skip
+FIRST = "runs/TangoPlus-1-0kPa-steps-1.csv"
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory, library):
+    return simulate("paper-dome", tmp_path_factory.mktemp("made"), [], ASKED, library)
+
+
+@pytest.fixture
+def folder(made, tmp_path):
+    return shutil.copytree(made, tmp_path / "campaign")
+
+
+def run(folder, library, *assignments, **more):
+    return characterize(folder, None, list(assignments), model="atlas", library=library, **more)
+
+
+def rewritten(folder, change):
+    """The campaign file with its content changed."""
+    path = folder / "campaign.toml"
+    content = tomllib.loads(path.read_text())
+    change(content)
+    path.write_text(toml_text(content))
+
+
+def table(folder, name=FIRST):
+    return pandas.read_csv(folder / name, comment="#")
+
+
+def written(frame, folder, name=FIRST):
+    frame.to_csv(folder / name, index=False)
+
+
+def sensitivities(outcome):
+    return {g["driving_pressure_kPa"]: g["figures"]["sensitivity_kPa_per_N"] for g in outcome.document["groups"]}
+
+
+def test_a_sound_campaign_is_read_whole_and_near_its_prediction(folder, library):
+    outcome = run(folder, library)
+    assert not outcome.failed and not outcome.measured.questions
+    for figure in sensitivities(outcome).values():
+        assert abs(figure["predicted"]["measured_off_percent"]) < 8
+        assert figure["low"] < figure["value"] < figure["high"]
+    leaks = [row for row in outcome.measured.injections if row[1].startswith("leak")]
+    assert len(leaks) == 4 and all(abs(value) < 0.2 for _, _, value, _, _ in leaks)
+
+
+def test_a_shallower_test_is_set_beside_the_prediction_over_its_own_range(folder, library):
+    """S is a slope over a stated range: a sensor pressed half as deep has another."""
+    whole = sensitivities(run(folder, library))[0.0]
+    for name in (FIRST, FIRST.replace("-1-0", "-2-0")):
+        frame = table(folder, name)
+        # Eight of the fourteen indentations: the last begin after as many holds and rests.
+        steps = 8 * (4.0 + 5.0) + sum(2 * (0.5 * k + 1.0) / 5.0 for k in range(1, 9))
+        written(frame[frame["time_s"] <= steps], folder, name)
+    half = sensitivities(run(folder, library))[0.0]
+    assert half["value"] > 1.15 * whole["value"]
+    assert abs(half["predicted"]["measured_off_percent"]) < 8
+
+
+def test_what_changes_the_design_is_kept_in_the_campaign(tmp_path, library):
+    made = simulate(
+        "paper-dome", tmp_path, ["membrane.wall_thickness_mm=2.2"], replace(ASKED, kinds=("steps",)), library
+    )
+    content = tomllib.loads((made / "campaign.toml").read_text())
+    assert Campaign.model_validate(content).assignments == ["membrane.wall_thickness_mm=2.2"]
+    for figure in sensitivities(run(made, library)).values():
+        assert abs(figure["predicted"]["measured_off_percent"]) < 8
+
+
+def test_one_file_that_fails_leaves_the_others(folder, library, command):
+    frame = table(folder).astype({"force_N": object})
+    frame.loc[100, "force_N"] = "oops"
+    written(frame, folder)
+    outcome = run(folder, library)
+    ((file, message),) = outcome.measured.failures
+    assert file == FIRST and "force_N" in message and "row 102" in message
+    result = command("characterize", str(folder), "--model", "atlas", "--json", "--evidence", "none")
+    assert result.returncode == 3 and FIRST in result.stderr and "Traceback" not in result.stderr
+    assert json.loads(result.stdout)["failures"][0]["file"] == FIRST
+    assert len(json.loads(result.stdout)["groups"]) == 2
+
+
+def test_an_injection_in_absolute_pressure_fails_alone(folder, library):
+    name = "runs/TangoPlus-1-0kPa-injection-1.csv"
+    frame = table(folder, name)
+    frame["pressure_kPa"] += 101.325
+    written(frame, folder, name)
+    outcome = run(folder, library)
+    assert [file for file, _ in outcome.measured.failures] == [name] and len(outcome.measured.besides) == 2
+
+
+def test_a_leak_run_that_is_clipped_is_refused_and_one_at_another_pressure_asked_about(folder, library):
+    clipped, other = (f"runs/TangoPlus-{k}-22kPa-leak-1.csv" for k in (1, 2))
+    for name, pressure in ((clipped, 100.0), (other, 60.0)):
+        frame = table(folder, name)
+        frame["pressure_kPa"] += pressure - frame["pressure_kPa"].mean()
+        frame["pressure_kPa"] = frame["pressure_kPa"].clip(upper=100.0)
+        written(frame, folder, name)
+    measured = run(folder, library).measured
+    assert "clipped" in dict(measured.failures)[clipped] and other not in dict(measured.failures)
+    assert "driving_pressure_kPa = 22" in dict(measured.questions)[other]
+
+
+def test_a_wrong_sign_is_seen_where_nothing_is_predicted(folder, library):
+    """Beyond the limit point there is no prediction, but a force still rises as the sensor is pressed."""
+
+    def change(content):
+        content["columns"]["pressure"]["sign"] = -1
+        for entry in content["runs"]:
+            if entry["driving_pressure_kPa"] == 22.0:
+                entry["driving_pressure_kPa"] = 60.0
+
+    rewritten(folder, change)
+    outcome = run(folder, library)
+    assert not outcome.measured.besides
+    failures = dict(outcome.measured.failures)
+    for k in (1, 2):
+        assert "columns.pressure.sign = 1" in failures[f"runs/TangoPlus-{k}-22kPa-steps-1.csv"]
+
+
+def test_the_ambient_pressure_of_the_flag_is_the_injections_too(folder, library):
+    low, high = (
+        [row[2] for row in run(folder, library, f"pneumatics.ambient_pressure_kPa={p}").measured.injections if "gas" in row[1]]
+        for p in (80.0, 101.325)
+    )  # fmt: skip
+    assert low == pytest.approx([value * 80.0 / 101.325 for value in high], rel=1e-6)
+
+
+def test_a_single_file_of_any_name_is_a_run_of_its_design(folder, library):
+    long = folder / f"{'a-very-long-name-' * 6}.csv"
+    shutil.copy(folder / FIRST.replace("-0kPa", "-22kPa"), long)
+    outcome = characterize(long, "paper-dome", model="atlas", library=library)
+    (group,) = outcome.document["groups"]
+    assert group["driving_pressure_kPa"] == 22.0 and group["figures"]["sensitivity_kPa_per_N"]["low"] is None
+    with pytest.raises(InputError, match="--design"):
+        characterize(long, library=library)
+
+
+def test_aged_runs_are_not_set_beside_a_fresh_prediction(folder, library):
+    rewritten(
+        folder, lambda content: [entry.update(age_days=365.0) for entry in content["runs"] if "-2-" in entry["file"]]
+    )
+    outcome = run(folder, library)
+    assert {b.group.key.age: bool(b.predicted) for b in outcome.measured.besides} == {"fresh": True, "12 months": False}
+    published = {row[6] for row in outcome.measured.ageing}
+    assert published == {14.76}
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda c: [entry.update(resin="TangPlus") for entry in c["runs"]], "Did you mean TangoPlus"),
+        (lambda c: c["columns"]["force"].update(unit="lb"), "must be one of N"),
+        (lambda c: c["runs"][1].update(file=c["runs"][0]["file"]), "is that of runs"),
+        (
+            lambda c: c["runs"][1].update(sensor="TangoPlus-1", kind="steps", driving_pressure_kPa=0.0),
+            "number repetitions",
+        ),
+        (lambda c: c.pop("runs"), "runs: missing"),
+        (lambda c: c.pop("design"), "--design"),
+    ],
+)
+def test_a_wrong_campaign_file_says_what_is_wrong(folder, library, change, said):
+    rewritten(folder, change)
+    with pytest.raises(InputError, match=said):
+        run(folder, library)

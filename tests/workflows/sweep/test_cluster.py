@@ -1,0 +1,97 @@
+"""A sweep on a real cluster of processes gives the bytes of a local one, also when a worker is lost."""
+
+from __future__ import annotations
+
+import signal
+import socket
+import sys
+import time
+
+import pytest
+
+from pneutouch.errors import InputError
+from pneutouch.workflows.sweep import cluster as module
+from pneutouch.workflows.sweep import sweep
+from pneutouch.workflows.sweep.run import Machines
+from tests.workflows.sweep.conftest import CHUNKS, ended, journal_lines, small, started
+
+
+def test_a_lost_worker_changes_no_byte(undisturbed, cluster, tmp_path):
+    out = tmp_path / "sweep.nc"
+    process = started(out, "--scheduler", cluster.address)
+    assert 0 < journal_lines(out) < CHUNKS - 2, "too late to lose work"
+    cluster.workers[0].kill()
+    assert cluster.workers[0].wait() == -signal.SIGKILL
+    code, stdout, stderr = ended(process)
+    assert code == 0, stderr
+    assert stdout == f"{out}\n"
+    assert stderr.startswith("320 points, states: ")
+    assert len(stderr.splitlines()) == 1
+    assert out.read_bytes() == undisturbed
+    assert not out.with_name("sweep.nc.parts").exists()
+
+
+def test_a_lost_cluster_is_said_and_the_sweep_goes_on_without_it(undisturbed, cluster, tmp_path):
+    out = tmp_path / "sweep.nc"
+    process = started(out, "--scheduler", cluster.address)
+    for worker in cluster.workers:
+        worker.kill()
+    cluster.scheduler.kill()
+    code, _, stderr = ended(process)
+    assert code == 3, stderr
+    assert f"--scheduler {cluster.address}" in stderr, stderr
+    assert "Traceback" not in stderr
+    assert "goes on from there" in stderr
+    assert ended(started(out))[0] == 0
+    assert out.read_bytes() == undisturbed
+
+
+def listening():
+    """A socket that takes connections and never says a word."""
+    silent = socket.socket()
+    silent.bind(("127.0.0.1", 0))
+    silent.listen()
+    return silent
+
+
+def test_no_scheduler_is_an_input_error_within_ten_seconds(command, tmp_path):
+    with socket.socket() as unused:
+        unused.bind(("127.0.0.1", 0))
+        address = f"tcp://127.0.0.1:{unused.getsockname()[1]}"
+        start = time.monotonic()
+        words = ["--design", "paper-dome", "--over", "membrane.wall_thickness_mm=1,2", "--scheduler", address]
+        result = command("sweep", *words)
+        seconds = time.monotonic() - start
+    assert (result.returncode, result.stdout) == (2, "")
+    assert result.stderr.startswith(f"error: --scheduler {address}: no Dask scheduler answers there (")
+    assert len(result.stderr.splitlines()) == 1
+    assert seconds < 10
+    assert list((tmp_path / "outputs").iterdir()) == []
+
+
+def test_what_is_no_scheduler_is_an_input_error(library, tmp_path, monkeypatch):
+    monkeypatch.setattr(module, "_PATIENCE", 1)
+    with listening() as silent:
+        for address in ("nonsense", "http://localhost:1", f"127.0.0.1:{silent.getsockname()[1]}"):
+            with pytest.raises(InputError, match=f"--scheduler {address}: no Dask scheduler answers there"):
+                sweep(small(), tmp_path / "x.nc", Machines(scheduler=address), library=library)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_cluster_without_workers_or_with_others_is_an_input_error(cluster, library, tmp_path, monkeypatch):
+    monkeypatch.setattr(module, "__version__", "9.9")
+    with pytest.raises(InputError, match=r"a worker has pneutouch .*, this is 9\.9"):
+        sweep(small(), tmp_path / "x.nc", Machines(scheduler=cluster.address), library=library)
+    for worker in cluster.workers:
+        worker.kill()
+        worker.wait()
+    monkeypatch.setattr(module, "_PATIENCE", 2)
+    time.sleep(1)
+    with pytest.raises(InputError, match="has no worker; start some with: dask worker"):
+        sweep(small(), tmp_path / "x.nc", Machines(scheduler=cluster.address), library=library)
+
+
+def test_dask_that_is_not_installed_is_named(library, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(InputError, match=r"pip install pneutouch\[cluster\]"):
+        sweep(small(), tmp_path / "x.nc", Machines(scheduler="tcp://127.0.0.1:1"), library=library)

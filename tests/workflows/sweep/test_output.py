@@ -1,0 +1,77 @@
+"""What lies at the output and beside it: finished datasets, others' files, locks of the living and the dead."""
+
+from __future__ import annotations
+
+import pytest
+
+from pneutouch.errors import ComputationError, InputError
+from pneutouch.workflows.sweep import sweep
+from tests.workflows.sweep.conftest import ALONE, ended, names, six, small, started
+
+
+def test_a_finished_dataset_is_kept_and_no_other_is_overwritten(library, tmp_path):
+    out = tmp_path / "sweep.nc"
+    sweep(small(), out, ALONE, library=library)
+    content, changed = out.read_bytes(), out.stat().st_mtime_ns
+    assert sweep(small(), out, ALONE, library=library).computed == 0
+    with pytest.raises(InputError, match="dataset of another sweep"):
+        sweep(six(), out, ALONE, library=library)
+    assert (out.read_bytes(), out.stat().st_mtime_ns) == (content, changed)
+    assert sweep(small(), out, ALONE, library=library, fresh=True).computed == 3
+    assert out.read_bytes() == content
+    assert sweep(six(), out, ALONE, library=library, fresh=True).computed == 6
+    assert names(tmp_path) == ["sweep.nc"]
+
+
+def test_a_file_that_is_no_whole_dataset_is_refused_and_left(library, tmp_path):
+    out = tmp_path / "sweep.nc"
+    sweep(small(), out, ALONE, library=library)
+    whole = out.read_bytes()
+    for content in (b"", b"my notes", whole[:40], whole[: len(whole) // 2], whole[:-9]):
+        out.write_bytes(content)
+        for fresh in (False, True):
+            with pytest.raises(InputError, match=r"sweep\.nc: not a dataset that pneutouch sweep wrote, or damaged"):
+                sweep(small(), out, ALONE, library=library, fresh=fresh)
+        assert out.read_bytes() == content
+        assert names(tmp_path) == ["sweep.nc"]
+
+
+def test_a_stopped_replacement_goes_on_and_the_old_dataset_stays_until_then(single, library, tmp_path):
+    out = tmp_path / "sweep.nc"
+    sweep(small(), out, ALONE, library=library)
+    content = out.read_bytes()
+
+    def stop(done, total):
+        if done == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(ComputationError, match="2 of 6"):
+        sweep(six(), out, ALONE, library=library, fresh=True, progress=stop)
+    assert out.read_bytes() == content
+    assert sweep(six(), out, ALONE, library=library).computed == 4
+    assert out.read_bytes() != content
+
+
+def test_two_sweeps_on_one_output_are_one_too_many(undisturbed, tmp_path):
+    out = tmp_path / "sweep.nc"
+    first = started(out, "--workers", "1")
+    second = ended(started(out, "--workers", "1"))
+    assert second[:2] == (2, "")
+    assert f"--out: {out}: process {first.pid} is sweeping into it" in second[2]
+    assert ended(first)[0] == 0
+    assert out.read_bytes() == undisturbed
+
+
+def test_a_lock_file_of_a_dead_process_holds_nobody(library, tmp_path):
+    (tmp_path / "sweep.nc.parts").mkdir()
+    (tmp_path / "sweep.nc.parts/lock").write_text("1\n")
+    sweep(small(), tmp_path / "sweep.nc", ALONE, library=library)
+    assert names(tmp_path) == ["sweep.nc"]
+
+
+def test_a_folder_of_somebody_else_is_left_alone(library, tmp_path):
+    (tmp_path / "sweep.nc.parts").mkdir()
+    (tmp_path / "sweep.nc.parts/thesis.tex").write_text("mine")
+    with pytest.raises(InputError, match=r"holds thesis\.tex"):
+        sweep(small(), tmp_path / "sweep.nc", ALONE, library=library)
+    assert names(tmp_path / "sweep.nc.parts") == ["thesis.tex"]

@@ -1,0 +1,243 @@
+"""A sweep that is killed, torn or damaged goes on and ends with the bytes of an undisturbed one."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+
+import psutil
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pneutouch.errors import ComputationError, InputError
+from pneutouch.workflows.sweep import sweep, workfolder
+from pneutouch.workflows.sweep.journal import Journal
+from tests.workflows.sweep.conftest import (
+    ALONE,
+    POINTS,
+    WORDS,
+    ended,
+    journal_lines,
+    load,
+    names,
+    six,
+    small,
+    started,
+    stopped,
+)
+
+
+def test_three_kills_at_random_moments_change_no_byte(undisturbed, tmp_path):
+    out, luck, kept = tmp_path / "sweep.nc", random.Random(20261121), []
+    for workers in (2, 1, 2):
+        process = started(out, "--workers", str(workers))
+        time.sleep(luck.uniform(0, 0.1))
+        children = psutil.Process(process.pid).children(recursive=True)
+        assert process.poll() is None, "ended before it was killed"
+        process.kill()
+        assert ended(process)[0] == -signal.SIGKILL
+        assert psutil.wait_procs(children, timeout=10)[1] == [], "workers outlive their parent"
+        kept.append(journal_lines(out))
+        assert not out.exists()
+    assert 0 < kept[0] < kept[1] < kept[2]
+    code, stdout, stderr = ended(started(out, "--workers", "2", "--json"))
+    assert code == 0, stderr
+    # A line torn at its very newline is whole all the same.
+    assert POINTS - json.loads(stdout)["computed"] in {32 * kept[2], 32 * (kept[2] + 1)}
+    assert out.read_bytes() == undisturbed
+    assert names(tmp_path) == ["sweep.nc"]
+
+
+def test_ctrl_c_says_how_to_go_on(undisturbed, tmp_path):
+    for attempt in range(8):
+        out = tmp_path / f"sweep-{attempt}.nc"
+        process = started(out, "--workers", "1", group=True)
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGINT)
+        code, stdout, stderr = ended(process)
+        if code != 0:  # it may have been done before the signal came
+            break
+    assert (code, stdout) == (3, "")
+    assert stderr.startswith("error: interrupted\n")
+    assert f"of {POINTS} points are done and kept in {out}.parts; the same command" in stderr
+    assert "Traceback" not in stderr
+    assert ended(started(out))[0] == 0
+    assert out.read_bytes() == undisturbed
+
+
+KILLS = {
+    "dataset half written": "workfolder.replace_whole = lambda fresh, target, content: (fresh.write_bytes(content[:900]), die())",
+    "dataset not renamed": "workfolder.replace_whole = lambda fresh, target, content: (fresh.write_bytes(content), die())",
+    "dataset renamed": "workfolder._sync_folder = die",
+    "journal removed": "workfolder.WorkFolder._clear = die",
+}
+
+
+@pytest.mark.parametrize("moment", KILLS)
+def test_a_kill_within_the_last_writes_loses_nothing(moment, library, tmp_path, root):
+    out, plain = tmp_path / "sweep.nc", tmp_path / "plain.nc"
+    words = [
+        "sweep",
+        "--design",
+        "paper-dome",
+        "--over",
+        "membrane.wall_thickness_mm=0.5,0.9,1.5",
+        "--model",
+        "membrane",
+    ]
+    sweep(small(), plain, ALONE, library=library)
+    code = (
+        f"import os, sys; sys.argv = ['pneutouch', *{words!r}, '--out', {str(out)!r}, '--workers', '1']\n"
+        "from pneutouch.workflows.sweep import workfolder\ndef die(*_): os.kill(os.getpid(), 9)\n"
+        f"{KILLS[moment]}\nfrom pneutouch.cli import run; run()"
+    )
+    killed = subprocess.run([sys.executable, "-c", code], cwd=root, capture_output=True, check=False)
+    assert killed.returncode == -signal.SIGKILL, killed.stderr
+    renamed = moment in ("dataset renamed", "journal removed")
+    assert out.exists() == renamed
+    outcome = sweep(small(), out, ALONE, library=library)
+    assert outcome.computed == 0
+    assert outcome.states == {"ok": 11, "refused": 1, "failed": 0}
+    assert out.read_bytes() == plain.read_bytes()
+    assert names(tmp_path) == ["plain.nc", "sweep.nc"]
+
+
+@pytest.mark.parametrize("damage", ["torn", "flipped", "no newline", "garbage before", "emptied", "twice"])
+def test_a_damaged_journal_is_computed_again_where_it_is_damaged(damage, single, library, tmp_path):
+    sweep(six(), tmp_path / "plain.nc", ALONE, library=library)
+    out = tmp_path / "sweep.nc"
+    stopped(out, library, 4)
+    journal = tmp_path / "sweep.nc.parts/journal"
+    content = journal.read_bytes()
+    middle = len(content) // 2
+    damaged, kept = {
+        "torn": (content[:-40], 3),
+        "flipped": (content[:middle] + bytes([content[middle] ^ 4]) + content[middle + 1 :], 3),
+        "no newline": (content[:-1], 4),
+        "garbage before": (b"\x00\xff\n\n{}\n" + content, 4),
+        "emptied": (b"", 0),
+        "twice": (content + content, 4),
+    }[damage]
+    journal.write_bytes(damaged)
+    assert sweep(six(), out, ALONE, library=library).computed == 6 - kept
+    assert out.read_bytes() == (tmp_path / "plain.nc").read_bytes()
+    assert names(tmp_path) == ["plain.nc", "sweep.nc"]
+
+
+def records(count):
+    return [
+        {"point": k, "states": [{"status": "ok", "message": "ü" * k, "x": k / 3}], "values": {}} for k in range(count)
+    ]
+
+
+def test_a_journal_cut_anywhere_gives_its_whole_lines_and_takes_new_ones(tmp_path, monkeypatch):
+    monkeypatch.setattr(os, "fsync", lambda handle: None)
+    path, all_ = tmp_path / "journal", records(6)
+    journal = Journal(path, "f" * 64)
+    ends = [0]
+    for start in (0, 2, 3):
+        journal.append(all_[start : start + (2, 1, 1)[(0, 2, 3).index(start)]])
+        ends.append(path.stat().st_size)
+    content, before = path.read_bytes(), [0, 2, 3, 4]
+    for cut in range(len(content) + 1):
+        path.write_bytes(content[:cut])
+        # A line that lacks its newline alone is whole.
+        whole = max(n for end, n in zip(ends, before, strict=True) if max(end - 1, 0) <= cut)
+        assert journal.read() == dict(enumerate(all_[:whole]))
+        journal.append(all_[4:])
+        assert journal.read() == dict(enumerate(all_[:whole])) | {4: all_[4], 5: all_[5]}
+
+
+@given(st.lists(st.tuples(st.integers(0, 10**6), st.integers(1, 255)), min_size=1, max_size=5))
+def test_no_flipped_byte_ever_becomes_a_figure(tmp_path_factory, flips):
+    path, all_ = tmp_path_factory.mktemp("j") / "journal", records(5)
+    journal = Journal(path, "f" * 64)
+    for record in all_:
+        journal.append([record])
+    content = bytearray(path.read_bytes())
+    for place, change in flips:
+        content[place % len(content)] ^= change
+    path.write_bytes(bytes(content))
+    found = journal.read()
+    assert all(all_[k] == record for k, record in found.items())
+    assert len(found) >= 5 - 2 * len(flips)
+
+
+def test_progress_of_other_inputs_is_refused_and_fresh_starts_over(single, library, tmp_path):
+    out = tmp_path / "sweep.nc"
+    stopped(out, library, 2)
+    for other in (six(closure="printed"), six(model="solid"), small(), six(design="stiff-dome")):
+        with pytest.raises(InputError, match=r"sweep\.nc\.parts: holds the progress of another sweep.*--fresh"):
+            sweep(other, out, ALONE, library=library)
+    assert journal_lines(out) == 2
+    assert sweep(six(closure="printed"), out, ALONE, library=library, fresh=True).computed == 6
+    assert load(out).attrs["closure"] == "printed"
+
+
+def test_a_changed_material_is_noticed(single, library, tmp_path, root):
+    from pneutouch.catalogue import Library
+
+    shelf = tmp_path / "lab/printprofiles/materials/TangoPlus.toml"
+    shelf.parent.mkdir(parents=True)
+    text = (root / "printprofiles/materials/TangoPlus.toml").read_text()
+    shelf.write_text(text)
+    own = Library((tmp_path / "lab", root))
+    stopped(tmp_path / "sweep.nc", own, 2)
+    shelf.write_text("# a comment changes nothing\n" + text)
+    stopped(tmp_path / "sweep.nc", own, 3)
+    shelf.write_text(text.replace("[shear_modulus_MPa]\nvalue = ", "[shear_modulus_MPa]\nvalue = 1"))
+    assert shelf.read_text() != text
+    with pytest.raises(InputError, match="a material"):
+        sweep(six(), tmp_path / "sweep.nc", ALONE, library=own)
+
+
+def test_a_full_disk_is_said_and_the_progress_kept(single, library, tmp_path, monkeypatch):
+    out, original = tmp_path / "sweep.nc", Journal.append
+
+    def full(self, batch):
+        if batch[0]["point"] == 3:
+            raise OSError(28, "No space left on device")
+        original(self, batch)
+
+    monkeypatch.setattr(Journal, "append", full)
+    with pytest.raises(ComputationError, match=r"No space left on device\n3 of 6 points are done and kept in"):
+        sweep(six(), out, ALONE, library=library)
+    monkeypatch.undo()
+
+    def nowhere(fresh, target, content):
+        raise OSError(28, "No space left on device", str(fresh))
+
+    monkeypatch.setattr(workfolder, "replace_whole", nowhere)
+    with pytest.raises(ComputationError, match=r"No space left on device\n6 of 6 points are done"):
+        sweep(six(), out, ALONE, library=library)
+    monkeypatch.undo()
+    assert sweep(six(), out, ALONE, library=library).computed == 0
+    assert names(tmp_path) == ["sweep.nc"]
+
+
+def test_a_worker_that_dies_is_said_and_the_progress_kept(undisturbed, tmp_path):
+    out = tmp_path / "sweep.nc"
+    process = started(out, "--workers", "2")
+    workers = [p for p in psutil.Process(process.pid).children() if "spawn_main" in " ".join(p.cmdline())]
+    assert len(workers) == 2
+    workers[0].kill()
+    code, _, stderr = ended(process)
+    assert code == 3
+    assert "a worker process died" in stderr
+    assert "Traceback" not in stderr
+    assert ended(started(out))[0] == 0
+    assert out.read_bytes() == undisturbed
+
+
+def test_another_hash_seed_and_process_give_the_same_bytes(undisturbed, tmp_path):
+    out = tmp_path / "again.nc"
+    words = [sys.executable, "-m", "pneutouch", "sweep", *WORDS, "--out", str(out), "--workers", "1"]
+    subprocess.run(words, check=True, capture_output=True, env={**os.environ, "PYTHONHASHSEED": "7"}, cwd=tmp_path)
+    assert out.read_bytes() == undisturbed

@@ -1,0 +1,169 @@
+"""What a dataset says is what predict says, and what cannot be predicted is said too."""
+
+from __future__ import annotations
+
+import itertools
+import json
+
+import numpy as np
+import pytest
+
+from pneutouch import __version__
+from pneutouch.errors import ComputationError
+from pneutouch.workflows.sweep import plan_of_file, sweep, work
+from pneutouch.workflows.sweep.run import Machines
+from tests.workflows.sweep.conftest import load, small
+
+ALONE = Machines(workers=1)
+
+FIGURES = (
+    "sensitivity_kPa_per_N", "sensitivity_through_origin_kPa_per_N", "r_squared", "nonlinearity_percent",
+    "stiffness_N_per_mm", "range_end_mm", "saturation_force_N", "apex_height_inner_mm", "apex_height_outer_mm", "cavity_volume_mL",
+)  # fmt: skip
+
+
+def same(found, expected):
+    return np.isnan(found) if expected is None else float(found) == expected
+
+
+def agrees(point, document):
+    """Every figure of one point of a dataset with a document of ``predict --json``."""
+    for state in document["states"]:
+        here = point.sel(driving_pressure_kPa=state["driving_pressure_kPa"])
+        assert (str(here.status.values), str(here.message.values)) == ("ok", "")
+        for name in FIGURES:
+            assert same(here[name], state[name]), name
+        low, high = state["force_range_N"] or (None, None)
+        assert same(here.force_range_low_N, low)
+        assert same(here.force_range_high_N, high)
+        ends = [event["kind"] for event in state["events"] if event["ends_range"]]
+        assert str(here.range_end_event.values) == (ends[0] if ends else "depth")
+    limits, top = document["limits"], document["limit_point"]
+    for name in ("limit_point_kPa", "break_strain_kPa", "gauge_range_kPa"):
+        assert same(point[name], limits[name])
+    assert str(point.binding_limit.values) == limits["binding"]
+    assert same(point.limit_point_apex_height_inner_mm, top and top["apex_height_inner_mm"])
+    assert same(point.limit_point_apex_height_outer_mm, top and top["apex_height_outer_mm"])
+    assert same(point.dead_volume_mL, document["dead_volume_mL"])
+    error = document["error_estimate"]
+    assert same(point.error_sensitivity_relative, error["sensitivity_relative"])
+    assert same(point.error_limit_pressure_relative, error["limit_pressure_relative"])
+    assert str(point.error_sensitivity_basis.values) == error["sensitivity_basis"]
+
+
+@pytest.mark.parametrize(
+    ("model", "resins", "walls"),
+    [("membrane", ["TangoPlus", "FLX9960"], [1.0, 1.25, 1.5]), ("solid", ["FLX9950"], [1.2, 1.5])],
+)
+def test_every_figure_is_that_of_predict(model, resins, walls, evaluated, library, tmp_path):
+    plan = small(
+        [f"membrane.material={','.join(resins)}", f"membrane.wall_thickness_mm={walls[0]}:{walls[-1]}:{len(walls)}"],
+        settings=["pneumatics.dead_volume_mL=0.3"], model=model,
+    )  # fmt: skip
+    sweep(plan, tmp_path / "x.nc", ALONE, library=library)
+    data = load(tmp_path / "x.nc")
+    assert data.sizes == {
+        "membrane_material": len(resins),
+        "membrane_wall_thickness_mm": len(walls),
+        "driving_pressure_kPa": 4,
+    }
+    for resin, wall in itertools.product(resins, walls):
+        words = [f"membrane.material={resin}", f"membrane.wall_thickness_mm={wall}", "pneumatics.dead_volume_mL=0.3"]
+        document = evaluated("paper-dome", *words, model=model).prediction.document()
+        agrees(data.sel(membrane_material=resin, membrane_wall_thickness_mm=wall), document)
+
+
+def test_a_list_has_its_own_pressures_and_values(evaluated, library, tmp_path):
+    (tmp_path / "list.toml").write_text(
+        'design = "paper-dome"\nmodel = "membrane"\n[set]\nindentation.steps = 10\n[[point]]\n"membrane.material" = "FLX9940"\n'
+        '[[point]]\nmembrane.wall_thickness_mm = 1\n"pneumatics.driving_pressures_kPa" = [30, 12]\n'
+    )
+    sweep(plan_of_file(tmp_path / "list.toml"), tmp_path / "x.nc", ALONE, library=library)
+    data = load(tmp_path / "x.nc")
+    assert data.driving_pressure_kPa.values.tolist() == [0, 5, 12, 22, 30]
+    assert data.membrane_material.values.tolist() == ["FLX9940", "TangoPlus"]
+    assert data.membrane_wall_thickness_mm.values.tolist() == [1.5, 1.0]
+    assert data.status.values.tolist() == [["ok"] * 4 + [""], ["", "", "ok", "", "refused"]]
+    asked = evaluated("paper-dome", "indentation.steps=10", "membrane.material=FLX9940", model="membrane")
+    agrees(data.sel(point=0), asked.prediction.document())
+    words = ["indentation.steps=10", "membrane.wall_thickness_mm=1", "pneumatics.driving_pressures_kPa=[12]"]
+    agrees(data.sel(point=1), evaluated("paper-dome", *words, model="membrane").prediction.document())
+    assert np.isnan(data.sensitivity_kPa_per_N.values[data.status.values != "ok"]).all()
+
+
+def test_every_variable_says_its_unit_and_the_file_its_origin(library, tmp_path):
+    outcome = sweep(small(), tmp_path / "x.nc", ALONE, library=library)
+    data = load(tmp_path / "x.nc")
+    for name, variable in data.variables.items():
+        assert variable.attrs["long_name"], name
+        assert ("units" in variable.attrs) == (variable.dtype.kind == "f"), name
+        unit = variable.attrs.get("units", "")
+        if "_kPa" in name or "_mm" in name:
+            assert unit in name.replace("_per_", "/"), name
+    assert data.attrs["pneutouch_version"] == __version__
+    assert data.attrs["input_hash"] == outcome.input_hash
+    assert json.loads(data.attrs["base_design_content"])["membrane"]["inner_radius_mm"] == 9.25
+    assert "Table S1" in data.attrs["error_estimate"]
+
+
+@pytest.mark.parametrize("model", ["membrane", "solid"])
+def test_pressures_beyond_the_limit_are_refused_and_the_others_predicted(model, evaluated, library, tmp_path):
+    plan = small(["pneumatics.driving_pressures_kPa=5,45,60"], model=model)
+    outcome = sweep(plan, tmp_path / "x.nc", ALONE, library=library)
+    point = load(tmp_path / "x.nc").isel(point=0)
+    assert outcome.states == {"ok": 1, "refused": 2, "failed": 0}
+    document = evaluated("paper-dome", "pneumatics.driving_pressures_kPa=[5]", model=model).prediction.document()
+    agrees(point, document)
+    limit = document["limits"]["limit_point_kPa"]
+    assert point.status.values.tolist() == ["ok", "refused", "refused"]
+    assert all(f"at most {limit:.2f} kPa" in text for text in point.message.values[1:])
+
+    sweep(small(["pneumatics.driving_pressures_kPa=45,60"], model=model), tmp_path / "y.nc", ALONE, library=library)
+    nothing = load(tmp_path / "y.nc").isel(point=0)
+    assert nothing.status.values.tolist() == ["refused", "refused"]
+    assert nothing.limit_point_kPa == pytest.approx(limit, rel=1e-11)
+
+
+def test_a_corner_that_is_no_design_and_a_plate_too_small_are_refused(library, tmp_path):
+    over = ["membrane.inner_radius_mm=5,9.25", "membrane.wall_thickness_mm=1,6", "indentation.plate_diameter_mm=12,30"]
+    plan = small(over, settings=["pneumatics.driving_pressures_kPa=[0]"])
+    sweep(plan, tmp_path / "x.nc", ALONE, library=library)
+    data = load(tmp_path / "x.nc").isel(driving_pressure_kPa=0)
+    status = data.status.sel(indentation_plate_diameter_mm=30).values.tolist()
+    assert status == [["ok", "refused"], ["ok", "ok"]]
+    corner = str(data.message.values[0, 1, 0])
+    assert corner == "designs/paper-dome.toml: membrane: wall_thickness_mm = 6 must be less than inner_radius_mm = 5"
+    assert data.status.values[1, 0, 0] == "refused"
+    assert "indentation.plate_diameter_mm = 12" in str(data.message.values[1, 0, 0])
+
+
+def test_a_point_that_fails_costs_no_other(library, tmp_path, monkeypatch):
+    original = work.evaluate
+
+    def sometimes(name, assignments, **options):
+        if "membrane.wall_thickness_mm=0.9" in assignments:
+            raise ComputationError("the solver lost its way at 3 mm")
+        if "membrane.wall_thickness_mm=1.5" in assignments:
+            raise ZeroDivisionError("oops")
+        return original(name, assignments, **options)
+
+    monkeypatch.setattr(work, "evaluate", sometimes)
+    outcome = sweep(
+        small(settings=["pneumatics.driving_pressures_kPa=[0, 5]"]), tmp_path / "x.nc", ALONE, library=library
+    )
+    data = load(tmp_path / "x.nc")
+    assert outcome.states == {"ok": 2, "refused": 0, "failed": 4}
+    assert data.status.values.tolist() == [["ok", "ok"], ["failed", "failed"], ["failed", "failed"]]
+    assert data.message.values[1, 0] == "the solver lost its way at 3 mm"
+    assert "ZeroDivisionError: oops" in data.message.values[2, 1]
+
+
+def test_whole_numbers_and_fields_without_a_default_become_coordinates(library, tmp_path):
+    plan = small(
+        ["indentation.steps=6:10:3", "indentation.depth_mm=2,3"], settings=["pneumatics.driving_pressures_kPa=[0]"]
+    )
+    sweep(plan, tmp_path / "x.nc", ALONE, library=library)
+    data = load(tmp_path / "x.nc")
+    assert data.indentation_steps.values.tolist() == [6, 8, 10]
+    assert data.indentation_steps.dtype.kind == "i"
+    assert data.range_end_mm.values[..., 0].tolist() == [[2, 3]] * 3

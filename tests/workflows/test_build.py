@@ -1,0 +1,161 @@
+"""The output folder: complete, repeatable, whole or not at all."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from pneutouch.errors import InputError, RuleBrokenError
+from pneutouch.output.files import check_writable, write_folder
+from pneutouch.workflows.build import build
+
+FILES = {
+    "paper-dome.3mf", "stl/membrane.stl", "stl/connector.stl", "paper-dome.step", "paper-dome.glb", "datasheet.html",
+    "datasheet.pdf", "prediction.json", "print-sheet.md", "manifest.json",
+}  # fmt: skip
+
+
+def content(folder: Path) -> dict[str, bytes]:
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def test_every_named_file_is_there_and_in_the_manifest(built):
+    folder = built("paper-dome")
+    assert set(content(folder)) == FILES
+    manifest = json.loads((folder / "manifest.json").read_text())
+    assert set(manifest["files"]) == FILES - {"manifest.json"}
+    for name, entry in manifest["files"].items():
+        data = (folder / name).read_bytes()
+        assert entry == {"sha256": hashlib.sha256(data).hexdigest(), "bytes": len(data)}
+    for mesh in manifest["mesh"].values():
+        assert 0 < mesh["measured_deviation_mm"] <= mesh["tolerance_mm"]
+
+
+def test_two_builds_in_two_processes_give_the_same_bytes(tmp_path, root):
+    for k in (1, 2):
+        environment = {**os.environ, "PYTHONHASHSEED": str(k)}
+        words = [sys.executable, "-m", "pneutouch", "build", str(root / "designs/fingertip-dome.toml")]
+        subprocess.run(
+            [*words, "--out", str(tmp_path / str(k))], check=True, capture_output=True, env=environment, cwd=root
+        )
+    one, other = (content(tmp_path / str(k)) for k in (1, 2))
+    assert one == other
+
+
+def test_a_broken_rule_writes_nothing(evaluated, tmp_path):
+    broken = evaluated("stiff-dome", "membrane.wall_thickness_mm=0.5")
+    with pytest.raises(RuleBrokenError, match=r"0\.6 mm"):
+        build(broken, tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_build_that_fails_half_way_leaves_the_previous_output_whole(evaluated, tmp_path, monkeypatch):
+    evaluation = evaluated("paper-dome")
+    folder = tmp_path / "paper-dome"
+    write_folder(folder, {"manifest.json": b'{"files": {"old.txt": {}}}', "old.txt": b"old"})
+    before = content(tmp_path)
+
+    def stop(step: str) -> None:
+        if step == "files":
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        build(evaluation, tmp_path, stop)
+    assert content(tmp_path) == before
+
+    original = Path.write_bytes
+    written = []
+
+    def full(self, data):
+        written.append(self)
+        if len(written) > 3:
+            raise OSError(28, "No space left on device")
+        return original(self, data)
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    with pytest.raises(InputError, match="No space left on device"):
+        write_folder(folder, {f"{k}.txt": b"x" for k in range(9)} | {"manifest.json": b"{}"})
+    monkeypatch.undo()
+    assert content(tmp_path) == before
+
+
+def test_a_killed_build_leaves_the_previous_output_whole(tmp_path, root):
+    folder = tmp_path / "paper-dome"
+    write_folder(folder, {"manifest.json": b'{"files": {"old.txt": {}}}', "old.txt": b"old"})
+    words = [sys.executable, "-m", "pneutouch", "build", "paper-dome", "--out", str(tmp_path)]
+    process = subprocess.Popen(words, cwd=root, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    time.sleep(1.5)
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    assert content(folder) == {"manifest.json": b'{"files": {"old.txt": {}}}', "old.txt": b"old"}
+
+
+def test_a_new_build_replaces_our_files_and_keeps_other_peoples(tmp_path):
+    folder = tmp_path / "x"
+    write_folder(folder, {"manifest.json": b'{"files": {"a.txt": {}, "b/c.txt": {}}}', "a.txt": b"1", "b/c.txt": b"1"})
+    (folder / "notes").mkdir()
+    (folder / "notes/mine.csv").write_text("measured")
+    write_folder(folder, {"manifest.json": b'{"files": {"a.txt": {}}}', "a.txt": b"2"})
+    assert content(folder) == {
+        "manifest.json": b'{"files": {"a.txt": {}}}',
+        "a.txt": b"2",
+        "notes/mine.csv": b"measured",
+    }
+    assert list(tmp_path.iterdir()) == [folder]
+
+
+def test_links_and_empty_folders_of_other_people_are_kept(tmp_path):
+    folder, elsewhere = tmp_path / "x", tmp_path / "data"
+    elsewhere.mkdir()
+    write_folder(folder, {"manifest.json": b'{"files": {}}'})
+    (folder / "link").symlink_to(elsewhere)
+    (folder / "empty").mkdir()
+    write_folder(folder, {"manifest.json": b'{"files": {}}', "a.txt": b"1"})
+    assert (folder / "link").is_symlink()
+    assert (folder / "empty").is_dir()
+    (tmp_path / "alias").symlink_to(folder)
+    with pytest.raises(InputError, match="is a link"):
+        write_folder(tmp_path / "alias", {"manifest.json": b"{}"})
+
+
+def test_a_damaged_manifest_is_refused_before_any_work(tmp_path):
+    for text in ("", "[]", '{"file": 1}'):
+        folder = tmp_path / "x"
+        folder.mkdir(exist_ok=True)
+        (folder / "manifest.json").write_text(text)
+        with pytest.raises(InputError, match="damaged"):
+            check_writable(folder)
+
+
+def test_folders_that_are_not_ours_are_not_touched(tmp_path):
+    other = tmp_path / "photos"
+    other.mkdir()
+    (other / "cat.jpg").write_bytes(b"meow")
+    with pytest.raises(InputError, match=r"not written by pneutouch"):
+        write_folder(other, {"manifest.json": b"{}"})
+    assert content(other) == {"cat.jpg": b"meow"}
+    with pytest.raises(InputError, match="is a file"):
+        write_folder(other / "cat.jpg", {"manifest.json": b"{}"})
+    with pytest.raises(InputError, match="is a file"):
+        write_folder(other / "cat.jpg" / "x", {"manifest.json": b"{}"})
+
+
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="needs a folder that nobody can write to")
+def test_a_folder_that_cannot_be_written_is_an_input_error():
+    with pytest.raises(InputError, match="--out"):
+        write_folder(Path("/proc/self/outputs"), {"manifest.json": b"{}"})
+
+
+def test_input_hash_changes_with_the_inputs_alone(evaluated):
+    from pneutouch.workflows.build.run import input_hash
+
+    assert input_hash(evaluated("paper-dome")) == input_hash(evaluated("paper-dome"))
+    assert input_hash(evaluated("paper-dome")) != input_hash(evaluated("paper-dome", "membrane.inner_radius_mm=9.26"))

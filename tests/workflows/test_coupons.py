@@ -1,0 +1,112 @@
+"""A set of coupons as a folder."""
+
+from __future__ import annotations
+
+import datetime
+import itertools
+import json
+import tomllib
+
+import numpy as np
+import pytest
+
+from pneutouch.catalogue import Library
+from pneutouch.errors import InputError
+from pneutouch.parts.coupons import COUPONS
+from pneutouch.spec.coupon import Results
+from pneutouch.workflows.coupons.build import build_coupons
+from pneutouch.workflows.coupons.lay import lay
+from pneutouch.workflows.coupons.order import Asked, order
+from pneutouch.workflows.coupons.template import results_template
+from tests.conftest import ROOT
+from tests.export.threemf_files import read_strictly
+
+LIBRARY = Library((ROOT,))
+WHOLE = Asked(materials=("TangoPlus", "FLX9960"), design="paper-dome")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return build_coupons(WHOLE, tmp_path_factory.mktemp("outputs"), LIBRARY)[0]
+
+
+def test_the_folder_holds_what_its_manifest_says(folder):
+    manifest = json.loads((folder / "manifest.json").read_text())
+    there = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
+    assert there == {*manifest["files"], "manifest.json"}
+    assert {"measure.md", "results.toml", f"{folder.name}.3mf", "abs-filament.3mf"} <= there
+    for coupon in manifest["coupons"]:
+        assert coupon["volume_mm3"] == pytest.approx(coupon["exact_volume_mm3"], rel=1e-3)
+    assert {coupon["coupon"] for coupon in manifest["coupons"]} == set(COUPONS)
+
+
+def test_the_same_input_gives_the_same_bytes(folder, tmp_path):
+    again = build_coupons(WHOLE, tmp_path, LIBRARY)[0]
+    for path in folder.rglob("*"):
+        if path.is_file():
+            assert (again / path.relative_to(folder)).read_bytes() == path.read_bytes(), path
+
+
+def test_readings_in_the_folder_are_not_lost(tmp_path):
+    asked = Asked(only=("puck",))
+    path = build_coupons(asked, tmp_path, LIBRARY)[0] / "results.toml"
+    build_coupons(asked, tmp_path, LIBRARY)
+    path.write_text(path.read_text().replace("mass_g = []", "mass_g = [1.1, 1.1]"))
+    with pytest.raises(InputError, match="has been filled in"):
+        build_coupons(asked, tmp_path, LIBRARY)
+    assert "1.1" in path.read_text()
+
+
+def test_the_3mf_holds_every_copy_in_its_material(folder):
+    read_strictly(folder / f"{folder.name}.3mf")
+
+
+def test_coupons_lie_apart_and_inside_the_tray():
+    for name, items in order(WHOLE, LIBRARY).machines().items():
+        room = items[0].printer.envelope_mm
+        boxes = [body.bounds for piece in lay(name, items) for body in piece.copies()]
+        assert len(boxes) == sum(item.copies * len(item.coupon.draw(item.ground)) for item in items)
+        for box in boxes:
+            assert box[0][:2].min() >= 4.9
+            assert box[0][2] == pytest.approx(0, abs=1e-9)
+            assert (box[1] <= [room.x - 4.9, room.y - 4.9, room.z]).all()
+        for a, b in itertools.combinations(boxes, 2):
+            gap = np.maximum(a[0] - b[1], b[0] - a[1])[:2].max()
+            assert gap >= 4.99
+
+
+def test_what_does_not_fit_is_refused():
+    with pytest.raises(InputError, match="no longer fits the tray"):
+        lay("objet260-connex", order(Asked(copies={"dumbbell": 60}), LIBRARY).items)
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        (Asked(profile="objet"), "--profile = 'objet': no such name among the printers"),
+        (Asked(materials=("Tango",)), "Did you mean TangoPlus"),
+        (Asked(materials=("Agilus30",)), "cannot run Agilus30"),
+        (Asked(only=("pucks",)), "--only pucks: no such coupon. Did you mean puck"),
+        (Asked(only=("leak-cap",)), "give --design"),
+        (Asked(only=("dumbbell",), materials=("VeroClear",)), "is for elastomer"),
+        (Asked(copies={"puck": 0}), "--copies puck=0"),
+        (Asked(design="paper"), "paper: no such design"),
+    ],
+)
+def test_what_cannot_be_ordered_is_said(asked, said):
+    with pytest.raises(InputError) as error:
+        order(asked, LIBRARY)
+    assert said in str(error.value)
+
+
+def test_the_template_lists_every_nominal_and_is_valid_once_signed():
+    text = results_template(order(WHOLE, LIBRARY))
+    assert "lab" not in tomllib.loads(text)
+    results = Results.model_validate({**tomllib.loads(text), "lab": "ours", "date": datetime.date(2026, 11, 21)})
+    assert set(results.puck) == set(results.dumbbell) == {"TangoPlus", "FLX9960"}
+    assert len(results.dumbbell["TangoPlus"].specimen) == 5
+    gauge = results.gauge["objet260-connex"]["TangoPlus"]
+    listed = [(row, size.nominal_mm) for row in type(gauge).model_fields for size in getattr(gauge, row)]
+    nominals = COUPONS["gauge"].nominals(order(WHOLE, LIBRARY).items[0].ground)
+    assert listed == [(nominal.feature, nominal.value) for nominal in nominals]
+    assert set(results.leak_cap) == set(results.volume_plug) == {"paper-dome"}

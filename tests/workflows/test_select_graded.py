@@ -1,0 +1,153 @@
+"""``select --graded`` and ``--mix`` as a user meets them."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+
+import pytest
+from typer.testing import CliRunner
+
+from pneutouch.cli.app import app
+from pneutouch.evaluation.evaluate import evaluate
+from pneutouch.selection.grade_search import cost
+from pneutouch.spec.target import Target
+from pneutouch.workflows.select.graded import select_graded
+from tests.conftest import ROOT
+
+FLAT = [
+    "select", "--graded", "--sensitivity", "1.9", "--tolerance", "2%", "--same-at", "0,22", "--wall", "1.2",
+    "--base", "paper-dome",
+]  # fmt: skip
+"""The command of docs/graded.md."""
+
+
+def run(*arguments: str):
+    return CliRunner().invoke(app, list(arguments))
+
+
+@pytest.fixture(scope="module")
+def shallow(tmp_path_factory):
+    """The paper's sensor pressed to 4 mm alone, before its wall buckles: quickly solved."""
+    path = tmp_path_factory.mktemp("base") / "shallow.toml"
+    text = (ROOT / "designs" / "paper-dome.toml").read_text(encoding="utf-8")
+    path.write_text(text.replace("[indentation]", "[indentation]\ndepth_mm = 4\nsteps = 6"), encoding="utf-8")
+    return str(path)
+
+
+@pytest.fixture(scope="module")
+def short(shallow):
+    """Few trials for a wish that is easily met."""
+    content = {
+        "target": {
+            "sensitivity_kPa_per_N": 1.9, "same_sensitivity_at_kPa": [0.0, 22.0], "tolerance_percent": 25.0,
+            "same_within_percent": 8.0,
+        },
+        "given": {"graded": True, "wall_thickness_mm": 1.2}, "setting": {"base": shallow},
+    }  # fmt: skip
+    return select_graded(Target.model_validate(content), "test", trials=4)
+
+
+def test_a_grade_is_set_beside_every_resin_and_the_nearest_mix_of_its_size(short, shallow):
+    names = [constant.name for constant in short.constants]
+    assert names[:-1] == ["TangoPlus", "FLX9940", "FLX9950", "FLX9960", "FLX9970", "FLX9985", "FLX9995"]
+    assert short.nearest.fraction is not None
+    assert short.left_out == {"Agilus30": "the Stratasys Objet260 Connex cannot run it"}
+    assert short.solves == len(short.search.trials) + 8
+    plain = evaluate(shallow, ["membrane.material=FLX9960", "membrane.wall_thickness_mm=1.2"]).prediction.states
+    listed = next(constant.trial for constant in short.constants if constant.name == "FLX9960")
+    assert listed.sensitivity[0] == pytest.approx(plain[0].figures.sensitivity, rel=1e-9)
+    assert listed.sensitivity[1] == pytest.approx(plain[-1].figures.sensitivity, rel=1e-6)
+
+
+def test_the_nearest_mix_is_nearer_than_the_resins(short):
+    least = min(cost(short.wish, constant.trial) for constant in short.constants[:-1])
+    assert cost(short.wish, short.nearest.trial) <= least + 0.03
+
+
+def test_the_written_grade_is_the_one_found(short, tmp_path):
+    from pneutouch.workflows.select.graded_document import write_graded
+
+    path = write_graded(short, "flat", tmp_path)
+    material = tomllib.loads(path.read_text(encoding="utf-8"))["membrane"]["material"]
+    best = short.search.best
+    assert material == {"from": "TangoPlus", "to": "VeroClear", "fraction": [best.pole, best.rim]}
+    states = evaluate(str(path)).prediction.states
+    assert [s.figures.sensitivity for s in states] == pytest.approx(list(best.sensitivity), rel=1e-9)
+
+
+@pytest.mark.slow
+def test_the_same_sensitivity_at_two_pressures_that_no_constant_membrane_has(tmp_path):
+    result = run(*FLAT, "--json", "--write", "flat", "--out", str(tmp_path))
+    assert result.exit_code == 0
+    said = json.loads(result.stdout)
+    low, high = said["design"]["sensitivity_kPa_per_N"]
+    assert abs(high / low - 1) <= 0.02
+    assert max(abs(low / 1.9 - 1), abs(high / 1.9 - 1)) <= 0.02
+    assert not any(constant["meets"] for constant in said["constant"])
+    assert said["cost"]["solid_solves"] <= 60
+    states = evaluate(said["written"]).prediction.states
+    assert [s.figures.sensitivity for s in states] == pytest.approx([low, high], rel=1e-9)
+
+
+@pytest.mark.slow
+def test_a_grade_widens_the_force_range_at_a_sensitivity():
+    content = {
+        "target": {"sensitivity_kPa_per_N": 1.9, "tolerance_percent": 2.0, "widest_range": True},
+        "given": {"graded": True, "wall_thickness_mm": 1.5}, "setting": {"base": "paper-dome"},
+    }  # fmt: skip
+    found = select_graded(Target.model_validate(content), "test")
+    assert found.search.met
+    assert found.search.best.reach > 1.01 * found.nearest.trial.reach
+    assert found.meets(found.nearest.trial)
+
+
+def test_an_unreachable_target_exits_1_with_the_nearest_and_why(monkeypatch):
+    monkeypatch.setattr("pneutouch.workflows.select.graded._TRIALS", 3)
+    monkeypatch.setattr("pneutouch.workflows.select.graded._catalogue", lambda *_: ([], {}))
+    flags = [*FLAT[:3], "9", *FLAT[4:]]
+    result = run(*flags)
+    assert result.exit_code == 1
+    assert "no grade of this size meets the target; the nearest" in result.stdout
+    assert "kPa/N instead of 9 within 2 %" in result.stdout
+    assert "all grades tried of this size have" in result.stdout
+    assert "solid solves in" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("flags", "said"),
+    [
+        (["--graded", "--sensitivity", "1.9"], "given.graded needs target.same_sensitivity_at_kPa"),
+        (["--sensitivity", "1.9", "--same-at", "0,22"], "--graded"),
+        (["--graded", "--same-at", "0,22", "--force-range", "9"], "needs sensitivity_kPa_per_N"),
+        (["--graded", "--sensitivity", "1.9", "--same-at", "22,0"], "two rising driving pressures"),
+        (["--graded", "--sensitivity", "1.9", "--same-at", "some"], "--same-at some"),
+        (["--graded", "--sensitivity", "1.9", "--same-at", "0,22", "--at", "5"], "contradict each other"),
+        (["--graded", "--sensitivity", "1.9", "--same-at", "0,22", "--material", "FLX9940"], "materials and a mix contradict"),
+        (["--graded", "--sensitivity", "1.9", "--same-at", "0,22", "--pick", "2"], "--pick cannot be given with --graded"),
+        (["--graded", "--sensitivity", "1.9", "--same-at", "0,22", "--profile", "abs-filament"],
+         "the ABS filament printer, 0.4 mm nozzle cannot mix TangoPlus with VeroClear; it runs ABS"),
+        (["--sensitivity", "1.9", "--mix", "TangoPlus"], "given.mix = 'TangoPlus'"),
+        (["--sensitivity", "1.9", "--mix", "TangoPlus+Vero"], "TangoPlus+Vero"),
+        (["--graded", "--sensitivity", "1.9", "--same-at", "0,22", "--wall", "0.2"], "the printer's least wall is 0.6 mm"),
+        (["--graded", "--sensitivity", "1.9", "--same-at", "0,22", "--base", "paper-dome", "--wall", "1.5", "--max-diameter", "20"],
+         "is 21.5 mm wide"),
+    ],
+)  # fmt: skip
+def test_bad_input_is_named(flags, said):
+    result = run("select", *flags)
+    assert result.exit_code == 2, result.output
+    assert said in result.stderr
+    assert "Traceback" not in result.output
+
+
+def test_a_mix_chosen_is_written_as_one(tmp_path):
+    flags = ["--sensitivity", "1.8", "--at", "12", "--inner-radius", "9.25", "--wall", "1.5", "--base", "paper-dome"]
+    result = run("select", *flags, "--mix", "TangoPlus+VeroClear", "--write", "mine", "--out", str(tmp_path), "--json")
+    assert result.exit_code == 0, result.output
+    said = json.loads(result.stdout)
+    material = tomllib.loads((tmp_path / "mine.toml").read_text(encoding="utf-8"))["membrane"]["material"]
+    assert material == said["designs"][0]["mix"]
+    assert isinstance(material["fraction"], float)
+    state = evaluate(str(tmp_path / "mine.toml")).prediction.states[-1]
+    assert state.figures.sensitivity == pytest.approx(1.8, rel=0.012)

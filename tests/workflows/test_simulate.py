@@ -1,0 +1,156 @@
+"""A simulated campaign: reads like a measured one, says that it is none, and repeats to the byte."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import tomllib
+from dataclasses import replace
+
+import numpy as np
+import pandas
+import pytest
+
+from pneutouch.bench.protocol import protocol
+from pneutouch.bench.simulate import Truth
+from pneutouch.errors import InputError
+from pneutouch.spec.campaign import Campaign
+from pneutouch.spec.read import validate
+from pneutouch.workflows.simulate.run import KINDS, Asked, simulate
+
+R0 = 9.25
+ASKED = Asked(
+    specimens=2, pressures=(0.0, 22.0), runs=2, kinds=("steps", "loop", "leak", "injection"), rate=50.0, model="atlas",
+    truth=Truth(rest=2.0, specimens=400),
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def folder(library, tmp_path_factory):
+    return simulate("paper-dome", tmp_path_factory.mktemp("one"), None, ASKED, library)
+
+
+@pytest.fixture(scope="module")
+def truth(folder):
+    return json.loads((folder / "truth.json").read_text())
+
+
+def test_campaign_names_every_file_and_says_that_it_is_simulated(folder):
+    campaign = validate(Campaign, tomllib.loads((folder / "campaign.toml").read_text()), "campaign.toml")
+    assert campaign.simulated and "simulated" in campaign.title.lower() and campaign.design == "paper-dome"
+    assert {run.file for run in campaign.runs} == {f"runs/{path.name}" for path in (folder / "runs").iterdir()}
+    # Steps twice, loop and leak once at each of two pressures, one injection; two specimens.
+    assert len(campaign.runs) == 2 * (2 * (2 + 1 + 1) + 1)
+    for run in campaign.runs:
+        first, head = (folder / run.file).read_text().split("\n", 2)[:2]
+        assert first == "# simulated by pneutouch"
+        plated = "time_s,position_mm,force_N,pressure_kPa"
+        assert head == {"leak": "time_s,pressure_kPa", "injection": "volume_mL,pressure_kPa"}.get(run.kind, plated)
+
+
+def test_manifest_has_the_digest_of_every_file(folder):
+    files = json.loads((folder / "manifest.json").read_text())["files"]
+    there = {p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.is_file()} - {"manifest.json"}
+    assert set(files) == there
+    assert all(hashlib.sha256((folder / n).read_bytes()).hexdigest() == e["sha256"] for n, e in files.items())
+
+
+def test_same_seed_gives_the_same_bytes_and_another_other_noise(folder, library, tmp_path):
+    again = simulate("paper-dome", tmp_path / "same", None, ASKED, library)
+    for path in (p for p in folder.rglob("*") if p.is_file()):
+        assert path.read_bytes() == (again / path.relative_to(folder)).read_bytes(), path.name
+    small = replace(ASKED, specimens=1, runs=1, kinds=("steps",))
+    name = "runs/TangoPlus-1-0kPa-steps-1.csv"
+    # A run does not depend on what else is simulated.
+    assert (simulate("paper-dome", tmp_path / "small", None, small, library) / name).read_bytes() == (
+        folder / name
+    ).read_bytes()
+    other = replace(small, seed=1)
+    assert (simulate("paper-dome", tmp_path / "other", None, other, library) / name).read_bytes() != (
+        folder / name
+    ).read_bytes()
+
+
+def test_files_hold_what_the_truth_says(folder, truth):
+    """Holds read by the clock give each specimen's sensitivity to the scatter of the runs' gain and the noise."""
+    test = protocol("steps", R0).quicker(2.0)
+    knots, _ = test.way()
+    for name, one in truth["specimens"].items():
+        for pressure, figures in one["pressures"].items():
+            table = pandas.read_csv(folder / f"runs/{name}-{pressure}kPa-steps-1.csv", comment="#")
+            force, rise = [0.0], [0.0]
+            for k in range(len(test.depths)):
+
+                def between(column: str, a: float, b: float, t: pandas.DataFrame = table) -> float:
+                    return float(t[column][(t.time_s > a) & (t.time_s < b)].mean())
+
+                rest, held = (
+                    (knots[4 * k] + 1.5, knots[4 * k + 1] - 0.05),
+                    (knots[4 * k + 2] + 2, knots[4 * k + 3] - 0.05),
+                )
+                force.append(between("force_N", *held) - between("force_N", *rest))
+                rise.append(between("pressure_kPa", *held) - between("pressure_kPa", *rest))
+            slope = np.polyfit(force, rise, 1)[0]
+            assert slope == pytest.approx(figures["sensitivity_kPa_per_N"], rel=4 * 0.002)
+            assert force[-1] == pytest.approx(figures["force_range_N"], rel=0.005)
+
+
+def test_truth_of_populations_covers_its_specimens(truth):
+    for row in truth["populations"]:
+        figures = row["figures"]
+        assert figures["part_to_part_kPa_per_N"] == pytest.approx(row["spread"]["sensitivity_kPa_per_N"])
+        assert figures["repeatability_kPa_per_N"] == pytest.approx(0.002 * figures["sensitivity_kPa_per_N"])
+        mine = [s["pressures"][f"{row['driving_pressure_kPa']:g}"] for s in truth["specimens"].values()]
+        for one in mine:
+            away = one["sensitivity_kPa_per_N"] - figures["sensitivity_kPa_per_N"]
+            assert abs(away) < 4 * row["spread"]["sensitivity_kPa_per_N"]
+    wall = truth["parameters"]["TangoPlus"]["scatter"]["wall"]
+    assert wall["value"] == 0.1 and wall["unit"] == "mm"
+
+
+def test_age_stiffens_the_same_specimen_as_its_hardness_says(library, tmp_path):
+    asked = replace(ASKED, specimens=1, pressures=(0.0,), kinds=("loop",), ages=(0.0, 365.0))
+    found = json.loads((simulate("paper-dome", tmp_path, None, asked, library) / "truth.json").read_text())
+    new, old = (found["specimens"][f"TangoPlus-1-{age}d"] for age in (0, 365))
+    ageing = found["parameters"]["TangoPlus"]["scatter"]["ageing"]["value"]
+    # Shore A 27.6 to 29.5 (paper, Table 1).
+    assert old["shear_modulus_MPa"] / new["shear_modulus_MPa"] == pytest.approx(np.exp(ageing)) and 0.07 < ageing < 0.09
+    assert old["wall_thickness_mm"] == new["wall_thickness_mm"]
+
+
+def test_parquet_holds_the_same_numbers_and_the_label(folder, library, tmp_path):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    there = simulate("paper-dome", tmp_path, None, replace(ASKED, specimens=1, parquet=True, kinds=("loop",)), library)
+    table = parquet.read_table(there / "runs/TangoPlus-1-22kPa-loop-1.parquet")
+    csv = pandas.read_csv(folder / "runs/TangoPlus-1-22kPa-loop-1.csv", comment="#")
+    assert table.schema.metadata[b"comment"] == b"simulated by pneutouch"
+    assert np.array_equal(table.to_pandas().to_numpy(), csv.to_numpy())
+
+
+@pytest.mark.slow
+def test_what_stops_short_is_said(library, tmp_path):
+    asked = replace(
+        ASKED, specimens=1, pressures=(0.0,), runs=1, kinds=("steps", "relaxation"), model="auto", rate=20.0
+    )
+    found = json.loads((simulate("long-tube", tmp_path, None, asked, library) / "truth.json").read_text())
+    assert len(found["notes"]) == 2 and all("stops at 6." in note and "buckling" in note for note in found["notes"])
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"kinds": ("stps",)}, "--kinds stps: unknown. Did you mean steps"),
+        ({"pressures": (22.0, 22.0)}, "each once"),
+        ({"pressures": (45.0,)}, "beyond the limit point"),
+        ({"rate": 1.0}, "--rate 1: must be from 10"),
+        ({"specimens": 0}, "--specimens 0: must be from 1"),
+        ({"resins": ("TangoPlus", "TangoPlus")}, "named twice"),
+        ({"truth": Truth(rest=-1.0)}, "--rest -1"),
+        ({"kinds": KINDS, "model": "atlas"}, "--model atlas"),
+    ],
+)
+def test_what_cannot_be_is_refused_and_leaves_nothing(change, words, library, tmp_path):
+    with pytest.raises(InputError) as error:
+        simulate("paper-dome", tmp_path / "out", None, replace(ASKED, **change), library)
+    assert words in str(error.value)
+    assert not (tmp_path / "out").exists() or not list((tmp_path / "out").iterdir())

@@ -1,0 +1,311 @@
+"""A tray from file to folder: what is on it, what is left out, and print files that read back strictly."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import io
+import json
+import xml.etree.ElementTree as ElementTree
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from pneutouch.errors import InputError
+from pneutouch.parts.lettering.tally import read
+from pneutouch.workflows.tray.lay import fill, lay
+from pneutouch.workflows.tray.order import Order, is_tray_file, order_of_file, order_of_flags
+from pneutouch.workflows.tray.subject import subject
+from pneutouch.workflows.tray.write import document, inputs, write_tray
+from tests.conftest import ROOT
+from tests.export.threemf_files import MODEL, read_strictly
+
+EXAMPLE = ROOT / "docs/examples/seven-resins.toml"
+SPACE = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
+RESINS = ["TangoPlus", "FLX9940", "FLX9950", "FLX9960", "FLX9970", "FLX9985", "FLX9995"]
+
+
+def content(folder: Path) -> dict[str, bytes]:
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def flags(library, designs, over=(), copies=1, overrides=(), **head):
+    return lay(order_of_flags(designs, over, copies, overrides, **head), library)
+
+
+def table(folder):
+    return list(csv.DictReader(io.StringIO((folder / "labels.csv").read_text())))
+
+
+@pytest.fixture(scope="module")
+def seven(library):
+    return lay(order_of_file(EXAMPLE), library)
+
+
+@pytest.fixture(scope="module")
+def folder(seven, tmp_path_factory):
+    return write_tray(seven, tmp_path_factory.mktemp("outputs") / "seven")
+
+
+@pytest.fixture(scope="module")
+def seats(library, tmp_path_factory):
+    laid = flags(library, ["stiff-dome"], ["connector.seat=glued-flange,one-piece,clamped-flange-M2"], 2)
+    return laid, write_tray(laid, tmp_path_factory.mktemp("outputs") / "seats")
+
+
+def test_the_example_is_21_membranes_in_one_job(seven):
+    (job,) = seven.jobs
+    assert [part.label for part in job.parts] == [f"{letter}{copy}" for letter in "ABCDEFG" for copy in (1, 2, 3)]
+    assert [part.solids[0].material.title.removesuffix("-DM") for part in job.parts[::3]] == RESINS
+    assert seven.resin_note == "one job, no resin change"
+    assert (job.mode.name, job.resins) == ("Digital Material", ("TangoPlus", "VeroClear"))
+    assert job.layers == 434  # 13 mm at 30 um
+
+
+def test_fill_is_the_area_of_boxes_and_discs(seven):
+    shares = fill(seven.jobs[0], seven.printer)
+    box, disc = 26.0**2, np.pi * 13.0**2
+    assert shares["bounding_boxes"] == pytest.approx(21 * box / (255 * 252), rel=3e-3)
+    assert shares["outlines"] == pytest.approx(21 * disc / (255 * 252), rel=1e-3)
+
+
+def test_the_folder_holds_what_is_promised(folder):
+    labels = [f"{letter}{copy}" for letter in "ABCDEFG" for copy in (1, 2, 3)]
+    assert set(content(folder)) == {
+        "seven.3mf".replace("seven", "seven-resins"), "labels.csv", "labels.md", "tray.svg", "manifest.json",
+        *(f"stl/{label}-membrane.stl" for label in labels),
+    }  # fmt: skip
+    manifest = json.loads((folder / "manifest.json").read_text())
+    for name, said in manifest["files"].items():
+        assert hashlib.sha256((folder / name).read_bytes()).hexdigest() == said["sha256"]
+
+
+def test_the_same_tray_gives_the_same_bytes(seven, folder, library, tmp_path):
+    again = write_tray(lay(order_of_file(EXAMPLE), library), tmp_path / "again")
+    assert content(again) == content(folder)
+
+
+@pytest.mark.parametrize("which", ["seven", "seats"])
+def test_stl_and_3mf_are_closed_apart_positive_and_the_same(which, request):
+    laid, where = (request.getfixturevalue("seven"), request.getfixturevalue("folder"))
+    if which == "seats":
+        laid, where = request.getfixturevalue("seats")
+    (path,) = where.glob("*.3mf")
+    model, reader = read_strictly(path)
+    assert reader.GetWarningCount() == 0
+    scene = placed_boxes(path)
+    boxes = {}
+    for part in laid.parts:
+        meshes = [trimesh.load_mesh(where / f"stl/{body.name}.stl") for body in part.bodies]
+        assert all(mesh.is_watertight and mesh.is_winding_consistent for mesh in meshes)
+        low = np.min([mesh.bounds[0] for mesh in meshes], axis=0)
+        high = np.max([mesh.bounds[1] for mesh in meshes], axis=0)
+        assert low.min() >= 0.0
+        assert low[2] == 0.0
+        room, margin = laid.printer.envelope_mm, laid.order.tray.tray.margin_mm
+        assert (low[:2] >= margin - 1e-4).all()
+        assert (high <= [room.x - margin + 1e-4, room.y - margin + 1e-4, room.z]).all()
+        boxes[part.name] = (low, high)
+        assert np.allclose(scene[part.name], (low, high), atol=1e-3)
+        for mesh, body in zip(meshes, part.bodies, strict=True):
+            assert mesh.volume == pytest.approx(body.volume, rel=1e-5)
+    names = list(boxes)
+    for k, one in enumerate(names):
+        for other in names[:k]:
+            apart = np.maximum(boxes[one][0] - boxes[other][1], boxes[other][0] - boxes[one][1])[:2].max()
+            assert apart >= laid.order.tray.tray.spacing_mm - 1e-3
+    items = model.GetBuildItems()
+    assert items.Count() == len(laid.parts)
+
+
+def placed_boxes(path):
+    """Part number to the box of its item, from the XML alone."""
+    with zipfile.ZipFile(path) as archive:
+        root = ElementTree.fromstring(archive.read(MODEL))
+    objects = {thing.get("id"): thing for thing in root.iter(f"{SPACE}object")}
+
+    def vertices(thing):
+        parts = [objects[c.get("objectid")] for c in thing.iter(f"{SPACE}component")] or [thing]
+        return np.array([[float(v.get(k)) for k in "xyz"] for part in parts for v in part.iter(f"{SPACE}vertex")])
+
+    found = {}
+    for item in root.iter(f"{SPACE}item"):
+        matrix = np.array([float(x) for x in item.get("transform", "1 0 0 0 1 0 0 0 1 0 0 0").split()]).reshape(4, 3)
+        points = vertices(objects[item.get("objectid")]) @ matrix[:3] + matrix[3]
+        found[item.get("partnumber")] = (points.min(axis=0), points.max(axis=0))
+    return found
+
+
+def test_the_3mf_gives_every_part_its_material_and_every_uuid_once(folder):
+    (path,) = folder.glob("*.3mf")
+    with zipfile.ZipFile(path) as archive:
+        text = archive.read(MODEL)
+    root = ElementTree.fromstring(text)
+    bases = [base.get("name") for base in root.iter(f"{SPACE}base")]
+    assert len(bases) == len(set(bases)) == 7
+    objects = {thing.get("name"): thing for thing in root.iter(f"{SPACE}object")}
+    assert len(objects) == 21
+    for name, thing in objects.items():
+        assert bases[int(thing.get("pindex"))].startswith(f"membrane: {RESINS['ABCDEFG'.index(name[0])]}")
+    uuids = [value for thing in root.iter() for key, value in thing.attrib.items() if key.endswith("}UUID")]
+    assert len(uuids) == len(set(uuids)) == 21 + 21 + 1
+
+
+def test_the_tallies_on_the_tray_read_as_their_labels(seven):
+    """Grooves found again on the printed mesh: the section through the flange, walked round."""
+
+    layout = seven.parts[0].value.assembly.layout
+    for part in seven.parts:
+        (body,) = part.bodies
+        middle = 0.5 * part.size[:2]
+        section = body.manifold().slice(layout.flange_thickness - 0.3)
+        sectors = []
+        for line in section.to_polygons():
+            points = line - middle
+            radius = np.hypot(*points.T)
+            if radius.min() > layout.outer_radius + 0.3 and radius.max() < layout.flange_radius - 0.3:
+                angle = np.unwrap(np.arctan2(points[:, 1], points[:, 0]))
+                sectors.append((angle.min(), angle.max()))
+        assert read(sectors) == ("ABCDEFG".index(part.label[0]) + 1, int(part.label[1]))
+
+
+def test_a_one_piece_sensor_stays_one_assembly(seats):
+    laid, where = seats
+    parts = {part.name: part for part in laid.parts}
+    assert [body.name for body in parts["B1-membrane"].bodies] == ["B1-membrane", "B1-connector"]
+    assert [mark.kind for mark in parts["B1-membrane"].marks] == ["none", "text"]
+    assert {"B1-plug", "C1-ring", "A1-connector", "A1-membrane"} <= set(parts)
+    model, _ = read_strictly(next(where.glob("*.3mf")))
+    assert model.GetComponentsObjects().Count() == 2
+
+
+def test_shared_faces_of_an_assembly_keep_their_triangles(seats):
+    from pneutouch.printability.rules.contact_faces import shared_area
+
+    laid, _ = seats
+    part = next(part for part in laid.parts if len(part.bodies) == 2)
+    assert shared_area(*part.bodies) == pytest.approx(part.value.assembly.seat_area, rel=1e-3)
+
+
+def test_copies_without_marks_share_their_mesh(library, tmp_path):
+    laid = flags(library, ["paper-dome"], ["membrane.material=TangoPlus,FLX9940"], 4, marks="none")
+    where = write_tray(laid, tmp_path / "plain")
+    model, _ = read_strictly(next(where.glob("*.3mf")))
+    assert model.GetMeshObjects().Count() == 2
+    assert model.GetBuildItems().Count() == 8
+    assert {row["mark"] for row in table(where)} == {"none"}
+
+
+def test_what_another_printer_prints_is_left_out_and_said(library, tmp_path):
+    laid = flags(library, ["paper-dome", "agilus-dome"], copies=1, profile="abs-filament")
+    assert [part.name for part in laid.parts] == ["A1-connector"]
+    said = " ".join(laid.expanded.left_out)
+    assert "membrane of paper-dome: for the Stratasys Objet260 Connex" in said
+    assert "connector of agilus-dome: for the Stratasys J735" in said
+    where = write_tray(laid, tmp_path / "abs")
+    assert "Not on this tray: membrane of paper-dome" in (where / "labels.md").read_text()
+
+
+def test_resins_that_do_not_fit_at_once_make_more_jobs(library, tmp_path):
+    """A J735 cut down to one resin at a time."""
+    own = (ROOT / "printprofiles/j735.toml").read_text()
+    (tmp_path / "printprofiles").mkdir()
+    (tmp_path / "printprofiles/j735.toml").write_text(own.replace("resins_at_once = 6", "resins_at_once = 1", 1))
+    small = type(library)((tmp_path, ROOT))
+    order = order_of_flags(["agilus-dome"], ["membrane.material=Agilus30,TangoPlus"], 2)
+    laid = lay(order, small)
+    assert [job.resins for job in laid.jobs] == [("Agilus30",), ("VeroClear",), ("TangoPlus",)] or len(laid.jobs) == 3
+    assert "3 jobs in this order, 2 resins loaded anew" in laid.resin_note
+    where = write_tray(laid, tmp_path / "out")
+    assert {path.name for path in where.glob("*.3mf")} == {f"agilus-dome-tray-{k}.3mf" for k in (1, 2, 3)}
+    assert {path.name for path in where.glob("*.svg")} == {"tray-1.svg", "tray-2.svg", "tray-3.svg"}
+    assert {row["job"] for row in table(where)} == {"1", "2", "3"}
+
+
+def test_the_list_agrees_with_the_parts(seven, folder):
+    rows = table(folder)
+    for row, part in zip(rows, seven.parts, strict=True):
+        (body,) = part.on_tray()
+        low, high = body.bounds
+        middle = 0.5 * (low + high)
+        assert (float(row["x_mm"]), float(row["y_mm"])) == pytest.approx(tuple(middle[:2]), abs=2e-3)
+        density = part.solids[0].material.density_g_per_cm3.nominal
+        assert float(row["mass_g"]) == pytest.approx(body.volume * density * 1e-3, abs=1e-3)
+        assert (row["label"], row["value"]) == (part.label, part.value.value)
+    assert "counter-clockwise from the longest stroke" in (folder / "labels.md").read_text()
+
+
+def test_the_view_names_every_part(folder):
+    """Text is drawn as outlines: parts are found by their ids, other text by its comment."""
+    text = (folder / "tray.svg").read_text()
+    ElementTree.fromstring(text)
+    assert all(f'id="{letter}{copy}-membrane"' in text for letter in "ABCDEFG" for copy in (1, 2, 3))
+    assert all(f"<!-- {words} -->" in text for words in ("x, mm", "y, mm", "FLX9940-DM"))
+
+
+def test_the_mesh_is_as_fine_as_the_mode_s_finest_step(seven):
+    (job,) = seven.jobs
+    tolerance = seven.printer.finest_step(job.mode)
+    assert tolerance == pytest.approx(0.03)
+    solid = seven.parts[0].solids[0]
+    plain = solid.mesh(tolerance)
+    assert solid.distance(plain.surface_points()).max() <= tolerance
+
+
+def test_the_recipe_says_all_that_the_tray_follows_from(seven):
+    said = inputs(seven)
+    assert set(said["values"]) == set("ABCDEFG")
+    assert all(name is None or name in said["things"] for scene in said["values"].values() for name in scene.values())
+    assert said["things"][said["values"]["B"]["membrane_material"]]["title"] == "FLX9940-DM"
+    assert json.loads(json.dumps(document(seven, Path("x"))))["parts"] == 21
+
+
+def test_a_part_is_a_subject_for_the_print_rules(seats):
+    laid, _ = seats
+    (job,) = laid.jobs
+    part = next(part for part in job.parts if len(part.bodies) == 2)
+    found = subject(part, laid.printer, job.mode)
+    assert [item.body.name for item in found.items] == ["B1-membrane", "B1-connector"]
+    assert {item.job for item in found.items} == {"B1"}
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("[tray]\n", "entry: missing"),
+        ('[[entry]]\ndesign = "paper-dome"\ncopies = 0\n', "copies.* must be from 1 to 200"),
+        (
+            '[tray]\nmarks = "etched"\n[[entry]]\ndesign = "x"\n',
+            "tray.marks = 'etched': must be 'engraved', 'raised' or 'none'",
+        ),
+        ('[tray]\nspacing_mm = 0\n[[entry]]\ndesign = "x"\n', "tray.spacing_mm = 0: must be from 0.5 to 50 mm"),
+        ('[tray]\nmargins = 1\n[[entry]]\ndesign = "x"\n', "Did you mean margin_mm"),
+        ('[[entry]]\ndesign = "x"\nover = {"a.b" = [1], "c.d" = [2]}\n', "it must vary one key"),
+        ('[[entry]]\ndesign = "x"\nover = {"a.b" = [1, 1]}\n', "there twice; raise copies instead"),
+        ('[[entry]]\ndesign = "x"\nover = {"a.b" = [1]}\nset = {"a.b" = 2}\n', "must be in one of them"),
+        ('[[entry]]\ndesign = "paper-dom"\n', "Did you mean paper-dome"),
+        ('[[entry]]\ndesign = "paper-dome"\nover = {"membrane.material" = ["TangoPlus", "FLX994"]}\n', "FLX9940"),
+        ('[tray]\nprofile = "objet"\n[[entry]]\ndesign = "paper-dome"\n', "Did you mean objet260-connex"),
+        ('[tray]\nbodies = ["plug"]\n[[entry]]\ndesign = "paper-dome"\n', "nothing is left for the Stratasys"),
+        ('[[entry]]\ndesign = "paper-dome"\ncopies = 100\n', "64 of 100 parts fit"),
+    ],
+)
+def test_what_is_wrong_is_said_with_the_file_s_name(text, message, library, tmp_path):
+    path = tmp_path / "my.toml"
+    path.write_text(text)
+    assert is_tray_file(path)
+    with pytest.raises(InputError, match=message) as caught:
+        lay(order_of_file(path), library)
+    assert str(caught.value).startswith(str(path))
+
+
+def test_keys_may_be_written_as_tables_and_designs_lie_beside_the_file(library, tmp_path):
+    (tmp_path / "mine.toml").write_text((ROOT / "designs/paper-dome.toml").read_text())
+    path = tmp_path / "t.toml"
+    path.write_text('[[entry]]\ndesign = "mine.toml"\nover = { membrane.wall_thickness_mm = [1.0, 2.0] }\n')
+    laid = lay(order_of_file(path), library)
+    assert [part.value.assembly.layout.wall for part in laid.parts] == [1.0, 2.0]
+    assert isinstance(laid.order, Order)
