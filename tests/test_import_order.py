@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import graphlib
 from pathlib import Path
 
 import pneutouch
@@ -82,4 +83,62 @@ def test_no_print_and_no_mutable_state_at_module_level():
                 wrong.append(f"{path}:{node.lineno}: print")
             if isinstance(node, ast.Global):
                 wrong.append(f"{path}:{node.lineno}: global")
+    assert not wrong, "\n".join(wrong)
+
+
+def modules() -> dict[str, Path]:
+    names = {}
+    for path in PACKAGE.rglob("*.py"):
+        parts = ("pneutouch", *path.relative_to(PACKAGE).with_suffix("").parts)
+        names[".".join(parts).removesuffix(".__init__")] = path
+    return names
+
+
+def dependencies(path: Path, known: dict[str, Path]) -> set[str]:
+    """Own files that a file imports anywhere in it: at the top, under TYPE_CHECKING and inside functions."""
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            found |= {
+                f"{node.module}.{a.name}" if f"{node.module}.{a.name}" in known else node.module for a in node.names
+            }
+        elif isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+    return found & set(known)
+
+
+def circle(graph: dict[str, set[str]]) -> list[str]:
+    """Nodes of one circle of a graph, in order; empty where there is none."""
+    order = graphlib.TopologicalSorter(graph)
+    try:
+        order.prepare()
+    except graphlib.CycleError as error:
+        return list(error.args[1])
+    return []
+
+
+def test_no_two_files_import_each_other():
+    known = modules()
+    # A package's __init__ offers what its files define; they may import it no more than one another.
+    graph = {name: dependencies(path, known) - {name} for name, path in known.items() if name != "pneutouch"}
+    assert not circle({name: {d for d in own if d != "pneutouch"} for name, own in graph.items()})
+
+
+def test_a_circle_is_found_wherever_its_imports_stand(tmp_path):
+    top, function, checking = (tmp_path / f"{name}.py" for name in "abc")
+    top.write_text("import b")
+    function.write_text("def f():\n    from c import x")
+    checking.write_text("from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import a")
+    known = {path.stem: path for path in (top, function, checking)}
+    assert set(circle({name: dependencies(path, known) for name, path in known.items()})) == {"a", "b", "c"}
+
+
+def test_a_workflow_imports_no_other_workflow_s_inside():
+    wrong, folder = [], PACKAGE / "workflows"
+    for path in folder.rglob("*.py"):
+        own = path.relative_to(folder).parts[0]
+        for name, line in imports(path):
+            parts = name.split(".")
+            if parts[:2] == ["pneutouch", "workflows"] and len(parts) > 3 and parts[2] != own:
+                wrong.append(f"{path}:{line}: {own} imports {name}")
     assert not wrong, "\n".join(wrong)

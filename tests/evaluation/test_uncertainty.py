@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from pneutouch.evaluation import evaluate
-from pneutouch.evaluation.uncertainty import documents, prediction_document
+from pneutouch.evaluation.document import prediction_document
+from pneutouch.evaluation.uncertainty import documents
 from pneutouch.mechanics.ladder import NUMERICAL
 from pneutouch.mechanics.uncertainty import FIGURES, batch_of, budget, gas_text, model_errors
 from pneutouch.output.files import json_bytes
@@ -80,7 +81,8 @@ def test_outside_the_atlas_every_state_says_why(evaluated):
 
 
 def test_samples_of_the_same_sources_give_nearly_the_same_interval(evaluated):
-    for said in documents(evaluated("paper-dome", model="atlas"), 3000)[::3]:
+    one = evaluated("paper-dome", model="atlas")
+    for said in documents(one.prediction, one.sensor, one.scene, lambda: one.resins, 3000)[::3]:
         own, drawn = said["figures"][SENSITIVITY], said["monte_carlo"]["figures"][SENSITIVITY]
         width = np.log(own["high"] / own["low"])
         assert np.log(drawn["high"] / drawn["low"]) == pytest.approx(width, rel=0.12)

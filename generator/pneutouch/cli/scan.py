@@ -39,7 +39,8 @@ def scan(
             _separate(specimen, design, separate, asked, set_, json=json)
             return
         from pneutouch.workflows.scan.document import document
-        from pneutouch.workflows.scan.run import run_scan, write_scan
+        from pneutouch.workflows.scan.run import run_scan
+        from pneutouch.workflows.scan.write import write_scan
 
         run = run_scan(specimen, design, asked, set_)
         folder = write_scan(run, out)

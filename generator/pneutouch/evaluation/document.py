@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from pneutouch.evaluation.uncertainty import prediction_document
+from pneutouch.evaluation.uncertainty import documents
 from pneutouch.mechanics.viscous.known import AGED, ageing_ratio, unknown
 
 if TYPE_CHECKING:
@@ -30,8 +30,22 @@ def viscous(evaluation: Evaluation) -> dict[str, Any]:
     return _rounded(found.document())  # type: ignore[no-any-return]
 
 
+def prediction_document(evaluation: Evaluation, samples: int = 0) -> dict[str, Any]:
+    """The prediction as ``predict --json`` prints it, every state with its ``uncertainty``."""
+    content = evaluation.prediction.document()
+    found = evaluation.uncertainty
+    if samples:
+        found = documents(
+            evaluation.prediction, evaluation.sensor, evaluation.scene, lambda: evaluation.resins, samples
+        )
+    return {
+        **content,
+        "states": [{**state, "uncertainty": own} for state, own in zip(content["states"], found, strict=True)],
+    }
+
+
 def full_document(evaluation: Evaluation, samples: int = 0) -> dict[str, Any]:
-    """`uncertainty.prediction_document` with ``viscous``, and ``aged`` where the prediction is of an aged sensor."""
+    """`prediction_document` with ``viscous``, and ``aged`` where the prediction is of an aged sensor."""
     content = {**prediction_document(evaluation, samples), "viscous": viscous(evaluation)}
     if evaluation.asked.aged:
         ratio = ageing_ratio(evaluation.scene.membrane_material)

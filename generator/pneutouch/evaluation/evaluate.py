@@ -83,7 +83,7 @@ class Evaluation:
         """How sure the figures of each state are; a sweep that does not ask does not pay."""
         from pneutouch.evaluation.uncertainty import documents
 
-        return documents(self)
+        return documents(self.prediction, self.sensor, self.scene, lambda: self.resins)
 
 
 def evaluate(

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from pneutouch.catalogue import Scene
 from pneutouch.evaluation.graded_uncertainty import even_wall, notes_on
 from pneutouch.evaluation.table_s1 import is_near_paper
-from pneutouch.mechanics import Sensor, State
+from pneutouch.mechanics import Prediction, Sensor, State
 from pneutouch.mechanics.ladder import DISCRETISATION, NUMERICAL
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
-    from pneutouch.evaluation.evaluate import Evaluation
     from pneutouch.mechanics.atlas.press import Batch
     from pneutouch.mechanics.uncertainty import Budget
 
@@ -74,27 +74,28 @@ def known(
     return Known(batch, found)
 
 
-def documents(evaluation: Evaluation, samples: int = 0) -> tuple[Document, ...]:
+def documents(
+    prediction: Prediction, sensor: Sensor, scene: Scene, resins: Callable[[], Mapping[str, Material]], samples: int = 0
+) -> tuple[Document, ...]:
     """One document a state: see `mechanics.uncertainty.document`, with its ``summary``; or ``{"unknown": why}``.
 
-    ``samples`` > 0 adds ``monte_carlo``: the same sources sampled that often, the 95.45 % interval of every figure.
+    ``resins`` gives the elastomers whose measurements the model's error is taken from. ``samples`` > 0 adds ``monte_carlo``: the same sources sampled that often, the 95.45 % interval of every figure.
     """
-    states, rung = evaluation.prediction.states, evaluation.prediction.model
-    sensor = even_wall(evaluation.sensor)
+    states, rung = prediction.states, prediction.model
+    notes_of_wall, sensor = notes_on(sensor), even_wall(sensor)
     why = unknown(sensor, rung)
     if why is not None:
         return tuple({"unknown": why} for _ in states)
     from pneutouch.mechanics.uncertainty import document, gas_text, text
 
-    scene = evaluation.scene
     found = known(
         sensor, [state.driving_pressure for state in states], scene.membrane_material,
-        list(evaluation.resins.values()), scene.printer, rung,
+        list(resins().values()), scene.printer, rung,
     )  # fmt: skip
     content = []
     for row, (state, notes) in enumerate(zip(states, gas_text(found.batch), strict=True)):
-        values = _values(evaluation, state)
-        said = document(found.budget, row, values, (*notes_on(evaluation.sensor), *notes))
+        values = _values(prediction, state)
+        said = document(found.budget, row, values, (*notes_of_wall, *notes))
         lacking = said["figures"].keys() - values.keys()
         for name in lacking:
             del said["figures"][name], said["elasticities"][name]
@@ -103,19 +104,9 @@ def documents(evaluation: Evaluation, samples: int = 0) -> tuple[Document, ...]:
     return tuple(content)
 
 
-def prediction_document(evaluation: Evaluation, samples: int = 0) -> Document:
-    """The prediction as ``predict --json`` prints it, every state with its ``uncertainty``."""
-    content = evaluation.prediction.document()
-    found = documents(evaluation, samples) if samples else evaluation.uncertainty
-    return {
-        **content,
-        "states": [{**state, "uncertainty": own} for state, own in zip(content["states"], found, strict=True)],
-    }
-
-
-def _values(evaluation: Evaluation, state: State) -> dict[str, float]:
+def _values(prediction: Prediction, state: State) -> dict[str, float]:
     """The figures of the budget as the rung has them; without those it lacks."""
-    peak, figures = evaluation.prediction.limits.limit_point, state.figures
+    peak, figures = prediction.limits.limit_point, state.figures
     return {
         **({} if peak is None else {"limit_pressure_kPa": peak / KPA}),
         **({} if figures is None else {

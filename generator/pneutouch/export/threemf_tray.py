@@ -16,6 +16,9 @@ from pneutouch.export.threemf import content_of, mesh_object, name_uuid
 from pneutouch.export.threemf_materials import Materials
 from pneutouch.export.threemf_metadata import add_metadata
 
+TRAY_RECIPE = "tray-recipe"
+"""Metadata entry of a tray's 3MF that holds its order."""
+
 
 @dataclass(frozen=True)
 class Item:

@@ -15,7 +15,7 @@ from pneutouch.report.residuals import residual_chart
 from pneutouch.spec.read import read_toml
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.workflows.calibrate.fit import Calibration
-from pneutouch.workflows.coupons.profile import Profile, write_profiles
+from pneutouch.workflows.coupons import Profile, write_profiles
 
 HEAD = "# Written by pneutouch calibrate"
 """First words of every file that is ours to overwrite."""

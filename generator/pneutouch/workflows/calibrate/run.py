@@ -10,9 +10,7 @@ from pneutouch.catalogue import Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.workflows.calibrate.files import prepare, save, write_calibration
 from pneutouch.workflows.calibrate.fit import calibrate, observations_of
-from pneutouch.workflows.characterize.load import Progress, load_curves
-from pneutouch.workflows.characterize.predicted import answers
-from pneutouch.workflows.characterize.run import sound
+from pneutouch.workflows.characterize import Progress, answers, load_curves, sound
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,1 +1,5 @@
-"""Coupons: what a lab prints, measures, and puts into profiles of its own."""
+"""Prints that measure a machine, a resin and a leak."""
+
+from pneutouch.workflows.coupons.profile import Profile, write_profiles
+
+__all__ = ["Profile", "write_profiles"]

@@ -21,7 +21,7 @@ from pneutouch.spec.campaign import Campaign, Rig, Run, RunKind
 from pneutouch.spec.read import read_toml, validate
 from pneutouch.units import KPA, ML
 from pneutouch.workflows.plan.expected import curve_warnings, injection, leak_limit, points, travel_warnings
-from pneutouch.workflows.simulate.run import campaign_toml
+from pneutouch.workflows.simulate import campaign_toml
 
 PAPER = Rig()
 

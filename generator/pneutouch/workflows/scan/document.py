@@ -17,7 +17,7 @@ from pneutouch.texture.signal import Signal, decimated
 from pneutouch.texture.substrate import FIRST_ZERO, Bars, patch_filter
 from pneutouch.units import GAUGE_LIMIT, KPA
 from pneutouch.workflows.scan.run import ScanRun, Seen
-from pneutouch.workflows.specimen.build import inputs as specimen_inputs
+from pneutouch.workflows.specimen import inputs as specimen_inputs
 
 ASSUMPTIONS = (
     "the dome's flat-plate contact, frictionless; uniform pressure over the patch; no inertia, no relaxation",

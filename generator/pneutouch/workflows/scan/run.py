@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-import io
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from pneutouch import __version__
 from pneutouch.catalogue import Library, Scene, load_scene
 from pneutouch.errors import InputError, nearest
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.mechanics import Sensor
-from pneutouch.output.files import MANIFEST, check_writable, digest, json_bytes, write_folder
-from pneutouch.output.recipe import input_hash, versions
 from pneutouch.parts import assemble
 from pneutouch.parts.specimen.bars import places
 from pneutouch.spec.specimen import Bars as BarLayer
@@ -25,11 +20,10 @@ from pneutouch.texture.contact import Touch, touch
 from pneutouch.texture.detect import Detection, detect, least_duration
 from pneutouch.texture.record import read_signal
 from pneutouch.texture.scan import CONTROLS, NOISE, PRELOAD, Recorder, Scan, Way, scan
-from pneutouch.texture.signal import Signal, decimated
+from pneutouch.texture.signal import Signal
 from pneutouch.texture.substrate import Bars, Matrix, Substrate
 from pneutouch.units import KPA
-from pneutouch.workflows.specimen.draw import draw
-from pneutouch.workflows.specimen.load import SpecimenScene, load_specimen, specimen_file
+from pneutouch.workflows.specimen import SpecimenScene, draw, load_specimen, specimen_file
 
 KEPT = 20.0
 """Highest frequency of the signals in CSV files, Hz, or twice the highest pattern's; they keep five times as many samples."""
@@ -227,36 +221,3 @@ def _simulated(state: Touch, substrate: Substrate, way: Way, asked: Asked, frequ
 def _measured(path: Path, frequencies: dict[str, float]) -> Seen:
     signal = read_signal(path)
     return Seen(path.name, signal, _detected(signal, frequencies, str(path)))
-
-
-def write_scan(run: ScanRun, out: Path) -> Path:
-    """Write signals, document, figure and manifest into ``out/<specimen>-<design>-scan/``; the same input, the same bytes."""
-    from pneutouch.workflows.scan.document import document, inputs, spectra
-
-    folder = out / run.name
-    check_writable(folder)
-    files = {"scan.json": json_bytes(document(run)), "scan.svg": spectra(run).encode()}
-    for number, seen in enumerate(run.seen):
-        files[f"signal-{number + 1}.csv"] = signal_csv(seen, run.bars, run.kept)
-    content = inputs(run)
-    manifest = {
-        "name": run.name, "inputs": content, "input_hash": input_hash(content, __version__), "versions": versions(),
-        "files": {name: {"sha256": digest(data), "bytes": len(data)} for name, data in sorted(files.items())},
-    }  # fmt: skip
-    write_folder(folder, {**files, MANIFEST: json_bytes(manifest)})
-    return folder
-
-
-def signal_csv(seen: Seen, bars: Sequence[Bars], highest: float) -> bytes:
-    """A signal decimated for ``highest`` Hz; a simulated one with place, noiseless pressure and true patterns."""
-    kept = decimated(seen.signal, highest)
-    columns = {"time_s": kept.time, "pressure_kPa": kept.pressure / KPA}
-    if seen.scan is not None:
-        every = np.searchsorted(seen.signal.time, kept.time - 0.5 * seen.signal.step)
-        columns["place_mm"] = seen.scan.place[every]
-        columns["noiseless_kPa"] = seen.scan.clean[every] / KPA
-        columns |= {f"bar_{k + 1}": row.covers(seen.scan.place[every]) for k, row in enumerate(bars)}
-    text = io.StringIO()
-    text.write(",".join(columns) + "\n")
-    np.savetxt(text, np.stack(list(columns.values()), axis=1), fmt="%.9g", delimiter=",")
-    return text.getvalue().encode()

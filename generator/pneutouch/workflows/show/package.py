@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from pneutouch.export.threemf_read import RECIPE, Package, StoredBody, read_threemf
+from pneutouch.export.threemf_tray import TRAY_RECIPE
 from pneutouch.output.recipe_read import other_versions, read_recipe
-from pneutouch.workflows.tray.write import TRAY_RECIPE
 
 _BESIDE = (RECIPE, TRAY_RECIPE, "versions")
 """Entries that are shown apart, or are too long to be read."""

@@ -9,7 +9,7 @@ from typing import Any
 from pneutouch import __version__
 from pneutouch.body import Body
 from pneutouch.export.scene import stl
-from pneutouch.export.threemf_tray import Item, threemf_tray
+from pneutouch.export.threemf_tray import TRAY_RECIPE, Item, threemf_tray
 from pneutouch.output.files import MANIFEST, check_writable, digest, json_bytes, write_folder
 from pneutouch.output.recipe import scene_shelves, versions
 from pneutouch.workflows.tray.labels import labels_csv, labels_md, rows
@@ -17,7 +17,6 @@ from pneutouch.workflows.tray.lay import Job, Laid, Part, Progress, counted, fil
 from pneutouch.workflows.tray.rules import TrayFinding, findings, refuse
 from pneutouch.workflows.tray.view import tray_svg
 
-TRAY_RECIPE = "tray-recipe"
 """Name of the metadata entry that holds what a tray follows from."""
 
 
