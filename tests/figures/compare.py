@@ -1,0 +1,111 @@
+"""Compare two documents: the figures, not the prose."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from tests.figures.renames import Rename, renamed
+
+RELATIVE = 1e-12
+# What should be zero is left of a difference of numbers near one: it has no digits of its own to compare.
+ABSOLUTE = 1e-15
+# Follow the bytes of drawings and texts, or the version, and are no figures.
+LEFT_OUT = frozenset({"input_hash", "sha256", "bytes", "versions", "version", "pneutouch_version"})
+DIGEST = re.compile(r"[0-9a-f]{12}(?:[0-9a-f]{52})?")
+
+
+def plain(value: Any) -> Any:
+    """A document without what must differ between two states of the program: digests, versions, folders of the machine.
+
+    A mapping whose keys are digests becomes a list, in an order that the names of keys do not decide.
+    """
+    if isinstance(value, dict):
+        if value and all(DIGEST.fullmatch(key) for key in value):
+            return sorted((plain(item) for item in value.values()), key=order)
+        return {key: plain(item) for key, item in value.items() if key not in LEFT_OUT}
+    if isinstance(value, list):
+        return [plain(item) for item in value]
+    if isinstance(value, str):
+        return "(digest)" if DIGEST.fullmatch(value) else value.rsplit("/", 1)[-1] if value.startswith("/") else value
+    return value
+
+
+def order(value: Any) -> str:
+    return json.dumps(sorted(str(leaf) for leaf in leaves(value) if not is_prose(leaf)))
+
+
+def leaves(value: Any) -> Iterator[Any]:
+    if isinstance(value, dict | list):
+        for item in value.values() if isinstance(value, dict) else value:
+            yield from leaves(item)
+    else:
+        yield value
+
+
+def is_prose(value: Any) -> bool:
+    """Text with a space is written for people and may be reworded; names, kinds and units have none."""
+    return isinstance(value, str) and " " in value
+
+
+def differences(old: Any, new: Any, renames: Sequence[Rename] = (), path: tuple[str, ...] = ()) -> Iterator[str]:
+    """A line for each figure that differs: path, old, new. The paths are those of the new document."""
+    where = ".".join(path) or "document"
+    if isinstance(old, dict) and isinstance(new, dict):
+        yield from differences_of_keys(old, new, renames, path)
+    elif isinstance(old, list) and isinstance(new, list):
+        if len(old) != len(new):
+            yield f"{where}: {len(old)} entries before, {len(new)} now"
+        for at, pair in enumerate(zip(old, new, strict=False)):
+            yield from differences(*pair, renames, (*path, str(at)))
+    elif not equal(old, new, renames):
+        yield f"{where}: {old!r} before, {new!r} now"
+
+
+def differences_of_keys(
+    old: dict[str, Any], new: dict[str, Any], renames: Sequence[Rename], path: tuple[str, ...]
+) -> Iterator[str]:
+    before = {renamed(key, path, renames): item for key, item in old.items()}
+    for key in sorted(before.keys() | new.keys()):
+        inner = (*path, key)
+        if key not in new:
+            yield f"{'.'.join(inner)}: {short(before[key])} before, not there now"
+        elif key not in before:
+            yield f"{'.'.join(inner)}: not there before, {short(new[key])} now"
+        else:
+            yield from differences(before[key], new[key], renames, inner)
+
+
+def short(value: Any) -> str:
+    return f"{value!r:.60}"
+
+
+def equal(old: Any, new: Any, renames: Sequence[Rename] = ()) -> bool:
+    if isinstance(old, bool) or isinstance(new, bool) or old is None or new is None:
+        return old is new
+    if isinstance(old, str) and isinstance(new, str):
+        return (
+            old == new
+            or (is_prose(old) and is_prose(new))
+            or any((old, new) == (rename.old, rename.new) for rename in renames)
+        )
+    if isinstance(old, int | float) and isinstance(new, int | float):
+        return math.isclose(old, new, rel_tol=RELATIVE, abs_tol=ABSOLUTE) or (math.isnan(old) and math.isnan(new))
+    return False
+
+
+def changes(old: dict[str, Any], new: dict[str, Any], renames: Sequence[Rename]) -> Iterator[str]:
+    """Differences of the documents of one group, each command and file under the renames that concern it."""
+    for run, document in old.items():
+        command, now = run.split()[0], new[run]
+        here = [rename for rename in renames if rename.concerns(command)]
+        for part in ("exit", "json"):
+            yield from differences(document[part], now[part], here, (run, part))
+        files = document["files"]
+        yield from differences(dict.fromkeys(files), dict.fromkeys(now["files"]), (), (run, "files"))
+        for name in files.keys() & now["files"].keys():
+            here = [rename for rename in renames if rename.concerns(command, (name.rsplit("/", 1)[-1],))]
+            yield from differences(files[name], now["files"][name], here, (run, name))

@@ -1,0 +1,113 @@
+"""The comparison itself: what it finds, what it lets pass, and what it reads of the table of renamed keys."""
+
+from __future__ import annotations
+
+import copy
+import math
+
+import pytest
+
+from tests.figures.compare import differences, plain
+from tests.figures.renames import Rename, read_renames
+
+DOCUMENT = {
+    "design": "paper-dome",
+    "passed": True,
+    "told": ["the modulus is published, not measured"],
+    "states": [{"driving_pressure_kPa": 22.0, "force_N": [0.0, 1.5], "limit": None, "told": 2, "figures": ["force_N"]}],
+}
+
+
+def changed(*path, value):
+    document = copy.deepcopy(DOCUMENT)
+    *above, last = path
+    holder = document
+    for part in above:
+        holder = holder[part]
+    if value is None:
+        del holder[last]
+    else:
+        holder[last] = value
+    return document
+
+
+def test_a_document_equals_itself():
+    assert not list(differences(DOCUMENT, copy.deepcopy(DOCUMENT)))
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "line"),
+    [
+        (("states", 0, "force_N", 1), 1.50000000001, "states.0.force_N.1: 1.5 before, 1.50000000001 now"),
+        (("states", 0, "force_N", 0), 2e-15, "states.0.force_N.0: 0.0 before, 2e-15 now"),
+        (("states", 0, "force_N", 1), math.nan, "states.0.force_N.1: 1.5 before, nan now"),
+        (("states", 0, "force_N"), [0.0], "states.0.force_N: 2 entries before, 1 now"),
+        (("states", 0, "limit"), 0.0, "states.0.limit: None before, 0.0 now"),
+        (("states", 0, "told"), None, "states.0.told: 2 before, not there now"),
+        (("states", 0, "more"), 3, "states.0.more: not there before, 3 now"),
+        (("passed",), 1, "passed: True before, 1 now"),
+        (("design",), "soft-pad", "design: 'paper-dome' before, 'soft-pad' now"),
+        (("told", 0), "nothing", "told.0: 'the modulus is published, not measured' before, 'nothing' now"),
+    ],
+)
+def test_a_change_is_found(path, value, line):
+    assert list(differences(DOCUMENT, changed(*path, value=value))) == [line]
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        (("states", 0, "force_N", 1), 1.5 * (1 + 5e-13)),
+        (("states", 0, "force_N", 0), 5e-16),
+        (("told", 0), "the modulus is a published value"),
+    ],
+)
+def test_rounding_and_other_words_are_no_change(path, value):
+    assert not list(differences(DOCUMENT, changed(*path, value=value)))
+
+
+def test_a_renamed_key_is_no_change_at_any_depth_and_its_value_still_counts():
+    new = {**DOCUMENT, "notes": DOCUMENT["told"], "states": [{**DOCUMENT["states"][0], "notes": 3}]}
+    del new["told"], new["states"][0]["told"]
+    assert list(differences(DOCUMENT, new, [Rename(("*",), "told", "notes")])) == ["states.0.notes: 2 before, 3 now"]
+
+
+def test_a_dotted_key_is_renamed_below_its_parent_alone():
+    new = {**DOCUMENT, "states": [{**DOCUMENT["states"][0], "notes": 2}]}
+    del new["states"][0]["told"]
+    assert not list(differences(DOCUMENT, new, [Rename(("*",), "states.told", "states.notes")]))
+
+
+def test_a_name_that_stands_as_a_value_is_renamed_with_the_key():
+    new = {**DOCUMENT, "states": [{**DOCUMENT["states"][0], "load_N": [0.0, 1.5], "figures": ["load_N"]}]}
+    del new["states"][0]["force_N"]
+    assert not list(differences(DOCUMENT, new, [Rename(("*",), "force_N", "load_N")]))
+
+
+def test_what_follows_bytes_and_versions_is_left_out():
+    one = {
+        "versions": {"numpy": "2.4"},
+        "files": {"a.stl": {"bytes": 9, "sha256": "0" * 64}},
+        "of": {"baf0a17c32cd": {"b": 1}},
+    }
+    other = {"versions": {}, "files": {"a.stl": {"bytes": 8, "sha256": "1" * 64}}, "of": {"be9aa6cdd3c7": {"b": 1}}}
+    assert plain(one) == plain(other) == {"files": {"a.stl": {}}, "of": [{"b": 1}]}
+    assert plain("/home/user/designs/paper-dome.toml") == "paper-dome.toml"
+
+
+def test_the_table_is_read_and_concerns_the_documents_it_names():
+    text = """
+| file or command | old key | new key |
+| --- | --- | --- |
+| `pneutouch calibrate`, `figures.json` | `told` | `notes` |
+| `*` | `shares.body's own` | `shares.material` |
+
+| other | table | here |
+| --- | --- | --- |
+| predict | no | rename |
+"""
+    calibrate, everywhere = read_renames(text)
+    assert (calibrate.old, calibrate.new) == ("told", "notes")
+    assert calibrate.concerns("calibrate") and calibrate.concerns("characterize", ["figures.json"])
+    assert not calibrate.concerns("characterize", ["manifest.json"])
+    assert everywhere.concerns("predict") and everywhere.old == "shares.body's own"

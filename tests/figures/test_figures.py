@@ -1,0 +1,29 @@
+"""What every command computes, against what it computed in the reference state; the everyday run takes three commands."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.figures.compare import changes, plain
+from tests.figures.renames import read_renames
+from tests.figures.store import EVERYDAY, GROUPS, collect, stored
+
+
+@pytest.mark.parametrize(
+    "group", [pytest.param(name, marks=() if name in EVERYDAY else pytest.mark.slow) for name in GROUPS]
+)
+def test_the_figures_are_those_of_the_reference_state(group):
+    lines = list(changes(stored()[group], plain(collect(group)), read_renames()))
+    assert not lines, f"{len(lines)} figures differ:\n" + "\n".join(lines[:100])
+
+
+def test_every_group_is_stored():
+    assert stored().keys() == GROUPS.keys()
+
+
+def test_only_what_the_atlas_and_the_membrane_cannot_hold_was_refused():
+    refused = [run for group in stored().values() for run, document in group.items() if document["exit"] not in (0, 1)]
+    assert all(
+        run.startswith(("predict graded-dome --model atlas", "predict graded-dome --model membrane")) for run in refused
+    )
+    assert len(refused) == 3
