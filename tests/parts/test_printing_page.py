@@ -26,7 +26,7 @@ def test_the_tables_name_every_part_and_every_rule(library):
     for kind in ("ports", "seats", "mounts"):
         for name in library.shelf(kind):
             assert f"`{name}`" in TEXT or f"`-{name.rsplit('-', 1)[1]}`" in TEXT, name
-    table = TEXT.partition("| rule | looks at |")[2].partition("\n\n")[0]
+    table = TEXT.partition("| rule | checks |")[2].partition("\n\n")[0]
     named = {word.strip() for line in re.findall(r"^\| ([a-z, ]+) \|", table, re.MULTILINE) for word in line.split(",")}
     assert named == set(RULES)
 
