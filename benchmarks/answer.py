@@ -12,7 +12,7 @@ from pneutouch.arrays import Array
 from pneutouch.mechanics.events import range_end
 from pneutouch.mechanics.membrane import membrane_states
 from pneutouch.mechanics.response import figures
-from pneutouch.mechanics.solid import Press, Solid, dome, indent, inflate, state_at
+from pneutouch.mechanics.solid import PressSettings, SolidModel, dome, indent, inflate, state_at
 from pneutouch.mechanics.solid_states import _curve, _events
 from pneutouch.units import KPA
 
@@ -39,9 +39,11 @@ class Answer:
 def solid_answer(scene: Scene, arc: int | None, through: int | None, depth: float | None = None) -> Answer:
     """Study 1 to the driving pressure and study 2 in 14 steps, mesh and all; ``depth`` (mm) may stop it short."""
     s = scene.sensor
-    solid = Solid(dome(s.inner_radius, s.wall_thickness, arc=arc, through=through), s.material)
+    solid = SolidModel(dome(s.inner_radius, s.wall_thickness, arc=arc, through=through), s.material)
     free = state_at(solid, scene.pressure)
-    press = Press(depth or s.depth, s.steps, 2 * s.plate_radius, s.ambient_pressure, s.dead_volume, s.gauge_limit)
+    press = PressSettings(
+        depth or s.depth, s.steps, 2 * s.plate_radius, s.ambient_pressure, s.dead_volume, s.gauge_limit
+    )
     found = indent(solid, free, press)
     happened = _events(found)
     end = min(range_end(happened, press.depth), found.path[-1].indentation)
@@ -65,5 +67,7 @@ def membrane_answer(scene: Scene, closure: str) -> Answer:
 def solid_limit(scene: Scene, arc: int | None, through: int | None) -> float:
     """Limit pressure, MPa; nan where there is none."""
     s = scene.sensor
-    run = inflate(Solid(dome(s.inner_radius, s.wall_thickness, arc=arc, through=through), s.material), past_limit=1.0)
+    run = inflate(
+        SolidModel(dome(s.inner_radius, s.wall_thickness, arc=arc, through=through), s.material), past_limit=1.0
+    )
     return np.nan if run.limit is None else run.limit.pressure

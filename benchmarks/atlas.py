@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from rich.progress import Progress
 
-from pneutouch.mechanics.atlas.fit import Sheet, fit_sheet, join
+from pneutouch.mechanics.atlas.fit import WallCoefficients, fit_sheet, join
 from pneutouch.mechanics.atlas.recipe import RECIPE
 from pneutouch.mechanics.atlas.stale import solid_fingerprint
 from pneutouch.mechanics.atlas.survey import survey
@@ -30,7 +30,7 @@ def _surveyed(wall_ratio: float, folder: Path) -> Path:
     return path
 
 
-def _sheet(wall_ratio: float, folder: Path) -> Sheet:
+def _sheet(wall_ratio: float, folder: Path) -> WallCoefficients:
     return fit_sheet(pickle.loads(_surveyed(wall_ratio, folder).read_bytes()), RECIPE)
 
 

@@ -11,15 +11,14 @@ from typing import NamedTuple
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.atlas.press import Batch
-from pneutouch.mechanics.atlas.press import Press as Lookup
+from pneutouch.mechanics.atlas.press import AtlasPress, SensorBatch
 from pneutouch.mechanics.atlas.recipe import RECIPE
 from pneutouch.mechanics.atlas.respond import ENDS, respond
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.events import range_end
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.response import figures
-from pneutouch.mechanics.solid import Press, Solid, dome, indent, inflate, state_at
+from pneutouch.mechanics.solid import PressSettings, SolidModel, dome, indent, inflate, state_at
 from pneutouch.mechanics.solid_states import _curve, _events
 from pneutouch.units import KPA
 
@@ -42,12 +41,12 @@ class Case:
     gauge: float = np.inf
     tear: float = np.inf
 
-    def batch(self, limit: float) -> Batch:
+    def batch(self, limit: float) -> SensorBatch:
         """The same for the atlas, driven to a share of a limit pressure."""
         values = (
             1.0, self.wall, 1.0, self.ambient, self.dead, self.share * limit, self.depth, np.inf, self.gauge, self.tear,
         )  # fmt: skip
-        return Batch(*(np.array([value]) for value in values))
+        return SensorBatch(*(np.array([value]) for value in values))
 
 
 @dataclass(frozen=True)
@@ -100,11 +99,11 @@ def random_cases(count: int, seed: int) -> list[Case]:
 
 def compare(case: Case) -> Gap | None:
     """Press once by both; None where the range ends nearly at once, in which there is nothing to compare."""
-    solid = Solid(dome(1.0, case.wall), neo_hookean(1.0, POISSON))
+    solid = SolidModel(dome(1.0, case.wall), neo_hookean(1.0, POISSON))
     run = inflate(solid, past_limit=1.0)
     assert run.limit is not None
     free = state_at(solid, case.share * run.limit.pressure, run)
-    press = Press(case.depth, STEPS, None, case.ambient, case.dead, case.gauge, case.tear - 1.0)
+    press = PressSettings(case.depth, STEPS, None, case.ambient, case.dead, case.gauge, case.tear - 1.0)
     found = indent(solid, free, press)
     happened = _events(found)
     end = min(range_end(happened, case.depth), found.path[-1].indentation)
@@ -116,7 +115,7 @@ def compare(case: Case) -> Gap | None:
     common = min(end, mine)
     if not common > _SHORTEST:
         return None
-    lookup = Lookup(batch, shipped().slices(batch.wall_ratio), np.zeros(1, dtype=np.intp))
+    lookup = AtlasPress(batch, shipped().slices(batch.wall_ratio), np.zeros(1, dtype=np.intp))
     grid, whole = (np.linspace(0.0, reach, STEPS + 1) for reach in (common, end))
     theirs, full = figures(grid, *_curve(found.path, grid)), figures(whole, *_curve(found.path, whole))
     ours = figures(grid, *_looked_up(lookup, grid))
@@ -143,7 +142,7 @@ class _Difference(NamedTuple):
         return float(self.every.max())
 
 
-def _differences(lookup: Lookup, travel: Array, theirs: tuple[Array, Array]) -> tuple[_Difference, _Difference]:
+def _differences(lookup: AtlasPress, travel: Array, theirs: tuple[Array, Array]) -> tuple[_Difference, _Difference]:
     """Of force and pressure rise at plate travels."""
     one, other = (
         _Difference(np.abs(a - b) / b.max(), float(b.max()))
@@ -152,7 +151,7 @@ def _differences(lookup: Lookup, travel: Array, theirs: tuple[Array, Array]) -> 
     return one, other
 
 
-def _looked_up(lookup: Lookup, travel: Array) -> tuple[Array, Array]:
+def _looked_up(lookup: AtlasPress, travel: Array) -> tuple[Array, Array]:
     """Force and pressure rise of the atlas at plate travels."""
     track = lookup.march(travel[None, :])
     return track.point.force[0], track.point.pressure[0] - lookup.pressure[0]

@@ -20,14 +20,14 @@ from benchmarks.chart import DOCS
 from pneutouch.bench.blocks import blocks_of
 from pneutouch.bench.curve import curve_of
 from pneutouch.bench.figure import BY_KEY, FIGURES, RESOLVED
-from pneutouch.bench.record import Curve
-from pneutouch.bench.simulate import Specimens, Truth, population, press_curves, simulate_run
-from pneutouch.bench.simulate.curve import PressCurve, Pressed
-from pneutouch.bench.summary import Group, summarize
+from pneutouch.bench.record import MeasuredCurve
+from pneutouch.bench.simulate import SimulatedSpecimens, SimulationTruth, population, press_curves, simulate_run
+from pneutouch.bench.simulate.curve import PressCurve, PressCurves
+from pneutouch.bench.summary import RunGroup, summarize
 from pneutouch.catalogue import Library
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.spec.campaign import Rig, Run
+from pneutouch.spec.campaign import CampaignRun, Rig
 from pneutouch.units import KPA
 
 RESINS = ("TangoPlus", "FLX9940", "FLX9950", "FLX9960", "FLX9970", "FLX9985", "FLX9995")
@@ -39,7 +39,7 @@ STORED = DOCS / "coverage.json"
 RATE, LOOP_RATE = 100.0, 2000.0
 """Hz: that of the blocks to which any faster record is averaged before it is looked at; a loop is short, and recorded faster."""
 
-TRUTH = Truth(rest=10.0)
+TRUTH = SimulationTruth(rest=10.0)
 """The paper's protocol with rests of 10 s in place of 30: half of them is read at most."""
 
 SAFE, LIGHT = 0.9, 30.0
@@ -74,31 +74,31 @@ def _safe(curve: PressCurve, wanted: float) -> float:
     return depth if np.interp(depth, curve.indentation, curve.force) < 1.2 * LIGHT else min(depth, light)
 
 
-def _true(nominal: Pressed, k: int) -> dict[str, float]:
+def _true(nominal: PressCurves, k: int) -> dict[str, float]:
     found = population(nominal, k, TRUTH, RATE, (1, k)).figures
     known = {key: value for key, value in found.items() if value is not None and key in BY_KEY}
     return {**known, "resolution_N": RESOLVED * known["noise_pressure_kPa"] / known["sensitivity_kPa_per_N"]}
 
 
-def campaign(of: Cell, number: int) -> list[Group]:
+def campaign(of: Cell, number: int) -> list[RunGroup]:
     """One simulated campaign of a resin, read as a lab's would be."""
     rng = np.random.default_rng([RESINS.index(of.resin), number])
-    drawn = Specimens.draw(TRUTH.scatter, SPECIMENS, rng)
-    curves: list[Curve] = []
+    drawn = SimulatedSpecimens.draw(TRUTH.scatter, SPECIMENS, rng)
+    curves: list[MeasuredCurve] = []
     for k in range(SPECIMENS):
         pressed = press_curves(drawn.sensor(of.sensor, k), [p * KPA for p in PRESSURES], of.depth, "atlas")
         curves += _runs(of, f"{of.resin}-{k + 1}", pressed, rng)
     return summarize(curves)
 
 
-def _runs(of: Cell, name: str, pressed: Pressed, rng: np.random.Generator) -> Iterator[Curve]:
+def _runs(of: Cell, name: str, pressed: PressCurves, rng: np.random.Generator) -> Iterator[MeasuredCurve]:
     for pressure, curve in zip(PRESSURES, pressed.curves, strict=True):
         for kind, count in (("steps", RUNS), ("loop", 1), ("relaxation", 1)):
             way = TRUTH.protocol(kind, of.sensor.inner_radius, curve.reach)
             for number in range(1, count + 1):
                 rate = LOOP_RATE if kind == "loop" else RATE
                 record = simulate_run(curve, way, TRUTH.rig, rate, rng, wall=TRUTH.wall, scatter=TRUTH.scatter)
-                run = Run(
+                run = CampaignRun(
                     file=f"{name}-{pressure:g}-{kind}-{number}", kind=kind, sensor=name, resin=of.resin,
                     driving_pressure_kPa=pressure, run=number,
                 )  # fmt: skip

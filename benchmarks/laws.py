@@ -9,7 +9,7 @@ from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
 from benchmarks.scenes import MOONEY_RIVLIN_AGILUS30, OGDEN_AGILUS30, PAPER
 from pneutouch.mechanics.laws import Hyperelastic, hyperelastic, neo_hookean
-from pneutouch.mechanics.solid import Inflation, Solid, dome, inflate
+from pneutouch.mechanics.solid import Inflation, SolidModel, dome, inflate
 from pneutouch.report.style import ACCENT, INK, LINES, MUTED, figure, svg
 
 NU = 0.49
@@ -45,7 +45,7 @@ def curves() -> dict[str, Curve]:
     found = {}
     for name, law in LAWS.items():
         run: Inflation = inflate(
-            Solid(dome(PAPER.inner_radius, PAPER.wall_thickness), law), past_limit=1.5, largest=8.0
+            SolidModel(dome(PAPER.inner_radius, PAPER.wall_thickness), law), past_limit=1.5, largest=8.0
         )
         scale = PAPER.inner_radius / (law.mu * PAPER.wall_thickness)
         limit = None if run.limit is None else (run.limit.inner_apex / PAPER.inner_radius, run.limit.pressure * scale)

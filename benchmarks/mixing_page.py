@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from pneutouch.catalogue import Library
-from pneutouch.catalogue.mixture import Mixing, mixing
+from pneutouch.catalogue.mixture import ResolvedMixingCurve, mixing
 from pneutouch.mechanics.mixing import (
     LONG_TERM,
     PLACING,
@@ -27,7 +27,7 @@ SOFT, STIFF = "TangoPlus", "VeroClear"
 WHERE = (0.05, 0.1, 0.15, 0.2, 0.3, 0.45, 0.6)
 
 
-def measure(library: Library) -> tuple[Mixing, tuple[float, float], tuple[str, ...]]:
+def measure(library: Library) -> tuple[ResolvedMixingCurve, tuple[float, float], tuple[str, ...]]:
     """The shipped curve, the stiff resin's least and greatest modulus, and the names of the points."""
     law = mixing(SOFT, STIFF, library)
     materials: list[Material] = [library.load("materials", str(point.material)) for point in law.curve.points]
@@ -38,7 +38,7 @@ def measure(library: Library) -> tuple[Mixing, tuple[float, float], tuple[str, .
     )
 
 
-def page(law: Mixing, stiff: tuple[float, float], names: tuple[str, ...]) -> str:
+def page(law: ResolvedMixingCurve, stiff: tuple[float, float], names: tuple[str, ...]) -> str:
     """The whole page."""
     return "\n".join([*_what(), *placed(law, stiff, names), *bounds(law, stiff), *band(law), *_lab()])
 
@@ -56,7 +56,7 @@ def _what() -> list[str]:
     ]  # fmt: skip
 
 
-def placed(law: Mixing, stiff: tuple[float, float], names: tuple[str, ...]) -> list[str]:
+def placed(law: ResolvedMixingCurve, stiff: tuple[float, float], names: tuple[str, ...]) -> list[str]:
     """Where each law puts each resin."""
     soft, rows = float(law.modulus[0]), []
     for name, modulus, point in zip(names, law.modulus, law.curve.points, strict=True):
@@ -85,7 +85,7 @@ def _range(values: list[float]) -> str:
     return low if low == high else f"{low} to {high}"
 
 
-def bounds(law: Mixing, stiff: tuple[float, float]) -> list[str]:
+def bounds(law: ResolvedMixingCurve, stiff: tuple[float, float]) -> list[str]:
     """The curve against the bounds, and the step where droplets touch."""
     soft, f = float(law.modulus[0]), np.array(WHERE)
     curve, low = law.modulus_at(f), hashin_shtrikman_low(f, soft, stiff[0])
@@ -114,7 +114,7 @@ def bounds(law: Mixing, stiff: tuple[float, float]) -> list[str]:
     ]  # fmt: skip
 
 
-def band(law: Mixing) -> list[str]:
+def band(law: ResolvedMixingCurve) -> list[str]:
     """How far off the modulus of a mix may be."""
     f = np.array(WHERE)
     rows = [

@@ -49,10 +49,10 @@ def solve(name: str, arc: int, through: int, count: int = 0) -> tuple[float, int
         from benchmarks.felupe_sweep import felupe_limit
 
         return felupe_limit(PAPER, arc, through, name == "FElupe Q2/P1", count or None)
-    from pneutouch.mechanics.solid import Solid, dome, inflate
+    from pneutouch.mechanics.solid import SolidModel, dome, inflate
 
     mesh = dome(PAPER.inner_radius, PAPER.wall_thickness, arc=arc, through=through)
-    run = inflate(Solid(mesh, PAPER.material), past_limit=1.0)
+    run = inflate(SolidModel(mesh, PAPER.material), past_limit=1.0)
     return (np.nan if run.limit is None else run.limit.pressure), len(run.states)
 
 

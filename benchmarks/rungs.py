@@ -11,9 +11,9 @@ from benchmarks.answer import Answer, solid_answer
 from benchmarks.scenes import Scene
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.batches import batch_of
-from pneutouch.mechanics.atlas.press import Press
+from pneutouch.mechanics.atlas.press import AtlasPress
 from pneutouch.mechanics.atlas.respond import BREAK, BUCKLING, EDGE, ENDS, OUTSIDE, respond
-from pneutouch.mechanics.atlas.table import Slices, shipped
+from pneutouch.mechanics.atlas.table import AtlasSlices, shipped
 from pneutouch.mechanics.atlas_states import outside_atlas
 from pneutouch.mechanics.ladder import DEFAULT_TOLERANCE, climb
 
@@ -32,7 +32,7 @@ def atlas_answer(scene: Scene) -> Answer | None:
     if int(found.ends[0]) in (OUTSIDE, EDGE) or np.isnan(found.range_end[0]):
         return None
     slices = shipped().slices(batch.wall_ratio, ("inner_apex",))
-    press = Press(batch, slices, np.zeros(1, dtype=np.intp))
+    press = AtlasPress(batch, slices, np.zeros(1, dtype=np.intp))
     unit = s.shear_modulus * s.inner_radius**2
 
     def curve(grid: Array) -> tuple[Array, Array]:
@@ -44,7 +44,7 @@ def atlas_answer(scene: Scene) -> Answer | None:
     )
 
 
-def _inner_apex(slices: Slices, press: Press) -> float:
+def _inner_apex(slices: AtlasSlices, press: AtlasPress) -> float:
     return float(slices.field("inner_apex", press.k, press.free, press.apex)[0])
 
 

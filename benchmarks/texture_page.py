@@ -16,11 +16,11 @@ from pneutouch.catalogue import Library
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.uncertainty import batch_of
 from pneutouch.report.style import ACCENT, INK, LINES, MARKERS, MUTED, figure, svg
-from pneutouch.texture.separate import Pattern, amplitudes, noise_amplitude, recommend
-from pneutouch.texture.substrate import Bars, Matrix, Substrate, amplitude
+from pneutouch.texture.separate import BarPattern, amplitudes, noise_amplitude, recommend
+from pneutouch.texture.substrate import BarRow, MatrixLayer, Substrate, amplitude
 from pneutouch.units import KPA
 from pneutouch.workflows.scan.document import document, spectra
-from pneutouch.workflows.scan.run import Asked, run_scan
+from pneutouch.workflows.scan.run import ScanOptions, run_scan
 from pneutouch.workflows.scan.separate import separating
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -41,13 +41,13 @@ def measure() -> dict[str, Any]:
     return {
         "scan": document(run), "single": single(radii), "both": both(radii), "plane": plane(radii),
         "speed": speed(run), "sweeps": sweeps(run), "advice": advice(run),
-        "separate": separating("texture-specimen", "paper-dome", "3@0,6@2", Asked(), library=library),
+        "separate": separating("texture-specimen", "paper-dome", "3@0,6@2", ScanOptions(), library=library),
     }  # fmt: skip
 
 
-def _bars(row: Row, length: float = LENGTH) -> Bars:
+def _bars(row: Row, length: float = LENGTH) -> BarRow:
     first = np.arange(row.first, length, row.pitch)
-    return Bars(
+    return BarRow(
         f"{row.pitch:g}@{row.depth:g}",
         row.pitch,
         row.width,
@@ -68,7 +68,7 @@ def single(radii: list[float]) -> list[dict[str, float]]:
                 coarse, fe = (
                     Strip(LENGTH, HEIGHT, cell, (row,)).disc_compliance(at, radius) for cell in (CELL, CELL / 2)
                 )
-                ours = -float(amplitude(Matrix(HEIGHT, *AGILUS), _bars(row), np.array(radius)))
+                ours = -float(amplitude(MatrixLayer(HEIGHT, *AGILUS), _bars(row), np.array(radius)))
                 found.append({"pitch": pitch, "depth": depth, "radius": radius, "fe": harmonic(fe), "reduced": ours,
                               "coarse": harmonic(coarse), "fe_mean": float(fe.mean())})  # fmt: skip
     return found
@@ -82,7 +82,7 @@ def both(radii: list[float]) -> list[dict[str, float]]:
         for radius in radii:
             fe = Strip(LENGTH, HEIGHT, CELL / 2, rows).disc_compliance(PLACES, radius)
             bars = tuple(map(_bars, rows))
-            ground = Substrate(Matrix(HEIGHT, *AGILUS), bars, LENGTH, radius)
+            ground = Substrate(MatrixLayer(HEIGHT, *AGILUS), bars, LENGTH, radius)
             found.append({
                 "depth": depth, "radius": radius, "fe_3": harmonic(fe, 2), "fe_6": harmonic(fe), "fe_mean": float(fe.mean()),
                 "reduced_3": ground.amplitude(bars[0]), "reduced_6": -ground.amplitude(bars[1]),
@@ -115,7 +115,9 @@ def speed(run: Any) -> dict[str, float]:
     fe = time.process_time() - begin
     begin = time.process_time()
     for _ in range(10):
-        Substrate(Matrix(HEIGHT, *AGILUS), tuple(map(_bars, rows)), LENGTH, state.touch.contact_radius).compliance(2048)
+        Substrate(MatrixLayer(HEIGHT, *AGILUS), tuple(map(_bars, rows)), LENGTH, state.touch.contact_radius).compliance(
+            2048
+        )
     ours = (time.process_time() - begin) / 10
     begin = time.perf_counter()
     scanned = scan(state.touch, state.substrate, run.way)
@@ -134,11 +136,11 @@ def sweeps(run: Any) -> dict[str, Any]:
         pascal = np.round(found / KPA * 1e3, _DIGITS).tolist()
         return [[None if np.isnan(value) else value for value in row] for row in pascal]
 
-    kinds = [Pattern(3.0, 0.0), Pattern(6.0, 2.0), Pattern(6.0, 4.0)]
+    kinds = [BarPattern(3.0, 0.0), BarPattern(6.0, 2.0), BarPattern(6.0, 4.0)]
     return {
         "pressure": {"x": (pressures / KPA).tolist(), "y": pascals(amplitudes(batch_of(sensor, pressures), 0.5, matrix, kinds).T)},
-        "depth": {"x": depths.tolist(), "y": pascals(np.concatenate([amplitudes(ends, 0.5, matrix, [Pattern(p, float(d)) for d in depths]) for p in (3.0, 6.0)]))},
-        "pitch": {"x": pitches.tolist(), "y": pascals(np.concatenate([amplitudes(ends, 0.5, matrix, [Pattern(float(p), d) for p in pitches]) for d in (0.0, 2.0)]))},
+        "depth": {"x": depths.tolist(), "y": pascals(np.concatenate([amplitudes(ends, 0.5, matrix, [BarPattern(p, float(d)) for d in depths]) for p in (3.0, 6.0)]))},
+        "pitch": {"x": pitches.tolist(), "y": pascals(np.concatenate([amplitudes(ends, 0.5, matrix, [BarPattern(float(p), d) for p in pitches]) for d in (0.0, 2.0)]))},
         "preload": {"x": preloads.tolist(), "y": pascals(np.stack([amplitudes(ends, float(f), matrix, kinds[:2]).T.ravel() for f in preloads], axis=1))},
         "noise": [noise_amplitude(4 / 3) / KPA * 1e3, noise_amplitude(4 / 6) / KPA * 1e3],
     }  # fmt: skip
@@ -149,7 +151,7 @@ def advice(run: Any) -> list[dict[str, float]]:
     found = []
     limit = float(respond(batch_of(run.sensor, [0.0]), run.sensor.steps).limit_pressure[0])
     for pitch, depth in ((3.0, 0.0), (6.0, 0.0), (6.0, 2.0), (6.0, 4.0), (10.0, 2.0), (15.0, 4.0), (30.0, 2.0)):
-        best = recommend(Pattern(pitch, depth), run.sensor, run.matrix, min(22 * KPA, 0.8 * limit))
+        best = recommend(BarPattern(pitch, depth), run.sensor, run.matrix, min(22 * KPA, 0.8 * limit))
         found.append({"pitch": pitch, "depth": depth, "kPa": best.driving_pressure / KPA, "Pa": 1e3 * best.amplitude / KPA,
                       "Pa_at_0": 1e3 * best.unpressurised / KPA})  # fmt: skip
     return found

@@ -15,7 +15,7 @@ from benchmarks.speed_accuracy import solid_limit
 from benchmarks.theory import Cell, table_s1
 from pneutouch.catalogue import Library
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid import Press, Solid, dome, indent, inflate, state_at
+from pneutouch.mechanics.solid import PressSettings, SolidModel, dome, indent, inflate, state_at
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "validation.md"
@@ -53,7 +53,7 @@ def sphere_found(inner: float, outer: float) -> tuple[float, float]:
     """The solid's, on a hemisphere whose base slides, extrapolated to an incompressible wall."""
     found = []
     for nu in (0.4999, 0.49995):
-        solid = Solid(dome(inner, outer - inner, arc=24, through=4, slides=True), neo_hookean(1.0, nu))
+        solid = SolidModel(dome(inner, outer - inner, arc=24, through=4, slides=True), neo_hookean(1.0, nu))
         limit = inflate(solid, past_limit=1.0).limit
         assert limit is not None
         found.append((limit.pressure, limit.inner_apex / inner))
@@ -63,7 +63,7 @@ def sphere_found(inner: float, outer: float) -> tuple[float, float]:
 
 def limit_of(ratio: float, arc: int | None = None, through: int | None = None, nu: float = 0.49) -> tuple[float, float]:
     """P R0/(mu t0) and h/R0 at the limit point of a dome of a wall ratio."""
-    limit = inflate(Solid(dome(1.0, ratio, arc=arc, through=through), neo_hookean(1.0, nu)), past_limit=1.0).limit
+    limit = inflate(SolidModel(dome(1.0, ratio, arc=arc, through=through), neo_hookean(1.0, nu)), past_limit=1.0).limit
     assert limit is not None
     return limit.pressure / ratio, limit.inner_apex
 
@@ -100,10 +100,10 @@ def thin_walls() -> list[str]:
 def pressed_membrane() -> list[str]:
     """State II of the exact membrane."""
     wall = 0.0925
-    solid = Solid(dome(9.25, wall, arc=96, through=1), neo_hookean(0.255 / wall, 0.4999))
+    solid = SolidModel(dome(9.25, wall, arc=96, through=1), neo_hookean(0.255 / wall, 0.4999))
     rows = []
     for driving, table in PRESSED_MEMBRANE.items():
-        run = indent(solid, state_at(solid, 1e-3 * driving), Press(5.0, steps=5))
+        run = indent(solid, state_at(solid, 1e-3 * driving), PressSettings(5.0, steps=5))
         for state in run.states[1:]:
             p, force, radius = table[round(state.indentation, 6)]
             rows.append(
@@ -138,10 +138,10 @@ def refinement() -> list[str]:
 
 def invariances() -> list[str]:
     """Scale invariance, and energy against work."""
-    base = inflate(Solid(dome(9.25, 1.5), neo_hookean(0.17)))
+    base = inflate(SolidModel(dome(9.25, 1.5), neo_hookean(0.17)))
     rows = []
     for radius, mu in ((0.1, 0.17), (1000.0, 0.17), (9.25, 1e-3), (9.25, 1e3)):
-        run = inflate(Solid(dome(radius, radius * 1.5 / 9.25), neo_hookean(mu)))
+        run = inflate(SolidModel(dome(radius, radius * 1.5 / 9.25), neo_hookean(mu)))
         assert run.limit is not None and base.limit is not None
         rows.append(f"| {radius:g} | {mu:g} | {(run.limit.pressure / mu) / (base.limit.pressure / 0.17) - 1:+.1e} |")
     energy = np.array([s.unit.local.energy for s in base.states]) * 0.17 * 9.25**3

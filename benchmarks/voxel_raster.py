@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.body import Solid
-from pneutouch.body.section import Inside
+from pneutouch.body.section import SolidSection
 from pneutouch.export.voxels.raster import Raster, raster
 
 DPI = (600, 300)
@@ -45,7 +45,7 @@ class Row:
 
 def exact(solid: Solid, grid: Raster) -> np.ndarray:
     """Ours: every layer a comparison with the radii at its height."""
-    inside = Inside(solid)
+    inside = SolidSection(solid)
     plane = grid.plane(slice(0, len(grid.y)), slice(0, len(grid.x)))
     return np.array([inside.section(plane, float(z)) for z in grid.z])
 
@@ -120,7 +120,7 @@ def measure(solid: Solid) -> list[Row]:
     """Ours at every raster, the peers from 27 um x 2 on; the least of several times."""
     rows = []
     for layer, coarser in RASTERS:
-        grid = raster([Inside(solid)], DPI, layer, coarser=coarser)
+        grid = raster([SolidSection(solid)], DPI, layer, coarser=coarser)
         ways: dict[str, Callable[[Solid, Raster], np.ndarray]] = {OURS: exact, SLICED: sliced, CONTAINED: contained}
         for method, way in ways.items():
             if method == CONTAINED and coarser < 2:

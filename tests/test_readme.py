@@ -11,7 +11,7 @@ import sys
 
 import pytest
 
-from pneutouch.spec.design import Design
+from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import validate
 from tests.conftest import ROOT
 
@@ -45,7 +45,7 @@ def test_the_design_file_is_valid():
     import tomllib
 
     for block in blocks("toml"):
-        assert validate(Design, tomllib.loads(block), "README.md").membrane.inner_radius_mm == 6
+        assert validate(DesignFile, tomllib.loads(block), "README.md").membrane.inner_radius_mm == 6
 
 
 def test_the_python_runs_and_prints_the_limit_of_50_dm():

@@ -6,9 +6,9 @@ import pytest
 
 from pneutouch.bench.reading import read_blocks
 from pneutouch.errors import InputError
-from pneutouch.spec.campaign import Columns, Rig
+from pneutouch.spec.campaign import ColumnMap, Rig
 
-COLUMNS, RIG = Columns(), Rig()
+COLUMNS, RIG = ColumnMap(), Rig()
 
 
 def read(path, columns=COLUMNS, rig=RIG):

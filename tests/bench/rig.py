@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from pneutouch.bench.protocol import Protocol, protocol
-from pneutouch.spec.campaign import Run
+from pneutouch.bench.protocol import RunProtocol, protocol
+from pneutouch.spec.campaign import CampaignRun
 from pneutouch.units import KPA
 
 HEADER = ("time_s", "position_mm", "force_N", "pressure_kPa")
@@ -50,7 +50,7 @@ class Faults:
     leak: float = 0.0
 
 
-def record(kind="steps", sensor=Sensor(), faults=Faults(), what: Protocol | None = None, seed=0):
+def record(kind="steps", sensor=Sensor(), faults=Faults(), what: RunProtocol | None = None, seed=0):
     """Samples (4, n) of a run: s, mm, N, MPa."""
     what = what or protocol(kind, 9.25)
     if kind == "steps" and what.rest == 30.0:
@@ -85,7 +85,7 @@ def record(kind="steps", sensor=Sensor(), faults=Faults(), what: Protocol | None
 
 
 def run_of(kind="steps", sensor=Sensor(), **more):
-    return Run(
+    return CampaignRun(
         file="run.csv", kind=kind, sensor="A1", resin="tango-plus", driving_pressure_kPa=sensor.driving / KPA, **more
     )
 

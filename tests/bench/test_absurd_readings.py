@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
 from pneutouch.parts.coupons.gauge import rows
-from pneutouch.spec.coupon import Results
+from pneutouch.spec.coupon import CouponResults
 from pneutouch.spec.printer import HOLE_UNDERSIZE_MM
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.workflows.coupons.results import enter_results, evaluate_results
@@ -29,7 +29,7 @@ def entered(**tables):
         "date": datetime.date(2026, 11, 21),
         **{k.replace("_", "-"): v for k, v in tables.items()},
     }
-    return evaluate_results(Results.model_validate(content), "results.toml", LIBRARY)
+    return evaluate_results(CouponResults.model_validate(content), "results.toml", LIBRARY)
 
 
 def refused(**tables):

@@ -10,17 +10,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pneutouch.bench.figure import BY_KEY, FIGURES, run_figures
-from pneutouch.bench.record import Curve
-from pneutouch.spec.campaign import Run
+from pneutouch.bench.record import MeasuredCurve
+from pneutouch.spec.campaign import CampaignRun
 from pneutouch.units import KPA
 
 DEPTHS = np.linspace(0.0, 7.0, 15)
 
 
 def curve(kind="steps", **more):
-    run = Run(file="a.csv", kind=kind, sensor="a", resin="TangoPlus")
+    run = CampaignRun(file="a.csv", kind=kind, sensor="a", resin="TangoPlus")
     force = 1.5 * DEPTHS**1.5
-    plain = Curve(run, DEPTHS, force, 2.0 * KPA * force, 0.0, noise=(0.02, 0.01 * KPA), drift=(0.1 * KPA / 60, 0.0))
+    plain = MeasuredCurve(
+        run, DEPTHS, force, 2.0 * KPA * force, 0.0, noise=(0.02, 0.01 * KPA), drift=(0.1 * KPA / 60, 0.0)
+    )
     return replace(plain, **more)
 
 

@@ -10,11 +10,11 @@ import pytest
 from pneutouch.bench.blocks import blocks_of
 from pneutouch.bench.injection import dead_volume_of_cap, leak_of, leak_rate, read_injection
 from pneutouch.errors import InputError
-from pneutouch.spec.campaign import Column, Columns
+from pneutouch.spec.campaign import Column, ColumnMap
 from pneutouch.units import KPA, ML
 
 AMBIENT = 101.325 * KPA
-COLUMNS = Columns()
+COLUMNS = ColumnMap()
 
 
 def table(tmp_path, volume, pressure, header="volume_mL,pressure_kPa"):
@@ -44,7 +44,7 @@ def test_its_error_is_that_of_many_trials():
 
 def test_units_of_an_injection(tmp_path):
     path = table(tmp_path, [0, 100, 200, 300], [0, 40, 81, 120], "uL,mbar")
-    columns = Columns(volume=Column(name="uL", unit="uL"), pressure=Column(name="mbar", unit="mbar"))
+    columns = ColumnMap(volume=Column(name="uL", unit="uL"), pressure=Column(name="mbar", unit="mbar"))
     volume, pressure = read_injection(path, columns)
     assert volume.tolist() == [0, 100, 200, 300] and pressure == pytest.approx(np.array([0, 4, 8.1, 12]) * KPA)
 

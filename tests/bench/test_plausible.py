@@ -11,18 +11,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pneutouch.bench.curve import curve_of
-from pneutouch.bench.plausible import Expected, check_leak, check_plausible, mixed
+from pneutouch.bench.plausible import ExpectedRun, check_leak, check_plausible, mixed
 from pneutouch.bench.reading import read_blocks
-from pneutouch.bench.record import Curve
+from pneutouch.bench.record import MeasuredCurve
 from pneutouch.errors import InputError
-from pneutouch.spec.campaign import UNITS, Columns, Rig
+from pneutouch.spec.campaign import UNITS, ColumnMap, Rig
 from pneutouch.units import KPA
 from tests.bench.rig import HEADER, Sensor, run_of, small, write
 
 SENSOR = Sensor()
 DEPTH = 5.0
-EXPECTED = Expected(DEPTH, 2.9, 7.2 * KPA, 2.5 * KPA)
-COLUMNS, RIG = Columns(), Rig()
+EXPECTED = ExpectedRun(DEPTH, 2.9, 7.2 * KPA, 2.5 * KPA)
+COLUMNS, RIG = ColumnMap(), Rig()
 
 
 @pytest.fixture(scope="module")
@@ -44,10 +44,10 @@ def refused(tmp_path, samples, *texts, **more):
 
 
 def declared(**units):
-    given = Columns().model_dump()
+    given = ColumnMap().model_dump()
     for key, unit in units.items():
         given[key]["unit"] = unit
-    return Columns.model_validate(given)
+    return ColumnMap.model_validate(given)
 
 
 def ideal(
@@ -59,7 +59,7 @@ def ideal(
     run = run_of(run=number).model_copy(
         update={"sensor": name, "driving_pressure_kPa": driving, "file": f"{name}-{number}.csv"}
     )
-    return Curve(
+    return MeasuredCurve(
         run, depth * factor[0], pressed * factor[1], slope * pressed * factor[2], driving=driving * KPA * factor[2]
     )
 
@@ -98,7 +98,7 @@ def test_every_wrong_unit_is_asked_for(tmp_path, samples, key, unit, ask):
 def test_the_message_has_the_numbers(tmp_path):
     curve = ideal(factor=(1, 1e3, 1))
     with pytest.raises(InputError) as caught:
-        check_plausible(curve, COLUMNS, Expected(6.9, 4.2, 11 * KPA, 2.5 * KPA), Path("run.csv"))
+        check_plausible(curve, COLUMNS, ExpectedRun(6.9, 4.2, 11 * KPA, 2.5 * KPA), Path("run.csv"))
     told = str(caught.value)
     assert told == (
         "run.csv: column force_N: reads 4.5e+03 N at 6.9 mm where the prediction has 4.2 N, 1079 times it; is the column in mN? "
@@ -122,7 +122,7 @@ def test_nothing_is_asked_within_a_factor_of_two(force, rise, depth):
     measured = ideal(deepest=depth * DEPTH, factor=(1, force, rise), driving=0.0)
     true = float(SENSOR.force(DEPTH))
     # A swap is told by magnitudes where there is no driving pressure; these numbers are far from each other's.
-    expected = Expected(DEPTH, true, 40 * SENSOR.slope * true, 40 * SENSOR.slope)
+    expected = ExpectedRun(DEPTH, true, 40 * SENSOR.slope * true, 40 * SENSOR.slope)
     measured = replace(measured, rise=40 * measured.rise)
     assert check_plausible(measured, COLUMNS, expected, Path("run.csv")) == ()
 

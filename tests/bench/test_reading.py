@@ -10,7 +10,7 @@ import pytest
 
 from pneutouch.bench.blocks import blocks_of
 from pneutouch.bench.reading import read_blocks
-from pneutouch.spec.campaign import Column, Columns
+from pneutouch.spec.campaign import Column, ColumnMap
 from pneutouch.units import KPA
 from tests.bench.reads import COLUMNS, RIG, read, refuse
 from tests.bench.rig import Faults, record, small, write
@@ -55,7 +55,7 @@ def test_units_and_signs_are_those_of_the_columns(tmp_path, samples):
     )
     frame = pd.DataFrame(table.T, columns=names[:4]).assign(note="ok, fine")
     frame.to_csv(path, index=False)
-    columns = Columns(
+    columns = ColumnMap(
         time=Column(name="t", unit="ms"), position=Column(name="z", unit="um", sign=-1),
         force=Column(name="load", unit="lbf"), pressure=Column(name="p", unit="psi"),
     )  # fmt: skip

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pneutouch.spec.campaign import Column, Columns, Rig
+from pneutouch.spec.campaign import Column, ColumnMap, Rig
 from pneutouch.units import KPA
 from tests.bench.reads import read, refuse
 from tests.bench.rig import Faults, record, small, write
@@ -123,7 +123,7 @@ def test_a_number_that_overflows_in_inner_units_is_named(tmp_path, samples, valu
     cells = lines[99].split(",")
     lines[99] = ",".join([cells[0], value, *cells[2:]])
     path.write_text("".join(lines))
-    columns = Columns(position=Column(name="position_mm", unit="m"))
+    columns = ColumnMap(position=Column(name="position_mm", unit="m"))
     refuse(path, "row 100", "column position_mm", "e+", "no instrument reads that", columns=columns)
 
 

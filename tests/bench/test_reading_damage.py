@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from pneutouch.spec.campaign import Column, Columns
+from pneutouch.spec.campaign import Column, ColumnMap
 from tests.bench.reads import read, refuse, spoilt
 from tests.bench.rig import HEADER, small, write
 
@@ -131,7 +131,7 @@ def test_whole_numbers_beyond_2_to_53_are_told(tmp_path, file):
     path = tmp_path / "run.parquet"
     frame = pd.read_csv(file)
     time = (frame["time_s"] * 1e3).round().astype("int64")
-    ms = Columns(time=Column(name="time_s", unit="ms"))
+    ms = ColumnMap(time=Column(name="time_s", unit="ms"))
     frame.assign(time_s=time).to_parquet(path)
     assert read(path, ms).time.size > 100
     time.iloc[77:] += 2**53

@@ -17,10 +17,10 @@ import sys, time
 from pathlib import Path
 from pneutouch.bench.curve import curve_of
 from pneutouch.bench.reading import read_blocks
-from pneutouch.spec.campaign import Columns, Rig, Run
+from pneutouch.spec.campaign import CampaignRun, ColumnMap, Rig
 begin = time.perf_counter()
-run = Run(file="x", sensor="A", resin="r", driving_pressure_kPa=12)
-points = curve_of(run, read_blocks(Path(sys.argv[1]), Columns(), Rig()), Rig()).indentation.size
+run = CampaignRun(file="x", sensor="A", resin="r", driving_pressure_kPa=12)
+points = curve_of(run, read_blocks(Path(sys.argv[1]), ColumnMap(), Rig()), Rig()).indentation.size
 seconds = time.perf_counter() - begin
 status = Path("/proc/self/status").read_text()
 print(seconds, 1024 * int(status.split("VmHWM:")[1].split()[0]), points)

@@ -12,9 +12,9 @@ from pneutouch.bench.blocks import blocks_of
 from pneutouch.bench.curve import curve_of
 from pneutouch.bench.doubts import MOST
 from pneutouch.bench.reading import read_blocks
-from pneutouch.bench.record import Doubt
+from pneutouch.bench.record import SuspectInterval
 from pneutouch.errors import InputError
-from pneutouch.spec.campaign import Columns, Rig
+from pneutouch.spec.campaign import ColumnMap, Rig
 from tests.bench.rig import Dome, Sensor, run_of, small, write
 
 FILE = Path("run.csv")
@@ -33,13 +33,15 @@ def test_clipped_points_are_left_out_and_told():
     samples = small()
     blocks = blocks_of(FILE, *samples)
     third = curve(samples).indents[2]
-    clipped = replace(blocks, doubts=(Doubt(third.hold[0], third.hold[1], "force clipped: at the top", False),))
+    clipped = replace(
+        blocks, doubts=(SuspectInterval(third.hold[0], third.hold[1], "force clipped: at the top", False),)
+    )
     found = curve_of(run_of(), clipped, Rig())
     assert found.indentation.size == 3
     assert any(
         why.startswith("indentation 3, ") and "left out: force clipped" in why for why in whys(found, used=False)
     )
-    everywhere = replace(blocks, doubts=(Doubt(0.0, 1e3, "force clipped", False),))
+    everywhere = replace(blocks, doubts=(SuspectInterval(0.0, 1e3, "force clipped", False),))
     with pytest.raises(InputError, match=r"none of 3 indentations can be used: .*clipped"):
         curve_of(run_of(), everywhere, Rig())
 
@@ -96,6 +98,6 @@ def test_a_spike_while_read_leaves_the_point_out_and_elsewhere_not(tmp_path):
     for at, size in ((one.read[0] + 0.1, 3), (one.hold[0] + 0.3, 4)):
         spiked = samples.copy()
         spiked[2, np.searchsorted(samples[0], at)] = 60.0
-        blocks = read_blocks(write(tmp_path / "run.csv", spiked), Columns(), Rig())
+        blocks = read_blocks(write(tmp_path / "run.csv", spiked), ColumnMap(), Rig())
         found = curve_of(run_of(), blocks, Rig())
         assert found.indentation.size == size and any("force spike: 60 N" in why for why in whys(found))

@@ -11,18 +11,18 @@ from hypothesis import strategies as st
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
-from pneutouch.bench.protocol import Protocol, protocol
+from pneutouch.bench.protocol import RunProtocol, protocol
 from pneutouch.bench.simulate import (
     RigModel,
-    Scatter,
-    Truth,
-    Wall,
+    ScatterModel,
+    SimulationTruth,
+    WallMemory,
     press_curves,
     simulate_leak,
     simulate_run,
     specimen_figures,
 )
-from pneutouch.bench.simulate.curve import Pressed
+from pneutouch.bench.simulate.curve import PressCurves
 from pneutouch.bench.simulate.inject import line_pressure, sensor_pressure
 from pneutouch.bench.simulate.parameter import parameters
 from pneutouch.bench.simulate.run import _lagging, within
@@ -31,7 +31,7 @@ from pneutouch.mechanics.solid_states import solid_result
 from pneutouch.units import KPA
 from tests.bench.truths import NO_WALL, R0, ends, line, paper_pressed, paper_sensor, rng
 
-QUIET = {"wall": NO_WALL, "scatter": Scatter.none()}
+QUIET = {"wall": NO_WALL, "scatter": ScatterModel.none()}
 
 
 @pytest.fixture(scope="module")
@@ -40,14 +40,14 @@ def sensor() -> Sensor:
 
 
 @pytest.fixture(scope="module")
-def pressed() -> Pressed:
+def pressed() -> PressCurves:
     return paper_pressed()
 
 
 def test_quiet_record_is_the_solids_curve_at_the_holds(sensor, pressed):
     states = solid_result(replace(sensor, depth=0.75 * R0, steps=14), np.array([0.0, 22 * KPA])).states
     for curve, state in zip(pressed.curves, states, strict=True):
-        test = Protocol("steps", tuple(state.indentation[1:]), 4.0, 5.0, True)
+        test = RunProtocol("steps", tuple(state.indentation[1:]), 4.0, 5.0, True)
         record = simulate_run(curve, test, RigModel.perfect(), 100.0, rng(), **QUIET)
         at = ends(test, 100.0)
         assert record.position[at] == pytest.approx(state.indentation[1:], rel=1e-12)
@@ -87,7 +87,7 @@ def test_noise_in_the_file_has_the_filtered_rms():
 
 
 def test_reading_is_right_going_in_and_lags_by_the_play_coming_out():
-    knots, travels = Protocol("loop", (7.0, 7.0), 0.0, 2.0, False).way()
+    knots, travels = RunProtocol("loop", (7.0, 7.0), 0.0, 2.0, False).way()
     time = np.linspace(0, knots[-1], 20_001)
     plate, read = np.interp(time, knots, travels), _lagging(time, knots, travels, 0.03)
     speed = np.gradient(plate, time)
@@ -99,15 +99,15 @@ def test_reading_is_right_going_in_and_lags_by_the_play_coming_out():
 
 @given(depths=st.lists(st.floats(0.1, 8.0), min_size=1, max_size=6), play=st.floats(0.0, 0.5), rest=st.floats(0.0, 5.0))
 def test_reading_never_strays_beyond_the_play(depths, play, rest):
-    knots, travels = Protocol("steps", tuple(depths), 1.0, rest, False).way()
+    knots, travels = RunProtocol("steps", tuple(depths), 1.0, rest, False).way()
     time = np.linspace(0, knots[-1], 2_001)
     gap = _lagging(time, knots, travels, play) - np.interp(time, knots, travels)
     assert gap.min() >= -1e-9 and gap.max() <= play + 1e-9
 
 
 def test_reset_vents_and_fills_anew_each_time():
-    curve, test = line(driving=22 * KPA), Protocol("steps", (1.0, 2.0, 3.0), 4.0, 30.0, True)
-    scatter = replace(Scatter.none(), reset=0.5 * KPA)
+    curve, test = line(driving=22 * KPA), RunProtocol("steps", (1.0, 2.0, 3.0), 4.0, 30.0, True)
+    scatter = replace(ScatterModel.none(), reset=0.5 * KPA)
     record = simulate_run(curve, test, RigModel.perfect(), 100.0, rng(5), wall=NO_WALL, scatter=scatter)
     starts = test.way()[0][:-1:4]
     for start in starts:
@@ -127,7 +127,7 @@ def test_drift_is_warming_less_leak():
     still = simulate_leak(20 * KPA, 600.0, rig, 10.0, rng())
     assert np.polyfit(still.time, still.pressure, 1)[0] * 60 / KPA == pytest.approx(0.03 - 0.04, rel=1e-9)
     assert np.polyfit(still.time, still.force, 1)[0] * 60 == pytest.approx(0.01, rel=1e-9)
-    figures = specimen_figures(line(driving=20 * KPA), Truth(rig=rig), R0, 100.0)
+    figures = specimen_figures(line(driving=20 * KPA), SimulationTruth(rig=rig), R0, 100.0)
     assert figures["drift_pressure_kPa_per_min"] == pytest.approx(-0.01, rel=1e-9)
 
 
@@ -139,16 +139,16 @@ def test_missed_samples_are_left_out_and_the_others_stay_on_the_clock():
 
 def test_gauges_stop_at_their_range():
     rig = replace(RigModel.perfect(), force_range=10.0, pressure_range=12 * KPA)
-    record = simulate_run(line(), Protocol("steps", (2.0, 8.0), 4.0, 1.0, False), rig, 100.0, rng(), **QUIET)
+    record = simulate_run(line(), RunProtocol("steps", (2.0, 8.0), 4.0, 1.0, False), rig, 100.0, rng(), **QUIET)
     assert record.force.max() == 10.0 and record.pressure.max() == pytest.approx(12 * KPA)
 
 
 @settings(max_examples=15)
 @given(share=st.floats(0.001, 0.2), tau=st.floats(0.05, 50.0), depth=st.floats(0.5, 8.0))
 def test_memory_of_an_even_ramp_and_its_fading_are_the_closed_form(share, tau, depth):
-    wall = Wall((share,), (0.0,), (tau,))
-    test = Protocol("relaxation", (depth,), 5.0, 1.0, False)
-    record = simulate_run(line(), test, RigModel.perfect(), 1000.0, rng(), wall=wall, scatter=Scatter.none())
+    wall = WallMemory((share,), (0.0,), (tau,))
+    test = RunProtocol("relaxation", (depth,), 5.0, 1.0, False)
+    record = simulate_run(line(), test, RigModel.perfect(), 1000.0, rng(), wall=wall, scatter=ScatterModel.none())
     knots, _ = test.way()
     begun = knots[1] + 1.0 / 5.0
     ramp, since = knots[2] - begun, record.time - knots[2]
@@ -175,7 +175,7 @@ def test_runs_of_one_specimen_scatter_by_the_gain(pressed):
         record = simulate_run(curve, replace(test, reset=False), RigModel.perfect(), 50.0, rng(seed), wall=NO_WALL)
         slopes.append(np.polyfit(record.force[at], record.pressure[at], 1)[0])
     # The standard error of a standard deviation of 300 values is 4 %.
-    assert np.std(slopes, ddof=1) / np.mean(slopes) == pytest.approx(Scatter().gain, rel=0.15)
+    assert np.std(slopes, ddof=1) / np.mean(slopes) == pytest.approx(ScatterModel().gain, rel=0.15)
 
 
 def test_curve_stops_where_the_range_ends_and_the_protocol_with_it(sensor):
@@ -205,6 +205,6 @@ def test_injected_air_obeys_boyle_with_the_swelling_cavity(pressed):
 
 
 def test_every_parameter_says_its_unit_and_reason():
-    for model in (Scatter(), RigModel(), Wall()):
+    for model in (ScatterModel(), RigModel(), WallMemory()):
         for name, said in parameters(model).items():
             assert said["unit"] and len(said["reason"]) > 10, name

@@ -10,16 +10,16 @@ import pytest
 from pneutouch.bench.protocol import protocol
 from pneutouch.bench.simulate import (
     RigModel,
-    Scatter,
-    Specimens,
-    Truth,
-    Wall,
+    ScatterModel,
+    SimulatedSpecimens,
+    SimulationTruth,
+    WallMemory,
     population,
     press_curves,
     simulate_run,
     specimen_figures,
 )
-from pneutouch.bench.simulate.curve import Pressed
+from pneutouch.bench.simulate.curve import PressCurves
 from pneutouch.bench.simulate.scatter import ageing_factor, stiffened
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.atlas.batches import batch_of
@@ -34,20 +34,20 @@ def sensor() -> Sensor:
 
 
 @pytest.fixture(scope="module")
-def pressed() -> Pressed:
+def pressed() -> PressCurves:
     return paper_pressed()
 
 
 @pytest.fixture(scope="module")
-def atlas(sensor) -> Pressed:
+def atlas(sensor) -> PressCurves:
     return press_curves(sensor, [0.0, 22 * KPA], 0.75 * R0, "atlas", steps=28)
 
 
 def test_relaxation_truth_is_what_the_quiet_record_says(pressed):
-    truth, curve = Truth(rest=2.0, rig=RigModel.perfect()), pressed.curves[1]
+    truth, curve = SimulationTruth(rest=2.0, rig=RigModel.perfect()), pressed.curves[1]
     said = specimen_figures(curve, truth, R0, 100.0)
     test = truth.protocol("relaxation", R0, curve.reach)
-    record = simulate_run(curve, test, RigModel.perfect(), 100.0, rng(), wall=truth.wall, scatter=Scatter.none())
+    record = simulate_run(curve, test, RigModel.perfect(), 100.0, rng(), wall=truth.wall, scatter=ScatterModel.none())
     since = record.time - test.way()[0][2]
     # The stop and the release fall between samples.
     time = np.geomspace(1.0, 599.9, 400)
@@ -60,10 +60,10 @@ def test_relaxation_truth_is_what_the_quiet_record_says(pressed):
 
 
 def test_loading_truth_is_what_the_quiet_record_says(pressed):
-    truth, curve = Truth(rest=2.0), pressed.curves[0]
+    truth, curve = SimulationTruth(rest=2.0), pressed.curves[0]
     said = specimen_figures(curve, truth, R0, 100.0)
     test = truth.protocol("steps", R0, curve.reach)
-    record = simulate_run(curve, test, RigModel.perfect(), 200.0, rng(), wall=truth.wall, scatter=Scatter.none())
+    record = simulate_run(curve, test, RigModel.perfect(), 200.0, rng(), wall=truth.wall, scatter=ScatterModel.none())
     at = ends(test, 200.0)
     force, rise = (
         np.append(0.0, record.force[at]),
@@ -78,7 +78,7 @@ def test_loading_truth_is_what_the_quiet_record_says(pressed):
 
 def test_hysteresis_comes_from_memory_alone_and_grows_with_it(pressed):
     found = [
-        specimen_figures(pressed.curves[0], Truth(wall=Wall((g,), (0.0,), (1.0,)), rest=2.0), R0, 100.0)
+        specimen_figures(pressed.curves[0], SimulationTruth(wall=WallMemory((g,), (0.0,), (1.0,)), rest=2.0), R0, 100.0)
         for g in (0.0, 0.01, 0.02)
     ]
     width = [one["hysteresis_width_percent"] for one in found]
@@ -87,7 +87,7 @@ def test_hysteresis_comes_from_memory_alone_and_grows_with_it(pressed):
 
 def test_population_spreads_as_the_derivative_says(sensor, atlas):
     """To first order the spread of a figure is its logarithmic derivative by the modulus times the modulus' spread."""
-    truth = Truth(scatter=replace(Scatter.none(), modulus=0.04, gain=0.002), wall=NO_WALL, rest=2.0)
+    truth = SimulationTruth(scatter=replace(ScatterModel.none(), modulus=0.04, gain=0.002), wall=NO_WALL, rest=2.0)
     found = population(atlas, 1, truth, 100.0, (7,))
     depths = np.append(0.0, protocol("steps", R0).depths)
 
@@ -104,7 +104,7 @@ def test_population_spreads_as_the_derivative_says(sensor, atlas):
 
 
 def test_population_without_scatter_is_the_nominal_sensor(pressed):
-    truth = Truth(scatter=Scatter.none(), rest=2.0, specimens=20)
+    truth = SimulationTruth(scatter=ScatterModel.none(), rest=2.0, specimens=20)
     found = population(pressed, 0, truth, 100.0, (0,))
     nominal = specimen_figures(pressed.curves[0], truth, R0, 100.0)
     for key, value in nominal.items():
@@ -116,15 +116,15 @@ def test_population_without_scatter_is_the_nominal_sensor(pressed):
 
 
 def test_specimens_are_drawn_as_declared():
-    scatter = Scatter(modulus=0.04, wall=0.1, dead_volume=20.0)
-    some = Specimens.draw(scatter, 20_000, rng(2))
+    scatter = ScatterModel(modulus=0.04, wall=0.1, dead_volume=20.0)
+    some = SimulatedSpecimens.draw(scatter, 20_000, rng(2))
     assert np.log(some.modulus).std() == pytest.approx(0.04, rel=0.03)
     assert np.abs(some.wall).max() <= 0.1 and some.wall.std() == pytest.approx(0.1 / np.sqrt(3), rel=0.03)
     assert some.dead_volume.min() >= 0 and some.dead_volume.mean() == pytest.approx(10.0, rel=0.03)
 
 
 def test_a_year_changes_every_modulus_and_no_exponent(sensor):
-    scatter = replace(Scatter(), ageing=0.1)
+    scatter = replace(ScatterModel(), ageing=0.1)
     assert [ageing_factor(scatter, days) for days in (0.0, 365.0, 3650.0)] == pytest.approx(
         [1.0, np.exp(0.1), np.exp(0.1)]
     )

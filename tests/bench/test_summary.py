@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pneutouch.bench.record import Curve
+from pneutouch.bench.record import MeasuredCurve
 from pneutouch.bench.summary import FRESH, summarize
-from pneutouch.spec.campaign import Run
+from pneutouch.spec.campaign import CampaignRun
 from pneutouch.units import KPA
 
 DEPTHS = np.linspace(0.0, 7.0, 15)
@@ -15,10 +15,10 @@ DEPTHS = np.linspace(0.0, 7.0, 15)
 
 def run(sensor, slope=2.0, pressure=0.0, number=1, age=0.0, resin="TangoPlus"):
     force = 1.5 * DEPTHS**1.5
-    named = Run(
+    named = CampaignRun(
         file=f"{sensor}{pressure}{number}{age}", sensor=sensor, resin=resin, driving_pressure_kPa=pressure, run=number, age_days=age
     )  # fmt: skip
-    return Curve(named, DEPTHS, force, slope * KPA * force, pressure * KPA)
+    return MeasuredCurve(named, DEPTHS, force, slope * KPA * force, pressure * KPA)
 
 
 def ages(*days):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from pneutouch.bench.blocks import blocks_of
-from pneutouch.bench.record import Curve, Doubt
+from pneutouch.bench.record import MeasuredCurve, SuspectInterval
 from pneutouch.bench.trace import MOST, trace
 from pneutouch.report.evidence import evidence_svg
 from pneutouch.units import KPA
@@ -62,8 +62,8 @@ def test_a_short_run_is_whole():
 def test_a_note_marks_nothing_and_a_doubt_does():
     def drawn(*doubts):
         zero = np.array([0.0, 1.0])
-        return evidence_svg(Curve(run_of(), zero, zero, zero, 0.0, doubts=doubts), trace(long_run(500)), False)
+        return evidence_svg(MeasuredCurve(run_of(), zero, zero, zero, 0.0, doubts=doubts), trace(long_run(500)), False)
 
-    note = Doubt(0.0, 5.0, "3 of 5000 samples missed", True, "note")
+    note = SuspectInterval(0.0, 5.0, "3 of 5000 samples missed", True, "note")
     assert drawn(note) == drawn()
-    assert "doubtful" in drawn(note, Doubt(1.0, 2.0, "gap", False, "gap")) and "doubtful" not in drawn()
+    assert "doubtful" in drawn(note, SuspectInterval(1.0, 2.0, "gap", False, "gap")) and "doubtful" not in drawn()

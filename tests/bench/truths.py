@@ -6,13 +6,13 @@ from functools import cache
 
 import numpy as np
 
-from pneutouch.bench.protocol import Protocol
+from pneutouch.bench.protocol import RunProtocol
 from pneutouch.bench.simulate import (
     PressCurve,
-    Wall,
+    WallMemory,
     press_curves,
 )
-from pneutouch.bench.simulate.curve import Pressed
+from pneutouch.bench.simulate.curve import PressCurves
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.mechanics import Sensor
@@ -21,7 +21,7 @@ from pneutouch.units import KPA
 from tests.conftest import ROOT
 
 R0 = 9.25
-NO_WALL = Wall((), (), ())
+NO_WALL = WallMemory((), (), ())
 
 
 def rng(seed: int = 0) -> np.random.Generator:
@@ -34,7 +34,7 @@ def line(stiffness: float = 2.0, slope: float = 3 * KPA, driving: float = 0.0, r
     return PressCurve(driving, depth, stiffness * depth, slope * depth)
 
 
-def ends(test: Protocol, rate: float) -> np.ndarray:
+def ends(test: RunProtocol, rate: float) -> np.ndarray:
     """The last samples of the holds."""
     return np.floor(test.way()[0][3::4] * rate + 1e-6).astype(int)
 
@@ -45,6 +45,6 @@ def paper_sensor() -> Sensor:
 
 
 @cache
-def paper_pressed() -> Pressed:
+def paper_pressed() -> PressCurves:
     """At 0 and 22 kPa."""
     return press_curves(paper_sensor(), [0.0, 22 * KPA], 0.75 * R0, "solid", steps=14)

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pneutouch.body.section import Inside, Window
+from pneutouch.body.section import SolidSection, Window
 from pneutouch.catalogue import load_scene
 from pneutouch.meridian import Arc, Line
 from pneutouch.meridian.crossings import crossings, encloses, rises
@@ -36,7 +36,7 @@ def solids(name, library):
 def test_points_are_inside_where_the_mesh_winds_round_them(name, library):
     rng = np.random.default_rng(0)
     for solid in solids(name, library):
-        inside, body = Inside(solid), solid.mesh(0.05)
+        inside, body = SolidSection(solid), solid.mesh(0.05)
         points = rng.uniform(inside.low - 0.5, inside.high + 0.5, (150, 3))
         points = points[solid.distance(points) > 0.06]
         found = inside.contains(points)
@@ -50,7 +50,7 @@ def test_sections_add_up_to_the_exact_volume_and_agree_with_points(name, library
     step = 0.06
     rng = np.random.default_rng(1)
     for solid in solids(name, library):
-        inside = Inside(solid)
+        inside = SolidSection(solid)
         (left, front, low), (right, back, high) = inside.low, inside.high
         heights = low + (np.arange(600) + 0.5) / 600 * (high - low)
         axes = [
@@ -69,7 +69,7 @@ def test_sections_add_up_to_the_exact_volume_and_agree_with_points(name, library
 def test_bodies_that_meet_share_no_point_and_leave_no_gap(name, library):
     """On the seat's own faces: z exactly on the shared plane, and pixels all round the shared cylinders."""
     membrane, connector = solids(name, library)[:2]
-    one, other = Inside(membrane), Inside(connector)
+    one, other = SolidSection(membrane), SolidSection(connector)
     seat = connector.meridian.tagged("seat")
     for piece in seat:
         (r0, z0), (r1, z1) = piece.start, piece.end

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.interpolate import PchipInterpolator
 
 from pneutouch.catalogue import Library
-from pneutouch.catalogue.along import Along
+from pneutouch.catalogue.along import ArcProfile
 from pneutouch.catalogue.mixture import mixed_material, mixing
 from pneutouch.errors import InputError
 from pneutouch.mechanics import predict
@@ -41,7 +41,7 @@ values = st.floats(-3.0, 3.0).map(lambda x: round(x, 3))
 @st.composite
 def curves(draw):
     at = draw(knots)
-    return Along(at, tuple(draw(st.lists(values, min_size=len(at), max_size=len(at)))))
+    return ArcProfile(at, tuple(draw(st.lists(values, min_size=len(at), max_size=len(at)))))
 
 
 @given(curves())
@@ -61,8 +61,8 @@ def test_between_two_knots_it_stays_between_their_values(line):
 
 
 def test_one_value_is_a_constant_and_beyond_the_ends_it_is_the_ends():
-    assert (Along((0.0,), (0.3,))(np.linspace(0, 1, 5)) == 0.3).all()
-    line = Along((0.0, 0.4, 1.0), (1.0, 2.0, 1.5))
+    assert (ArcProfile((0.0,), (0.3,))(np.linspace(0, 1, 5)) == 0.3).all()
+    line = ArcProfile((0.0, 0.4, 1.0), (1.0, 2.0, 1.5))
     assert line(np.array([-1.0, 2.0])) == pytest.approx([1.0, 1.5])
 
 
@@ -112,7 +112,7 @@ def test_stored_stations_follow_the_curve():
     """Straight between the 65 stations the modulus of the shipped design is within a thousandth of its curve."""
     material = mixed([0.0, 0.08, 0.25], [0, 0.5, 1])
     arc = np.linspace(0, 1, 1001)
-    exact = LAW.modulus_at(Along((0, 0.5, 1), (0.0, 0.08, 0.25))(arc))
+    exact = LAW.modulus_at(ArcProfile((0, 0.5, 1), (0.0, 0.08, 0.25))(arc))
     assert np.interp(arc, material.along.arc, material.along.shear_modulus_MPa) == pytest.approx(exact, rel=1e-3)
 
 

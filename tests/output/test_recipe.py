@@ -10,13 +10,13 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from pneutouch.catalogue import KINDS, Library, Scene, load_scene
+from pneutouch.catalogue import KINDS, Library, ResolvedDesign, load_scene
 from pneutouch.errors import InputError
 from pneutouch.evaluation import evaluate
-from pneutouch.evaluation.evaluate import Asked, elastomers
+from pneutouch.evaluation.evaluate import PredictionOptions, elastomers
 from pneutouch.export.threemf import threemf
 from pneutouch.export.threemf_read import Package, read_threemf
-from pneutouch.output.recipe import Recipe, evaluate_recipe, scene_shelves
+from pneutouch.output.recipe import BuildRecipe, evaluate_recipe, scene_shelves
 from pneutouch.output.recipe import input_hash as hash_of
 from pneutouch.output.recipe_read import read_recipe
 from pneutouch.parts import assemble
@@ -32,26 +32,26 @@ def content(folder: Path) -> dict[str, bytes]:
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
-def package_of(recipe: Recipe, name="x.3mf") -> Package:
+def package_of(recipe: BuildRecipe, name="x.3mf") -> Package:
     """A package as reading gives it, without the file."""
     metadata = {"input-hash": hash_of(recipe.inputs(), recipe.version)}
     return Package(Path(name), (), metadata, recipe.text(), False, ())
 
 
-def renamed(scene: Scene) -> Scene:
+def renamed(scene: ResolvedDesign) -> ResolvedDesign:
     return dataclasses.replace(scene, where="x.3mf")
 
 
 def test_every_field_of_a_scene_has_its_shelf():
     shelves = scene_shelves()
     assert set(shelves.values()) <= set(KINDS)
-    assert {*shelves, "name", "where"} == {field.name for field in dataclasses.fields(Scene)}
+    assert {*shelves, "name", "where"} == {field.name for field in dataclasses.fields(ResolvedDesign)}
 
 
 @pytest.mark.parametrize("name", DESIGNS)
 def test_the_recipe_of_every_design_comes_back_as_it_went(name, library):
     scene = load_scene(name, [], library)
-    recipe = Recipe(scene, elastomers(library), Asked("auto", "printed", "flange", 0.031))
+    recipe = BuildRecipe(scene, elastomers(library), PredictionOptions("auto", "printed", "flange", 0.031))
     back = read_recipe(package_of(recipe))
     assert back == dataclasses.replace(recipe, scene=renamed(scene))
     assert back.text() == recipe.text()
@@ -65,7 +65,7 @@ def test_every_part_comes_back(kind, library):
         changed = dataclasses.replace(scene, **{key: library.load(kind, name)})
         if changed.seat.family == "one-piece":
             continue
-        assert read_recipe(package_of(Recipe(changed, {}, Asked()))).scene == renamed(changed)
+        assert read_recipe(package_of(BuildRecipe(changed, {}, PredictionOptions()))).scene == renamed(changed)
 
 
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -79,16 +79,16 @@ def test_numbers_and_text_come_back_exactly(library, radius, share, tolerance, p
         f"pneumatics.driving_pressures_kPa={pressures!r}", f"document.title={json.dumps(title, ensure_ascii=False)}",
     ]  # fmt: skip
     scene = load_scene("paper-dome", changes, library)
-    recipe = Recipe(scene, {}, Asked("auto", tolerance=tolerance))
+    recipe = BuildRecipe(scene, {}, PredictionOptions("auto", tolerance=tolerance))
     assert read_recipe(package_of(recipe)) == dataclasses.replace(recipe, scene=renamed(scene))
 
 
 def test_settings_that_the_rung_does_not_use_do_not_change_the_inputs(library):
     scene = load_scene("paper-dome", [], library)
-    plain = Recipe(scene, {}, Asked("solid")).inputs()
-    assert Recipe(scene, {}, Asked("solid", closure="printed", tolerance=0.5)).inputs() == plain
-    assert Recipe(scene, {}, Asked("membrane", closure="printed")).inputs()["closure"] == "printed"
-    assert Recipe(scene, {}, Asked("auto", tolerance=0.5)).inputs()["tolerance"] == 0.5
+    plain = BuildRecipe(scene, {}, PredictionOptions("solid")).inputs()
+    assert BuildRecipe(scene, {}, PredictionOptions("solid", closure="printed", tolerance=0.5)).inputs() == plain
+    assert BuildRecipe(scene, {}, PredictionOptions("membrane", closure="printed")).inputs()["closure"] == "printed"
+    assert BuildRecipe(scene, {}, PredictionOptions("auto", tolerance=0.5)).inputs()["tolerance"] == 0.5
 
 
 def test_the_input_hash_in_the_file_is_that_of_the_recipe_in_it(built, evaluated):
@@ -103,7 +103,9 @@ def test_the_input_hash_in_the_file_is_that_of_the_recipe_in_it(built, evaluated
 def test_a_recipe_with_a_hundred_resins_comes_back(tmp_path, library):
     """Too long for one entry of metadata."""
     resin = library.load("materials", "TangoPlus")
-    recipe = Recipe(load_scene("paper-dome", [], library), {f"{k:03}": resin for k in range(100)}, Asked())
+    recipe = BuildRecipe(
+        load_scene("paper-dome", [], library), {f"{k:03}": resin for k in range(100)}, PredictionOptions()
+    )
     path, metadata = (
         tmp_path / "x.3mf",
         {"recipe": recipe.text(), "input-hash": hash_of(recipe.inputs(), recipe.version)},

@@ -12,7 +12,7 @@ from pneutouch.catalogue import Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.export.step import exact_solid
 from pneutouch.meridian import Arc
-from pneutouch.parts.coupons import COUPONS, Ground, dumbbell, gauge
+from pneutouch.parts.coupons import COUPONS, CouponContext, dumbbell, gauge
 from pneutouch.parts.coupons.leak_cap import cap
 from pneutouch.parts.coupons.volume_plug import cavity_size, cavity_volume
 from pneutouch.parts.layout import lay_out
@@ -28,7 +28,7 @@ def ground(material="TangoPlus", seat="glued-flange", *more):
     chosen = [f"connector.seat={seat}", *more]
     if seat == "one-piece":
         chosen += ["connector.material=VeroClear", "print.connector_profile=objet260-connex"]
-    return Ground(LIBRARY.load("materials", material), load_scene("paper-dome", chosen, LIBRARY))
+    return CouponContext(LIBRARY.load("materials", material), load_scene("paper-dome", chosen, LIBRARY))
 
 
 def drawn():

@@ -12,7 +12,7 @@ from manifold3d import CrossSection, Manifold, OpType
 
 from pneutouch.body import Body
 from pneutouch.catalogue import Library
-from pneutouch.printability import Item, Joint, Subject
+from pneutouch.printability import Joint, PrintItem, PrintSubject
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 from tests.conftest import ROOT
@@ -25,7 +25,7 @@ ROUND = 96
 class Exhibit:
     """A subject and the rules it breaks, with the severity of each."""
 
-    make: Callable[[], Subject]
+    make: Callable[[], PrintSubject]
     breaks: dict[str, str]
 
 
@@ -47,15 +47,15 @@ def body_of(solid: Manifold, name: str = "part", resin: str = "VeroClear") -> Bo
 
 def item(
     shape: Manifold, name: str = "part", resin: str = "VeroClear", machine: str = "objet260-connex", **more
-) -> Item:
+) -> PrintItem:
     chosen = printer(machine)
     mode = chosen.mode_for(material(resin))
     assert mode is not None
-    return Item(body_of(shape, name, resin), chosen, mode, **more)
+    return PrintItem(body_of(shape, name, resin), chosen, mode, **more)
 
 
-def one(shape: Manifold, **more) -> Subject:
-    return Subject((item(shape, **more),))
+def one(shape: Manifold, **more) -> PrintSubject:
+    return PrintSubject((item(shape, **more),))
 
 
 def box(x: float, y: float, z: float, at: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Manifold:
@@ -109,17 +109,17 @@ def with_hole(body: Body, missing: int = 0) -> Body:
     return replace(body, triangles=np.delete(body.triangles, missing, axis=0))
 
 
-def _open_mesh() -> Subject:
+def _open_mesh() -> PrintSubject:
     whole = item(box(10, 10, 10))
-    return Subject((replace(whole, body=with_hole(whole.body)),))
+    return PrintSubject((replace(whole, body=with_hole(whole.body)),))
 
 
-def _inside_out() -> Subject:
+def _inside_out() -> PrintSubject:
     whole = item(box(10, 10, 10))
-    return Subject((replace(whole, body=replace(whole.body, triangles=whole.body.triangles[:, ::-1])),))
+    return PrintSubject((replace(whole, body=replace(whole.body, triangles=whole.body.triangles[:, ::-1])),))
 
 
-def _sliver() -> Subject:
+def _sliver() -> PrintSubject:
     """A block with a point on its top face, a ten-millionth of a millimetre beside an edge."""
     whole = item(box(10, 10, 10, (100.0, 0.0, 0.0)))
     vertices, triangles = whole.body.vertices, whole.body.triangles
@@ -131,45 +131,45 @@ def _sliver() -> Subject:
     body = replace(
         whole.body, vertices=np.vstack([vertices, new]), triangles=np.vstack([np.delete(triangles, top, axis=0), fan])
     )
-    return Subject((replace(whole, body=body),))
+    return PrintSubject((replace(whole, body=body),))
 
 
 def _two(
     apart: float, job: str = "", joint: bool = False, resins: tuple[str, str] = ("VeroClear", "VeroClear")
-) -> Subject:
+) -> PrintSubject:
     items = (
         item(box(10, 10, 10), "one", resins[0], job=job),
         item(box(10, 10, 10, (0.0, 0.0, 10.0 + apart)), "other", resins[1], job=job),
     )
-    return Subject(items, (Joint("one", "other", 100.0, (5.0, 5.0, 10.0)),) if joint else ())
+    return PrintSubject(items, (Joint("one", "other", 100.0, (5.0, 5.0, 10.0)),) if joint else ())
 
 
-def _mixed() -> Subject:
+def _mixed() -> PrintSubject:
     """Two resins in one job, in the mode that runs one."""
     return _two(5.0, "tray", resins=("VeroClear", "TangoPlus"))
 
 
-def _unrun() -> Subject:
+def _unrun() -> PrintSubject:
     whole = item(box(10, 10, 10))
-    return Subject((replace(whole, body=replace(whole.body, material=material("ABS"))),))
+    return PrintSubject((replace(whole, body=replace(whole.body, material=material("ABS"))),))
 
 
-def _face_down() -> Subject:
+def _face_down() -> PrintSubject:
     dome = item(cup(), up=(0.0, 0.0, -1.0), sensing=outside)
-    return Subject((dome,))
+    return PrintSubject((dome,))
 
 
-def _shadowed() -> Subject:
+def _shadowed() -> PrintSubject:
     """A dome that looks up, under a roof printed with it."""
     dome = item(cup(), "dome", job="tray", sensing=outside)
-    return Subject((dome, item(box(30, 30, 2, (-15.0, -15.0, 14.0)), "roof", job="tray")))
+    return PrintSubject((dome, item(box(30, 30, 2, (-15.0, -15.0, 14.0)), "roof", job="tray")))
 
 
-def _closed_by_two() -> Subject:
+def _closed_by_two() -> PrintSubject:
     """A tray and its lid, printed as one: neither has a hollow."""
     tray = box(12, 12, 8) - box(8, 8, 6, (2.0, 2.0, 2.0))
     lid = box(12, 12, 2, (0.0, 0.0, 8.0))
-    return Subject((item(tray, "tray", job="both"), item(lid, "lid", job="both")))
+    return PrintSubject((item(tray, "tray", job="both"), item(lid, "lid", job="both")))
 
 
 def _vault() -> Manifold:
@@ -220,7 +220,7 @@ BAD: dict[str, Exhibit] = {
     "inside out": Exhibit(_inside_out, {"mesh": "error"}),
 }  # fmt: skip
 
-GOOD: dict[str, Callable[[], Subject]] = {
+GOOD: dict[str, Callable[[], PrintSubject]] = {
     "plate": lambda: one(box(30, 30, 1.1)),
     "fin": lambda: one(box(20, 20, 3) + box(1.1, 15, 8, (10.0, 2.5, 2.0))),
     "tube": lambda: one(rod(4.5, 10) - rod(3.0, 12, (0.0, 0.0, -1.0))),

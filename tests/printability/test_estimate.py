@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from pneutouch.printability import Subject
+from pneutouch.printability import PrintSubject
 from pneutouch.printability.estimate import estimate
 from tests.printability.gallery import box, item, printer
 
@@ -16,7 +16,7 @@ def table():
 
 
 def test_a_table_on_a_polyjet_printer():
-    (job,) = estimate(Subject((item(table()),)))
+    (job,) = estimate(PrintSubject((item(table()),)))
     volume = 20 * 20 * 2 + 2 * 4 * 4 * 8
     assert job.items[0].volume == pytest.approx(volume)
     assert job.resins == {"VeroClear": pytest.approx(volume / 1e3)}
@@ -30,19 +30,19 @@ def test_a_table_on_a_polyjet_printer():
 
 def test_lying_down_takes_fewer_layers():
     upright, lying = (
-        estimate(Subject((item(box(10, 10, 60), up=up),)))[0] for up in ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0))
+        estimate(PrintSubject((item(box(10, 10, 60), up=up),)))[0] for up in ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0))
     )
     assert (upright.layers, lying.layers) == (3750, 625)
     assert upright.size == pytest.approx((10, 10, 60))
 
 
 def test_a_wide_job_takes_more_swaths():
-    (job,) = estimate(Subject((item(box(120, 120, 2)),)))
+    (job,) = estimate(PrintSubject((item(box(120, 120, 2)),)))
     assert job.swaths == 3
 
 
 def test_filament_is_laid_down_by_volume_and_supported_under_overhangs():
-    (job,) = estimate(Subject((item(table(), resin="ABS", machine="abs-filament"),)))
+    (job,) = estimate(PrintSubject((item(table(), resin="ABS", machine="abs-filament"),)))
     assert 0 < job.support < (400 - 32) * 8
     machine = printer("abs-filament")
     mode = machine.mode[0]
@@ -50,27 +50,27 @@ def test_filament_is_laid_down_by_volume_and_supported_under_overhangs():
     assert job.seconds == pytest.approx(
         volume / machine.deposition_mm3_per_s.nominal + job.layers * mode.layer_seconds.nominal
     )
-    (flat,) = estimate(Subject((item(box(20, 20, 5), resin="ABS", machine="abs-filament"),)))
+    (flat,) = estimate(PrintSubject((item(box(20, 20, 5), resin="ABS", machine="abs-filament"),)))
     assert flat.support == 0.0
 
 
 def test_a_profile_without_times_gives_no_time_and_says_so():
     plain = item(box(10, 10, 10))
     silent = plain.mode.model_copy(update={"layer_seconds": None})
-    (job,) = estimate(Subject((item(box(10, 10, 10)).__class__(plain.body, plain.printer, silent),)))
+    (job,) = estimate(PrintSubject((item(box(10, 10, 10)).__class__(plain.body, plain.printer, silent),)))
     assert job.seconds is None
     assert any("layer_seconds" in note for note in job.assumptions)
 
 
 def test_the_resins_of_a_digital_material_are_added_up():
-    (job,) = estimate(Subject((item(box(10, 10, 10), resin="FLX9970"),)))
+    (job,) = estimate(PrintSubject((item(box(10, 10, 10), resin="FLX9970"),)))
     assert job.resins == {"TangoPlus + VeroClear": pytest.approx(1.0)}
     assert any("no ratios" in note for note in job.assumptions)
 
 
 def test_bodies_of_one_job_are_one_estimate_and_it_is_json():
     pair = (item(box(10, 10, 10), "a", job="tray"), item(box(10, 10, 10, (0, 0, 10)), "b", "FLX9970", job="tray"))
-    (job,) = estimate(Subject(pair))
+    (job,) = estimate(PrintSubject(pair))
     document = json.loads(json.dumps(job.document()))
     assert document["size_mm"] == [10, 10, 20]
     assert [entry["name"] for entry in document["items"]] == ["a", "b"]

@@ -10,13 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from manifold3d import Manifold
 
-from pneutouch.parts.coupons import COUPONS, Ground
+from pneutouch.parts.coupons import COUPONS, CouponContext
 from pneutouch.parts.coupons.gauge import HOLES, PINS, SLOTS, WALLS
-from pneutouch.printability import Item
+from pneutouch.printability import PrintItem
 from pneutouch.printability.measure.cavities import NARROW, balls, pockets, seen, supported, unseen
 from pneutouch.printability.measure.voxels import build_frame, fill
 from pneutouch.printability.view import NARROW as NARROW_HOLE
-from pneutouch.printability.view import Part
+from pneutouch.printability.view import PrintPart
 from tests.printability.gallery import ball, box, cup, item, material, meander, printer, prism, rod
 
 SIZES = st.floats(0.2, 0.95)
@@ -25,7 +25,7 @@ EXACT = 1e-6
 
 
 def places(shape: Manifold, **more):
-    return Part(item(shape, **more)).places
+    return PrintPart(item(shape, **more)).places
 
 
 def thinnest(shape: Manifold, kind: str, **more):
@@ -154,10 +154,10 @@ def test_small_things_on_a_large_part_are_seen():
 
 def test_the_gauge_is_measured_feature_by_feature():
     """The coupon that tells what a machine resolves has a row each of walls, pins, holes and slots of known sizes."""
-    ground = Ground(material("VeroClear"))
+    ground = CouponContext(material("VeroClear"))
     gauge = next(solid for solid in COUPONS["gauge"].draw(ground) if solid.name == "gauge")
     body = gauge.mesh(printer().finest_step(printer().mode[0]))
-    found = Part(Item(body, printer(), printer().mode[0], gauge)).places
+    found = PrintPart(PrintItem(body, printer(), printer().mode[0], gauge)).places
     for kinds, sizes, most in (
         (("wall",), WALLS, 1.0), (("pin",), PINS, 1.0), (("hole", "channel"), HOLES, NARROW_HOLE), (("gap",), SLOTS, NARROW_HOLE)
     ):  # fmt: skip
@@ -166,7 +166,7 @@ def test_the_gauge_is_measured_feature_by_feature():
 
 
 def voxels(solid: Manifold, up=(0.0, 0.0, 1.0)):
-    return fill([Part(item(solid)).surface.corners], build_frame(np.asarray(up)))
+    return fill([PrintPart(item(solid)).surface.corners], build_frame(np.asarray(up)))
 
 
 def test_cubes_fill_the_volume_whichever_way_up():

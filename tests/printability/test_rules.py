@@ -15,10 +15,10 @@ from pneutouch.catalogue import Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.evaluation.subject import subject_of
 from pneutouch.parts import assemble
-from pneutouch.printability import Item, Subject, check
+from pneutouch.printability import PrintItem, PrintSubject, check
 from pneutouch.printability.check import RULES
 from pneutouch.printability.rules.contact_faces import overlap_volume, shared_area
-from pneutouch.printability.view import Part, View
+from pneutouch.printability.view import PrintPart, PrintView
 from tests.conftest import ROOT
 from tests.printability.gallery import BAD, ball, box, item, one
 
@@ -84,14 +84,14 @@ def test_findings_come_errors_first_and_repeat():
 def test_findings_do_not_depend_on_the_position(turn):
     for name in ("thin fin", "needle", "capillary", "saw cut", "hairline", "knife", "bubble"):
         plain = BAD[name].make().items[0]
-        turned = Manifold(Part(plain).manifold.to_mesh64()).rotate(turn).translate((31.7, -5.3, 12.1))
+        turned = Manifold(PrintPart(plain).manifold.to_mesh64()).rotate(turn).translate((31.7, -5.3, 12.1))
         assert {f.rule: f.severity for f in check(one(turned))} == BAD[name].breaks, name
 
 
 def test_a_mesh_that_is_no_solid_gets_the_findings_that_need_none():
     whole = item(box(300, 10, 10))
     broken = replace(whole.body, triangles=whole.body.triangles[:-1])
-    found = check(Subject((replace(whole, body=broken),)))
+    found = check(PrintSubject((replace(whole, body=broken),)))
     assert sorted(told(found)) == [("error", "envelope", "part"), ("error", "mesh", "part")]
 
 
@@ -130,7 +130,7 @@ def test_an_overlap_is_told_once_and_says_how_much():
 
 def test_a_job_s_name_joins_parts_and_no_name_keeps_them_apart():
     pair = [item(box(5, 5, 5), "a"), item(box(5, 5, 5, (9, 0, 0)), "b"), item(box(5, 5, 5, (18, 0, 0)), "c")]
-    view = View(Subject((replace(pair[0], job="tray"), pair[1], replace(pair[2], job="tray"))))
+    view = PrintView(PrintSubject((replace(pair[0], job="tray"), pair[1], replace(pair[2], job="tray"))))
     assert [[part.name for part in job.parts] for job in view.jobs] == [["a", "c"], ["b"]]
 
 
@@ -150,6 +150,6 @@ def test_the_heavy_libraries_load_only_where_they_are_used():
 
 def test_hints_replace_the_plain_advice():
     plate = item(box(30, 30, 0.45), hints={"walls": "raise coupon.thickness_mm"})
-    assert isinstance(plate, Item)
-    assert check(Subject((plate,)))[0].fix == "raise coupon.thickness_mm"
+    assert isinstance(plate, PrintItem)
+    assert check(PrintSubject((plate,)))[0].fix == "raise coupon.thickness_mm"
     assert set(RULES) >= {"walls", "pins", "holes", "channels", "gaps", "emboss"}

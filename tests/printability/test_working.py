@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from pneutouch.printability import Subject, check
+from pneutouch.printability import PrintSubject, check
 from tests.printability.gallery import cup, item
 from tests.printability.working import WORKING, working
 
@@ -51,5 +51,5 @@ def test_outside_the_atlas_the_note_gives_the_thickness_alone():
 
 
 def test_without_a_prediction_these_rules_say_nothing():
-    found = check(Subject((item(cup(10.0, 1.5), "membrane", "TangoPlus"),)))
+    found = check(PrintSubject((item(cup(10.0, 1.5), "membrane", "TangoPlus"),)))
     assert not [finding for finding in found if finding.rule in WORKING]

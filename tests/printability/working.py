@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from pneutouch.mechanics import predict
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.printability import Finding, SensorContext, Subject, check
+from pneutouch.printability import Finding, PrintSubject, SensorContext, check
 from pneutouch.units import KPA
 from tests.printability.gallery import cup, item, material
 
@@ -21,5 +21,5 @@ def working(
     sensor = replace(material_sensor(material(resin)), wall_thickness=wall, inner_radius=radius)
     prediction = predict("dome", sensor, [p * KPA for p in pressures], model="membrane")
     dome = item(cup(radius + wall, wall), "membrane", resin)
-    found = check(Subject((dome,)), SensorContext(prediction, sensor))
+    found = check(PrintSubject((dome,)), SensorContext(prediction, sensor))
     return [finding for finding in found if finding.rule in WORKING]

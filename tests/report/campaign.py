@@ -7,16 +7,16 @@ from pathlib import Path
 
 import numpy as np
 
-from pneutouch.bench.record import Curve, Doubt
-from pneutouch.bench.summary import Group, summarize
+from pneutouch.bench.record import MeasuredCurve, SuspectInterval
+from pneutouch.bench.summary import RunGroup, summarize
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.evaluation.variants import in_resin
 from pneutouch.mechanics.atlas_states import atlas_result
-from pneutouch.mechanics.prediction import State
+from pneutouch.mechanics.prediction import SensorState
 from pneutouch.parts import assemble
-from pneutouch.report.measured import Beside, Measured, Verdict
-from pneutouch.spec.campaign import Campaign, Run
+from pneutouch.report.measured import CampaignReport, GroupComparison, Verdict
+from pneutouch.spec.campaign import Campaign, CampaignRun
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
 
@@ -26,7 +26,7 @@ _DECAY = 0.04
 """Loss of force a decade."""
 
 
-def states_of(resin: str, pressures: tuple[float, ...], library: Library) -> dict[float, State]:
+def states_of(resin: str, pressures: tuple[float, ...], library: Library) -> dict[float, SensorState]:
     """The atlas's states of the paper's dome in a resin, by kPa."""
     sensor = sensor_of(assemble(load_scene("paper-dome", library=library)))
     variant = in_resin(sensor, library.all("materials", Material)[resin])
@@ -34,7 +34,13 @@ def states_of(resin: str, pressures: tuple[float, ...], library: Library) -> dic
     return dict(zip(pressures, result.states, strict=True))
 
 
-def curve_of(run: Run, state: State, factor: float, rng: np.random.Generator, doubts: tuple[Doubt, ...] = ()) -> Curve:
+def curve_of(
+    run: CampaignRun,
+    state: SensorState,
+    factor: float,
+    rng: np.random.Generator,
+    doubts: tuple[SuspectInterval, ...] = (),
+) -> MeasuredCurve:
     """A run of a kind on a sensor that is ``factor`` times as stiff as predicted."""
     kept = state.indentation <= state.range_end
     depth, force, rise = state.indentation[kept], factor * state.force[kept], state.pressure_rise[kept]
@@ -51,17 +57,17 @@ def curve_of(run: Run, state: State, factor: float, rng: np.random.Generator, do
         time = np.linspace(0, 600, 6001)
         fall = 1 - _DECAY * np.log10(np.maximum(time, 0.1))
         relaxation = (time, force[-1] * fall + rng.normal(0, 0.01, time.size), rise[-1] * (0.4 + 0.6 * fall))
-    return Curve(
+    return MeasuredCurve(
         run, depth, force, rise, (run.driving_pressure_kPa + rng.normal(0, 0.02)) * KPA, loop=loop, relaxation=relaxation,
         noise=(0.012, 0.015 * KPA), drift=(0.001 * KPA, 1e-4), doubts=doubts,
     )  # fmt: skip
 
 
-def beside_of(group: Group, states: dict[float, State]) -> Beside:
+def beside_of(group: RunGroup, states: dict[float, SensorState]) -> GroupComparison:
     """A group beside the atlas, with bands of 15 % and 10 %."""
     state = states.get(group.key.driving_pressure_kPa)
     if state is None or state.figures is None:
-        return Beside(group, group.key.resin, None, {}, {}, "beyond the limit point of this resin")
+        return GroupComparison(group, group.key.resin, None, {}, {}, "beyond the limit point of this resin")
     f = state.figures
     predicted = {
         "sensitivity_kPa_per_N": (f.sensitivity, 0.85 * f.sensitivity, 1.15 * f.sensitivity),
@@ -71,14 +77,14 @@ def beside_of(group: Group, states: dict[float, State]) -> Beside:
         "nonlinearity_percent": (100 * f.nonlinearity, None, None),
         "force_range_N": (f.force_range[1], None, None),
     }
-    return Beside(group, group.key.resin, state, {}, predicted)
+    return GroupComparison(group, group.key.resin, state, {}, predicted)
 
 
 def measured_of(
     library: Library, *, resins: tuple[str, ...] = RESINS, pressures: tuple[float, ...] = (0.0, 22.0), specimens: int = 3,
     runs: int = 3, kinds: tuple[str, ...] = ("steps", "saturation", "loop", "relaxation"), ages: tuple[float, ...] = (0.0,),
     simulated: bool = True, predicted: bool = True,
-) -> Measured:  # fmt: skip
+) -> CampaignReport:  # fmt: skip
     """A campaign of every resin at every pressure and age; ageing makes sensors a tenth stiffer."""
     rng = np.random.default_rng(7)
     curves, every = [], {}
@@ -90,7 +96,7 @@ def measured_of(
                 for pressure in pressures:
                     for age in ages:
                         for k in range(runs if kind == "steps" else 1):
-                            run = Run(
+                            run = CampaignRun(
                                 file=f"runs/{resin}-{n + 1}-{kind}-{pressure:g}-{age:g}-{k + 1}.csv", kind=kind,
                                 sensor=f"{resin}-{n + 1}", resin=resin, driving_pressure_kPa=pressure, run=k + 1, date=DAY,
                                 age_days=age,
@@ -102,7 +108,7 @@ def measured_of(
         title=f"Resins under pressure: {len(resins)} at {len(pressures)}", lab="Test bench 3", design="paper-dome", simulated=simulated,
         runs=[curve.run for curve in curves],
     )  # fmt: skip
-    return Measured(
+    return CampaignReport(
         campaign, load_scene("paper-dome", library=library), Path("campaign"), besides, tuple(curves), (), (), (), (),
         _ageing(resins, pressures) if len(ages) > 1 else (), "atlas", "0123456789ab",
     )  # fmt: skip

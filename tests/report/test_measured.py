@@ -11,7 +11,7 @@ import pypdfium2
 import pytest
 
 from pneutouch.bench.figure import FIGURES
-from pneutouch.bench.record import Doubt
+from pneutouch.bench.record import SuspectInterval
 from pneutouch.report.measured import Verdict, definition
 from pneutouch.report.measured.head import tiles, verdict
 from pneutouch.report.measured.panels import panels_of
@@ -44,7 +44,9 @@ def words_of(page):
 def campaign(library):
     """Seven resins, with everything that a sheet may have to say."""
     found = measured_of(library)
-    doubts = tuple(Doubt(10.0 + k, 10.5 + k, f"doubt number {k} in a row", bool(k % 2)) for k in range(MOST + 7))
+    doubts = tuple(
+        SuspectInterval(10.0 + k, 10.5 + k, f"doubt number {k} in a row", bool(k % 2)) for k in range(MOST + 7)
+    )
     return replace(
         found, curves=(replace(found.curves[0], doubts=doubts), *found.curves[1:]), verdicts=VERDICTS,
         injections=INJECTIONS, failures=(FAILURE,), questions=(QUESTION,),

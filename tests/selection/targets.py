@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from pneutouch.spec.target import Given, Setting, Target, Wanted, Weights
-from pneutouch.workflows.select.run import Selection, select
+from pneutouch.spec.target import Given, Setting, Target, TargetFigures, Weights
+from pneutouch.workflows.select.run import SelectionRun, select
 
 FINGERTIP = {
     "sensitivity_kPa_per_N": 1.9, "driving_pressure_kPa": 12.0, "force_range_N": 15.0, "max_diameter_mm": 25.0,
@@ -15,10 +15,10 @@ FINGERTIP = {
 
 def target(wanted: dict[str, Any], **tables: dict[str, Any]) -> Target:
     return Target(
-        target=Wanted(**wanted), given=Given(**tables.get("given", {})), setting=Setting(**tables.get("setting", {})),
+        target=TargetFigures(**wanted), given=Given(**tables.get("given", {})), setting=Setting(**tables.get("setting", {})),
         weights=Weights(**tables.get("weights", {})),
     )  # fmt: skip
 
 
-def answer(wanted: dict[str, Any], **tables: dict[str, Any]) -> Selection:
+def answer(wanted: dict[str, Any], **tables: dict[str, Any]) -> SelectionRun:
     return select(target(wanted, **tables), "test")

@@ -7,19 +7,19 @@ import pytest
 
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.mechanics import predict
-from pneutouch.selection import Choice
+from pneutouch.selection import Candidate
 from pneutouch.units import KPA
 from pneutouch.workflows.select.document import document
-from pneutouch.workflows.select.run import Selection
+from pneutouch.workflows.select.run import SelectionRun
 from tests.selection.targets import FINGERTIP, answer
 
 
 @pytest.fixture(scope="module")
-def fingertip() -> Selection:
+def fingertip() -> SelectionRun:
     return answer(FINGERTIP)
 
 
-def solid(selection: Selection, choice: Choice, tmp_path):
+def solid(selection: SelectionRun, choice: Candidate, tmp_path):
     """The design as `build` would take it, predicted by the solid at its driving pressure."""
     path = tmp_path / "empty.toml"
     path.write_text("")

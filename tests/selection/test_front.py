@@ -9,18 +9,18 @@ import pytest
 
 from pneutouch.selection.front import front
 from pneutouch.selection.pool import evaluated, margins
-from pneutouch.selection.problem import Problem
+from pneutouch.selection.problem import SelectionProblem
 from tests.selection.targets import FINGERTIP, answer
 
 WISHES = ("sensitivity", "force range", "stiffness")
 
 
 @pytest.fixture(scope="module")
-def problem() -> Problem:
+def problem() -> SelectionProblem:
     return answer(FINGERTIP).problem
 
 
-def brute_force(problem: Problem, number: int, count: int) -> tuple[np.ndarray, np.ndarray]:
+def brute_force(problem: SelectionProblem, number: int, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Sensitivity and force of every allowed point of a grid over wall ratio and radius."""
     ratio = np.geomspace(problem.recipe.thinnest, problem.recipe.thickest, count)
     low, high = problem.radii(ratio)
@@ -34,7 +34,7 @@ def brute_force(problem: Problem, number: int, count: int) -> tuple[np.ndarray, 
     return pool.response.lines.sensitivity[good], pool.force[good]
 
 
-def shortfall(problem: Problem, number: int, count: int) -> float:
+def shortfall(problem: SelectionProblem, number: int, count: int) -> float:
     """Greatest share of force that the grid has and the front lacks, at sensitivities over the whole front."""
     found = front(replace(problem, resins=problem.resins[number : number + 1]))[0]
     sensitivity, force = brute_force(problem, number, count)

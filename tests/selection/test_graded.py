@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pneutouch.catalogue import Library
-from pneutouch.selection.grade_search import Search, Trial, Wish, grade_search, shares
+from pneutouch.selection.grade_search import GradeSearch, GradeTarget, GradeTrial, grade_search, shares
 from pneutouch.selection.mixes import levels
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA
@@ -14,17 +14,17 @@ from pneutouch.workflows.select.mix import pair_of
 from pneutouch.workflows.select.run import select
 
 LEVELS = np.array([0.0, 0.17, 0.4, 0.67])
-SAME = Wish(1.9, 0.02, (0.0, 0.022), 0.02, None, False)
+SAME = GradeTarget(1.9, 0.02, (0.0, 0.022), 0.02, None, False)
 
 
-def made_up(pole: float, rim: float) -> Trial:
+def made_up(pole: float, rim: float) -> GradeTrial:
     """Like the paper's dome: the rim's fraction lowers the sensitivity and flattens it, the pole's does little."""
     first = 2.45 - 0.5 * pole - 1.9 * rim
     apart = -0.09 + 0.34 * rim - 0.3 * pole
-    return Trial(pole, rim, (first, first * (1 + apart)), (40 + 30 * pole, 35 + 30 * pole), 0.09)
+    return GradeTrial(pole, rim, (first, first * (1 + apart)), (40 + 30 * pole, 35 + 30 * pole), 0.09)
 
 
-def searched(wish: Wish, solve=made_up, most: int = 48) -> Search:
+def searched(wish: GradeTarget, solve=made_up, most: int = 48) -> GradeSearch:
     return grade_search(wish, LEVELS, solve, lambda trial, done, most: None, most)
 
 
@@ -45,7 +45,7 @@ def test_every_trial_is_counted_and_none_is_solved_twice():
 def test_the_most_trials_are_kept_and_a_far_wish_is_not_met():
     for most in (5, 20, 33):
         told = []
-        far = Wish(4.0, 0.02, SAME.pressures, 0.02, None, False)
+        far = GradeTarget(4.0, 0.02, SAME.pressures, 0.02, None, False)
         found = grade_search(far, LEVELS, made_up, lambda trial, done, most, told=told: told.append((done, most)), most)
         assert not found.met
         assert len(found.trials) <= most
@@ -54,11 +54,11 @@ def test_the_most_trials_are_kept_and_a_far_wish_is_not_met():
 
 
 def test_the_widest_range_keeps_the_sensitivity_and_beats_every_trial_that_does():
-    wish = Wish(1.9, 0.02, (0.0,), None, None, True)
+    wish = GradeTarget(1.9, 0.02, (0.0,), None, None, True)
 
-    def at_rest(pole: float, rim: float) -> Trial:
+    def at_rest(pole: float, rim: float) -> GradeTrial:
         both = made_up(pole, rim)
-        return Trial(pole, rim, both.sensitivity[:1], both.force[:1], both.rated)
+        return GradeTrial(pole, rim, both.sensitivity[:1], both.force[:1], both.rated)
 
     found = searched(wish, at_rest)
     assert found.met
@@ -69,20 +69,20 @@ def test_the_widest_range_keeps_the_sensitivity_and_beats_every_trial_that_does(
 
 
 def test_trials_without_figures_are_steered_around():
-    def holed(pole: float, rim: float) -> Trial:
+    def holed(pole: float, rim: float) -> GradeTrial:
         if pole > 0.3:
-            return Trial(pole, rim, (np.nan, np.nan), (np.nan, np.nan), 1e-12, note="nothing")
+            return GradeTrial(pole, rim, (np.nan, np.nan), (np.nan, np.nan), 1e-12, note="nothing")
         return made_up(pole, rim)
 
     assert searched(SAME, holed).met
 
 
 def test_limits_bind_but_are_no_aims():
-    strong = Wish(1.9, 0.02, SAME.pressures, 0.02, 36.0, False)
+    strong = GradeTarget(1.9, 0.02, SAME.pressures, 0.02, 36.0, False)
     found = searched(strong)
     assert found.met
     assert found.best.reach >= 36.0
-    weak = searched(SAME, lambda pole, rim: Trial(pole, rim, made_up(pole, rim).sensitivity, (1.0, 1.0), 0.01))
+    weak = searched(SAME, lambda pole, rim: GradeTrial(pole, rim, made_up(pole, rim).sensitivity, (1.0, 1.0), 0.01))
     assert not weak.met
     assert shares(SAME, weak.best)["rated pressure"] == pytest.approx(2.2)
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.evaluation import evaluate
-from pneutouch.spec.design import Design
+from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import validate
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -117,7 +117,7 @@ def test_a_byte_order_mark_and_a_file_without_ending_are_read(tmp_path):
 anything = st.one_of(
     st.none(), st.booleans(), st.integers(), st.floats(), st.text(max_size=5), st.lists(st.floats(), max_size=3)
 )
-tables = {key: info.annotation for key, info in Design.model_fields.items()}
+tables = {key: info.annotation for key, info in DesignFile.model_fields.items()}
 
 
 @given(st.sampled_from(sorted(tables)), st.data())
@@ -125,7 +125,7 @@ def test_no_value_of_any_field_gets_past_validation_unbounded_or_ends_in_another
     key = data.draw(st.sampled_from(sorted(tables[table].model_fields)))
     value = data.draw(anything)
     try:
-        design = validate(Design, {table: {key: value}}, "x.toml")
+        design = validate(DesignFile, {table: {key: value}}, "x.toml")
     except InputError as error:
         assert f"{table}" in str(error)
         return

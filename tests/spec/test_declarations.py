@@ -7,13 +7,13 @@ import tomllib
 
 import pytest
 
-from pneutouch.spec.design import Design
+from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import declarations, table_of
 from pneutouch.spec.quantity import Quantity
 from pneutouch.spec.read import validate
 from pneutouch.spec.template import design_template
 
-FIELDS = [(table, entry) for table in Design.model_fields for entry in declarations(table_of(Design, table))]
+FIELDS = [(table, entry) for table in DesignFile.model_fields for entry in declarations(table_of(DesignFile, table))]
 
 
 @pytest.mark.parametrize(("table", "entry"), FIELDS, ids=[f"{table}.{entry.key}" for table, entry in FIELDS])
@@ -27,9 +27,9 @@ def test_every_field_has_help_and_numbers_have_bounds_and_units(table, entry):
 
 def test_template_is_a_valid_design_with_every_key_and_every_default():
     text = design_template('my "sensor"')
-    design = validate(Design, tomllib.loads(text), "template")
-    assert design.membrane == Design().membrane
-    assert design.pneumatics == Design().pneumatics
+    design = validate(DesignFile, tomllib.loads(text), "template")
+    assert design.membrane == DesignFile().membrane
+    assert design.pneumatics == DesignFile().pneumatics
     assert design.document.title == 'my "sensor"'
     for table, entry in FIELDS:
         assert f"{entry.key} =" in text

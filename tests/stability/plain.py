@@ -12,16 +12,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.solid import Solid
+from pneutouch.mechanics.solid import SolidModel
 from pneutouch.mechanics.solid.banded import solve
-from pneutouch.mechanics.solid.elements import Scheme
-from pneutouch.mechanics.solid.newton import Scene, State, evaluate, full_tangent
+from pneutouch.mechanics.solid.elements import IntegrationScheme
+from pneutouch.mechanics.solid.newton import SolidScene, SolverState, evaluate, full_tangent
 from pneutouch.mechanics.solid.supply import Regulator, Supply
 
-Converged = Callable[[State], bool]
+Converged = Callable[[SolverState], bool]
 
 #: Plain displacement elements: four-node cells, two by two points, J taken at every point (order=1 in `dome`).
-DISPLACEMENT = Scheme(gauss=2, pressure=4)
+DISPLACEMENT = IntegrationScheme(gauss=2, pressure=4)
 
 
 @dataclass(frozen=True)
@@ -38,18 +38,18 @@ class Fate:
     period: int = 0
 
 
-def balanced(state: State) -> bool:
+def balanced(state: SolverState) -> bool:
     """Unbalanced force below 1e-9 of the forces that balance."""
     return float(np.linalg.norm(state.residual)) <= 1e-9 * state.scale
 
 
-def below(newtons: float, solid: Solid) -> Converged:
+def below(newtons: float, solid: SolidModel) -> Converged:
     """An absolute tolerance in N, as many codes have it."""
     unit = solid.mu * solid.length**2
     return lambda state: float(np.linalg.norm(state.residual)) * unit <= newtons
 
 
-def newton(scene: Scene, x: Array, converged: Converged = balanced, most: int = 40) -> Fate:
+def newton(scene: SolidScene, x: Array, converged: Converged = balanced, most: int = 40) -> Fate:
     """Full steps with the exact tangent, no line search; x (n_nodes, 2)."""
     for iteration in range(most):
         state = evaluate(scene, x)
@@ -63,7 +63,7 @@ def newton(scene: Scene, x: Array, converged: Converged = balanced, most: int = 
     return Fate("unfinished", most, x)
 
 
-def load_control(solid: Solid, first: float, smallest: float) -> list[tuple[float, Array]]:
+def load_control(solid: SolidModel, first: float, smallest: float) -> list[tuple[float, Array]]:
     """Raise the regulated pressure (in mu) by `first`, halving the step on failure until it is below `smallest`.
 
     Returns pressures and positions of the converged states.
@@ -71,7 +71,7 @@ def load_control(solid: Solid, first: float, smallest: float) -> list[tuple[floa
     path, step = [(0.0, solid.rest)], first
     while abs(step) >= smallest:
         pressure = path[-1][0] + step
-        fate = newton(Scene(solid, Regulator(pressure), None), path[-1][1])
+        fate = newton(SolidScene(solid, Regulator(pressure), None), path[-1][1])
         if fate.end == "converged":
             path.append((pressure, fate.x))
         else:
@@ -79,7 +79,7 @@ def load_control(solid: Solid, first: float, smallest: float) -> list[tuple[floa
     return path
 
 
-def active_set(solid: Solid, supply: Supply, height: float, x: Array, most: int = 60) -> Fate:
+def active_set(solid: SolidModel, supply: Supply, height: float, x: Array, most: int = 60) -> Fate:
     """Node-wise contact with an endless plate at `height`: after every Newton step the set of nodes is corrected.
 
     A node that passed the plate is put on it, a node that the plate would have to pull is let go. A recurring
@@ -88,7 +88,7 @@ def active_set(solid: Solid, supply: Supply, height: float, x: Array, most: int 
     nodes = np.unique(solid.mesh.outer)
     nodes = nodes[solid.dofs[nodes, 1] >= 0]
     up = solid.dofs[nodes, 1]
-    scene, held = Scene(solid, supply, None), x[nodes, 1] > height
+    scene, held = SolidScene(solid, supply, None), x[nodes, 1] > height
     seen: list[tuple[Array, Array]] = []
     for iteration in range(most):
         state = evaluate(scene, x)
@@ -110,7 +110,7 @@ def active_set(solid: Solid, supply: Supply, height: float, x: Array, most: int 
     return Fate("unfinished", most, x)
 
 
-def _held_step(scene: Scene, state: State, dofs: Array, move: Array) -> Array:
+def _held_step(scene: SolidScene, state: SolverState, dofs: Array, move: Array) -> Array:
     """Newton step (size,) with the unknowns `dofs` moved by `move`."""
     band = full_tangent(scene, state)
     n = band.shape[1]

@@ -9,7 +9,7 @@ import numpy as np
 
 from pneutouch.catalogue import Library
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.mechanics.solid import Press, Solid, dome, inflate, state_at
+from pneutouch.mechanics.solid import PressSettings, SolidModel, dome, inflate, state_at
 from pneutouch.spec.material import Material
 from pneutouch.units import ML
 from tests.stability.truth import Study
@@ -31,11 +31,11 @@ def random_sensors(
         sensor = material_sensor(resin)
         assert sensor.break_stretch is not None
         radius, ratio, share = rng.uniform(4.0, 30.0), rng.uniform(*walls), rng.uniform(0.0, 0.8)
-        solid = Solid(dome(radius, ratio * radius), sensor.material)
+        solid = SolidModel(dome(radius, ratio * radius), sensor.material)
         run = inflate(solid, past_limit=1.0)
         assert run.limit is not None
         free = state_at(solid, share * run.limit.pressure, run)
-        press = Press(
+        press = PressSettings(
             depth * radius, int(rng.integers(1, 20)), PLATE * radius, sensor.ambient_pressure,
             rng.uniform(0.0, 5.0) * ML, sensor.gauge_limit, sensor.break_stretch - 1.0,
         )  # fmt: skip

@@ -13,14 +13,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pneutouch.mechanics.atlas.respond import BUCKLING, DEPTH, GAUGE, OUTSIDE, Response, respond
+from pneutouch.mechanics.atlas.respond import BUCKLING, DEPTH, GAUGE, OUTSIDE, AtlasResponse, respond
 from pneutouch.mechanics.atlas.table import shipped
 from tests.mechanics.atlas.sampled import batch, random_batch
 
 LIMIT = float(shipped().slices(np.array([0.16])).limit_pressure[0])
 
 
-def silent(found: Response, row: int) -> bool:
+def silent(found: AtlasResponse, row: int) -> bool:
     """Whether a row says nothing at all of a press."""
     parts = (*found.lines, found.range_end, found.apex_outer, found.cavity_volume, found.max_stretch)
     curves = np.concatenate([found.indentation[row], found.force[row], found.rise[row]])

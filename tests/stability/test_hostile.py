@@ -11,7 +11,7 @@ import pytest
 
 from pneutouch.errors import ComputationError, InputError
 from pneutouch.mechanics.laws import mooney_rivlin, neo_hookean, ogden, yeoh
-from pneutouch.mechanics.solid import Press, Solid, UnreachableLoadError, dome, inflate, state_at
+from pneutouch.mechanics.solid import PressSettings, SolidModel, UnreachableLoadError, dome, inflate, state_at
 from pneutouch.mechanics.solid.events import BREAKS_CURVE
 from tests.stability.truth import ENDS_BRANCH, Study, free_unbalance, other_branch
 
@@ -21,10 +21,10 @@ ENDS_PATH = {*BREAKS_CURVE, "floor"} - {"separation"}
 
 
 def study(*, wall=1.5, law=TANGO, pressure=0.022, depth=0.5 * R0, steps=6, mesh=None, **options):
-    solid = Solid(mesh or dome(R0, wall), law)
+    solid = SolidModel(mesh or dome(R0, wall), law)
     free = state_at(solid, pressure)
     assert free_unbalance(solid, free) <= 1.0
-    return Study.of(solid, free, Press(depth, steps, **options))
+    return Study.of(solid, free, PressSettings(depth, steps, **options))
 
 
 def holds(found: Study) -> str:
@@ -143,11 +143,11 @@ def test_a_hundred_sensors_at_the_edges_of_everything(capsys):
     for _ in range(100):
         radius, mu = 10 ** rng.uniform(-1, 3), 10 ** rng.uniform(-3, 3)
         law = neo_hookean(mu, float(rng.choice([0.3, 0.45, 0.49, 0.499, 0.4999])))
-        solid = Solid(dome(radius, radius * float(rng.choice([0.02, 0.05, 0.1, 0.3, 0.7]))), law)
+        solid = SolidModel(dome(radius, radius * float(rng.choice([0.02, 0.05, 0.1, 0.3, 0.7]))), law)
         run = inflate(solid, past_limit=1.0)
         try:
             free = state_at(solid, float(rng.choice([0.0, 0.5, 0.9, 0.99, 0.9999])) * run.limit.pressure, run)
-            press = Press(
+            press = PressSettings(
                 radius * float(rng.choice([0.01, 0.5, 0.75, 0.99])), int(rng.choice([1, 3, 30])),
                 rng.choice([None, 0.5 * radius, 3.0 * radius]), mu * float(rng.choice([0.0, 0.1, 100.0])),
                 radius**3 * float(rng.choice([0.0, 1.0, 1e3])), np.inf,

@@ -12,14 +12,14 @@ import numpy as np
 import pytest
 
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid import Solid, UnreachableLoadError, dome, inflate, state_at
-from pneutouch.mechanics.solid.newton import Scene
+from pneutouch.mechanics.solid import SolidModel, UnreachableLoadError, dome, inflate, state_at
+from pneutouch.mechanics.solid.newton import SolidScene
 from pneutouch.mechanics.solid.supply import Regulator
 from tests.stability.plain import load_control, newton
 from tests.stability.truth import free_unbalance
 
 MU = 0.17
-SOLID = Solid(dome(9.25, 1.5), neo_hookean(MU))
+SOLID = SolidModel(dome(9.25, 1.5), neo_hookean(MU))
 KPA = 1e-3 / MU
 
 
@@ -43,7 +43,7 @@ def test_load_control_stops_at_the_limit_and_volume_control_passes_it():
 def test_newton_beyond_the_limit_turns_the_wall_inside_out_and_ours_says_the_limit(share):
     limit = inflate(SOLID, past_limit=1.0).limit
     near = state_at(SOLID, 0.99 * limit.pressure)
-    fate = newton(Scene(SOLID, Regulator(share * limit.pressure / MU), None), near.unit.x)
+    fate = newton(SolidScene(SOLID, Regulator(share * limit.pressure / MU), None), near.unit.x)
     assert fate.end in ("inside out", "unfinished")
     with pytest.raises(UnreachableLoadError) as caught:
         state_at(SOLID, share * limit.pressure)
@@ -52,7 +52,7 @@ def test_newton_beyond_the_limit_turns_the_wall_inside_out_and_ours_says_the_lim
 
 def test_a_large_load_step_fails_far_below_the_limit_where_ours_arrives():
     pressure = 0.030
-    assert newton(Scene(SOLID, Regulator(pressure / MU), None), SOLID.rest).end == "inside out"
+    assert newton(SolidScene(SOLID, Regulator(pressure / MU), None), SOLID.rest).end == "inside out"
     ours = state_at(SOLID, pressure)
     assert ours.stable and free_unbalance(SOLID, ours) <= 1.0
     # The plain method in thirty small steps agrees: the same equations, another way through them.

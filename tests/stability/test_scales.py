@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid import Press, Solid, dome, inflate, state_at
-from pneutouch.mechanics.solid.newton import Scene
+from pneutouch.mechanics.solid import PressSettings, SolidModel, dome, inflate, state_at
+from pneutouch.mechanics.solid.newton import SolidScene
 from pneutouch.mechanics.solid.supply import Regulator
 from tests.stability.plain import below, newton
 from tests.stability.truth import Study
@@ -20,7 +20,7 @@ SIZES = [(0.1, 1e-3), (0.1, 1e3), (9.25, 1e-3), (9.25, 1e3), (1000.0, 1e-3), (10
 
 
 def sensor(radius, mu):
-    return Solid(dome(radius, radius * 1.5 / 9.25), neo_hookean(mu))
+    return SolidModel(dome(radius, radius * 1.5 / 9.25), neo_hookean(mu))
 
 
 def figures(radius, mu):
@@ -28,7 +28,7 @@ def figures(radius, mu):
     solid = sensor(radius, mu)
     run = inflate(solid, past_limit=1.0)
     free = state_at(solid, PRESSURE * mu, run)
-    press = Press(
+    press = PressSettings(
         0.5 * radius, 5, plate_diameter=30 / 9.25 * radius, ambient=AMBIENT * mu, dead_volume=0.5 * radius**3,
         gauge_range=np.inf,
     )  # fmt: skip
@@ -50,7 +50,7 @@ def test_an_absolute_tolerance_accepts_the_start_or_is_never_met():
     ends = {}
     for radius, mu in ((0.1, 1e-3), (9.25, 0.17), (1000.0, 1e3)):
         solid = sensor(radius, mu)
-        fate = newton(Scene(solid, Regulator(PRESSURE), None), solid.rest, below(1e-6, solid))
+        fate = newton(SolidScene(solid, Regulator(PRESSURE), None), solid.rest, below(1e-6, solid))
         ends[radius] = fate.end, fate.x[solid.mesh.inner[-1, 1], 1]
     truth = state_at(sensor(1.0, 1.0), PRESSURE).inner_apex
     assert ends[9.25] == ("converged", pytest.approx(truth, rel=1e-6)) and truth > 1.05

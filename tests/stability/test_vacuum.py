@@ -11,19 +11,19 @@ import numpy as np
 import pytest
 
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid import Press, Solid, UnreachableLoadError, dome, inflate, state_at
-from pneutouch.mechanics.solid.newton import Scene
+from pneutouch.mechanics.solid import PressSettings, SolidModel, UnreachableLoadError, dome, inflate, state_at
+from pneutouch.mechanics.solid.newton import SolidScene
 from pneutouch.mechanics.solid.supply import Regulator
 from tests.stability.plain import newton
 from tests.stability.truth import Study, free_unbalance
 
 MU, R0 = 0.17, 9.25
-SOLID = Solid(dome(R0, 1.5), neo_hookean(MU))
+SOLID = SolidModel(dome(R0, 1.5), neo_hookean(MU))
 
 
 def test_plain_newton_falls_off_the_sucked_branch_and_ours_follows_it():
     pressure = -0.020
-    assert newton(Scene(SOLID, Regulator(pressure / MU), None), SOLID.rest).end == "inside out"
+    assert newton(SolidScene(SOLID, Regulator(pressure / MU), None), SOLID.rest).end == "inside out"
     ours = state_at(SOLID, pressure)
     assert ours.pressure == pytest.approx(pressure, rel=1e-12) and ours.stable
     assert free_unbalance(SOLID, ours) <= 1.0
@@ -40,14 +40,14 @@ def test_every_state_on_the_way_down_balances_and_the_limit_is_said():
     # Just inside that load there is a state, just outside plain Newton finds none from it.
     inside = state_at(SOLID, 0.99 * caught.value.limit)
     assert inside.stable
-    fate = newton(Scene(SOLID, Regulator(1.02 * caught.value.limit / MU), None), inside.unit.x)
+    fate = newton(SolidScene(SOLID, Regulator(1.02 * caught.value.limit / MU), None), inside.unit.x)
     assert fate.end in ("inside out", "unfinished")
 
 
 @pytest.mark.parametrize("ratio", [0.01, 0.02])
 def test_a_thin_dome_buckles_at_the_classical_load(ratio):
     nu = 0.49
-    solid = Solid(dome(1.0, ratio), neo_hookean(1.0, nu))
+    solid = SolidModel(dome(1.0, ratio), neo_hookean(1.0, nu))
     with pytest.raises(UnreachableLoadError) as caught:
         state_at(solid, -1.0)
     young, middle = 2.0 * (1.0 + nu), 1.0 + 0.5 * ratio
@@ -56,7 +56,7 @@ def test_a_thin_dome_buckles_at_the_classical_load(ratio):
 
 
 def test_the_sucked_dome_leaves_the_plate_and_says_so():
-    ours = Study.of(SOLID, state_at(SOLID, -0.005), Press(0.5 * R0, 10))
+    ours = Study.of(SOLID, state_at(SOLID, -0.005), PressSettings(0.5 * R0, 10))
     event = next(e for e in ours.found.events if e.kind == "separation")
     assert ours.found.complete and ours.unbalance() <= 1.0 and ours.gas_error() < 1e-9
     # True: behind the event the wall's apex hangs below the plate by more than the contact lets through.
@@ -66,10 +66,10 @@ def test_the_sucked_dome_leaves_the_plate_and_says_so():
 
 
 def test_no_air_at_all_leaves_the_wall_alone():
-    ours = Study.of(SOLID, state_at(SOLID, 0.0), Press(0.5 * R0, 5, ambient=0.0))
+    ours = Study.of(SOLID, state_at(SOLID, 0.0), PressSettings(0.5 * R0, 5, ambient=0.0))
     assert ours.found.complete and ours.unbalance() <= 1.0
     assert np.abs(ours.found.column("pressure")).max() < 1e-12
     force = ours.found.column("force")
-    sealed = Study.of(SOLID, state_at(SOLID, 0.0), Press(0.5 * R0, 5)).found.column("force")
+    sealed = Study.of(SOLID, state_at(SOLID, 0.0), PressSettings(0.5 * R0, 5)).found.column("force")
     assert (np.diff(force) > 0).all() and (force[1:] < sealed[1:]).all()
     assert force[-1] < 0.4 * sealed[-1]

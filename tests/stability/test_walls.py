@@ -15,7 +15,7 @@ from scipy.optimize import minimize_scalar
 
 from pneutouch.mechanics.inflation import LIMIT_PRESSURE
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid import Press, Solid, dome, inflate, state_at
+from pneutouch.mechanics.solid import PressSettings, SolidModel, dome, inflate, state_at
 from tests.stability.plain import DISPLACEMENT
 from tests.stability.truth import Study, free_unbalance
 
@@ -23,7 +23,7 @@ MU, R0 = 0.17, 9.25
 
 
 def limit(mesh, nu=0.49, scheme=None):
-    return inflate(Solid(mesh, neo_hookean(MU, nu), scheme), past_limit=1.0).limit
+    return inflate(SolidModel(mesh, neo_hookean(MU, nu), scheme), past_limit=1.0).limit
 
 
 @pytest.fixture(scope="module")
@@ -53,8 +53,8 @@ def test_locking_grows_with_a_coarser_mesh_and_ours_hardly_moves():
 def test_pressed_domes_converge_at_every_poisson_ratio():
     force = []
     for nu in (0.3, 0.45, 0.49, 0.499, 0.4999):
-        solid = Solid(dome(R0, 1.5), neo_hookean(MU, nu))
-        ours = Study.of(solid, state_at(solid, 0.022), Press(0.5 * R0, 5))
+        solid = SolidModel(dome(R0, 1.5), neo_hookean(MU, nu))
+        ours = Study.of(solid, state_at(solid, 0.022), PressSettings(0.5 * R0, 5))
         assert ours.found.complete and ours.unbalance() <= 1.0
         force.append(ours.found.states[-1].force)
     # Stiffer towards nu 0.5, and at a limit there: a locked wall would go on stiffening without one.
@@ -64,8 +64,10 @@ def test_pressed_domes_converge_at_every_poisson_ratio():
 
 def test_thin_walls_lock_fully_integrated_cells_and_not_ours():
     def force(mesh, scheme=None, depth=0.125 * R0):
-        solid = Solid(mesh, neo_hookean(MU), scheme)
-        return Study.of(solid, state_at(solid, 0.0), Press(depth, 1, plate_diameter=None)).found.states[-1].force
+        solid = SolidModel(mesh, neo_hookean(MU), scheme)
+        return (
+            Study.of(solid, state_at(solid, 0.0), PressSettings(depth, 1, plate_diameter=None)).found.states[-1].force
+        )
 
     wall = 0.02 * R0
     fine = force(dome(R0, wall, arc=96, through=2))
@@ -102,10 +104,10 @@ def test_thick_walls_leave_membrane_theory_and_ours_meets_the_exact_sphere():
 @pytest.mark.parametrize("ratio", [0.02, 0.05, 0.3, 0.5])
 @pytest.mark.parametrize("share", [0.0, 0.5, 0.8])
 def test_thin_and_thick_walls_are_pressed_to_half_the_radius(ratio, share):
-    solid = Solid(dome(R0, ratio * R0), neo_hookean(MU))
+    solid = SolidModel(dome(R0, ratio * R0), neo_hookean(MU))
     run = inflate(solid, past_limit=1.0)
     free = state_at(solid, share * run.limit.pressure, run)
-    ours = Study.of(solid, free, Press(0.5 * R0, 4))
+    ours = Study.of(solid, free, PressSettings(0.5 * R0, 4))
     assert free_unbalance(solid, free) <= 1.0
     assert ours.found.complete and ours.unbalance() <= 1.0 and ours.gas_error() < 1e-9
     assert ours.softest(ours.found.states[-1]) > 0.0

@@ -7,9 +7,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.solid import Event, FreeState, Indentation, Press, PressState, Solid, indent
+from pneutouch.mechanics.solid import (
+    FreeState,
+    IndentationPath,
+    PressSettings,
+    PressState,
+    SolidEvent,
+    SolidModel,
+    indent,
+)
 from pneutouch.mechanics.solid.contact import RIM, Plate
-from pneutouch.mechanics.solid.newton import Scene, Stalled, State, evaluate, full_tangent, minimise
+from pneutouch.mechanics.solid.newton import NewtonFailure, SolidScene, SolverState, evaluate, full_tangent, minimise
 from pneutouch.mechanics.solid.supply import Gas, Regulator
 
 #: Events that end a path because the branch ends there.
@@ -20,16 +28,16 @@ ENDS_BRANCH = ("snap", "clamp_fold")
 class Study:
     """A dome, its inflated state, how it is pressed and what came of it."""
 
-    solid: Solid
+    solid: SolidModel
     free: FreeState
-    press: Press
-    found: Indentation
+    press: PressSettings
+    found: IndentationPath
 
     @classmethod
-    def of(cls, solid: Solid, free: FreeState, press: Press) -> Study:
+    def of(cls, solid: SolidModel, free: FreeState, press: PressSettings) -> Study:
         return cls(solid, free, press, indent(solid, free, press))
 
-    def scene(self, indentation: float) -> Scene:
+    def scene(self, indentation: float) -> SolidScene:
         """Gas and plate at a travel (mm), set up from the definitions: Boyle's law, a plate with a rounded rim."""
         length, mu = self.solid.length, self.solid.mu
         gas = Gas.filled(
@@ -41,9 +49,11 @@ class Study:
         top = self.free.positions[self.solid.mesh.outer, 1].max()
         radius = np.inf if self.press.plate_diameter is None else 0.5 * self.press.plate_diameter / length
         rim = max(RIM * radius if np.isfinite(radius) else 0.0, self.solid.contact.longest)
-        return Scene(self.solid, gas, Plate((top - indentation) / length, max(radius - 0.5 * rim, 0.5 * radius), rim))
+        return SolidScene(
+            self.solid, gas, Plate((top - indentation) / length, max(radius - 0.5 * rim, 0.5 * radius), rim)
+        )
 
-    def evaluated(self, state: PressState) -> State:
+    def evaluated(self, state: PressState) -> SolverState:
         found = evaluate(self.scene(state.indentation), state.positions / self.solid.length)
         assert found is not None
         return found
@@ -74,7 +84,7 @@ class Study:
         return float(np.linalg.eigvalsh(k, UPLO="L")[0])
 
 
-def unbalance(solid: Solid, state: State) -> float:
+def unbalance(solid: SolidModel, state: SolverState) -> float:
     """Norm of the residual over what convergence allows: 1e-9 of gas and plate forces, and rounding.
 
     The solver allows ten times the rounding noise; an eleventh is for positions that went through millimetres and back.
@@ -87,9 +97,9 @@ def unbalance(solid: Solid, state: State) -> float:
     return float(np.linalg.norm(state.residual)) / (1e-9 * (load + 1e-3 * solid.wall) + 11.0 * noise)
 
 
-def free_unbalance(solid: Solid, free: FreeState) -> float:
+def free_unbalance(solid: SolidModel, free: FreeState) -> float:
     """`unbalance` of an inflated state under its own pressure held by a regulator."""
-    state = evaluate(Scene(solid, Regulator(free.pressure / solid.mu), None), free.positions / solid.length)
+    state = evaluate(SolidScene(solid, Regulator(free.pressure / solid.mu), None), free.positions / solid.length)
     assert state is not None
     return unbalance(solid, state)
 
@@ -100,14 +110,14 @@ def pressed_to(study: Study, indentation: float) -> PressState:
     return indent(study.solid, study.free, replace(study.press, depth=depth, steps=1)).path[-1]
 
 
-def gauge_error(study: Study, event: Event) -> float:
+def gauge_error(study: Study, event: SolidEvent) -> float:
     """Relative distance of the pressure from the end of the gauge's range where the event puts it; 0 if it began so."""
     if event.indentation == 0.0:
         return min(0.0, study.free.pressure / study.press.gauge_range - 1.0)
     return pressed_to(study, event.indentation).pressure / study.press.gauge_range - 1.0
 
 
-def breaks_there(study: Study, event: Event) -> bool:
+def breaks_there(study: Study, event: SolidEvent) -> bool:
     """Whether the break strain is met within half a solver step (0.03 R0) of where the event puts it, not before."""
     half, level = 0.03 * study.solid.length, 1.0 + study.press.break_strain
     met = pressed_to(study, event.indentation + half).stretch >= level
@@ -129,7 +139,7 @@ def other_branch(study: Study) -> float | None:
             back = x
             for share in (*np.linspace(1.0, 0.0, ways_back, endpoint=False), 0.0):
                 found = minimise(study.scene(last.indentation + share * further * length), back)
-                if isinstance(found, Stalled):
+                if isinstance(found, NewtonFailure):
                     break
                 back = found.state.x
             else:

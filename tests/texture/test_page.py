@@ -10,7 +10,7 @@ from benchmarks.strip import AGILUS
 from benchmarks.texture_page import DOCS, HEIGHT, KINDS
 from benchmarks.texture_text import page
 
-from pneutouch.texture.substrate import Bars, Matrix, amplitude
+from pneutouch.texture.substrate import BarRow, MatrixLayer, amplitude
 
 
 def stored():
@@ -24,6 +24,6 @@ def test_page_is_made_of_the_stored_numbers():
 def test_stored_numbers_are_what_the_model_gives():
     for row in stored()["single"]:
         width, height = KINDS[row["pitch"]]
-        bars = Bars("", row["pitch"], width, height, row["depth"], np.array([[0.0, width]]))
-        ours = -float(amplitude(Matrix(HEIGHT, *AGILUS), bars, np.array(row["radius"])))
+        bars = BarRow("", row["pitch"], width, height, row["depth"], np.array([[0.0, width]]))
+        ours = -float(amplitude(MatrixLayer(HEIGHT, *AGILUS), bars, np.array(row["radius"])))
         assert ours == pytest.approx(row["reduced"], rel=1e-6)

@@ -13,22 +13,22 @@ from pneutouch.errors import InputError
 from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.texture.contact import touch, touches
-from pneutouch.texture.scan import Recorder, Way, gain, pressure_amplitude, record, scan
-from pneutouch.texture.separate import Pattern, amplitudes, noise_amplitude, recommend, separate
-from pneutouch.texture.substrate import Bars, Matrix, Substrate
+from pneutouch.texture.scan import Recorder, ScanPath, gain, pressure_amplitude, record, scan
+from pneutouch.texture.separate import BarPattern, amplitudes, noise_amplitude, recommend, separate
+from pneutouch.texture.substrate import BarRow, MatrixLayer, Substrate
 from pneutouch.units import GAUGE_LIMIT, KPA, STANDARD_ATMOSPHERE
 
 SENSOR = Sensor(9.25, 1.5, 0.17, 0.49, STANDARD_ATMOSPHERE, 0.0, 15.0, 0.75 * 9.25, 14, 2.7, GAUGE_LIMIT)
-MATRIX = Matrix(8.0, 0.206, 0.49)
+MATRIX = MatrixLayer(8.0, 0.206, 0.49)
 QUIET = Recorder(rate=500.0, noise=0.0, step=0.0)
 
 
-def bars(pitch=6.0, depth=2.0) -> Bars:
+def bars(pitch=6.0, depth=2.0) -> BarRow:
     near = np.arange(pitch / 4, 60.0 - pitch / 2, pitch)
-    return Bars("bars", pitch, pitch / 2, 1.5, depth, np.stack([near, near + pitch / 2], axis=1))
+    return BarRow("bars", pitch, pitch / 2, 1.5, depth, np.stack([near, near + pitch / 2], axis=1))
 
 
-def ground(radius: float, *rows: Bars) -> Substrate:
+def ground(radius: float, *rows: BarRow) -> Substrate:
     return Substrate(MATRIX, rows or (bars(),), 60.0, radius)
 
 
@@ -76,11 +76,11 @@ def test_atlas_and_solid_tell_the_same_touch():
 def test_held_height_gives_the_first_order_amplitude_and_held_force_none():
     at = touch(SENSOR, 22 * KPA, 0.5)
     under = ground(at.contact_radius)
-    found = scan(at, under, Way(6.0, 54.0, 4.0), QUIET)
+    found = scan(at, under, ScanPath(6.0, 54.0, 4.0), QUIET)
     spectrum = np.abs(np.fft.rfft(found.clean[:-1])) * 2 / (len(found.clean) - 1)
     own = pressure_amplitude(at, under, under.bars[0])
     assert spectrum[8] == pytest.approx(own, rel=0.02)
-    held = scan(at, under, Way(6.0, 54.0, 4.0, "force"), QUIET)
+    held = scan(at, under, ScanPath(6.0, 54.0, 4.0, "force"), QUIET)
     assert np.ptp(held.clean) == 0.0 and pressure_amplitude(at, under, under.bars[0], "force") == 0.0
     # What the height does at a held force is what the dome would have to take at a held height.
     swing = np.abs(np.fft.rfft(held.height[:-1]))[8] * 2 / (len(held.height) - 1)
@@ -101,12 +101,12 @@ def test_gain_is_the_series_spring_formula():
 def test_rigid_or_bare_specimens_show_nothing():
     at = touch(SENSOR, 0.0, 0.5)
     for under in (Substrate(MATRIX, (), 60.0, at.contact_radius), ground(at.contact_radius, bars(depth=8.0))):
-        assert np.ptp(scan(at, under, Way(6.0, 54.0, 4.0), QUIET).clean) < 1e-9 * KPA
+        assert np.ptp(scan(at, under, ScanPath(6.0, 54.0, 4.0), QUIET).clean) < 1e-9 * KPA
 
 
 def test_patterns_stand_beside_the_signal_and_noise_is_the_seeds():
     at = touch(SENSOR, 22 * KPA, 0.5)
-    under, way = ground(at.contact_radius), Way(6.0, 54.0, 4.0)
+    under, way = ground(at.contact_radius), ScanPath(6.0, 54.0, 4.0)
     one, same, other = (scan(at, under, way, Recorder(seed=s)) for s in (1, 1, 2))
     assert (one.signal.pressure == same.signal.pressure).all()
     assert (one.signal.pressure != other.signal.pressure).any()
@@ -134,9 +134,9 @@ def test_touch_refuses_what_cannot_be(pressure, preload, word):
 def test_scan_refuses_paths_noise_and_pitches():
     at = touch(SENSOR, 0.0, 0.5)
     for way, rows, recorder, word in (
-        (Way(5.0, 5.0, 4.0), bars(), QUIET, "shorter than the patch"), (Way(5.0, 50.0, 0.0), bars(), QUIET, "speed"),
-        (Way(5.0, 50.0, 4.0), bars(1.5), QUIET, r"times the patch, whose radius is 3.58 mm"),
-        (Way(5.0, 50.0, 4.0), bars(), Recorder(noise=-1.0), "noise"),
+        (ScanPath(5.0, 5.0, 4.0), bars(), QUIET, "shorter than the patch"), (ScanPath(5.0, 50.0, 0.0), bars(), QUIET, "speed"),
+        (ScanPath(5.0, 50.0, 4.0), bars(1.5), QUIET, r"times the patch, whose radius is 3.58 mm"),
+        (ScanPath(5.0, 50.0, 4.0), bars(), Recorder(noise=-1.0), "noise"),
     ):  # fmt: skip
         with pytest.raises(InputError, match=word):
             scan(at, ground(at.contact_radius, rows), way, recorder)
@@ -152,17 +152,17 @@ def test_noise_amplitude_is_what_white_noise_reads_as():
 
 
 def test_recommendation_is_the_highest_amplitude():
-    best = recommend(Pattern(6.0, 2.0), SENSOR, MATRIX, 22 * KPA)
+    best = recommend(BarPattern(6.0, 2.0), SENSOR, MATRIX, 22 * KPA)
     assert best.amplitude == np.max(best.amplitudes) >= best.unpressurised
     with pytest.raises(InputError, match="depth"):
-        recommend(Pattern(6.0, 9.0), SENSOR, MATRIX, 22 * KPA)
+        recommend(BarPattern(6.0, 9.0), SENSOR, MATRIX, 22 * KPA)
     with pytest.raises(InputError, match="no driving pressure"):
-        recommend(Pattern(6.0, 2.0), SENSOR, MATRIX, 22 * KPA, preload=1e5)
+        recommend(BarPattern(6.0, 2.0), SENSOR, MATRIX, 22 * KPA, preload=1e5)
 
 
 def test_separation_takes_the_states_that_lean_most():
     pressures = np.array([0.0, 10.0, 22.0, 30.0]) * KPA
-    batch, patterns = batch_of(SENSOR, pressures), (Pattern(3.0, 0.0), Pattern(6.0, 2.0))
+    batch, patterns = batch_of(SENSOR, pressures), (BarPattern(3.0, 0.0), BarPattern(6.0, 2.0))
     found = separate(batch, np.zeros(4), 0.5, MATRIX, patterns, (1e-9, 1e-9))
     each = amplitudes(batch, 0.5, MATRIX, list(patterns))
     ratio = each[:, 0] / each[:, 1]
@@ -173,18 +173,20 @@ def test_separation_takes_the_states_that_lean_most():
 
 @pytest.mark.parametrize("seed", range(1, 6))
 def test_the_stiff_state_shows_both_patterns_whatever_the_noise(seed, library):
-    from pneutouch.workflows.scan.run import Asked, run_scan
+    from pneutouch.workflows.scan.run import ScanOptions, run_scan
 
-    (seen,) = run_scan("texture-specimen", "paper-dome", Asked(pressures=(0.022,), seed=seed), library=library).seen
+    (seen,) = run_scan(
+        "texture-specimen", "paper-dome", ScanOptions(pressures=(0.022,), seed=seed), library=library
+    ).seen
     for found, true in zip(seen.detections, (4 / 3, 2 / 3, 2 / 3), strict=True):
         assert found.found
         assert found.frequency == pytest.approx(true, rel=0.03)
 
 
 def test_a_sensor_held_at_a_force_rises_over_a_bar(library):
-    from pneutouch.workflows.scan.run import Asked, run_scan
+    from pneutouch.workflows.scan.run import ScanOptions, run_scan
 
-    run = run_scan("texture-specimen", "paper-dome", Asked(pressures=(0.022,), control="force"), library=library)
+    run = run_scan("texture-specimen", "paper-dome", ScanOptions(pressures=(0.022,), control="force"), library=library)
     scan = run.seen[0].scan
     over = scan.pattern(run.bars[2]) > 0.5
     late = scan.place > 34.0

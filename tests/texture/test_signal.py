@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pneutouch.errors import InputError
-from pneutouch.texture.record import Columns, read_signal
+from pneutouch.texture.record import RecordColumns, read_signal
 from pneutouch.texture.signal import signal
 
 GOOD = "time_s,pressure_kPa,force_N\n" + "".join(f"{0.1 * k:.1f},{1 + 0.01 * k},0\n" for k in range(10))
@@ -23,7 +23,9 @@ def test_a_file_is_read_in_si_units(tmp_path):
     assert found.rate == pytest.approx(10.0)
     assert found.pressure[0] == pytest.approx(1e-3)
     assert found.duration == pytest.approx(0.9)
-    other = read_signal(written(tmp_path, GOOD.replace("time_s", "t").replace("pressure_kPa", "p")), Columns("t", "p"))
+    other = read_signal(
+        written(tmp_path, GOOD.replace("time_s", "t").replace("pressure_kPa", "p")), RecordColumns("t", "p")
+    )
     assert np.array_equal(found.pressure, other.pressure)
 
 

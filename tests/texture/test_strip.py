@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from benchmarks.strip import AGILUS, Row, Strip, harmonic
 
-from pneutouch.texture.substrate import Bars, Matrix, amplitude, bonded_layer, patch_filter
+from pneutouch.texture.substrate import BarRow, MatrixLayer, amplitude, bonded_layer, patch_filter
 
-MATRIX = Matrix(8.0, *AGILUS)
+MATRIX = MatrixLayer(8.0, *AGILUS)
 
 
 def test_plane_strain_layer_is_the_exact_one():
@@ -62,7 +62,7 @@ def test_reduced_model_errs_no_more_than_its_page_says(pitch, radius, low, high)
     for depth in (0.0, 1.0, 2.0, 3.0):
         strip = Strip(24.0, 8.0, 0.5, (Row(pitch, width, height, depth),))
         fe = harmonic(strip.disc_compliance(width / 2 + pitch * np.arange(8) / 8, radius))
-        bars = Bars("", pitch, width, height, depth, np.array([[0.0, width]]))
+        bars = BarRow("", pitch, width, height, depth, np.array([[0.0, width]]))
         found.append(-float(amplitude(MATRIX, bars, np.array(radius))) / fe)
     assert low < min(found) and max(found) < high, found
     # One sign: a bar under the middle counts as the patch filter says.

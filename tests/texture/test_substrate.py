@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from pneutouch.texture.substrate import (
     FIRST_ZERO,
-    Bars,
-    Matrix,
+    BarRow,
+    MatrixLayer,
     Substrate,
     amplitude,
     bonded_layer,
@@ -21,12 +21,12 @@ from pneutouch.texture.substrate import (
 )
 
 MU = 0.206
-MATRIX = Matrix(8.0, MU, 0.49)
+MATRIX = MatrixLayer(8.0, MU, 0.49)
 
 
-def row(pitch=6.0, width=3.0, depth=2.0, length=60.0, first=1.5) -> Bars:
+def row(pitch=6.0, width=3.0, depth=2.0, length=60.0, first=1.5) -> BarRow:
     near = np.arange(first, length - width + 1e-9, pitch)
-    return Bars("row", pitch, width, 1.5, depth, np.stack([near, near + width], axis=1))
+    return BarRow("row", pitch, width, 1.5, depth, np.stack([near, near + width], axis=1))
 
 
 def airy(q: float, poisson: float) -> tuple[float, float]:
@@ -94,7 +94,7 @@ def test_deep_down_a_plate_gets_twice_what_a_half_space_carries():
 
 def test_disc_on_a_half_space_sinks_as_love_says():
     # Mean sinking of a uniform disc: 16 (1 - nu) F/(3 pi^2 mu rho) / 2; Johnson, Contact Mechanics, eq. 3.30.
-    deep = Matrix(1e5, MU, 0.49)
+    deep = MatrixLayer(1e5, MU, 0.49)
     radii = np.array([0.5, 2.0, 5.0])
     assert deep.compliance(radii) == pytest.approx(8 * 0.51 / (3 * np.pi**2 * MU * radii), rel=1e-3)
 
@@ -148,11 +148,11 @@ def test_no_bars_no_contrast():
 
 def test_rows_above_shield_those_below_and_halves_do_not():
     lower = row()
-    upper = Bars("upper", 3.0, 1.5, 1.0, 0.0, row(3.0, 1.5, 0.0, 60.0, 0.75).edges)
+    upper = BarRow("upper", 3.0, 1.5, 1.0, 0.0, row(3.0, 1.5, 0.0, 60.0, 0.75).edges)
     alone, under = Substrate(MATRIX, (lower,), 60.0, 2.3), Substrate(MATRIX, (upper, lower), 60.0, 2.3)
     assert under.amplitude(lower) == pytest.approx(alone.amplitude(lower) * under.shares[0])
     first, second = lower.edges[:5], lower.edges[5:]
-    halves = [Bars(f"half {k}", 6.0, 3.0, 1.5, 2.0, edges) for k, edges in enumerate((first, second))]
+    halves = [BarRow(f"half {k}", 6.0, 3.0, 1.5, 2.0, edges) for k, edges in enumerate((first, second))]
     both = Substrate(MATRIX, tuple(halves), 60.0, 2.3)
     assert both.amplitude(halves[0]) == pytest.approx(alone.amplitude(lower))
     assert both.compliance(512) == pytest.approx(alone.compliance(512), rel=1e-9)

@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 
 from pneutouch.bench.calibrate import Observations
-from pneutouch.bench.record import Curve
+from pneutouch.bench.record import MeasuredCurve
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import evaluate, sensor_of
 from pneutouch.output.files import json_bytes
 from pneutouch.parts import assemble
-from pneutouch.spec.campaign import Campaign, Run
+from pneutouch.spec.campaign import Campaign, CampaignRun
 from pneutouch.units import KPA
 from pneutouch.workflows.calibrate.files import HEAD, prepare, save, write_calibration
 from pneutouch.workflows.calibrate.fit import calibrate, observations_of
@@ -136,7 +136,7 @@ def test_an_estimate_without_interval_is_no_resin(scene, library, tmp_path):
     """Forces as of air alone: the modulus ends on its bound, and nothing is saved."""
     truth = replace(sensor_of(assemble(scene)), break_stretch=None)
     soft = tuple(
-        Curve(c.run, c.indentation, 0.3 * c.force, 0.3 * c.rise, c.driving)
+        MeasuredCurve(c.run, c.indentation, 0.3 * c.force, 0.3 * c.rise, c.driving)
         for c in curves(truth, (0.0,), 3, np.random.default_rng(1), 0.002)
     )
     found = calibrate(Observations(soft), scene, ("modulus",), priors=False)
@@ -163,7 +163,7 @@ def test_runs_of_other_sensors_and_kinds_are_not_taken(observations, scene):
         return Campaign(runs=list(runs), ambient_pressure_kPa=95.0)
 
     curve = observations.curves[0]
-    other = Run(file="b.csv", sensor="B", resin="FLX9950")
+    other = CampaignRun(file="b.csv", sensor="B", resin="FLX9950")
     loop = replace(curve, run=curve.run.model_copy(update={"kind": "loop", "file": "loop.csv"}))
     both = campaign(curve.run, other)
     name, taken, notes = observations_of(both, [curve, loop], [], scene, "A")
@@ -175,7 +175,7 @@ def test_runs_of_other_sensors_and_kinds_are_not_taken(observations, scene):
         observations_of(both, [curve], [], scene, "C")
     with pytest.raises(InputError, match="--sensor B: no readable run"):
         observations_of(both, [curve], [], scene, "B")
-    held = Run(file="i.csv", sensor="A", resin="TangoPlus", kind="injection", driving_pressure_kPa=5.0)
+    held = CampaignRun(file="i.csv", sensor="A", resin="TangoPlus", kind="injection", driving_pressure_kPa=5.0)
     with pytest.raises(InputError, match=r"i\.csv: driving_pressure_kPa = 5: an injection must begin at ambient"):
         observations_of(campaign(held), [], [(held, np.ones(3), np.ones(3))], scene)
     _, _, remarks = observations_of(campaign(curve.run.model_copy(update={"resin": "FLX9950"})), [curve], [], scene)

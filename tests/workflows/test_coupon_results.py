@@ -11,9 +11,9 @@ from pneutouch.bench.machine import smallest_sound
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.spec.coupon import Size, read_results
+from pneutouch.spec.coupon import GaugeSize, read_results
 from pneutouch.spec.toml_text import toml_text
-from pneutouch.workflows.coupons.order import Asked, order
+from pneutouch.workflows.coupons.order import CouponOptions, order
 from pneutouch.workflows.coupons.profile import HEAD
 from pneutouch.workflows.coupons.results import enter_results
 from pneutouch.workflows.coupons.template import results_template
@@ -204,14 +204,14 @@ def test_no_lab_and_no_reading_are_said(lab, tmp_path):
     with pytest.raises(InputError, match="nothing measured"):
         lab({"lab": "x", "date": datetime.date(2026, 1, 1)})
     path = tmp_path / "empty.toml"
-    path.write_text(results_template(order(Asked(), LIBRARY)))
+    path.write_text(results_template(order(CouponOptions(), LIBRARY)))
     with pytest.raises(InputError, match="lab: missing; give who measured"):
         read_results(path)
 
 
 def test_the_smallest_sound_feature_has_only_sound_ones_above_it():
     def row(*told):
-        return [Size(nominal_mm=float(k), came_out=one) for k, one in enumerate(told, start=1)]
+        return [GaugeSize(nominal_mm=float(k), came_out=one) for k, one in enumerate(told, start=1)]
 
     assert smallest_sound(row(True, False, True, True)) == 3
     assert smallest_sound(row(True, None, True)) == 1

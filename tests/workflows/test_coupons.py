@@ -13,16 +13,16 @@ import pytest
 from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
 from pneutouch.parts.coupons import COUPONS
-from pneutouch.spec.coupon import Results
+from pneutouch.spec.coupon import CouponResults
 from pneutouch.workflows.coupons.build import build_coupons
 from pneutouch.workflows.coupons.lay import lay
-from pneutouch.workflows.coupons.order import Asked, order
+from pneutouch.workflows.coupons.order import CouponOptions, order
 from pneutouch.workflows.coupons.template import results_template
 from tests.conftest import ROOT
 from tests.export.threemf_files import read_strictly
 
 LIBRARY = Library((ROOT,))
-WHOLE = Asked(materials=("TangoPlus", "FLX9960"), design="paper-dome")
+WHOLE = CouponOptions(materials=("TangoPlus", "FLX9960"), design="paper-dome")
 
 
 @pytest.fixture(scope="module")
@@ -48,7 +48,7 @@ def test_the_same_input_gives_the_same_bytes(folder, tmp_path):
 
 
 def test_readings_in_the_folder_are_not_lost(tmp_path):
-    asked = Asked(only=("puck",))
+    asked = CouponOptions(only=("puck",))
     path = build_coupons(asked, tmp_path, LIBRARY)[0] / "results.toml"
     build_coupons(asked, tmp_path, LIBRARY)
     path.write_text(path.read_text().replace("mass_g = []", "mass_g = [1.1, 1.1]"))
@@ -77,20 +77,20 @@ def test_coupons_lie_apart_and_inside_the_tray():
 
 def test_what_does_not_fit_is_refused():
     with pytest.raises(InputError, match="no longer fits the tray"):
-        lay("objet260-connex", order(Asked(copies={"dumbbell": 60}), LIBRARY).items)
+        lay("objet260-connex", order(CouponOptions(copies={"dumbbell": 60}), LIBRARY).items)
 
 
 @pytest.mark.parametrize(
     ("asked", "said"),
     [
-        (Asked(profile="objet"), "--profile = 'objet': no such name among the printers"),
-        (Asked(materials=("Tango",)), "Did you mean TangoPlus"),
-        (Asked(materials=("Agilus30",)), "cannot run Agilus30"),
-        (Asked(only=("pucks",)), "--only pucks: no such coupon. Did you mean puck"),
-        (Asked(only=("leak-cap",)), "give --design"),
-        (Asked(only=("dumbbell",), materials=("VeroClear",)), "is for elastomer"),
-        (Asked(copies={"puck": 0}), "--copies puck=0"),
-        (Asked(design="paper"), "paper: no such design"),
+        (CouponOptions(profile="objet"), "--profile = 'objet': no such name among the printers"),
+        (CouponOptions(materials=("Tango",)), "Did you mean TangoPlus"),
+        (CouponOptions(materials=("Agilus30",)), "cannot run Agilus30"),
+        (CouponOptions(only=("pucks",)), "--only pucks: no such coupon. Did you mean puck"),
+        (CouponOptions(only=("leak-cap",)), "give --design"),
+        (CouponOptions(only=("dumbbell",), materials=("VeroClear",)), "is for elastomer"),
+        (CouponOptions(copies={"puck": 0}), "--copies puck=0"),
+        (CouponOptions(design="paper"), "paper: no such design"),
     ],
 )
 def test_what_cannot_be_ordered_is_said(asked, said):
@@ -102,7 +102,7 @@ def test_what_cannot_be_ordered_is_said(asked, said):
 def test_the_template_lists_every_nominal_and_is_valid_once_signed():
     text = results_template(order(WHOLE, LIBRARY))
     assert "lab" not in tomllib.loads(text)
-    results = Results.model_validate({**tomllib.loads(text), "lab": "ours", "date": datetime.date(2026, 11, 21)})
+    results = CouponResults.model_validate({**tomllib.loads(text), "lab": "ours", "date": datetime.date(2026, 11, 21)})
     assert set(results.puck) == set(results.dumbbell) == {"TangoPlus", "FLX9960"}
     assert len(results.dumbbell["TangoPlus"].specimen) == 5
     gauge = results.gauge["objet260-connex"]["TangoPlus"]

@@ -20,7 +20,7 @@ from pneutouch.spec.toml_text import toml_text
 from pneutouch.workflows.coupons.blends import FRACTIONS
 from pneutouch.workflows.coupons.build import build_coupons
 from pneutouch.workflows.coupons.lay import lay
-from pneutouch.workflows.coupons.order import Asked, order
+from pneutouch.workflows.coupons.order import CouponOptions, order
 from pneutouch.workflows.coupons.results import enter_results
 from pneutouch.workflows.coupons.template import results_template
 from tests.conftest import ROOT
@@ -28,11 +28,11 @@ from tests.export.threemf_files import MODEL, parts_of, read_strictly
 from tests.workflows.test_coupon_results import specimen
 
 LIBRARY, PAIR = Library((ROOT,)), "TangoPlus+VeroClear"
-BOTH = Asked(profile="j735", mixing=(PAIR,), only=("puck", "dumbbell"))
+BOTH = CouponOptions(profile="j735", mixing=(PAIR,), only=("puck", "dumbbell"))
 
 
 def test_every_fraction_is_printed_of_its_own_mix(tmp_path):
-    folder, document = build_coupons(Asked(mixing=(PAIR,)), tmp_path, LIBRARY)
+    folder, document = build_coupons(CouponOptions(mixing=(PAIR,)), tmp_path, LIBRARY)
     assert [(c["coupon"], c["copies"]) for c in document["coupons"]] == [("puck", 2)] * len(FRACTIONS)
     assert len({c["piece"] for c in document["coupons"]}) == 8
     manifest = json.loads((folder / "manifest.json").read_text())
@@ -56,7 +56,7 @@ def test_dumbbells_and_pucks_of_all_fractions_fit_a_large_tray():
     for a, b in itertools.combinations(boxes, 2):
         assert np.maximum(a[0] - b[1], b[0] - a[1])[:2].max() >= 4.99
     with pytest.raises(InputError, match="no longer fits the tray"):
-        lay("objet260-connex", order(Asked(mixing=(PAIR,), only=("puck", "dumbbell")), LIBRARY).items)
+        lay("objet260-connex", order(CouponOptions(mixing=(PAIR,), only=("puck", "dumbbell")), LIBRARY).items)
 
 
 def test_the_results_file_lists_every_fraction(tmp_path):
@@ -187,11 +187,14 @@ def test_bad_pairs_are_said(enter, pair, said):
 @pytest.mark.parametrize(
     ("asked", "said"),
     [
-        (Asked(mixing=("TangoPlus",)), "--mixing TangoPlus: write two resins"),
-        (Asked(mixing=("TangoPlus+VeroBlue",)), "no such name among the materials"),
-        (Asked(mixing=("TangoPlus+ABS",)), "--mixing: no mixing curve of ABS in TangoPlus; known: TangoPlus+VeroClear"),
-        (Asked(mixing=(PAIR,), profile="abs-filament"), f"--mixing {PAIR}: the"),
-        (Asked(mixing=(PAIR,), only=("gauge",)), "--only gauge"),
+        (CouponOptions(mixing=("TangoPlus",)), "--mixing TangoPlus: write two resins"),
+        (CouponOptions(mixing=("TangoPlus+VeroBlue",)), "no such name among the materials"),
+        (
+            CouponOptions(mixing=("TangoPlus+ABS",)),
+            "--mixing: no mixing curve of ABS in TangoPlus; known: TangoPlus+VeroClear",
+        ),
+        (CouponOptions(mixing=(PAIR,), profile="abs-filament"), f"--mixing {PAIR}: the"),
+        (CouponOptions(mixing=(PAIR,), only=("gauge",)), "--only gauge"),
     ],
 )
 def test_bad_orders_are_said(asked, said):

@@ -12,16 +12,16 @@ import pandas
 import pytest
 
 from pneutouch.bench.protocol import protocol
-from pneutouch.bench.simulate import Truth
+from pneutouch.bench.simulate import SimulationTruth
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import Campaign
 from pneutouch.spec.read import validate
-from pneutouch.workflows.simulate.run import KINDS, Asked, simulate
+from pneutouch.workflows.simulate.run import KINDS, SimulationOptions, simulate
 
 R0 = 9.25
-ASKED = Asked(
+ASKED = SimulationOptions(
     specimens=2, pressures=(0.0, 22.0), runs=2, kinds=("steps", "loop", "leak", "injection"), rate=50.0, model="atlas",
-    truth=Truth(rest=2.0, specimens=400),
+    truth=SimulationTruth(rest=2.0, specimens=400),
 )  # fmt: skip
 
 
@@ -145,7 +145,7 @@ def test_what_stops_short_is_said(library, tmp_path):
         ({"rate": 1.0}, "--rate 1: must be from 10"),
         ({"specimens": 0}, "--specimens 0: must be from 1"),
         ({"resins": ("TangoPlus", "TangoPlus")}, "named twice"),
-        ({"truth": Truth(rest=-1.0)}, "--rest -1"),
+        ({"truth": SimulationTruth(rest=-1.0)}, "--rest -1"),
         ({"kinds": KINDS, "model": "atlas"}, "--model atlas"),
     ],
 )

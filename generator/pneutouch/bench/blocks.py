@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.record import Blocks, Doubt
+from pneutouch.bench.record import Blocks, SuspectInterval
 from pneutouch.errors import InputError
 
 BLOCK_RATE = 100.0
@@ -34,7 +34,7 @@ _ROUNDING = 1e-6
 
 
 @dataclass
-class Collector:
+class BlockCollector:
     """Takes samples in inner units (s, mm, N, MPa) chunk by chunk, gives `Blocks`.
 
     ``rate`` in Hz and samples a block ``size``: left out, found from the first chunk (the median step of time; `BLOCK_RATE`);
@@ -119,7 +119,7 @@ class Collector:
         extremes = np.maximum.reduceat(np.abs(samples[3:]), starts, axis=1)
         self._parts.append(np.vstack([samples[:1, starts], means, spreads, extremes]))
 
-    def blocks(self, doubts: tuple[Doubt, ...] = ()) -> Blocks:
+    def blocks(self, doubts: tuple[SuspectInterval, ...] = ()) -> Blocks:
         """The blocks, with the gaps among their doubts. Raises InputError where more than half of the record is missing."""
         if self.rate is None or self.size is None or self._first is None:
             raise InputError(f"{self.file}: no samples")
@@ -138,20 +138,23 @@ class Collector:
             force_extreme, pressure_extreme, (*self._gaps(), *doubts),
         )  # fmt: skip
 
-    def _gaps(self) -> list[Doubt]:
-        found = [Doubt(start, end, f"gap: {count} samples missing", False, "gap") for start, end, count in self._missed]
+    def _gaps(self) -> list[SuspectInterval]:
+        found = [
+            SuspectInterval(start, end, f"gap: {count} samples missing", False, "gap")
+            for start, end, count in self._missed
+        ]
         count, times, longest = self._short
         if count:
             told = f"{count} of {self._samples + count} samples missed, in {times} places of at most {GAP:g} s"
             rare = longest <= ISOLATED and count < RARE * (self._samples + count)
-            found.append(Doubt(self._first or 0.0, self._last, told, True, "note" if rare else "other"))
+            found.append(SuspectInterval(self._first or 0.0, self._last, told, True, "note" if rare else "other"))
         return found
 
 
 def blocks_of(
     file: Path, time: Array, position: Array, force: Array, pressure: Array, rate: float | None = None, size: int | None = None
 ) -> Blocks:  # fmt: skip
-    """Blocks of samples in memory, (n,) each, s, mm, N, MPa; no range is checked. Raises InputError as `Collector`."""
-    collector = Collector(file, rate, size, len(time))
+    """Blocks of samples in memory, (n,) each, s, mm, N, MPa; no range is checked. Raises InputError as `BlockCollector`."""
+    collector = BlockCollector(file, rate, size, len(time))
     collector.take(np.arange(len(time), dtype=float) + 2, np.vstack([time, position, force, pressure]).astype(float))
     return collector.blocks()

@@ -10,7 +10,7 @@ from pneutouch.arrays import Array
 from pneutouch.errors import InputError, nearest
 
 
-class Chunk(NamedTuple):
+class RowChunk(NamedTuple):
     """Some rows of a file.
 
     Attributes:

@@ -51,7 +51,7 @@ class Baseline(NamedTuple):
     within: tuple[float, float]
 
 
-class Onset(NamedTuple):
+class ContactOnset(NamedTuple):
     """First contact: its time and plate position; ``own`` is False where the position is the median of the run's others."""
 
     time: float
@@ -98,7 +98,7 @@ def threshold(blocks: Blocks, bases: list[Baseline], parts: list[Excursion]) -> 
 
 def onsets(
     blocks: Blocks, parts: list[Excursion], bases: list[Baseline], least: float, sign: int
-) -> list[Onset | None]:
+) -> list[ContactOnset | None]:
     """First contact of each way in; None where there is none.
 
     The force is contact from the block after the last one on the way in that is within ``least`` N of the force without.
@@ -136,12 +136,12 @@ def onsets(
     middle = float(
         np.median([fit for fit, error in zip(fits, errors, strict=True) if fit is not None and error <= sure])
     )
-    found: list[Onset | None] = []
+    found: list[ContactOnset | None] = []
     for fit, error, one, base in zip(fits, errors, parts, bases, strict=True):
         own = fit is not None and error <= sure
         place = fit if fit is not None and own else middle
         touches = own or _presses(blocks, one, base, least, sign, middle)
-        found.append(Onset(_time_at(blocks, one, place), place, own) if touches else None)
+        found.append(ContactOnset(_time_at(blocks, one, place), place, own) if touches else None)
     return found
 
 

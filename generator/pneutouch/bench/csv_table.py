@@ -13,7 +13,7 @@ from typing import BinaryIO, NamedTuple
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.chunk import Chunk, places
+from pneutouch.bench.chunk import RowChunk, places
 from pneutouch.errors import InputError
 
 CHUNK = 4 * 2**20
@@ -32,7 +32,7 @@ class _Layout(NamedTuple):
     places: list[int]
 
 
-def csv_chunks(path: Path, names: Sequence[str]) -> Iterator[Chunk]:
+def csv_chunks(path: Path, names: Sequence[str]) -> Iterator[RowChunk]:
     """Chunks of a UTF-8 file with commas, semicolons or tabs and decimal points; see `table.chunks`.
 
     Comment lines (``#``) before the header and a byte order mark are passed over, empty lines skipped but counted. A
@@ -56,10 +56,10 @@ def csv_chunks(path: Path, names: Sequence[str]) -> Iterator[Chunk]:
             rows, values, lines = _parse(data, row, layout)
             row += lines
             left = (size - read + len(rest)) * lines / len(data)
-            yield Chunk(rows, values, min((read - len(rest)) / size, 1.0), round(row - 2 + left))
+            yield RowChunk(rows, values, min((read - len(rest)) / size, 1.0), round(row - 2 + left))
         if rest.strip():
             last = _last(rest, row, layout)
-            yield Chunk(np.empty(0), np.empty((len(names), 0)), 1.0, row - 1, last)
+            yield RowChunk(np.empty(0), np.empty((len(names), 0)), 1.0, row - 1, last)
 
 
 def _header(path: Path, stream: BinaryIO, names: Sequence[str]) -> _Layout:

@@ -10,10 +10,10 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.bench.contact import BEFORE, Baseline, baseline
 from pneutouch.bench.doubts import doubts_of, listed, untrusted
-from pneutouch.bench.indents import Found, find_indents
-from pneutouch.bench.record import Blocks, Curve, Doubt
+from pneutouch.bench.indents import RunIndentations, find_indents
+from pneutouch.bench.record import Blocks, MeasuredCurve, SuspectInterval
 from pneutouch.errors import InputError
-from pneutouch.spec.campaign import Rig, Run
+from pneutouch.spec.campaign import CampaignRun, Rig
 
 WAY_POINTS = 25
 """Points on the way in of a loop or a relaxation run: our choice, about twice as many as the stairs have."""
@@ -21,7 +21,7 @@ WAY_POINTS = 25
 _BEYOND_TRAVEL = 1.05
 
 
-def curve_of(run: Run, blocks: Blocks, rig: Rig) -> Curve:
+def curve_of(run: CampaignRun, blocks: Blocks, rig: Rig) -> MeasuredCurve:
     """The curve of a run with a plate; its first point is the origin.
 
     Steps and saturation: one point for each indentation, sorted by depth. Loop and relaxation: the way in, averaged over
@@ -46,7 +46,7 @@ def curve_of(run: Run, blocks: Blocks, rig: Rig) -> Curve:
     ways = [_way(blocks, found, k) for k in kept] if run.kind in ("loop", "relaxation") else []
     points = _averaged(ways) if ways else _points(found, kept)
     bases = [found.bases[k] for k in kept]
-    return Curve(
+    return MeasuredCurve(
         run, *points, driving=float(np.mean([base.mean[1] for base in bases])), indents=found.indents,
         loop=tuple(_cycle(blocks, found, k) for k in kept) if run.kind == "loop" else (),
         relaxation=_relaxation(blocks, found, kept[0]) if run.kind == "relaxation" else None,
@@ -56,7 +56,7 @@ def curve_of(run: Run, blocks: Blocks, rig: Rig) -> Curve:
     )  # fmt: skip
 
 
-def _no_contact(blocks: Blocks, found: Found) -> str:
+def _no_contact(blocks: Blocks, found: RunIndentations) -> str:
     if not found.parts:
         return f"{blocks.file}: no contact: the plate never goes in and out; from {blocks.position.min():.4g} to {blocks.position.max():.4g} mm"
     noise = _noise(found.bases, 0)
@@ -70,15 +70,15 @@ def _no_contact(blocks: Blocks, found: Found) -> str:
     )
 
 
-def _travel(blocks: Blocks, rig: Rig) -> list[Doubt]:
+def _travel(blocks: Blocks, rig: Rig) -> list[SuspectInterval]:
     span = float(np.ptp(blocks.position))
     if span <= _BEYOND_TRAVEL * rig.travel_mm:
         return []
     why = f"position covers {span:.4g} mm, the rig's travel is {rig.travel_mm:g}: is its unit right?"
-    return [Doubt(float(blocks.time[0]), float(blocks.time[-1]), why, True)]
+    return [SuspectInterval(float(blocks.time[0]), float(blocks.time[-1]), why, True)]
 
 
-def _kept(blocks: Blocks, found: Found, touched: list[int]) -> tuple[list[int], list[Doubt]]:
+def _kept(blocks: Blocks, found: RunIndentations, touched: list[int]) -> tuple[list[int], list[SuspectInterval]]:
     kept, doubts = [], []
     for k in touched:
         indent = found.indents[k]
@@ -87,11 +87,11 @@ def _kept(blocks: Blocks, found: Found, touched: list[int]) -> tuple[list[int], 
             kept.append(k)
         else:
             told = f"indentation {k + 1}, {indent.indentation:.4g} mm, left out: {why}"
-            doubts.append(Doubt(*indent.read, told, False))
+            doubts.append(SuspectInterval(*indent.read, told, False))
     return kept, doubts
 
 
-def _points(found: Found, kept: Sequence[int]) -> tuple[Array, Array, Array]:
+def _points(found: RunIndentations, kept: Sequence[int]) -> tuple[Array, Array, Array]:
     points = np.array([
         (0.0, 0.0, 0.0),
         *((one.indentation, one.force, one.rise) for one in (found.indents[k] for k in kept)),
@@ -100,7 +100,7 @@ def _points(found: Found, kept: Sequence[int]) -> tuple[Array, Array, Array]:
     return depth, force, rise
 
 
-def _way(blocks: Blocks, found: Found, k: int) -> tuple[Array, Array, Array]:
+def _way(blocks: Blocks, found: RunIndentations, k: int) -> tuple[Array, Array, Array]:
     """Indentation, force and rise of the blocks on a way in, from contact to the deepest."""
     part, base, indent = found.parts[k], found.bases[k], found.indents[k]
     start = int(np.searchsorted(blocks.time, indent.contact))
@@ -127,7 +127,7 @@ def _averaged(ways: list[tuple[Array, Array, Array]]) -> tuple[Array, Array, Arr
     return depth, force, rise
 
 
-def _cycle(blocks: Blocks, found: Found, k: int) -> tuple[Array, Array, Array, Array]:
+def _cycle(blocks: Blocks, found: RunIndentations, k: int) -> tuple[Array, Array, Array, Array]:
     _, force, rise = _way(blocks, found, k)
     part, base, indent = found.parts[k], found.bases[k], found.indents[k]
     start = _deepest(blocks, part.hold)
@@ -136,13 +136,13 @@ def _cycle(blocks: Blocks, found: Found, k: int) -> tuple[Array, Array, Array, A
     return force, rise, blocks.force[out] - base.mean[0], blocks.pressure[out] - base.mean[1]
 
 
-def _relaxation(blocks: Blocks, found: Found, k: int) -> tuple[Array, Array, Array]:
+def _relaxation(blocks: Blocks, found: RunIndentations, k: int) -> tuple[Array, Array, Array]:
     at, base = slice(*found.parts[k].hold), found.bases[k]
     time = blocks.time[at]
     return time - time[0], blocks.force[at] - base.mean[0], blocks.pressure[at] - base.mean[1]
 
 
-def _drift(blocks: Blocks, found: Found) -> tuple[float, float]:
+def _drift(blocks: Blocks, found: RunIndentations) -> tuple[float, float]:
     """Slopes of pressure and force over the last third of the first stretch without contact.
 
     There a reset is over and nothing was pressed yet: after an indentation the wall still recovers.

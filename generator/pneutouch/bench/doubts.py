@@ -10,10 +10,10 @@ from types import MappingProxyType
 import numpy as np
 
 from pneutouch.bench.contact import Baseline
-from pneutouch.bench.indents import Found, read_window
+from pneutouch.bench.indents import RunIndentations, read_window
 from pneutouch.bench.protocol import HOLD, RELAXATION
-from pneutouch.bench.record import Blocks, Doubt, Indent
-from pneutouch.spec.campaign import Run
+from pneutouch.bench.record import Blocks, MeasuredIndentation, SuspectInterval
+from pneutouch.spec.campaign import CampaignRun
 from pneutouch.units import KPA
 
 SHORT = 0.5
@@ -37,7 +37,7 @@ _SURE = 4.0
 """Standard errors that a change must have before it is told: one false alarm in 10^4."""
 
 
-def untrusted(blocks: Blocks, indent: Indent, before: float) -> str | None:
+def untrusted(blocks: Blocks, indent: MeasuredIndentation, before: float) -> str | None:
     """Why an indentation cannot be used: something clipped before contact or while read, or half of the read samples gone."""
     lost = 0.0
     for doubt in blocks.doubts:
@@ -51,7 +51,7 @@ def untrusted(blocks: Blocks, indent: Indent, before: float) -> str | None:
     return "most of its samples are missing" if lost > 0.5 * (indent.read[1] - indent.read[0]) else None
 
 
-def listed(doubts: Sequence[Doubt]) -> list[Doubt]:
+def listed(doubts: Sequence[SuspectInterval]) -> list[SuspectInterval]:
     """Doubts as they are listed: of gaps, clipped stretches and spikes the first `MOST` of each, the others summed up."""
     found = [doubt for doubt in doubts if doubt.kind not in _MANY]
     for kind, name in _MANY.items():
@@ -61,17 +61,19 @@ def listed(doubts: Sequence[Doubt]) -> list[Doubt]:
         if more:
             lasts = sum(doubt.end - doubt.start for doubt in more)
             first, last = min(doubt.start for doubt in more), max(doubt.end for doubt in more)
-            found.append(Doubt(first, last, f"{len(more)} more {name}: {lasts:.3g} s in all", False, more[0].kind))
+            found.append(
+                SuspectInterval(first, last, f"{len(more)} more {name}: {lasts:.3g} s in all", False, more[0].kind)
+            )
     return found
 
 
-def doubts_of(run: Run, blocks: Blocks, found: Found) -> list[Doubt]:
+def doubts_of(run: CampaignRun, blocks: Blocks, found: RunIndentations) -> list[SuspectInterval]:
     """Doubts about holds, contacts, releases, depths and the pressure without contact, in order of time."""
-    told: list[Doubt] = []
+    told: list[SuspectInterval] = []
     if found.pressed:
         end = found.parts[0].clear[0] if found.parts else blocks.time.size - 1
         told.append(
-            Doubt(
+            SuspectInterval(
                 float(blocks.time[0]), float(blocks.time[end]), "the record begins with the plate in; left out", False
             )
         )
@@ -84,30 +86,34 @@ def doubts_of(run: Run, blocks: Blocks, found: Found) -> list[Doubt]:
 
 
 def _of_one(
-    number: int, indent: Indent, blocks: Blocks, found: Found, usual: float, held: bool
-) -> list[Doubt]:  # fmt: skip
+    number: int, indent: MeasuredIndentation, blocks: Blocks, found: RunIndentations, usual: float, held: bool
+) -> list[SuspectInterval]:  # fmt: skip
     begin, end = indent.hold
     if math.isnan(indent.contact):
-        return [Doubt(begin, end, f"indentation {number}: no contact found", False)]
+        return [SuspectInterval(begin, end, f"indentation {number}: no contact found", False)]
     told = []
     contact = found.contacts[number - 1]
     if contact is not None and not contact.own:
         light = "too light to tell where it began; its onset is the median of the others"
-        told.append(Doubt(indent.contact, begin, f"indentation {number}: {light}", True))
+        told.append(SuspectInterval(indent.contact, begin, f"indentation {number}: {light}", True))
     if held and end - begin < SHORT * usual:
         told.append(
-            Doubt(begin, end, f"indentation {number}: held for {end - begin:.3g} s, usual are {usual:g} s", True)
+            SuspectInterval(
+                begin, end, f"indentation {number}: held for {end - begin:.3g} s, usual are {usual:g} s", True
+            )
         )
     elif held and (why := _unsettled(blocks, found, number - 1)):
-        told.append(Doubt(*indent.read, f"indentation {number}: {why}", True))
+        told.append(SuspectInterval(*indent.read, f"indentation {number}: {why}", True))
     if math.isnan(indent.release):
         told.append(
-            Doubt(end, float(blocks.time[-1]), f"indentation {number}: no release: the force does not go back", True)
+            SuspectInterval(
+                end, float(blocks.time[-1]), f"indentation {number}: no release: the force does not go back", True
+            )
         )
     return told
 
 
-def _unsettled(blocks: Blocks, found: Found, number: int) -> str | None:
+def _unsettled(blocks: Blocks, found: RunIndentations, number: int) -> str | None:
     start, end = read_window(blocks, found.parts[number].hold)
     middle, indent = (start + end) // 2, found.indents[number]
     if end - start < 4:
@@ -124,22 +130,22 @@ def _unsettled(blocks: Blocks, found: Found, number: int) -> str | None:
     return None
 
 
-def _of_depths(indents: list[Indent]) -> list[Doubt]:
+def _of_depths(indents: list[MeasuredIndentation]) -> list[SuspectInterval]:
     told = []
     for before, after in itertools.pairwise(indents):
         if after.indentation < before.indentation - SAME_DEPTH:
             why = f"out of order: {after.indentation:.3g} mm after {before.indentation:.3g} mm; sorted by depth"
-            told.append(Doubt(*after.hold, why, True))
+            told.append(SuspectInterval(*after.hold, why, True))
     by_depth = sorted(indents, key=lambda one: one.indentation)
     for less, more in itertools.pairwise(by_depth):
         if more.indentation - less.indentation <= SAME_DEPTH:
             later = max(less, more, key=lambda one: one.contact)
             why = f"two indentations at one depth, {less.indentation:.4g} and {more.indentation:.4g} mm"
-            told.append(Doubt(*later.hold, why, True))
+            told.append(SuspectInterval(*later.hold, why, True))
     return told
 
 
-def _leak(blocks: Blocks, found: Found) -> list[Doubt]:
+def _leak(blocks: Blocks, found: RunIndentations) -> list[SuspectInterval]:
     """The pressure without contact drifts: while a hold lasts by more than a share of the greatest rise."""
     touched = [
         (base, one)
@@ -160,7 +166,7 @@ def _leak(blocks: Blocks, found: Found) -> list[Doubt]:
         f"pressure without contact drifts by {60 * slope / KPA:.3g} kPa a minute, {100 * abs(slope) * longest / top:.2g} % of the "
         "greatest rise during an indentation: a leak, or a reset that has not settled"
     )
-    return [Doubt(float(blocks.time[first.start]), float(blocks.time[last.end - 1]), why, True)]
+    return [SuspectInterval(float(blocks.time[first.start]), float(blocks.time[last.end - 1]), why, True)]
 
 
 def _slope_variance(blocks: Blocks, base: Baseline) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.polynomial.legendre import legvander
 
 from pneutouch.arrays import Array
-from pneutouch.bench.record import Curve
+from pneutouch.bench.record import MeasuredCurve
 from pneutouch.mechanics.response import figures, hysteresis
 from pneutouch.units import KPA
 
@@ -17,7 +17,7 @@ Pooled = Literal["mean", "within", "between"]
 
 
 @dataclass(frozen=True, slots=True)
-class Figure:
+class FigureDefinition:
     """A figure of a sensor: its key, name, unit, and how many runs are made one value.
 
     ``reading`` is how far, relatively, the reading itself may be off in all runs alike; the interval holds it.
@@ -37,26 +37,26 @@ _WIDTH_READING, _AREA_READING = 0.03, 0.04
 (docs/coverage.json: ``off`` of the loop's figures)."""
 
 FIGURES = (
-    Figure("sensitivity_kPa_per_N", "Sensitivity, line with intercept", "kPa/N", digits=4),
-    Figure("sensitivity_through_origin_kPa_per_N", "Sensitivity, line through the origin", "kPa/N", digits=4),
-    Figure("r_squared", "R²", "", digits=5),
-    Figure("nonlinearity_percent", "Nonlinearity", "% of full scale"),
-    Figure("repeatability_kPa_per_N", "Repeatability of the sensitivity", "kPa/N", "within", "sensitivity_kPa_per_N"),
-    Figure("part_to_part_kPa_per_N", "Part to part, of the sensitivity", "kPa/N", "between", "sensitivity_kPa_per_N"),
-    Figure("stiffness_N_per_mm", "Mean stiffness", "N/mm"),
-    Figure("force_range_N", "Force at the greatest depth", "N"),
-    Figure("saturation_force_N", "Saturation force", "N"),
-    Figure("sensing_range_N", "Sensing range", "N"),
-    Figure("hysteresis_width_percent", "Hysteresis, greatest width", "% of full scale", reading=_WIDTH_READING),
-    Figure("hysteresis_area_percent", "Hysteresis, area of the loop", "% of loading", reading=_AREA_READING),
-    Figure("relaxation_force_percent", "Relaxation of the force", "%"),
-    Figure("relaxation_force_percent_per_decade", "Relaxation of the force", "% a decade"),
-    Figure("relaxation_pressure_percent", "Relaxation of the pressure rise", "%"),
-    Figure("relaxation_pressure_percent_per_decade", "Relaxation of the pressure rise", "% a decade"),
-    Figure("drift_pressure_kPa_per_min", "Drift of the pressure without contact", "kPa/min"),
-    Figure("noise_force_N", "Noise of a force sample", "N rms"),
-    Figure("noise_pressure_kPa", "Noise of a pressure sample", "kPa rms"),
-    Figure("resolution_N", "Resolution of the force read from the pressure", "N"),
+    FigureDefinition("sensitivity_kPa_per_N", "Sensitivity, line with intercept", "kPa/N", digits=4),
+    FigureDefinition("sensitivity_through_origin_kPa_per_N", "Sensitivity, line through the origin", "kPa/N", digits=4),
+    FigureDefinition("r_squared", "R²", "", digits=5),
+    FigureDefinition("nonlinearity_percent", "Nonlinearity", "% of full scale"),
+    FigureDefinition("repeatability_kPa_per_N", "Repeatability of the sensitivity", "kPa/N", "within", "sensitivity_kPa_per_N"),
+    FigureDefinition("part_to_part_kPa_per_N", "Part to part, of the sensitivity", "kPa/N", "between", "sensitivity_kPa_per_N"),
+    FigureDefinition("stiffness_N_per_mm", "Mean stiffness", "N/mm"),
+    FigureDefinition("force_range_N", "Force at the greatest depth", "N"),
+    FigureDefinition("saturation_force_N", "Saturation force", "N"),
+    FigureDefinition("sensing_range_N", "Sensing range", "N"),
+    FigureDefinition("hysteresis_width_percent", "Hysteresis, greatest width", "% of full scale", reading=_WIDTH_READING),
+    FigureDefinition("hysteresis_area_percent", "Hysteresis, area of the loop", "% of loading", reading=_AREA_READING),
+    FigureDefinition("relaxation_force_percent", "Relaxation of the force", "%"),
+    FigureDefinition("relaxation_force_percent_per_decade", "Relaxation of the force", "% a decade"),
+    FigureDefinition("relaxation_pressure_percent", "Relaxation of the pressure rise", "%"),
+    FigureDefinition("relaxation_pressure_percent_per_decade", "Relaxation of the pressure rise", "% a decade"),
+    FigureDefinition("drift_pressure_kPa_per_min", "Drift of the pressure without contact", "kPa/min"),
+    FigureDefinition("noise_force_N", "Noise of a force sample", "N rms"),
+    FigureDefinition("noise_pressure_kPa", "Noise of a pressure sample", "kPa rms"),
+    FigureDefinition("resolution_N", "Resolution of the force read from the pressure", "N"),
 )  # fmt: skip
 """In the order of every table. Definitions with formula and source: docs/measuring.md."""
 
@@ -80,7 +80,7 @@ _ENDS = 0.15
 _GRID = 200
 
 
-def run_figures(curve: Curve) -> dict[str, float]:
+def run_figures(curve: MeasuredCurve) -> dict[str, float]:
     """The figures that one run gives, by key; those it does not determine are left out."""
     found: dict[str, float] = {}
     kind = curve.run.kind
@@ -94,7 +94,7 @@ def run_figures(curve: Curve) -> dict[str, float]:
     return {key: value for key, value in found.items() if np.isfinite(value)}
 
 
-def _line(curve: Curve, *, saturating: bool) -> dict[str, float]:
+def _line(curve: MeasuredCurve, *, saturating: bool) -> dict[str, float]:
     got = figures(curve.indentation, curve.force, curve.rise / KPA)
     if got is None:
         return {}
@@ -109,7 +109,7 @@ def _line(curve: Curve, *, saturating: bool) -> dict[str, float]:
     }  # fmt: skip
 
 
-def _loop(curve: Curve) -> dict[str, float]:
+def _loop(curve: MeasuredCurve) -> dict[str, float]:
     """Hysteresis of all cycles together; the greatest difference of two noisy branches would be that of their noise.
 
     Both branches are fitted at once: a middle line, and a gap that closes at the greatest force.
@@ -165,7 +165,7 @@ def _binned(place: Array, values: Array, grid: Array) -> Array:
     return np.interp(grid, grid[known], total[known] / count[known])
 
 
-def _still(curve: Curve, sensitivity: float | None) -> dict[str, float]:
+def _still(curve: MeasuredCurve, sensitivity: float | None) -> dict[str, float]:
     """What the channels do without contact; the resolution follows where the run has a sensitivity."""
     if curve.run.kind == "loop":
         # Its rests are too short for noise and drift: the wall still recovers.

@@ -11,7 +11,7 @@ MARK = "measured on coupons"
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class ProfileChange:
     """A quantity of a profile as measured: the shelf and name of the profile, the keys that lead to it, its content."""
 
     shelf: Literal["materials", "printers"]
@@ -21,7 +21,7 @@ class Change:
 
 
 @dataclass(frozen=True, slots=True)
-class Figure:
+class MeasuredFigure:
     """A figure for people: what it is of, its name with unit, value, standard deviation and count."""
 
     about: str
@@ -32,16 +32,16 @@ class Figure:
 
 
 @dataclass
-class Found:
+class CouponFindings:
     """Changes, figures and remarks, gathered coupon by coupon."""
 
-    changes: list[Change] = field(default_factory=list)
-    figures: list[Figure] = field(default_factory=list)
+    changes: list[ProfileChange] = field(default_factory=list)
+    figures: list[MeasuredFigure] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True)
-class Said:
+class ReadingSource:
     """Where readings are from: ``where`` is the results file for messages, lab and date go into every source."""
 
     where: str

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.bench.blocks import GAP
-from pneutouch.bench.contact import BEFORE, Baseline, Onset, baseline, first_baseline, onsets, threshold
-from pneutouch.bench.record import Blocks, Indent
+from pneutouch.bench.contact import BEFORE, Baseline, ContactOnset, baseline, first_baseline, onsets, threshold
+from pneutouch.bench.record import Blocks, MeasuredIndentation
 from pneutouch.bench.segment import Excursion, excursions
 
 READ, READ_LONGEST = 0.25, 1.0
@@ -30,7 +30,7 @@ come deeper, while the model counts from the dome as it was. Enough that noise o
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class RunIndentations:
     """The indentations of a run, with the stretches behind them, in order of time.
 
     Attributes:
@@ -46,19 +46,19 @@ class Found:
 
     parts: list[Excursion]
     bases: list[Baseline]
-    contacts: list[Onset | None]
-    indents: tuple[Indent, ...]
+    contacts: list[ContactOnset | None]
+    indents: tuple[MeasuredIndentation, ...]
     pressed: bool
     sign: int
     least: float
     onset: float
 
 
-def find_indents(blocks: Blocks) -> Found:
+def find_indents(blocks: Blocks) -> RunIndentations:
     """Cut a run into its indentations and read them. Raises InputError where the plate does not move."""
     parts, pressed = excursions(blocks)
     if not parts:
-        return Found([], [], [], (), pressed, 1, 0.0, math.nan)
+        return RunIndentations([], [], [], (), pressed, 1, 0.0, math.nan)
     bases = [first_baseline(blocks, one) for one in parts]
     least, sign = threshold(blocks, bases, parts)
     contacts = onsets(blocks, parts, bases, least, sign)
@@ -69,7 +69,7 @@ def find_indents(blocks: Blocks) -> Found:
         _indent(blocks, one, base, contact, onset, (least, sign))
         for one, base, contact in zip(parts, bases, contacts, strict=True)
     )
-    return Found(parts, bases, contacts, indents, pressed, sign, least, onset)
+    return RunIndentations(parts, bases, contacts, indents, pressed, sign, least, onset)
 
 
 def read_window(blocks: Blocks, hold: tuple[int, int]) -> tuple[int, int]:
@@ -91,7 +91,7 @@ def _read_times(blocks: Blocks, hold: tuple[int, int]) -> tuple[float, float]:
     return (last - length if lost else first), last
 
 
-def _just_before(blocks: Blocks, base: Baseline, contact: Onset | None) -> Baseline:
+def _just_before(blocks: Blocks, base: Baseline, contact: ContactOnset | None) -> Baseline:
     """The same over the last `BEFORE` seconds before contact, a block short of it."""
     if contact is None:
         return base
@@ -101,13 +101,13 @@ def _just_before(blocks: Blocks, base: Baseline, contact: Onset | None) -> Basel
 
 
 def _indent(
-    blocks: Blocks, one: Excursion, base: Baseline, contact: Onset | None, onset: float, told: tuple[float, int]
-) -> Indent:  # fmt: skip
+    blocks: Blocks, one: Excursion, base: Baseline, contact: ContactOnset | None, onset: float, told: tuple[float, int]
+) -> MeasuredIndentation:  # fmt: skip
     least, sign = told
     start, end = read_window(blocks, one.hold)
     at = slice(start, end)
     force = float(blocks.force[at].mean()) - base.mean[0]
-    return Indent(
+    return MeasuredIndentation(
         contact=math.nan if contact is None else contact.time,
         hold=(float(blocks.time[one.hold[0]]), float(blocks.time[one.hold[1] - 1])),
         read=_read_times(blocks, one.hold),

@@ -14,7 +14,7 @@ from pneutouch.bench.record import Blocks
 from pneutouch.bench.statistics import Mean
 from pneutouch.bench.table import whole
 from pneutouch.errors import InputError
-from pneutouch.spec.campaign import Columns
+from pneutouch.spec.campaign import ColumnMap
 
 LEAST_POINTS = 3
 
@@ -26,7 +26,7 @@ _ABSOLUTE = 0.7
 """Share of the ambient pressure above which a table that begins there is taken for one of absolute pressures."""
 
 
-def read_injection(path: Path, columns: Columns) -> tuple[Array, Array]:
+def read_injection(path: Path, columns: ColumnMap) -> tuple[Array, Array]:
     """Injected volume (mm3, at ambient pressure) and gauge pressure (MPa), (n,) each, in the file's order.
 
     Raises InputError for what `table.chunks` refuses, fewer than three rows, a volume that does not vary, and a

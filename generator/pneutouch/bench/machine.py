@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from pneutouch.bench.finding import Change, Figure, Found, Said, rounded
+from pneutouch.bench.finding import CouponFindings, MeasuredFigure, ProfileChange, ReadingSource, rounded
 from pneutouch.bench.statistics import mean
 from pneutouch.errors import InputError
-from pneutouch.parts.coupons import COUPONS, Ground
-from pneutouch.spec.coupon import Gauge, Size
+from pneutouch.parts.coupons import COUPONS, CouponContext
+from pneutouch.spec.coupon import Gauge, GaugeSize
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import HOLE_UNDERSIZE_MM, Printer
 
@@ -29,11 +29,11 @@ times what vendors state for small features."""
 _ROUNDING = 1e-9
 """Differences of lengths may miss a limit by this, mm."""
 
-Measured = Sequence[tuple[str, Material, Gauge]]
+MeasuredGauges = Sequence[tuple[str, Material, Gauge]]
 """Gauges of one printer: name of the material, the material and the readings."""
 
 
-def gauges(name: str, printer: Printer, measured: Measured, said: Said, found: Found) -> None:
+def gauges(name: str, printer: Printer, measured: MeasuredGauges, said: ReadingSource, found: CouponFindings) -> None:
     """Accuracy, holes and smallest features of a printer. Raises InputError for sizes that the gauge does not have."""
     for material_name, material, gauge in measured:
         _check_sizes(gauge, material, f"{said.where}: gauge.{name}.{material_name}")
@@ -50,7 +50,7 @@ def gauges(name: str, printer: Printer, measured: Measured, said: Said, found: F
 
 def _check_sizes(gauge: Gauge, material: Material, where: str) -> None:
     known: dict[str, list[float]] = {}
-    for nominal in COUPONS["gauge"].nominals(Ground(material)):
+    for nominal in COUPONS["gauge"].nominals(CouponContext(material)):
         known.setdefault(nominal.feature, []).append(nominal.value or 0.0)
     for row, sizes in known.items():
         seen: set[float] = set()
@@ -66,7 +66,7 @@ def _check_sizes(gauge: Gauge, material: Material, where: str) -> None:
             _check_slip(row, size, where)
 
 
-def _check_slip(row: str, size: Size, where: str) -> None:
+def _check_slip(row: str, size: GaugeSize, where: str) -> None:
     nominal = size.nominal_mm
     limit = _SLIP * nominal if row in _AXES else max(_FINE_SLIP_MM, _FINE_SLIP * nominal)
     for reading in size.measured_mm:
@@ -78,7 +78,7 @@ def _check_slip(row: str, size: Size, where: str) -> None:
             )
 
 
-def _accuracy(name: str, measured: Measured, said: Said, found: Found) -> None:
+def _accuracy(name: str, measured: MeasuredGauges, said: ReadingSource, found: CouponFindings) -> None:
     sizes = [size for *_, gauge in measured for axis in _AXES for size in getattr(gauge, axis) if size.measured_mm]
     if not sizes:
         return
@@ -88,12 +88,14 @@ def _accuracy(name: str, measured: Measured, said: Said, found: Found) -> None:
         "value": worst, "low": rounded(float(np.abs(deviations).min())), "high": worst,
         "source": said.source("greatest deviation of a length of the step block, 5 to 20 mm; low: least", len(sizes)),
     }  # fmt: skip
-    found.changes.append(Change("printers", name, ("accuracy_mm",), content))
-    found.figures.append(Figure(name, "accuracy, mm", worst, None, len(sizes)))
-    found.figures.append(Figure(name, "mean deviation of lengths, mm", float(deviations.mean()), None, len(sizes)))
+    found.changes.append(ProfileChange("printers", name, ("accuracy_mm",), content))
+    found.figures.append(MeasuredFigure(name, "accuracy, mm", worst, None, len(sizes)))
+    found.figures.append(
+        MeasuredFigure(name, "mean deviation of lengths, mm", float(deviations.mean()), None, len(sizes))
+    )
 
 
-def _holes(name: str, measured: Measured, said: Said, found: Found) -> None:
+def _holes(name: str, measured: MeasuredGauges, said: ReadingSource, found: CouponFindings) -> None:
     holes = [hole for *_, gauge in measured for hole in gauge.hole if hole.measured_mm]
     if not holes:
         return
@@ -106,11 +108,11 @@ def _holes(name: str, measured: Measured, said: Said, found: Found) -> None:
         "spread": rounded(over.spread),
         "source": said.source("nominal less measured diameter of upright holes; low and high: least and greatest hole", over.count),
     }  # fmt: skip
-    found.changes.append(Change("printers", name, ("hole_undersize_mm",), content))
-    found.figures.append(Figure(name, "holes too small by, mm", over.value, over.spread, over.count))
+    found.changes.append(ProfileChange("printers", name, ("hole_undersize_mm",), content))
+    found.figures.append(MeasuredFigure(name, "holes too small by, mm", over.value, over.spread, over.count))
 
 
-def _smaller(hole: Size, where: str) -> float:
+def _smaller(hole: GaugeSize, where: str) -> float:
     """By how much a hole is too small, mm. Raises InputError where no printer profile may say so."""
     average = mean(hole.measured_mm).value
     less, (low, high) = hole.nominal_mm - average, HOLE_UNDERSIZE_MM
@@ -122,7 +124,7 @@ def _smaller(hole: Size, where: str) -> float:
     return less
 
 
-def smallest_sound(sizes: Sequence[Size]) -> float | None:
+def smallest_sound(sizes: Sequence[GaugeSize]) -> float | None:
     """The smallest that came out together with all larger ones, mm; None where the largest did not, or nothing is said."""
     least = None
     for size in sorted(sizes, key=lambda size: -size.nominal_mm):
@@ -134,7 +136,7 @@ def smallest_sound(sizes: Sequence[Size]) -> float | None:
 
 
 def _least(
-    name: str, key: str, row: str, rows: list[list[Size]], shipped: dict[str, Any], said: Said, found: Found
+    name: str, key: str, row: str, rows: list[list[GaugeSize]], shipped: dict[str, Any], said: ReadingSource, found: CouponFindings
 ) -> None:  # fmt: skip
     """The worse of several gauges counts."""
     told = [sizes for sizes in rows if any(size.sound is not None for size in sizes)]
@@ -152,5 +154,5 @@ def _least(
         "least": least, "recommended": max(float(shipped["recommended"]), least),
         "source": f"least: {said.source(f'the smallest {row} that came out together with all larger ones', count)}; recommended: {recommended}",
     }  # fmt: skip
-    found.changes.append(Change("printers", name, ("smallest", key), content))
-    found.figures.append(Figure(name, f"smallest {row} ({key.removesuffix('_mm')}), mm", least, None, count))
+    found.changes.append(ProfileChange("printers", name, ("smallest", key), content))
+    found.figures.append(MeasuredFigure(name, f"smallest {row} ({key.removesuffix('_mm')}), mm", least, None, count))

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pneutouch.bench.record import Curve
+from pneutouch.bench.record import MeasuredCurve
 from pneutouch.mechanics.response import figures
 
 APART = 0.15
@@ -17,24 +17,24 @@ TIMES = 5.0
 """So many times the scatter of the others (1.4826 of their median deviation) must be exceeded besides."""
 
 
-def mixed(curves: Sequence[Curve]) -> list[tuple[Curve, str]]:
+def mixed(curves: Sequence[MeasuredCurve]) -> list[tuple[MeasuredCurve, str]]:
     """Runs that stand apart from the others of one sensor, kind, driving pressure and age, and why.
 
     Compared are the force at the greatest common depth and the slope of pressure over force, as logarithms: a run
     stands apart where one of them is off the median of the others by more than `APART` and `TIMES` their scatter. Of
     two that differ by `APART` both are told, as neither is known to be the odd one.
     """
-    groups: dict[tuple[object, ...], list[Curve]] = {}
+    groups: dict[tuple[object, ...], list[MeasuredCurve]] = {}
     for curve in curves:
         run = curve.run
         groups.setdefault((run.sensor, run.kind, run.driving_pressure_kPa, run.age_days), []).append(curve)
-    found: list[tuple[Curve, str]] = []
+    found: list[tuple[MeasuredCurve, str]] = []
     for group in groups.values():
         found += _apart(group)
     return found
 
 
-def _apart(group: list[Curve]) -> list[tuple[Curve, str]]:
+def _apart(group: list[MeasuredCurve]) -> list[tuple[MeasuredCurve, str]]:
     if len(group) < 2:
         return []
     depth = min(float(curve.indentation[-1]) for curve in group)
@@ -58,6 +58,6 @@ def _apart(group: list[Curve]) -> list[tuple[Curve, str]]:
     ]
 
 
-def _slope(curve: Curve) -> float:
+def _slope(curve: MeasuredCurve) -> float:
     found = figures(curve.indentation, curve.force, curve.rise)
     return float("nan") if found is None else found.sensitivity

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
-from pneutouch.bench.finding import Said, rounded
+from pneutouch.bench.finding import ReadingSource, rounded
 from pneutouch.bench.resin import pulled
 from pneutouch.bench.statistics import Mean, mean
 from pneutouch.errors import InputError
@@ -24,7 +24,7 @@ _DUMBBELLS, _HARDNESS = "dumbbells", "hardness, by ratio"
 
 
 @dataclass(frozen=True, slots=True)
-class Stiffness:
+class MixModulus:
     """Shear modulus of one mix in MPa with its standard deviation, how often and by what it was measured."""
 
     fraction: float
@@ -34,7 +34,7 @@ class Stiffness:
     by: str
     how: str
 
-    def content(self, said: Said) -> dict[str, Any]:
+    def content(self, said: ReadingSource) -> dict[str, Any]:
         """The point of a mixing curve."""
         return {
             "fraction": self.fraction, "shear_modulus_MPa": rounded(self.modulus),
@@ -43,8 +43,8 @@ class Stiffness:
 
 
 def stiffness(
-    pair: str, soft: Material, stiff: Material, measured: Sequence[MixedCoupons], said: Said
-) -> list[Stiffness]:
+    pair: str, soft: Material, stiff: Material, measured: Sequence[MixedCoupons], said: ReadingSource
+) -> list[MixModulus]:
     """Every fraction that something was measured of.
 
     By its dumbbells; else by its hardness: Gent's relation (1958) is trusted for ratios alone, so the modulus is that of the
@@ -59,7 +59,7 @@ def stiffness(
         if dumbbells is not None:
             how = f"dumbbells of {100 * one.fraction:g} % {stiff.title}, {dumbbells.how}"
             over = dumbbells.over
-            found.append(Stiffness(one.fraction, over.value, dumbbells.spread, over.count, _DUMBBELLS, how))
+            found.append(MixModulus(one.fraction, over.value, dumbbells.spread, over.count, _DUMBBELLS, how))
         elif one.shore_a:
             by_hardness.append((place, one))
     if by_hardness:
@@ -80,7 +80,7 @@ class _Base:
     origin: str
 
 
-def _base(soft: Material, measured: Sequence[MixedCoupons], found: Sequence[Stiffness], where: str) -> _Base:
+def _base(soft: Material, measured: Sequence[MixedCoupons], found: Sequence[MixModulus], where: str) -> _Base:
     at_zero = next((one for one in measured if one.fraction == 0 and one.shore_a), None)
     if at_zero is None:
         raise InputError(
@@ -95,7 +95,7 @@ def _base(soft: Material, measured: Sequence[MixedCoupons], found: Sequence[Stif
     return _Base(shore, known.nominal, known.spread or 0.0, f"{soft.title} in the catalogue")
 
 
-def _by_hardness(place: str, one: MixedCoupons, base: _Base) -> Stiffness:
+def _by_hardness(place: str, one: MixedCoupons, base: _Base) -> MixModulus:
     shore = mean(one.shore_a)
     for value in (shore.value, base.shore.value):
         if value > _HARDEST:
@@ -113,10 +113,10 @@ def _by_hardness(place: str, one: MixedCoupons, base: _Base) -> Stiffness:
         f"Shore A {shore.value:.3g} over {base.shore.value:.3g} of the soft resin by Gent 1958, ratio {ratio:.3g}, times "
         f"{base.modulus:.3g} MPa, {base.origin}; weaker than dumbbells"
     )
-    return Stiffness(one.fraction, modulus, modulus * math.hypot(*relative), shore.count, _HARDNESS, how)
+    return MixModulus(one.fraction, modulus, modulus * math.hypot(*relative), shore.count, _HARDNESS, how)
 
 
-def _check_rising(found: Sequence[Stiffness], where: str, soft: Material, stiff: Material) -> None:
+def _check_rising(found: Sequence[MixModulus], where: str, soft: Material, stiff: Material) -> None:
     points = [(point.fraction, point.modulus, point.by) for point in found]
     if points and points[0][0] > 0 and soft.shear_modulus_MPa is not None:
         points.insert(0, (0.0, soft.shear_modulus_MPa.nominal, "the catalogue"))

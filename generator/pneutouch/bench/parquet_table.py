@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.chunk import Chunk, places
+from pneutouch.bench.chunk import RowChunk, places
 from pneutouch.errors import InputError
 
 BATCH = 2**17
@@ -18,7 +18,7 @@ BATCH = 2**17
 _EXACT = 2.0**53
 
 
-def parquet_chunks(path: Path, names: Sequence[str]) -> Iterator[Chunk]:
+def parquet_chunks(path: Path, names: Sequence[str]) -> Iterator[RowChunk]:
     """Chunks of a parquet file; see `table.chunks`. Its rows are numbered from 2, as in a CSV file.
 
     Raises InputError where pyarrow, an optional library, is not there.
@@ -45,7 +45,7 @@ def parquet_chunks(path: Path, names: Sequence[str]) -> Iterator[Chunk]:
                     told = "empty or no finite number"
                     raise InputError(f"{path}: row {rows[at]:.0f}: column {names[column]}: {told}; must be a number")
                 row += batch.num_rows
-                yield Chunk(rows, values, (row - 2) / total, total)
+                yield RowChunk(rows, values, (row - 2) / total, total)
     except pa.ArrowException as error:
         told = str(error).splitlines()[0][:120]
         raise InputError(f"{path}: no whole parquet file: {told}; cut off, or another kind of file?") from None

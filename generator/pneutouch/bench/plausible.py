@@ -11,12 +11,12 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.bench.mixed import mixed
 from pneutouch.bench.protocol import HOLD, RELAXATION
-from pneutouch.bench.record import Blocks, Curve
+from pneutouch.bench.record import Blocks, MeasuredCurve
 from pneutouch.errors import InputError
-from pneutouch.spec.campaign import UNITS, Columns, Rig, Run
+from pneutouch.spec.campaign import UNITS, CampaignRun, ColumnMap, Rig
 from pneutouch.units import KPA
 
-__all__ = ["Expected", "check_leak", "check_plausible", "mixed"]
+__all__ = ["ExpectedRun", "check_leak", "check_plausible", "mixed"]
 
 FAR = 3.0
 """Factor from the prediction beyond which something is asked: our choice. The solid's predictions meet the paper's table with a
@@ -45,7 +45,7 @@ _SHAPE = 1.5
 
 
 @dataclass(frozen=True, slots=True)
-class Expected:
+class ExpectedRun:
     """The prediction of a run: force (N) and rise (MPa) at a depth (mm), and the sensitivity (MPa/N).
 
     ``curve`` are indentations (ascending, mm), forces and rises on the way there, (n,) each, where they are known.
@@ -66,7 +66,9 @@ class Expected:
         return float(np.interp(depth, travel, force)), float(np.interp(depth, travel, rise))
 
 
-def check_plausible(curve: Curve, columns: Columns, expected: Expected | None, file: Path) -> tuple[str, ...]:
+def check_plausible(
+    curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun | None, file: Path
+) -> tuple[str, ...]:
     """Questions about a run that may be right all the same.
 
     Without a prediction (``expected`` None) only signs, times and the driving pressure are looked at. Raises InputError for
@@ -81,7 +83,7 @@ def check_plausible(curve: Curve, columns: Columns, expected: Expected | None, f
     return tuple(text for text in (*magnitudes, time, _driving(curve, file, columns)) if text is not None)
 
 
-def check_leak(blocks: Blocks, run: Run, rig: Rig) -> tuple[str, ...]:
+def check_leak(blocks: Blocks, run: CampaignRun, rig: Rig) -> tuple[str, ...]:
     """Questions about a leak run that may be right all the same; its pressure is judged by its first `_START` seconds.
 
     Raises InputError where the pressure is at the end of the gauge's range (`reading.CLIPPED`) or at a flat top for more than
@@ -109,7 +111,7 @@ def check_leak(blocks: Blocks, run: Run, rig: Rig) -> tuple[str, ...]:
     return (*told, f"{said}; was it left out, is the gauge not zeroed, or does the line lose it at once?")
 
 
-def _magnitudes(curve: Curve, columns: Columns, expected: Expected, file: Path) -> list[str | None]:
+def _magnitudes(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun, file: Path) -> list[str | None]:
     depth = float(curve.indentation[-1])
     ratio = depth / expected.depth
     told = [
@@ -144,7 +146,7 @@ def _number(value: float) -> str:
 
 
 def _magnitude(
-    file: Path, columns: Columns, key: str, ratio: float, reads: str, predicted: str
+    file: Path, columns: ColumnMap, key: str, ratio: float, reads: str, predicted: str
 ) -> str | None:  # fmt: skip
     """None where a ratio of measured to predicted is plausible, else a question; an error where a unit explains it."""
     if 1 / FAR <= ratio <= FAR:
@@ -162,7 +164,7 @@ def _magnitude(
     return f"{said}; no unit explains that: {why}"
 
 
-def _check_signs(curve: Curve, columns: Columns, file: Path) -> None:
+def _check_signs(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> None:
     for key, values, unit, name in (("force", curve.force, 1.0, "N"), ("pressure", curve.rise, KPA, "kPa")):
         column = getattr(columns, key)
         deep = float(values[np.argmax(np.abs(values))])
@@ -178,7 +180,7 @@ def _check_signs(curve: Curve, columns: Columns, file: Path) -> None:
         )
 
 
-def _check_swap(curve: Curve, columns: Columns, expected: Expected, file: Path) -> None:
+def _check_swap(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun, file: Path) -> None:
     """Force and pressure exchanged: each has the magnitude of the other, and the pressure before contact is in the force.
 
     Compared as the numbers that stand in the columns. At a driving pressure the resting values decide; at none the
@@ -209,7 +211,7 @@ def _check_swap(curve: Curve, columns: Columns, expected: Expected, file: Path) 
         )
 
 
-def _check_time(curve: Curve, columns: Columns, file: Path) -> str | None:
+def _check_time(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> str | None:
     """A hold's length tells a wrong unit of time, where the unit is wrong by far: holds may well be a few times the paper's."""
     if curve.run.kind == "loop" or not curve.indents:
         return None
@@ -221,7 +223,7 @@ def _check_time(curve: Curve, columns: Columns, file: Path) -> str | None:
     return _magnitude(file, columns, "time", length / usual, reads, f"the protocol has {usual:g} s")
 
 
-def _driving(curve: Curve, file: Path, columns: Columns) -> str | None:
+def _driving(curve: MeasuredCurve, file: Path, columns: ColumnMap) -> str | None:
     stated, read = curve.run.driving_pressure_kPa, curve.driving / KPA
     if abs(read - stated) <= max(RESET_KPA, RESET_SHARE * stated):
         return None

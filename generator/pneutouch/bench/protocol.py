@@ -32,7 +32,7 @@ CYCLES = 3
 
 
 @dataclass(frozen=True, slots=True)
-class Protocol:
+class RunProtocol:
     """What one run does. Lengths mm, times s, speed mm/s.
 
     Attributes:
@@ -57,7 +57,7 @@ class Protocol:
         moves = 2 * (sum(self.depths) + len(self.depths) * CLEARANCE) / self.speed
         return moves + len(self.depths) * (self.hold + self.rest)
 
-    def quicker(self, rest: float, hold: float | None = None) -> Protocol:
+    def quicker(self, rest: float, hold: float | None = None) -> RunProtocol:
         """The same with a shorter rest and, where given, hold."""
         return replace(self, rest=rest, hold=self.hold if hold is None else hold)
 
@@ -80,15 +80,15 @@ def stairs(depth: float, step: float = STEP) -> tuple[float, ...]:
     return tuple(float(min(step * (k + 1), depth)) for k in range(count))
 
 
-def protocol(kind: RunKind, inner_radius: float) -> Protocol:
+def protocol(kind: RunKind, inner_radius: float) -> RunProtocol:
     """The paper's protocol of a kind of run with a plate, for a dome of ``inner_radius`` mm."""
     shallow, deep = SHARE * inner_radius, DEEPEST * inner_radius
     if kind == "steps":
-        return Protocol(kind, stairs(shallow), HOLD, REST, True)
+        return RunProtocol(kind, stairs(shallow), HOLD, REST, True)
     if kind == "saturation":
-        return Protocol(kind, stairs(deep), HOLD, SHORT_REST, False)
+        return RunProtocol(kind, stairs(deep), HOLD, SHORT_REST, False)
     if kind == "loop":
-        return Protocol(kind, (shallow,) * CYCLES, 0.0, SHORT_REST, False)
+        return RunProtocol(kind, (shallow,) * CYCLES, 0.0, SHORT_REST, False)
     if kind == "relaxation":
-        return Protocol(kind, (shallow,), RELAXATION, REST, True)
+        return RunProtocol(kind, (shallow,), RELAXATION, REST, True)
     raise ValueError(f"{kind} has no plate")

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
-from pneutouch.bench.blocks import Collector
-from pneutouch.bench.record import Blocks, Doubt
+from pneutouch.bench.blocks import BlockCollector
+from pneutouch.bench.record import Blocks, SuspectInterval
 from pneutouch.bench.table import chunks
 from pneutouch.errors import InputError
-from pneutouch.spec.campaign import UNITS, Columns, Rig
+from pneutouch.spec.campaign import UNITS, ColumnMap, Rig
 from pneutouch.units import KPA
 
 CLIPPED = 0.98
@@ -42,7 +42,7 @@ _EXACT = 1e-9
 
 
 def read_blocks(
-    path: Path, columns: Columns, rig: Rig, progress: Callable[[float], None] = lambda share: None, plate: bool = True
+    path: Path, columns: ColumnMap, rig: Rig, progress: Callable[[float], None] = lambda share: None, plate: bool = True
 ) -> Blocks:  # fmt: skip
     """Blocks of a CSV or parquet file, in s, mm, N, MPa; ``progress`` is called with the share read, 0 to 1.
 
@@ -57,7 +57,7 @@ def read_blocks(
     names = {key: getattr(columns, key).name for key in _CHANNELS}
     read = [place for place, key in enumerate(_CHANNELS) if plate or key in ("time", "pressure")]
     keys = [_CHANNELS[place] for place in read]
-    collector = Collector(path, names=names)
+    collector = BlockCollector(path, names=names)
     cut = False
     for chunk in chunks(path, [names[key] for key in keys]):
         collector.total = chunk.total
@@ -68,7 +68,11 @@ def read_blocks(
         progress(chunk.share)
     blocks = collector.blocks()
     end = float(blocks.time[-1])
-    doubts = [Doubt(end, end, "last row left out: no line end, so its last number may be cut", False)] if cut else []
+    doubts = (
+        [SuspectInterval(end, end, "last row left out: no line end, so its last number may be cut", False)]
+        if cut
+        else []
+    )
     if plate:
         _check_alive(blocks, names)
         doubts += _clipped(blocks, "force", blocks.force, blocks.force_extreme, rig.force_range_N, 1.0, "N")
@@ -76,7 +80,7 @@ def read_blocks(
     return replace(blocks, doubts=(*blocks.doubts, *doubts))
 
 
-def scaled(path: Path, columns: Columns, keys: Sequence[str], rows: Array, values: Array) -> Array:
+def scaled(path: Path, columns: ColumnMap, keys: Sequence[str], rows: Array, values: Array) -> Array:
     """Values (k, n) of the columns ``keys`` in inner units and with their signs; ``rows`` (n,) are their places in the file.
 
     Raises InputError, naming column and row, for a number beyond `GREATEST`.
@@ -118,7 +122,7 @@ def _check_alive(blocks: Blocks, names: dict[str, str]) -> None:
 
 def _clipped(
     blocks: Blocks, key: str, values: Array, extreme: Array, top: float, unit: float, name: str
-) -> list[Doubt]:  # fmt: skip
+) -> list[SuspectInterval]:  # fmt: skip
     """Stretches at the end of an instrument's range, or at a flat top below it."""
     beyond = extreme / unit > BEYOND * top
     spikes = _short(blocks, beyond)
@@ -127,16 +131,18 @@ def _clipped(
             f"{key} goes to {extreme.max() / unit:.4g} {name}, beyond the rig's range of {top:g}: is its unit right, or the "
             "rig's range?"
         )
-        return [Doubt(float(blocks.time[0]), float(blocks.time[-1]), told, True)]
+        return [SuspectInterval(float(blocks.time[0]), float(blocks.time[-1]), told, True)]
     found = [
-        Doubt(start, end, f"{key} clipped: at {CLIPPED:g} of the range of {top:g} {name} or beyond", False, "clipped")
+        SuspectInterval(
+            start, end, f"{key} clipped: at {CLIPPED:g} of the range of {top:g} {name} or beyond", False, "clipped"
+        )
         for start, end in _stretches(blocks, (extreme / unit >= CLIPPED * top) & ~spikes)
     ]
     rest = np.where(spikes, 0.0, extreme)
     flat = _flat_top(blocks, values, getattr(blocks, f"{key}_spread"), rest)
     if not found:
         told = f"{key} clipped: a flat top at {rest.max() / unit:.4g} {name}"
-        found = [Doubt(start, end, told, False, "clipped") for start, end in _stretches(blocks, flat)]
+        found = [SuspectInterval(start, end, told, False, "clipped") for start, end in _stretches(blocks, flat)]
     return [*found, *_spikes(blocks, key, extreme / unit, spikes, f"{name}, beyond the rig's range of {top:g}")]
 
 
@@ -149,10 +155,10 @@ def _short(blocks: Blocks, beyond: Flags) -> Flags:
     return short
 
 
-def _spikes(blocks: Blocks, key: str, extreme: Array, spikes: Flags, told: str) -> list[Doubt]:
+def _spikes(blocks: Blocks, key: str, extreme: Array, spikes: Flags, told: str) -> list[SuspectInterval]:
     width = blocks.size / blocks.rate / 2
     return [
-        Doubt(
+        SuspectInterval(
             float(blocks.time[start]) - width, float(blocks.time[end - 1]) + width,
             f"{key} spike: {extreme[start:end].max():.4g} {told}, for a moment: a fault of the line?", False, "spike",
         )

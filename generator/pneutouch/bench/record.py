@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Literal, NamedTuple
 
 from pneutouch.arrays import Array
-from pneutouch.spec.campaign import Run
+from pneutouch.spec.campaign import CampaignRun
 
-DoubtKind = Literal["gap", "clipped", "spike", "note", "other"]
+SuspectKind = Literal["gap", "clipped", "spike", "note", "other"]
 
 
-class Doubt(NamedTuple):
+class SuspectInterval(NamedTuple):
     """A stretch of a run that is not to be trusted, or not as it should be: seconds, and why. Never dropped silently.
 
     ``used`` says whether it is used all the same, ``kind`` what it is: a gap, a channel at its end, a reading beyond what
@@ -23,7 +23,7 @@ class Doubt(NamedTuple):
     end: float
     why: str
     used: bool
-    kind: DoubtKind = "other"
+    kind: SuspectKind = "other"
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,11 +46,11 @@ class Blocks:
     pressure_spread: Array
     force_extreme: Array
     pressure_extreme: Array
-    doubts: tuple[Doubt, ...] = ()
+    doubts: tuple[SuspectInterval, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
-class Indent:
+class MeasuredIndentation:
     """One indentation as it was found. Times in s; mm, N, MPa.
 
     Attributes:
@@ -79,7 +79,7 @@ class Indent:
 
 
 @dataclass(frozen=True, slots=True)
-class Curve:
+class MeasuredCurve:
     """What a run says: points in order of their depth, from first contact, (n,) mm, N, MPa; the first is the origin.
 
     Attributes:
@@ -95,14 +95,14 @@ class Curve:
         doubts: Stretches not to be trusted.
     """
 
-    run: Run
+    run: CampaignRun
     indentation: Array
     force: Array
     rise: Array
     driving: float
-    indents: tuple[Indent, ...] = ()
+    indents: tuple[MeasuredIndentation, ...] = ()
     loop: tuple[tuple[Array, Array, Array, Array], ...] = ()
     relaxation: tuple[Array, Array, Array] | None = None
     noise: tuple[float, float] = (float("nan"), float("nan"))
     drift: tuple[float, float] = (float("nan"), float("nan"))
-    doubts: tuple[Doubt, ...] = field(default=())
+    doubts: tuple[SuspectInterval, ...] = field(default=())

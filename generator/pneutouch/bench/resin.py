@@ -7,10 +7,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from pneutouch.bench.finding import MARK, Change, Figure, Found, Said, rounded
+from pneutouch.bench.finding import MARK, CouponFindings, MeasuredFigure, ProfileChange, ReadingSource, rounded
 from pneutouch.bench.statistics import Mean, mean, neo_hookean, secant_modulus, shear_from_young
 from pneutouch.errors import InputError
-from pneutouch.spec.coupon import LEAST_READINGS, Dumbbell, Puck, Specimen
+from pneutouch.spec.coupon import LEAST_READINGS, Dumbbell, DumbbellSpecimen, Puck
 from pneutouch.spec.material import Material
 from pneutouch.spec.quantity import Quantity
 
@@ -34,7 +34,7 @@ _FAR_MODULUS = 5.0
 differ by a factor of 3 (TangoPlus.toml)."""
 
 
-def puck(name: str, material: Material, measured: Puck, said: Said, found: Found) -> None:
+def puck(name: str, material: Material, measured: Puck, said: ReadingSource, found: CouponFindings) -> None:
     """Hardness and density. Raises InputError for a density that no resin has."""
     for key, scale in (("shore_a", "Shore A"), ("shore_d", "Shore D")):
         readings = getattr(measured, key)
@@ -58,7 +58,9 @@ def puck(name: str, material: Material, measured: Puck, said: Said, found: Found
     _add(found, said, name, "density_g_per_cm3", mean(densities.tolist()), how, "density, g/cm3")
 
 
-def _compare_hardness(name: str, key: str, readings: list[float], shipped: Quantity | None, found: Found) -> None:
+def _compare_hardness(
+    name: str, key: str, readings: list[float], shipped: Quantity | None, found: CouponFindings
+) -> None:
     if shipped is None:
         return
     farthest = max(readings, key=lambda reading: abs(reading - shipped.nominal))
@@ -69,7 +71,7 @@ def _compare_hardness(name: str, key: str, readings: list[float], shipped: Quant
         )
 
 
-def _one_year(name: str, material: Material, fresh: float, found: Found) -> None:
+def _one_year(name: str, material: Material, fresh: float, found: CouponFindings) -> None:
     """Keep the published change in a year: beside another fresh hardness the old value would mean another ageing."""
     before, aged = material.shore_a, material.shore_a_one_year
     if before is None or aged is None:
@@ -79,17 +81,17 @@ def _one_year(name: str, material: Material, fresh: float, found: Found) -> None
         **aged.model_dump(exclude_none=True, exclude={"low", "high"}), "value": rounded(fresh + change),
         "source": f"hardness {MARK} and a change of {change:+.3g} in a year: {aged.source}",
     }  # fmt: skip
-    found.changes.append(Change("materials", name, ("shore_a_one_year",), content))
+    found.changes.append(ProfileChange("materials", name, ("shore_a_one_year",), content))
 
 
-def _add(found: Found, said: Said, name: str, key: str, value: Mean, how: str, title: str) -> None:
+def _add(found: CouponFindings, said: ReadingSource, name: str, key: str, value: Mean, how: str, title: str) -> None:
     content = {"value": rounded(value.value), "spread": rounded(value.spread), "source": said.source(how, value.count)}
-    found.changes.append(Change("materials", name, (key,), content))
-    found.figures.append(Figure(name, title, value.value, value.spread, value.count))
+    found.changes.append(ProfileChange("materials", name, (key,), content))
+    found.figures.append(MeasuredFigure(name, title, value.value, value.spread, value.count))
 
 
 @dataclass(frozen=True, slots=True)
-class Pulled:
+class DumbbellModuli:
     """What dumbbells gave: moduli over the specimens, the spread that counts, and how, for a source."""
 
     over: Mean
@@ -100,7 +102,7 @@ class Pulled:
     how: str
 
 
-def pulled(measured: Dumbbell, where: str) -> Pulled | None:
+def pulled(measured: Dumbbell, where: str) -> DumbbellModuli | None:
     """Neo-Hookean shear modulus of the specimens that have a curve; None where none has.
 
     Raises InputError for too few specimens or points; ``where`` names file and table.
@@ -119,10 +121,10 @@ def pulled(measured: Dumbbell, where: str) -> Pulled | None:
     spread = max(over.spread, float(np.sqrt(np.mean(np.square(errors)))))
     secants = tuple(young for _, _, young in fits if young is not None)
     how = f"ASTM D412 die C, neo-Hookean fit to {100 * most:g} % strain, forces after {measured.hold_s:g} s of hold"
-    return Pulled(over, moduli, spread, errors, secants, how)
+    return DumbbellModuli(over, moduli, spread, errors, secants, how)
 
 
-def dumbbell(name: str, material: Material, measured: Dumbbell, said: Said, found: Found) -> None:
+def dumbbell(name: str, material: Material, measured: Dumbbell, said: ReadingSource, found: CouponFindings) -> None:
     """Shear modulus by the neo-Hookean fit. Raises InputError for too few specimens or points, and for a rigid material."""
     where = f"{said.where}: dumbbell.{name}"
     if material.kind != "elastomer" and any(specimen.force_N for specimen in measured.specimen):
@@ -142,11 +144,11 @@ def dumbbell(name: str, material: Material, measured: Dumbbell, said: Said, foun
         "value": rounded(over.value), "low": rounded(min(fit.moduli)), "high": rounded(max(fit.moduli)),
         "spread": rounded(fit.spread), "source": said.source(how, over.count),
     }  # fmt: skip
-    found.changes.append(Change("materials", name, ("shear_modulus_MPa",), content))
-    found.figures.append(Figure(name, "shear modulus, MPa (neo-Hookean)", over.value, fit.spread, over.count))
+    found.changes.append(ProfileChange("materials", name, ("shear_modulus_MPa",), content))
+    found.figures.append(MeasuredFigure(name, "shear modulus, MPa (neo-Hookean)", over.value, fit.spread, over.count))
     if secants:
         found.figures.append(
-            Figure(name, "shear modulus, MPa (secant E at 10 %)", float(np.mean(secants)), None, len(secants))
+            MeasuredFigure(name, "shear modulus, MPa (secant E at 10 %)", float(np.mean(secants)), None, len(secants))
         )
     _compare_modulus(name, over.value, material.shear_modulus_MPa, found)
     if material.law is not None:
@@ -155,7 +157,7 @@ def dumbbell(name: str, material: Material, measured: Dumbbell, said: Said, foun
         )
 
 
-def _compare_modulus(name: str, modulus: float, shipped: Quantity | None, found: Found) -> None:
+def _compare_modulus(name: str, modulus: float, shipped: Quantity | None, found: CouponFindings) -> None:
     if shipped is None:
         return
     times = modulus / shipped.nominal
@@ -166,7 +168,7 @@ def _compare_modulus(name: str, modulus: float, shipped: Quantity | None, found:
         )
 
 
-def _check_rising(specimen: Specimen, where: str) -> None:
+def _check_rising(specimen: DumbbellSpecimen, where: str) -> None:
     """Forces in the order of their extensions; a coarse gauge may show one force at two points, but not at all."""
     points = sorted(zip(specimen.extension_mm, specimen.force_N, strict=True))
     pairs = [*pairwise(points), (points[0], points[-1])]
@@ -178,7 +180,7 @@ def _check_rising(specimen: Specimen, where: str) -> None:
             )
 
 
-def _fit(specimen: Specimen, most: float, where: str) -> tuple[float, float, float | None]:
+def _fit(specimen: DumbbellSpecimen, most: float, where: str) -> tuple[float, float, float | None]:
     """Shear modulus, its standard error, and the secant Young's modulus at 10 % strain, MPa."""
     _check_rising(specimen, where)
     area = float(np.median(specimen.width_mm) * np.median(specimen.thickness_mm))

@@ -10,7 +10,7 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.bench.figure import FIGURES, Pooled, run_figures
 from pneutouch.bench.interval import Estimate, mean_of, spread_between, spread_within, widened
-from pneutouch.bench.record import Curve
+from pneutouch.bench.record import MeasuredCurve
 
 _MONTH = 365.25 / 12
 """Days."""
@@ -27,7 +27,7 @@ _POOL: dict[Pooled, Callable[[Sequence[Array]], Estimate]] = {
 
 
 @dataclass(frozen=True, order=True, slots=True)
-class Key:
+class GroupKey:
     """What the runs of a group have in common: resin, mean age in days (0 where fresh), driving pressure in kPa."""
 
     resin: str
@@ -43,11 +43,11 @@ class Key:
 
 
 @dataclass(frozen=True, slots=True)
-class Group:
+class RunGroup:
     """Runs of one resin, age and driving pressure. ``figures`` are by key, ``each`` by curve in the order of ``curves``."""
 
-    key: Key
-    curves: tuple[Curve, ...]
+    key: GroupKey
+    curves: tuple[MeasuredCurve, ...]
     figures: dict[str, Estimate]
     each: tuple[dict[str, float], ...]
 
@@ -56,19 +56,19 @@ class Group:
         """Names of the specimens."""
         return sorted({curve.run.sensor for curve in self.curves})
 
-    def of_kind(self, kind: str) -> list[Curve]:
+    def of_kind(self, kind: str) -> list[MeasuredCurve]:
         """The curves of one kind of run."""
         return [curve for curve in self.curves if curve.run.kind == kind]
 
 
-def summarize(curves: Iterable[Curve]) -> list[Group]:
+def summarize(curves: Iterable[MeasuredCurve]) -> list[RunGroup]:
     """Groups in the order of resin, age and pressure."""
     every = list(curves)
     ages = _ages({curve.run.age_days for curve in every})
-    sorted_in: dict[Key, list[Curve]] = {}
+    sorted_in: dict[GroupKey, list[MeasuredCurve]] = {}
     for curve in every:
         run = curve.run
-        key = Key(run.resin, ages[run.age_days], run.driving_pressure_kPa)
+        key = GroupKey(run.resin, ages[run.age_days], run.driving_pressure_kPa)
         sorted_in.setdefault(key, []).append(curve)
     return [_group(key, sorted_in[key]) for key in sorted(sorted_in)]
 
@@ -84,7 +84,7 @@ def _ages(days: set[float]) -> dict[float, float]:
     return {age: 0.0 if group[0] <= FRESH else float(np.mean(group)) for group in groups for age in group}
 
 
-def _group(key: Key, curves: list[Curve]) -> Group:
+def _group(key: GroupKey, curves: list[MeasuredCurve]) -> RunGroup:
     each = tuple(run_figures(curve) for curve in curves)
     found: dict[str, Estimate] = {}
     for figure in FIGURES:
@@ -96,4 +96,4 @@ def _group(key: Key, curves: list[Curve]) -> Group:
             estimate = _POOL[figure.pooled]([np.array(by_sensor[name]) for name in sorted(by_sensor)])
             if np.isfinite(estimate.value):
                 found[figure.key] = widened(estimate, figure.reading)
-    return Group(key, tuple(curves), found, each)
+    return RunGroup(key, tuple(curves), found, each)

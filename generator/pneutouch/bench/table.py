@@ -8,14 +8,14 @@ from pathlib import Path
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.chunk import Chunk
+from pneutouch.bench.chunk import RowChunk
 from pneutouch.bench.csv_table import csv_chunks
 from pneutouch.bench.parquet_table import parquet_chunks
 from pneutouch.errors import InputError
 
 
-def chunks(path: Path, names: Sequence[str]) -> Iterator[Chunk]:
-    """The columns ``names`` of a CSV or (suffix .parquet) parquet file, chunk by chunk, at least one row in all (it may be `Chunk.last`).
+def chunks(path: Path, names: Sequence[str]) -> Iterator[RowChunk]:
+    """The columns ``names`` of a CSV or (suffix .parquet) parquet file, chunk by chunk, at least one row in all (it may be `RowChunk.last`).
 
     Raises InputError, naming file, column and row, for a file that cannot be read, is cut off or holds no rows, for a
     missing or doubled column, and for a cell that is no finite number.

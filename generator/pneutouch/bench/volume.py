@@ -6,12 +6,12 @@ import math
 
 import numpy as np
 
-from pneutouch.bench.finding import Figure, Found, Said
+from pneutouch.bench.finding import CouponFindings, MeasuredFigure, ReadingSource
 from pneutouch.bench.statistics import Mean, dead_volume, mean
-from pneutouch.catalogue import Scene
+from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.parts import assemble
-from pneutouch.parts.coupons import Ground
+from pneutouch.parts.coupons import CouponContext
 from pneutouch.parts.coupons.volume_plug import WATER, cavity_size, cavity_volume
 from pneutouch.spec.coupon import LeakCap, VolumePlug
 from pneutouch.units import ML
@@ -20,7 +20,7 @@ _ROUNDING = 1e-9
 """Differences of pressures may miss a limit by this, kPa."""
 
 
-def leak(name: str, cap: LeakCap, accuracy: float, said: Said, found: Found) -> None:
+def leak(name: str, cap: LeakCap, accuracy: float, said: ReadingSource, found: CouponFindings) -> None:
     """Leak rate, kPa a minute. Raises InputError where pressure rises by more than the gauge's ``accuracy``, kPa."""
     for run, (start, end) in enumerate(zip(cap.start_kPa, cap.end_kPa, strict=True), start=1):
         rise = end - start
@@ -36,13 +36,15 @@ def leak(name: str, cap: LeakCap, accuracy: float, said: Said, found: Found) -> 
             )
     if cap.start_kPa:
         rate = mean((60 * (np.array(cap.start_kPa) - np.array(cap.end_kPa)) / cap.seconds).tolist())
-        found.figures.append(Figure(name, "leak, kPa/min", rate.value, rate.spread, rate.count))
+        found.figures.append(MeasuredFigure(name, "leak, kPa/min", rate.value, rate.spread, rate.count))
 
 
-def volume(name: str, scene: Scene, cap: LeakCap | None, plug: VolumePlug, said: Said, found: Found) -> None:
+def volume(
+    name: str, scene: ResolvedDesign, cap: LeakCap | None, plug: VolumePlug, said: ReadingSource, found: CouponFindings
+) -> None:
     """Dead volume in mL by Boyle's law. Raises InputError where the cap's pressures are missing or contradict."""
-    cavity = cavity_measured(Ground(scene.connector_material, scene), plug)
-    found.figures.append(Figure(name, "cavity of the plug, mL", cavity.value, cavity.error, cavity.count))
+    cavity = cavity_measured(CouponContext(scene.connector_material, scene), plug)
+    found.figures.append(MeasuredFigure(name, "cavity of the plug, mL", cavity.value, cavity.error, cavity.count))
     if not plug.pressure_kPa:
         return
     if cap is None or not cap.pressure_kPa:
@@ -59,15 +61,17 @@ def volume(name: str, scene: Scene, cap: LeakCap | None, plug: VolumePlug, said:
         ) from None
     assembly = assemble(scene)
     drawn = (assembly.internal_volume + assembly.tube_volume) / ML
-    found.figures.append(Figure(name, "dead volume, mL", dead.value, dead.spread, None))
-    found.figures.append(Figure(name, "dead volume as drawn, mL", drawn))
-    found.figures.append(Figure(name, "air in the syringe, mL", dead.value * over_cap.value / cap.ambient_pressure_kPa))
+    found.figures.append(MeasuredFigure(name, "dead volume, mL", dead.value, dead.spread, None))
+    found.figures.append(MeasuredFigure(name, "dead volume as drawn, mL", drawn))
+    found.figures.append(
+        MeasuredFigure(name, "air in the syringe, mL", dead.value * over_cap.value / cap.ambient_pressure_kPa)
+    )
     found.notes.append(
         f"put dead_volume_mL = {dead.value:.3f} under [pneumatics] of {name}; it is {dead.value:.3f} ± {dead.spread:.3f}"
     )
 
 
-def cavity_measured(ground: Ground, plug: VolumePlug) -> Mean:
+def cavity_measured(ground: CouponContext, plug: VolumePlug) -> Mean:
     """The cavity's volume in mL: weighed, or as drawn with the printer's accuracy on its diameter and height."""
     if plug.water_g:
         water = mean(plug.water_g)

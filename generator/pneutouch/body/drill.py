@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pneutouch.arrays import Array, Indices
-from pneutouch.body.revolve import Rings, circle_count, widen
+from pneutouch.body.revolve import RevolvedRings, circle_count, widen
 
 if TYPE_CHECKING:
     from pneutouch.body.shapes import Bore
@@ -35,7 +35,7 @@ class _Hole:
     upper: int
 
 
-def drilled(rings: Rings, bores: tuple[Bore, ...], tolerance: float) -> tuple[Array, Indices] | None:
+def drilled(rings: RevolvedRings, bores: tuple[Bore, ...], tolerance: float) -> tuple[Array, Indices] | None:
     """The turned body with its bores, or None where a bore does not run between flat faces and must be cut.
 
     Half of ``tolerance`` (mm) went into the rings; a bore takes all of it, for it is straight.
@@ -59,7 +59,7 @@ def drilled(rings: Rings, bores: tuple[Bore, ...], tolerance: float) -> tuple[Ar
     return points, np.concatenate(strips)
 
 
-def _faces(rings: Rings, bores: tuple[Bore, ...]) -> dict[int, list[int]] | None:
+def _faces(rings: RevolvedRings, bores: tuple[Bore, ...]) -> dict[int, list[int]] | None:
     """The flat strips that bores open in, with the indices of these bores."""
     faces: dict[int, list[int]] = {}
     for index, bore in enumerate(bores):
@@ -76,7 +76,7 @@ def _faces(rings: Rings, bores: tuple[Bore, ...]) -> dict[int, list[int]] | None
     return faces if apart else None
 
 
-def _holds(rings: Rings, k: int, bore: Bore, height: float) -> bool:
+def _holds(rings: RevolvedRings, k: int, bore: Bore, height: float) -> bool:
     """Whether strip ``k`` is flat, at ``height``, and wide enough around a bore."""
     one, other = (rings.rings[index] for index in rings.pairs[k])
     if abs(one.height - height) > _SAME or abs(other.height - height) > _SAME:
@@ -93,7 +93,7 @@ def _circle(bore: Bore, count: int, height: float) -> Array:
     return np.column_stack([bore.x + radius * np.cos(angle), bore.y + radius * np.sin(angle), np.full(count, height)])
 
 
-def _perforated(points: Array, rings: Rings, k: int, holes: list[_Hole]) -> Indices:
+def _perforated(points: Array, rings: RevolvedRings, k: int, holes: list[_Hole]) -> Indices:
     """A flat strip with holes, facing the way the strip did."""
     from manifold3d import triangulate
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array, Indices
-from pneutouch.meridian import Meridian, Ring, sample
+from pneutouch.meridian import Meridian, MeridianVertex, sample
 
 
 def circle_count(radius: float, error: float, lean: float = 1.0) -> int:
@@ -39,14 +39,14 @@ def widen(count: int) -> float:
 
 
 @dataclass(frozen=True)
-class Rings:
+class RevolvedRings:
     """A revolved meridian before its strips are put together.
 
     ``starts`` and ``counts`` say where a ring's vertices lie; ``pairs`` are the two rings of each strip, in the order
     of the meridian, and ``strips`` their triangles.
     """
 
-    rings: list[Ring]
+    rings: list[MeridianVertex]
     counts: list[int]
     starts: list[int]
     vertices: Array
@@ -54,7 +54,7 @@ class Rings:
     strips: list[Indices]
 
 
-def revolve_rings(meridian: Meridian, tolerance: float) -> Rings:
+def revolve_rings(meridian: Meridian, tolerance: float) -> RevolvedRings:
     """Mesh a solid of revolution strip by strip.
 
     Half of ``tolerance`` (mm) goes to the meridian's chords and half to the circles'.
@@ -74,7 +74,7 @@ def revolve_rings(meridian: Meridian, tolerance: float) -> Rings:
         one, other = (b, a) if swap else (a, b)
         strip = _zip(starts[one], counts[one], starts[other], counts[other])
         strips.append(strip[:, ::-1] if swap else strip)
-    return Rings(rings, counts, starts, vertices, pairs, strips)
+    return RevolvedRings(rings, counts, starts, vertices, pairs, strips)
 
 
 def revolve(meridian: Meridian, tolerance: float) -> tuple[Array, Indices]:
@@ -83,7 +83,7 @@ def revolve(meridian: Meridian, tolerance: float) -> tuple[Array, Indices]:
     return made.vertices, np.concatenate(made.strips)
 
 
-def _ring_points(ring: Ring, count: int) -> Array:
+def _ring_points(ring: MeridianVertex, count: int) -> Array:
     angle = 2 * np.pi * np.arange(count) / count
     radius = ring.radius * widen(count)
     return np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.full(count, ring.height)])

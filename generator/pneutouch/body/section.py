@@ -14,7 +14,7 @@ from pneutouch.arrays import Array, Flags
 from pneutouch.body.shapes import Bore, Prism, Shape, Turned
 from pneutouch.body.solid import Solid
 from pneutouch.meridian import Meridian
-from pneutouch.meridian.crossings import Rise, crossings, encloses, rises
+from pneutouch.meridian.crossings import RisingPiece, crossings, encloses, rises
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class _Tool:
     shape: Shape
     low: Array
     high: Array
-    outline: tuple[Rise, ...]
+    outline: tuple[RisingPiece, ...]
 
     def contains(self, points: Array) -> Flags:
         shape = self.shape
@@ -57,7 +57,7 @@ class _Tool:
         return np.asarray(inside & (shape.low <= local[:, 2]) & (local[:, 2] < shape.high))
 
 
-class Inside:
+class SolidSection:
     """The inside of a solid; what does not change from section to section is worked out once."""
 
     def __init__(self, solid: Solid) -> None:
@@ -108,7 +108,7 @@ def _mark(inside: Flags, window: Window, z: float, tool: _Tool, value: bool) -> 
 
 
 def _tool(shape: Shape) -> _Tool:
-    outline: tuple[Rise, ...] = ()
+    outline: tuple[RisingPiece, ...] = ()
     if isinstance(shape, Bore):
         low = np.array([shape.x - shape.radius, shape.y - shape.radius, shape.low])
         return _Tool(shape, low, np.array([shape.x + shape.radius, shape.y + shape.radius, shape.high]), outline)

@@ -10,7 +10,7 @@ from pneutouch.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)
-class Along:
+class ArcProfile:
     """Values (n,) at knots (n,) that rise from 0 at the pole to 1 at the rim; n = 1 is a constant.
 
     Between knots a cubic that has no extremum of its own: slopes by Fritsch and Butland (SIAM J. Sci. Stat. Comput. 5,

@@ -13,7 +13,7 @@ from typing import Any, TypeVar, cast
 from pydantic import BaseModel
 
 from pneutouch.errors import InputError, nearest
-from pneutouch.spec.design import Design
+from pneutouch.spec.design import DesignFile
 from pneutouch.spec.material import Material
 from pneutouch.spec.mixing import MixingCurve
 from pneutouch.spec.part import MOUNTS, PORTS, SEATS, Tube
@@ -27,24 +27,24 @@ _PACKAGE = Path(__file__).resolve().parents[1]
 _CHECKOUT = _PACKAGE.parents[1]
 
 
-Check = Callable[[dict[str, Any], str], BaseModel]
+ValidateFile = Callable[[dict[str, Any], str], BaseModel]
 """Validates a file's content; the second argument names the file. Raises InputError that names the key."""
 
 
 @dataclass(frozen=True, slots=True)
-class Kind:
+class FileKind:
     """One shelf: how its files are validated, and the folder they lie in."""
 
-    validate: Check
+    validate: ValidateFile
     folder: str
     part: bool = False
 
 
-def _one(model: type[BaseModel]) -> Check:
+def _one(model: type[BaseModel]) -> ValidateFile:
     return lambda content, where: validate(model, content, where)
 
 
-def _by_family(models: Mapping[str, type[BaseModel]]) -> Check:
+def _by_family(models: Mapping[str, type[BaseModel]]) -> ValidateFile:
     """A file says its family, and so which keys it has."""
 
     def check(content: dict[str, Any], where: str) -> BaseModel:
@@ -56,16 +56,16 @@ def _by_family(models: Mapping[str, type[BaseModel]]) -> Check:
     return check
 
 
-KINDS: dict[str, Kind] = {
-    "designs": Kind(_one(Design), "designs"),
-    "specimens": Kind(validate_specimen, "designs/specimens"),
-    "materials": Kind(_one(Material), "printprofiles/materials"),
-    "mixing": Kind(_one(MixingCurve), "printprofiles/mixing"),
-    "printers": Kind(_one(Printer), "printprofiles"),
-    "tubes": Kind(_one(Tube), "parts/tubes", part=True),
-    "ports": Kind(_by_family(PORTS), "parts/ports", part=True),
-    "seats": Kind(_by_family(SEATS), "parts/seats", part=True),
-    "mounts": Kind(_by_family(MOUNTS), "parts/mounts", part=True),
+KINDS: dict[str, FileKind] = {
+    "designs": FileKind(_one(DesignFile), "designs"),
+    "specimens": FileKind(validate_specimen, "designs/specimens"),
+    "materials": FileKind(_one(Material), "printprofiles/materials"),
+    "mixing": FileKind(_one(MixingCurve), "printprofiles/mixing"),
+    "printers": FileKind(_one(Printer), "printprofiles"),
+    "tubes": FileKind(_one(Tube), "parts/tubes", part=True),
+    "ports": FileKind(_by_family(PORTS), "parts/ports", part=True),
+    "seats": FileKind(_by_family(SEATS), "parts/seats", part=True),
+    "mounts": FileKind(_by_family(MOUNTS), "parts/mounts", part=True),
 }
 
 

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.catalogue.along import Along
+from pneutouch.catalogue.along import ArcProfile
 from pneutouch.catalogue.library import Library
 from pneutouch.errors import InputError
 from pneutouch.spec.grade import Grade
-from pneutouch.spec.material import AlongArc, Material
+from pneutouch.spec.material import ArcGrading, Material
 from pneutouch.spec.mixing import MixingCurve, MixingPoint
 
 FROM_CURVE = "mixing curve"
@@ -26,7 +26,7 @@ _SLACK = 1e-12
 
 
 @dataclass(frozen=True)
-class Mixing:
+class ResolvedMixingCurve:
     """A curve with its moduli resolved; arrays (n,) over its points. ``spread`` is NaN where none was measured."""
 
     curve: MixingCurve
@@ -38,7 +38,7 @@ class Mixing:
     def modulus_at(self, fraction: Array) -> Array:
         """Shear modulus in MPa: monotone cubic in its logarithm through the points."""
         top = float(self.fraction[-1])
-        line = Along(tuple(self.fraction / top), tuple(np.log(self.modulus)))
+        line = ArcProfile(tuple(self.fraction / top), tuple(np.log(self.modulus)))
         return np.asarray(np.exp(line(np.asarray(fraction) / top)))
 
     def band_at(self, fraction: Array) -> tuple[Array, Array]:
@@ -64,7 +64,7 @@ class Mixing:
         return np.interp(fraction, self.fraction[known], self.elongation[known])
 
 
-def mixing(soft: str, stiff: str, library: Library, *, asked_by: str = "") -> Mixing:
+def mixing(soft: str, stiff: str, library: Library, *, asked_by: str = "") -> ResolvedMixingCurve:
     """The curve of two base resins.
 
     Raises InputError where there is none, where it is another pair's, and where its modulus falls with the fraction.
@@ -88,7 +88,7 @@ def mixing(soft: str, stiff: str, library: Library, *, asked_by: str = "") -> Mi
                 f"{where}: points: a shear modulus of {b:g} MPa at fraction {g:g} after {a:g} MPa at {f:g}; "
                 f"it must rise with the fraction of {stiff}"
             )
-    return Mixing(curve, fraction, *rows.T)
+    return ResolvedMixingCurve(curve, fraction, *rows.T)
 
 
 def _resolved(point: MixingPoint, curve: MixingCurve, library: Library, where: str) -> tuple[float, float, float]:
@@ -133,7 +133,7 @@ def mixed_material(grade: Grade, library: Library, where: str) -> Material:
                 f"(printprofiles/mixing); it must be at most that"
             )
     arc = np.linspace(0.0, 1.0, _STATIONS)
-    fraction = Along(grade.knots, grade.fractions)(arc)
+    fraction = ArcProfile(grade.knots, grade.fractions)(arc)
     # The dome's wall has its area even over the height: the weight of an arc position is the cosine of its latitude.
     weight = np.sin(0.5 * np.pi * arc)
     share = grade.fractions[0] if grade.is_constant else float(np.average(fraction, weights=weight))
@@ -141,13 +141,13 @@ def mixed_material(grade: Grade, library: Library, where: str) -> Material:
     content["shear_modulus_MPa"] = _modulus(law, fraction, weight)
     content["elongation_at_break_percent"] = _elongation(law, fraction)
     if not grade.is_constant:
-        content["along"] = AlongArc(
+        content["along"] = ArcGrading(
             arc=arc.tolist(), stiff_fraction=fraction.tolist(), shear_modulus_MPa=law.modulus_at(fraction).tolist(),
         ).model_dump()  # fmt: skip
     return Material.model_validate({name: value for name, value in content.items() if value is not None})
 
 
-def _modulus(law: Mixing, fraction: Array, weight: Array) -> dict[str, Any]:
+def _modulus(law: ResolvedMixingCurve, fraction: Array, weight: Array) -> dict[str, Any]:
     """Mean modulus over the wall; with the band of an assumed curve, else the spread of a measured one.
 
     All the wall is at one end of the band together: the curve is one, and where it is wrong it is wrong everywhere.
@@ -178,7 +178,7 @@ def _content(grade: Grade, soft: Material, stiff: Material, share: float) -> dic
     }  # fmt: skip
 
 
-def _elongation(law: Mixing, fraction: Array) -> dict[str, Any] | None:
+def _elongation(law: ResolvedMixingCurve, fraction: Array) -> dict[str, Any] | None:
     """The least along the arc: the wall tears where it is stiffest first."""
     least = float(law.elongation_at(fraction).min())
     if not np.isfinite(least):

@@ -8,8 +8,8 @@ from typing import Any
 from pneutouch.catalogue.library import Library
 from pneutouch.catalogue.mixture import mixed_material
 from pneutouch.errors import InputError
-from pneutouch.spec.design import Design
-from pneutouch.spec.fields import Kind
+from pneutouch.spec.design import DesignFile
+from pneutouch.spec.fields import MaterialKind
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
 from pneutouch.spec.part import AnyMount, AnySeat, OnePiece, Port, Tube
@@ -18,12 +18,12 @@ from pneutouch.spec.read import override, read_toml, validate
 
 
 @dataclass(frozen=True, slots=True)
-class Scene:
+class ResolvedDesign:
     """All that a design names. ``where`` is the file as the user gave it, for messages."""
 
     name: str
     where: str
-    design: Design
+    design: DesignFile
     membrane_material: Material
     connector_material: Material
     printer: Printer
@@ -71,27 +71,27 @@ class Scene:
         return self.printer.accuracy_mm.nominal + self.connector_printer.accuracy_mm.nominal
 
 
-def load_scene(name: str, assignments: list[str] | None = None, library: Library | None = None) -> Scene:
+def load_scene(name: str, assignments: list[str] | None = None, library: Library | None = None) -> ResolvedDesign:
     """Load a design by name or path, apply ``table.key=value`` overrides and resolve its names."""
     shelves = library or Library.default()
     path = shelves.design_file(name)
-    content = override(read_toml(path), assignments or [], Design)
-    return _resolved(path.stem, str(path), validate(Design, content, str(path)), shelves)
+    content = override(read_toml(path), assignments or [], DesignFile)
+    return _resolved(path.stem, str(path), validate(DesignFile, content, str(path)), shelves)
 
 
-def default_scene(assignments: list[str] | None = None, library: Library | None = None) -> Scene:
+def default_scene(assignments: list[str] | None = None, library: Library | None = None) -> ResolvedDesign:
     """The design of all defaults with overrides applied."""
     where = "the default design"
-    design = validate(Design, override({}, assignments or [], Design), where)
+    design = validate(DesignFile, override({}, assignments or [], DesignFile), where)
     return _resolved("default", where, design, library or Library.default())
 
 
-def _resolved(name: str, where: str, design: Design, shelves: Library) -> Scene:
+def _resolved(name: str, where: str, design: DesignFile, shelves: Library) -> ResolvedDesign:
     def find(kind: str, table: str, key: str) -> Any:
         chosen = getattr(getattr(design, table), key)
         return shelves.load(kind, chosen, asked_by=f"{where}: {table}.{key}")
 
-    scene = Scene(
+    scene = ResolvedDesign(
         name=name, where=where, design=design,
         membrane_material=_membrane_material(design, where, shelves),
         connector_material=find("materials", "connector", "material"),
@@ -106,7 +106,7 @@ def _resolved(name: str, where: str, design: Design, shelves: Library) -> Scene:
     return scene
 
 
-def _membrane_material(design: Design, where: str, shelves: Library) -> Material:
+def _membrane_material(design: DesignFile, where: str, shelves: Library) -> Material:
     """The resin that the design names, or the mix that it describes."""
     chosen = design.membrane.material
     if isinstance(chosen, Grade):
@@ -115,7 +115,7 @@ def _membrane_material(design: Design, where: str, shelves: Library) -> Material
     return found
 
 
-def check_scene(scene: Scene) -> None:
+def check_scene(scene: ResolvedDesign) -> None:
     """What must hold between the parts of a scene. Raises InputError that names ``scene.where`` and the key."""
     _check_kind(scene, "membrane.material", scene.membrane_material, "elastomer")
     _check_kind(scene, "connector.material", scene.connector_material, "rigid")
@@ -124,7 +124,7 @@ def check_scene(scene: Scene) -> None:
     _check_one_piece(scene)
 
 
-def _tube(design: Design, where: str, shelves: Library) -> Tube:
+def _tube(design: DesignFile, where: str, shelves: Library) -> Tube:
     """The tube that the design names, else the usual one of its port. Raises InputError where it does not fit."""
     port = shelves.load("ports", design.connector.port, asked_by=f"{where}: connector.port")
     name = design.pneumatics.tube
@@ -145,12 +145,12 @@ def _mode(printer: Printer, *materials: Material) -> Mode:
     return mode
 
 
-def _check_kind(scene: Scene, key: str, material: Material, kind: Kind) -> None:
+def _check_kind(scene: ResolvedDesign, key: str, material: Material, kind: MaterialKind) -> None:
     if material.kind != kind:
         raise InputError(f"{scene.where}: {key}: {material.label} is {material.kind}; it must be {kind}")
 
 
-def _check_runs(scene: Scene, key: str, printer: Printer, material: Material) -> None:
+def _check_runs(scene: ResolvedDesign, key: str, printer: Printer, material: Material) -> None:
     if printer.mode_for(material) is None:
         table, name = key.split(".")
         value = getattr(getattr(scene.design, table), name)
@@ -160,7 +160,7 @@ def _check_runs(scene: Scene, key: str, printer: Printer, material: Material) ->
         )
 
 
-def _check_one_piece(scene: Scene) -> None:
+def _check_one_piece(scene: ResolvedDesign) -> None:
     """A membrane grown onto its connector needs one machine that holds both."""
     if not isinstance(scene.seat, OnePiece):
         return

@@ -26,9 +26,9 @@ def calibrate(
     """Fit modulus, wall, dead volume and contact offset to a sensor's runs."""
     with reporting():
         from pneutouch.cli.progress import bar
-        from pneutouch.workflows.calibrate.run import Asked, run_calibration
+        from pneutouch.workflows.calibrate.run import CalibrationOptions, run_calibration
 
-        asked = Asked(
+        asked = CalibrationOptions(
             data, design, sensor, tuple(fit.split(",")), tuple(hold_out or ()), not no_priors, save, shadow, out
         )
         with bar("MB read") as progress:

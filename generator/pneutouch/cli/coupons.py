@@ -10,7 +10,7 @@ import typer
 from pneutouch.cli.app import JsonOption, app, print_json, reporting
 
 if TYPE_CHECKING:
-    from pneutouch.workflows.coupons.order import Asked
+    from pneutouch.workflows.coupons.order import CouponOptions
 
 _FLAGS = {
     "profile": "--profile",
@@ -67,10 +67,10 @@ def _enter(path: Path, out: Path, given: dict[str, Any], json: bool) -> None:
         typer.echo(results_text(document))
 
 
-def _asked(given: dict[str, Any]) -> Asked:
+def _asked(given: dict[str, Any]) -> CouponOptions:
     """What the flags ask for. Raises InputError for copies that are not a number."""
     from pneutouch.errors import InputError
-    from pneutouch.workflows.coupons.order import Asked
+    from pneutouch.workflows.coupons.order import CouponOptions
 
     copies = {}
     for word in _words(given.get("copies")):
@@ -79,7 +79,9 @@ def _asked(given: dict[str, Any]) -> Asked:
             raise InputError(f"--copies {word}: write COUPON=N, such as puck=4")
         copies[name.strip()] = int(number)
     materials, only = _words(given.get("material")), _words(given.get("only"))
-    return Asked(given.get("profile"), materials, given.get("design"), only, copies, _words(given.get("mixing")))
+    return CouponOptions(
+        given.get("profile"), materials, given.get("design"), only, copies, _words(given.get("mixing"))
+    )
 
 
 def _words(given: list[str] | None) -> list[str]:

@@ -16,8 +16,8 @@ from pneutouch.spec.target import Target
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
-    from pneutouch.selection.grade_search import Trial
-    from pneutouch.workflows.select.graded import GradedSelection
+    from pneutouch.selection.grade_search import GradeTrial
+    from pneutouch.workflows.select.graded import GradedSelectionRun
 
 
 def select_graded(
@@ -44,7 +44,7 @@ def select_graded(
         raise typer.Exit(1)
 
 
-def graded_text(selection: GradedSelection) -> str:
+def graded_text(selection: GradedSelectionRun) -> str:
     """The grade and the constant membranes of its size, or what is missed."""
     from pneutouch.workflows.select.graded_document import missed
 
@@ -67,7 +67,7 @@ def graded_text(selection: GradedSelection) -> str:
     return "\n".join(lines)
 
 
-def _row(selection: GradedSelection, trial: Trial) -> list[str]:
+def _row(selection: GradedSelectionRun, trial: GradeTrial) -> list[str]:
     apart = [f"{100 * trial.difference:+.1f} %"] if len(trial.sensitivity) > 1 else []
     rated = "-" if trial.note else f"{trial.rated / KPA:.1f}"
     return [

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from typing import Protocol
 
 
-class Report(Protocol):
+class ProgressCallback(Protocol):
     """Told how many of all are done, and where it changes what is being done."""
 
     def __call__(self, done: int, total: int, what: str | None = None) -> None:
@@ -16,7 +16,7 @@ class Report(Protocol):
 
 
 @contextlib.contextmanager
-def bar(what: str) -> Iterator[Report]:
+def bar(what: str) -> Iterator[ProgressCallback]:
     """A progress bar over ``what`` on stderr where that is a terminal; silence elsewhere."""
 
     def silent(done: int, total: int, what: str | None = None) -> None:

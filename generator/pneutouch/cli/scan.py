@@ -10,7 +10,7 @@ import typer
 from pneutouch.cli.app import JsonOption, OutOption, SetOption, app, print_json, refuse_flags, reporting
 
 if TYPE_CHECKING:
-    from pneutouch.workflows.scan.run import Asked
+    from pneutouch.workflows.scan.run import ScanOptions
 
 
 _NOT_SEPARATING = {key: f"--{key}" for key in ("pressures", "control", "seed", "data")}
@@ -55,20 +55,20 @@ def scan(
 
 def _asked(
     pressures: str, preload: float, speed: float | None, control: str, noise: float | None, seed: int, data: list[Path]
-) -> Asked:
+) -> ScanOptions:
     from pneutouch.errors import InputError
     from pneutouch.texture.scan import NOISE
     from pneutouch.units import KPA
-    from pneutouch.workflows.scan.run import Asked
+    from pneutouch.workflows.scan.run import ScanOptions
 
     try:
         listed = tuple(float(part) * KPA for part in pressures.split(",") if part.strip())
     except ValueError:
         raise InputError(f"--pressures {pressures}: must be numbers in kPa with commas between, such as 0,22") from None
-    return Asked(listed, preload, speed, control, NOISE if noise is None else noise * KPA, seed, tuple(data))
+    return ScanOptions(listed, preload, speed, control, NOISE if noise is None else noise * KPA, seed, tuple(data))
 
 
-def _separate(specimen: str, design: str, text: str, asked: Asked, set_: list[str] | None, *, json: bool) -> None:
+def _separate(specimen: str, design: str, text: str, asked: ScanOptions, set_: list[str] | None, *, json: bool) -> None:
     from pneutouch.workflows.scan.separate import separating
 
     found = separating(specimen, design, text, asked, set_)

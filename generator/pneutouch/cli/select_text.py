@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pneutouch.cli.text import columns
 from pneutouch.mechanics.atlas.respond import DEPTH, ENDS
-from pneutouch.selection import Choice
+from pneutouch.selection import Candidate
 from pneutouch.units import KPA
 from pneutouch.workflows.select.document import would_need
-from pneutouch.workflows.select.run import Selection
+from pneutouch.workflows.select.run import SelectionRun
 
 _HEAD = [
     "",
@@ -26,7 +26,7 @@ _HEAD = [
 ]
 
 
-def selection_text(selection: Selection) -> str:
+def selection_text(selection: SelectionRun) -> str:
     """Ranked designs, or why there are none."""
     answer = selection.answer
     left = [f"left out: {name}: {why}" for name, why in selection.left_out.items()]
@@ -69,7 +69,7 @@ def selection_text(selection: Selection) -> str:
     return "\n".join([*lines, *left]).rstrip()
 
 
-def _row(choice: Choice) -> list[str]:
+def _row(choice: Candidate) -> list[str]:
     pool = choice.pool
     end = int(pool.response.ends[0])
     return [

@@ -11,7 +11,7 @@ from pneutouch.cli.app import DesignArgument, JsonOption, OutOption, SetOption, 
 from pneutouch.cli.progress import bar
 
 if TYPE_CHECKING:
-    from pneutouch.workflows.simulate.run import Asked
+    from pneutouch.workflows.simulate.run import SimulationOptions
 
 ResinsOption = Annotated[
     str, typer.Option("--resins", metavar="NAME,NAME", help="Resins of the dome, or all of the paper's; left out: the design's.")
@@ -37,13 +37,13 @@ def simulate(
 ) -> None:  # fmt: skip
     """Simulate a measurement campaign: records with known truth, always labelled as simulated."""
     with reporting():
-        from pneutouch.bench.simulate import Truth
-        from pneutouch.workflows.simulate.run import Asked, simulate
+        from pneutouch.bench.simulate import SimulationTruth
+        from pneutouch.workflows.simulate.run import SimulationOptions, simulate
 
-        asked = Asked(
+        asked = SimulationOptions(
             resins=words(resins), specimens=specimens, runs=runs, kinds=words(kinds), rate=rate, seed=seed, model=model,
             pressures=None if pressures is None else numbers("--pressures", pressures), ages=numbers("--ages", ages),
-            parquet=parquet, truth=Truth(rest=rest),
+            parquet=parquet, truth=SimulationTruth(rest=rest),
         )  # fmt: skip
         with bar("specimens") as progress:
             folder = simulate(design, out, set_, asked, progress=progress)
@@ -65,7 +65,7 @@ def numbers(flag: str, text: str) -> tuple[float, ...]:
         raise InputError(f"{flag} {text}: must be numbers with commas between, such as 0,22") from None
 
 
-def _tell(folder: Path, asked: Asked, *, json: bool) -> None:
+def _tell(folder: Path, asked: SimulationOptions, *, json: bool) -> None:
     """The folder on stdout; on stderr where runs stop short of their depth."""
     from json import loads
 

@@ -13,7 +13,7 @@ from pneutouch.cli.progress import bar
 from pneutouch.errors import InputError
 
 if TYPE_CHECKING:
-    from pneutouch.workflows.sweep import Outcome, Plan
+    from pneutouch.workflows.sweep import SweepPlan, SweepResult
 
 _MODEL_HELP = "Rung of the ladder of models; solid where neither this nor the file says."
 
@@ -49,18 +49,18 @@ def sweep(
         # Before numpy loads: the processes take the cores, and results must not depend on how many there are.
         os.environ["OMP_NUM_THREADS"] = "1"
         from pneutouch.workflows.sweep import sweep as run
-        from pneutouch.workflows.sweep.run import Machines
+        from pneutouch.workflows.sweep.run import ComputeResources
 
         plan = _plan(file, design, over or [], set_ or [], {"model": model, "closure": closure, "clamp": clamp})
         target = Path("outputs") / f"{plan.name}.nc" if out is None else out
         with bar("points") as progress:
-            done = run(plan, target, Machines(workers, scheduler), fresh=fresh, progress=progress)
+            done = run(plan, target, ComputeResources(workers, scheduler), fresh=fresh, progress=progress)
         _tell(done, json=json)
 
 
 def _plan(
     file: Path | None, design: str | None, over: list[str], set_: list[str], options: dict[str, str | None]
-) -> Plan:
+) -> SweepPlan:
     from pneutouch.workflows.sweep import plan_of_file, plan_of_flags
 
     if file is not None and (design is not None or over):
@@ -72,7 +72,7 @@ def _plan(
     return plan_of_flags(design, over, set_, **options)
 
 
-def _tell(done: Outcome, *, json: bool) -> None:
+def _tell(done: SweepResult, *, json: bool) -> None:
     """The dataset on stdout; on stderr what became of the states."""
     if json:
         print_json({

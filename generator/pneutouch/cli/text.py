@@ -6,7 +6,7 @@ from typing import Any
 
 from pneutouch.catalogue import KINDS, Library
 from pneutouch.errors import InputError, nearest
-from pneutouch.spec.design import Design
+from pneutouch.spec.design import DesignFile
 from pneutouch.spec.material import Material
 from pneutouch.spec.mixing import MixingCurve
 from pneutouch.spec.printer import Printer
@@ -145,7 +145,7 @@ def _optional(value: float | None, form: str) -> str:
 
 
 def _title(thing: Any) -> str:
-    if isinstance(thing, Design | Specimen):
+    if isinstance(thing, DesignFile | Specimen):
         return thing.document.title
     if isinstance(thing, Material):
         return f"{thing.label}, {thing.kind}"

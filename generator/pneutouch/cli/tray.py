@@ -11,8 +11,8 @@ from pneutouch.cli.app import JsonOption, OutOption, SetOption, app, print_json,
 from pneutouch.errors import InputError
 
 if TYPE_CHECKING:
-    from pneutouch.workflows.tray.lay import Laid
-    from pneutouch.workflows.tray.order import Order
+    from pneutouch.workflows.tray.lay import TrayLayout
+    from pneutouch.workflows.tray.order import TrayOrder
 
 
 @app.command()
@@ -49,7 +49,9 @@ def tray(
             typer.echo(str(folder))
 
 
-def _order(what: list[str], over: list[str], copies: int | None, set_: list[str], head: dict[str, str | None]) -> Order:
+def _order(
+    what: list[str], over: list[str], copies: int | None, set_: list[str], head: dict[str, str | None]
+) -> TrayOrder:
     """From a tray file where the one word given is a file with an [[entry]], else from designs and flags."""
     from pneutouch.workflows.tray.order import is_tray_file, order_of_file, order_of_flags
 
@@ -64,7 +66,7 @@ def _tell(step: str) -> None:
     typer.echo(f"{step} ...", err=True)
 
 
-def _text(laid: Laid) -> str:
+def _text(laid: TrayLayout) -> str:
     """A line a job: what to load, how full it is."""
     from pneutouch.workflows.tray.lay import counted, fill
 

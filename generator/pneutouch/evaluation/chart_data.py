@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from pneutouch.arrays import Array
-from pneutouch.selection.front import Front
+from pneutouch.selection.front import TradeOffFront
 
 
 class TuningCurve(NamedTuple):
@@ -18,7 +18,7 @@ class TuningCurve(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Tuning:
+class TuningChart:
     """One design's curve from no pressure to its rated one.
 
     Attributes:
@@ -38,7 +38,7 @@ class Tuning:
     published: tuple[tuple[float, float], ...] = ()
 
 
-class Spot(NamedTuple):
+class ChartPoint(NamedTuple):
     """A design on the chart: title of its resin, what to call it, kPa/N and N."""
 
     resin: str
@@ -60,14 +60,14 @@ class TradeOff:
         spots: Designs, the first picked out.
     """
 
-    fronts: tuple[Front, ...]
+    fronts: tuple[TradeOffFront, ...]
     pressure: float
     gauge: float
-    spots: tuple[Spot, ...]
+    spots: tuple[ChartPoint, ...]
     window: tuple[float, float] | None = None
     force: float | None = None
 
     @property
-    def known(self) -> tuple[Front, ...]:
+    def known(self) -> tuple[TradeOffFront, ...]:
         """The fronts with a line to draw."""
         return tuple(front for front in self.fronts if front.sensitivity.size > 1)

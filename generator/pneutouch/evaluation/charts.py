@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pneutouch.evaluation.chart_data import Spot, TradeOff, Tuning
+from pneutouch.evaluation.chart_data import ChartPoint, TradeOff, TuningChart
 from pneutouch.evaluation.tuning import curve, interval
 from pneutouch.evaluation.variants import in_resin
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.atlas_states import outside_atlas
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.uncertainty import GasNotes, batch_of, gas_notes
-from pneutouch.selection import Problem, Resin
+from pneutouch.selection import CandidateResin, SelectionProblem
 from pneutouch.selection.front import front
 from pneutouch.units import KPA
 
@@ -26,7 +26,7 @@ def air(evaluation: Evaluation) -> GasNotes:
     return gas_notes(batch_of(evaluation.sensor, [state.driving_pressure for state in evaluation.prediction.states]))
 
 
-def tuning(evaluation: Evaluation, highest: float) -> Tuning | None:
+def tuning(evaluation: Evaluation, highest: float) -> TuningChart | None:
     """The design's sensitivity from no driving pressure to ``highest`` (MPa); None where the atlas has no curve.
 
     The sensitivities at its own driving pressures are those of the prediction's rung.
@@ -38,7 +38,7 @@ def tuning(evaluation: Evaluation, highest: float) -> Tuning | None:
     materials = list(evaluation.resins.values())
     low, high = interval(sensor, drawn, scene.membrane_material, materials, scene.printer, prediction.model)
     working = {s.driving_pressure / KPA: s.figures.sensitivity for s in prediction.states if s.figures}
-    return Tuning(drawn, low, high, working)
+    return TuningChart(drawn, low, high, working)
 
 
 def tradeoff(evaluation: Evaluation) -> TradeOff | None:
@@ -54,15 +54,15 @@ def tradeoff(evaluation: Evaluation) -> TradeOff | None:
     force = end if saturation is None else min(end, saturation)
     return TradeOff(
         tuple(front(problem)), state.driving_pressure / KPA, (problem.gauge_limit - state.driving_pressure) / KPA,
-        (Spot(evaluation.scene.membrane_material.title, f"this design, {force:.3g} N", state.figures.sensitivity, force),),
+        (ChartPoint(evaluation.scene.membrane_material.title, f"this design, {force:.3g} N", state.figures.sensitivity, force),),
     )  # fmt: skip
 
 
-def _problem(evaluation: Evaluation, pressure: float) -> Problem:
+def _problem(evaluation: Evaluation, pressure: float) -> SelectionProblem:
     """Everything of the design but its resin, radius and wall."""
     sensor, printer, recipe = evaluation.sensor, evaluation.scene.printer, shipped().recipe
     wall = printer.smallest.wall("elastomer")
-    return Problem(
+    return SelectionProblem(
         resins=_resins(evaluation), sensitivity=None, tolerance=1.0, driving_pressure=pressure, force_range=None,
         stiffness=(None, None), max_diameter=None, inner_radius=None, wall_thickness=None,
         least_wall=wall.least or wall.recommended, ambient_pressure=sensor.ambient_pressure,
@@ -72,11 +72,11 @@ def _problem(evaluation: Evaluation, pressure: float) -> Problem:
     )  # fmt: skip
 
 
-def _resins(evaluation: Evaluation) -> tuple[Resin, ...]:
+def _resins(evaluation: Evaluation) -> tuple[CandidateResin, ...]:
     found = []
     for name, material in evaluation.resins.items():
         runs = evaluation.scene.printer.mode_for(material) is not None
         if runs and outside_atlas(in_resin(evaluation.sensor, material)) is None:
             own = material_sensor(material)
-            found.append(Resin(name, material, own.shear_modulus, own.break_stretch or np.inf))
+            found.append(CandidateResin(name, material, own.shear_modulus, own.break_stretch or np.inf))
     return tuple(found)

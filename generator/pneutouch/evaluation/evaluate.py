@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from pneutouch.catalogue import Library, Scene, load_scene
+from pneutouch.catalogue import Library, ResolvedDesign, load_scene
 from pneutouch.errors import BeyondLimitError, InputError, nearest
 from pneutouch.evaluation.subject import subject_of
 from pneutouch.evaluation.table_s1 import sensitivity_error
-from pneutouch.mechanics import Prediction, Sensor, predict
+from pneutouch.mechanics import Sensor, SensorPrediction, predict
 from pneutouch.mechanics.ladder import DEFAULT_TOLERANCE
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.viscous.known import AGED, ageing_ratio
@@ -31,7 +31,7 @@ Resins = dict[str, Material]
 
 
 @dataclass(frozen=True)
-class Asked:
+class PredictionOptions:
     """How a prediction was asked for: the rung, the membrane's closure, the clamp and what ``auto`` must meet.
 
     ``aged`` asks for the sensor after a year; a recipe does not carry it: what is printed is fresh.
@@ -48,11 +48,11 @@ class Asked:
 class Evaluation:
     """A scene with its bodies and its prediction; findings are made when asked for."""
 
-    scene: Scene
+    scene: ResolvedDesign
     assembly: Assembly
     sensor: Sensor
-    prediction: Prediction
-    asked: Asked
+    prediction: SensorPrediction
+    asked: PredictionOptions
     find_resins: Callable[[], Resins]
 
     @cached_property
@@ -100,10 +100,10 @@ def evaluate(
         raise InputError(f"--clamp {clamp}: unknown.{nearest(clamp, CLAMPS)}")
     shelves = library or Library.default()
     scene = load_scene(name, assignments, shelves)
-    return evaluate_scene(scene, lambda: elastomers(shelves), Asked(model, closure, clamp, tolerance, aged))
+    return evaluate_scene(scene, lambda: elastomers(shelves), PredictionOptions(model, closure, clamp, tolerance, aged))
 
 
-def evaluate_scene(scene: Scene, find_resins: Callable[[], Resins], asked: Asked) -> Evaluation:
+def evaluate_scene(scene: ResolvedDesign, find_resins: Callable[[], Resins], asked: PredictionOptions) -> Evaluation:
     """Draw and predict a scene; ``find_resins`` gives the resins to compare with, when they are needed.
 
     Raises InputError where the scene cannot work.
@@ -149,7 +149,7 @@ def sensor_of(assembly: Assembly, clamp: str = "base") -> Sensor:
     )
 
 
-def _material_sensor(scene: Scene) -> Sensor:
+def _material_sensor(scene: ResolvedDesign) -> Sensor:
     """The paper's sensor in the scene's resin; a law that makes no solid is the material file's fault."""
     try:
         return material_sensor(scene.membrane_material)
@@ -157,7 +157,7 @@ def _material_sensor(scene: Scene) -> Sensor:
         raise InputError(f"{scene.where}: membrane.material = {scene.design.membrane.material!r}: {error}") from None
 
 
-def _aged(scene: Scene, sensor: Sensor) -> tuple[Sensor, str]:
+def _aged(scene: ResolvedDesign, sensor: Sensor) -> tuple[Sensor, str]:
     """The sensor after a year, and what is assumed of it. Raises InputError where the resin's hardness then is not known."""
     material = scene.membrane_material
     try:
@@ -170,7 +170,7 @@ def _aged(scene: Scene, sensor: Sensor) -> tuple[Sensor, str]:
     return shifted, f"aged one year: {said}, modulus times {ratio:.3f}. {AGED}"
 
 
-def _beyond_limit(scene: Scene, error: BeyondLimitError) -> InputError:
+def _beyond_limit(scene: ResolvedDesign, error: BeyondLimitError) -> InputError:
     """The limit point in terms of the design file."""
     pressures = scene.design.pneumatics.driving_pressures_kPa
     k = int(np.argmin([abs(p - error.pressure / KPA) for p in pressures]))
@@ -180,7 +180,7 @@ def _beyond_limit(scene: Scene, error: BeyondLimitError) -> InputError:
     )
 
 
-def _check_plate(scene: Scene, prediction: Prediction) -> None:
+def _check_plate(scene: ResolvedDesign, prediction: SensorPrediction) -> None:
     """Refuse a plate whose edge would dig into the dome within the depth."""
     for state in prediction.states:
         ending = [event for event in state.events if event.ends_range]

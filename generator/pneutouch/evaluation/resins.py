@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from pneutouch.bench.simulate import Truth, press_curves
-from pneutouch.bench.simulate.curve import Pressed
-from pneutouch.catalogue import Library, Scene, load_scene
+from pneutouch.bench.simulate import SimulationTruth, press_curves
+from pneutouch.bench.simulate.curve import PressCurves
+from pneutouch.catalogue import Library, ResolvedDesign, load_scene
 from pneutouch.errors import BeyondLimitError, InputError, nearest
 from pneutouch.evaluation.evaluate import elastomers, sensor_of
 from pneutouch.mechanics import Sensor
@@ -16,25 +16,25 @@ from pneutouch.parts import assemble
 from pneutouch.spec.campaign import AS_DESIGNED
 from pneutouch.units import KPA
 
-TRUTH = Truth()
+TRUTH = SimulationTruth()
 
 ALL = ("all",)
 """Instead of names: the resins of the paper's Table S1."""
 
 
 @dataclass(frozen=True)
-class Resin:
+class SimulatedResin:
     """A resin's scene and nominal sensor, and the simulator's truth with that printer and that resin's ageing."""
 
     name: str
-    scene: Scene
+    scene: ResolvedDesign
     sensor: Sensor
-    truth: Truth
+    truth: SimulationTruth
 
 
 def resins_of(
-    design: str, assignments: list[str] | None, resins: Sequence[str], truth: Truth = TRUTH, library: Library | None = None
-) -> list[Resin]:  # fmt: skip
+    design: str, assignments: list[str] | None, resins: Sequence[str], truth: SimulationTruth = TRUTH, library: Library | None = None
+) -> list[SimulatedResin]:  # fmt: skip
     """The design in each resin; none given: its own, "all": those of the paper's Table S1. Raises InputError."""
     shelves = library or Library.default()
     own = load_scene(design, assignments, shelves)
@@ -57,17 +57,17 @@ def resins_of(
         new, old = material.shore_a, material.shore_a_one_year
         ageing = 0.0 if new is None or old is None else logarithmic_change(new.nominal, old.nominal)
         scatter = replace(truth.scatter, wall=scene.printer.accuracy_mm.nominal, ageing=ageing)
-        found.append(Resin(name, scene, sensor_of(assemble(scene)), replace(truth, scatter=scatter)))
+        found.append(SimulatedResin(name, scene, sensor_of(assemble(scene)), replace(truth, scatter=scatter)))
     return found
 
 
-def resin_of(scene: Scene) -> str:
+def resin_of(scene: ResolvedDesign) -> str:
     """How a campaign calls the membrane of a design: its resin, or as designed where it is a mix."""
     chosen = scene.design.membrane.material
     return chosen if isinstance(chosen, str) else AS_DESIGNED
 
 
-def pressed(resin: str, sensor: Sensor, pressures: Sequence[float], depth: float, model: str) -> Pressed:
+def pressed(resin: str, sensor: Sensor, pressures: Sequence[float], depth: float, model: str) -> PressCurves:
     """`press_curves` at ascending pressures in MPa; beyond the limit point InputError says how far one may go."""
     try:
         return press_curves(sensor, pressures, depth, model)

@@ -8,7 +8,7 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.parts import Assembly
-from pneutouch.printability.subject import Item, Joint, Subject
+from pneutouch.printability.subject import Joint, PrintItem, PrintSubject
 
 _HINTS = {
     "membrane": {
@@ -28,14 +28,14 @@ _HINTS = {
 """What in the design would fix what a rule finds, by body; a ring and a plug are designed as the connector is."""
 
 
-def subject_of(assembly: Assembly) -> Subject:
+def subject_of(assembly: Assembly) -> PrintSubject:
     """The bodies of a sensor with their machines, as they stand in them, and the faces that membrane and connector share."""
     scene, layout = assembly.scene, assembly.layout
     items = []
     for body, solid in zip(assembly.bodies, assembly.solids, strict=True):
         printer, mode = assembly.machine(body.name)
         items.append(
-            Item(
+            PrintItem(
                 body, printer, mode, solid, up=(0.0, 0.0, 1.0 if assembly.stands_up(body.name) else -1.0), job=assembly.job(body.name),
                 sensing=_outer_wall(assembly) if body.name == "membrane" else None,
                 hints=_HINTS.get(body.name, _HINTS["connector"]),
@@ -44,7 +44,7 @@ def subject_of(assembly: Assembly) -> Subject:
     where = (layout.flange_radius, 0.0, layout.plate_high)
     area = assembly.seat_area
     joints = (Joint("membrane", "connector", area, where),) if area > 0 else ()
-    return Subject(tuple(items), joints, scene.name)
+    return PrintSubject(tuple(items), joints, scene.name)
 
 
 def _outer_wall(assembly: Assembly) -> Callable[[Array], Flags]:

@@ -6,17 +6,17 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from pneutouch.catalogue import Scene
+from pneutouch.catalogue import ResolvedDesign
 from pneutouch.evaluation.graded_uncertainty import even_wall, notes_on
 from pneutouch.evaluation.table_s1 import is_near_paper
-from pneutouch.mechanics import Prediction, Sensor, State
+from pneutouch.mechanics import Sensor, SensorPrediction, SensorState
 from pneutouch.mechanics.ladder import DISCRETISATION, NUMERICAL
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
-    from pneutouch.mechanics.atlas.press import Batch
+    from pneutouch.mechanics.atlas.press import SensorBatch
     from pneutouch.mechanics.uncertainty import Budget
 
 # The uncertainty, through the atlas, loads scipy; a prediction by the membrane alone must not pay for that.
@@ -36,10 +36,10 @@ _TREND = (
 
 
 @dataclass(frozen=True)
-class Known:
+class SensorBudget:
     """A sensor at n driving pressures as the atlas takes it, and its budget."""
 
-    batch: Batch
+    batch: SensorBatch
     budget: Budget
 
 
@@ -56,7 +56,7 @@ def unknown(sensor: Sensor, rung: str) -> str | None:
 def known(
     sensor: Sensor, pressures: Sequence[float], material: Material, materials: Sequence[Material], printer: Printer,
     rung: str,
-) -> Known:  # fmt: skip
+) -> SensorBudget:  # fmt: skip
     """The budget of a sensor inside the atlas at driving pressures (MPa).
 
     ``materials`` are all that there are: the model's error is taken from those that were measured. ``rung`` gives the
@@ -71,11 +71,15 @@ def known(
             "sensitivity_kPa_per_N": NUMERICAL[rung], "limit_pressure_kPa": DISCRETISATION["limit_pressure_relative"]
         },
     )  # fmt: skip
-    return Known(batch, found)
+    return SensorBudget(batch, found)
 
 
 def documents(
-    prediction: Prediction, sensor: Sensor, scene: Scene, resins: Callable[[], Mapping[str, Material]], samples: int = 0
+    prediction: SensorPrediction,
+    sensor: Sensor,
+    scene: ResolvedDesign,
+    resins: Callable[[], Mapping[str, Material]],
+    samples: int = 0,
 ) -> tuple[Document, ...]:
     """One document a state: see `mechanics.uncertainty.document`, with its ``summary``; or ``{"unknown": why}``.
 
@@ -104,7 +108,7 @@ def documents(
     return tuple(content)
 
 
-def _values(prediction: Prediction, state: State) -> dict[str, float]:
+def _values(prediction: SensorPrediction, state: SensorState) -> dict[str, float]:
     """The figures of the budget as the rung has them; without those it lacks."""
     peak, figures = prediction.limits.limit_point, state.figures
     return {
@@ -118,7 +122,7 @@ def _values(prediction: Prediction, state: State) -> dict[str, float]:
     }  # fmt: skip
 
 
-def _sampled(found: Known, row: int, samples: int, figures: Document) -> Document:
+def _sampled(found: SensorBudget, row: int, samples: int, figures: Document) -> Document:
     """The 95.45 % intervals of the samples about the rung's figures, and the share of samples without a figure."""
     from pneutouch.mechanics.uncertainty import FIGURES, monte_carlo
 

@@ -21,7 +21,7 @@ TRAY_RECIPE = "tray-recipe"
 
 
 @dataclass(frozen=True)
-class Item:
+class TrayItem:
     """One part of a tray.
 
     Attributes:
@@ -37,7 +37,7 @@ class Item:
     transform: Array
 
 
-def threemf_tray(name: str, items: Sequence[Item], metadata: dict[str, str]) -> bytes:
+def threemf_tray(name: str, items: Sequence[TrayItem], metadata: dict[str, str]) -> bytes:
     """Write a tray called ``name``; the same input gives the same bytes.
 
     ``metadata`` is as for `export.threemf.threemf`. Raises ComputationError for a body that is not
@@ -62,7 +62,7 @@ def threemf_tray(name: str, items: Sequence[Item], metadata: dict[str, str]) -> 
     return content_of(wrapper, model)
 
 
-def _object(wrapper: Any, model: Any, name: str, item: Item, materials: Materials) -> Any:
+def _object(wrapper: Any, model: Any, name: str, item: TrayItem, materials: Materials) -> Any:
     """The mesh object of a part, or a components object over those of its bodies."""
     meshes = [
         mesh_object(wrapper, model, materials, body, name_uuid(name, "tray object", body.name)) for body in item.bodies

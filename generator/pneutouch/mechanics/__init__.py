@@ -2,7 +2,7 @@
 
 from pneutouch.mechanics.ladder import MODELS
 from pneutouch.mechanics.predict import predict
-from pneutouch.mechanics.prediction import Prediction, State
+from pneutouch.mechanics.prediction import SensorPrediction, SensorState
 from pneutouch.mechanics.sensor import Sensor
 
-__all__ = ["MODELS", "Prediction", "Sensor", "State", "predict"]
+__all__ = ["MODELS", "Sensor", "SensorPrediction", "SensorState", "predict"]

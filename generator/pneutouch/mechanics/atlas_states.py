@@ -9,16 +9,16 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.errors import BeyondLimitError
 from pneutouch.mechanics.atlas.batches import batch_of
-from pneutouch.mechanics.atlas.press import Press, Track
+from pneutouch.mechanics.atlas.press import AtlasPress, PressTrack
 from pneutouch.mechanics.atlas.recipe import FIELDS
 from pneutouch.mechanics.atlas.respond import BREAK, BUCKLING, DEPTH, EDGE, ENDS, GAUGE, NEAR, OUTSIDE, respond
-from pneutouch.mechanics.atlas.table import REST_VOLUME, Atlas, Slices, shipped
+from pneutouch.mechanics.atlas.table import REST_VOLUME, Atlas, AtlasSlices, shipped
 from pneutouch.mechanics.events import Event
 from pneutouch.mechanics.limits import LimitPoint, Limits
-from pneutouch.mechanics.prediction import InflationCurve, Result, State
+from pneutouch.mechanics.prediction import InflationCurve, ModelResult, SensorState
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.solid.events import CREASE, OVERHANG, Point, crossing
+from pneutouch.mechanics.solid.events import CREASE, OVERHANG, PathPoint, crossing
 from pneutouch.mechanics.solid.indent import DETAIL
 from pneutouch.units import KPA
 
@@ -46,7 +46,7 @@ def outside_atlas(sensor: Sensor, atlas: Atlas | None = None) -> str | None:
     return next((why for applies, why in reasons if applies), None)
 
 
-class Lack(NamedTuple):
+class MissingAnswer(NamedTuple):
     """What an answer lacks: why, and whether it is no answer at all."""
 
     why: str
@@ -54,14 +54,14 @@ class Lack(NamedTuple):
 
 
 _LACKS = {
-    OUTSIDE: Lack("the press leaves the states that the atlas knows", True),
-    EDGE: Lack("the contact reaches the plate's edge", True),
-    BUCKLING: Lack("the wall buckles in the press, which the solid places more exactly", False),
-    BREAK: Lack("the break strain is reached in the press, which the solid places more exactly", False),
+    OUTSIDE: MissingAnswer("the press leaves the states that the atlas knows", True),
+    EDGE: MissingAnswer("the contact reaches the plate's edge", True),
+    BUCKLING: MissingAnswer("the wall buckles in the press, which the solid places more exactly", False),
+    BREAK: MissingAnswer("the break strain is reached in the press, which the solid places more exactly", False),
 }
 
 
-def atlas_result(sensor: Sensor, driving_pressures: Array) -> tuple[Result, Lack | None]:
+def atlas_result(sensor: Sensor, driving_pressures: Array) -> tuple[ModelResult, MissingAnswer | None]:
     """What the atlas says at driving pressures (MPa, ascending), and what the answer lacks, or None.
 
     The sensor must lie in the box (`outside_atlas`). Raises BeyondLimitError beyond the limit point.
@@ -73,7 +73,7 @@ def atlas_result(sensor: Sensor, driving_pressures: Array) -> tuple[Result, Lack
         if pressure >= limit:
             raise BeyondLimitError(float(pressure), limit, "it lies beyond the limit point")
     response = respond(batch, sensor.steps)
-    press = Press(batch, slices, np.zeros(len(batch), dtype=np.intp))
+    press = AtlasPress(batch, slices, np.zeros(len(batch), dtype=np.intp))
     track = press.march(
         np.linspace(0.0, 1.0, sensor.steps + 1) * (sensor.depth / sensor.inner_radius) * np.ones((len(batch), 1))
     )
@@ -81,12 +81,14 @@ def atlas_result(sensor: Sensor, driving_pressures: Array) -> tuple[Result, Lack
     states = tuple(_state(sensor, press, track, i, ends[i], float(response.range_end[i])) for i in range(len(batch)))
     lack = next((reason for end, reason in _LACKS.items() if end in ends), None)
     if lack is None and response.near_buckling.any():
-        lack = Lack(f"the wall would buckle within {NEAR:g} R0 more of travel, where the table is less sure", False)
+        lack = MissingAnswer(
+            f"the wall would buckle within {NEAR:g} R0 more of travel, where the table is less sure", False
+        )
     curve, point, torn = _inflation(sensor, slices)
-    return Result(point, Limits(limit, torn, sensor.gauge_limit), curve, states), lack
+    return ModelResult(point, Limits(limit, torn, sensor.gauge_limit), curve, states), lack
 
 
-def _state(sensor: Sensor, press: Press, track: Track, i: int, end: int, range_end: float) -> State:
+def _state(sensor: Sensor, press: AtlasPress, track: PressTrack, i: int, end: int, range_end: float) -> SensorState:
     length, mu = sensor.inner_radius, sensor.shear_modulus
     known = int(np.argmin(track.ok[i])) if not track.ok[i].all() else track.ok.shape[1]
     one = track.each(lambda part: part[i : i + 1, :known])
@@ -96,7 +98,7 @@ def _state(sensor: Sensor, press: Press, track: Track, i: int, end: int, range_e
     range_end = range_end if np.isfinite(range_end) else 0.0
     force, rise = one.point.force[0] * mu * length**2, (one.point.pressure[0] - press.pressure[i]) * mu
     shown = _curve(row, range_end / length, sensor.steps)
-    return State(
+    return SensorState(
         driving_pressure=float(press.batch.driving_pressure[i]), apex_inner=float(field["inner_apex"][0]) * length,
         apex_outer=float(press.apex[i]) * length, cavity_volume=float(row.volume(row.free)[0]) * length**3,
         range_end=range_end,
@@ -107,7 +109,7 @@ def _state(sensor: Sensor, press: Press, track: Track, i: int, end: int, range_e
     )  # fmt: skip
 
 
-def _curve(row: Press, end: float, steps: int) -> tuple[Array, Array, Array]:
+def _curve(row: AtlasPress, end: float, steps: int) -> tuple[Array, Array, Array]:
     grid = np.linspace(0.0, end, steps + 1)
     track = row.march(grid[None, :])
     return grid, track.point.force[0], track.point.pressure[0] - row.pressure[0]
@@ -119,7 +121,7 @@ def _events(sensor: Sensor, depth: Array, field: dict[str, Array], end: int, ran
     wall = sensor.wall_thickness / sensor.inner_radius
     for kind, name, level in (("creasing", "fold", CREASE), ("wall below the base plane", "overhang", OVERHANG * wall)):
         values = field[name]
-        points = [Point(float(x), float(y)) for x, y in zip(depth, values, strict=True)]
+        points = [PathPoint(float(x), float(y)) for x, y in zip(depth, values, strict=True)]
         pairs = zip([points[0], *points], points, strict=False)
         where = next((at for a, b in pairs if (at := crossing(a, b, level)) is not None), None)
         if where is not None:
@@ -127,7 +129,7 @@ def _events(sensor: Sensor, depth: Array, field: dict[str, Array], end: int, ran
     return sorted(found, key=lambda event: event.indentation)
 
 
-def _inflation(sensor: Sensor, slices: Slices) -> tuple[InflationCurve, LimitPoint, float | None]:
+def _inflation(sensor: Sensor, slices: AtlasSlices) -> tuple[InflationCurve, LimitPoint, float | None]:
     """Free inflation to a little past the limit point, that point, and the pressure at the break strain."""
     length, mu = sensor.inner_radius, sensor.shear_modulus
     nu = np.concatenate([np.linspace(0.0, 1.0, 91), np.linspace(1.0, shipped().recipe.highest_volume, 7)[1:]])

@@ -27,7 +27,7 @@ from pneutouch.mechanics.sensor import Sensor
 
 
 @dataclass(frozen=True, slots=True)
-class Pressed:
+class PressedStates:
     """Pressed states; every array has the broadcast shape of driving pressure and indentation."""
 
     contact_radius: Array
@@ -36,14 +36,14 @@ class Pressed:
     force: Array
     thickness_stretch: Array
 
-    def row(self, k: int) -> Pressed:
+    def row(self, k: int) -> PressedStates:
         """The curve of the k-th driving pressure."""
-        return Pressed(
+        return PressedStates(
             self.contact_radius[k], self.volume[k], self.pressure[k], self.force[k], self.thickness_stretch[k]
         )
 
 
-def press(sensor: Sensor, gas: TrappedGas, apex: Array, indentation: Array, closure: str) -> Pressed:
+def press(sensor: Sensor, gas: TrappedGas, apex: Array, indentation: Array, closure: str) -> PressedStates:
     """Press the dome, inflated to apex height ``apex`` (mm), by ``indentation`` (mm) with a closure's name."""
     height = apex - indentation
     model = CLOSURES[closure](sensor, gas, apex, height)
@@ -51,7 +51,7 @@ def press(sensor: Sensor, gas: TrappedGas, apex: Array, indentation: Array, clos
     rho = bisect(model.residual, zero, zero + sensor.inner_radius)
     cap = pressed_cap(rho, height, sensor.inner_radius)
     reference = 2 * np.pi * sensor.inner_radius**2
-    return Pressed(rho, cap.volume, gas.pressure(cap.volume), model.force(rho), reference / cap.area)
+    return PressedStates(rho, cap.volume, gas.pressure(cap.volume), model.force(rho), reference / cap.area)
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +76,7 @@ class _Closure:
         return -self.wall_volume * energy_slope(self.sensor.shear_modulus, stretch) * stretch / cap.area
 
 
-class Variational(_Closure):
+class VariationalClosure(_Closure):
     """Least potential over the contact radius."""
 
     def residual(self, rho: Array) -> Array:
@@ -92,7 +92,7 @@ class Variational(_Closure):
         return self.gas.pressure(cap.volume) * cap.volume_h - tension * cap.area_h
 
 
-class Printed(_Closure):
+class PrintedClosure(_Closure):
     """Equation 17 as printed."""
 
     def residual(self, rho: Array) -> Array:
@@ -108,7 +108,7 @@ class Printed(_Closure):
         return self.gas.pressure(self.cap(rho).volume) * np.pi * rho**2
 
 
-CLOSURES: dict[str, Callable[..., Variational | Printed]] = {
-    "variational": Variational,
-    "printed": Printed,
+CLOSURES: dict[str, Callable[..., VariationalClosure | PrintedClosure]] = {
+    "variational": VariationalClosure,
+    "printed": PrintedClosure,
 }

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.contact import Pressed
+from pneutouch.mechanics.contact import PressedStates
 from pneutouch.mechanics.sensor import Sensor
 
 _NEAR_BASE = 0.98
@@ -24,7 +24,7 @@ class Event:
     message: str
 
 
-def events(sensor: Sensor, indentation: Array, pressed: Pressed, closure: str) -> list[Event]:
+def events(sensor: Sensor, indentation: Array, pressed: PressedStates, closure: str) -> list[Event]:
     """The events of one pressed curve, in the order of the plate's way."""
     stretch = pressed.thickness_stretch**-0.5
     margins: list[tuple[str, Array, bool, str]] = [

@@ -34,14 +34,14 @@ equations, or for the membrane from the solid's. What the equations leave out co
 
 
 @dataclass(frozen=True)
-class Climb:
+class ModelSequence:
     """Rungs to try in order, and why those before them were passed over."""
 
     rungs: tuple[str, ...]
     passed: tuple[str, ...]
 
 
-def climb(sensor: Sensor, tolerance: float) -> Climb:
+def climb(sensor: Sensor, tolerance: float) -> ModelSequence:
     """The rungs whose stated error meets a tolerance (a fraction), cheapest first.
 
     Raises InputError for a tolerance that none can state.
@@ -62,7 +62,7 @@ def climb(sensor: Sensor, tolerance: float) -> Climb:
             passed.append(f"{rung}: {why}")
         else:
             rungs.append(rung)
-    return Climb(tuple(rungs), tuple(passed))
+    return ModelSequence(tuple(rungs), tuple(passed))
 
 
 def _outside(rung: str, sensor: Sensor) -> str | None:

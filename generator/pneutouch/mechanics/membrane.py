@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.contact import Pressed, press
+from pneutouch.mechanics.contact import PressedStates, press
 from pneutouch.mechanics.events import events, range_end
 from pneutouch.mechanics.exact_membrane import height_errors, limit_point_errors
 from pneutouch.mechanics.gas import TrappedGas
 from pneutouch.mechanics.inflation import LIMIT_HEIGHT, pressure, relative_height, thickness_stretch
 from pneutouch.mechanics.limits import limit_point, limits
-from pneutouch.mechanics.prediction import InflationCurve, Result, State
+from pneutouch.mechanics.prediction import InflationCurve, ModelResult, SensorState
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.units import KPA
@@ -40,9 +40,9 @@ _FINE = 8
 """Events are looked for on a grid this many times finer than the steps."""
 
 
-def membrane_result(sensor: Sensor, driving_pressures: Array, closure: str) -> Result:
+def membrane_result(sensor: Sensor, driving_pressures: Array, closure: str) -> ModelResult:
     """Limit point, limits and states of the membrane theory."""
-    return Result(
+    return ModelResult(
         limit_point(sensor),
         limits(sensor),
         inflation_curve(sensor),
@@ -61,7 +61,7 @@ def inflation_curve(sensor: Sensor) -> InflationCurve:
     )  # fmt: skip
 
 
-def membrane_states(sensor: Sensor, driving_pressures: Array, closure: str) -> tuple[State, ...]:
+def membrane_states(sensor: Sensor, driving_pressures: Array, closure: str) -> tuple[SensorState, ...]:
     """Inflate to every driving pressure (MPa, ascending) and press in ``sensor.steps`` equal steps.
 
     Figures are fitted on as many equal steps up to the first event that ends the range, so that they do not
@@ -72,7 +72,7 @@ def membrane_states(sensor: Sensor, driving_pressures: Array, closure: str) -> t
     volume = np.pi / 6 * apex * (3 * sensor.inner_radius**2 + apex**2)
     gas = TrappedGas(driving_pressures[:, None], volume[:, None], sensor.dead_volume, sensor.ambient_pressure)
 
-    def pressed(indentation: Array) -> Pressed:
+    def pressed(indentation: Array) -> PressedStates:
         return press(sensor, gas, apex[:, None], indentation, closure)
 
     fine = np.linspace(0.0, sensor.depth, _FINE * sensor.steps + 1)
@@ -83,7 +83,7 @@ def membrane_states(sensor: Sensor, driving_pressures: Array, closure: str) -> t
     fitted = pressed(grid)
     wall = thickness_stretch(x) * sensor.wall_thickness
     return tuple(
-        State(
+        SensorState(
             driving_pressure=float(p), apex_inner=float(apex[k]), apex_outer=float(apex[k] + wall[k]),
             cavity_volume=float(volume[k]), range_end=float(ends[k]),
             figures=figures(grid[k], fitted.force[k], (fitted.pressure[k] - p) / KPA),

@@ -12,12 +12,12 @@ from pneutouch.errors import InputError, nearest
 from pneutouch.mechanics.contact import CLOSURES
 from pneutouch.mechanics.ladder import DEFAULT_TOLERANCE, DISCRETISATION, MODELS, NUMERICAL, TABULATION, climb
 from pneutouch.mechanics.membrane import error_against_exact_membrane, membrane_result
-from pneutouch.mechanics.prediction import Prediction, Result
+from pneutouch.mechanics.prediction import ModelResult, SensorPrediction
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.units import KPA, ML
 
 if TYPE_CHECKING:
-    from pneutouch.mechanics.atlas_states import Lack
+    from pneutouch.mechanics.atlas_states import MissingAnswer
 
 Error = dict[str, Any]
 
@@ -61,7 +61,7 @@ def predict(
     design: str, sensor: Sensor, driving_pressures: list[float], *,
     model: str = "solid", closure: str = "variational", tolerance: float = DEFAULT_TOLERANCE,
     sensitivity_error: Callable[[str], Error] | None = None,
-) -> Prediction:  # fmt: skip
+) -> SensorPrediction:  # fmt: skip
     """Predict a sensor at ascending driving pressures (MPa) with one rung; ``closure`` is the membrane's.
 
     ``auto`` takes the cheapest rung whose stated error meets the tolerance (a fraction) and says why.
@@ -82,7 +82,7 @@ def predict(
         errors = _merged({"rung": why, "summary": [f"Model {rung}: {why}."]}, errors)
     gas = f"dead volume {sensor.dead_volume / ML:.4g} mL, ambient pressure {sensor.ambient_pressure / KPA:g} kPa"
     held = _CLAMPED_FLANGE if rung == "solid" and sensor.flange is not None else _CLAMPED_BASE
-    return Prediction(
+    return SensorPrediction(
         design=design, model=rung, closure=closure if rung == "membrane" else None, error_estimate=errors,
         limit_point=found.limit_point, limits=found.limits, dead_volume=sensor.dead_volume,
         inflation=found.inflation, states=found.states, assumptions=(*assumptions, held, *_COMMON_ASSUMPTIONS, gas),
@@ -91,7 +91,7 @@ def predict(
 
 def _found(
     sensor: Sensor, pressures: Array, model: str, closure: str, tolerance: float
-) -> tuple[str, Result, str | None]:
+) -> tuple[str, ModelResult, str | None]:
     """The rung that answered, its answer, and why it was taken where it was not asked for by name."""
     if model != "auto":
         found, lacking = _asked(model, sensor, pressures, closure)
@@ -109,7 +109,7 @@ def _found(
     return rung, found, "; ".join([why, *(f"passed over {text}" for text in passed)])
 
 
-def _asked(rung: str, sensor: Sensor, pressures: Array, closure: str) -> tuple[Result, Lack | None]:
+def _asked(rung: str, sensor: Sensor, pressures: Array, closure: str) -> tuple[ModelResult, MissingAnswer | None]:
     """One rung's answer, and what it lacks."""
     if rung == "membrane":
         if sensor.grade is not None:

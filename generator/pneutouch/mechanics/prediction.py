@@ -18,7 +18,7 @@ _DIGITS = 12
 
 
 @dataclass(frozen=True, slots=True)
-class Shape:
+class DeformedShape:
     """The deformed wall at an indentation (mm; None before contact): cells (n, m, 2) in (r, z), mm, and the
     greatest principal stretch in each cell (n,)."""
 
@@ -28,7 +28,7 @@ class Shape:
 
 
 @dataclass(frozen=True, slots=True)
-class State:
+class SensorState:
     """One driving pressure: the inflated dome and its loading curve (arrays of one length, mm, N, MPa).
 
     ``figures`` hold from first contact to ``range_end`` (mm of indentation).
@@ -47,7 +47,7 @@ class State:
     max_stretch: Array
     events: tuple[Event, ...]
     max_von_mises: Array | None = None
-    shapes: tuple[Shape, ...] = ()
+    shapes: tuple[DeformedShape, ...] = ()
 
     def document(self) -> dict[str, Any]:
         """The state as ``predict --json`` prints it."""
@@ -97,17 +97,17 @@ class InflationCurve:
 
 
 @dataclass(frozen=True, slots=True)
-class Result:
+class ModelResult:
     """What a rung computes: the limit point (None where the pressure has no maximum), the limits and the states."""
 
     limit_point: LimitPoint | None
     limits: Limits
     inflation: InflationCurve
-    states: tuple[State, ...]
+    states: tuple[SensorState, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Prediction:
+class SensorPrediction:
     """All that one model says of one sensor."""
 
     design: str
@@ -118,7 +118,7 @@ class Prediction:
     limits: Limits
     dead_volume: float
     inflation: InflationCurve
-    states: tuple[State, ...]
+    states: tuple[SensorState, ...]
     assumptions: tuple[str, ...]
 
     def document(self) -> dict[str, Any]:

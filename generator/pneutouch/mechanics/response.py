@@ -33,7 +33,7 @@ class Figures:
     saturation_force: float | None
 
 
-class Lines(NamedTuple):
+class FigureArrays(NamedTuple):
     """Key figures of many curves, arrays of one shape; NaN for no saturation. Units as in `Figures`, nonlinearity and
     r_squared as fractions."""
 
@@ -48,7 +48,7 @@ class Lines(NamedTuple):
     saturation_force: Array
 
 
-def lines(indentation: Array, force: Array, rise: Array) -> Lines:
+def lines(indentation: Array, force: Array, rise: Array) -> FigureArrays:
     """Key figures of curves along the last axis, (..., n) each; definitions in `figures`.
 
     A curve whose force does not vary has NaN for what it does not determine.
@@ -59,7 +59,7 @@ def lines(indentation: Array, force: Array, rise: Array) -> Lines:
         slope = (df * dr).sum(axis=-1) / (df * df).sum(axis=-1)
         residual = dr - slope[..., None] * df
         spread, span = (dr * dr).sum(axis=-1), np.ptp(rise, axis=-1)
-        return Lines(
+        return FigureArrays(
             sensitivity=slope,
             intercept=mean_rise[..., 0] - slope * mean_force[..., 0],
             sensitivity_through_origin=(force * rise).sum(axis=-1) / (force * force).sum(axis=-1),

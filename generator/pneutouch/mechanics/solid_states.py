@@ -10,17 +10,17 @@ from pneutouch.arrays import Array, Index
 from pneutouch.mechanics.events import Event, range_end
 from pneutouch.mechanics.hermite import hermite
 from pneutouch.mechanics.limits import LimitPoint, Limits
-from pneutouch.mechanics.prediction import InflationCurve, Result, Shape, State
+from pneutouch.mechanics.prediction import DeformedShape, InflationCurve, ModelResult, SensorState
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid import (
     FreeState,
-    Indentation,
+    IndentationPath,
     Inflation,
-    Press,
+    PressSettings,
     PressState,
-    Probe,
-    Solid,
+    SolidModel,
+    StrainProbe,
     burst,
     dome,
     indent,
@@ -52,7 +52,7 @@ KINDS = {
 
 def solid_result(
     sensor: Sensor, driving_pressures: Array, *, cells: int | None = None, past_limit: float = _PAST_LIMIT
-) -> Result:
+) -> ModelResult:
     """Inflate through the limit point, then press at every driving pressure (MPa, ascending).
 
     ``cells`` is the number of cells along the arc; left out, the wall ratio decides (docs/accuracy.md says why).
@@ -61,10 +61,10 @@ def solid_result(
     """
     size = (sensor.inner_radius, sensor.wall_thickness)
     mesh = dome(*size, arc=cells) if sensor.flange is None else printed_dome(*size, *sensor.flange, arc=cells)
-    solid = Solid(mesh, sensor.material, grade=_grade(sensor))
+    solid = SolidModel(mesh, sensor.material, grade=_grade(sensor))
     run = inflate(solid, past_limit=past_limit)
     states = tuple(_state(sensor, solid, run, float(p)) for p in driving_pressures)
-    return Result(_limit_point(sensor, run), _limits(sensor, solid, run), _inflation(solid, run), states)
+    return ModelResult(_limit_point(sensor, run), _limits(sensor, solid, run), _inflation(solid, run), states)
 
 
 def _grade(sensor: Sensor) -> Callable[[Array, Array], Array] | None:
@@ -82,7 +82,7 @@ def _limit_point(sensor: Sensor, run: Inflation) -> LimitPoint | None:
     return LimitPoint(inner, outer, run.limit.pressure, (outer - inner) / sensor.wall_thickness)
 
 
-def _inflation(solid: Solid, run: Inflation) -> InflationCurve:
+def _inflation(solid: SolidModel, run: Inflation) -> InflationCurve:
     """The curve between the solved states: Hermite cubics in the volume, with the solid's own slopes."""
     volume = run.volume
     grid = np.unique(np.concatenate([np.linspace(volume[0], volume[-1], 90), volume]))
@@ -101,7 +101,7 @@ def _inflation(solid: Solid, run: Inflation) -> InflationCurve:
     )  # fmt: skip
 
 
-def _limits(sensor: Sensor, solid: Solid, run: Inflation) -> Limits:
+def _limits(sensor: Sensor, solid: SolidModel, run: Inflation) -> Limits:
     """Driving pressures at which the limits are met on the rising branch, the one that can be driven to."""
     torn = None if sensor.break_stretch is None else burst(solid, run, sensor.break_stretch - 1)
     if torn is not None and run.limit is not None and torn[1] > run.limit.outer_apex:
@@ -113,9 +113,9 @@ def _limits(sensor: Sensor, solid: Solid, run: Inflation) -> Limits:
     )
 
 
-def _state(sensor: Sensor, solid: Solid, run: Inflation, pressure: float) -> State:
+def _state(sensor: Sensor, solid: SolidModel, run: Inflation, pressure: float) -> SensorState:
     free = state_at(solid, pressure, run)
-    press = Press(
+    press = PressSettings(
         sensor.depth, sensor.steps, 2 * sensor.plate_radius, sensor.ambient_pressure, sensor.dead_volume,
         sensor.gauge_limit, np.inf if sensor.break_stretch is None else sensor.break_stretch - 1,
     )  # fmt: skip
@@ -124,7 +124,7 @@ def _state(sensor: Sensor, solid: Solid, run: Inflation, pressure: float) -> Sta
     end = min(range_end(happened, sensor.depth), found.path[-1].indentation)
     grid = np.linspace(0.0, end, sensor.steps + 1)
     force, rise = _curve(found.path, grid)
-    return State(
+    return SensorState(
         driving_pressure=pressure, apex_inner=free.inner_apex, apex_outer=free.outer_apex,
         cavity_volume=free.volume, range_end=end, figures=figures(grid, force, rise / KPA),
         indentation=found.column("indentation"), force=found.column("force"),
@@ -134,7 +134,7 @@ def _state(sensor: Sensor, solid: Solid, run: Inflation, pressure: float) -> Sta
     )  # fmt: skip
 
 
-def _events(found: Indentation) -> list[Event]:
+def _events(found: IndentationPath) -> list[Event]:
     events = [Event(KINDS[e.kind][0], max(e.indentation, 0.0), KINDS[e.kind][1], e.detail) for e in found.events]
     return sorted(events, key=lambda event: event.indentation)
 
@@ -150,9 +150,9 @@ def _curve(path: list[PressState], grid: Array) -> tuple[Array, Array]:
     return hermite(grid, x, force, stiffness), hermite(grid, x, rise, rate)
 
 
-def _shapes(solid: Solid, free: FreeState, found: Indentation, end: float) -> tuple[Shape, ...]:
+def _shapes(solid: SolidModel, free: FreeState, found: IndentationPath, end: float) -> tuple[DeformedShape, ...]:
     """The wall at rest, inflated, and pressed to the end of the range."""
-    probe = Probe(solid)
+    probe = StrainProbe(solid)
     last = max((s for s in found.path if s.indentation <= end * (1 + 1e-9)), key=lambda s: s.indentation)
     positions = [(None, solid.rest * solid.length), (0.0, free.positions), (last.indentation, last.positions)]
-    return tuple(Shape(at, probe.outlines(x), probe.cell_stretch(x / solid.length)) for at, x in positions)
+    return tuple(DeformedShape(at, probe.outlines(x), probe.cell_stretch(x / solid.length)) for at, x in positions)

@@ -21,7 +21,7 @@ _ON_AXIS = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
-class Rise:
+class RisingPiece:
     """Part of an outline between two levels, mm, that every level between them crosses once."""
 
     low: float
@@ -43,27 +43,27 @@ class Rise:
         return np.asarray(r0 + (level - z0) * ((r1 - r0) / (z1 - z0)))
 
 
-def rises(outline: Sequence[Segment]) -> tuple[Rise, ...]:
+def rises(outline: Sequence[Segment]) -> tuple[RisingPiece, ...]:
     """The rises of a closed outline; one that ends on the axis is closed along it."""
     if math.dist(outline[0].start, outline[-1].end) > _ON_AXIS:
         outline = [*outline, Line(outline[-1].end, outline[0].start, "axis")]
     starts = [piece.start[1] for piece in outline]
-    found: list[Rise] = []
+    found: list[RisingPiece] = []
     for k, piece in enumerate(outline):
         # Levels where pieces meet are taken from one of them, so that rounding opens no gap between them.
         for first, last, side in _monotone(piece, starts[k], starts[(k + 1) % len(starts)]):
             if first != last:
-                found.append(Rise(min(first, last), max(first, last), piece, side))
+                found.append(RisingPiece(min(first, last), max(first, last), piece, side))
     return tuple(found)
 
 
-def crossings(parts: Sequence[Rise], level: float) -> list[float]:
+def crossings(parts: Sequence[RisingPiece], level: float) -> list[float]:
     """First coordinates, in order and even in number, at which a level crosses the outline: in, out, in, out."""
     found = [float(part.at(np.asarray(level))) for part in parts if part.low <= level < part.high]
     return sorted(0.0 if abs(r) < _ON_AXIS else r for r in found)
 
 
-def encloses(parts: Sequence[Rise], along: Array, level: Array) -> Flags:
+def encloses(parts: Sequence[RisingPiece], along: Array, level: Array) -> Flags:
     """Whether points (along, level), arrays (n,) in mm, lie inside the outline."""
     inside = np.zeros(len(along), bool)
     for part in parts:

@@ -18,7 +18,7 @@ _ON_AXIS = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
-class Ring:
+class MeridianVertex:
     """A vertex of the sampled meridian: ``lean`` is the radial part of the surface normal there (0 to 1).
 
     A ring on a face that leans little can be cut into fewer parts at the same error.
@@ -38,24 +38,24 @@ def chords(arc: Arc, error: float) -> int:
     return max(2, math.ceil(turn / widest + 2 - math.sqrt(2)))
 
 
-def sample(meridian: Meridian, error: float) -> list[Ring]:
+def sample(meridian: Meridian, error: float) -> list[MeridianVertex]:
     """Rings of a meridian whose arcs stay within ``error`` mm; the last ring does not repeat the first."""
-    rings: list[Ring] = []
+    rings: list[MeridianVertex] = []
     for piece in meridian.pieces:
-        rings.append(Ring(*piece.start, lean=1.0))
+        rings.append(MeridianVertex(*piece.start, lean=1.0))
         if isinstance(piece, Arc):
             rings += _inner_rings(piece, chords(piece, error))
     if not meridian.is_ring:
-        rings.append(Ring(*meridian.end, lean=1.0))
-    return [ring if ring.radius > _ON_AXIS else Ring(0.0, ring.height, ring.lean) for ring in rings]
+        rings.append(MeridianVertex(*meridian.end, lean=1.0))
+    return [ring if ring.radius > _ON_AXIS else MeridianVertex(0.0, ring.height, ring.lean) for ring in rings]
 
 
-def _inner_rings(arc: Arc, count: int) -> list[Ring]:
+def _inner_rings(arc: Arc, count: int) -> list[MeridianVertex]:
     turn = arc.last - arc.first
     step = turn / (count - 2 + math.sqrt(2))
     radius = arc.radius + 2 / 3 * arc.radius * (1 - math.cos(step / 2))
     angles = [arc.first + step / math.sqrt(2) + k * step for k in range(count - 1)]
-    return [Ring(*arc.at(angle, radius), lean=abs(math.cos(angle))) for angle in angles]
+    return [MeridianVertex(*arc.at(angle, radius), lean=abs(math.cos(angle))) for angle in angles]
 
 
 def polygon(outline: tuple[Segment, ...], error: float) -> list[Point]:

@@ -8,9 +8,9 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from pneutouch import __version__
-from pneutouch.catalogue import Scene
+from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
-from pneutouch.evaluation.evaluate import Asked, Evaluation, Resins, evaluate_scene
+from pneutouch.evaluation.evaluate import Evaluation, PredictionOptions, Resins, evaluate_scene
 from pneutouch.output.files import digest, json_bytes
 
 FORMAT = 1
@@ -24,21 +24,21 @@ SETTINGS = ("model", "closure", "clamp", "tolerance")
 
 
 @dataclass(frozen=True)
-class Recipe:
+class BuildRecipe:
     """A scene with every name resolved, the resins it is compared with, and how its prediction is asked for.
 
     ``version`` is that of the pneutouch that made it.
     """
 
-    scene: Scene
+    scene: ResolvedDesign
     resins: Resins
-    asked: Asked
+    asked: PredictionOptions
     version: str = __version__
 
     @staticmethod
-    def of(evaluation: Evaluation) -> Recipe:
+    def of(evaluation: Evaluation) -> BuildRecipe:
         """The recipe that an evaluation followed."""
-        return Recipe(evaluation.scene, evaluation.resins, evaluation.asked)
+        return BuildRecipe(evaluation.scene, evaluation.resins, evaluation.asked)
 
     def inputs(self) -> dict[str, Any]:
         """Everything that the result follows from, as data; what the rung asked for does not use is null."""
@@ -61,7 +61,7 @@ class Recipe:
         return json.dumps(self.document(), sort_keys=True, allow_nan=False, separators=(",", ":"))
 
 
-def evaluate_recipe(recipe: Recipe) -> Evaluation:
+def evaluate_recipe(recipe: BuildRecipe) -> Evaluation:
     """Draw and predict what a recipe says; no library is looked at. Raises InputError that names the recipe's file."""
     where = recipe.scene.where
     try:
@@ -84,7 +84,7 @@ def versions() -> dict[str, str]:
 
 def scene_shelves() -> dict[str, str]:
     """Fields of a scene with the catalogue's kind that each is of: ``membrane_material`` is one of the materials."""
-    names = [field.name for field in fields(Scene) if field.name not in ("name", "where")]
+    names = [field.name for field in fields(ResolvedDesign) if field.name not in ("name", "where")]
     return {name: f"{name.rpartition('_')[2]}s" for name in names}
 
 

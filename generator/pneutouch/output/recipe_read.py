@@ -10,13 +10,13 @@ from dataclasses import replace
 from typing import Any, NoReturn
 
 from pneutouch import __version__
-from pneutouch.catalogue import KINDS, Scene, check_scene
+from pneutouch.catalogue import KINDS, ResolvedDesign, check_scene
 from pneutouch.errors import InputError, nearest
-from pneutouch.evaluation.evaluate import CLAMPS, Asked, Resins
+from pneutouch.evaluation.evaluate import CLAMPS, PredictionOptions, Resins
 from pneutouch.export.threemf_read import Package
 from pneutouch.mechanics.contact import CLOSURES
 from pneutouch.mechanics.ladder import MODELS
-from pneutouch.output.recipe import FORMAT, SETTINGS, Recipe, input_hash, scene_shelves, versions
+from pneutouch.output.recipe import FORMAT, SETTINGS, BuildRecipe, input_hash, scene_shelves, versions
 from pneutouch.spec.fields import Table
 from pneutouch.spec.read import validate
 
@@ -24,7 +24,7 @@ FINEST_STEP = 1e-3
 """Finest step in mm that a recipe's printers may have: none prints finer, and meshes grow without bound."""
 
 
-def read_recipe(package: Package) -> Recipe:
+def read_recipe(package: Package) -> BuildRecipe:
     """The recipe of a 3MF. Raises InputError where there is none, where it is damaged, altered or of wrong values."""
     where = str(package.path)
     if package.recipe is None:
@@ -35,7 +35,7 @@ def read_recipe(package: Package) -> Recipe:
     inputs, shelves = head.inputs, scene_shelves()
     _check_keys(inputs, {*shelves, *SETTINGS, "compared_resins"}, f"{where}: recipe: inputs")
     parts = {key: _part(kind, inputs[key], f"{where}: recipe: {key}") for key, kind in shelves.items()}
-    scene = Scene(name=head.name, where=where, **parts)
+    scene = ResolvedDesign(name=head.name, where=where, **parts)
     resins = _resins(inputs["compared_resins"], f"{where}: recipe: compared_resins")
     asked = _asked(inputs, f"{where}: recipe")
     check_scene(replace(scene, where=f"{where}: recipe"))
@@ -45,7 +45,7 @@ def read_recipe(package: Package) -> Recipe:
             f"{where}: recipe: altered or damaged: it does not match the input hash that stands beside it; "
             "take the file as it was built, or build from a design file"
         )
-    return Recipe(scene, resins, asked, head.version)
+    return BuildRecipe(scene, resins, asked, head.version)
 
 
 class _Head(Table):
@@ -116,7 +116,7 @@ def _resins(content: Any, where: str) -> Resins:
     return resins
 
 
-def _asked(inputs: dict[str, Any], where: str) -> Asked:
+def _asked(inputs: dict[str, Any], where: str) -> PredictionOptions:
     """How the prediction is asked for; what is null keeps its default, which the rung does not use."""
     model = _one_of(inputs, "model", MODELS, where)
     needed = {"closure": model in ("membrane", "auto"), "tolerance": model == "auto"}
@@ -133,7 +133,7 @@ def _asked(inputs: dict[str, Any], where: str) -> Asked:
         if type(value) not in (int, float) or not (math.isfinite(value) and 0 < value < 100):
             raise InputError(f"{where}: tolerance = {str(value)[:60]}: must be a positive share, such as 0.02")
         given["tolerance"] = float(value)
-    return Asked(**given)
+    return PredictionOptions(**given)
 
 
 def _one_of(inputs: dict[str, Any], key: str, known: Collection[str], where: str) -> str:
@@ -143,7 +143,7 @@ def _one_of(inputs: dict[str, Any], key: str, known: Collection[str], where: str
     return value
 
 
-def _check_steps(scene: Scene, where: str) -> None:
+def _check_steps(scene: ResolvedDesign, where: str) -> None:
     """Steps that no printer makes would make meshes without bounds."""
     if scene.mesh_tolerance < FINEST_STEP:
         raise InputError(
@@ -151,7 +151,7 @@ def _check_steps(scene: Scene, where: str) -> None:
         )
 
 
-def other_versions(package: Package, recipe: Recipe) -> list[str]:
+def other_versions(package: Package, recipe: BuildRecipe) -> list[str]:
     """What made a 3MF and is of another version here, in words: ``pneutouch 0.1 (here 0.2)``."""
     try:
         recorded = json.loads(package.metadata.get("versions", "{}"))

@@ -10,7 +10,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.body import Body, Solid
-from pneutouch.catalogue import Scene
+from pneutouch.catalogue import ResolvedDesign
 from pneutouch.parts.connector import rigid_solids
 from pneutouch.parts.gas import glue_volume, internal_volume
 from pneutouch.parts.layout import Layout, lay_out
@@ -29,7 +29,7 @@ _MARGIN = 1.0
 class Assembly:
     """The solids of a scene in the design frame (base plane z = 0), and their meshes. The membrane comes first."""
 
-    scene: Scene
+    scene: ResolvedDesign
     layout: Layout
     solids: tuple[Solid, ...]
 
@@ -105,7 +105,7 @@ class Assembly:
         return self.internal_volume + self.tube_volume if stated is None else stated * ML
 
 
-def assemble(scene: Scene) -> Assembly:
+def assemble(scene: ResolvedDesign) -> Assembly:
     """Draw the membrane and the rigid bodies of a scene. Raises InputError where there is no room for a part."""
     layout = lay_out(scene)
     check_room(scene, layout)

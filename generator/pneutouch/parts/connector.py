@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pneutouch.body import Solid
-from pneutouch.catalogue import Scene
+from pneutouch.catalogue import ResolvedDesign
 from pneutouch.meridian import Meridian
 from pneutouch.parts.layout import Layout
 from pneutouch.parts.mount import mount_cuts, mounting_bores, underside
@@ -11,7 +11,7 @@ from pneutouch.parts.port import CHANNEL
 from pneutouch.parts.rear_port import inward, outward, rear_lugs
 from pneutouch.parts.seat import clamping_bores, clearing_bores, seat_faces
 from pneutouch.parts.side_port import side_bore, side_boss
-from pneutouch.parts.trace import Path, trace
+from pneutouch.parts.trace import TracedPath, trace
 from pneutouch.spec.part import ClampedFlange, OnePiece
 
 PLUG_SHOULDER = "shoulder"
@@ -20,7 +20,7 @@ _UNDER_PORT = 0.3
 """How far in mm below a side port's passage the plug gets thinner."""
 
 
-def rigid_solids(scene: Scene, layout: Layout) -> tuple[Solid, ...]:
+def rigid_solids(scene: ResolvedDesign, layout: Layout) -> tuple[Solid, ...]:
     """The connector first, then the clamping ring or the plug."""
     material, seat = scene.connector_material, scene.seat
     bores = (*mounting_bores(scene, layout), *clamping_bores(seat, layout, scene.hole_undersize))
@@ -41,9 +41,9 @@ def rigid_solids(scene: Scene, layout: Layout) -> tuple[Solid, ...]:
     return (connector,)
 
 
-def connector_meridian(scene: Scene, layout: Layout) -> Meridian:
+def connector_meridian(scene: ResolvedDesign, layout: Layout) -> Meridian:
     """A connector whose channel leads to the port behind it, or ends blind where a side port's bore meets it."""
-    faces: Path = [
+    faces: TracedPath = [
         *underside(scene, layout),
         *seat_faces(scene.seat, layout),
         ("spigot top", (layout.channel_radius, 0.0)),
@@ -55,7 +55,7 @@ def connector_meridian(scene: Scene, layout: Layout) -> Meridian:
     return trace(start, [*port, *faces, *inward(layout)])
 
 
-def carrier_meridian(scene: Scene, layout: Layout) -> Meridian:
+def carrier_meridian(scene: ResolvedDesign, layout: Layout) -> Meridian:
     """The rigid body that a membrane is grown onto: open in the middle, with a counterbore for the plug."""
     assert isinstance(scene.seat, OnePiece)
     seat, opening = scene.seat, layout.opening_radius
@@ -66,29 +66,34 @@ def carrier_meridian(scene: Scene, layout: Layout) -> Meridian:
     ])  # fmt: skip
 
 
-def plug_meridian(scene: Scene, layout: Layout) -> Meridian:
+def plug_meridian(scene: ResolvedDesign, layout: Layout) -> Meridian:
     """The plug that closes the opening; it carries a port that points backwards."""
     assert isinstance(scene.seat, OnePiece)
     seat, body = scene.seat, plug_radius(scene, layout)
     wide, high = body + seat.shoulder_width, layout.under + seat.shoulder_thickness
-    faces: Path = [
+    faces: TracedPath = [
         ("plug underside", (wide, layout.under)), (PLUG_SHOULDER, (wide, high)), (PLUG_SHOULDER, (body, high)),
         ("plug", (body, 0.0)),
     ]  # fmt: skip
     if layout.port_axis is not None:
         neck, step = plug_neck(scene, layout)
-        relief: Path = [("plug", (body, step)), ("neck", (neck, step)), ("neck", (neck, 0.0)), ("plug top", (0.0, 0.0))]
+        relief: TracedPath = [
+            ("plug", (body, step)),
+            ("neck", (neck, step)),
+            ("neck", (neck, 0.0)),
+            ("plug top", (0.0, 0.0)),
+        ]
         return trace((0.0, layout.under), [*faces[:-1], *relief])
     start, port = outward(layout)
     return trace(start, [*port, *faces, ("plug top", (layout.channel_radius, 0.0)), *inward(layout)])
 
 
-def plug_radius(scene: Scene, layout: Layout) -> float:
+def plug_radius(scene: ResolvedDesign, layout: Layout) -> float:
     """Radius of the plug: the opening less the fit of two bodies of one machine."""
     return layout.opening_radius - scene.fit_clearance
 
 
-def plug_neck(scene: Scene, layout: Layout) -> tuple[float, float]:
+def plug_neck(scene: ResolvedDesign, layout: Layout) -> tuple[float, float]:
     """Radius of a plug in front of a side port, and the height from which it is that thin.
 
     The gap is as wide as the port's passage is in radius where the plug keeps a printable neck, so that a plug out of

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 
-from pneutouch.catalogue import Scene
+from pneutouch.catalogue import ResolvedDesign
 from pneutouch.parts.connector import plug_neck, plug_radius
 from pneutouch.parts.layout import Layout
 from pneutouch.parts.side_port import side_volume
 from pneutouch.spec.part import ClampedFlange, GluedFlange, OnePiece
 
 
-def internal_volume(scene: Scene, layout: Layout) -> float:
+def internal_volume(scene: ResolvedDesign, layout: Layout) -> float:
     """Volume in mm3 between the base plane and the mouth of the port, with the fitting or tube in place."""
     return channel_volume(layout) + gap_volume(scene, layout) - layout.port.filled_volume()
 
@@ -27,7 +27,7 @@ def channel_volume(layout: Layout) -> float:
     return side_volume(layout, radius) - math.pi * radius**2 * layout.channel_low
 
 
-def gap_volume(scene: Scene, layout: Layout) -> float:
+def gap_volume(scene: ResolvedDesign, layout: Layout) -> float:
     """Volume in mm3 of the gap inside a clamped flange or around a plug; a glued flange's gaps are full of glue."""
     seat = scene.seat
     if isinstance(seat, ClampedFlange):
@@ -41,7 +41,7 @@ def gap_volume(scene: Scene, layout: Layout) -> float:
     return 0.0
 
 
-def glue_volume(scene: Scene, layout: Layout) -> float:
+def glue_volume(scene: ResolvedDesign, layout: Layout) -> float:
     """Volume in mm3 of the gaps that glue fills: around a glued flange, or around a plug's shoulder."""
     seat = scene.seat
     if isinstance(seat, GluedFlange):

@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from pneutouch.catalogue import Scene
+from pneutouch.catalogue import ResolvedDesign
 from pneutouch.parts.port import PortShape, port_shape
 from pneutouch.spec.part import BoltCircle, ClampedFlange, OnePiece, RobotFlange, Sleeve
 
@@ -93,7 +93,7 @@ class Layout:
         return self.under - self.port.length if self.port_axis is None else self.under
 
 
-def lay_out(scene: Scene) -> Layout:
+def lay_out(scene: ResolvedDesign) -> Layout:
     """Derive the layout of a scene from membrane, seat, mount, port and the printers' fits; `check_room` judges it."""
     membrane, seat, mount = scene.design.membrane, scene.seat, scene.mount
     port = port_shape(scene.port, scene.tube, scene.hole_undersize)
@@ -115,7 +115,7 @@ def lay_out(scene: Scene) -> Layout:
     )  # fmt: skip
 
 
-def _ring_radius(scene: Scene, groove: float, flange: float) -> float:
+def _ring_radius(scene: ResolvedDesign, groove: float, flange: float) -> float:
     """Outer radius of the rigid ring around the flange; a clamping ring carries its screw heads on flat ground."""
     seat = scene.seat
     if isinstance(seat, ClampedFlange):
@@ -127,7 +127,7 @@ def _ring_radius(scene: Scene, groove: float, flange: float) -> float:
     return groove + seat.ring_wall_mm
 
 
-def _bolt_circle(scene: Scene, ring: float) -> float:
+def _bolt_circle(scene: ResolvedDesign, ring: float) -> float:
     """Radius of the mounting holes' circle, 0 without one; a whole number of mm across so that it can be drilled."""
     mount = scene.mount
     if isinstance(mount, RobotFlange):
@@ -139,7 +139,7 @@ def _bolt_circle(scene: Scene, ring: float) -> float:
     return 0.5 * math.floor(2 * (ring - 1.5 * mount.hole_diameter))
 
 
-def _plate_radius(scene: Scene, ring: float, bolts: float) -> float:
+def _plate_radius(scene: ResolvedDesign, ring: float, bolts: float) -> float:
     mount = scene.mount
     if isinstance(mount, RobotFlange):
         return max(ring, 0.5 * mount.plate_diameter)
@@ -154,13 +154,13 @@ def _plate_radius(scene: Scene, ring: float, bolts: float) -> float:
     return ring
 
 
-def finger_radius(scene: Scene) -> float:
+def finger_radius(scene: ResolvedDesign) -> float:
     """Inner radius of a sleeve: the finger, and what the printer makes holes smaller by."""
     assert isinstance(scene.mount, Sleeve)
     return 0.5 * (scene.mount.finger_diameter + scene.hole_undersize) + scene.connector_printer.accuracy_mm.nominal
 
 
-def _plate_thickness(scene: Scene, port: PortShape) -> float:
+def _plate_thickness(scene: ResolvedDesign, port: PortShape) -> float:
     """At least the mount's; thicker for blind holes from both sides, a plug's shoulder or a port in the side."""
     seat, mount = scene.seat, scene.mount
     depth = mount.hole_depth if isinstance(mount, BoltCircle) and mount.hole_depth is not None else 0.0
@@ -177,7 +177,7 @@ def _plate_thickness(scene: Scene, port: PortShape) -> float:
     return max(needs)
 
 
-def _port_height(scene: Scene, port: PortShape) -> float:
+def _port_height(scene: ResolvedDesign, port: PortShape) -> float:
     """Height of a side port's axis over the plate's underside: its root stays within the plate's edge."""
     low = port.root + 0.5
     if isinstance(scene.seat, OnePiece):
@@ -188,7 +188,7 @@ def _port_height(scene: Scene, port: PortShape) -> float:
     return low
 
 
-def _channel_radius(scene: Scene, port: PortShape) -> float:
+def _channel_radius(scene: ResolvedDesign, port: PortShape) -> float:
     """The seat's channel; wider than a passage that crosses it, for two equal cylinders meet in a point."""
     channel = 0.5 * scene.seat.channel_diameter_mm
     return max(channel, port.passage + 0.25) if scene.mount.port_side == "side" else max(channel, port.passage)

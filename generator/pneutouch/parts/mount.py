@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 
 from pneutouch.body import Bore, Feature, Frame, Turned, crossing
-from pneutouch.catalogue import Scene
+from pneutouch.catalogue import ResolvedDesign
 from pneutouch.parts.layout import Layout, finger_radius
-from pneutouch.parts.trace import Path, cylinder
+from pneutouch.parts.trace import TracedPath, cylinder
 from pneutouch.spec.part import BoltCircle, RobotFlange, Sleeve
 
 
-def underside(scene: Scene, layout: Layout) -> Path:
+def underside(scene: ResolvedDesign, layout: Layout) -> TracedPath:
     """From the rear face around the axis outwards to the lower edge of the plate."""
     mount, low = scene.mount, layout.plate_low
     edge = ("plate underside", (layout.plate_radius, low))
@@ -26,7 +26,7 @@ def underside(scene: Scene, layout: Layout) -> Path:
     return [edge]
 
 
-def mounting_bores(scene: Scene, layout: Layout) -> tuple[Bore, ...]:
+def mounting_bores(scene: ResolvedDesign, layout: Layout) -> tuple[Bore, ...]:
     """Equally spaced holes, the first half a spacing off the x axis; a robot flange has a dowel hole on the y axis."""
     mount, wider = scene.mount, scene.hole_undersize
     if not isinstance(mount, BoltCircle | RobotFlange):
@@ -45,7 +45,7 @@ def mounting_bores(scene: Scene, layout: Layout) -> tuple[Bore, ...]:
     return tuple(holes)
 
 
-def mount_cuts(scene: Scene, layout: Layout) -> tuple[Feature, ...]:
+def mount_cuts(scene: ResolvedDesign, layout: Layout) -> tuple[Feature, ...]:
     """The set screws' holes in a sleeve, half way along it, turned away from a side port."""
     mount = scene.mount
     if not isinstance(mount, Sleeve):

@@ -8,16 +8,16 @@ from pneutouch.body import Feature, Frame
 from pneutouch.meridian import Point
 from pneutouch.parts.layout import Layout
 from pneutouch.parts.port import CHANNEL
-from pneutouch.parts.trace import Path
+from pneutouch.parts.trace import TracedPath
 
 
-def outward(layout: Layout) -> tuple[Point, Path]:
+def outward(layout: Layout) -> tuple[Point, TracedPath]:
     """From the inner edge of the port's mouth over its outside to the rear face."""
     port = layout.port
     return _at(layout, port.hollow[0]), [(tag, _at(layout, point)) for point, tag in port.outside]
 
 
-def inward(layout: Layout) -> Path:
+def inward(layout: Layout) -> TracedPath:
     """From the upper end of the channel down to the inner edge of the port's mouth."""
     port = layout.port
     meeting = _at(layout, port.hollow[-1])[1]

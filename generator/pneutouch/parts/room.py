@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pneutouch.catalogue import Scene
+from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.parts.layout import HEAD_GAP, Layout, finger_radius
 from pneutouch.spec.part import BoltCircle, OnePiece, RobotFlange, Sleeve
@@ -11,7 +11,7 @@ Lengths = dict[str, tuple[float, float]]
 """What, with the radius that there is and the one that is needed, mm."""
 
 
-def check_room(scene: Scene, layout: Layout) -> None:
+def check_room(scene: ResolvedDesign, layout: Layout) -> None:
     """Raise InputError for a dome too small for its channel, port or holes, or too large for its mount."""
     head = f"{scene.where}: membrane.inner_radius_mm = {layout.inner_radius:g}: too"
     for what, (has, least) in _least(scene, layout).items():
@@ -29,7 +29,7 @@ def check_room(scene: Scene, layout: Layout) -> None:
             )
 
 
-def _least(scene: Scene, layout: Layout) -> Lengths:
+def _least(scene: ResolvedDesign, layout: Layout) -> Lengths:
     """Radii that must not be smaller."""
     seat, mount, port, needs = scene.seat, scene.mount, layout.port, {}
     wall = scene.connector_printer.smallest.wall_rigid_mm.recommended
@@ -50,7 +50,7 @@ def _least(scene: Scene, layout: Layout) -> Lengths:
     return needs
 
 
-def _most(scene: Scene, layout: Layout) -> Lengths:
+def _most(scene: ResolvedDesign, layout: Layout) -> Lengths:
     """Radii that must not be larger."""
     seat, mount = scene.seat, scene.mount
     if isinstance(mount, RobotFlange):

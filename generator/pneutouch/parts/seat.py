@@ -6,18 +6,18 @@ import math
 
 from pneutouch.body import Bore
 from pneutouch.parts.layout import Layout
-from pneutouch.parts.trace import Path
+from pneutouch.parts.trace import TracedPath
 from pneutouch.spec.part import AnySeat, ClampedFlange, OnePiece
 
 SEAT = "seat"
 """Faces that the flange rests on or is grown onto: the ones both bodies share."""
 
 
-def seat_faces(seat: AnySeat, layout: Layout) -> Path:
+def seat_faces(seat: AnySeat, layout: Layout) -> TracedPath:
     """From the lower edge of the plate over its top to the inner edge of the seat at the base plane."""
-    plate: Path = [("plate edge", (layout.plate_radius, layout.plate_high))]
+    plate: TracedPath = [("plate edge", (layout.plate_radius, layout.plate_high))]
     inner, flange, high = layout.inner_radius, layout.flange_radius, layout.plate_high
-    ring: Path = [("plate top", (layout.ring_radius, high)), ("ring", (layout.ring_radius, 0.0))]
+    ring: TracedPath = [("plate top", (layout.ring_radius, high)), ("ring", (layout.ring_radius, 0.0))]
     if isinstance(seat, OnePiece):
         return [
             *plate,
@@ -27,7 +27,7 @@ def seat_faces(seat: AnySeat, layout: Layout) -> Path:
             (SEAT, (inner, high)),
             (SEAT, (inner, 0.0)),
         ]
-    floor: Path = [
+    floor: TracedPath = [
         ("groove floor", (flange, high)), (SEAT, (inner, high)), ("groove floor", (layout.groove_inner, high)),
         ("groove inner", (layout.groove_inner, 0.0)),
     ]  # fmt: skip

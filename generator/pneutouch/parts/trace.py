@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from pneutouch.meridian import Line, Meridian, Point
 
-Path = list[tuple[str, Point]]
+TracedPath = list[tuple[str, Point]]
 
 
 def trace(start: Point, path: Iterable[tuple[str, Point]]) -> Meridian:

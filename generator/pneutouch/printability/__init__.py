@@ -2,7 +2,7 @@
 
 from pneutouch.printability.check import check
 from pneutouch.printability.finding import Excess, Finding
-from pneutouch.printability.subject import Item, Joint, Subject
+from pneutouch.printability.subject import Joint, PrintItem, PrintSubject
 from pneutouch.printability.view import SensorContext
 
-__all__ = ["Excess", "Finding", "Item", "Joint", "SensorContext", "Subject", "check"]
+__all__ = ["Excess", "Finding", "Joint", "PrintItem", "PrintSubject", "SensorContext", "check"]

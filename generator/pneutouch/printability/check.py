@@ -24,10 +24,10 @@ from pneutouch.printability.rules import (
     resins,
     walls,
 )  # fmt: skip
-from pneutouch.printability.subject import Subject
-from pneutouch.printability.view import SensorContext, View
+from pneutouch.printability.subject import PrintSubject
+from pneutouch.printability.view import PrintView, SensorContext
 
-Rule = Callable[[View], list[Finding]]
+Rule = Callable[[PrintView], list[Finding]]
 
 RULES: dict[str, Rule] = {
     "mesh": mesh.check,
@@ -52,12 +52,12 @@ RULES: dict[str, Rule] = {
 _ORDER = {"error": 0, "warning": 1, "note": 2}
 
 
-def check(subject: Subject, sensor_context: SensorContext | None = None) -> list[Finding]:
+def check(subject: PrintSubject, sensor_context: SensorContext | None = None) -> list[Finding]:
     """All findings, errors first.
 
     Bodies whose mesh bounds no solid get the findings that need none: mesh, envelope and resins. Rules on the sensor's
     working (driving, layers) say nothing without ``sensor_context``.
     """
-    view = View(subject, sensor_context)
+    view = PrintView(subject, sensor_context)
     found = [finding for rule in RULES.values() for finding in rule(view)]
     return sorted(found, key=lambda finding: _ORDER[finding.severity])

@@ -11,7 +11,7 @@ from pneutouch.arrays import Array
 from pneutouch.body import Body
 from pneutouch.errors import InputError
 from pneutouch.printability.finding import Excess, Finding, Severity
-from pneutouch.printability.subject import Exact
+from pneutouch.printability.subject import ExactShape
 from pneutouch.units import UM
 
 _SOURCE = "measured with pymeshlab (MeshLab's filters), independently of the meshes' maker"
@@ -31,7 +31,7 @@ class Meshable(Protocol):
         """The body within ``tolerance`` mm."""
 
 
-def inspect(body: Body, solid: Exact | None = None, tolerance: float = 0.016) -> list[Finding]:
+def inspect(body: Body, solid: ExactShape | None = None, tolerance: float = 0.016) -> list[Finding]:
     """Self-intersections, topology, sliver triangles, and the distance both ways from a ten times finer mesh.
 
     ``tolerance`` (mm) is what the body was meshed to. The distance needs a solid with ``mesh(tolerance)``. Takes seconds.

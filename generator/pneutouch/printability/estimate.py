@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from pneutouch.printability.measure.cavities import overhangs, supported
-from pneutouch.printability.subject import Subject
-from pneutouch.printability.view import Job, Part, View
+from pneutouch.printability.subject import PrintSubject
+from pneutouch.printability.view import PrintJob, PrintPart, PrintView
 from pneutouch.units import ML, UM, grams
 
 _SPARSE = 0.15
@@ -81,12 +81,12 @@ class JobEstimate:
         }
 
 
-def estimate(subject: Subject) -> list[JobEstimate]:
+def estimate(subject: PrintSubject) -> list[JobEstimate]:
     """What each job takes, in order of the subject's items; jobs with a mesh that is no solid are left out."""
-    return [_estimate(job) for job in View(subject).jobs if job.sound]
+    return [_estimate(job) for job in PrintView(subject).jobs if job.sound]
 
 
-def _estimate(job: Job) -> JobEstimate:
+def _estimate(job: PrintJob) -> JobEstimate:
     first = job.parts[0].item
     x, y, z = (float(length) for length in job.bounds[1] - job.bounds[0])
     layers = math.ceil(z / (UM * first.mode.layer_height_um) - 1e-9)
@@ -105,7 +105,7 @@ def _estimate(job: Job) -> JobEstimate:
     )
 
 
-def _item(part: Part) -> ItemEstimate:
+def _item(part: PrintPart) -> ItemEstimate:
     body, solid = part.item.body, part.item.solid
     volume = body.volume if solid is None else float(solid.volume)
     material = body.material
@@ -116,7 +116,7 @@ def _item(part: Part) -> ItemEstimate:
     return ItemEstimate(part.name, volume, grams(volume, material.density_g_per_cm3.nominal), resins)
 
 
-def _support(job: Job) -> tuple[float, str]:
+def _support(job: PrintJob) -> tuple[float, str]:
     """Support in mm3, and how it was found."""
     voxels = job.voxels
     cubes = f"cubes of {voxels.pitch:.2f} mm"
@@ -130,7 +130,7 @@ def _support(job: Job) -> tuple[float, str]:
     return volume, f"support: under overhangs beyond 45 degrees, {_SPARSE:.0%} filled, bridges not spared, in {cubes}"
 
 
-def _seconds(job: Job, layers: int, swaths: int | None, support: float) -> tuple[float | None, list[str]]:
+def _seconds(job: PrintJob, layers: int, swaths: int | None, support: float) -> tuple[float | None, list[str]]:
     """Time in s, and what it rests on."""
     item = job.parts[0].item
     layer = item.mode.layer_seconds

@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from pneutouch.printability.finding import Excess, Finding, Severity
-from pneutouch.printability.measure.thin import Kind, Place
+from pneutouch.printability.measure.thin import FeatureKind, ThinPlace
 from pneutouch.printability.subject import Point
-from pneutouch.printability.view import Part, View
-from pneutouch.spec.printer import Feature
+from pneutouch.printability.view import PrintPart, PrintView
+from pneutouch.spec.printer import FeatureSize
 
 _ALIKE = 0.02
 """Places whose sizes differ by less (mm) and that break the same limit are told once."""
 
 
-def compare(view: View, rule: str, kinds: dict[Kind, str], limit: str, fix: str) -> list[Finding]:
+def compare(view: PrintView, rule: str, kinds: dict[FeatureKind, str], limit: str, fix: str) -> list[Finding]:
     """Findings of a rule: places of ``kinds``, each with what it is called, below a limit of the printer.
 
     ``fix`` holds where the item gives no hint of its own.
@@ -34,14 +34,14 @@ def compare(view: View, rule: str, kinds: dict[Kind, str], limit: str, fix: str)
     return found
 
 
-def lower(size: float, feature: Feature, slack: float) -> float | None:
+def lower(size: float, feature: FeatureSize, slack: float) -> float | None:
     """The limit that a size (mm) is below, the harder one first; None where it is below none."""
     if feature.least is not None and size < feature.least - slack:
         return feature.least
     return feature.recommended if size < feature.recommended - slack else None
 
 
-def severity_of(size: float, feature: Feature, slack: float) -> Severity:
+def severity_of(size: float, feature: FeatureSize, slack: float) -> Severity:
     """An error below what the machine makes, a warning below what is recommended."""
     return "error" if feature.least is not None and size < feature.least - slack else "warning"
 
@@ -54,8 +54,8 @@ def wording(size: float, limit: float, severity: Severity) -> str:
 
 
 def _alike(
-    broken: list[tuple[Severity, float, Place]],
-) -> Iterator[tuple[Severity, float, list[Place]]]:
+    broken: list[tuple[Severity, float, ThinPlace]],
+) -> Iterator[tuple[Severity, float, list[ThinPlace]]]:
     """Places of one size together; they come narrowest first."""
     left = list(broken)
     while left:
@@ -68,7 +68,14 @@ def _alike(
 
 
 def _finding(
-    part: Part, rule: str, noun: str, severity: Severity, limit: float, places: list[Place], source: str, fix: str
+    part: PrintPart,
+    rule: str,
+    noun: str,
+    severity: Severity,
+    limit: float,
+    places: list[ThinPlace],
+    source: str,
+    fix: str,
 ) -> Finding:
     size = places[0].size
     often = f" ({len(places)} places)" if len(places) > 1 else ""

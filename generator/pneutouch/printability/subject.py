@@ -30,7 +30,7 @@ from pneutouch.spec.printer import Mode, Printer
 Point = tuple[float, float, float]
 
 
-class Exact(Protocol):
+class ExactShape(Protocol):
     """An exact shape. Its attributes may be anything that reads as such: fields, properties, cached ones."""
 
     @property
@@ -46,7 +46,7 @@ class Exact(Protocol):
 
 
 @dataclass(frozen=True)
-class Item:
+class PrintItem:
     """One body as it will be printed, in the design frame (mm).
 
     ``solid`` is the exact shape where there is one. ``up`` is the build direction in the body's frame. Items with
@@ -58,7 +58,7 @@ class Item:
     body: Body
     printer: Printer
     mode: Mode
-    solid: Exact | None = None
+    solid: ExactShape | None = None
     up: Point = (0.0, 0.0, 1.0)
     job: str = ""
     sensing: Callable[[Array], Flags] | None = None
@@ -76,9 +76,9 @@ class Joint:
 
 
 @dataclass(frozen=True)
-class Subject:
+class PrintSubject:
     """The items that are made for one design."""
 
-    items: tuple[Item, ...]
+    items: tuple[PrintItem, ...]
     joints: tuple[Joint, ...] = ()
     name: str = ""

@@ -12,16 +12,16 @@ from pneutouch.arrays import Array, Flags
 from pneutouch.body import Body
 from pneutouch.printability.measure.cavities import Pocket, balls, pockets, seen, unseen
 from pneutouch.printability.measure.chords import Chords, Side, chords, refined
-from pneutouch.printability.measure.samples import Samples, sample
+from pneutouch.printability.measure.samples import SurfaceSamples, sample
 from pneutouch.printability.measure.shells import Hollow, voids
-from pneutouch.printability.measure.surface import Surface
-from pneutouch.printability.measure.thin import Place, thin_places
-from pneutouch.printability.measure.voxels import Voxels, build_frame, fill
-from pneutouch.printability.subject import Item, Point, Subject
-from pneutouch.spec.printer import Feature, Printer
+from pneutouch.printability.measure.surface import SurfaceMesh
+from pneutouch.printability.measure.thin import ThinPlace, thin_places
+from pneutouch.printability.measure.voxels import PartVoxels, build_frame, fill
+from pneutouch.printability.subject import Point, PrintItem, PrintSubject
+from pneutouch.spec.printer import FeatureSize, Printer
 
 if TYPE_CHECKING:
-    from pneutouch.mechanics import Prediction, Sensor
+    from pneutouch.mechanics import Sensor, SensorPrediction
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class SensorContext:
     ``membrane`` is the name of the item whose wall the sensor presses.
     """
 
-    prediction: Prediction
+    prediction: SensorPrediction
     sensor: Sensor
     membrane: str = "membrane"
 
@@ -41,10 +41,10 @@ NARROW = 3.0
 
 
 @dataclass(frozen=True)
-class Part:
+class PrintPart:
     """An item with its measurements."""
 
-    item: Item
+    item: PrintItem
 
     @property
     def name(self) -> str:
@@ -72,13 +72,13 @@ class Part:
         return self.item.body.is_closed() and not self.manifold.is_empty() and self.manifold.volume() > 0
 
     @cached_property
-    def surface(self) -> Surface:
+    def surface(self) -> SurfaceMesh:
         """The manifold's own mesh, whose faces rays name."""
         mesh = self.manifold.to_mesh64()
-        return Surface(np.array(mesh.vert_properties[:, :3]), np.array(mesh.tri_verts).astype(np.int64))
+        return SurfaceMesh(np.array(mesh.vert_properties[:, :3]), np.array(mesh.tri_verts).astype(np.int64))
 
     @cached_property
-    def samples(self) -> Samples:
+    def samples(self) -> SurfaceSamples:
         """Points all over the surface."""
         return sample(self.surface)
 
@@ -99,7 +99,7 @@ class Part:
         return chords(self.manifold, self.surface, self.samples, max(self._limits.values()))
 
     @cached_property
-    def places(self) -> list[Place]:
+    def places(self) -> list[ThinPlace]:
         """Thin places, narrowest first."""
         solid = self.item.solid
         exact = None if solid is None else lambda found: refined(found, solid.distance)
@@ -113,20 +113,20 @@ class Part:
         chord = 1e-3 + size * turn**2 / 8
         return chord if self.item.solid is not None else chord + 2 * self.surface.chord_error[0]
 
-    def limit(self, name: str) -> Feature:
+    def limit(self, name: str) -> FeatureSize:
         """A limit of the printer for this part's kind of material: wall, pin, hole, channel, gap or emboss."""
         smallest, kind = self.item.printer.smallest, self.item.body.material.kind
         if name in ("wall", "pin"):
             return smallest.wall(kind) if name == "wall" else smallest.pin(kind)
-        return cast(Feature, getattr(smallest, f"{name}_mm"))
+        return cast(FeatureSize, getattr(smallest, f"{name}_mm"))
 
 
 @dataclass(frozen=True)
-class Job:
+class PrintJob:
     """Parts printed together, standing to one another as in the design frame."""
 
     name: str
-    parts: tuple[Part, ...]
+    parts: tuple[PrintPart, ...]
 
     @property
     def up(self) -> Array:
@@ -154,7 +154,7 @@ class Job:
         return Manifold.batch_boolean([part.manifold for part in self.parts], OpType.Add)
 
     @cached_property
-    def voxels(self) -> Voxels:
+    def voxels(self) -> PartVoxels:
         """All parts in cubes, in the build frame."""
         return fill([part.surface.corners for part in self.parts], build_frame(self.up))
 
@@ -186,7 +186,7 @@ class Job:
         """Whether a point lies in the box of a closed hollow."""
         return any(bool(((where >= h.bounds[0]) & (where <= h.bounds[1])).all()) for h in self.hollows)
 
-    def nearest(self, where: Point) -> Part:
+    def nearest(self, where: Point) -> PrintPart:
         """The part with a vertex nearest to a point."""
         point = np.asarray(where)
         return min(self.parts, key=lambda part: float(np.linalg.norm(part.item.body.vertices - point, axis=1).min()))
@@ -199,30 +199,30 @@ class Job:
 
 
 @dataclass(frozen=True)
-class View:
+class PrintView:
     """A subject with its parts and jobs, and the sensor's context where there is one."""
 
-    subject: Subject
+    subject: PrintSubject
     sensor: SensorContext | None = None
 
     @cached_property
-    def parts(self) -> tuple[Part, ...]:
+    def parts(self) -> tuple[PrintPart, ...]:
         """One a body."""
-        return tuple(Part(item) for item in self.subject.items)
+        return tuple(PrintPart(item) for item in self.subject.items)
 
     @cached_property
-    def sound(self) -> tuple[Part, ...]:
+    def sound(self) -> tuple[PrintPart, ...]:
         """The parts that can be measured."""
         return tuple(part for part in self.parts if part.sound)
 
     @cached_property
-    def jobs(self) -> tuple[Job, ...]:
+    def jobs(self) -> tuple[PrintJob, ...]:
         """In order of their first part; a part without a job's name is a job of its own."""
-        found: dict[tuple[str, int], list[Part]] = {}
+        found: dict[tuple[str, int], list[PrintPart]] = {}
         for number, part in enumerate(self.parts):
             found.setdefault((part.item.job, -1 if part.item.job else number), []).append(part)
-        return tuple(Job(name or parts[0].name, tuple(parts)) for (name, _), parts in found.items())
+        return tuple(PrintJob(name or parts[0].name, tuple(parts)) for (name, _), parts in found.items())
 
-    def part(self, name: str) -> Part | None:
+    def part(self, name: str) -> PrintPart | None:
         """A part by its name."""
         return next((part for part in self.parts if part.name == name), None)

@@ -2,6 +2,6 @@
 
 from pneutouch.report.datasheet import datasheet
 from pneutouch.report.print_sheet import print_sheet
-from pneutouch.report.sheet import Sheet
+from pneutouch.report.sheet import Datasheet
 
-__all__ = ["Sheet", "datasheet", "print_sheet"]
+__all__ = ["Datasheet", "datasheet", "print_sheet"]

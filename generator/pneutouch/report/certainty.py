@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from pneutouch.mechanics import Prediction
+from pneutouch.mechanics import SensorPrediction
 from pneutouch.mechanics.ladder import NUMERICAL
 from pneutouch.units import KPA
 
@@ -24,7 +24,7 @@ _INPUTS = {
 }  # fmt: skip
 
 
-def ends(prediction: Prediction, documents: tuple[Document, ...]) -> dict[str, Document]:
+def ends(prediction: SensorPrediction, documents: tuple[Document, ...]) -> dict[str, Document]:
     """Documents of the lowest and the highest driving pressure, by label; those of which something is known."""
     pairs = list(zip(prediction.states, documents, strict=True))
     chosen = pairs[:1] + pairs[1:][-1:]
@@ -42,7 +42,7 @@ def shares(found: dict[str, Document]) -> dict[str, dict[str, float]]:
     return {label: document["figures"][SENSITIVITY]["shares"] for label, document in found.items()}
 
 
-def how_sure(prediction: Prediction, documents: tuple[Document, ...]) -> dict[str, Any]:
+def how_sure(prediction: SensorPrediction, documents: tuple[Document, ...]) -> dict[str, Any]:
     """Everything that the section says; every leaf is text or a flag."""
     found = ends(prediction, documents)
     why = next((document["unknown"] for document in documents if "unknown" in document), None)
@@ -100,7 +100,7 @@ def _source(source: dict[str, Any]) -> list[str]:
     return [source["name"], value, acts_on, "known" if source["known"] else "assumed", _plain(source["origin"])]
 
 
-def _rung(prediction: Prediction) -> list[list[str]]:
+def _rung(prediction: SensorPrediction) -> list[list[str]]:
     """Which model gave the figures, how exactly it solves its equations, and why it was taken."""
     error = prediction.error_estimate
     exact = f"within {NUMERICAL[prediction.model]:.1%} in sensitivity" if prediction.model != "membrane" else (

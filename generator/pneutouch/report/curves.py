@@ -9,7 +9,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.evaluation.variants import ResinCurve
-from pneutouch.mechanics import Prediction, Sensor, State
+from pneutouch.mechanics import Sensor, SensorPrediction, SensorState
 from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MARKERS, MUTED, figure, label_ends, svg
 from pneutouch.units import KPA
 
@@ -20,7 +20,7 @@ SIZE = (86.0, 62.0)
 """Width and height of a plot in mm: two in a row on A4."""
 
 
-def inflation(sensor: Sensor, prediction: Prediction) -> str:
+def inflation(sensor: Sensor, prediction: SensorPrediction) -> str:
     """Driving pressure over inner apex height, both branches, with the limit point and the other limits."""
     curve, point = prediction.inflation, prediction.limit_point
     height, p = curve.apex_inner, curve.pressure / KPA
@@ -44,7 +44,7 @@ def inflation(sensor: Sensor, prediction: Prediction) -> str:
         return svg(drawn)
 
 
-def _mark_limits(ax: Axes, sensor: Sensor, prediction: Prediction) -> None:
+def _mark_limits(ax: Axes, sensor: Sensor, prediction: SensorPrediction) -> None:
     curve = prediction.inflation
     p, gauge = curve.pressure / KPA, sensor.gauge_limit / KPA
     if gauge < 1.2 * p.max():
@@ -69,7 +69,7 @@ def _mark_limits(ax: Axes, sensor: Sensor, prediction: Prediction) -> None:
         )  # fmt: skip
 
 
-def shapes(prediction: Prediction) -> str:
+def shapes(prediction: SensorPrediction) -> str:
     """Half sections of the deformed wall at the lowest and the highest driving pressure, shaded by stretch."""
     from matplotlib.collections import PolyCollection
 
@@ -98,7 +98,7 @@ def shapes(prediction: Prediction) -> str:
         return svg(drawn)
 
 
-def response(prediction: Prediction) -> str:
+def response(prediction: SensorPrediction) -> str:
     """Pressure rise over contact force at each driving pressure, with the fitted lines."""
     with figure(*SIZE) as drawn:
         ax = drawn.add_subplot()
@@ -113,7 +113,7 @@ def response(prediction: Prediction) -> str:
         return svg(drawn)
 
 
-def indentation(prediction: Prediction) -> str:
+def indentation(prediction: SensorPrediction) -> str:
     """Contact force over indentation at each driving pressure."""
     with figure(*SIZE) as drawn:
         ax = drawn.add_subplot()
@@ -122,7 +122,7 @@ def indentation(prediction: Prediction) -> str:
         return svg(drawn)
 
 
-def _plot_states(ax: Axes, prediction: Prediction, curve: Callable[[State], tuple[Array, Array]]) -> None:
+def _plot_states(ax: Axes, prediction: SensorPrediction, curve: Callable[[SensorState], tuple[Array, Array]]) -> None:
     """One curve a driving pressure, up to the end of its range."""
     for k, state in enumerate(prediction.states):
         kept = state.indentation <= state.range_end * (1 + 1e-12)

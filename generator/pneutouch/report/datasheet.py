@@ -11,7 +11,7 @@ from pneutouch.report.drawing import section_drawing
 from pneutouch.report.graded_sheet import CAPTIONS, graded_figures
 from pneutouch.report.picture import picture
 from pneutouch.report.shares import share_bars
-from pneutouch.report.sheet import Sheet
+from pneutouch.report.sheet import Datasheet
 from pneutouch.report.tradeoff import tradeoff_chart
 from pneutouch.report.tuning import tuning_chart
 from pneutouch.units import KPA
@@ -20,7 +20,7 @@ _LEAST_SPAN = 22 * KPA
 """The sensitivity plot reaches at least the paper's highest driving pressure."""
 
 
-def datasheet(sheet: Sheet, sensor: Sensor, viewer: str) -> dict[str, bytes]:
+def datasheet(sheet: Datasheet, sensor: Sensor, viewer: str) -> dict[str, bytes]:
     """``datasheet.html`` and ``datasheet.pdf``; ``viewer`` is the page of the 3D view."""
     highest = max(sheet.prediction.states[-1].driving_pressure, _LEAST_SPAN)
     resins = resin_curves(sensor, sheet.resins, highest, sheet.prediction.model, sheet.prediction.closure)
@@ -45,7 +45,7 @@ def datasheet(sheet: Sheet, sensor: Sensor, viewer: str) -> dict[str, bytes]:
     }
 
 
-def _figures(sheet: Sheet, resins: dict[str, ResinCurve], sensor: Sensor) -> dict[str, str]:
+def _figures(sheet: Datasheet, resins: dict[str, ResinCurve], sensor: Sensor) -> dict[str, str]:
     """The figures as SVG by name; those without data are left out."""
     prediction, chosen = sheet.prediction, sheet.scene.membrane_material.title
     found = {

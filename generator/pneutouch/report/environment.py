@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pneutouch.catalogue import Scene
-from pneutouch.mechanics import Prediction, State
+from pneutouch.catalogue import ResolvedDesign
+from pneutouch.mechanics import SensorPrediction, SensorState
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ _ROOM = 293.15
 NOT_TESTED = "not tested"
 
 
-def environment(scene: Scene, prediction: Prediction, gas: GasNotes | None) -> list[list[str]]:
+def environment(scene: ResolvedDesign, prediction: SensorPrediction, gas: GasNotes | None) -> list[list[str]]:
     """Rows of quantity, value and basis; ``gas`` holds what the atlas says of the air, one entry a state."""
     rows = _air(prediction, gas) if gas is not None else _drift_alone(scene, prediction)
     material = scene.membrane_material
@@ -29,7 +29,7 @@ def environment(scene: Scene, prediction: Prediction, gas: GasNotes | None) -> l
     return [*rows, ["Humidity, oils, ozone, UV", NOT_TESTED, ""]]
 
 
-def _air(prediction: Prediction, gas: GasNotes) -> list[list[str]]:
+def _air(prediction: SensorPrediction, gas: GasNotes) -> list[list[str]]:
     """At the lowest and the highest driving pressure."""
     ends = [0, len(prediction.states) - 1] if len(prediction.states) > 1 else [0]
     at = " and ".join(f"{prediction.states[k].driving_pressure / KPA:g}" for k in ends) + " kPa"
@@ -47,7 +47,7 @@ def _air(prediction: Prediction, gas: GasNotes) -> list[list[str]]:
     ]  # fmt: skip
 
 
-def _drift_alone(scene: Scene, prediction: Prediction) -> list[list[str]]:
+def _drift_alone(scene: ResolvedDesign, prediction: SensorPrediction) -> list[list[str]]:
     """Without the atlas: the drift, from the predicted inflation curve; nothing is known of fast contact."""
     state = prediction.states[0]
     drift = zero_drift(scene, prediction, state)
@@ -59,7 +59,7 @@ def _drift_alone(scene: Scene, prediction: Prediction) -> list[list[str]]:
     return [*rows, ["Fast contact", "not known", "computed for sensors inside the atlas alone"]]
 
 
-def zero_drift(scene: Scene, prediction: Prediction, state: State) -> float:
+def zero_drift(scene: ResolvedDesign, prediction: SensorPrediction, state: SensorState) -> float:
     """Pressure change of the shut-in gas by temperature without contact, kPa/K.
 
     The dome yields as the gas warms: dp/dT = (p_abs/T) k/(k + p_abs/V), k = dp/dV of the dome and V the gas.

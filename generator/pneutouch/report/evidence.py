@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pneutouch.bench.record import Curve, Doubt
+from pneutouch.bench.record import MeasuredCurve, SuspectInterval
 from pneutouch.bench.trace import Trace
 from pneutouch.report.style import ACCENT, FAINT, INK, MUTED, figure, svg
 from pneutouch.units import KPA
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 _SIZE = (180.0, 110.0)
 
 
-def evidence_svg(curve: Curve, thinned: Trace, simulated: bool) -> str:
+def evidence_svg(curve: MeasuredCurve, thinned: Trace, simulated: bool) -> str:
     """Position, force and pressure over time; contact, the stretch read, and what is doubtful marked in each."""
     channels = (
         ("position  (mm)", thinned.position),
@@ -38,7 +38,7 @@ def evidence_svg(curve: Curve, thinned: Trace, simulated: bool) -> str:
         return svg(drawn)
 
 
-def _mark(ax: Axes, curve: Curve) -> None:
+def _mark(ax: Axes, curve: MeasuredCurve) -> None:
     for indent in curve.indents:
         ax.axvspan(*indent.read, color=ACCENT, alpha=0.35, lw=0)
         if np.isfinite(indent.contact):
@@ -49,12 +49,12 @@ def _mark(ax: Axes, curve: Curve) -> None:
         )
 
 
-def _told(curve: Curve) -> list[Doubt]:
+def _told(curve: MeasuredCurve) -> list[SuspectInterval]:
     """What is marked: a note is of all the run, and would hide it."""
     return [doubt for doubt in curve.doubts if doubt.kind != "note"]
 
 
-def _key(ax: Axes, curve: Curve) -> None:
+def _key(ax: Axes, curve: MeasuredCurve) -> None:
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from pneutouch.catalogue import Scene
-from pneutouch.mechanics.prediction import State
+from pneutouch.catalogue import ResolvedDesign
+from pneutouch.mechanics.prediction import SensorState
 from pneutouch.report.style import ACCENT, BOLD, INK, LINES, MUTED, Label, figure, label_ends, svg
-from pneutouch.spec.material import AlongArc, Material
+from pneutouch.spec.material import ArcGrading, Material
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
@@ -21,14 +21,14 @@ _CELLS = 90
 _SHADES = ("#F4F1EA", ACCENT)
 
 
-class Compared(NamedTuple):
+class ComparedMembrane(NamedTuple):
     """A membrane with its states, driving pressures ascending."""
 
     label: str
-    states: Sequence[State]
+    states: Sequence[SensorState]
 
 
-def grade_section(material: Material, scene: Scene, size: tuple[float, float] = (180.0, 62.0)) -> str:
+def grade_section(material: Material, scene: ResolvedDesign, size: tuple[float, float] = (180.0, 62.0)) -> str:
     """Half section of the dome shaded by the stiff resin's fraction, beside fraction and modulus along the arc, as SVG.
 
     ``material`` must be graded; ``size`` is width and height in mm.
@@ -55,7 +55,7 @@ def grade_section(material: Material, scene: Scene, size: tuple[float, float] = 
         return svg(drawn)
 
 
-def _section(ax: Axes, along: AlongArc, inner: float, wall: float, stiff: str) -> None:
+def _section(ax: Axes, along: ArcGrading, inner: float, wall: float, stiff: str) -> None:
     from matplotlib.collections import PolyCollection
     from matplotlib.colors import LinearSegmentedColormap
 
@@ -85,7 +85,7 @@ def _section(ax: Axes, along: AlongArc, inner: float, wall: float, stiff: str) -
 
 
 def graded_against_constant(
-    graded: Compared, constants: Sequence[Compared], size: tuple[float, float] = (180.0, 72.0)
+    graded: ComparedMembrane, constants: Sequence[ComparedMembrane], size: tuple[float, float] = (180.0, 72.0)
 ) -> str:
     """Sensitivity over driving pressure, and pressure rise over force at the highest, graded and constant, as SVG."""
     with figure(*size) as drawn:
@@ -96,8 +96,8 @@ def graded_against_constant(
 
 
 def _looks(
-    graded: Compared, constants: Sequence[Compared]
-) -> list[tuple[Compared, dict[str, object], dict[str, object]]]:
+    graded: ComparedMembrane, constants: Sequence[ComparedMembrane]
+) -> list[tuple[ComparedMembrane, dict[str, object], dict[str, object]]]:
     """Every membrane with the look of its line and of its label, the graded one last and on top."""
     lines = [
         (one, {"color": INK, "lw": 0.9, "ls": LINES[1 + k % 4]}, {"fontsize": 6.5, "color": MUTED})
@@ -106,7 +106,7 @@ def _looks(
     return [*lines, (graded, {"color": ACCENT, "lw": 2.0, "zorder": 4}, {"fontsize": 6.5, "color": INK, **BOLD})]
 
 
-def _sensitivities(ax: Axes, graded: Compared, constants: Sequence[Compared]) -> None:
+def _sensitivities(ax: Axes, graded: ComparedMembrane, constants: Sequence[ComparedMembrane]) -> None:
     ends: list[Label] = []
     for one, line, look in _looks(graded, constants):
         points = [(s.driving_pressure / KPA, s.figures.sensitivity) for s in one.states if s.figures is not None]
@@ -119,7 +119,7 @@ def _sensitivities(ax: Axes, graded: Compared, constants: Sequence[Compared]) ->
     label_ends(ax, ends)
 
 
-def _rises(ax: Axes, graded: Compared, constants: Sequence[Compared]) -> None:
+def _rises(ax: Axes, graded: ComparedMembrane, constants: Sequence[ComparedMembrane]) -> None:
     ends: list[Label] = []
     for one, line, look in _looks(graded, constants):
         state = one.states[-1]

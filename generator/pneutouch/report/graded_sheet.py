@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from pneutouch.catalogue import Scene
+from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import ComputationError
-from pneutouch.mechanics import Prediction, Sensor
-from pneutouch.report.graded import Compared, grade_section, graded_against_constant
+from pneutouch.mechanics import Sensor, SensorPrediction
+from pneutouch.report.graded import ComparedMembrane, grade_section, graded_against_constant
 
 CAPTIONS = {
     "grade": "Graded membrane: the stiff resin's share of the wall, laid droplet by droplet; beside it share and modulus along "
@@ -19,7 +19,7 @@ CAPTIONS = {
 }
 
 
-def graded_figures(scene: Scene, sensor: Sensor, prediction: Prediction) -> dict[str, str]:
+def graded_figures(scene: ResolvedDesign, sensor: Sensor, prediction: SensorPrediction) -> dict[str, str]:
     """Figures ``grade`` and ``graded`` as SVG for a graded membrane; nothing for any other."""
     if scene.membrane_material.along is None or sensor.grade is None:
         return {}
@@ -35,17 +35,17 @@ def graded_figures(scene: Scene, sensor: Sensor, prediction: Prediction) -> dict
             found.append(constant)
     return {
         "grade": grade_section(scene.membrane_material, scene),
-        "graded": graded_against_constant(Compared("graded", prediction.states), found),
+        "graded": graded_against_constant(ComparedMembrane("graded", prediction.states), found),
     }
 
 
-def _constant(sensor: Sensor, pressures: np.ndarray, label: str) -> Compared | None:
+def _constant(sensor: Sensor, pressures: np.ndarray, label: str) -> ComparedMembrane | None:
     """A constant membrane at those pressures that it bears; None where it bears none."""
     from pneutouch.mechanics.solid_states import solid_result
 
     for count in range(pressures.size, 0, -1):
         try:
-            return Compared(label, solid_result(sensor, pressures[:count], past_limit=1.0).states)
+            return ComparedMembrane(label, solid_result(sensor, pressures[:count], past_limit=1.0).states)
         except ComputationError:
             continue
     return None

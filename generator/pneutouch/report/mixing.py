@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pneutouch.catalogue.mixture import Mixing
+from pneutouch.catalogue.mixture import ResolvedMixingCurve
 from pneutouch.mechanics.mixing import (
     THRESHOLD,
     hashin_shtrikman_high,
@@ -28,7 +28,7 @@ _COUNT = 601
 class MixingChart:
     """A curve with the moduli of its stiff resin, least and greatest, MPa; ``names`` are those of its points."""
 
-    law: Mixing
+    law: ResolvedMixingCurve
     stiff: tuple[float, float]
     names: tuple[str, ...]
 
@@ -57,7 +57,7 @@ def mixing_chart(chart: MixingChart, size: tuple[float, float]) -> str:
         return svg(drawn)
 
 
-def _curve(ax: Axes, law: Mixing) -> None:
+def _curve(ax: Axes, law: ResolvedMixingCurve) -> None:
     """The band, the curve and its points."""
     # The points' own ends too: the band steps there.
     ends = [end for point in law.curve.points for end in (point.low, point.high)]

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from pneutouch.catalogue import Scene
+from pneutouch.catalogue import ResolvedDesign
 
 
-def part_number(scene: Scene) -> str:
+def part_number(scene: ResolvedDesign) -> str:
     """Part number, such as PNT-R0925-T150-TP-B4-GF-M3."""
     return "-".join(code for code, _ in _fields(scene))
 
 
-def code_table(scene: Scene) -> list[list[str]]:
+def code_table(scene: ResolvedDesign) -> list[list[str]]:
     """Each field of the part number with its meaning."""
     return [[code, meaning] for code, meaning in _fields(scene)]
 
 
-def _fields(scene: Scene) -> list[tuple[str, str]]:
+def _fields(scene: ResolvedDesign) -> list[tuple[str, str]]:
     membrane = scene.design.membrane
     return [
         ("PNT", "pneumatic touch sensor, hemispherical"),

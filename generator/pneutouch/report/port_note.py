@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from pneutouch.catalogue import Scene
+from pneutouch.catalogue import ResolvedDesign
 from pneutouch.spec.part import Barb, Luer, PushIn, Thread
 
 
-def port_note(scene: Scene) -> str:
+def port_note(scene: ResolvedDesign) -> str:
     """The note at the port in the drawing, diameters as drawn."""
     port, wider = scene.port, scene.hole_undersize
     if isinstance(port, Barb):
@@ -18,7 +18,7 @@ def port_note(scene: Scene) -> str:
     return f"Ø{scene.tube.outer_diameter + wider:.4g}\n{port.depth:g} deep"
 
 
-def port_steps(scene: Scene) -> str:
+def port_steps(scene: ResolvedDesign) -> str:
     """How to clean and connect the port."""
     port, tube = scene.port, scene.tube
     size = f"{tube.outer_diameter:g} x {tube.inner_diameter:g} mm"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pneutouch.catalogue import Scene
+from pneutouch.catalogue import ResolvedDesign
 from pneutouch.report.port_note import port_steps
 from pneutouch.spec.part import ClampedFlange, OnePiece, RobotFlange, Sleeve
 
@@ -54,7 +54,7 @@ def tradeoff(pressure: float, dead_volume: float) -> str:
     )
 
 
-def description(scene: Scene) -> str:
+def description(scene: ResolvedDesign) -> str:
     """One paragraph: what it is and how it works."""
     membrane = scene.design.membrane
     return (
@@ -65,7 +65,7 @@ def description(scene: Scene) -> str:
     )
 
 
-def method(scene: Scene) -> tuple[str, ...]:
+def method(scene: ResolvedDesign) -> tuple[str, ...]:
     """How to measure what the sheet predicts, after the paper's section 3-B and Supplement C."""
     indentation = scene.design.indentation
     step = scene.design.depth_mm / indentation.steps
@@ -79,7 +79,7 @@ def method(scene: Scene) -> tuple[str, ...]:
     )
 
 
-def printing(scene: Scene) -> list[str]:
+def printing(scene: ResolvedDesign) -> list[str]:
     """How to print, clean and assemble, in order."""
     grown = isinstance(scene.seat, OnePiece)
     lines = [_print_membrane(scene, grown)]
@@ -101,7 +101,7 @@ def printing(scene: Scene) -> list[str]:
     return [*lines, *_assembly(scene), port_steps(scene), *_mounting(scene)]
 
 
-def _print_membrane(scene: Scene, grown: bool) -> str:
+def _print_membrane(scene: ResolvedDesign, grown: bool) -> str:
     soft, rigid = scene.membrane_material.label, scene.connector_material.label
     up = scene.design.print.orientation == "dome-up"
     if grown:
@@ -121,7 +121,7 @@ def _print_membrane(scene: Scene, grown: bool) -> str:
     )
 
 
-def _assembly(scene: Scene) -> list[str]:
+def _assembly(scene: ResolvedDesign) -> list[str]:
     """How membrane and rigid bodies go together, one way a seat."""
     seat, fit = scene.seat, f"Fit: {scene.fit_clearance:.2f} mm a side"
     if isinstance(seat, ClampedFlange):
@@ -141,7 +141,7 @@ def _assembly(scene: Scene) -> list[str]:
     ]
 
 
-def _mounting(scene: Scene) -> list[str]:
+def _mounting(scene: ResolvedDesign) -> list[str]:
     mount = scene.mount
     if isinstance(mount, RobotFlange):
         return [

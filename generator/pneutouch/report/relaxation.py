@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from pneutouch.mechanics import Prediction, Sensor
+from pneutouch.mechanics import Sensor, SensorPrediction
 from pneutouch.mechanics.viscous.known import ageing_unknown, unknown
 from pneutouch.report.style import ACCENT, INK, LINES, MUTED, figure, plain_ticks, svg
 from pneutouch.spec.material import Material
@@ -15,8 +15,8 @@ from pneutouch.units import KPA
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from pneutouch.mechanics.viscous.describe import Viscous
-    from pneutouch.mechanics.viscous.runs import Loop, Relaxation
+    from pneutouch.mechanics.viscous.describe import ViscousRuns
+    from pneutouch.mechanics.viscous.runs import LoopRun, RelaxationRun
 
 HEAD = (
     "Driving\nkPa", "Data", "Force, 1 to 600 s\n%", "Pressure rise\n%", "per decade\n%",
@@ -27,7 +27,7 @@ _LOST = "The dome returns more slowly than the plate: contact is lost {:.1f} to 
 _COLOURS = (ACCENT, INK, MUTED)
 
 
-def runs_of(prediction: Prediction, material: Material, sensor: Sensor) -> Viscous | str:
+def runs_of(prediction: SensorPrediction, material: Material, sensor: Sensor) -> ViscousRuns | str:
     """The runs of every state of a prediction, or why there are none."""
     why = unknown(sensor, material, prediction.model)
     if why is not None:
@@ -40,7 +40,7 @@ def runs_of(prediction: Prediction, material: Material, sensor: Sensor) -> Visco
     return describe(sensor, material, [state.driving_pressure for state in prediction.states], depth)
 
 
-def section(runs: Viscous | str, ageing: str) -> dict[str, Any]:
+def section(runs: ViscousRuns | str, ageing: str) -> dict[str, Any]:
     """The section as text: a table and its notes, or why it is missing; and the line on ageing."""
     if isinstance(runs, str):
         return {"known": False, "why": runs, "ageing": ageing}
@@ -75,7 +75,7 @@ def section(runs: Viscous | str, ageing: str) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def ageing_line(prediction: Prediction, material: Material, sensor: Sensor) -> str:
+def ageing_line(prediction: SensorPrediction, material: Material, sensor: Sensor) -> str:
     """What a year does to the modulus, to the sensitivity by it, and what was measured."""
     why = ageing_unknown(material)
     if why is not None:
@@ -99,7 +99,7 @@ def ageing_line(prediction: Prediction, material: Material, sensor: Sensor) -> s
     return f"{said}{known}."
 
 
-def held_chart(runs: Viscous, size: tuple[float, float]) -> str:
+def held_chart(runs: ViscousRuns, size: tuple[float, float]) -> str:
     """Force and pressure rise over time at the highest driving pressure; ``size`` in mm."""
     with figure(*size) as drawn:
         ax = drawn.add_subplot()
@@ -121,7 +121,7 @@ def held_chart(runs: Viscous, size: tuple[float, float]) -> str:
         return svg(drawn)
 
 
-def loop_chart(runs: Viscous, size: tuple[float, float]) -> str:
+def loop_chart(runs: ViscousRuns, size: tuple[float, float]) -> str:
     """Pressure rise over force in the quicker loop at the highest driving pressure; ``size`` in mm."""
     quick = list(runs.loops.values())[-1][-1]
     with figure(*size) as drawn:
@@ -148,13 +148,13 @@ def _letter(j: int) -> str:
     return chr(ord("A") + j)
 
 
-def _held(run: Relaxation) -> list[str]:
+def _held(run: RelaxationRun) -> list[str]:
     if run.ended is not None:
         return [_DASH, _DASH, _DASH]
     (force, _), (rise, decade) = run.drop(run.force), run.drop(run.rise)
     return [f"{100 * force:.1f}", f"{100 * rise:.1f}", f"{100 * decade:.1f}"]
 
 
-def _wide(run: Loop) -> str:
+def _wide(run: LoopRun) -> str:
     found = run.hysteresis()
     return _DASH if found is None else f"{100 * found[0]:.1f}"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.calibrate.goodness import Residuals
+from pneutouch.bench.calibrate.goodness import RunResiduals
 from pneutouch.report.style import ACCENT, FAINT, INK, LINES, MARKERS, MUTED, figure, svg
 from pneutouch.units import KPA, ML
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 _SHADES = (INK, ACCENT, MUTED)
 
 
-def residual_chart(runs: Sequence[Residuals], size: tuple[float, float]) -> str:
+def residual_chart(runs: Sequence[RunResiduals], size: tuple[float, float]) -> str:
     """Model less measured: force and pressure over indentation, and pressure over injected volume where there are injections.
 
     Pressures differ by marker, line and shade, so that they are told apart in grayscale. SVG, ``size`` in mm.
@@ -36,7 +36,7 @@ def residual_chart(runs: Sequence[Residuals], size: tuple[float, float]) -> str:
         return svg(drawn)
 
 
-def _curves(top: Axes, bottom: Axes, curves: Sequence[Residuals]) -> None:
+def _curves(top: Axes, bottom: Axes, curves: Sequence[RunResiduals]) -> None:
     pressures = sorted({run.pressure for run in curves})
     for k, pressure in enumerate(pressures):
         group = [run for run in curves if run.pressure == pressure]
@@ -49,7 +49,7 @@ def _curves(top: Axes, bottom: Axes, curves: Sequence[Residuals]) -> None:
     top.legend(loc="best", ncols=min(len(pressures), 4), title="driving pressure", title_fontsize=7)
 
 
-def _injections(ax: Axes, runs: Sequence[Residuals]) -> None:
+def _injections(ax: Axes, runs: Sequence[RunResiduals]) -> None:
     for k, run in enumerate(runs):
         _group(ax, k, [run.at / ML], [run.rise / KPA], run.label)
     ax.set(ylabel="pressure, model less\nmeasured  (kPa)", xlabel="injected volume  (mL)")

@@ -29,7 +29,7 @@ _DPI = 250
 
 
 @dataclass(frozen=True, slots=True)
-class Scanned:
+class ScannedState:
     """One state of the sensor: its label, the pressure signal and the signal's scalogram."""
 
     label: str
@@ -38,7 +38,7 @@ class Scanned:
 
 
 def scalogram_chart(
-    states: Sequence[Scanned], asked: Mapping[str, float], size: tuple[float, float] = SIZE
+    states: Sequence[ScannedState], asked: Mapping[str, float], size: tuple[float, float] = SIZE
 ) -> str:  # fmt: skip
     """States side by side as SVG, colours on one scale; ``asked`` maps labels to frequencies in Hz, ``size`` is in mm.
 
@@ -71,7 +71,7 @@ def _loudest(found: Scalogram) -> float:
     return float((inside if inside.size else found.amplitude).max()) / KPA or 1.0
 
 
-def _draw_signal(ax: Axes, state: Scanned) -> None:
+def _draw_signal(ax: Axes, state: ScannedState) -> None:
     """The signal, or where it has more samples than columns its least and greatest value in each."""
     time, pressure = _outline(state.signal)
     ax.plot(time, pressure / KPA, color=INK, lw=0.6)

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from pneutouch import __version__
-from pneutouch.catalogue import Scene
-from pneutouch.evaluation.chart_data import TradeOff, Tuning
-from pneutouch.mechanics import Prediction
+from pneutouch.catalogue import ResolvedDesign
+from pneutouch.evaluation.chart_data import TradeOff, TuningChart
+from pneutouch.mechanics import SensorPrediction
 from pneutouch.mechanics.limits import RATED_SHARE
-from pneutouch.mechanics.prediction import State
+from pneutouch.mechanics.prediction import SensorState
 from pneutouch.parts import Assembly
 from pneutouch.printability import Finding
 from pneutouch.printability.estimate import JobEstimate
@@ -28,7 +28,7 @@ DASH = "–"
 
 
 @dataclass(frozen=True)
-class Sheet:
+class Datasheet:
     """Everything a datasheet is made from.
 
     Attributes:
@@ -45,9 +45,9 @@ class Sheet:
         tuning: Its sensitivity over the driving pressure; None where the atlas does not know.
     """
 
-    scene: Scene
+    scene: ResolvedDesign
     assembly: Assembly
-    prediction: Prediction
+    prediction: SensorPrediction
     findings: list[Finding]
     input_hash: str
     resins: dict[str, Material]
@@ -55,7 +55,7 @@ class Sheet:
     estimates: tuple[JobEstimate, ...] = ()
     gas: GasNotes | None = None
     tradeoff: TradeOff | None = None
-    tuning: Tuning | None = None
+    tuning: TuningChart | None = None
 
     def content(self) -> dict[str, Any]:
         """The sections of the sheet; every leaf is text, ready to be printed."""
@@ -252,14 +252,14 @@ class Sheet:
         ]
 
 
-def _sensitivity(state: State) -> str:
+def _sensitivity(state: SensorState) -> str:
     return f"{state.figures.sensitivity:.2f}" if state.figures else DASH
 
 
-def _range(state: State) -> str:
+def _range(state: SensorState) -> str:
     return f"0 to {state.figures.force_range[1]:.1f}" if state.figures else DASH
 
 
-def _ends(state: State) -> str:
+def _ends(state: SensorState) -> str:
     kinds = [event.kind for event in state.events if event.ends_range]
     return f"{kinds[0] if kinds else 'depth'}, {state.range_end:.2f} mm"

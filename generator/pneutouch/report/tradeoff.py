@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from pneutouch.evaluation.chart_data import Spot, TradeOff
+from pneutouch.evaluation.chart_data import ChartPoint, TradeOff
 from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MUTED, Label, figure, label_points, plain_ticks, svg
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ def tradeoff_chart(tradeoff: TradeOff, size: tuple[float, float]) -> str:
         return svg(drawn)
 
 
-def _spots(ax: Axes, spots: tuple[Spot, ...]) -> None:
+def _spots(ax: Axes, spots: tuple[ChartPoint, ...]) -> None:
     labels: list[Label] = []
     for k, (_, label, sensitivity, force) in enumerate(spots):
         ax.plot(sensitivity, force, "o", color=INK, mfc=INK if k == 0 else "white", ms=4.5, zorder=6 + (k == 0))

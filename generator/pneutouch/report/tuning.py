@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pneutouch.evaluation.chart_data import Tuning
+from pneutouch.evaluation.chart_data import TuningChart
 from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MUTED, Label, figure, halo, label_ends, svg
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-def tuning_chart(tuning: Tuning, size: tuple[float, float]) -> str:
+def tuning_chart(tuning: TuningChart, size: tuple[float, float]) -> str:
     """Sensitivity over driving pressure with its band, as SVG; ``size`` is width and height in mm."""
     chosen = tuning.chosen
     with figure(*size) as drawn:
@@ -44,7 +44,7 @@ def tuning_chart(tuning: Tuning, size: tuple[float, float]) -> str:
         return svg(drawn)
 
 
-def _mark(ax: Axes, tuning: Tuning) -> None:
+def _mark(ax: Axes, tuning: TuningChart) -> None:
     """The working pressures on the curve, and words for the band and the diamonds where they stand."""
     for pressure, value in tuning.working.items():
         ax.plot([pressure, pressure], [0, value], color=INK, lw=0.6, ls=LINES[4], zorder=2)

@@ -4,7 +4,7 @@
 `choose` ranks them or says what stands in the way.
 """
 
-from pneutouch.selection.choose import Answer, Choice, Way, choose
-from pneutouch.selection.problem import Problem, Resin
+from pneutouch.selection.choose import Candidate, DroppedWish, SelectionResult, choose
+from pneutouch.selection.problem import CandidateResin, SelectionProblem
 
-__all__ = ["Answer", "Choice", "Problem", "Resin", "Way", "choose"]
+__all__ = ["Candidate", "CandidateResin", "DroppedWish", "SelectionProblem", "SelectionResult", "choose"]

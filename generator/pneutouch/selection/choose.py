@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pneutouch.arrays import Array, Flags, Index
-from pneutouch.mechanics.atlas.press import Batch
+from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.limits import RATED_SHARE
-from pneutouch.selection.pool import WISHES, Pool, evaluated, margins
-from pneutouch.selection.problem import Problem, Resin
+from pneutouch.selection.pool import WISHES, CandidatePool, evaluated, margins
+from pneutouch.selection.problem import CandidateResin, SelectionProblem
 from pneutouch.selection.search import search
 
 _EACH = 3
@@ -27,15 +27,15 @@ _REFINABLE = 0.1
 
 _UNKNOWN = -1.0e9
 
-Uncertainty = Callable[[Resin, Batch], Array]
+Uncertainty = Callable[[CandidateResin, SensorBatch], Array]
 """Relative expanded uncertainty of the sensitivity of sensors of one resin, (n,)."""
 
-Refine = Callable[[Problem, Pool], tuple[Problem, Pool]]
+Refine = Callable[[SelectionProblem, CandidatePool], tuple[SelectionProblem, CandidatePool]]
 """Candidates at sizes that can be written down made better in what is still free, in a problem of their own resins."""
 
 
 @dataclass(frozen=True)
-class Choice:
+class Candidate:
     """One candidate with all that it is judged by.
 
     room: margins by name. binding: the smallest but the sensitivity's. expanded: relative expanded uncertainty of the
@@ -43,8 +43,8 @@ class Choice:
     ranking sorts by, less is better.
     """
 
-    resin: Resin
-    pool: Pool
+    resin: CandidateResin
+    pool: CandidatePool
     room: dict[str, float]
     expanded: float
     span: tuple[float, float]
@@ -58,33 +58,33 @@ class Choice:
 
 
 @dataclass(frozen=True)
-class Way:
+class DroppedWish:
     """A wish to give up and the best that can then be had of it."""
 
     wish: str
-    best: Choice
+    best: Candidate
 
 
 @dataclass(frozen=True)
-class Answer:
+class SelectionResult:
     """designs: the best of each resin first, in order of cost, then the runners-up in order of cost.
 
     Without designs: the candidate nearest to the target, and which single wish to give up for a design.
     """
 
-    designs: list[Choice]
-    nearest: Choice | None
-    ways: list[Way]
+    designs: list[Candidate]
+    nearest: Candidate | None
+    ways: list[DroppedWish]
     candidates: int
 
 
 def choose(
-    problem: Problem, weights: tuple[float, float], uncertainty: Uncertainty, refine: Refine | None = None
-) -> Answer:
+    problem: SelectionProblem, weights: tuple[float, float], uncertainty: Uncertainty, refine: Refine | None = None
+) -> SelectionResult:
     """Search, keep what meets every limit, and rank it; weights on robustness and on tunability."""
     pool = search(problem) if problem.resins else None
     if pool is None or pool.resin.size == 0:
-        return Answer([], None, [], 0)
+        return SelectionResult([], None, [], 0)
     room = margins(problem, pool)
     wide = room if refine is None else margins(replace(problem, tolerance=max(problem.tolerance, _REFINABLE)), pool)
     fits = np.all([margin >= 0.0 for margin in wide.values()], axis=0)
@@ -95,7 +95,7 @@ def choose(
         judged = _judged(own, close, weights, uncertainty)
         good = [choice for choice in judged if min(choice.room.values()) >= 0.0]
         if good:
-            return Answer(_ranked(good), None, [], pool.resin.size)
+            return SelectionResult(_ranked(good), None, [], pool.resin.size)
     return _impossible(problem, pool, room, weights, uncertainty)
 
 
@@ -105,7 +105,7 @@ def _room(room: dict[str, Array]) -> Array:
     return np.asarray(np.minimum(np.min(rest, axis=0), 1.0))
 
 
-def _shortlist(pool: Pool, room: dict[str, Array], fits: Flags) -> Index:
+def _shortlist(pool: CandidatePool, room: dict[str, Array], fits: Flags) -> Index:
     """For each resin a few candidates that are not nearly the same, those with the most room first."""
     least = _room(room) + 0.5 * room.get("sensitivity", np.zeros_like(pool.radius))
     chosen: list[int] = []
@@ -121,13 +121,13 @@ def _shortlist(pool: Pool, room: dict[str, Array], fits: Flags) -> Index:
     return np.array(chosen, dtype=np.intp)
 
 
-def _differ(pool: Pool, a: int, b: int) -> bool:
+def _differ(pool: CandidatePool, a: int, b: int) -> bool:
     ratio = (pool.wall[a] / pool.radius[a]) / (pool.wall[b] / pool.radius[b])
     high, low = max(pool.pressure[a], pool.pressure[b]), min(pool.pressure[a], pool.pressure[b])
     return bool(max(ratio, 1 / ratio) >= _APART or high > _APART * low + 1e-3)
 
 
-def _rounded(problem: Problem, pool: Pool) -> Pool:
+def _rounded(problem: SelectionProblem, pool: CandidatePool) -> CandidatePool:
     """The same at sizes that can be written down, still inside the box and the room; what was given stays as given."""
     unit, box = 10.0**-_DIGITS, problem.recipe
     radius = pool.radius if problem.inner_radius is not None else np.floor(pool.radius / unit) * unit
@@ -140,7 +140,9 @@ def _rounded(problem: Problem, pool: Pool) -> Pool:
     return evaluated(problem, pool.resin, radius, wall, pressure)
 
 
-def _judged(problem: Problem, pool: Pool, weights: tuple[float, float], uncertainty: Uncertainty) -> list[Choice]:
+def _judged(
+    problem: SelectionProblem, pool: CandidatePool, weights: tuple[float, float], uncertainty: Uncertainty
+) -> list[Candidate]:
     room = margins(problem, pool)
     least = _room(room)
     rated, span = _span(problem, pool)
@@ -154,7 +156,7 @@ def _judged(problem: Problem, pool: Pool, weights: tuple[float, float], uncertai
         moves = np.abs(np.log(span[1] / span[0]))
     cost = weights[0] * np.nan_to_num(expanded, nan=1.0) - weights[1] * np.nan_to_num(moves) - 0.1 * least
     return [
-        Choice(
+        Candidate(
             problem.resins[int(pool.resin[i])], pool.take(np.array([i])), {name: float(m[i]) for name, m in room.items()},
             float(expanded[i]), (float(span[0][i]), float(span[1][i])), float(rated[i]), float(cost[i]),
         )
@@ -162,7 +164,7 @@ def _judged(problem: Problem, pool: Pool, weights: tuple[float, float], uncertai
     ]  # fmt: skip
 
 
-def _span(problem: Problem, pool: Pool) -> tuple[Array, tuple[Array, Array]]:
+def _span(problem: SelectionProblem, pool: CandidatePool) -> tuple[Array, tuple[Array, Array]]:
     """The rated driving pressure, and the sensitivities at none and at that one."""
     rated = RATED_SHARE * np.fmin(pool.response.limit_pressure, problem.gauge_limit)
     both = [
@@ -172,9 +174,9 @@ def _span(problem: Problem, pool: Pool) -> tuple[Array, tuple[Array, Array]]:
     return rated, (both[0].lines.sensitivity, both[1].lines.sensitivity)
 
 
-def _ranked(choices: list[Choice]) -> list[Choice]:
+def _ranked(choices: list[Candidate]) -> list[Candidate]:
     ordered = sorted(choices, key=lambda choice: (choice.cost, choice.resin.name))
-    first: dict[str, Choice] = {}
+    first: dict[str, Candidate] = {}
     for choice in ordered:
         first.setdefault(choice.resin.name, choice)
     best = list(first.values())
@@ -182,14 +184,18 @@ def _ranked(choices: list[Choice]) -> list[Choice]:
 
 
 def _impossible(
-    problem: Problem, pool: Pool, room: dict[str, Array], weights: tuple[float, float], uncertainty: Uncertainty
-) -> Answer:
+    problem: SelectionProblem,
+    pool: CandidatePool,
+    room: dict[str, Array],
+    weights: tuple[float, float],
+    uncertainty: Uncertainty,
+) -> SelectionResult:
     """The candidate that breaks the least, and each wish whose loss would let one in."""
     every = np.array(list(room.values()))
     worst = np.where(np.isneginf(every), _UNKNOWN, every).min(axis=0)
     nearest = int(np.argmax(worst))
 
-    def close(row: int) -> Choice:
+    def close(row: int) -> Candidate:
         return _judged(problem, _rounded(problem, pool.take(np.array([row]))), weights, uncertainty)[0]
 
     ways = []
@@ -199,6 +205,6 @@ def _impossible(
         rest = np.all([margin >= 0.0 for name, margin in room.items() if name != wish], axis=0)
         if rest.any():
             row = int(np.flatnonzero(rest)[np.argmax(room[wish][rest])])
-            ways.append(Way(wish, close(row)))
+            ways.append(DroppedWish(wish, close(row)))
     known = bool(worst[nearest] > _UNKNOWN)
-    return Answer([], close(nearest) if known else None, ways, pool.resin.size)
+    return SelectionResult([], close(nearest) if known else None, ways, pool.resin.size)

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from pneutouch.arrays import Array, Index
-from pneutouch.selection.pool import Pool, evaluated, joined, margins
-from pneutouch.selection.problem import Problem, Resin
+from pneutouch.selection.pool import CandidatePool, evaluated, joined, margins
+from pneutouch.selection.problem import CandidateResin, SelectionProblem
 
 _RATIOS, _RADII = 36, 20
 _LEVELS = 64
@@ -17,17 +17,17 @@ _STEPS = (0.8, 0.5, 0.3, 0.15, 0.07)
 _WISHES = ("sensitivity", "force range", "stiffness")
 
 
-class Front(NamedTuple):
+class TradeOffFront(NamedTuple):
     """One resin's trade-off in order of sensitivity: kPa/N, N, and the dome it takes, mm; (n,) each, maybe none."""
 
-    resin: Resin
+    resin: CandidateResin
     sensitivity: Array
     force: Array
     radius: Array
     wall: Array
 
 
-def front(problem: Problem) -> list[Front]:
+def front(problem: SelectionProblem) -> list[TradeOffFront]:
     """Fronts of all resins at the problem's driving pressure (none given: no pressure), inside the room and every limit.
 
     No point of a front has both more sensitivity and more force than another. A scan over wall ratio and radius; then, at
@@ -37,7 +37,7 @@ def front(problem: Problem) -> list[Front]:
     return [_of(problem, number) for number in range(len(problem.resins))]
 
 
-def _of(problem: Problem, number: int) -> Front:
+def _of(problem: SelectionProblem, number: int) -> TradeOffFront:
     u, v = np.meshgrid(np.linspace(0.0, 1.0, _RATIOS), np.linspace(0.0, 1.0, _RADII), indexing="ij")
     places = np.stack([u.ravel(), v.ravel()])
     pool = _pool(problem, number, places)
@@ -53,7 +53,7 @@ def _of(problem: Problem, number: int) -> Front:
     return _hull(problem, number, pool)
 
 
-def _pool(problem: Problem, number: int, places: Array) -> Pool:
+def _pool(problem: SelectionProblem, number: int, places: Array) -> CandidatePool:
     """Candidates at places from 0 to 1 of the wall ratio and of the radius between their bounds, (2, n)."""
     box = problem.recipe
     ratio = box.thinnest * (box.thickest / box.thinnest) ** places[0]
@@ -64,13 +64,13 @@ def _pool(problem: Problem, number: int, places: Array) -> Pool:
     return evaluated(problem, number * ones, radius, ratio * radius, (problem.driving_pressure or 0.0) * ones)
 
 
-def _room(problem: Problem, pool: Pool) -> Array:
+def _room(problem: SelectionProblem, pool: CandidatePool) -> Array:
     """Least room to a limit, with the rounding of a bound's own computation forgiven."""
     rest = [margin for name, margin in margins(problem, pool).items() if name not in _WISHES]
     return np.asarray(np.min(rest, axis=0) + 1e-9)
 
 
-def _best(problem: Problem, pool: Pool) -> Index:
+def _best(problem: SelectionProblem, pool: CandidatePool) -> Index:
     """At each level the candidate of most force that is at least so sensitive and keeps every limit, (few,)."""
     good = np.flatnonzero(_room(problem, pool) >= 0.0)
     if good.size == 0:
@@ -82,11 +82,13 @@ def _best(problem: Problem, pool: Pool) -> Index:
     return np.unique(good[np.searchsorted(leader, leader)[last]])
 
 
-def _hull(problem: Problem, number: int, pool: Pool) -> Front:
+def _hull(problem: SelectionProblem, number: int, pool: CandidatePool) -> TradeOffFront:
     """Candidates that meet every limit, without those that another beats in both."""
     rows = np.flatnonzero(_room(problem, pool) >= 0.0)
     rows = rows[np.argsort(-pool.response.lines.sensitivity[rows], kind="stable")]
     force = pool.force[rows]
     rows = rows[force > np.maximum.accumulate(np.concatenate([[-np.inf], force[:-1]]))][::-1] if rows.size else rows
     lines = pool.response.lines
-    return Front(problem.resins[number], lines.sensitivity[rows], pool.force[rows], pool.radius[rows], pool.wall[rows])
+    return TradeOffFront(
+        problem.resins[number], lines.sensitivity[rows], pool.force[rows], pool.radius[rows], pool.wall[rows]
+    )

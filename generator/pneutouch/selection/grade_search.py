@@ -30,7 +30,7 @@ _MISSED = 1.0e3
 
 
 @dataclass(frozen=True)
-class Wish:
+class GradeTarget:
     """What a grade shall do: sensitivity (kPa/N) at each pressure (MPa) within a share, the same at all within another.
 
     force: what the range must reach (N); None where it need not. widest: whether it shall reach as far as it can.
@@ -45,7 +45,7 @@ class Wish:
 
 
 @dataclass(frozen=True)
-class Trial:
+class GradeTrial:
     """One membrane and what the solid says: fractions at pole and rim, by pressure sensitivity and end of the force range
     (NaN where there are no figures), the rated driving pressure (MPa), what ends the ranges, and why there are no figures."""
 
@@ -69,19 +69,19 @@ class Trial:
 
 
 @dataclass(frozen=True)
-class Search:
+class GradeSearch:
     """The best trial, whether it meets the wish, and all trials in order; one solid solve each."""
 
-    best: Trial
+    best: GradeTrial
     met: bool
-    trials: tuple[Trial, ...]
+    trials: tuple[GradeTrial, ...]
 
 
-Try = Callable[[float, float], Trial]
-Progress = Callable[[Trial, int, int], None]
+TryGrade = Callable[[float, float], GradeTrial]
+Progress = Callable[[GradeTrial, int, int], None]
 
 
-def shares(wish: Wish, trial: Trial) -> dict[str, float]:
+def shares(wish: GradeTarget, trial: GradeTrial) -> dict[str, float]:
     """What of each tolerance or limit a trial uses up: at most 1 where it is kept."""
     values = np.array(trial.sensitivity)
     if not np.isfinite(values).all() or values.min() <= 0.0:
@@ -95,7 +95,7 @@ def shares(wish: Wish, trial: Trial) -> dict[str, float]:
     return found
 
 
-def cost(wish: Wish, trial: Trial, spare: float = 1.0) -> float:
+def cost(wish: GradeTarget, trial: GradeTrial, spare: float = 1.0) -> float:
     """What the search makes small: the worst share of the aims; for the widest range, less the more force, where all is kept.
 
     ``spare`` is the share of every tolerance that may be used up for the widest range.
@@ -108,14 +108,14 @@ def cost(wish: Wish, trial: Trial, spare: float = 1.0) -> float:
     return max(value for name, value in used.items() if name not in _LIMITS or value > 1.0)
 
 
-def grade_search(wish: Wish, levels: Array, solve: Try, progress: Progress, most: int) -> Search:
+def grade_search(wish: GradeTarget, levels: Array, solve: TryGrade, progress: Progress, most: int) -> GradeSearch:
     """Fractions at pole and rim between the ends of ``levels``, rising fractions (n,), that meet a wish.
 
     A scan of all pairs of levels, soft ones first; then the best place on a surface through all trials is tried, and again
     with that trial in it. It stops where every tolerance is half kept, or where the surface promises no gain. ``most`` bounds
     the trials of both together.
     """
-    trials: list[Trial] = []
+    trials: list[GradeTrial] = []
 
     def tried(pole: float, rim: float) -> None:
         trials.append(solve(pole, rim))
@@ -132,16 +132,16 @@ def grade_search(wish: Wish, levels: Array, solve: Try, progress: Progress, most
             break
         tried(*place)
     best = min(trials, key=lambda trial: cost(wish, trial))
-    return Search(best, max(shares(wish, best).values()) <= 1.0, tuple(trials))
+    return GradeSearch(best, max(shares(wish, best).values()) <= 1.0, tuple(trials))
 
 
-def _done(wish: Wish, trials: list[Trial]) -> bool:
+def _done(wish: GradeTarget, trials: list[GradeTrial]) -> bool:
     return not wish.widest and any(
         max(shares(wish, trial).values()) <= 1.0 and cost(wish, trial) <= ENOUGH for trial in trials
     )
 
 
-def _promising(wish: Wish, top: float, trials: list[Trial], surface: str) -> tuple[float, float] | None:
+def _promising(wish: GradeTarget, top: float, trials: list[GradeTrial], surface: str) -> tuple[float, float] | None:
     """The place of least cost on the surface through the trials, none tried yet; None where it promises no gain."""
     known = [trial for trial in trials if np.isfinite(trial.sensitivity).all()]
     if len(known) < _FEWEST:
@@ -157,7 +157,7 @@ def _promising(wish: Wish, top: float, trials: list[Trial], surface: str) -> tup
     return (float(centre[0]), float(centre[1])) if gain > _LEAST_GAIN else None
 
 
-def _expected(wish: Wish, top: float, trials: list[Trial], places: Array, surface: str) -> Array:
+def _expected(wish: GradeTarget, top: float, trials: list[GradeTrial], places: Array, surface: str) -> Array:
     """Cost at places (n, 2) by a surface through the logarithms of sensitivities, forces and rated pressures, (n,).
 
     Infinite beside a trial and where the nearest one has no figures.
@@ -170,7 +170,7 @@ def _expected(wish: Wish, top: float, trials: list[Trial], places: Array, surfac
     values = np.exp(RBFInterpolator(at, table, kernel=surface, degree=1)(places / top))
     n = len(wish.pressures)
     costs = np.array([
-        cost(wish, Trial(0.0, 0.0, tuple(v[:n]), tuple(v[n : 2 * n]), v[-1]), _SPARE) for v in values.tolist()
+        cost(wish, GradeTrial(0.0, 0.0, tuple(v[:n]), tuple(v[n : 2 * n]), v[-1]), _SPARE) for v in values.tolist()
     ])  # fmt: skip
     every = np.array([(t.pole, t.rim) for t in trials])
     away = np.hypot(*np.moveaxis(places[:, None, :] - every[None, :, :], -1, 0)) / top

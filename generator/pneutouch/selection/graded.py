@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.catalogue.mixture import Mixing
+from pneutouch.catalogue.mixture import ResolvedMixingCurve
 from pneutouch.errors import ComputationError
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.selection.grade_search import Trial, Wish, cost
-from pneutouch.selection.problem import Problem, Resin
+from pneutouch.selection.grade_search import GradeTarget, GradeTrial, cost
+from pneutouch.selection.problem import CandidateResin, SelectionProblem
 
 _FRACTIONS = 401
 """Constant fractions that the atlas is asked about."""
@@ -21,15 +21,15 @@ _WALLS = 60
 
 
 @dataclass(frozen=True)
-class Constant:
+class UniformMembrane:
     """A membrane of one material, of the size of the graded one. ``fraction`` is None of a catalogue resin."""
 
     name: str
     fraction: float | None
-    trial: Trial
+    trial: GradeTrial
 
 
-def trial_of(sensor: Sensor, pressures: tuple[float, ...], pole: float = np.nan, rim: float = np.nan) -> Trial:
+def trial_of(sensor: Sensor, pressures: tuple[float, ...], pole: float = np.nan, rim: float = np.nan) -> GradeTrial:
     """A sensor's figures by the solid; NaN with the reason where it has none."""
     from pneutouch.mechanics.solid_states import solid_result
 
@@ -37,7 +37,7 @@ def trial_of(sensor: Sensor, pressures: tuple[float, ...], pole: float = np.nan,
     try:
         found = solid_result(sensor, np.array(pressures), past_limit=1.0)
     except ComputationError as error:
-        return Trial(pole, rim, unknown, unknown, 1e-12, note=str(error))
+        return GradeTrial(pole, rim, unknown, unknown, 1e-12, note=str(error))
     sensitivities, forces, ends = [], [], []
     for state in found.states:
         figures = state.figures
@@ -46,15 +46,17 @@ def trial_of(sensor: Sensor, pressures: tuple[float, ...], pole: float = np.nan,
         saturated = None if figures is None else figures.saturation_force
         forces.append(reach if saturated is None else min(reach, saturated))
         ends.append(next((event.kind for event in state.events if event.ends_range), "depth"))
-    return Trial(pole, rim, tuple(sensitivities), tuple(forces), RATED_SHARE * found.limits.lowest, tuple(ends))
+    return GradeTrial(pole, rim, tuple(sensitivities), tuple(forces), RATED_SHARE * found.limits.lowest, tuple(ends))
 
 
-def nearest_fraction(wish: Wish, problem: Problem, law: Mixing, size: tuple[float, float]) -> float | None:
+def nearest_fraction(
+    wish: GradeTarget, problem: SelectionProblem, law: ResolvedMixingCurve, size: tuple[float, float]
+) -> float | None:
     """The constant fraction nearest to a wish at an inner radius and a wall (mm), by the atlas; None where it has no answer."""
     at = np.linspace(0.0, float(law.fraction[-1]), _FRACTIONS)
     strain = law.elongation_at(at) / 100.0
     resins = tuple(
-        Resin("", problem.resins[0].material, float(modulus), float(stretch))
+        CandidateResin("", problem.resins[0].material, float(modulus), float(stretch))
         for modulus, stretch in zip(law.modulus_at(at), 1.0 + np.nan_to_num(strain, nan=np.inf), strict=True)
     )
     mine, ones, numbers = replace(problem, resins=resins), np.ones(at.size), np.arange(at.size, dtype=float)
@@ -64,7 +66,7 @@ def nearest_fraction(wish: Wish, problem: Problem, law: Mixing, size: tuple[floa
     ]
     lines = [answer.lines for answer in answers]
     costs = np.array([
-        cost(wish, Trial(
+        cost(wish, GradeTrial(
             at[k], at[k], tuple(float(line.sensitivity[k]) for line in lines),
             tuple(float(np.fmin(line.force_high[k], line.saturation_force[k])) for line in lines),
             RATED_SHARE * float(np.fmin(answers[0].limit_pressure[k], problem.gauge_limit)),
@@ -75,7 +77,7 @@ def nearest_fraction(wish: Wish, problem: Problem, law: Mixing, size: tuple[floa
     return float(at[np.argmin(np.where(known, costs, np.inf))]) if known.any() else None
 
 
-def middle_wall(wish: Wish, problem: Problem, radius: float, thickest: float) -> float | None:
+def middle_wall(wish: GradeTarget, problem: SelectionProblem, radius: float, thickest: float) -> float | None:
     """The wall (mm) with which the problem's one resin has the sensitivity wished for, by the atlas; None where it has no answer.
 
     With a mix of middle modulus either end of a grade is then free to be softer or stiffer.

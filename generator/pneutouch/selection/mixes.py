@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from pneutouch.arrays import Array, Index
-from pneutouch.catalogue.mixture import Mixing
-from pneutouch.selection.pool import Pool, evaluated, margins
-from pneutouch.selection.problem import Problem, Resin
+from pneutouch.catalogue.mixture import ResolvedMixingCurve
+from pneutouch.selection.pool import CandidatePool, evaluated, margins
+from pneutouch.selection.problem import CandidateResin, SelectionProblem
 
 LEVELS = 24
 """Fractions tried, even in the logarithm of the modulus: 16 % apart for TangoPlus and VeroClear."""
@@ -20,18 +20,20 @@ _POLISH = 12
 _DIGITS = 4
 """A fraction is given to a hundredth of a percent, below what a droplet pattern resolves."""
 
-Mixed = Callable[[float], Resin]
+MixedResin = Callable[[float], CandidateResin]
 """The mix of a fraction as a resin."""
 
 
-def levels(law: Mixing, count: int = LEVELS) -> Array:
+def levels(law: ResolvedMixingCurve, count: int = LEVELS) -> Array:
     """Fractions (count,) from the soft resin to the last point of the curve, even in the logarithm of the modulus."""
     fine = np.linspace(0.0, float(law.fraction[-1]), 2001)
     logs = np.log(law.modulus_at(fine))
     return np.interp(np.linspace(logs[0], logs[-1], count), logs, fine)
 
 
-def met_by_fraction(problem: Problem, pool: Pool, law: Mixing, mixed: Mixed) -> tuple[Problem, Pool]:
+def met_by_fraction(
+    problem: SelectionProblem, pool: CandidatePool, law: ResolvedMixingCurve, mixed: MixedResin
+) -> tuple[SelectionProblem, CandidatePool]:
     """The best few candidates with the fraction at which the sensitivity is met at their sizes and pressures.
 
     Returns a problem whose resins are these mixes, one each, and the candidates evaluated. Bisected where two neighbouring
@@ -49,12 +51,12 @@ def met_by_fraction(problem: Problem, pool: Pool, law: Mixing, mixed: Mixed) -> 
     return own, evaluated(own, np.arange(len(resins), dtype=float), pool.radius, pool.wall, pool.pressure)
 
 
-def _fraction(resin: Resin) -> float:
+def _fraction(resin: CandidateResin) -> float:
     assert resin.grade is not None
     return resin.grade.fractions[0]
 
 
-def _best(problem: Problem, pool: Pool) -> Index:
+def _best(problem: SelectionProblem, pool: CandidatePool) -> Index:
     """Candidates with the most room, one a fraction at most."""
     room = [margin for name, margin in margins(problem, pool).items() if name != "sensitivity"]
     order = np.argsort(-np.minimum(np.min(room, axis=0), 1.0), kind="stable")
@@ -62,7 +64,7 @@ def _best(problem: Problem, pool: Pool) -> Index:
     return order[np.sort(first)[:_KEPT]]
 
 
-def _bisected(problem: Problem, pool: Pool, law: Mixing, at: Array) -> Array:
+def _bisected(problem: SelectionProblem, pool: CandidatePool, law: ResolvedMixingCurve, at: Array) -> Array:
     """Fractions (n,) between the neighbouring levels at which the sensitivity is the one wanted."""
     assert problem.sensitivity is not None
     known = levels(law)

@@ -7,26 +7,28 @@ from typing import NamedTuple
 import numpy as np
 
 from pneutouch.arrays import Array, Flags, Index
-from pneutouch.mechanics.atlas.respond import BREAK, OUTSIDE, Response, respond
+from pneutouch.mechanics.atlas.respond import BREAK, OUTSIDE, AtlasResponse, respond
 from pneutouch.mechanics.limits import RATED_SHARE
-from pneutouch.selection.problem import Problem
+from pneutouch.selection.problem import SelectionProblem
 
 WISHES = ("sensitivity", "force range", "stiffness", "outer diameter")
 """What a user asks for and may give up."""
 
 
-class Pool(NamedTuple):
+class CandidatePool(NamedTuple):
     """Candidates, (n,) each: number of the resin, mm, MPa, and the response."""
 
     resin: Array
     radius: Array
     wall: Array
     pressure: Array
-    response: Response
+    response: AtlasResponse
 
-    def take(self, rows: Index | Flags) -> Pool:
+    def take(self, rows: Index | Flags) -> CandidatePool:
         """Some of the candidates."""
-        return Pool(self.resin[rows], self.radius[rows], self.wall[rows], self.pressure[rows], self.response.take(rows))
+        return CandidatePool(
+            self.resin[rows], self.radius[rows], self.wall[rows], self.pressure[rows], self.response.take(rows)
+        )
 
     @property
     def force(self) -> Array:
@@ -35,21 +37,21 @@ class Pool(NamedTuple):
         return np.fmin(lines.force_high, lines.saturation_force)
 
 
-def evaluated(problem: Problem, resin: Array, radius: Array, wall: Array, pressure: Array) -> Pool:
+def evaluated(problem: SelectionProblem, resin: Array, radius: Array, wall: Array, pressure: Array) -> CandidatePool:
     """Candidates with their responses from the atlas."""
     batch = problem.batch(resin, radius, wall, pressure)
-    return Pool(resin, radius, wall, pressure, respond(batch, problem.steps))
+    return CandidatePool(resin, radius, wall, pressure, respond(batch, problem.steps))
 
 
-def joined(pools: list[Pool]) -> Pool:
+def joined(pools: list[CandidatePool]) -> CandidatePool:
     """Several pools as one."""
     resin, radius, wall, pressure = (
         np.concatenate(column) for column in zip(*((p.resin, p.radius, p.wall, p.pressure) for p in pools), strict=True)
     )
-    return Pool(resin, radius, wall, pressure, Response.join([pool.response for pool in pools]))
+    return CandidatePool(resin, radius, wall, pressure, AtlasResponse.join([pool.response for pool in pools]))
 
 
-def margins(problem: Problem, pool: Pool) -> dict[str, Array]:
+def margins(problem: SelectionProblem, pool: CandidatePool) -> dict[str, Array]:
     """Relative room to each limit, (n,) each: negative where it is broken, -inf where nothing can be said.
 
     Wishes: sensitivity (1 on the spot, 0 at the tolerance), force range, stiffness, outer diameter. Limits: limit point
@@ -77,7 +79,7 @@ def margins(problem: Problem, pool: Pool) -> dict[str, Array]:
     }
 
 
-def _limits(problem: Problem, pool: Pool) -> dict[str, Array]:
+def _limits(problem: SelectionProblem, pool: CandidatePool) -> dict[str, Array]:
     strain = np.array([resin.break_stretch for resin in problem.resins])[pool.resin.astype(np.intp)] - 1.0
     with np.errstate(divide="ignore", invalid="ignore"):
         torn = strain / (pool.response.max_stretch - 1.0) - 1.0
@@ -90,7 +92,7 @@ def _limits(problem: Problem, pool: Pool) -> dict[str, Array]:
         }
 
 
-def _rise(problem: Problem, pool: Pool) -> Array:
+def _rise(problem: SelectionProblem, pool: CandidatePool) -> Array:
     """Pressure rise at the force wanted, or at the end of the range where that comes first; none without a wish."""
     force, rise = pool.response.force, pool.response.rise
     if problem.force_range is None:

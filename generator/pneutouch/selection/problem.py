@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.atlas.press import Batch
-from pneutouch.mechanics.atlas.recipe import Recipe
+from pneutouch.mechanics.atlas.press import SensorBatch
+from pneutouch.mechanics.atlas.recipe import AtlasRecipe
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
 
@@ -18,7 +18,7 @@ _SMALLEST, _LARGEST = 2.0, 60.0
 
 
 @dataclass(frozen=True)
-class Resin:
+class CandidateResin:
     """A resin as the atlas needs it; ``grade`` where it is mixed from two."""
 
     name: str
@@ -29,10 +29,10 @@ class Resin:
 
 
 @dataclass(frozen=True)
-class Problem:
+class SelectionProblem:
     """What is wanted of a sensor and what is settled; None where free. depth_share: plate travel over R0."""
 
-    resins: tuple[Resin, ...]
+    resins: tuple[CandidateResin, ...]
     sensitivity: float | None
     tolerance: float
     driving_pressure: float | None
@@ -48,13 +48,13 @@ class Problem:
     gauge_limit: float
     depth_share: float
     steps: int
-    recipe: Recipe
+    recipe: AtlasRecipe
 
-    def batch(self, resin: Array, radius: Array, wall: Array, pressure: Array) -> Batch:
+    def batch(self, resin: Array, radius: Array, wall: Array, pressure: Array) -> SensorBatch:
         """Candidates as sensors; resin (n,) numbers, radius and wall (n,) mm, pressure (n,) MPa."""
         index = resin.astype(np.intp)
         ones = np.ones(radius.size)
-        return Batch(
+        return SensorBatch(
             radius, wall, np.array([r.shear_modulus for r in self.resins])[index], ones * self.ambient_pressure,
             self.dead_volume(radius), pressure, radius * self.depth_share, ones * self.plate_radius,
             ones * self.gauge_limit, np.array([r.break_stretch for r in self.resins])[index],

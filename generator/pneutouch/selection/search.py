@@ -9,8 +9,8 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.limits import RATED_SHARE
-from pneutouch.selection.pool import Pool, evaluated, joined
-from pneutouch.selection.problem import Problem
+from pneutouch.selection.pool import CandidatePool, evaluated, joined
+from pneutouch.selection.problem import SelectionProblem
 
 _RADII, _RATIOS, _PRESSURES = 8, 14, 6
 """Points of the scan in each free direction; the last free one, along which the sensitivity is met, gets `_LINE`."""
@@ -19,7 +19,7 @@ _POLISH = 4
 
 
 @dataclass(frozen=True)
-class Grid:
+class CandidateGrid:
     """Candidates as a block, the last axis being the direction along which the sensitivity is met; (..., n) each."""
 
     resin: Array
@@ -28,7 +28,7 @@ class Grid:
     pressure: Array
 
 
-def search(problem: Problem) -> Pool:
+def search(problem: SelectionProblem) -> CandidatePool:
     """Every candidate looked at: the scan, and the points on it where the sensitivity is the one wanted."""
     grid = scan(problem)
     coarse = evaluated(problem, *(part.ravel() for part in (grid.resin, grid.radius, grid.wall, grid.pressure)))
@@ -38,7 +38,7 @@ def search(problem: Problem) -> Pool:
     return coarse if exact is None else joined([exact, coarse])
 
 
-def scan(problem: Problem) -> Grid:
+def scan(problem: SelectionProblem) -> CandidateGrid:
     """A coarse grid over resin and whatever is free, inside the atlas's box, the room and the printer's least wall."""
     resins = np.arange(len(problem.resins), dtype=float)
     line = _RADII if problem.inner_radius is None else _LINE
@@ -65,10 +65,10 @@ def scan(problem: Problem) -> Grid:
         # Nothing is free along the radius: the line runs along the wall, else along the pressure.
         axis = 2 if ratio.shape[2] > 1 else 1
         blocks = [np.moveaxis(block, axis, -1) for block in blocks]
-    return Grid(*blocks)
+    return CandidateGrid(*blocks)
 
 
-def _ratios(problem: Problem, count: int) -> Array:
+def _ratios(problem: SelectionProblem, count: int) -> Array:
     box = problem.recipe
     if problem.inner_radius is not None and problem.wall_thickness is not None:
         return np.array([problem.wall_thickness / problem.inner_radius])
@@ -82,7 +82,7 @@ def _ratios(problem: Problem, count: int) -> Array:
     return np.geomspace(low, high, count) if low < high else np.zeros(0)
 
 
-def _pressures(problem: Problem, resins: Array, ratio: Array) -> Array:
+def _pressures(problem: SelectionProblem, resins: Array, ratio: Array) -> Array:
     """Driving pressures over (resin, pressure, wall, radius): the one given, or shares of what each may be driven to."""
     if problem.driving_pressure is not None:
         return np.full((resins.size, 1, *ratio.shape), problem.driving_pressure)
@@ -94,7 +94,7 @@ def _pressures(problem: Problem, resins: Array, ratio: Array) -> Array:
     return np.asarray(shares[:, None, None] * top[:, None])
 
 
-def _met(problem: Problem, grid: Grid, coarse: Pool) -> Pool | None:
+def _met(problem: SelectionProblem, grid: CandidateGrid, coarse: CandidatePool) -> CandidatePool | None:
     """Points between neighbours of the scan where the sensitivity passes the one wanted; None where it never does."""
     assert problem.sensitivity is not None
     off = _off(problem.sensitivity, coarse).reshape(grid.radius.shape)
@@ -119,7 +119,7 @@ def _met(problem: Problem, grid: Grid, coarse: Pool) -> Pool | None:
     return pool
 
 
-def _off(wanted: float, pool: Pool) -> Array:
+def _off(wanted: float, pool: CandidatePool) -> Array:
     """Logarithm of the sensitivity over the one wanted; NaN where there is none."""
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.asarray(np.log(pool.response.lines.sensitivity / wanted))

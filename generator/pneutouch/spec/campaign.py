@@ -43,7 +43,7 @@ def _column(name: str, unit: str) -> Column:
     return Column(name=name, unit=unit)
 
 
-class Columns(Table):
+class ColumnMap(Table):
     """[columns]: the column map. Position counts into the sensor, force and pressure rise as it is pressed."""
 
     time: Column = _column("time_s", "s")
@@ -53,7 +53,7 @@ class Columns(Table):
     volume: Column = _column("volume_mL", "mL")
 
     @model_validator(mode="after")
-    def _known_units(self) -> Columns:
+    def _known_units(self) -> ColumnMap:
         for key, units in UNITS.items():
             unit = getattr(self, key).unit
             if unit not in units:
@@ -78,7 +78,7 @@ class Rig(Table):
     rate_Hz: float = number(10_000.0, unit="Hz", low=1, high=1e6, help="Sampling rate.")  # noqa: N815
 
 
-class Run(Table):
+class CampaignRun(Table):
     """One [[runs]] entry: a file and what was measured in it."""
 
     file: str = Field(min_length=1, description="Path of the CSV or parquet file, from the campaign's folder.")
@@ -110,8 +110,8 @@ class Campaign(Table):
         None, unit="kPa", low=20, high=1000, help="Absolute pressure in the laboratory; left out: the design's."
     )
     rig: Rig = Rig()
-    columns: Columns = Columns()
-    runs: list[Run] = Field(min_length=1, max_length=100_000, description="The runs.")
+    columns: ColumnMap = ColumnMap()
+    runs: list[CampaignRun] = Field(min_length=1, max_length=100_000, description="The runs.")
 
     @model_validator(mode="after")
     def _runs_differ(self) -> Campaign:

@@ -40,7 +40,7 @@ Shore = Annotated[list[float], _readings(0, 100, "on the Shore scale")]
 Lengths = Annotated[list[float], _readings(0.01, 1000, "mm")]
 Masses = Annotated[list[float], _readings(1e-4, 1e4, "g")]
 Pressures = Annotated[list[float], _readings(0.1, 1000, "kPa")]
-Curve = Annotated[list[float], _readings(1e-6, 1e5, "", least=3)]
+CurveReadings = Annotated[list[float], _readings(1e-6, 1e5, "", least=3)]
 
 
 class Puck(Table):
@@ -63,17 +63,17 @@ class Puck(Table):
         return self
 
 
-class Specimen(Table):
+class DumbbellSpecimen(Table):
     """One dumbbell: its narrow part, and its curve point by point."""
 
     width_mm: Lengths = Field(default_factory=list)
     thickness_mm: Lengths = Field(default_factory=list)
     gauge_length_mm: float = Field(default=25.0, gt=0, le=1000, description="Distance of the bench marks.")
-    extension_mm: Curve = Field(default_factory=list)
-    force_N: Curve = Field(default_factory=list)  # noqa: N815
+    extension_mm: CurveReadings = Field(default_factory=list)
+    force_N: CurveReadings = Field(default_factory=list)  # noqa: N815
 
     @model_validator(mode="after")
-    def _complete(self) -> Specimen:
+    def _complete(self) -> DumbbellSpecimen:
         given = [self.width_mm, self.thickness_mm, self.extension_mm]
         if any(given) and not all(given):
             raise ValueError("width_mm, thickness_mm, extension_mm and force_N belong together; one of them is empty")
@@ -89,7 +89,7 @@ class Dumbbell(Table):
 
     hold_s: float = Field(default=60.0, ge=0, le=1e6, description="Hold at each point before the force is read, s.")
     largest_strain: float = Field(default=0.2, ge=0.02, le=2, description="Points beyond are left out of the fit.")
-    specimen: list[Specimen] = Field(default_factory=list)
+    specimen: list[DumbbellSpecimen] = Field(default_factory=list)
 
 
 class MixedCoupons(Table):
@@ -111,7 +111,7 @@ def _rising(points: list[MixedCoupons]) -> list[MixedCoupons]:
 Blends = Annotated[list[MixedCoupons], AfterValidator(_rising)]
 
 
-class Size(Table):
+class GaugeSize(Table):
     """One feature of the gauge. ``came_out`` is false where it is missing, broken, blocked or grown together."""
 
     nominal_mm: float = Field(gt=0, le=100)
@@ -119,7 +119,7 @@ class Size(Table):
     came_out: bool | None = None
 
     @model_validator(mode="after")
-    def _agree(self) -> Size:
+    def _agree(self) -> GaugeSize:
         if self.came_out is False and self.measured_mm:
             raise ValueError(
                 f"nominal_mm = {self.nominal_mm:g}: came_out = false, but it was measured; give one of both"
@@ -135,13 +135,13 @@ class Size(Table):
 class Gauge(Table):
     """[gauge.PRINTER.MATERIAL]: the block's lengths, then the rows of the gauge."""
 
-    x: list[Size] = Field(default_factory=list)
-    y: list[Size] = Field(default_factory=list)
-    z: list[Size] = Field(default_factory=list)
-    wall: list[Size] = Field(default_factory=list)
-    pin: list[Size] = Field(default_factory=list)
-    hole: list[Size] = Field(default_factory=list)
-    slot: list[Size] = Field(default_factory=list)
+    x: list[GaugeSize] = Field(default_factory=list)
+    y: list[GaugeSize] = Field(default_factory=list)
+    z: list[GaugeSize] = Field(default_factory=list)
+    wall: list[GaugeSize] = Field(default_factory=list)
+    pin: list[GaugeSize] = Field(default_factory=list)
+    hole: list[GaugeSize] = Field(default_factory=list)
+    slot: list[GaugeSize] = Field(default_factory=list)
 
 
 class LeakCap(Table):
@@ -170,7 +170,7 @@ class VolumePlug(Table):
     gauge_accuracy_kPa: float = Field(default=0.0, ge=0, le=100, description="Standard uncertainty of the gauge.")  # noqa: N815
 
 
-class Results(Table):
+class CouponResults(Table):
     """A whole results file."""
 
     lab: Printable = Field(min_length=1, max_length=80, description='who measured, such as "Soft lab, room 2"')
@@ -183,10 +183,10 @@ class Results(Table):
     volume_plug: dict[str, VolumePlug] = Field(default_factory=dict, alias="volume-plug")
 
 
-def read_results(path: Path) -> Results:
+def read_results(path: Path) -> CouponResults:
     """Read a results file. Raises InputError that names file, key, value and what would be right."""
     try:
-        return Results.model_validate(read_toml(path))
+        return CouponResults.model_validate(read_toml(path))
     except ValidationError as error:
         lines = [f"{path}: {_explained(detail)}" for detail in error.errors()]
         raise InputError("\n".join(lines)) from None
@@ -200,19 +200,19 @@ def _explained(detail: Any) -> str:
         return f"{key}: {detail['ctx']['error']}"
     if kind == "extra_forbidden":
         owner = _owner([step for step in detail["loc"][:-1] if isinstance(step, str)])
-        what = "coupon" if owner is Results else "key"
+        what = "coupon" if owner is CouponResults else "key"
         return (
             f"{key}: unknown {what}.{nearest(last, [info.alias or name for name, info in owner.model_fields.items()])}"
         )
     if kind == "missing":
-        return f"{key}: missing; give {Results.model_fields[last].description if last in Results.model_fields else 'a number'}"
+        return f"{key}: missing; give {CouponResults.model_fields[last].description if last in CouponResults.model_fields else 'a number'}"
     message = str(detail["msg"]).removeprefix("Input ").replace("valid ", "").replace("dictionary", "table")
     return f"{key} = {detail['input']!r}: {message}"
 
 
 def _owner(path: list[str]) -> type[Table]:
     """The table that a path of keys leads to; names of materials, printers and designs are passed over."""
-    owner: type[Table] = Results
+    owner: type[Table] = CouponResults
     for step in path:
         field = next((name for name, info in owner.model_fields.items() if step in (name, info.alias)), None)
         found = None if field is None else _inner(owner, field)
@@ -221,7 +221,7 @@ def _owner(path: list[str]) -> type[Table]:
 
 
 def _inner(owner: type[Table], field: str) -> type[Table] | None:
-    if owner is Results and field == "gauge":
+    if owner is CouponResults and field == "gauge":
         return Gauge
     found = table_of(owner, field)
     return found if found is not None and issubclass(found, Table) else None

@@ -115,7 +115,7 @@ class Print(Table):
     )
 
 
-class Design(Table):
+class DesignFile(Table):
     """A whole design file."""
 
     document: Document = Document()
@@ -132,7 +132,7 @@ class Design(Table):
         return 0.75 * self.membrane.inner_radius_mm if given is None else given
 
     @model_validator(mode="after")
-    def _depth_inside_dome(self) -> Design:
+    def _depth_inside_dome(self) -> DesignFile:
         if self.depth_mm > 0.95 * self.membrane.inner_radius_mm:
             raise ValueError(
                 f"indentation.depth_mm = {self.depth_mm:g} must be at most 0.95 of "

@@ -95,4 +95,4 @@ def table_of(model: type[BaseModel], key: str) -> type[BaseModel] | None:
     return None
 
 
-Kind = Literal["elastomer", "rigid"]
+MaterialKind = Literal["elastomer", "rigid"]

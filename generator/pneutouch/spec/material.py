@@ -8,11 +8,11 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
-from pneutouch.spec.fields import Kind, Table
+from pneutouch.spec.fields import MaterialKind, Table
 from pneutouch.spec.quantity import Quantity
 
 
-class Measured(Table):
+class PaperMeasurements(Table):
     """What the paper measured on its own sensor (R0 9.25 mm, t0 1.5 mm) in this material, Table S1."""
 
     sensitivity_0kPa_kPa_per_N: Quantity  # noqa: N815
@@ -55,7 +55,7 @@ class Mix(Table):
         return self
 
 
-class AlongArc(Table):
+class ArcGrading(Table):
     """What a graded membrane is along its arc, from the pole (0) to the rim (1): lists of one length, straight between."""
 
     arc: list[float] = Field(min_length=2)
@@ -63,7 +63,7 @@ class AlongArc(Table):
     shear_modulus_MPa: list[float] = Field(min_length=2)  # noqa: N815
 
     @model_validator(mode="after")
-    def _of_one_length(self) -> AlongArc:
+    def _of_one_length(self) -> ArcGrading:
         if not len(self.arc) == len(self.stiff_fraction) == len(self.shear_modulus_MPa):
             raise ValueError("along: arc, stiff_fraction and shear_modulus_MPa must be of one length")
         if self.arc[0] != 0 or self.arc[-1] != 1 or any(b <= a for a, b in pairwise(self.arc)):
@@ -104,7 +104,7 @@ class Material(Table):
 
     title: str = Field(description="Name as people say it.")
     code: str = Field(description="Short form for part numbers.")
-    kind: Kind = Field(description="elastomer or rigid.")
+    kind: MaterialKind = Field(description="elastomer or rigid.")
     base_resins: list[str] = Field(min_length=1, max_length=3, description="Resins the machine jets.")
     colour: str = Field(pattern=r"^#[0-9A-F]{6}$", description="Display colour; carries no meaning.")
     density_g_per_cm3: Quantity
@@ -117,9 +117,9 @@ class Material(Table):
     tensile_strength_MPa: Quantity | None = None  # noqa: N815
     elongation_at_break_percent: Quantity | None = None
     law: HyperelasticLaw | None = None
-    measured: Measured | None = None
+    measured: PaperMeasurements | None = None
     mix: Mix | None = None
-    along: AlongArc | None = Field(default=None, description="Of a graded membrane; its numbers are means then.")
+    along: ArcGrading | None = Field(default=None, description="Of a graded membrane; its numbers are means then.")
     relaxation: list[Relaxation] = Field(default=[], max_length=8, description="One entry a source.")
     shear_modulus_is: Literal["relaxed", "instantaneous"] | None = Field(
         default=None, description="Which modulus shear_modulus_MPa is: relaxed (long-term) or instantaneous."

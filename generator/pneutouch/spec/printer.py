@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field, field_validator
 
-from pneutouch.spec.fields import Kind, Table
+from pneutouch.spec.fields import MaterialKind, Table
 from pneutouch.spec.material import Material
 from pneutouch.spec.quantity import Quantity
 from pneutouch.units import UM
@@ -62,7 +62,7 @@ class VoxelPrint(Table):
     source: str = Field(min_length=8)
 
 
-class Feature(Table):
+class FeatureSize(Table):
     """A smallest size in mm: below ``least`` it fails, below ``recommended`` it is at risk."""
 
     least: float | None = Field(default=None, gt=0)
@@ -70,23 +70,23 @@ class Feature(Table):
     source: str = Field(min_length=8)
 
 
-class Smallest(Table):
+class SmallestSizes(Table):
     """Smallest features, walls and pins by kind of material; ``channel`` is a hole much longer than wide."""
 
-    wall_rigid_mm: Feature
-    wall_soft_mm: Feature
-    pin_rigid_mm: Feature
-    pin_soft_mm: Feature
-    hole_mm: Feature
-    channel_mm: Feature
-    gap_mm: Feature
-    emboss_mm: Feature
+    wall_rigid_mm: FeatureSize
+    wall_soft_mm: FeatureSize
+    pin_rigid_mm: FeatureSize
+    pin_soft_mm: FeatureSize
+    hole_mm: FeatureSize
+    channel_mm: FeatureSize
+    gap_mm: FeatureSize
+    emboss_mm: FeatureSize
 
-    def wall(self, kind: Kind) -> Feature:
+    def wall(self, kind: MaterialKind) -> FeatureSize:
         """The wall limit for a kind of material."""
         return self.wall_soft_mm if kind == "elastomer" else self.wall_rigid_mm
 
-    def pin(self, kind: Kind) -> Feature:
+    def pin(self, kind: MaterialKind) -> FeatureSize:
         """The limit of a free-standing pin for a kind of material."""
         return self.pin_soft_mm if kind == "elastomer" else self.pin_rigid_mm
 
@@ -99,7 +99,7 @@ class Printer(Table):
     envelope_mm: Envelope
     resolution: Resolution
     accuracy_mm: Quantity
-    smallest: Smallest
+    smallest: SmallestSizes
     resins: list[str] = Field(min_length=1, description="Base resins or filaments the machine runs.")
     resins_at_once: int = Field(ge=1, le=8)
     mode: list[Mode] = Field(min_length=1)

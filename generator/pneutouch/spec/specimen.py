@@ -200,7 +200,7 @@ class MinimalSurface(_Celled):
         return self
 
 
-class Frame(Table):
+class FramePlate(Table):
     """[frame]: a rigid plate under the block, wider than it, with a hole in each corner and a cut corner at x = y = 0."""
 
     material: str | None = Field(
@@ -232,7 +232,7 @@ class Specimen(Table):
     block: Block = Block()
     scan: Scan = Scan()
     layer: list[SerializeAsAny[Layer]] = Field(min_length=1, max_length=50, description="one [[layer]] a pattern")
-    frame: Frame | None = None
+    frame: FramePlate | None = None
     print: SpecimenPrint = SpecimenPrint()
 
 

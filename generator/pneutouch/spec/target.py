@@ -11,7 +11,7 @@ from pneutouch.spec.fields import Table, number
 Names = Annotated[list[str], Field(min_length=1, max_length=50)]
 
 
-class Wanted(Table):
+class TargetFigures(Table):
     """[target]: what the sensor shall do. Whatever is left out is free."""
 
     sensitivity_kPa_per_N: float | None = number(  # noqa: N815
@@ -45,7 +45,7 @@ class Wanted(Table):
     )
 
     @model_validator(mode="after")
-    def _says_something(self) -> Wanted:
+    def _says_something(self) -> TargetFigures:
         least, most = self.stiffness_least_N_per_mm, self.stiffness_most_N_per_mm
         if least is not None and most is not None and least > most:
             raise ValueError(
@@ -57,7 +57,7 @@ class Wanted(Table):
         return self
 
     @model_validator(mode="after")
-    def _sound_wish_of_a_grade(self) -> Wanted:
+    def _sound_wish_of_a_grade(self) -> TargetFigures:
         both = self.same_sensitivity_at_kPa
         if both is None:
             return self
@@ -134,7 +134,7 @@ class Weights(Table):
 class Target(Table):
     """A whole target file."""
 
-    target: Wanted
+    target: TargetFigures
     given: Given = Given()
     setting: Setting = Setting()
     weights: Weights = Weights()

@@ -6,7 +6,7 @@ import textwrap
 from collections.abc import Mapping
 from typing import Any
 
-from pneutouch.spec.design import Design
+from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import Declaration, declarations, table_of
 from pneutouch.spec.toml_text import value_text
 
@@ -18,8 +18,8 @@ def design_template(title: str, values: Mapping[str, Mapping[str, Any]] | None =
     """
     chosen = values or {}
     blocks = [f"# {title}: a pneutouch design. {note or 'Every key may be left out; shown are the defaults.'}"]
-    for key in Design.model_fields:
-        model = table_of(Design, key)
+    for key in DesignFile.model_fields:
+        model = table_of(DesignFile, key)
         assert model is not None
         lines = [f"[{key}]"]
         for entry in declarations(model):

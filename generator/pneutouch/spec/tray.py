@@ -25,7 +25,7 @@ def _setting(given: Any) -> Any:
     return given
 
 
-Setting = Annotated[str | float | int | list[float | int], BeforeValidator(_setting)]
+EntryValue = Annotated[str | float | int | list[float | int], BeforeValidator(_setting)]
 Role = Literal["membrane", "connector", "ring", "plug"]
 Marks = Literal["engraved", "raised", "none"]
 
@@ -55,10 +55,10 @@ class Entry(Table):
 
     design: str = Field(min_length=1, description="name of a design, or a .toml beside the tray file")
     copies: int = Field(default=1, ge=LEAST_COPIES, le=MOST_COPIES, description=f"from {LEAST_COPIES} to {MOST_COPIES}")
-    over: dict[str, Annotated[list[Setting], Field(min_length=1, max_length=50)]] = Field(
+    over: dict[str, Annotated[list[EntryValue], Field(min_length=1, max_length=50)]] = Field(
         default={}, description='one "table.key" with its values'
     )
-    set: dict[str, Setting] = Field(default={}, description='"table.key" = value for every part of the entry')
+    set: dict[str, EntryValue] = Field(default={}, description='"table.key" = value for every part of the entry')
 
     @field_validator("over", "set", mode="before")
     @classmethod

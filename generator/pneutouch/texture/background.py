@@ -24,7 +24,7 @@ _CLIP = 3.0
 
 
 @dataclass(frozen=True, slots=True)
-class Fitter:
+class BackgroundFitter:
     """Fits backgrounds to records of one length: ``taper`` (n,), the ``bins`` used, their ln f scaled to [-1, 1]."""
 
     rate: float
@@ -84,7 +84,7 @@ class Fitter:
 
 def fitter(
     count: int, rate: float, low: float, high: float, lines: Array, overtones: Array, band: float
-) -> Fitter:  # fmt: skip
+) -> BackgroundFitter:  # fmt: skip
     """A fitter for records of ``count`` samples at ``rate`` Hz over ``low`` to ``high`` Hz, beside ``lines`` (m,) Hz.
 
     Left out beside each line are the share ``band`` and the two bins that the Hann taper spreads a tone over; beside
@@ -95,7 +95,7 @@ def fitter(
     beside = (np.abs(frequency[:, None] - lines) > band * lines + spread).all(axis=1)
     beside &= (np.abs(frequency[:, None] - overtones) > spread).all(axis=1)
     taper = np.sin(np.pi * (np.arange(count) + 0.5) / count) ** 2
-    return Fitter(rate, taper, beside & (frequency >= low) & (frequency <= high), low, high)
+    return BackgroundFitter(rate, taper, beside & (frequency >= low) & (frequency <= high), low, high)
 
 
 def detrended(values: Array) -> Array:

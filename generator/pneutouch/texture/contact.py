@@ -14,7 +14,7 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.errors import BeyondLimitError, InputError
 from pneutouch.mechanics.atlas.batches import batch_of
-from pneutouch.mechanics.atlas.press import Batch, Press, Track
+from pneutouch.mechanics.atlas.press import AtlasPress, PressTrack, SensorBatch
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.atlas_states import outside_atlas
 from pneutouch.mechanics.hermite import hermite
@@ -28,7 +28,7 @@ _HALVINGS = 40
 
 
 @dataclass(frozen=True, slots=True)
-class Touch:
+class PreloadContact:
     """One driving pressure at one preload; mm, N, MPa.
 
     Attributes:
@@ -68,8 +68,8 @@ class Touch:
         return self.driving_pressure + _along(indentation, self.travel, self.rise, self.rise_slope)
 
 
-class Touches(NamedTuple):
-    """Many sensors at one preload, (n,) each as in `Touch`; NaN where the atlas does not reach the preload."""
+class PreloadContacts(NamedTuple):
+    """Many sensors at one preload, (n,) each as in `PreloadContact`; NaN where the atlas does not reach the preload."""
 
     indentation: Array
     contact_radius: Array
@@ -77,7 +77,7 @@ class Touches(NamedTuple):
     pressure_slope: Array
 
 
-def touch(sensor: Sensor, driving_pressure: float, preload: float) -> Touch:
+def touch(sensor: Sensor, driving_pressure: float, preload: float) -> PreloadContact:
     """The dome at a driving pressure (MPa) pressed to a preload (N): by the atlas, by the solid where that is outside.
 
     Raises InputError for a preload that is not positive or beyond what the press reaches within the sensor's depth, and
@@ -101,17 +101,17 @@ def touch(sensor: Sensor, driving_pressure: float, preload: float) -> Touch:
             f"preload = {preload:g} N: the pressure there is {pressure / KPA:.4g} kPa, beyond the pressure sensor's "
             f"{sensor.gauge_limit / KPA:g} kPa; give less"
         )
-    return Touch(
+    return PreloadContact(
         driving_pressure, preload, at, float(np.interp(at, travel, radius)), pressure,
         float(np.interp(at, travel, force_slope)), float(np.interp(at, travel, rise_slope)), model,
         travel, force, rise, force_slope, rise_slope,
     )  # fmt: skip
 
 
-def touches(batch: Batch, preload: float) -> Touches:
+def touches(batch: SensorBatch, preload: float) -> PreloadContacts:
     """Many sensors at once at a preload (N), by the atlas; the batch must lie inside its box and below limit points."""
     walls, k = np.unique(batch.wall_ratio, return_inverse=True)
-    press = Press(batch, shipped().slices(walls, ("contact_radius",)), k)
+    press = AtlasPress(batch, shipped().slices(walls, ("contact_radius",)), k)
     depth = batch.depth / batch.inner_radius
     track = press.march(np.linspace(0.0, 1.0, _COLUMNS) * depth[:, None])
     travel, force, _, radius, force_slope, rise_slope = _dimensional(press, track)
@@ -124,7 +124,7 @@ def touches(batch: Batch, preload: float) -> Touches:
     def read(values: Array) -> Array:
         return np.array([np.interp(x, t, v) for x, t, v in zip(at, travel, values, strict=True)])
 
-    return Touches(at, read(radius), read(force_slope), read(rise_slope))
+    return PreloadContacts(at, read(radius), read(force_slope), read(rise_slope))
 
 
 def _check(sensor: Sensor, pressure: float, preload: float) -> None:
@@ -150,14 +150,14 @@ def _beyond(pressure: float, limit: float) -> InputError:
     )
 
 
-Curve = tuple[Array, Array, Array, Array, Array, Array]
+LoadingCurve = tuple[Array, Array, Array, Array, Array, Array]
 """Travel, force, rise, contact radius, slopes of force and rise; the last axis along the travel."""
 
 
-def _atlas_curve(sensor: Sensor, pressure: float) -> Curve | None:
+def _atlas_curve(sensor: Sensor, pressure: float) -> LoadingCurve | None:
     """The curve as far as the atlas knows it; None where that is not even the first steps."""
     batch = batch_of(sensor, [pressure])
-    press = Press(batch, shipped().slices(batch.wall_ratio, ("contact_radius",)), np.zeros(1, dtype=np.intp))
+    press = AtlasPress(batch, shipped().slices(batch.wall_ratio, ("contact_radius",)), np.zeros(1, dtype=np.intp))
     track = press.march(np.linspace(0.0, sensor.depth / sensor.inner_radius, _COLUMNS)[None, :])
     found = _dimensional(press, track)
     known = int(np.logical_and.accumulate(track.ok[0] & (found[4][0] > 0)).sum())
@@ -166,7 +166,7 @@ def _atlas_curve(sensor: Sensor, pressure: float) -> Curve | None:
     return tuple(column[0, :known] for column in found)  # type: ignore[return-value]
 
 
-def _dimensional(press: Press, track: Track) -> Curve:
+def _dimensional(press: AtlasPress, track: PressTrack) -> LoadingCurve:
     """Curves (n, m) in mm, N and MPa, with exact slopes: the volume follows the plate as the gas lets it."""
     mu, size = press.batch.shear_modulus[:, None], press.batch.inner_radius[:, None]
     point = track.point
@@ -180,7 +180,7 @@ def _dimensional(press: Press, track: Track) -> Curve:
     )  # fmt: skip
 
 
-def _solid_curve(sensor: Sensor, pressure: float) -> Curve:
+def _solid_curve(sensor: Sensor, pressure: float) -> LoadingCurve:
     from dataclasses import replace
 
     from scipy.interpolate import CubicSpline

@@ -10,7 +10,7 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.errors import InputError
-from pneutouch.texture.background import DEGREE, Fitter, detrended, fitter
+from pneutouch.texture.background import DEGREE, BackgroundFitter, detrended, fitter
 from pneutouch.texture.morse import HIGHEST_SHARE, MORSE, VOICES, time_average
 from pneutouch.texture.scalogram import Ridge, ridge
 from pneutouch.texture.signal import OVERSAMPLING, Signal, decimated
@@ -82,7 +82,7 @@ class Detection:
 class _Reader:
     """Reads amplitude and floor at one asked frequency off records, the measured one and noise alike."""
 
-    fitter: Fitter
+    fitter: BackgroundFitter
     asked: float
     voices: Array
     quiet: Flags

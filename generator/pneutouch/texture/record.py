@@ -14,14 +14,14 @@ from pneutouch.units import KPA
 
 
 @dataclass(frozen=True, slots=True)
-class Columns:
+class RecordColumns:
     """What the columns are called in the file's header; their units are s and kPa gauge whatever the names say."""
 
     time_s: str = "time_s"
     pressure_kPa: str = "pressure_kPa"  # noqa: N815
 
 
-def read_signal(path: Path, columns: Columns = Columns()) -> Signal:
+def read_signal(path: Path, columns: RecordColumns = RecordColumns()) -> Signal:
     """The signal of a UTF-8 CSV file with commas; columns beyond the two are left alone, empty lines skipped.
 
     Raises InputError, naming file, line and column, for a file that cannot be read, a missing or doubled column, and
@@ -48,7 +48,7 @@ def read_signal(path: Path, columns: Columns = Columns()) -> Signal:
     return signal(found[0], found[1] * KPA, str(path), [line for line, _ in read])
 
 
-def _places(path: Path, header: list[str], columns: Columns) -> list[int]:
+def _places(path: Path, header: list[str], columns: RecordColumns) -> list[int]:
     """Where the two columns stand."""
     names = [name.strip() for name in header]
     places = []

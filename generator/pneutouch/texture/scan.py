@@ -18,9 +18,9 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import InputError
-from pneutouch.texture.contact import Touch
+from pneutouch.texture.contact import PreloadContact
 from pneutouch.texture.signal import Signal
-from pneutouch.texture.substrate import Bars, Substrate
+from pneutouch.texture.substrate import BarRow, Substrate
 from pneutouch.units import GAUGE_LIMIT, KPA
 
 Control = Literal["height", "force"]
@@ -44,7 +44,7 @@ _NEWTON = 6
 
 
 @dataclass(frozen=True, slots=True)
-class Way:
+class ScanPath:
     """How the sensor is moved: mm from ``start`` to ``end`` at ``speed`` mm/s, held at a "height" or a "force"."""
 
     start: float
@@ -65,7 +65,7 @@ class Recorder:
 
 
 @dataclass(frozen=True, slots=True)
-class Scan:
+class TextureScan:
     """A scan: what was recorded, the same without noise, and beside it the place (mm), (n,) each.
 
     ``height``: of the sensor above that at the preload, mm; not zero where the force is held.
@@ -76,18 +76,18 @@ class Scan:
     place: Array
     height: Array
 
-    def pattern(self, bars: Bars) -> Array:
+    def pattern(self, bars: BarRow) -> Array:
         """1 where a bar is under the dome's axis, else 0, (n,)."""
         return bars.covers(self.place)
 
 
-def gain(touch: Touch, compliance: float) -> float:
+def gain(touch: PreloadContact, compliance: float) -> float:
     """Pressure by the specimen's compliance at a held height, MPa per mm/N: -dp/d(delta) F/(1 + k c)."""
     return -touch.pressure_slope * touch.preload / (1.0 + touch.stiffness * compliance)
 
 
 def pressure_amplitude(
-    touch: Touch, substrate: Substrate, bars: Bars, control: Control = "height", order: int = 1
+    touch: PreloadContact, substrate: Substrate, bars: BarRow, control: Control = "height", order: int = 1
 ) -> float:
     """Amplitude of the pressure at a pattern's frequency, MPa, to first order; never negative, 0 at a held force."""
     if control == "force":
@@ -96,7 +96,7 @@ def pressure_amplitude(
     return abs(found)
 
 
-def scan(touch: Touch, substrate: Substrate, way: Way, recorder: Recorder = Recorder()) -> Scan:
+def scan(touch: PreloadContact, substrate: Substrate, way: ScanPath, recorder: Recorder = Recorder()) -> TextureScan:
     """Slide a dome over a specimen. Raises InputError for a path that is none, or that the curve of the dome leaves."""
     _check(touch, substrate, way, recorder)
     time = np.arange(int(np.floor((way.end - way.start) / way.speed * recorder.rate * (1 + 1e-12))) + 1) / recorder.rate
@@ -111,7 +111,7 @@ def scan(touch: Touch, substrate: Substrate, way: Way, recorder: Recorder = Reco
         pressure = np.full_like(compliance, touch.pressure)
         height = (mean - compliance) * touch.preload
     clean, lift = (np.interp(place, nodes, np.append(values, values[0])) for values in (pressure, height))
-    return Scan(Signal(0.0, 1.0 / recorder.rate, record(clean, recorder)), clean, place, lift)
+    return TextureScan(Signal(0.0, 1.0 / recorder.rate, record(clean, recorder)), clean, place, lift)
 
 
 def record(pressure: Array, recorder: Recorder) -> Array:
@@ -122,7 +122,7 @@ def record(pressure: Array, recorder: Recorder) -> Array:
     return np.asarray(np.clip(noisy, -recorder.limit, recorder.limit))
 
 
-def _held(touch: Touch, compliance: Array, approach: float) -> Array:
+def _held(touch: PreloadContact, compliance: Array, approach: float) -> Array:
     """The dome's indentations where dome and specimen share one approach (mm): delta + c F(delta) = approach."""
     at = np.full_like(compliance, touch.indentation)
     for _ in range(_NEWTON):
@@ -136,7 +136,7 @@ def _held(touch: Touch, compliance: Array, approach: float) -> Array:
     return at
 
 
-def _check(touch: Touch, substrate: Substrate, way: Way, recorder: Recorder) -> None:
+def _check(touch: PreloadContact, substrate: Substrate, way: ScanPath, recorder: Recorder) -> None:
     if not 0 < way.speed < np.inf:
         raise InputError(f"speed = {way.speed:g} mm/s: must be more than 0")
     if not way.end > way.start:

@@ -9,13 +9,13 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import InputError
-from pneutouch.mechanics.atlas.press import Batch
+from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.uncertainty import batch_of
 from pneutouch.texture.contact import touches
 from pneutouch.texture.morse import MORSE
 from pneutouch.texture.scan import NOISE, RATE
-from pneutouch.texture.substrate import Bars, Matrix, amplitude
+from pneutouch.texture.substrate import BarRow, MatrixLayer, amplitude
 from pneutouch.units import KPA
 
 BLUR = (0.85, 1.0, 1.15)
@@ -32,20 +32,20 @@ POINTS = 23
 """Driving pressures looked at."""
 
 
-class Pattern(NamedTuple):
+class BarPattern(NamedTuple):
     """Bars, half bar and half gap, by pitch and depth in mm."""
 
     pitch: float
     depth: float
 
     @property
-    def bars(self) -> Bars:
+    def bars(self) -> BarRow:
         """As a row."""
         half = 0.5 * self.pitch
-        return Bars(f"{self.pitch:g}@{self.depth:g}", self.pitch, half, 1.0, self.depth, np.array([[0.0, half]]))
+        return BarRow(f"{self.pitch:g}@{self.depth:g}", self.pitch, half, 1.0, self.depth, np.array([[0.0, half]]))
 
 
-class Advice(NamedTuple):
+class PressureAdvice(NamedTuple):
     """A driving pressure (MPa), the amplitude there and at no pressure (MPa), and all that were looked at, (n,) each."""
 
     driving_pressure: float
@@ -74,7 +74,7 @@ def noise_amplitude(frequency: float, noise: float = NOISE, rate: float = RATE) 
     return noise * math.sqrt(power * frequency / rate) * math.sqrt(math.pi) / 2.0
 
 
-def amplitudes(batch: Batch, preload: float, matrix: Matrix, patterns: list[Pattern]) -> Array:
+def amplitudes(batch: SensorBatch, preload: float, matrix: MatrixLayer, patterns: list[BarPattern]) -> Array:
     """Pressure amplitudes at a held height, MPa, (n, patterns), blurred.
 
     NaN where a dome does not reach the preload, or reaches it within `LEAST_TRAVEL`.
@@ -89,8 +89,8 @@ def amplitudes(batch: Batch, preload: float, matrix: Matrix, patterns: list[Patt
 
 
 def recommend(
-    pattern: Pattern, sensor: Sensor, matrix: Matrix, highest: float, preload: float = 0.5
-) -> Advice:  # fmt: skip
+    pattern: BarPattern, sensor: Sensor, matrix: MatrixLayer, highest: float, preload: float = 0.5
+) -> PressureAdvice:  # fmt: skip
     """The driving pressure up to ``highest`` (MPa) at which a sensor shows a pattern with the greatest amplitude.
 
     The sensor must lie in the atlas. Raises InputError where it reaches the preload at none.
@@ -103,11 +103,11 @@ def recommend(
             f"preload = {preload:g} N: the sensor reaches it at no driving pressure up to {highest / KPA:g} kPa"
         )
     best = int(np.nanargmax(found))
-    return Advice(float(pressures[best]), float(found[best]), float(found[0]), pressures, found)
+    return PressureAdvice(float(pressures[best]), float(found[best]), float(found[0]), pressures, found)
 
 
 def separate(
-    batch: Batch, dome: Array, preload: float, matrix: Matrix, patterns: tuple[Pattern, Pattern], floor: tuple[float, float]
+    batch: SensorBatch, dome: Array, preload: float, matrix: MatrixLayer, patterns: tuple[BarPattern, BarPattern], floor: tuple[float, float]
 ) -> Separation:  # fmt: skip
     """Rank domes by how differently two driving pressures weigh two patterns.
 
@@ -137,7 +137,7 @@ def separate(
     )  # fmt: skip
 
 
-def check(pattern: Pattern, matrix: Matrix) -> None:
+def check(pattern: BarPattern, matrix: MatrixLayer) -> None:
     """Raise InputError for a pattern that no specimen can have."""
     if not (0.0 < pattern.pitch < np.inf and 0.0 <= pattern.depth < matrix.height):
         raise InputError(

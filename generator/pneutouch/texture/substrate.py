@@ -2,7 +2,7 @@
 
 How stiff bars enter. Vero is some 4,000 times stiffer than Agilus30, so a first-order theory in the contrast of moduli
 is of no use: a little volume of it already takes away all the strain it can. But a bar as stiff as that is a beam that
-spreads the patch's load along its length (`Bars.bending_length`) and hardly sinks. So bars are taken to stand still, and
+spreads the patch's load along its length (`BarRow.bending_length`) and hardly sinks. So bars are taken to stand still, and
 
     over a bar      only the cover sinks, a layer as thin as the bar is deep, bonded to it;
     over a gap      the whole layer sinks;
@@ -78,7 +78,7 @@ def _below(q: Array, c: float) -> Array:
     return np.asarray(c * (1.0 + e * e) + 2.0 * e * (2.0 * q * q + 0.5 * (1.0 + c * c)))
 
 
-class Matrix(NamedTuple):
+class MatrixLayer(NamedTuple):
     """The soft layer: height in mm, shear modulus in MPa, Poisson ratio; bonded to a rigid floor."""
 
     height: float
@@ -101,7 +101,7 @@ class Matrix(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Bars:
+class BarRow:
     """One row of stiff bars; mm. ``depth`` is that of their tops, ``edges`` (n, 2) are their sides along the path."""
 
     name: str
@@ -141,12 +141,12 @@ class Bars:
         return float((young * self.width * self.height**3 / 12.0 / (np.pi * shear)) ** 0.25)
 
 
-def contrast(matrix: Matrix, depth: float, radius: Array) -> Array:
+def contrast(matrix: MatrixLayer, depth: float, radius: Array) -> Array:
     """Compliance over a gap less that over a bar, mm/N, patch radii (n,)."""
     return np.asarray(matrix.compliance(radius) - matrix.compliance(radius, depth))
 
 
-def amplitude(matrix: Matrix, bars: Bars, radius: Array, order: int = 1) -> Array:
+def amplitude(matrix: MatrixLayer, bars: BarRow, radius: Array, order: int = 1) -> Array:
     """Amplitude of one row's compliance at a harmonic of its pitch, mm/N, patch radii (n,), alone in the specimen.
 
     Negative where the patch sinks more with its middle over a bar: beyond the patch filter's first zero.
@@ -162,8 +162,8 @@ def amplitude(matrix: Matrix, bars: Bars, radius: Array, order: int = 1) -> Arra
 class Substrate:
     """A specimen under a patch of a radius: its compliance along a path of ``length`` mm, which repeats at its ends."""
 
-    matrix: Matrix
-    bars: tuple[Bars, ...]
+    matrix: MatrixLayer
+    bars: tuple[BarRow, ...]
     length: float
     radius: float
 
@@ -178,12 +178,12 @@ class Substrate:
         taken = [float(contrast(self.matrix, row.depth, np.array(self.radius))) for row in self.bars]
         return tuple(1.0 - row.duty * part / self.bare for row, part in zip(self.bars, taken, strict=True))
 
-    def field(self, row: Bars) -> float:
+    def field(self, row: BarRow) -> float:
         """Field at a row over the bare layer's: rows that share a part of the path with it shield it, and it itself."""
         pairs = zip(self.bars, self.shares, strict=True)
         return float(np.prod([share for other, share in pairs if _meet(row, other)]))
 
-    def amplitude(self, row: Bars, order: int = 1) -> float:
+    def amplitude(self, row: BarRow, order: int = 1) -> float:
         """Amplitude of the compliance at a harmonic of a row's pitch, mm/N, among the other rows; sign as `amplitude`."""
         own = self.shares[self.bars.index(row)]
         return float(amplitude(self.matrix, row, np.array(self.radius), order)) * self.field(row) / own
@@ -207,6 +207,6 @@ class Substrate:
         return self.bare * float(np.prod([share ** min(part, 1.0) for share, part in pairs]))
 
 
-def _meet(one: Bars, other: Bars) -> bool:
+def _meet(one: BarRow, other: BarRow) -> bool:
     """Whether two rows share a part of the path, or are one."""
     return bool(one.edges.min() < other.edges.max() and other.edges.min() < one.edges.max())

@@ -8,12 +8,12 @@ import numpy as np
 
 from pneutouch.bench.calibrate import Injection, Observations, parameters
 from pneutouch.bench.calibrate.inject import injected
-from pneutouch.bench.record import Curve
+from pneutouch.bench.record import MeasuredCurve
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.atlas.table import shipped
-from pneutouch.spec.campaign import Run
+from pneutouch.spec.campaign import CampaignRun
 from pneutouch.units import KPA
 
 DESIGNED = Sensor(
@@ -24,22 +24,22 @@ GAIN, FORCE_ZERO, RISE_ZERO = 0.01, 0.003, 0.02 * KPA
 FORCE_NOISE, RISE_NOISE = 0.005, 0.03 * KPA
 
 
-def run(pressure: float, number: int = 1) -> Run:
-    return Run(
+def run(pressure: float, number: int = 1) -> CampaignRun:
+    return CampaignRun(
         file=f"{pressure:g}-{number}.csv", sensor="A", resin="TangoPlus", driving_pressure_kPa=pressure, run=number
     )
 
 
-def disturbed(at, force, rise, pressure, number, rng, gain=GAIN) -> Curve:
+def disturbed(at, force, rise, pressure, number, rng, gain=GAIN) -> MeasuredCurve:
     """A run: its own gain and zero on each channel, and noise at each point; the origin stays."""
     size = at.size - 1
     force, rise = force.copy(), rise.copy()
     force[1:] = force[1:] * (1 + gain * rng.normal()) + FORCE_ZERO * rng.normal() + FORCE_NOISE * rng.normal(size=size)
     rise[1:] = rise[1:] * (1 + gain * rng.normal()) + RISE_ZERO * rng.normal() + RISE_NOISE * rng.normal(size=size)
-    return Curve(run(pressure, number), at, force, rise, pressure * KPA)
+    return MeasuredCurve(run(pressure, number), at, force, rise, pressure * KPA)
 
 
-def curves(truth: Sensor, pressures, runs: int, rng, gain=GAIN, offset=0.0) -> tuple[Curve, ...]:
+def curves(truth: Sensor, pressures, runs: int, rng, gain=GAIN, offset=0.0) -> tuple[MeasuredCurve, ...]:
     """Runs of the atlas's sensor at pressures in kPa; ``offset`` is travel that was not seen."""
     found = respond(batch_of(truth, [p * KPA for p in pressures]), truth.steps)
     return tuple(
@@ -48,10 +48,11 @@ def curves(truth: Sensor, pressures, runs: int, rng, gain=GAIN, offset=0.0) -> t
     )  # fmt: skip
 
 
-def exact(truth: Sensor, pressures) -> tuple[Curve, ...]:
+def exact(truth: Sensor, pressures) -> tuple[MeasuredCurve, ...]:
     found = respond(batch_of(truth, [p * KPA for p in pressures]), truth.steps)
     return tuple(
-        Curve(run(p), found.indentation[i], found.force[i], found.rise[i], p * KPA) for i, p in enumerate(pressures)
+        MeasuredCurve(run(p), found.indentation[i], found.force[i], found.rise[i], p * KPA)
+        for i, p in enumerate(pressures)
     )
 
 

@@ -9,18 +9,18 @@ from pathlib import Path
 import numpy as np
 
 from pneutouch.bench.blocks import blocks_of
-from pneutouch.bench.calibrate import Fit, Observations, Parameters, fit
+from pneutouch.bench.calibrate import CalibrationFit, CalibrationParameters, Observations, fit
 from pneutouch.bench.calibrate.parameters import DEAD, MODULUS
 from pneutouch.bench.curve import curve_of
-from pneutouch.bench.record import Curve
-from pneutouch.bench.simulate import Specimens, Truth, press_curves, simulate_run
+from pneutouch.bench.record import MeasuredCurve
+from pneutouch.bench.simulate import SimulatedSpecimens, SimulationTruth, press_curves, simulate_run
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.spec.campaign import Rig, Run
+from pneutouch.spec.campaign import CampaignRun, Rig
 from pneutouch.units import KPA
 
 RATE = 100.0
-TRUTH = Truth(rest=10.0)
+TRUTH = SimulationTruth(rest=10.0)
 DEAD_VOLUME = 300.0
 
 
@@ -41,25 +41,27 @@ def trial(
     nominal: Sensor, pressures: Sequence[float], runs: int, rng: np.random.Generator, model: str = "atlas"
 ) -> Trial:  # fmt: skip
     """A specimen drawn around ``nominal`` and its runs at driving pressures in kPa."""
-    specimen = Specimens.draw(TRUTH.scatter, 1, rng).sensor(nominal, 0)
+    specimen = SimulatedSpecimens.draw(TRUTH.scatter, 1, rng).sensor(nominal, 0)
     pressed = press_curves(specimen, [p * KPA for p in pressures], 0.75 * nominal.inner_radius, model)
     return Trial(
         specimen, Observations(tuple(_runs(pressed.curves, pressures, runs, nominal, rng)), rig=Rig(rate_Hz=RATE))
     )
 
 
-def _runs(curves, pressures, runs: int, nominal: Sensor, rng: np.random.Generator) -> Iterator[Curve]:
+def _runs(curves, pressures, runs: int, nominal: Sensor, rng: np.random.Generator) -> Iterator[MeasuredCurve]:
     for pressure, curve in zip(pressures, curves, strict=True):
         way = TRUTH.protocol("steps", nominal.inner_radius, curve.reach)
         for number in range(1, runs + 1):
             record = simulate_run(curve, way, TRUTH.rig, RATE, rng, wall=TRUTH.wall, scatter=TRUTH.scatter)
-            run = Run(
+            run = CampaignRun(
                 file=f"{pressure:g}-{number}", sensor="A", resin="TangoPlus", driving_pressure_kPa=pressure, run=number
             )
             yield curve_of(run, blocks_of(Path(run.file), *record, rate=RATE), Rig(rate_Hz=RATE))
 
 
-def held(one: Trial, nominal: Sensor, parameters: Parameters) -> tuple[Fit, list[bool], list[float]]:
+def held(
+    one: Trial, nominal: Sensor, parameters: CalibrationParameters
+) -> tuple[CalibrationFit, list[bool], list[float]]:
     """The fit to a trial, whether the intervals of modulus and dead volume hold the truth, and their half widths."""
     found = fit(one.seen, nominal, parameters)
     true = {MODULUS: float(np.log(one.truth.shear_modulus)), DEAD: one.truth.dead_volume}

@@ -11,14 +11,14 @@ from pneutouch.bench.calibrate import Injection, Observations, fit
 from pneutouch.bench.calibrate.discrepancy import TRAVEL, shared_of
 from pneutouch.bench.calibrate.observations import points_of
 from pneutouch.bench.calibrate.parameters import parse_names
-from pneutouch.bench.record import Curve, Indent
+from pneutouch.bench.record import MeasuredCurve, MeasuredIndentation
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import Rig
 from tests.bench.calibrate.sensors import DESIGNED, chosen, curves, exact, run
 
 
 def one(at, force, rise) -> Observations:
-    return Observations((Curve(run(22.0), np.array(at), np.array(force), np.array(rise), 0.022),))
+    return Observations((MeasuredCurve(run(22.0), np.array(at), np.array(force), np.array(rise), 0.022),))
 
 
 @pytest.mark.parametrize(("observations", "words"), [
@@ -71,7 +71,9 @@ def test_names_of_parameters_are_checked(names, words):
 def test_a_first_contact_that_is_not_sure_moves_force_and_rise_of_its_run_together(library):
     """A contact that is the middle of three 0.1 mm apart is known to 0.1 mm over root 3, a little worse than their mean."""
     (clean,) = exact(DESIGNED, (22.0,))
-    indents = tuple(Indent(0.0, (1.0, 5.0), (4.0, 5.0), 6.0, 0.1 * k, 1.0, 0.0, 0.0, 0.022, 0.0) for k in (-1, 0, 1))
+    indents = tuple(
+        MeasuredIndentation(0.0, (1.0, 5.0), (4.0, 5.0), 6.0, 0.1 * k, 1.0, 0.0, 0.0, 0.022, 0.0) for k in (-1, 0, 1)
+    )
     sure = shared_of(points_of(Observations((clean,))))
     points = points_of(Observations((replace(clean, indents=indents), replace(clean, indents=indents))))
     wandering = shared_of(points)

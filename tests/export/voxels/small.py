@@ -6,7 +6,7 @@ from functools import cache
 
 from pneutouch.body import Solid
 from pneutouch.catalogue import Library, load_scene
-from pneutouch.export.voxels.blend import Blend
+from pneutouch.export.voxels.blend import ResinBlend
 from pneutouch.export.voxels.job import VoxelBody, VoxelJob
 from pneutouch.export.voxels.raster import raster
 from pneutouch.meridian import Arc, Line, Meridian
@@ -41,7 +41,7 @@ def ball(radius: float) -> Meridian:
     return Meridian((Arc((0.0, 0.0), radius, -1.5707963267948966, 1.5707963267948966, ""),))
 
 
-def job(*bodies: tuple[Solid, Blend], layer_um: float = 27.0, dpi=(600, 300), upright=True, seed=1) -> VoxelJob:
+def job(*bodies: tuple[Solid, ResinBlend], layer_um: float = 27.0, dpi=(600, 300), upright=True, seed=1) -> VoxelJob:
     jetted = tuple(VoxelBody(solid, blend) for solid, blend in bodies)
     grid = raster([body.inside for body in jetted], dpi, layer_um, upright=upright)
     return VoxelJob(jetted, grid, RESINS, seed)

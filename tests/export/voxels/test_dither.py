@@ -9,10 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.ndimage import binary_erosion, generate_binary_structure
 
-from pneutouch.export.voxels.blend import Blend
+from pneutouch.export.voxels.blend import ResinBlend
 from pneutouch.export.voxels.bluenoise import BLOCK, thresholds, void_and_cluster
-from pneutouch.export.voxels.skin import MadeUp, interior
-from pneutouch.export.voxels.slices import Slicer
+from pneutouch.export.voxels.skin import SkinCompensation, interior
+from pneutouch.export.voxels.slices import VoxelSlicer
 from tests.export.voxels.small import ball, block, job, material
 
 PITCH = (25.4 / 600, 25.4 / 300, 0.027)
@@ -81,7 +81,7 @@ def test_what_the_skin_lacks_is_made_up_for_to_the_last_droplet():
     def parts(number):
         return (inner[number], np.where(inner[number], 0, share[number])) if 0 <= number < 40 else None
 
-    more = MadeUp(parts, PITCH, 0.12)
+    more = SkinCompensation(parts, PITCH, 0.12)
     added = sum(float(more.layer(k)[inner[k]].sum(dtype=float)) for k in range(40))
     assert added == pytest.approx(float(share[inside & ~inner].sum(dtype=float)), rel=1e-5)
 
@@ -91,12 +91,12 @@ def stack(slicer):
 
 
 def even(fraction):
-    return Blend(("TangoPlus", "VeroClear"), lambda r, z: np.full(np.shape(r), fraction), fraction)
+    return ResinBlend(("TangoPlus", "VeroClear"), lambda r, z: np.full(np.shape(r), fraction), fraction)
 
 
 @pytest.mark.parametrize("fraction", [0.02, 0.25, 0.5, 0.65])
 def test_a_mixed_disc_is_soft_at_every_face_and_holds_its_fraction(fraction):
-    slicer = Slicer(job((block(0, 1.5, 2.0), even(fraction))))
+    slicer = VoxelSlicer(job((block(0, 1.5, 2.0), even(fraction))))
     found = stack(slicer)
     soft, stiff = found == 1, found == 2
     inner = binary_erosion(soft | stiff)
@@ -114,20 +114,20 @@ def test_a_wall_too_thin_for_its_fraction_is_said_to_fall_short():
     from pneutouch.export.voxels.manifest import shortfalls
 
     thin = job((block(0, 0.14, 2.0), even(0.9)))
-    slicer = Slicer(thin)
+    slicer = VoxelSlicer(thin)
     stack(slicer)
     (line,) = shortfalls(thin, slicer)
     assert line.startswith("block: ") and "90.00% asked for" in line
     assert slicer.tallies["block"].given < 0.8 * slicer.tallies["block"].asked
     full = job((block(0, 1.5, 2.0), even(0.3)))
-    slicer = Slicer(full)
+    slicer = VoxelSlicer(full)
     stack(slicer)
     assert shortfalls(full, slicer) == []
 
 
 def test_a_grade_is_followed_along_the_height():
-    rising = Blend(("TangoPlus", "VeroClear"), lambda r, z: 0.1 + 0.2 * z, 0.7)
-    found = stack(Slicer(job((block(0, 3.0, 2.0), rising))))
+    rising = ResinBlend(("TangoPlus", "VeroClear"), lambda r, z: 0.1 + 0.2 * z, 0.7)
+    found = stack(VoxelSlicer(job((block(0, 3.0, 2.0), rising))))
     for low in (0.3, 1.0, 2.0):
         part = found[round(low / 0.027) : round((low + 0.5) / 0.027)]
         share = (part == 2).sum() / (part > 0).sum()
@@ -136,9 +136,9 @@ def test_a_grade_is_followed_along_the_height():
 
 def test_bodies_touch_without_a_gap_and_without_overlap():
     lower, upper = block(0, 1.0, 2.0, "lower"), block(1.0, 2.0, 2.0, "upper", "VeroClear")
-    slicer = Slicer(job((lower, even(0.2)), (upper, Blend(("VeroClear",)))))
+    slicer = VoxelSlicer(job((lower, even(0.2)), (upper, ResinBlend(("VeroClear",)))))
     found = stack(slicer)
-    alone = stack(Slicer(job((block(0, 2.0, 2.0), Blend(("TangoPlus",))))))
+    alone = stack(VoxelSlicer(job((block(0, 2.0, 2.0), ResinBlend(("TangoPlus",))))))
     assert np.array_equal(found > 0, alone > 0)
     assert sum(tally.voxels for tally in slicer.tallies.values()) == sum(slicer.counts.values()) == (alone > 0).sum()
 
@@ -148,8 +148,8 @@ def test_turned_over_the_stack_is_the_same_turned():
 
     cap = Solid("cap", "coupon", material("TangoPlus"), ball(1.7), adds=())
     for solid in (block(0.2, 1.6, 1.5), cap):
-        up = stack(Slicer(job((solid, Blend(("TangoPlus",))))))
-        down = stack(Slicer(job((solid, Blend(("TangoPlus",))), upright=False)))
+        up = stack(VoxelSlicer(job((solid, ResinBlend(("TangoPlus",))))))
+        down = stack(VoxelSlicer(job((solid, ResinBlend(("TangoPlus",))), upright=False)))
         assert up.shape == down.shape
         assert (up.sum() - down.sum()) ** 2 <= (0.02 * up.sum()) ** 2
         assert np.array_equal(up.any(axis=(0, 1)), down.any(axis=(0, 1)))
@@ -160,8 +160,8 @@ def test_a_ball_keeps_its_volume_on_unequal_pixels(radius):
     from pneutouch.body import Solid
 
     solid = Solid("ball", "coupon", material("TangoPlus"), ball(radius))
-    drawn = job((solid, Blend(("TangoPlus",))), layer_um=54)
-    count = int((stack(Slicer(drawn)) > 0).sum())
+    drawn = job((solid, ResinBlend(("TangoPlus",))), layer_um=54)
+    count = int((stack(VoxelSlicer(drawn)) > 0).sum())
     assert count * drawn.raster.voxel == pytest.approx(solid.volume, rel=0.01 / radius)
 
 

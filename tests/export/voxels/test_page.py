@@ -9,7 +9,7 @@ from benchmarks import voxel_dither as dither
 from benchmarks.voxel_raster import CONTAINED, OURS, SLICED, TRIMESH, boundary, exact
 from benchmarks.voxel_text import page
 
-from pneutouch.body.section import Inside
+from pneutouch.body.section import SolidSection
 from pneutouch.catalogue import load_scene
 from pneutouch.export.voxels.raster import raster
 from pneutouch.parts import assemble
@@ -48,7 +48,7 @@ def test_stored_rasters_are_today_and_ours_is_nearest(stored, library):
     solid = assemble(load_scene("graded-dome", [], library)).solids[0]
     rows = {(row["method"], row["layer_um"], row["coarser"]): row for row in stored["rasters"]}
     row = rows[OURS, 27.0, 4.0]
-    grid = raster([Inside(solid)], (600, 300), 27.0, coarser=4.0)
+    grid = raster([SolidSection(solid)], (600, 300), 27.0, coarser=4.0)
     box = exact(solid, grid)
     assert int(box.sum()) == row["voxels"]
     mean, most = boundary(box, (grid.x, grid.y, grid.z), solid)

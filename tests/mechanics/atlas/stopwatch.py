@@ -32,15 +32,15 @@ def seconds(work: Callable[[], object], runs: int = 5) -> float:
 def one_solid(case) -> None:
     """A full response by the solid: the mesh, the driving pressure, the press."""
     from pneutouch.mechanics.laws import neo_hookean
-    from pneutouch.mechanics.solid import Press, Solid, dome, indent, inflate, state_at
+    from pneutouch.mechanics.solid import PressSettings, SolidModel, dome, indent, inflate, state_at
 
-    solid = Solid(dome(1.0, case.wall), neo_hookean(1.0, POISSON))
+    solid = SolidModel(dome(1.0, case.wall), neo_hookean(1.0, POISSON))
     run = inflate(solid, past_limit=1.0)
     assert run.limit is not None
     indent(
         solid,
         state_at(solid, case.share * run.limit.pressure, run),
-        Press(case.depth, 14, None, case.ambient, case.dead),
+        PressSettings(case.depth, 14, None, case.ambient, case.dead),
     )
 
 

@@ -15,8 +15,8 @@ from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.events import range_end
 from pneutouch.mechanics.exact_membrane import RISING_BRANCH
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.prediction import Result
-from pneutouch.mechanics.solid import Probe, Solid, dome, inflate
+from pneutouch.mechanics.prediction import ModelResult
+from pneutouch.mechanics.solid import SolidModel, StrainProbe, dome, inflate
 from pneutouch.mechanics.solid.inflate import at_volume
 from pneutouch.mechanics.solid_states import solid_result
 from pneutouch.units import KPA, STANDARD_ATMOSPHERE
@@ -49,7 +49,7 @@ def sensor(name: str) -> Sensor:
 
 
 @cache
-def solved(name: str) -> Result:
+def solved(name: str) -> ModelResult:
     return solid_result(sensor(name), np.array([SENSORS[name][5] * KPA]))
 
 
@@ -80,8 +80,8 @@ def test_the_fixed_sensors_meet_every_end_but_the_edge():
 
 @pytest.mark.parametrize("wall", [0.065, 0.1622, 0.33])
 def test_free_inflation_to_the_limit_point_is_the_solids(wall):
-    solid = Solid(dome(1.0, wall), neo_hookean(1.0, 0.49))
-    run, probe = inflate(solid, past_limit=1.2), Probe(solid)
+    solid = SolidModel(dome(1.0, wall), neo_hookean(1.0, 0.49))
+    run, probe = inflate(solid, past_limit=1.2), StrainProbe(solid)
     assert run.limit is not None
     nu = np.array([0.02, 0.1, 0.3, 0.6, 0.8, 0.9, 0.95, 0.98, 1.0])
     volumes = run.states[0].volume + nu * (run.limit.volume - run.states[0].volume)

@@ -7,7 +7,7 @@ import pytest
 from benchmarks.atlas_presses import Case
 
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid import Press, Solid, dome, indent, inflate, state_at
+from pneutouch.mechanics.solid import PressSettings, SolidModel, dome, indent, inflate, state_at
 from pneutouch.mechanics.solid_states import _curve
 
 pytestmark = pytest.mark.slow
@@ -18,9 +18,9 @@ THIN_DEEP_AND_WITHOUT_PRESSURE = [
 
 
 def force(case: Case, arc: int | None, through: int | None) -> np.ndarray:
-    solid = Solid(dome(1.0, case.wall, arc=arc, through=through), neo_hookean(1.0, 0.49))
+    solid = SolidModel(dome(1.0, case.wall, arc=arc, through=through), neo_hookean(1.0, 0.49))
     run = inflate(solid, past_limit=1.0)
-    press = Press(case.depth, 14, None, case.ambient, case.dead, np.inf, np.inf)
+    press = PressSettings(case.depth, 14, None, case.ambient, case.dead, np.inf, np.inf)
     return _curve(indent(solid, state_at(solid, 0.0, run), press).path, np.linspace(0.0, case.depth, 15))[0]
 
 

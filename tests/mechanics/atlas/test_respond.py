@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-from pneutouch.mechanics.atlas.press import Batch, Press
+from pneutouch.mechanics.atlas.press import AtlasPress, SensorBatch
 from pneutouch.mechanics.atlas.respond import BREAK, DEPTH, EDGE, GAUGE, respond
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.units import KPA
@@ -20,10 +20,10 @@ seeds = st.integers(0, 2**31)
 factors = st.floats(0.2, 5.0)
 
 
-def pressed(batch: Batch) -> Press:
+def pressed(batch: SensorBatch) -> AtlasPress:
     """A batch with its slices, one a sensor."""
     walls, k = np.unique(batch.wall_ratio, return_inverse=True)
-    return Press(batch, shipped().slices(walls), k)
+    return AtlasPress(batch, shipped().slices(walls), k)
 
 
 @given(seeds, factors)

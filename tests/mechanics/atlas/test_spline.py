@@ -8,20 +8,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.interpolate import BSpline
 
-from pneutouch.mechanics.atlas.spline import Axis, pieces, roughness
+from pneutouch.mechanics.atlas.spline import SplineAxis, pieces, roughness
 
 axes = st.builds(
-    lambda low, length, cells, degree, stretch: Axis(low, low + length, cells, degree, stretch),
+    lambda low, length, cells, degree, stretch: SplineAxis(low, low + length, cells, degree, stretch),
     st.floats(-2.0, 2.0), st.floats(0.3, 3.0), st.integers(1, 12), st.integers(2, 5), st.none() | st.floats(0.05, 1.0),
 )  # fmt: skip
 
 
-def inside(axis: Axis, count: int = 41) -> np.ndarray:
+def inside(axis: SplineAxis, count: int = 41) -> np.ndarray:
     """Points that are neither ends nor knots."""
     return axis.low + (axis.high - axis.low) * (np.arange(count) + 0.37) / count
 
 
-def straight(axis: Axis, x: np.ndarray) -> np.ndarray:
+def straight(axis: SplineAxis, x: np.ndarray) -> np.ndarray:
     """The coordinate in which the cells of an axis are equal, from its definition."""
     return x - axis.low if axis.stretch is None else np.sqrt(x - axis.low + axis.stretch**2) - axis.stretch
 
@@ -94,7 +94,7 @@ def test_even_points_are_even_where_the_cells_are_and_end_at_the_ends(axis):
 
 
 def test_beyond_the_high_end_the_last_polynomial_goes_on():
-    axis = Axis(0.0, 1.0, 4, 3)
+    axis = SplineAxis(0.0, 1.0, 4, 3)
     x = np.linspace(0.76, 0.99, 30)
     coefficients = np.linalg.lstsq(axis.rows(np.linspace(0, 1, 99)), np.linspace(0, 1, 99) ** 3, rcond=None)[0]
     assert axis.rows(x + 0.2) @ coefficients == pytest.approx((x + 0.2) ** 3, abs=1e-10)

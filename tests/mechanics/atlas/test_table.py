@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pneutouch.mechanics.atlas.table import REST_VOLUME, Slices, shipped
+from pneutouch.mechanics.atlas.table import REST_VOLUME, AtlasSlices, shipped
 from tests.mechanics.atlas.sampled import energy
 
 walls = st.floats(0.06, 0.35)
@@ -16,7 +16,7 @@ COUNT = 40
 NONE = np.zeros(COUNT, dtype=np.intp)
 
 
-def states(wall: float, seed: int) -> tuple[Slices, np.ndarray, np.ndarray]:
+def states(wall: float, seed: int) -> tuple[AtlasSlices, np.ndarray, np.ndarray]:
     """One slice with volumes nu and plate heights inside the box, the plate below the free apex."""
     slices, rng = shipped().slices(np.array([wall])), np.random.default_rng(seed)
     nu = rng.uniform(-0.25, 1.0, COUNT)

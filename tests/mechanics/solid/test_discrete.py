@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from pneutouch.mechanics.laws import neo_hookean, ogden
-from pneutouch.mechanics.solid import Solid, dome, printed_dome
+from pneutouch.mechanics.solid import SolidModel, dome, printed_dome
 from pneutouch.mechanics.solid.banded import negative_pivots
 from pneutouch.mechanics.solid.cavity import Cavity
 from pneutouch.mechanics.solid.contact import Plate
-from pneutouch.mechanics.solid.newton import Scene, evaluate, full_tangent
+from pneutouch.mechanics.solid.newton import SolidScene, evaluate, full_tangent
 from pneutouch.mechanics.solid.supply import Gas, Liquid
 
 
@@ -24,10 +24,10 @@ def _dense(band):
 @pytest.mark.parametrize("order", [1, 2, 8])
 @pytest.mark.parametrize("law", [neo_hookean(0.17), ogden(((0.1, 1.3), (0.07, 4.0)))])
 def test_residual_and_tangent_are_derivatives_of_the_energy(order, law):
-    solid = Solid(dome(9.25, 1.5, arc=8, order=order), law)
+    solid = SolidModel(dome(9.25, 1.5, arc=8, order=order), law)
     rng = np.random.default_rng(0)
     x = solid.rest + solid.expand(2e-3 * rng.normal(size=solid.size))
-    scene = Scene(solid, Gas.filled(0.1, 2.1, 0.6, 0.2), Plate(1.1, 0.3, 0.1))
+    scene = SolidScene(solid, Gas.filled(0.1, 2.1, 0.6, 0.2), Plate(1.1, 0.3, 0.1))
     state = evaluate(scene, x)
     d = rng.normal(size=solid.size)
     d /= np.linalg.norm(d)
@@ -76,16 +76,16 @@ def test_inertia_of_band_plus_rank_one():
 
 
 def test_unloaded_dome_is_in_equilibrium_and_stable():
-    solid = Solid(dome(9.25, 1.5), neo_hookean(0.17))
+    solid = SolidModel(dome(9.25, 1.5), neo_hookean(0.17))
     v0 = solid.cavity.volume(solid.rest)
-    state = evaluate(Scene(solid, Liquid(v0, 30.0), None), solid.rest)
+    state = evaluate(SolidScene(solid, Liquid(v0, 30.0), None), solid.rest)
     assert np.abs(state.residual).max() < 1e-12
-    assert negative_pivots(full_tangent(Scene(solid, Liquid(v0, 30.0), None), state)) == 0
+    assert negative_pivots(full_tangent(SolidScene(solid, Liquid(v0, 30.0), None), state)) == 0
 
 
 def test_bands_stay_narrow():
-    assert Solid(dome(9.25, 1.5), neo_hookean(0.17)).pattern.width == 25
-    assert Solid(printed_dome(9.25, 1.5, 2.25, 2.25), neo_hookean(0.17)).pattern.width <= 45
+    assert SolidModel(dome(9.25, 1.5), neo_hookean(0.17)).pattern.width == 25
+    assert SolidModel(printed_dome(9.25, 1.5, 2.25, 2.25), neo_hookean(0.17)).pattern.width <= 45
 
 
 def test_inverted_cells_are_refused():
@@ -94,7 +94,7 @@ def test_inverted_cells_are_refused():
     nodes[mesh.cells[0, 0]], nodes[mesh.cells[0, 1]] = nodes[mesh.cells[0, 1]].copy(), nodes[mesh.cells[0, 0]].copy()
     bad = type(mesh)(**{**mesh.__dict__, "nodes": nodes})
     with pytest.raises(ValueError, match="inverted"):
-        Solid(bad, neo_hookean(1.0))
+        SolidModel(bad, neo_hookean(1.0))
 
 
 def test_broken_boundary_lines_are_refused():

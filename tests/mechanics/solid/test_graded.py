@@ -16,9 +16,9 @@ from pneutouch.mechanics.ladder import climb
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.solid import Press, Solid, dome, indent, inflate, state_at
+from pneutouch.mechanics.solid import PressSettings, SolidModel, dome, indent, inflate, state_at
 from pneutouch.mechanics.solid.contact import Plate
-from pneutouch.mechanics.solid.newton import Scene, evaluate, full_tangent
+from pneutouch.mechanics.solid.newton import SolidScene, evaluate, full_tangent
 from pneutouch.mechanics.solid.supply import Gas
 from pneutouch.mechanics.solid_states import solid_result
 from pneutouch.meridian.arc import arc_share
@@ -44,9 +44,9 @@ def moduli(one: Sensor) -> np.ndarray:
     return one.shear_modulus * np.array(one.grade[1])
 
 
-def solid_of(modulus: np.ndarray) -> Solid:
+def solid_of(modulus: np.ndarray) -> SolidModel:
     """The paper's dome with moduli at `PLACES`."""
-    return Solid(dome(9.25, 1.5), neo_hookean(1.0), grade=lambda r, z: np.interp(arc_share(r, z), PLACES, modulus))
+    return SolidModel(dome(9.25, 1.5), neo_hookean(1.0), grade=lambda r, z: np.interp(arc_share(r, z), PLACES, modulus))
 
 
 def smooth(r, z):
@@ -80,10 +80,10 @@ def test_only_the_product_of_modulus_and_grade_counts():
 
 
 def test_residual_and_tangent_are_derivatives_of_the_graded_energy():
-    solid = Solid(dome(9.25, 1.5, arc=8), neo_hookean(0.17), grade=lambda r, z: np.exp(3.4 * arc_share(r, z)))
+    solid = SolidModel(dome(9.25, 1.5, arc=8), neo_hookean(0.17), grade=lambda r, z: np.exp(3.4 * arc_share(r, z)))
     rng = np.random.default_rng(7)
     x = solid.rest + solid.expand(2e-3 * rng.normal(size=solid.size))
-    scene = Scene(solid, Gas.filled(0.1, 2.1, 0.6, 0.2), Plate(1.1, 0.3, 0.1))
+    scene = SolidScene(solid, Gas.filled(0.1, 2.1, 0.6, 0.2), Plate(1.1, 0.3, 0.1))
     state, step = evaluate(scene, x), 1e-7
     way = rng.normal(size=solid.size)
     way /= np.linalg.norm(way)
@@ -109,7 +109,7 @@ def test_a_sphere_graded_through_its_wall_has_the_exact_limit_point():
     found = []
     for nu in (0.4999, 0.49995):
         mesh = dome(1.0, 1.0, arc=24, through=6, slides=True)
-        solid = Solid(mesh, neo_hookean(1.0, nu), grade=lambda r, z: 3.0 - np.hypot(r, z))
+        solid = SolidModel(mesh, neo_hookean(1.0, nu), grade=lambda r, z: 3.0 - np.hypot(r, z))
         found.append(inflate(solid, past_limit=1.0).limit.pressure)
     assert 2 * found[1] - found[0] == pytest.approx(exact, rel=2e-5)
 
@@ -118,10 +118,12 @@ def test_a_rim_made_rigid_is_a_cap_clamped_higher():
     """Cells below 30 degrees latitude c times as stiff: what is left of their give falls as 1/c."""
     mesh = dome(9.25, 1.5, arc=24)
     held = np.unique(mesh.cells[arc_share(*mesh.nodes[mesh.cells].mean(axis=1).T) > 2 / 3])
-    cap = inflate(Solid(replace(mesh, clamped=held), neo_hookean(0.2)), past_limit=1.0).limit
+    cap = inflate(SolidModel(replace(mesh, clamped=held), neo_hookean(0.2)), past_limit=1.0).limit
     off = []
     for contrast in (30.0, 300.0, 3000.0):
-        step = Solid(mesh, neo_hookean(0.2), grade=lambda r, z, c=contrast: np.where(arc_share(r, z) > 2 / 3, c, 1.0))
+        step = SolidModel(
+            mesh, neo_hookean(0.2), grade=lambda r, z, c=contrast: np.where(arc_share(r, z) > 2 / 3, c, 1.0)
+        )
         off.append(inflate(step, past_limit=1.0).limit.pressure / cap.pressure - 1.0)
     assert np.abs(off[2]) < 1e-3
     assert off[0] / off[1] == pytest.approx(10.0, rel=0.2)
@@ -130,7 +132,9 @@ def test_a_rim_made_rigid_is_a_cap_clamped_higher():
 
 def test_a_smooth_grade_converges_as_fast_as_an_even_wall():
     def height(arc):
-        solid = Solid(dome(1.0, 0.5, arc=arc, through=max(arc // 6, 1), slides=True), neo_hookean(1.0), grade=smooth)
+        solid = SolidModel(
+            dome(1.0, 0.5, arc=arc, through=max(arc // 6, 1), slides=True), neo_hookean(1.0), grade=smooth
+        )
         return state_at(solid, 0.6).inner_apex
 
     best = height(48)
@@ -143,15 +147,15 @@ def test_a_smooth_grade_converges_as_fast_as_an_even_wall():
 @pytest.mark.parametrize("fractions", [(0.0, 0.25), (0.25, 0.0), (0.05, 0.4), (0.0, 0.15, 0.05)])
 def test_the_default_mesh_is_within_its_stated_error(fractions):
     one, pressures = sensor(*fractions), np.array([0.0, 0.022])
-    fine = Solid(
+    fine = SolidModel(
         dome(9.25, 1.5, arc=96, through=4), one.material, grade=lambda r, z: np.interp(arc_share(r, z), *one.grade)
     )
     run, found = inflate(fine, past_limit=1.0), solid_result(one, pressures, past_limit=1.0)
     assert found.limits.limit_point == pytest.approx(run.limit.pressure, rel=2e-3)
     for pressure, state in zip(pressures, found.states, strict=True):
         end = min(state.range_end, 5.0)
-        steps = Press(end, 14)
-        coarse = Solid(dome(9.25, 1.5), one.material, grade=fine.grade)
+        steps = PressSettings(end, 14)
+        coarse = SolidModel(dome(9.25, 1.5), one.material, grade=fine.grade)
         here = indent(coarse, state_at(coarse, pressure), steps).figures()
         there = indent(fine, state_at(fine, pressure, run), steps).figures()
         assert here.sensitivity == pytest.approx(there.sensitivity, rel=0.01)
@@ -165,7 +169,7 @@ def figures_of(modulus: np.ndarray, pressure: float, travel: float = 2.0) -> dic
     solid = solid_of(modulus)
     run = inflate(solid, past_limit=1.0)
     free = state_at(solid, pressure, run)
-    pressed = indent(solid, free, Press(travel, 4)).states[-1]
+    pressed = indent(solid, free, PressSettings(travel, 4)).states[-1]
     return {
         "limit": run.limit.pressure, "first slope": run.states[0].stiffness, "give": -free.volume,
         "force": pressed.force if pressed.indentation == pytest.approx(travel) else np.nan,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid import Press, Solid, dome, indent, inflate, printed_dome, state_at
+from pneutouch.mechanics.solid import PressSettings, SolidModel, dome, indent, inflate, printed_dome, state_at
 
 MODULI = (0.17, 0.27, 0.55, 0.91, 1.64, 4.00, 5.33)
 TABLE_S1 = {
@@ -14,8 +14,8 @@ TABLE_S1 = {
 
 
 def press(mu=0.17, pressure=0.022, depth=0.5 * 9.25, mesh=None, **options):
-    solid = Solid(mesh or dome(9.25, 1.5), neo_hookean(mu))
-    return indent(solid, state_at(solid, pressure), Press(depth, **options))
+    solid = SolidModel(mesh or dome(9.25, 1.5), neo_hookean(mu))
+    return indent(solid, state_at(solid, pressure), PressSettings(depth, **options))
 
 
 def test_force_is_the_derivative_of_the_energy():
@@ -38,13 +38,13 @@ def test_axial_balance_of_the_thin_membrane():
     # Exact pressed membrane by shooting (mu t0 held, wall thinned): p_II, F, rho at 22 and 35 kPa
     thin = 9.25 * 0.01
     mu = 0.17 * 1.5 / thin
-    solid = Solid(dome(9.25, thin, arc=96, through=1), neo_hookean(mu, 0.4999))
+    solid = SolidModel(dome(9.25, thin, arc=96, through=1), neo_hookean(mu, 0.4999))
     table = {
         0.022: {2.0: (25.37169, 1.46845, 4.2922), 4.0: (36.03323, 5.43614, 6.9298), 5.0: (46.71956, 9.48173, 8.0375)},
         0.035: {2.0: (38.90945, 1.87926, 3.9209), 4.0: (48.47384, 6.23693, 6.3997), 5.0: (56.72326, 10.02554, 7.5006)},
     }
     for pressure, rows in table.items():
-        run = indent(solid, state_at(solid, pressure), Press(5.0, steps=5))
+        run = indent(solid, state_at(solid, pressure), PressSettings(5.0, steps=5))
         for state in run.states:
             row = rows.get(round(state.indentation, 6))
             if row:
@@ -62,11 +62,11 @@ def test_step_size_does_not_matter():
 def test_scale_invariance():
     base = press()
     length, stress = 1000 / 9.25, 1e3 / 0.17
-    solid = Solid(dome(1000.0, 1.5 * length), neo_hookean(1e3))
+    solid = SolidModel(dome(1000.0, 1.5 * length), neo_hookean(1e3))
     run = indent(
         solid,
         state_at(solid, 0.022 * stress),
-        Press(0.5 * 1000, plate_diameter=30 * length, ambient=0.101325 * stress, gauge_range=np.inf),
+        PressSettings(0.5 * 1000, plate_diameter=30 * length, ambient=0.101325 * stress, gauge_range=np.inf),
     )
     assert np.allclose(run.column("force")[1:] / stress / length**2, base.column("force")[1:], rtol=1e-9)
     assert run.figures().sensitivity * length**2 == pytest.approx(base.figures().sensitivity, rel=1e-9)
@@ -161,10 +161,12 @@ def test_random_sensors_all_end_well():
     rng = np.random.default_rng(7)
     for _ in range(25):
         inner = float(rng.choice([5.0, 9.25, 15.0, 30.0]))
-        solid = Solid(dome(inner, inner * rng.uniform(0.05, 0.4)), neo_hookean(float(rng.choice(MODULI))))
+        solid = SolidModel(dome(inner, inner * rng.uniform(0.05, 0.4)), neo_hookean(float(rng.choice(MODULI))))
         free = inflate(solid, past_limit=1.0)
         start = state_at(solid, float(rng.uniform(0, 0.8)) * free.limit.pressure, free)
-        run = indent(solid, start, Press(inner / 2, int(rng.integers(1, 20)), dead_volume=float(rng.uniform(0, 5000))))
+        run = indent(
+            solid, start, PressSettings(inner / 2, int(rng.integers(1, 20)), dead_volume=float(rng.uniform(0, 5000)))
+        )
         assert run.complete or run.events[-1].kind in ("snap", "floor", "lost")
         assert np.isfinite(run.column("force")).all()
 
@@ -176,11 +178,11 @@ def test_thin_and_thick_walls(ratio):
 
 def test_an_unstable_start_is_said():
     # past the limit point a large dead volume is nearly a regulated pressure, which cannot hold the dome
-    solid = Solid(dome(9.25, 1.5), neo_hookean(0.17))
+    solid = SolidModel(dome(9.25, 1.5), neo_hookean(0.17))
     past = inflate(solid).states[-1]
     assert not past.stable
-    assert indent(solid, past, Press(2.0, dead_volume=1e6)).events[-1].kind == "unstable"
-    assert indent(solid, past, Press(2.0)).complete
+    assert indent(solid, past, PressSettings(2.0, dead_volume=1e6)).events[-1].kind == "unstable"
+    assert indent(solid, past, PressSettings(2.0)).complete
 
 
 def test_steps_of_any_size():

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from pneutouch.catalogue import Library
-from pneutouch.mechanics.atlas.press import Batch
+from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.uncertainty import Budget, batch_of, budget, model_errors
 from pneutouch.spec.material import Material
@@ -40,13 +40,13 @@ def materials(library: Library) -> dict[str, Material]:
     return {name: m for name, m in library.all("materials", Material).items() if m.kind == "elastomer"}
 
 
-def batch_for(library: Library, case: Case) -> Batch:
+def batch_for(library: Library, case: Case) -> SensorBatch:
     sensor = replace(material_sensor(materials(library)[case.resin]), **case.sensor)
     return batch_of(sensor, [case.driving_pressure])
 
 
 def budget_for(
-    library: Library, batch: Batch, resin: str, near_paper: bool, **more: Any
+    library: Library, batch: SensorBatch, resin: str, near_paper: bool, **more: Any
 ) -> Budget:  # fmt: skip
     shelf = materials(library)
     printer: Printer = library.load("printers", "objet260-connex")

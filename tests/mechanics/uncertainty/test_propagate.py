@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pneutouch.mechanics.atlas.press import Batch
+from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.uncertainty import COVERAGE, FIGURES, batch_of, model_errors
@@ -96,7 +96,7 @@ def test_few_degrees_of_freedom_are_told(library):
 def test_hundreds_of_candidates_cost_little(library):
     """Derivatives in all inputs and their check over the whole spread, for a few dozen times the answer alone."""
     tango = material_sensor(materials(library)["TangoPlus"])
-    batch: Batch = batch_of(tango, np.linspace(0.0, 0.015, 200).tolist())
+    batch: SensorBatch = batch_of(tango, np.linspace(0.0, 0.015, 200).tolist())
     batch = replace(batch, wall_thickness=np.linspace(1.0, 2.0, 200))
     budget_for(library, batch.take(slice(0, 1)), "TangoPlus", True)
     start = time.process_time()

@@ -9,7 +9,7 @@ from pneutouch.errors import InputError
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.uncertainty import FIGURES, INPUTS, batch_of, budget, model_errors
 from pneutouch.mechanics.uncertainty.hardness import logarithmic_change
-from pneutouch.mechanics.uncertainty.source import SENSITIVITY, Source, counting
+from pneutouch.mechanics.uncertainty.source import SENSITIVITY, UncertaintySource, counting
 from pneutouch.mechanics.uncertainty.sources import modulus
 from pneutouch.spec.quantity import Quantity
 from tests.mechanics.uncertainty.designs import budget_for, materials
@@ -94,7 +94,7 @@ def test_hardness_does_not_explain_how_much_the_paper_saw_sensitivity_age(librar
 
 @pytest.mark.parametrize("shape", ["normal", "rectangular", "lognormal", "log-rectangular"])
 def test_samples_have_the_stated_deviation_and_kurtosis(shape):
-    source = Source("x", INPUTS[0], np.array([0.1]), shape, counting(1), "made up", True)
+    source = UncertaintySource("x", INPUTS[0], np.array([0.1]), shape, counting(1), "made up", True)
     sample = source.sample(0, 400_000, np.random.default_rng(5))
     deviation = np.log(sample) if shape.startswith("log") else sample - 1
     assert deviation.std() == pytest.approx(0.1, rel=5e-3)

@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pneutouch.mechanics.atlas.batches import batch_of
-from pneutouch.mechanics.atlas.press import Press
-from pneutouch.mechanics.atlas.table import Point, shipped
+from pneutouch.mechanics.atlas.press import AtlasPress
+from pneutouch.mechanics.atlas.table import AtlasPoint, shipped
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.viscous.follow import follow
 from pneutouch.mechanics.viscous.prony import Prony
@@ -33,7 +33,7 @@ class Springs:
     def point(self, k, nu, height):
         x, one = 1.0 - height, np.ones_like(nu)
         yes = np.ones(nu.size, dtype=bool)
-        return Point(
+        return AtlasPoint(
             self.a * nu + self.b * x, self.b * nu + self.c * x, self.a * one, -self.b * one, -self.c * one, yes, ~yes
         )
 
@@ -93,9 +93,9 @@ def test_gas_takes_its_part_of_the_load_and_gives_it_back():
     assert abs(by_gas) < 0.1 * plate
 
 
-def dome(**changes) -> Press:
+def dome(**changes) -> AtlasPress:
     batch = batch_of(replace(SENSOR, **changes), [0.0])
-    return Press(batch, shipped().slices(batch.wall_ratio, ()), np.zeros(1, dtype=np.intp))
+    return AtlasPress(batch, shipped().slices(batch.wall_ratio, ()), np.zeros(1, dtype=np.intp))
 
 
 @pytest.mark.parametrize("prony", [A, B])

@@ -8,7 +8,7 @@ import numpy as np
 
 from pneutouch.body import Body
 from pneutouch.catalogue import Library
-from pneutouch.parts.specimen import FAMILIES, Box, Ground, Mesh, Pattern
+from pneutouch.parts.specimen import FAMILIES, Box, Mesh, PatternContext, PatternGeometry
 from pneutouch.spec.specimen import LAYERS
 
 LIBRARY = Library((Path(__file__).resolve().parents[3],))
@@ -18,11 +18,11 @@ J735 = LIBRARY.load("printers", "j735")
 STEP = 0.014
 
 
-def ground(length: float = 20.0, width: float = 10.0, height: float = 8.0, speed: float = 4.0) -> Ground:
-    return Ground(Box((0.0, 0.0, 0.0), (length, width, height)), J735, AGILUS, VERO, speed, STEP, "test.toml")
+def ground(length: float = 20.0, width: float = 10.0, height: float = 8.0, speed: float = 4.0) -> PatternContext:
+    return PatternContext(Box((0.0, 0.0, 0.0), (length, width, height)), J735, AGILUS, VERO, speed, STEP, "test.toml")
 
 
-def drawn(at: Ground, kind: str, **keys) -> Pattern:
+def drawn(at: PatternContext, kind: str, **keys) -> PatternGeometry:
     return FAMILIES[kind].draw(LAYERS[kind].model_validate({"kind": kind, **keys}), at, 0)
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from pneutouch.parts.specimen import Box
-from pneutouch.parts.specimen.marching import Grid, between, level_set
-from pneutouch.parts.specimen.surfaces import SURFACES, Surface
+from pneutouch.parts.specimen.marching import MarchingGrid, between, level_set
+from pneutouch.parts.specimen.surfaces import SURFACES, PeriodicSurface
 from tests.parts.specimen.shapes import STEP, body
 
 BOX = Box((0.0, 0.0, 0.0), (2.0, 2.0, 2.0))
@@ -24,7 +24,7 @@ def field(grid, wave):
 
 @pytest.mark.parametrize("steps", [16, 32])
 def test_a_ball_and_a_shell(steps):
-    grid = Grid(BOX, (steps, steps, steps))
+    grid = MarchingGrid(BOX, (steps, steps, steps))
     values = field(grid, sphere)
     ball = between(grid, sphere, values, None, 0.8)
     assert body(ball).is_closed()
@@ -37,7 +37,7 @@ def test_a_plane_cut_by_the_box_is_exact():
     def height(points):
         return points[:, 2] + 0.3 * points[:, 0]
 
-    grid = Grid(BOX, (5, 7, 4))
+    grid = MarchingGrid(BOX, (5, 7, 4))
     part = between(grid, height, field(grid, height), None, 1.13)
     assert body(part).is_closed()
     assert part.volume == pytest.approx(2 * 2 * (1.13 - 0.3), rel=1e-9)
@@ -46,7 +46,7 @@ def test_a_plane_cut_by_the_box_is_exact():
 @pytest.mark.parametrize("kind", SURFACES)
 @pytest.mark.parametrize("level", [0.0, 0.4])
 def test_surfaces_keep_the_finest_step_but_for_a_hundredth_of_them(kind, level):
-    surface, box = Surface(kind, 5.0, "network", STEP), Box((0.0, 0.0, 0.0), (5.0, 5.0, 5.0))
+    surface, box = PeriodicSurface(kind, 5.0, "network", STEP), Box((0.0, 0.0, 0.0), (5.0, 5.0, 5.0))
     grid, wave = surface.grid(box), surface.at(box)
     mesh = level_set(grid, wave, surface.values(grid), level)
     corners = mesh.vertices[mesh.triangles]

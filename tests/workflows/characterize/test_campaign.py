@@ -10,15 +10,15 @@ from dataclasses import replace
 import pandas
 import pytest
 
-from pneutouch.bench.simulate import Truth
+from pneutouch.bench.simulate import SimulationTruth
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import Campaign
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.workflows.characterize.run import characterize
-from pneutouch.workflows.simulate.run import Asked, simulate
+from pneutouch.workflows.simulate.run import SimulationOptions, simulate
 
-ASKED = Asked(
-    specimens=2, pressures=(0.0, 22.0), runs=1, kinds=("steps", "injection", "leak"), model="atlas", truth=Truth(rest=5.0)
+ASKED = SimulationOptions(
+    specimens=2, pressures=(0.0, 22.0), runs=1, kinds=("steps", "injection", "leak"), model="atlas", truth=SimulationTruth(rest=5.0)
 )  # fmt: skip
 FIRST = "runs/TangoPlus-1-0kPa-steps-1.csv"
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pneutouch.bench.record import Curve
+from pneutouch.bench.record import MeasuredCurve
 from pneutouch.bench.summary import summarize
-from pneutouch.spec.campaign import Run
+from pneutouch.spec.campaign import CampaignRun
 from pneutouch.spec.read import validate
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA
@@ -19,8 +19,8 @@ DEPTHS = np.linspace(0.0, 7.0, 15)
 def curves(slopes, pressure=12.0, age=0.0):
     force = 1.5 * DEPTHS**1.5
     return [
-        Curve(
-            Run(file=f"{k}{age}", sensor=f"s{k}", resin="TangoPlus", driving_pressure_kPa=pressure, age_days=age), DEPTHS, force,
+        MeasuredCurve(
+            CampaignRun(file=f"{k}{age}", sensor=f"s{k}", resin="TangoPlus", driving_pressure_kPa=pressure, age_days=age), DEPTHS, force,
             slope * KPA * force, pressure * KPA,
         )
         for k, slope in enumerate(slopes)

@@ -15,7 +15,7 @@ import xarray
 
 from pneutouch.errors import ComputationError
 from pneutouch.workflows.sweep import plan_of_flags, sweep, work
-from pneutouch.workflows.sweep.run import Machines
+from pneutouch.workflows.sweep.run import ComputeResources
 
 OVER = [
     "membrane.material=TangoPlus,FLX9950",
@@ -27,7 +27,7 @@ POINTS, CHUNKS = 320, 10
 """About two seconds of one core; the thinnest walls in TangoPlus are refused at 22 kPa."""
 
 
-ALONE = Machines(workers=1)
+ALONE = ComputeResources(workers=1)
 
 
 def load(path) -> xarray.Dataset:
@@ -101,7 +101,7 @@ def undisturbed(library, tmp_path_factory) -> bytes:
     """The file of the sweep of ``WORDS``, computed in this process in one go."""
     out = tmp_path_factory.mktemp("undisturbed") / "sweep.nc"
     plan = plan_of_flags("paper-dome", OVER, model="membrane")
-    sweep(plan, out, Machines(workers=1), library=library)
+    sweep(plan, out, ComputeResources(workers=1), library=library)
     return out.read_bytes()
 
 

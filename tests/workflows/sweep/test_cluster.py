@@ -12,7 +12,7 @@ import pytest
 from pneutouch.errors import InputError
 from pneutouch.workflows.sweep import cluster as module
 from pneutouch.workflows.sweep import sweep
-from pneutouch.workflows.sweep.run import Machines
+from pneutouch.workflows.sweep.run import ComputeResources
 from tests.workflows.sweep.conftest import CHUNKS, ended, journal_lines, small, started
 
 
@@ -74,24 +74,24 @@ def test_what_is_no_scheduler_is_an_input_error(library, tmp_path, monkeypatch):
     with listening() as silent:
         for address in ("nonsense", "http://localhost:1", f"127.0.0.1:{silent.getsockname()[1]}"):
             with pytest.raises(InputError, match=f"--scheduler {address}: no Dask scheduler answers there"):
-                sweep(small(), tmp_path / "x.nc", Machines(scheduler=address), library=library)
+                sweep(small(), tmp_path / "x.nc", ComputeResources(scheduler=address), library=library)
     assert list(tmp_path.iterdir()) == []
 
 
 def test_a_cluster_without_workers_or_with_others_is_an_input_error(cluster, library, tmp_path, monkeypatch):
     monkeypatch.setattr(module, "__version__", "9.9")
     with pytest.raises(InputError, match=r"a worker has pneutouch .*, this is 9\.9"):
-        sweep(small(), tmp_path / "x.nc", Machines(scheduler=cluster.address), library=library)
+        sweep(small(), tmp_path / "x.nc", ComputeResources(scheduler=cluster.address), library=library)
     for worker in cluster.workers:
         worker.kill()
         worker.wait()
     monkeypatch.setattr(module, "_PATIENCE", 2)
     time.sleep(1)
     with pytest.raises(InputError, match="has no worker; start some with: dask worker"):
-        sweep(small(), tmp_path / "x.nc", Machines(scheduler=cluster.address), library=library)
+        sweep(small(), tmp_path / "x.nc", ComputeResources(scheduler=cluster.address), library=library)
 
 
 def test_dask_that_is_not_installed_is_named(library, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(InputError, match=r"pip install pneutouch\[cluster\]"):
-        sweep(small(), tmp_path / "x.nc", Machines(scheduler="tcp://127.0.0.1:1"), library=library)
+        sweep(small(), tmp_path / "x.nc", ComputeResources(scheduler="tcp://127.0.0.1:1"), library=library)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from pneutouch.errors import InputError
 from pneutouch.workflows.sweep import plan_of_file, plan_of_flags, sweep, work
 from pneutouch.workflows.sweep.read import spread
-from pneutouch.workflows.sweep.run import Machines
+from pneutouch.workflows.sweep.run import ComputeResources
 
 BASE = 'design = "paper-dome"\nmodel = "membrane"\n'
 WALL = '"membrane.wall_thickness_mm"'
@@ -175,6 +175,10 @@ def test_a_name_that_every_point_replaces_need_not_exist(library, tmp_path):
     for varied in ('[grid]\nmembrane.material = ["FLX9940"]', '[[point]]\nmembrane.material = "FLX9940"'):
         (tmp_path / "s.toml").write_text(f'design = "own.toml"\nmodel = "membrane"\n{varied}')
         outcome = sweep(
-            plan_of_file(tmp_path / "s.toml"), tmp_path / "x.nc", Machines(workers=1), library=library, fresh=True
+            plan_of_file(tmp_path / "s.toml"),
+            tmp_path / "x.nc",
+            ComputeResources(workers=1),
+            library=library,
+            fresh=True,
         )
         assert outcome.states["ok"] == 1

@@ -11,10 +11,10 @@ import pytest
 from pneutouch import __version__
 from pneutouch.errors import ComputationError
 from pneutouch.workflows.sweep import plan_of_file, sweep, work
-from pneutouch.workflows.sweep.run import Machines
+from pneutouch.workflows.sweep.run import ComputeResources
 from tests.workflows.sweep.conftest import load, small
 
-ALONE = Machines(workers=1)
+ALONE = ComputeResources(workers=1)
 
 FIGURES = (
     "sensitivity_kPa_per_N", "sensitivity_through_origin_kPa_per_N", "r_squared", "nonlinearity_percent",

@@ -10,11 +10,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pneutouch.errors import InputError
-from pneutouch.workflows.tray.pack import Room, pack
+from pneutouch.workflows.tray.pack import PackingArea, pack
 
 SIDES = st.floats(2.0, 60.0, allow_nan=False).map(lambda x: round(x, 3))
 SIZES = st.lists(st.tuples(SIDES, SIDES), min_size=1, max_size=40)
-ROOMS = st.builds(Room, st.floats(80, 400), st.floats(80, 400), st.floats(0, 10), st.floats(0.5, 8))
+ROOMS = st.builds(PackingArea, st.floats(80, 400), st.floats(80, 400), st.floats(0, 10), st.floats(0.5, 8))
 
 
 def boxes(sizes, places):
@@ -71,7 +71,7 @@ def test_equal_squares_fill_the_grid_that_they_can(size, room):
 @given(st.lists(st.tuples(st.floats(4, 12), st.floats(4, 12)), min_size=60, max_size=120))
 def test_shelves_waste_less_than_half(sizes):
     """What next-fit decreasing height is known to keep (Coffman et al. 1980): depth at most twice the area plus one row."""
-    room = Room(150.0, 1000.0, 0.0, 0.5)
+    room = PackingArea(150.0, 1000.0, 0.0, 0.5)
     places = pack(sizes, room)
     depth = max(box[3] for box in boxes(sizes, places)) + room.spacing
     area = sum((w + room.spacing) * (d + room.spacing) for w, d in sizes)
@@ -80,11 +80,11 @@ def test_shelves_waste_less_than_half(sizes):
 
 
 def test_a_long_part_is_turned_where_only_that_fits():
-    (place,) = pack([(10.0, 90.0)], Room(100.0, 50.0, 2.0, 1.0))
+    (place,) = pack([(10.0, 90.0)], PackingArea(100.0, 50.0, 2.0, 1.0))
     assert place.turned
     assert (place.x, place.y) == (2.0, 2.0)
 
 
 def test_a_part_that_fits_no_way_is_refused():
     with pytest.raises(InputError, match="0 of 1 parts fit on the tray of 100 x 50 mm"):
-        pack([(60.0, 60.0)], Room(100.0, 50.0, 0.0, 1.0))
+        pack([(60.0, 60.0)], PackingArea(100.0, 50.0, 0.0, 1.0))

@@ -17,7 +17,7 @@ import trimesh
 from pneutouch.errors import InputError
 from pneutouch.parts.lettering.tally import read
 from pneutouch.workflows.tray.lay import fill, lay
-from pneutouch.workflows.tray.order import Order, is_tray_file, order_of_file, order_of_flags
+from pneutouch.workflows.tray.order import TrayOrder, is_tray_file, order_of_file, order_of_flags
 from pneutouch.workflows.tray.subject import subject
 from pneutouch.workflows.tray.write import document, inputs, write_tray
 from tests.conftest import ROOT
@@ -308,4 +308,4 @@ def test_keys_may_be_written_as_tables_and_designs_lie_beside_the_file(library, 
     path.write_text('[[entry]]\ndesign = "mine.toml"\nover = { membrane.wall_thickness_mm = [1.0, 2.0] }\n')
     laid = lay(order_of_file(path), library)
     assert [part.value.assembly.layout.wall for part in laid.parts] == [1.0, 2.0]
-    assert isinstance(laid.order, Order)
+    assert isinstance(laid.order, TrayOrder)

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from pneutouch.body import Body
 from pneutouch.parts.lettering.mark import Mark
-from pneutouch.workflows.tray.lay import Part, lay
+from pneutouch.workflows.tray.lay import TrayPart, lay
 from pneutouch.workflows.tray.order import order_of_flags
-from pneutouch.workflows.tray.pack import Place, Room, pack
+from pneutouch.workflows.tray.pack import PackedPosition, PackingArea, pack
 
 SIDES = st.floats(2.0, 40.0).map(lambda x: round(x, 3))
 
@@ -22,7 +22,7 @@ def brick(library, x, y, place, name="A1-brick"):
     """A part whose vertices are four corners of a box: all that bounds and transforms look at."""
     vertices = np.array([[0, 0, 0], [x, 0, 0], [x, y, 3.0], [0, y, 0]], float)
     body = Body(name, "connector", library.load("materials", "ABS"), vertices, np.array([[0, 1, 2], [0, 2, 3]]))
-    return Part(name, None, 1, (), (body,), (Mark("none"),), place)
+    return TrayPart(name, None, 1, (), (body,), (Mark("none"),), place)
 
 
 def boxes(part):
@@ -35,7 +35,7 @@ def apart(one, other):
 
 
 def test_a_turned_part_lies_in_its_place(library):
-    part = brick(library, 30.0, 10.0, Place(5.0, 7.0, True))
+    part = brick(library, 30.0, 10.0, PackedPosition(5.0, 7.0, True))
     low, high = boxes(part)
     assert low == pytest.approx([5.0, 7.0, 0.0])
     assert high == pytest.approx([15.0, 37.0, 3.0])
@@ -46,7 +46,7 @@ def test_a_turned_part_lies_in_its_place(library):
 
 @given(st.lists(st.tuples(SIDES, SIDES), min_size=1, max_size=12))
 def test_packed_bricks_lie_in_their_places_and_apart(library, sizes):
-    room = Room(120.0, 600.0, 4.0, 2.0)
+    room = PackingArea(120.0, 600.0, 4.0, 2.0)
     parts = [brick(library, x, y, place) for (x, y), place in zip(sizes, pack(sizes, room), strict=True)]
     found = [boxes(part) for part in parts]
     for part, (low, high) in zip(parts, found, strict=True):

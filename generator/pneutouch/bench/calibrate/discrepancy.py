@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.calibrate.observations import Points
+from pneutouch.bench.calibrate.observations import ObservationPoints
 
 FLOOR = np.array([0.01, 0.005, 0.005])
 """Least standard deviation of what the model leaves out, as a share of force, of pressure rise and of an injection's pressure.
@@ -36,7 +36,7 @@ TRAVEL = 3
 
 
 @dataclass(frozen=True, slots=True)
-class Shared:
+class SharedUnknowns:
     """Unknowns that move many values together: ``columns`` (N, q) for size one, in N and MPa; ``kind`` (q,) of each, as `FLOOR`, or
     `TRAVEL`, whose size is one already."""
 
@@ -48,7 +48,7 @@ class Shared:
         return np.asarray(self.columns * np.append(sizes, 1.0)[self.kind])
 
 
-def shared_of(points: Points) -> Shared:
+def shared_of(points: ObservationPoints) -> SharedUnknowns:
     """Columns for points.
 
     Of each channel one share of all its readings, whatever the pressure, and at each pressure a smooth share along the travel; of
@@ -75,10 +75,12 @@ def shared_of(points: Points) -> Shared:
     for curve in np.flatnonzero(points.travel_error > 0):
         columns.append(np.where(points.clusters == curve, slope, 0.0)[:, None])
         kind = np.append(kind, TRAVEL)
-    return Shared(np.hstack(columns), kind)
+    return SharedUnknowns(np.hstack(columns), kind)
 
 
-def sizes_of(shared: Shared, jacobian: Array, residual: Array, belief: Array, pull: Array, floor: Array) -> Array:
+def sizes_of(
+    shared: SharedUnknowns, jacobian: Array, residual: Array, belief: Array, pull: Array, floor: Array
+) -> Array:
     """Sizes (3,) that the residuals make most likely, the parameters taken out (restricted likelihood: Patterson and Thompson,
     Biometrika 58, 1971, 545-554); at least ``floor``.
 

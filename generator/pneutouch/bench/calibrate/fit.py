@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
-from pneutouch.bench.calibrate.discrepancy import FLOOR, Shared, shared_of, sizes_of
+from pneutouch.bench.calibrate.discrepancy import FLOOR, SharedUnknowns, shared_of, sizes_of
 from pneutouch.bench.calibrate.intervals import Covariance, covariance, factor, half_widths
-from pneutouch.bench.calibrate.model import Model
-from pneutouch.bench.calibrate.observations import Observations, Points, points_of
-from pneutouch.bench.calibrate.parameters import MODULUS, NAMES, Parameters
-from pneutouch.bench.calibrate.solve import Problem, Solution, solve
+from pneutouch.bench.calibrate.model import AtlasModel
+from pneutouch.bench.calibrate.observations import ObservationPoints, Observations, points_of
+from pneutouch.bench.calibrate.parameters import MODULUS, NAMES, CalibrationParameters
+from pneutouch.bench.calibrate.solve import LeastSquaresProblem, LeastSquaresSolution, solve
 from pneutouch.errors import InputError
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.sensor import Sensor
@@ -28,8 +28,8 @@ _SMOOTH = 0.1
 
 
 @dataclass(frozen=True, slots=True)
-class Fit:
-    """A fit; coordinates as in `Parameters`.
+class CalibrationFit:
+    """A fit; coordinates as in `CalibrationParameters`.
 
     Attributes:
         observations, points, parameters, sensor: What was fitted; the sensor as designed, in the laboratory's air.
@@ -44,11 +44,11 @@ class Fit:
     """
 
     observations: Observations
-    points: Points
-    parameters: Parameters
+    points: ObservationPoints
+    parameters: CalibrationParameters
     sensor: Sensor
-    problem: Problem
-    solution: Solution
+    problem: LeastSquaresProblem
+    solution: LeastSquaresSolution
     covariance: Covariance
     half_width: Array
     chi_squared: float
@@ -75,7 +75,9 @@ class Fit:
         return self.points.known & ~self.solution.use[2 * size :].reshape(self.points.known.shape)
 
 
-def fit(observations: Observations, sensor: Sensor, parameters: Parameters, floor: Array = FLOOR) -> Fit:
+def fit(
+    observations: Observations, sensor: Sensor, parameters: CalibrationParameters, floor: Array = FLOOR
+) -> CalibrationFit:
     """Fit ``parameters`` of ``sensor`` to observations.
 
     First with the errors stated for reading and atlas; then with those that the residuals show, channel by channel, and with
@@ -91,31 +93,35 @@ def fit(observations: Observations, sensor: Sensor, parameters: Parameters, floo
             f"calibrate: {int(points.use.sum())} values for {fitted} parameters without priors; there must be more values, or "
             "fewer parameters with --fit"
         )
-    model = Model(sensor, points)
+    model = AtlasModel(sensor, points)
     # A start that trusts neither the shape of the model nor single points: all errors alike, as shares of full scale.
     rough = np.hypot(points.errors, points.full_scale * floor[points.channels])
-    found = solve(Problem(model, parameters, rough, np.zeros((rough.size, 0))), _start(sensor, points, parameters))
+    found = solve(
+        LeastSquaresProblem(model, parameters, rough, np.zeros((rough.size, 0))), _start(sensor, points, parameters)
+    )
     for _ in range(_ROUNDS):
         # A share of what was read would pull the fit below the readings (Peelle's puzzle); of what is fitted it does not.
         shared = shared_of(points.with_values(np.where(found.use, found.model, points.values)))
-        channels = _channel_factors(Problem(model, parameters, points.errors, shared.sized(np.full(3, _SMOOTH))), found)
+        channels = _channel_factors(
+            LeastSquaresProblem(model, parameters, points.errors, shared.sized(np.full(3, _SMOOTH))), found
+        )
         errors = points.errors * channels[points.channels]
-        sizes = _sizes(Problem(model, parameters, errors, shared.columns), found, shared, floor)
-        seen = Problem(model, parameters, errors, shared.sized(sizes))
+        sizes = _sizes(LeastSquaresProblem(model, parameters, errors, shared.columns), found, shared, floor)
+        seen = LeastSquaresProblem(model, parameters, errors, shared.sized(sizes))
         found = solve(seen, found.at)
     runs = factor(seen, found)
-    last = Problem(model, parameters, errors * np.sqrt(runs), shared.sized(sizes))
+    last = LeastSquaresProblem(model, parameters, errors * np.sqrt(runs), shared.sized(sizes))
     found = solve(last, found.at)
     certain = covariance(last, found, runs, _others(last, found) * parameters.belief)
-    read = Problem(model, parameters, points.errors, shared.sized(sizes))
+    read = LeastSquaresProblem(model, parameters, points.errors, shared.sized(sizes))
     squares = read.whitened((found.residual * last.errors / points.errors)[:, None], found.use) ** 2
-    return Fit(
+    return CalibrationFit(
         observations, points, parameters, sensor, last, found, certain, half_widths(certain),
         float(squares.sum()), max(int(found.use.sum()) - fitted, 0), channels, sizes, runs,
     )  # fmt: skip
 
 
-def _others(problem: Problem, found: Solution) -> Array:
+def _others(problem: LeastSquaresProblem, found: LeastSquaresSolution) -> Array:
     """Derivatives by the parameters that are not fitted but uncertain, (N, 4), over the errors; 0 by the others."""
     slopes = np.zeros((found.residual.size, len(NAMES)))
     others = list(problem.chosen.others)
@@ -129,7 +135,7 @@ def _others(problem: Problem, found: Solution) -> Array:
     return slopes
 
 
-def _sizes(problem: Problem, found: Solution, shared: Shared, floor: Array) -> Array:
+def _sizes(problem: LeastSquaresProblem, found: LeastSquaresSolution, shared: SharedUnknowns, floor: Array) -> Array:
     """Sizes of what the model leaves out; all that is believed uncertain may explain the residuals first."""
     others, use = list(problem.chosen.others), found.use
     residual, jacobian, _, _ = problem.look(found.at)
@@ -137,10 +143,10 @@ def _sizes(problem: Problem, found: Solution, shared: Shared, floor: Array) -> A
     belief = np.concatenate([problem.weight, problem.chosen.belief[others] ** -2.0])
     # At the solution the beliefs pull the fitted ones: their rows are part of the data.
     pull = np.concatenate([np.sqrt(problem.weight) * (found.at - problem.centre), np.zeros(len(others))])
-    return sizes_of(Shared(problem.shared[use], shared.kind), whole[use], residual[use], belief, pull, floor)
+    return sizes_of(SharedUnknowns(problem.shared[use], shared.kind), whole[use], residual[use], belief, pull, floor)
 
 
-def _start(sensor: Sensor, points: Points, parameters: Parameters) -> Array:
+def _start(sensor: Sensor, points: ObservationPoints, parameters: CalibrationParameters) -> Array:
     """The design's values, the modulus raised where it would burst under the pressures that the sensor stood."""
     start = parameters.start[list(parameters.fitted)].copy()
     if MODULUS in parameters.fitted and points.driving.size:
@@ -151,7 +157,7 @@ def _start(sensor: Sensor, points: Points, parameters: Parameters) -> Array:
     return start
 
 
-def _channel_factors(problem: Problem, found: Solution) -> Array:
+def _channel_factors(problem: LeastSquaresProblem, found: LeastSquaresSolution) -> Array:
     """Root mean square by channel of what no smooth share explains, at least 1: what reading and atlas do not either."""
     factors, use = np.ones(3), found.use
     residual, shared = problem.look(found.at)[0], problem.shared[use]

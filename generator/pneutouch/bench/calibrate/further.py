@@ -9,10 +9,10 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.bench.calibrate.discrepancy import shared_of
-from pneutouch.bench.calibrate.fit import Fit
+from pneutouch.bench.calibrate.fit import CalibrationFit
 from pneutouch.bench.calibrate.inject import free_pressure
-from pneutouch.bench.calibrate.model import Model
-from pneutouch.bench.calibrate.observations import ATLAS_FORCE, ATLAS_PRESSURE, READING, Points
+from pneutouch.bench.calibrate.model import AtlasModel
+from pneutouch.bench.calibrate.observations import ATLAS_FORCE, ATLAS_PRESSURE, READING, ObservationPoints
 from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, NAMES, WALL
 from pneutouch.bench.protocol import REPETITIONS, SHARE
 from pneutouch.mechanics.atlas.table import REST_VOLUME, shipped
@@ -40,7 +40,7 @@ _QUANTILE = 1.96
 
 
 @dataclass(frozen=True, slots=True)
-class Further:
+class SuggestedTest:
     """A test, what it would do.
 
     Attributes:
@@ -54,7 +54,7 @@ class Further:
     half_width: Array
 
 
-def further_tests(fit: Fit) -> list[Further]:
+def further_tests(fit: CalibrationFit) -> list[SuggestedTest]:
     """Candidate tests, the one that helps most first. Parameters on a bound are left as they are."""
     places = np.flatnonzero(~fit.solution.bound)
     if not places.size:
@@ -73,11 +73,11 @@ def further_tests(fit: Fit) -> list[Further]:
         after = np.linalg.inv(now + gained[np.ix_(numbers, numbers)] * scale)
         width = np.full(fit.solution.at.size, np.nan)
         width[places] = _QUANTILE * np.sqrt(np.diag(after) * belief**2 + stays)
-        found.append(Further(what, float(np.sqrt((worst @ before @ worst) / (worst @ after @ worst))), width))
+        found.append(SuggestedTest(what, float(np.sqrt((worst @ before @ worst) / (worst @ after @ worst))), width))
     return sorted(found, key=lambda test: -test.gain)
 
 
-def _candidates(fit: Fit) -> Iterator[tuple[str, Array]]:
+def _candidates(fit: CalibrationFit) -> Iterator[tuple[str, Array]]:
     """Tests with what they would say of all four parameters, (4, 4)."""
     full, size = fit.full, fit.sensor.inner_radius
     slices = shipped().slices(np.array([np.exp(full[WALL]) / size]), ())
@@ -100,7 +100,7 @@ def _candidates(fit: Fit) -> Iterator[tuple[str, Array]]:
     yield "the wall measured with a caliper", _alone(WALL, CALIPER / float(np.exp(full[WALL])))
 
 
-def _rated(fit: Fit) -> float:
+def _rated(fit: CalibrationFit) -> float:
     """The pressure that the sensor is rated at, as designed and as estimated whichever is less."""
     full = fit.full
     built = replace(fit.sensor, shear_modulus=float(np.exp(full[MODULUS])), wall_thickness=float(np.exp(full[WALL])))
@@ -113,20 +113,20 @@ def _alone(number: int, spread: float) -> Array:
     return found
 
 
-def _looked(fit: Fit, full: Array, points: Points) -> tuple[Array, Array]:
+def _looked(fit: CalibrationFit, full: Array, points: ObservationPoints) -> tuple[Array, Array]:
     """Values (N,) and derivatives (N, 4) at the estimate; what the model does not have is 0 with no derivative."""
     step = np.where(full + fit.parameters.step <= fit.parameters.high, fit.parameters.step, -fit.parameters.step)
-    values, ok = Model(fit.sensor, points).values(np.vstack([full, full + np.diag(step)]))
+    values, ok = AtlasModel(fit.sensor, points).values(np.vstack([full, full + np.diag(step)]))
     known = np.asarray(ok.all(axis=0))
     derivatives = ((values[1:] - values[0]) / step[:, None]).T
     return np.where(known, values[0], 0.0), np.where(known[:, None], derivatives, 0.0)
 
 
-def _indented(fit: Fit, full: Array, pressure: float, depth: float) -> Array:
+def _indented(fit: CalibrationFit, full: Array, pressure: float, depth: float) -> Array:
     """Repeated runs at one pressure, scattering as the runs measured do."""
     row = np.linspace(0.0, depth, _STEPS + 1)[None, 1:]
     one, none = np.ones_like(row), np.zeros((0, 0))
-    points = Points(row, one, one, one, one, one > 0, np.array([pressure]), none, none, none, none > 0, np.zeros(1),
+    points = ObservationPoints(row, one, one, one, one, one > 0, np.array([pressure]), none, none, none, none > 0, np.zeros(1),
                     np.zeros(1, dtype=int))  # fmt: skip
     values, derivatives = _looked(fit, full, points)
     half = row.size
@@ -138,7 +138,7 @@ def _indented(fit: Fit, full: Array, pressure: float, depth: float) -> Array:
     return _said(fit, points, values, derivatives, np.diag(error**2 * together / REPETITIONS))
 
 
-def _volume(fit: Fit, full: Array, pressure: float) -> float:
+def _volume(fit: CalibrationFit, full: Array, pressure: float) -> float:
     """Volume to inject from ambient for a pressure, mm3."""
     size, mu = fit.sensor.inner_radius, float(np.exp(full[MODULUS]))
     slices = shipped().slices(np.array([np.exp(full[WALL]) / size]), ())
@@ -150,11 +150,11 @@ def _volume(fit: Fit, full: Array, pressure: float) -> float:
     return float((pressure + fit.sensor.ambient_pressure) * (room + grown) / fit.sensor.ambient_pressure - room)
 
 
-def _injected(fit: Fit, full: Array, volume: float) -> Array:
+def _injected(fit: CalibrationFit, full: Array, volume: float) -> Array:
     """An injection in steps, all its volumes wrong by one factor."""
     row = np.linspace(0.0, volume, _STEPS + 1)[None, 1:]
     one, none = np.ones_like(row), np.zeros((0, 0))
-    points = Points(none, none, none, none, none, none > 0, np.zeros(0), row, one, one, one > 0, np.zeros(0),
+    points = ObservationPoints(none, none, none, none, none, none > 0, np.zeros(0), row, one, one, one > 0, np.zeros(0),
                     np.zeros(0, dtype=int))  # fmt: skip
     values, derivatives = _looked(fit, full, points)
     by_volume = np.gradient(values, row[0]) * row[0] * SYRINGE
@@ -163,7 +163,7 @@ def _injected(fit: Fit, full: Array, volume: float) -> Array:
     return _said(fit, points, values, derivatives, noise)
 
 
-def _said(fit: Fit, points: Points, values: Array, derivatives: Array, noise: Array) -> Array:
+def _said(fit: CalibrationFit, points: ObservationPoints, values: Array, derivatives: Array, noise: Array) -> Array:
     """Information of values with errors ``noise``, (N, N), and with what the model leaves out as the runs measured show it."""
     shared = shared_of(points.with_values(values)).sized(fit.sizes)
     return np.asarray(derivatives.T @ np.linalg.solve(noise + shared @ shared.T, derivatives))

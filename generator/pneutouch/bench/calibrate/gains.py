@@ -5,20 +5,20 @@ from __future__ import annotations
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.calibrate.fit import Fit
-from pneutouch.bench.calibrate.model import Model
+from pneutouch.bench.calibrate.fit import CalibrationFit
+from pneutouch.bench.calibrate.model import AtlasModel
 
 GAIN = 0.01
 
 
-def gain_shifts(fit: Fit) -> tuple[Array, Array]:
+def gain_shifts(fit: CalibrationFit) -> tuple[Array, Array]:
     """How the estimates move, (k,) coordinates each, where force and where pressure read 1 % more than they are; 0 on a bound.
 
     The gauge reads the driving pressure too.
     """
     p, found = fit.points, fit.solution
     size = p.there.size
-    more = Model(fit.sensor, p._replace(driving=p.driving * (1.0 - GAIN))).values(fit.full[None])[0][0]
+    more = AtlasModel(fit.sensor, p._replace(driving=p.driving * (1.0 - GAIN))).values(fit.full[None])[0][0]
     force, pressure = np.zeros(p.values.size), np.where(found.use, more - found.model, 0.0)
     # True values are lower than read ones, and so would be the data.
     force[:size] = GAIN * p.values[:size]
@@ -26,7 +26,7 @@ def gain_shifts(fit: Fit) -> tuple[Array, Array]:
     return _shift(fit, force), _shift(fit, pressure)
 
 
-def _shift(fit: Fit, residual: Array) -> Array:
+def _shift(fit: CalibrationFit, residual: Array) -> Array:
     """Step of the estimates for a change of the residuals in N and MPa."""
     free = np.flatnonzero(~fit.solution.bound)
     change = np.where(fit.solution.use, residual / fit.problem.errors, 0.0)

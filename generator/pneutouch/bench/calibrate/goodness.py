@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.calibrate.fit import Fit
+from pneutouch.bench.calibrate.fit import CalibrationFit
 
 MISSED = 0.005
 """Least residual over full scale that is called a miss: our choice, a few times the atlas's own error."""
@@ -17,7 +17,7 @@ _CHANCE = 0.001
 
 
 @dataclass(frozen=True, slots=True)
-class Residuals:
+class RunResiduals:
     """One run: model less measured; arrays (n,), NaN where the model has no state. Of an injection ``force`` is empty.
 
     Attributes:
@@ -48,7 +48,7 @@ class Residuals:
 
 
 @dataclass(frozen=True, slots=True)
-class Miss:
+class SystematicDeviation:
     """A stretch where the runs at a driving pressure (kPa) all deviate alike: ``channel`` force or pressure, travels mm, the
     greatest mean residual over full scale with its sign."""
 
@@ -59,7 +59,7 @@ class Miss:
     share: float
 
 
-def residuals(fit: Fit) -> tuple[Residuals, ...]:
+def residuals(fit: CalibrationFit) -> tuple[RunResiduals, ...]:
     """Residuals of every run: curves, then injections, in their order."""
     p = fit.points
     size = p.there.size
@@ -67,14 +67,14 @@ def residuals(fit: Fit) -> tuple[Residuals, ...]:
     force, rise = gap[:size].reshape(p.there.shape), gap[size : 2 * size].reshape(p.there.shape)
     pressure = gap[2 * size :].reshape(p.known.shape)
     found = [
-        Residuals(
+        RunResiduals(
             curve.run.label, curve.run.driving_pressure_kPa, p.travel[i][p.there[i]], force[i][p.there[i]],
             rise[i][p.there[i]], _scale(p.force[i]), _scale(p.rise[i]),
         )
         for i, curve in enumerate(fit.observations.curves)
     ]  # fmt: skip
     found += [
-        Residuals(
+        RunResiduals(
             injection.label, float("nan"), p.volume[i][p.known[i]], np.zeros(0), pressure[i][p.known[i]], 1.0,
             _scale(p.pressure[i]),
         )
@@ -83,7 +83,7 @@ def residuals(fit: Fit) -> tuple[Residuals, ...]:
     return tuple(found)
 
 
-def misses(fit: Fit) -> list[Miss]:
+def misses(fit: CalibrationFit) -> list[SystematicDeviation]:
     """Where the mean residual of a pressure's runs is more than their scatter explains: the model is not the sensor.
 
     The scatter is pooled over pressures and travels, in shares of full scale; without repeated runs only the stated
@@ -101,7 +101,7 @@ def misses(fit: Fit) -> list[Miss]:
     return found
 
 
-def _on_one_grid(runs: list[Residuals], channel: str) -> tuple[Array, Array]:
+def _on_one_grid(runs: list[RunResiduals], channel: str) -> tuple[Array, Array]:
     """Travels of the run with the fewest points, and all runs' residuals there over full scale, (runs, n)."""
     at = min((run.at for run in runs), key=len)
     rows = [
@@ -120,7 +120,9 @@ def _pooled(groups: list[Array]) -> tuple[float, int]:
     return float(np.sqrt(np.nanmean(np.concatenate(squares)) * len(squares) / freedom)), freedom
 
 
-def _missed(pressure: float, channel: str, at: Array, rows: Array, spread: float, freedom: int) -> list[Miss]:
+def _missed(
+    pressure: float, channel: str, at: Array, rows: Array, spread: float, freedom: int
+) -> list[SystematicDeviation]:
     from scipy.stats import t
 
     mean = rows.mean(axis=0)
@@ -134,7 +136,7 @@ def _missed(pressure: float, channel: str, at: Array, rows: Array, spread: float
         first -= 1
     while last < len(at) - 1 and over[last + 1] and mean[last + 1] * mean[worst] > 0:
         last += 1
-    return [Miss(pressure, channel, float(at[first]), float(at[last]), float(mean[worst]))]
+    return [SystematicDeviation(pressure, channel, float(at[first]), float(at[last]), float(mean[worst]))]
 
 
 def _rms(values: Array) -> float:

@@ -8,9 +8,9 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.bench.calibrate.fit import fit
-from pneutouch.bench.calibrate.model import Model
+from pneutouch.bench.calibrate.model import AtlasModel
 from pneutouch.bench.calibrate.observations import Observations, points_of
-from pneutouch.bench.calibrate.parameters import Parameters
+from pneutouch.bench.calibrate.parameters import CalibrationParameters
 from pneutouch.errors import InputError
 from pneutouch.mechanics.response import lines
 from pneutouch.mechanics.sensor import Sensor
@@ -18,7 +18,7 @@ from pneutouch.units import KPA
 
 
 @dataclass(frozen=True, slots=True)
-class HeldOut:
+class HeldOutPrediction:
     """A driving pressure (kPa) as predicted by a fit to the others, mean over its runs.
 
     Attributes:
@@ -46,8 +46,8 @@ class HeldOut:
 
 
 def predict_held_out(
-    observations: Observations, sensor: Sensor, parameters: Parameters, pressure: float
-) -> HeldOut:  # fmt: skip
+    observations: Observations, sensor: Sensor, parameters: CalibrationParameters, pressure: float
+) -> HeldOutPrediction:  # fmt: skip
     """Leave out a driving pressure (kPa), fit to the rest, predict it.
 
     Raises InputError for a pressure that was not measured, where nothing is left to fit, and where the model has too few of
@@ -63,7 +63,7 @@ def predict_held_out(
         )
     fitted = fit(rest, sensor, parameters)
     points = points_of(observations.only(pressure))
-    model = Model(replace(sensor, ambient_pressure=observations.ambient), points)
+    model = AtlasModel(replace(sensor, ambient_pressure=observations.ambient), points)
     values, ok = model.values(fitted.full[None])
     shape = points.there.shape
     use = ok[0][: points.there.size].reshape(shape) & points.there
@@ -76,7 +76,7 @@ def predict_held_out(
     rows = [_row(points.travel[i], points.force[i], points.rise[i], force[i], rise[i], use[i]) for i in range(len(use))]
     mean = np.mean(rows, axis=0)
     worst = np.max(rows, axis=0)
-    return HeldOut(
+    return HeldOutPrediction(
         pressure, float(mean[0]), float(mean[1]), float(mean[2]), float(mean[3]), float(worst[4]), float(worst[5]),
         int(use.sum()), int((points.there & ~use).sum()),
     )  # fmt: skip

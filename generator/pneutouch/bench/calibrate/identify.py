@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.calibrate.fit import Fit
+from pneutouch.bench.calibrate.fit import CalibrationFit
 from pneutouch.bench.calibrate.intervals import information
 from pneutouch.bench.calibrate.parameters import LOGARITHMIC
 
@@ -29,7 +29,7 @@ _SAID = 0.25
 
 
 @dataclass(frozen=True, slots=True)
-class Ambiguity:
+class CorrelatedParameters:
     """Parameters that the data know together better than apart.
 
     Attributes:
@@ -49,11 +49,11 @@ class Ambiguity:
 
 
 @dataclass(frozen=True, slots=True)
-class Identified:
+class Identifiability:
     """Numbers of parameters that the data say nothing of (beside those of an ambiguity), and the ambiguities."""
 
     unseen: tuple[int, ...]
-    ambiguities: tuple[Ambiguity, ...]
+    ambiguities: tuple[CorrelatedParameters, ...]
 
     @property
     def clear(self) -> bool:
@@ -61,7 +61,7 @@ class Identified:
         return not self.unseen and not self.ambiguities
 
 
-def identify(fit: Fit) -> Identified:
+def identify(fit: CalibrationFit) -> Identifiability:
     """What the data of a fit leave open, from the small eigenvalues of their information in unit scale."""
     fitted = np.array(fit.parameters.fitted)
     seen = np.abs(fit.solution.jacobian).max(axis=0) > 0
@@ -75,10 +75,10 @@ def identify(fit: Fit) -> Identified:
         int(k) for place, k in enumerate(fitted)
         if k not in grouped and not fit.solution.bound[place] and _left(fit, place, bool(seen[place])) > UNSEEN
     ]  # fmt: skip
-    return Identified(tuple(unseen), tuple(found))
+    return Identifiability(tuple(unseen), tuple(found))
 
 
-def _left(fit: Fit, place: int, seen: bool) -> float:
+def _left(fit: CalibrationFit, place: int, seen: bool) -> float:
     """Standard deviation with belief and data over that of the belief."""
     if not seen:
         return 1.0
@@ -87,7 +87,7 @@ def _left(fit: Fit, place: int, seen: bool) -> float:
     return float(np.sqrt(np.linalg.inv(whole)[place, place]))
 
 
-def _groups(curves: Array, known: Array, numbers: Array, belief: Array) -> list[Ambiguity]:
+def _groups(curves: Array, known: Array, numbers: Array, belief: Array) -> list[CorrelatedParameters]:
     """Sets of parameters along the directions that the curves, by their information (n, n), hold least of.
 
     ``known``, (n, n), is the information with what many values share taken into account.
@@ -102,14 +102,14 @@ def _groups(curves: Array, known: Array, numbers: Array, belief: Array) -> list[
     alone = _spreads(known)
     sets = [places for places in sets if (alone / belief)[places].max() > _NEEDED]
     sets += [np.array(pair) for pair in np.argwhere(np.triu(np.abs(correlation) > CORRELATED))]
-    found: list[Ambiguity] = []
+    found: list[CorrelatedParameters] = []
     for places in sorted(sets, key=len, reverse=True):
         members = {int(numbers[p]) for p in places}
         if len(members) < 2 or any(members <= set(group.members) for group in found):
             continue
         inner = correlation[np.ix_(places, places)]
         strongest = float(inner.ravel()[np.abs(inner).argmax()])
-        found.append(Ambiguity(
+        found.append(CorrelatedParameters(
             tuple(int(numbers[p]) for p in places), strongest, spread[places], 1.0 / scale[places],
             _product(covariance[np.ix_(places, places)], numbers[places]),
         ))  # fmt: skip

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from pneutouch.arrays import Array, Flags, Index
-from pneutouch.mechanics.atlas.table import REST_VOLUME, Slices, shipped
+from pneutouch.mechanics.atlas.table import REST_VOLUME, AtlasSlices, shipped
 
 _NODES = 60
 _NEWTON = 4
@@ -13,7 +13,7 @@ _NEWTON = 4
 
 
 def injected(
-    slices: Slices, k: Index, ambient: Array, dead: Array, volume: Array
+    slices: AtlasSlices, k: Index, ambient: Array, dead: Array, volume: Array
 ) -> tuple[Array, Flags]:  # fmt: skip
     """Pressures of s sensors after injected volumes (n,) and whether the atlas knows them, (s, n).
 
@@ -39,7 +39,7 @@ def injected(
     return pressure.reshape(s, n), np.asarray(content <= gas[:, -1:])
 
 
-def free_pressure(slices: Slices, k: Index, nu: Array) -> tuple[Array, Array]:
+def free_pressure(slices: AtlasSlices, k: Index, nu: Array) -> tuple[Array, Array]:
     """Pressure of the free dome at volumes nu and its slope by nu, (n,) each."""
     apex = slices.free_apex(k, nu)
     point = slices.point(k, nu, apex[:, 0])

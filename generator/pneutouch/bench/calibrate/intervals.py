@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pneutouch.arrays import Array, Flags, Index
-from pneutouch.bench.calibrate.solve import Problem, Solution
+from pneutouch.bench.calibrate.solve import LeastSquaresProblem, LeastSquaresSolution
 
 LEAST_RUNS = 3
 """Fewer runs say nothing of how runs scatter."""
@@ -52,7 +52,7 @@ class Covariance:
         return bool(np.isfinite(self.freedom))
 
 
-class Rows(NamedTuple):
+class WeightedRows(NamedTuple):
     """Values used, (N,), with derivatives (N, j) by free parameters and shared unknowns, what is left of each, and what is believed of
     the unknowns, weights (j,); all in units of ``scale`` (j,), in which data and beliefs together say one of each."""
 
@@ -68,7 +68,7 @@ class Rows(NamedTuple):
         return np.asarray(information(self.jacobian) + np.diag(self.weight + 1e-12))
 
 
-class Scatter(NamedTuple):
+class RunScatter(NamedTuple):
     """Scatter between runs: ``meat`` the variance of the slopes (k, k); ``held`` the directions that one run alone holds, a
     projection in coordinates of unit information (k, k); ``alone`` that run by parameter, -1 without one (k,)."""
 
@@ -82,7 +82,7 @@ def information(jacobian: Array) -> Array:
     return np.asarray(jacobian.T @ jacobian)
 
 
-def scatter(clusters: Array, part: Rows, normal: Array) -> Scatter:
+def scatter(clusters: Array, part: WeightedRows, normal: Array) -> RunScatter:
     """How the slopes scatter between runs whose points move together.
 
     Cluster-robust with the leverage correction of Bell and McCaffrey (Survey Methodology 28, 2002, 169-181): a run's residuals
@@ -105,10 +105,10 @@ def scatter(clusters: Array, part: Rows, normal: Array) -> Scatter:
         # In the coordinates' own directions: which parameters would be lost with this run.
         alone[np.diag(information(part.jacobian[rows])) > _LEVERAGE * np.diag(normal)] = run
     back = np.linalg.inv(root)
-    return Scatter(back @ total @ back, held, alone)
+    return RunScatter(back @ total @ back, held, alone)
 
 
-def factor(problem: Problem, found: Solution) -> float:
+def factor(problem: LeastSquaresProblem, found: LeastSquaresSolution) -> float:
     """By how much more than of independent points the variance of the data's slopes is, on average over directions; at least 1."""
     free = np.flatnonzero(~found.bound & (np.abs(found.jacobian).max(axis=0) > 0))
     if not free.size or _freedom(problem, found) < 1:
@@ -119,7 +119,9 @@ def factor(problem: Problem, found: Solution) -> float:
     return max(1.0, float(np.trace(seen) / np.trace(np.linalg.solve(normal, information(part.jacobian)))))
 
 
-def covariance(problem: Problem, found: Solution, run_factor: float, others: Array) -> Covariance:
+def covariance(
+    problem: LeastSquaresProblem, found: LeastSquaresSolution, run_factor: float, others: Array
+) -> Covariance:
     """Covariances at a solution whose weights hold ``run_factor`` (`factor`).
 
     ``others``, (N, 4), are derivatives by the parameters that are not fitted but uncertain, times their standard deviations: they
@@ -190,11 +192,11 @@ def _half(deviation: float, bound: float) -> float:
     return float(brentq(missing, 0.0, wide + bound))
 
 
-def _runs(problem: Problem, found: Solution) -> int:
+def _runs(problem: LeastSquaresProblem, found: LeastSquaresSolution) -> int:
     return int(np.unique(problem.model.points.clusters[found.use]).size)
 
 
-def _freedom(problem: Problem, found: Solution) -> int:
+def _freedom(problem: LeastSquaresProblem, found: LeastSquaresSolution) -> int:
     """Runs beyond the first of each driving pressure: what all runs of one share says nothing of how runs differ."""
     points = problem.model.points
     clusters = np.unique(points.clusters[found.use])
@@ -203,13 +205,13 @@ def _freedom(problem: Problem, found: Solution) -> int:
     return int(clusters.size - groups) if clusters.size >= LEAST_RUNS else 0
 
 
-def _rows(problem: Problem, found: Solution, free: Index) -> Rows:
+def _rows(problem: LeastSquaresProblem, found: LeastSquaresSolution, free: Index) -> WeightedRows:
     shared = np.where(found.use[:, None], problem.shared, 0.0)
     weight = np.concatenate([problem.weight[free], np.ones(shared.shape[1])])
     jacobian = np.hstack([found.jacobian[:, free], shared])
     said = (jacobian**2).sum(axis=0) + weight
     scale = np.sqrt(np.where(said > 0, said, 1.0))
-    return Rows(found.own, jacobian / scale, found.use, weight / scale**2, scale)
+    return WeightedRows(found.own, jacobian / scale, found.use, weight / scale**2, scale)
 
 
 def _root(normal: Array) -> Array:

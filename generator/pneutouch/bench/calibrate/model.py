@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from pneutouch.arrays import Array, Flags, Index
 from pneutouch.bench.calibrate.inject import injected
-from pneutouch.bench.calibrate.observations import Points
+from pneutouch.bench.calibrate.observations import ObservationPoints
 from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, OFFSET, WALL
 from pneutouch.errors import InputError
-from pneutouch.mechanics.atlas.press import Batch, Press
-from pneutouch.mechanics.atlas.table import Slices, shipped
+from pneutouch.mechanics.atlas.press import AtlasPress, SensorBatch
+from pneutouch.mechanics.atlas.table import AtlasSlices, shipped
 from pneutouch.mechanics.atlas_states import outside_atlas
 from pneutouch.mechanics.sensor import Sensor
 
@@ -21,13 +21,13 @@ _GAP = 0.08
 """Longest step of the plate in R0; where points are further apart, the press goes by steps between them."""
 
 
-class Model:
-    """The atlas at ``points``. Parameter sets are (s, 4) coordinates, values (s, N) in the order of `Points.values`.
+class AtlasModel:
+    """The atlas at ``points``. Parameter sets are (s, 4) coordinates, values (s, N) in the order of `ObservationPoints.values`.
 
     Raises InputError where the atlas does not speak for the sensor.
     """
 
-    def __init__(self, sensor: Sensor, points: Points) -> None:
+    def __init__(self, sensor: Sensor, points: ObservationPoints) -> None:
         why = outside_atlas(sensor)
         if why is not None:
             raise InputError(f"calibrate: the atlas does not speak for this sensor: {why}; no fit without it")
@@ -54,13 +54,13 @@ class Model:
         pressure, fine = self._injections(sets, slices, k)
         return np.hstack([force, rise, pressure]), np.hstack([ok, ok, fine])
 
-    def _curves(self, sets: Array, slices: Slices, k: Index) -> tuple[Array, Array, Flags]:
+    def _curves(self, sets: Array, slices: AtlasSlices, k: Index) -> tuple[Array, Array, Flags]:
         (c, m), s, size = self.points.travel.shape, len(sets), self.sensor.inner_radius
         if not c:
             return np.zeros((s, 0)), np.zeros((s, 0)), np.zeros((s, 0), dtype=bool)
         each = np.repeat(np.arange(s), c)
         batch = self._batch(sets[each], np.tile(self.points.driving, s))
-        press = Press(batch, slices, k[each])
+        press = AtlasPress(batch, slices, k[each])
         asked = np.maximum(self.points.travel[None] + sets[:, OFFSET, None, None], 0.0).reshape(s * c, m)
         rows = np.hstack([np.zeros((s * c, 1)), asked, np.broadcast_to(self._between, (s * c, self._between.size))])
         order = np.argsort(rows, axis=1, kind="stable")
@@ -76,17 +76,17 @@ class Model:
         force = track.point.force * mu * size**2
         return at(force), at((track.point.pressure - press.pressure[:, None]) * mu), at(ok)
 
-    def _batch(self, sets: Array, driving: Array) -> Batch:
+    def _batch(self, sets: Array, driving: Array) -> SensorBatch:
         def all_of(value: float) -> Array:
             return np.full(len(sets), value)
 
-        return Batch(
+        return SensorBatch(
             all_of(self.sensor.inner_radius), np.exp(sets[:, WALL]), np.exp(sets[:, MODULUS]),
             all_of(self.sensor.ambient_pressure), sets[:, DEAD], driving, all_of(self.sensor.depth),
             all_of(self.sensor.plate_radius), all_of(np.inf), all_of(np.inf),
         )  # fmt: skip
 
-    def _injections(self, sets: Array, slices: Slices, k: Index) -> tuple[Array, Flags]:
+    def _injections(self, sets: Array, slices: AtlasSlices, k: Index) -> tuple[Array, Flags]:
         """Gauge pressures after the injections, (s, i n)."""
         volume, s = self.points.volume.ravel(), len(sets)
         if not volume.size:

@@ -10,7 +10,7 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.bench.indents import EARLY
-from pneutouch.bench.record import Curve
+from pneutouch.bench.record import MeasuredCurve
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import Rig
 from pneutouch.units import KPA, STANDARD_ATMOSPHERE
@@ -44,7 +44,7 @@ class Injection:
 class Observations:
     """Curves and injections of one sensor, the ambient pressure (MPa) they were measured in, and the rig."""
 
-    curves: tuple[Curve, ...]
+    curves: tuple[MeasuredCurve, ...]
     injections: tuple[Injection, ...] = ()
     ambient: float = STANDARD_ATMOSPHERE
     rig: Rig = field(default_factory=Rig)
@@ -65,7 +65,7 @@ class Observations:
         return replace(self, curves=kept, injections=())
 
 
-class Points(NamedTuple):
+class ObservationPoints(NamedTuple):
     """Observations as arrays; c curves of at most m points, i injections of at most n, padded by repetition.
 
     travel, force, rise, force_error, rise_error, there: (c, m) mm, N, MPa, standard deviations, and whether it is a point.
@@ -115,7 +115,7 @@ class Points(NamedTuple):
             np.broadcast_to(np.abs(part).max(axis=1, initial=0.0)[:, None], part.shape).ravel() for part in parts
         ])  # fmt: skip
 
-    def with_values(self, values: Array) -> Points:
+    def with_values(self, values: Array) -> ObservationPoints:
         """The same points with other values, (N,)."""
         force, rise, pressure = np.split(values, [self.force.size, 2 * self.force.size])
         return self._replace(
@@ -142,7 +142,7 @@ class Points(NamedTuple):
         return np.repeat(np.arange(3), sizes)
 
 
-def points_of(observations: Observations) -> Points:
+def points_of(observations: Observations) -> ObservationPoints:
     """The arrays of observations. Raises InputError for what holds nothing to fit."""
     if not observations.curves and not observations.injections:
         raise InputError(
@@ -155,7 +155,7 @@ def points_of(observations: Observations) -> Points:
     # What a gauge reads a little below zero before contact is zero: the dome is not sucked in.
     driving = np.array([max(curve.driving, 0.0) for curve in observations.curves])
     group = np.array([observations.pressures.index(curve.run.driving_pressure_kPa) for curve in observations.curves])
-    found = Points(
+    found = ObservationPoints(
         travel, force, rise, force_error, rise_error, there.astype(bool), driving, volume, pressure, pressure_error,
         known.astype(bool), _travel_errors(observations.curves), group,
     )  # fmt: skip
@@ -164,7 +164,7 @@ def points_of(observations: Observations) -> Points:
     return found
 
 
-def _curve(curve: Curve, rig: Rig) -> tuple[Array, ...]:
+def _curve(curve: MeasuredCurve, rig: Rig) -> tuple[Array, ...]:
     """Travel, force, rise and their errors; the origin is no measurement but the definition of zero."""
     loaded = (curve.indentation > 0) & ~clipped(curve, rig)
     x, force, rise = curve.indentation[loaded], curve.force[loaded], curve.rise[loaded]
@@ -184,12 +184,12 @@ def _curve(curve: Curve, rig: Rig) -> tuple[Array, ...]:
     return x, force, rise, np.full(x.size, force_error), np.full(x.size, rise_error)
 
 
-def clipped(curve: Curve, rig: Rig) -> Flags:
+def clipped(curve: MeasuredCurve, rig: Rig) -> Flags:
     """Points at the end of the force sensor's range, (n,): it reads no more, whatever there is."""
     return np.asarray(np.abs(curve.force) >= _RANGE * rig.force_range_N)
 
 
-def _travel_errors(curves: Sequence[Curve]) -> Array:
+def _travel_errors(curves: Sequence[MeasuredCurve]) -> Array:
     """Standard errors of the runs' first contacts, mm, (c,): of the indentations that each is the middle of.
 
     The spread is that of all runs together: of a few indentations it would be far too small as often as too large.

@@ -12,7 +12,7 @@ from pneutouch.errors import InputError, nearest
 from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.atlas.table import REST_VOLUME, shipped
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.uncertainty.source import Source
+from pneutouch.mechanics.uncertainty.source import UncertaintySource
 from pneutouch.mechanics.uncertainty.sources.build import build_sources
 from pneutouch.mechanics.uncertainty.sources.modulus import modulus_sources
 from pneutouch.spec.material import Material
@@ -44,7 +44,7 @@ _LARGEST = 1e6
 
 
 @dataclass(frozen=True, slots=True)
-class Parameters:
+class CalibrationParameters:
     """Coordinates of the four parameters: ln MPa, ln mm, mm3, mm; (4,) arrays.
 
     Attributes:
@@ -105,7 +105,7 @@ def parse_names(names: Iterable[str]) -> tuple[int, ...]:
 
 def parameters(
     sensor: Sensor, material: Material, printer: Printer, names: Sequence[str] = NAMES, *, priors: bool = True
-) -> Parameters:
+) -> CalibrationParameters:
     """Parameters of a sensor as designed. Raises InputError for unknown names."""
     recipe, size = shipped().recipe, sensor.inner_radius
     rest = REST_VOLUME * size**3
@@ -113,7 +113,7 @@ def parameters(
     high = [np.log(_STIFFEST), np.log(recipe.thickest * size), _LARGEST, OFFSET_BOUND]
     start = [np.log(sensor.shear_modulus), np.log(sensor.wall_thickness), sensor.dead_volume, 0.0]
     belief, even, origin = _beliefs(sensor, material, printer)
-    return Parameters(
+    return CalibrationParameters(
         parse_names(names), np.array(start), np.array(low), np.array(high), belief, even,
         np.array([1e-3, 1e-3, 1e-3 * (rest + sensor.dead_volume), 1e-3 * size]), origin, priors,
     )  # fmt: skip
@@ -135,6 +135,6 @@ def _beliefs(sensor: Sensor, material: Material, printer: Printer) -> tuple[Arra
     return np.array(spreads), np.array([*even, False]), tuple(origins)
 
 
-def _together(sources: Sequence[Source]) -> tuple[float, str]:
+def _together(sources: Sequence[UncertaintySource]) -> tuple[float, str]:
     spread = float(np.sqrt(sum(float(source.standard[0]) ** 2 for source in sources)))
     return spread, "; ".join(f"{source.name}: {source.origin}" for source in sources)

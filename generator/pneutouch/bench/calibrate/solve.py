@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
-from pneutouch.bench.calibrate.model import Model
-from pneutouch.bench.calibrate.parameters import Parameters
+from pneutouch.bench.calibrate.model import AtlasModel
+from pneutouch.bench.calibrate.parameters import CalibrationParameters
 from pneutouch.errors import ComputationError
 
 _ROUNDS = 60
@@ -22,7 +22,7 @@ _MOST_LOST = 0.5
 
 
 @dataclass(frozen=True, slots=True)
-class Solution:
+class LeastSquaresSolution:
     """Where the sum of squares is least; (k,) fitted coordinates, N values.
 
     Attributes:
@@ -46,11 +46,11 @@ class Solution:
     rounds: int
 
 
-class Problem:
+class LeastSquaresProblem:
     """Residuals and derivatives; ``errors`` (N,) are the standard deviations that weigh the values, each for itself, ``shared``
     (N, q) what unknowns of unit variance add to many of them together."""
 
-    def __init__(self, model: Model, chosen: Parameters, errors: Array, shared: Array) -> None:
+    def __init__(self, model: AtlasModel, chosen: CalibrationParameters, errors: Array, shared: Array) -> None:
         self.model, self.chosen, self.errors = model, chosen, errors
         self.shared = shared / errors[:, None]
         fitted = list(chosen.fitted)
@@ -92,7 +92,7 @@ class Problem:
         return float((self.whitened(residual[:, None], use) ** 2).sum() + (self.weight * (at - self.centre) ** 2).sum())
 
 
-def solve(problem: Problem, start: Array) -> Solution:
+def solve(problem: LeastSquaresProblem, start: Array) -> LeastSquaresSolution:
     """The least sum of squares from ``start``, (k,). Raises ComputationError where the search does not end.
 
     Points that the model does not have on the way are left out; once the search has ended, those it has there come back.
@@ -111,7 +111,7 @@ def solve(problem: Problem, start: Array) -> Solution:
     return replace(found, rounds=rounds)
 
 
-def _descend(problem: Problem, at: Array) -> Solution:
+def _descend(problem: LeastSquaresProblem, at: Array) -> LeastSquaresSolution:
     residual, jacobian, values, known = problem.look(at)
     use = known & problem.model.points.use
     if not use.any():
@@ -148,11 +148,13 @@ def _descend(problem: Problem, at: Array) -> Solution:
     keep = use[:, None]
     own = np.zeros_like(residual)
     own[use] = problem.whitened(residual[:, None], use)[: int(use.sum()), 0]
-    return Solution(at, np.where(use, residual, 0.0), own, np.where(keep, jacobian, 0.0), values, use, bound, rounds)
+    return LeastSquaresSolution(
+        at, np.where(use, residual, 0.0), own, np.where(keep, jacobian, 0.0), values, use, bound, rounds
+    )
 
 
 def _step(
-    problem: Problem, at: Array, residual: Array, jacobian: Array, use: Flags, damping: float
+    problem: LeastSquaresProblem, at: Array, residual: Array, jacobian: Array, use: Flags, damping: float
 ) -> tuple[Array, Flags, float]:  # fmt: skip
     """The damped step, which parameters it holds on their bounds, and by how much it is to lower the cost."""
     whole = problem.whitened(np.column_stack([residual, jacobian]), use)

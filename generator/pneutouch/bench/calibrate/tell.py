@@ -6,12 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pneutouch.bench.calibrate.fit import Fit
-from pneutouch.bench.calibrate.further import Further
+from pneutouch.bench.calibrate.fit import CalibrationFit
+from pneutouch.bench.calibrate.further import SuggestedTest
 from pneutouch.bench.calibrate.gains import gain_shifts
-from pneutouch.bench.calibrate.goodness import Miss
-from pneutouch.bench.calibrate.held_out import HeldOut
-from pneutouch.bench.calibrate.identify import UNSEEN, Ambiguity, Identified
+from pneutouch.bench.calibrate.goodness import SystematicDeviation
+from pneutouch.bench.calibrate.held_out import HeldOutPrediction
+from pneutouch.bench.calibrate.identify import UNSEEN, CorrelatedParameters, Identifiability
 from pneutouch.bench.calibrate.intervals import LEAST_RUNS
 from pneutouch.bench.calibrate.observations import clipped
 from pneutouch.bench.calibrate.parameters import DEAD, LOGARITHMIC
@@ -38,7 +38,7 @@ def amount(k: int, deviation: float) -> str:
 
 
 def sentences(
-    fit: Fit, identified: Identified, further: Sequence[Further], missed: Sequence[Miss], held_out: Sequence[HeldOut]
+    fit: CalibrationFit, identified: Identifiability, further: Sequence[SuggestedTest], missed: Sequence[SystematicDeviation], held_out: Sequence[HeldOutPrediction]
 ) -> list[str]:  # fmt: skip
     """What a reader must know beside the numbers: at most one sentence of a kind."""
     kinds = (
@@ -48,7 +48,7 @@ def sentences(
     return ["; ".join(kind) for kind in kinds if kind]
 
 
-def _counted(fit: Fit) -> list[str]:
+def _counted(fit: CalibrationFit) -> list[str]:
     """What is in the intervals beside the scatter."""
     used = np.unique(fit.points.channels[fit.solution.use])
     sizes = ", ".join(f"{(fit.sizes[c]):.1%} of the {CHANNELS[c]}" for c in used)
@@ -62,7 +62,7 @@ def _counted(fit: Fit) -> list[str]:
     return [*found, *([f"but no wrong gauge: {'; '.join(moved)}"] if moved else [])]
 
 
-def _left_out(fit: Fit) -> list[str]:
+def _left_out(fit: CalibrationFit) -> list[str]:
     found = []
     over = [(curve.run.label, int(clipped(curve, fit.observations.rig).sum())) for curve in fit.observations.curves]
     if any(count for _, count in over):
@@ -84,14 +84,14 @@ def _left_out(fit: Fit) -> list[str]:
     return found
 
 
-def _bounds(fit: Fit) -> list[str]:
+def _bounds(fit: CalibrationFit) -> list[str]:
     return [
         f"{WORDS[k]}: the estimate is on its bound, no interval: the data would have it beyond"
         for k, bound in zip(fit.parameters.fitted, fit.solution.bound, strict=True) if bound
     ]  # fmt: skip
 
 
-def _far(fit: Fit) -> list[str]:
+def _far(fit: CalibrationFit) -> list[str]:
     """Estimates that the beliefs hold back although the data would have them elsewhere."""
     found = []
     for place, k in enumerate(fit.parameters.fitted):
@@ -104,7 +104,7 @@ def _far(fit: Fit) -> list[str]:
     return found
 
 
-def _basis(fit: Fit) -> list[str]:
+def _basis(fit: CalibrationFit) -> list[str]:
     found = []
     if not fit.covariance.clustered:
         runs = fit.covariance.runs
@@ -123,7 +123,7 @@ def _basis(fit: Fit) -> list[str]:
     return found
 
 
-def _open(fit: Fit, identified: Identified) -> list[str]:
+def _open(fit: CalibrationFit, identified: Identifiability) -> list[str]:
     found = [_apart(group) for group in identified.ambiguities]
     for k in identified.unseen:
         what = "the estimate is the belief" if fit.parameters.priors else "the estimate means nothing"
@@ -133,7 +133,7 @@ def _open(fit: Fit, identified: Identified) -> list[str]:
     return found
 
 
-def _apart(group: Ambiguity) -> str:
+def _apart(group: CorrelatedParameters) -> str:
     names = _joined([WORDS[k] for k in group.members])
     product = (
         f"; what is known is modulus × wall^{group.combination:.2f}"
@@ -147,7 +147,7 @@ def _apart(group: Ambiguity) -> str:
     )
 
 
-def _tests(fit: Fit, identified: Identified, further: Sequence[Further]) -> list[str]:
+def _tests(fit: CalibrationFit, identified: Identifiability, further: Sequence[SuggestedTest]) -> list[str]:
     if identified.clear:
         return []
     helpful = [test for test in further if test.gain > _WORTH][:2]
@@ -161,7 +161,7 @@ def _times(gain: float) -> str:
     return f"{gain:.1f} times" if gain < _MANY else f"more than {_MANY:g} times"
 
 
-def _fitness(fit: Fit, missed: Sequence[Miss]) -> list[str]:
+def _fitness(fit: CalibrationFit, missed: Sequence[SystematicDeviation]) -> list[str]:
     """Where the model misses, one clause a pressure: its greatest miss."""
     found = []
     for pressure in sorted({miss.pressure for miss in missed}):
@@ -173,7 +173,7 @@ def _fitness(fit: Fit, missed: Sequence[Miss]) -> list[str]:
     return [f"the model misses in all runs alike, {'; '.join(found)}"] if found else []
 
 
-def _shared(fit: Fit) -> list[str]:
+def _shared(fit: CalibrationFit) -> list[str]:
     found = []
     for what, shift in zip(("force", "pressure"), gain_shifts(fit), strict=True):
         moved = ", ".join(
@@ -189,7 +189,7 @@ def _few(labels: Sequence[str]) -> str:
     return ", ".join(labels[:3]) + (f" and {len(labels) - 3} more" if len(labels) > 3 else "")
 
 
-def _held(one: HeldOut) -> str:
+def _held(one: HeldOutPrediction) -> str:
     return (
         f"held out {one.pressure:g} kPa: sensitivity {one.predicted:.4g} kPa/N predicted, {one.measured:.4g} measured "
         f"({one.error:+.1%}); force within {one.force_worst:.1%} and pressure within {one.rise_worst:.1%} of full scale"

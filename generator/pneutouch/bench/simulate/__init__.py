@@ -2,12 +2,23 @@
 
 from pneutouch.bench.simulate.curve import PressCurve, press_curves
 from pneutouch.bench.simulate.rig import RigModel
-from pneutouch.bench.simulate.run import Samples, simulate_leak, simulate_run
-from pneutouch.bench.simulate.scatter import Scatter, Specimens
-from pneutouch.bench.simulate.truth import Population, Truth, population, specimen_figures
-from pneutouch.bench.simulate.wall import Wall
+from pneutouch.bench.simulate.run import RecordSamples, simulate_leak, simulate_run
+from pneutouch.bench.simulate.scatter import ScatterModel, SimulatedSpecimens
+from pneutouch.bench.simulate.truth import Population, SimulationTruth, population, specimen_figures
+from pneutouch.bench.simulate.wall import WallMemory
 
 __all__ = [
-    "Population", "PressCurve", "RigModel", "Samples", "Scatter", "Specimens", "Truth", "Wall", "population", "press_curves",
-    "simulate_leak", "simulate_run", "specimen_figures",
+    "Population",
+    "PressCurve",
+    "RecordSamples",
+    "RigModel",
+    "ScatterModel",
+    "SimulatedSpecimens",
+    "SimulationTruth",
+    "WallMemory",
+    "population",
+    "press_curves",
+    "simulate_leak",
+    "simulate_run",
+    "specimen_figures",
 ]  # fmt: skip

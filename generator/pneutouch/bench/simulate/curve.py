@@ -9,7 +9,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import InputError
-from pneutouch.mechanics import Sensor, State, predict
+from pneutouch.mechanics import Sensor, SensorState, predict
 from pneutouch.mechanics.limits import Limits
 from pneutouch.mechanics.prediction import InflationCurve
 from pneutouch.units import KPA
@@ -58,7 +58,7 @@ class PressCurve:
 
 
 @dataclass(frozen=True, slots=True)
-class Pressed:
+class PressCurves:
     """The curves of one sensor at ascending driving pressures, its free inflation and its limits."""
 
     sensor: Sensor
@@ -70,7 +70,7 @@ class Pressed:
 
 def press_curves(
     sensor: Sensor, pressures: Sequence[float], depth: float, model: str = "solid", steps: int = STEPS
-) -> Pressed:
+) -> PressCurves:
     """Press a sensor to ``depth`` mm at ascending driving pressures (MPa). The gauge ends no range: the rig clips.
 
     Raises what `predict` raises, and InputError where the range ends before the plate has moved.
@@ -79,10 +79,10 @@ def press_curves(
     prediction = predict("", free, list(pressures), model=model)
     curves = tuple(_curve(free, state, prediction.model) for state in prediction.states)
     limits = replace(prediction.limits, gauge=sensor.gauge_limit)
-    return Pressed(sensor, prediction.model, curves, prediction.inflation, limits)
+    return PressCurves(sensor, prediction.model, curves, prediction.inflation, limits)
 
 
-def _curve(sensor: Sensor, state: State, model: str) -> PressCurve:
+def _curve(sensor: Sensor, state: SensorState, model: str) -> PressCurve:
     """The curve of a state up to the end of its range; where that comes early, pressed again so that the points reach it."""
     ending = next((event for event in state.events if event.ends_range), None)
     ends = None if ending is None else (ending.kind, state.range_end)

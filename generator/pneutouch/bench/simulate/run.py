@@ -8,20 +8,20 @@ from typing import NamedTuple
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.protocol import Protocol
+from pneutouch.bench.protocol import RunProtocol
 from pneutouch.bench.simulate.curve import PressCurve
 from pneutouch.bench.simulate.rig import RigModel
-from pneutouch.bench.simulate.scatter import Scatter
-from pneutouch.bench.simulate.wall import Wall
+from pneutouch.bench.simulate.scatter import ScatterModel
+from pneutouch.bench.simulate.wall import WallMemory
 
-WALL, SCATTER = Wall(), Scatter()
+WALL, SCATTER = WallMemory(), ScatterModel()
 
 VENT, REFILL, SHUT, VALVE = 0.2, 0.4, 0.6, 0.02
 """Shares of a rest: when the cavity is vented, filled again and shut in, and the time constant of both: our choice. Shut in, it
 is within 0.005 % of its driving pressure."""
 
 
-class Samples(NamedTuple):
+class RecordSamples(NamedTuple):
     """A record: s, mm, N, MPa, (n,) each."""
 
     time: Array
@@ -30,7 +30,7 @@ class Samples(NamedTuple):
     pressure: Array
 
 
-def within(protocol: Protocol, reach: float) -> Protocol:
+def within(protocol: RunProtocol, reach: float) -> RunProtocol:
     """The protocol with no depth beyond ``reach``: steps leave the deeper ones out, the others stop there."""
     if protocol.kind in ("loop", "relaxation"):
         return replace(protocol, depths=tuple(min(depth, reach) for depth in protocol.depths))
@@ -38,9 +38,9 @@ def within(protocol: Protocol, reach: float) -> Protocol:
 
 
 def simulate_run(
-    curve: PressCurve, protocol: Protocol, rig: RigModel, rate: float, rng: np.random.Generator, *,
-    wall: Wall = WALL, scatter: Scatter = SCATTER,
-) -> Samples:  # fmt: skip
+    curve: PressCurve, protocol: RunProtocol, rig: RigModel, rate: float, rng: np.random.Generator, *,
+    wall: WallMemory = WALL, scatter: ScatterModel = SCATTER,
+) -> RecordSamples:  # fmt: skip
     """Simulate one run at ``rate`` Hz.
 
     Memory of the wall lasts over the whole run; without contact there is no force. Raises ValueError for a protocol that
@@ -55,17 +55,19 @@ def simulate_run(
     rise *= 1.0 + scatter.gain * rng.standard_normal()
     set_to = curve.driving + scatter.reset * rng.standard_normal(len(protocol.depths) + 1)
     pressure = _shut_in(protocol, time, set_to, rig.drift(curve.driving), rise)
-    return _read(rig, rate, rng, Samples(time, _lagging(time, knots, travels, rig.backlash), force, pressure))
+    return _read(rig, rate, rng, RecordSamples(time, _lagging(time, knots, travels, rig.backlash), force, pressure))
 
 
-def simulate_leak(driving: float, seconds: float, rig: RigModel, rate: float, rng: np.random.Generator) -> Samples:
+def simulate_leak(
+    driving: float, seconds: float, rig: RigModel, rate: float, rng: np.random.Generator
+) -> RecordSamples:
     """A closed, unpressed sensor left alone at a driving pressure (MPa)."""
     time = np.arange(round(seconds * rate) + 1) / rate
     still = np.zeros_like(time)
-    return _read(rig, rate, rng, Samples(time, still, still, driving + rig.drift(driving) * time))
+    return _read(rig, rate, rng, RecordSamples(time, still, still, driving + rig.drift(driving) * time))
 
 
-def _pressed(curve: PressCurve, travel: Array, wall: Wall, step: float) -> tuple[Array, Array]:
+def _pressed(curve: PressCurve, travel: Array, wall: WallMemory, step: float) -> tuple[Array, Array]:
     """Force and rise with the wall's memory at plate travels (n,); below zero the plate is clear."""
     force, rise = np.zeros_like(travel), np.zeros_like(travel)
     touched = travel > 0.0
@@ -78,7 +80,7 @@ def _pressed(curve: PressCurve, travel: Array, wall: Wall, step: float) -> tuple
     return np.where(touched, np.maximum(force, 0.0), 0.0), rise
 
 
-def _shut_in(protocol: Protocol, time: Array, set_to: Array, drift: float, rise: Array) -> Array:
+def _shut_in(protocol: RunProtocol, time: Array, set_to: Array, drift: float, rise: Array) -> Array:
     """Pressure of the shut-in gas; in a rest with reset it is vented and filled again, and drift begins anew."""
     if not protocol.reset or protocol.rest <= 0:
         return np.asarray(set_to[0] + drift * time + rise)
@@ -117,7 +119,7 @@ def _lagging(time: Array, knots: Array, travels: Array, play: float) -> Array:
     return np.asarray(np.interp(time, times, reads))
 
 
-def _read(rig: RigModel, rate: float, rng: np.random.Generator, true: Samples) -> Samples:
+def _read(rig: RigModel, rate: float, rng: np.random.Generator, true: RecordSamples) -> RecordSamples:
     """What the instruments write of what is there."""
     time, position, force, pressure = true
     zero = rng.standard_normal(3)
@@ -129,4 +131,4 @@ def _read(rig: RigModel, rate: float, rng: np.random.Generator, true: Samples) -
     pressure = rig.passed(pressure + rig.pressure_noise * noise[2], rate, pressure[0])
     kept = rng.random(time.size) >= rig.missed
     force = np.clip(force, -rig.force_range, rig.force_range)
-    return Samples(*(x[kept] for x in (time, position, force, rig.stepped(pressure))))
+    return RecordSamples(*(x[kept] for x in (time, position, force, rig.stepped(pressure))))

@@ -19,7 +19,7 @@ _LEAST_WALL = 0.05
 
 
 @dataclass(frozen=True, slots=True)
-class Scatter:
+class ScatterModel:
     """What differs from specimen to specimen and from run to run; inner units."""
 
     modulus: float = parameter(
@@ -48,13 +48,13 @@ class Scatter:
     )  # fmt: skip
 
     @classmethod
-    def none(cls) -> Scatter:
+    def none(cls) -> ScatterModel:
         """No scatter at all."""
         return cls(modulus=0.0, wall=0.0, dead_volume=0.0, gain=0.0, reset=0.0)
 
 
 @dataclass(frozen=True, slots=True)
-class Specimens:
+class SimulatedSpecimens:
     """Specimens that were drawn, arrays (n,): factor on the modulus, deviation of the wall (mm), extra air (mm3)."""
 
     modulus: Array
@@ -62,7 +62,7 @@ class Specimens:
     dead_volume: Array
 
     @classmethod
-    def draw(cls, scatter: Scatter, count: int, rng: np.random.Generator) -> Specimens:
+    def draw(cls, scatter: ScatterModel, count: int, rng: np.random.Generator) -> SimulatedSpecimens:
         """``count`` specimens."""
         return cls(
             np.exp(scatter.modulus * rng.standard_normal(count)), scatter.wall * rng.uniform(-1.0, 1.0, count),
@@ -76,7 +76,7 @@ class Specimens:
         return replace(stiffer, wall_thickness=wall, dead_volume=nominal.dead_volume + float(self.dead_volume[k]))
 
 
-def ageing_factor(scatter: Scatter, days: float) -> float:
+def ageing_factor(scatter: ScatterModel, days: float) -> float:
     """Factor on the modulus after ``days``: even in its logarithm over the first year, then none.
 
     The paper measured at the ends of a year alone (Table 1); what lies between and after is our choice.

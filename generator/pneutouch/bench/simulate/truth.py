@@ -8,15 +8,15 @@ from typing import Any
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.protocol import Protocol, protocol
-from pneutouch.bench.simulate.curve import PressCurve, Pressed
+from pneutouch.bench.protocol import RunProtocol, protocol
+from pneutouch.bench.simulate.curve import PressCurve, PressCurves
 from pneutouch.bench.simulate.rig import MINUTE, RigModel
 from pneutouch.bench.simulate.run import simulate_run, within
-from pneutouch.bench.simulate.scatter import Scatter, Specimens, ageing_factor, stiffened
-from pneutouch.bench.simulate.wall import Wall
+from pneutouch.bench.simulate.scatter import ScatterModel, SimulatedSpecimens, ageing_factor, stiffened
+from pneutouch.bench.simulate.wall import WallMemory
 from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.atlas.respond import DEPTH, respond
-from pneutouch.mechanics.response import Lines, figures, hysteresis, lines
+from pneutouch.mechanics.response import FigureArrays, figures, hysteresis, lines
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.units import KPA
 
@@ -39,23 +39,23 @@ _KEYS = (
     ("r_squared", "r_squared", 1.0), ("nonlinearity_percent", "nonlinearity", 100.0), ("stiffness_N_per_mm", "stiffness", 1.0),
     ("force_range_N", "force_high", 1.0),
 )  # fmt: skip
-"""Figures of a loading curve: key, field of `Lines`, factor."""
+"""Figures of a loading curve: key, field of `FigureArrays`, factor."""
 
 
 @dataclass(frozen=True, slots=True)
-class Truth:
+class SimulationTruth:
     """All that the simulator makes up: how specimens and runs scatter, what the rig does, the wall's memory.
 
     ``rest`` is the longest rest in s (None: the protocol's), ``specimens`` how many are drawn for a population.
     """
 
-    scatter: Scatter = field(default_factory=Scatter)
+    scatter: ScatterModel = field(default_factory=ScatterModel)
     rig: RigModel = field(default_factory=RigModel)
-    wall: Wall = field(default_factory=Wall)
+    wall: WallMemory = field(default_factory=WallMemory)
     rest: float | None = None
     specimens: int = SPECIMENS
 
-    def protocol(self, kind: Any, inner_radius: float, reach: float) -> Protocol:
+    def protocol(self, kind: Any, inner_radius: float, reach: float) -> RunProtocol:
         """The protocol of a kind as it is simulated: rests as asked for, no depth beyond the range."""
         found = within(protocol(kind, inner_radius), reach)
         return found if self.rest is None else found.quicker(min(self.rest, found.rest))
@@ -71,7 +71,7 @@ class Population:
     basis: str
 
 
-def loading(curve: PressCurve, steps: Protocol, wall: Wall) -> tuple[Array, Array, Array]:
+def loading(curve: PressCurve, steps: RunProtocol, wall: WallMemory) -> tuple[Array, Array, Array]:
     """Indentation, force and rise at the ends of the holds without noise, the origin first; (n + 1,) mm, N, MPa."""
     depths = np.array(steps.depths)
     force, rise = curve.at(depths)
@@ -81,7 +81,9 @@ def loading(curve: PressCurve, steps: Protocol, wall: Wall) -> tuple[Array, Arra
     return tuple(np.concatenate([[0.0], x]) for x in (depths, force, rise))  # type: ignore[return-value]
 
 
-def specimen_figures(curve: PressCurve, truth: Truth, inner_radius: float, rate: float) -> dict[str, float | None]:
+def specimen_figures(
+    curve: PressCurve, truth: SimulationTruth, inner_radius: float, rate: float
+) -> dict[str, float | None]:
     """Figures of one specimen at one driving pressure without noise, by key.
 
     Relaxation is as the rig reads it, its drift in it. Drift is the rig's alone: the wall's recovery after a press is not in it.
@@ -103,10 +105,10 @@ def specimen_figures(curve: PressCurve, truth: Truth, inner_radius: float, rate:
     }
 
 
-def loop_figures(curve: PressCurve, truth: Truth, inner_radius: float) -> dict[str, float]:
+def loop_figures(curve: PressCurve, truth: SimulationTruth, inner_radius: float) -> dict[str, float]:
     """Hysteresis of the noise-free loop, percent, mean over its cycles; the rise counts from before each."""
     loop = truth.protocol("loop", inner_radius, curve.reach)
-    quiet = Scatter.none()
+    quiet = ScatterModel.none()
     record = simulate_run(
         curve, loop, RigModel.perfect(), _LOOP_RATE, np.random.default_rng(0), wall=truth.wall, scatter=quiet
     )
@@ -123,7 +125,7 @@ def loop_figures(curve: PressCurve, truth: Truth, inner_radius: float) -> dict[s
     return {"hysteresis_width_percent": 100 * float(width), "hysteresis_area_percent": 100 * float(area)}
 
 
-def relaxation_figures(curve: PressCurve, truth: Truth, inner_radius: float) -> dict[str, float]:
+def relaxation_figures(curve: PressCurve, truth: SimulationTruth, inner_radius: float) -> dict[str, float]:
     """Loss from 1 s into the hold to its end, and its slope over log10 of time, over the value at 1 s; percent.
 
     As the rig reads it: what its zero and the gas drift in that time is in it.
@@ -151,7 +153,7 @@ def relaxation_figures(curve: PressCurve, truth: Truth, inner_radius: float) -> 
     return found
 
 
-def population(pressed: Pressed, k: int, truth: Truth, rate: float, seed: tuple[int, ...]) -> Population:
+def population(pressed: PressCurves, k: int, truth: SimulationTruth, rate: float, seed: tuple[int, ...]) -> Population:
     """The population around a nominal sensor, pressed at its k-th driving pressure.
 
     Specimens come from the atlas in one batch. Mean and spread of each figure are then scaled by the nominal sensor's own
@@ -167,7 +169,7 @@ def population(pressed: Pressed, k: int, truth: Truth, rate: float, seed: tuple[
             _with_runs(nominal, truth, None), {}, 0, "the nominal sensor: the atlas does not speak for this population"
         )
     here, kept = drawn
-    base = _by_key(Lines(*(column[:1] for column in here)))
+    base = _by_key(FigureArrays(*(column[:1] for column in here)))
     mean, spread = dict(nominal), {}
     for key, name, factor in _KEYS:
         values = factor * getattr(here, name)[1:]
@@ -182,8 +184,8 @@ def population(pressed: Pressed, k: int, truth: Truth, rate: float, seed: tuple[
 
 
 def _drawn(
-    sensor: Sensor, driving: float, steps: Protocol, truth: Truth, seed: tuple[int, ...]
-) -> tuple[Lines, int] | None:
+    sensor: Sensor, driving: float, steps: RunProtocol, truth: SimulationTruth, seed: tuple[int, ...]
+) -> tuple[FigureArrays, int] | None:
     """Figures of the nominal sensor (first) and of the specimens that reach every depth; None where too few do."""
     from pneutouch.mechanics.atlas_states import outside_atlas
 
@@ -192,7 +194,7 @@ def _drawn(
     if outside_atlas(nominal) is not None:
         return None
     count = truth.specimens
-    some = Specimens.draw(truth.scatter, count, np.random.default_rng([*seed, count]))
+    some = SimulatedSpecimens.draw(truth.scatter, count, np.random.default_rng([*seed, count]))
     batch = batch_of(nominal, np.full(count + 1, driving))
     wall = np.maximum(batch.wall_thickness[1:] + some.wall, 0.05 * sensor.wall_thickness)
     batch = replace(
@@ -210,7 +212,7 @@ def _drawn(
     return lines(depths, force, rise / KPA), whole.size - 1
 
 
-def _held(force: Array, rise: Array, nodes: Array, steps: Protocol, wall: Wall) -> tuple[Array, Array]:
+def _held(force: Array, rise: Array, nodes: Array, steps: RunProtocol, wall: WallMemory) -> tuple[Array, Array]:
     """Values at the ends of the holds of curves (n, nodes), the origin first."""
     from scipy.interpolate import PchipInterpolator
 
@@ -221,11 +223,11 @@ def _held(force: Array, rise: Array, nodes: Array, steps: Protocol, wall: Wall) 
     return found[0], found[1]
 
 
-def _by_key(found: Lines) -> dict[str, float | None]:
+def _by_key(found: FigureArrays) -> dict[str, float | None]:
     return {key: float(factor * np.ravel(getattr(found, name))[0]) for key, name, factor in _KEYS}
 
 
-def _with_runs(mean: dict[str, float | None], truth: Truth, parts: float | None) -> dict[str, float | None]:
+def _with_runs(mean: dict[str, float | None], truth: SimulationTruth, parts: float | None) -> dict[str, float | None]:
     """With the spread of the sensitivity between runs of one specimen and between specimens."""
     slope = mean["sensitivity_kPa_per_N"]
     return {
@@ -235,6 +237,6 @@ def _with_runs(mean: dict[str, float | None], truth: Truth, parts: float | None)
     }
 
 
-def aged(sensor: Sensor, truth: Truth, days: float) -> Sensor:
+def aged(sensor: Sensor, truth: SimulationTruth, days: float) -> Sensor:
     """The nominal sensor at an age."""
     return stiffened(sensor, ageing_factor(truth.scatter, days))

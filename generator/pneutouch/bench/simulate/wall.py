@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.protocol import Protocol
+from pneutouch.bench.protocol import RunProtocol
 from pneutouch.bench.simulate.parameter import parameter
 
 _OWN = "the simulator's own, no data published; small, as the paper's Fig. S1 shows"
@@ -21,7 +21,7 @@ _RATE = 50.0
 
 
 @dataclass(frozen=True, slots=True)
-class Wall:
+class WallMemory:
     """Terms of the memory: shares of force and of pressure rise, and times in s; equally many each."""
 
     force: tuple[float, ...] = parameter((0.01, 0.01, 0.01), "1", _OWN)
@@ -44,7 +44,7 @@ class Wall:
             found.append(np.asarray(lfilter([(1.0 - fade) * time / step], [1.0, -fade], change, axis=0)))
         return found
 
-    def held(self, protocol: Protocol, nodes: Array) -> tuple[Array, Array]:
+    def held(self, protocol: RunProtocol, nodes: Array) -> tuple[Array, Array]:
         """What memory adds at the end of every hold, as matrices (depths, nodes) on relaxed values at travels ``nodes``.
 
         The first is for the force, the second for the rise, which counts from before the plate moves in. Between the nodes the curve counts as straight.

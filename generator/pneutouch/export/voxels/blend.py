@@ -19,7 +19,7 @@ Share = Callable[[Array, Array], Array]
 
 
 @dataclass(frozen=True)
-class Blend:
+class ResinBlend:
     """The resins of a body, soft one first; ``share`` is of the second, None where there is one alone.
 
     ``most`` is its greatest value. ``assumed`` says what the share rests on where nobody has measured or asked for it.
@@ -31,7 +31,7 @@ class Blend:
     assumed: str = ""
 
 
-def blend(material: Material, name: str, library: Library, where: str) -> Blend:
+def blend(material: Material, name: str, library: Library, where: str) -> ResinBlend:
     """The blend of a material; ``name`` is its own in the catalogue, ``where`` the file and key that asked for it.
 
     A digital material of the catalogue has no published mix: its fraction is taken from the mixing curve that it is a
@@ -39,18 +39,18 @@ def blend(material: Material, name: str, library: Library, where: str) -> Blend:
     """
     resins = tuple(material.base_resins)
     if len(resins) == 1:
-        return Blend(resins)
+        return ResinBlend(resins)
     if len(resins) > 2:
         raise InputError(f"{where} = {name!r}: mixed from {len(resins)} resins; voxels are mixed from two at most")
     if material.along is not None:
         along = material.along
         stations, fractions = np.array(along.arc), np.array(along.stiff_fraction)
-        return Blend(resins, lambda r, z: np.interp(arc_share(r, z), stations, fractions), float(fractions.max()))
+        return ResinBlend(resins, lambda r, z: np.interp(arc_share(r, z), stations, fractions), float(fractions.max()))
     if material.mix is not None:
         stiff = material.mix.fractions[resins[1]]
-        return Blend(resins, _even(stiff), stiff)
+        return ResinBlend(resins, _even(stiff), stiff)
     fraction, why = _assumed(name, resins, library, where)
-    return Blend(resins, _even(fraction), fraction, f"{name} is {fraction:.1%} {resins[1]}: {why}")
+    return ResinBlend(resins, _even(fraction), fraction, f"{name} is {fraction:.1%} {resins[1]}: {why}")
 
 
 def _even(fraction: float) -> Share:

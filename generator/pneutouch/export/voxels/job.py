@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from pneutouch.body import Solid
-from pneutouch.body.section import Inside
-from pneutouch.export.voxels.blend import Blend
+from pneutouch.body.section import SolidSection
+from pneutouch.export.voxels.blend import ResinBlend
 from pneutouch.export.voxels.raster import Raster
 
 BACKGROUND = (0, 0, 0, 255)
@@ -25,11 +25,11 @@ class VoxelBody:
     """A body as it is jetted."""
 
     solid: Solid
-    blend: Blend
-    inside: Inside = field(init=False)
+    blend: ResinBlend
+    inside: SolidSection = field(init=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "inside", Inside(self.solid))
+        object.__setattr__(self, "inside", SolidSection(self.solid))
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from typing import Any
 from pneutouch.export.voxels.job import BACKGROUND, VoxelBody, VoxelJob
 from pneutouch.export.voxels.raster import Raster
 from pneutouch.export.voxels.skin import reach_for
-from pneutouch.export.voxels.slices import CUBE, FULL, Slicer, Tally
+from pneutouch.export.voxels.slices import CUBE, FULL, VoxelCounts, VoxelSlicer
 from pneutouch.units import UM
 
 MANIFEST = "stack.json"
@@ -34,7 +34,7 @@ def whole_hash(hashes: Sequence[str]) -> str:
 
 
 def manifest(
-    job: VoxelJob, slicer: Slicer, hashes: Sequence[str], about: Mapping[str, Any], prefix: str
+    job: VoxelJob, slicer: VoxelSlicer, hashes: Sequence[str], about: Mapping[str, Any], prefix: str
 ) -> dict[str, Any]:
     """The manifest of a stack that has been sliced; ``about`` goes in as it is: design, printer, mode, input hash."""
     voxel = job.raster.voxel
@@ -64,7 +64,7 @@ def raster_entry(raster: Raster) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def shortfalls(job: VoxelJob, slicer: Slicer) -> list[str]:
+def shortfalls(job: VoxelJob, slicer: VoxelSlicer) -> list[str]:
     """A line for every body whose fraction could not be met."""
     lines = []
     for body in job.bodies:
@@ -78,7 +78,7 @@ def shortfalls(job: VoxelJob, slicer: Slicer) -> list[str]:
     return lines
 
 
-def _body(body: VoxelBody, tally: Tally, pitch: tuple[float, float, float]) -> dict[str, Any]:
+def _body(body: VoxelBody, tally: VoxelCounts, pitch: tuple[float, float, float]) -> dict[str, Any]:
     exact = body.solid.volume
     entry: dict[str, Any] = {
         "material": body.solid.material.label, "resins": list(body.blend.resins), "voxels": tally.voxels,

@@ -40,14 +40,14 @@ def encode(labels: Labels, colours: Pixels, dpi: tuple[int, int]) -> bytes:
 
 
 @dataclass(frozen=True)
-class Slice:
+class PngSlice:
     """A slice as read: ``pixels`` (rows, columns) RGBA in one number each; ``dpi`` None where the file gives none."""
 
     pixels: Pixels
     dpi: tuple[int, int] | None
 
 
-def decode(content: bytes, where: str) -> Slice:
+def decode(content: bytes, where: str) -> PngSlice:
     """Read a slice. Raises InputError for what the voxel print utility would refuse, and for a damaged file."""
     if not content.startswith(_SIGNATURE):
         raise InputError(f"{where}: not a PNG file")
@@ -67,7 +67,7 @@ def decode(content: bytes, where: str) -> Slice:
         raise InputError(f"{where}: the PNG is {form}; a slice must be RGBA of 8 bits a channel")
     if interlaced:
         raise InputError(f"{where}: the PNG is interlaced; a slice must not be")
-    return Slice(_pixels(b"".join(data), rows, columns, where), dpi)
+    return PngSlice(_pixels(b"".join(data), rows, columns, where), dpi)
 
 
 def _chunk(kind: bytes, body: bytes) -> bytes:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.body.section import Inside, Window
+from pneutouch.body.section import SolidSection, Window
 from pneutouch.units import UM
 
 INCH = 25.4
@@ -54,7 +54,7 @@ class Raster:
 
 
 def raster(
-    bodies: Sequence[Inside], dpi: tuple[int, int], layer_um: float, *, upright: bool = True, coarser: float = 1.0
+    bodies: Sequence[SolidSection], dpi: tuple[int, int], layer_um: float, *, upright: bool = True, coarser: float = 1.0
 ) -> Raster:
     """The raster that holds bodies: lines of the grid run through the z axis, and the lowest face is the first layer's.
 

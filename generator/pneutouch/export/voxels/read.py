@@ -28,7 +28,7 @@ _NEEDED = {
 
 
 @dataclass(frozen=True)
-class Stack:
+class VoxelStack:
     """A stack that keeps every rule. ``counts`` are its voxels by resin, counted in the slices."""
 
     folder: Path
@@ -54,7 +54,7 @@ class Stack:
         return _labels(_read(path), self.manifest, str(path))
 
 
-def read_stack(folder: Path) -> Stack:
+def read_stack(folder: Path) -> VoxelStack:
     """Read a folder of slices. Raises InputError that names the file and what breaks which rule."""
     manifest = _manifest(folder)
     _check_names(folder, manifest)
@@ -70,7 +70,7 @@ def read_stack(folder: Path) -> Stack:
             raise InputError(f"{path}: was changed after it was written: its SHA-256 is not that of {MANIFEST}")
     counts = {resin: int(totals[k + 1]) for k, resin in enumerate(resins)}
     _check_counts(folder, manifest, counts)
-    return Stack(folder, manifest, counts, np.array(middle))
+    return VoxelStack(folder, manifest, counts, np.array(middle))
 
 
 def _manifest(folder: Path) -> dict[str, Any]:

@@ -41,7 +41,7 @@ def reach_for(most: float, pitch: tuple[float, float, float]) -> float:
     return min(max(wanted, LEAST_REACH), MOST_REACH)
 
 
-class Recent(Generic[Item]):
+class RecentLayers(Generic[Item]):
     """Something made for layers in turn; the last ``keep`` are kept, so that neighbours need not be made again."""
 
     def __init__(self, make: Callable[[int], Item], keep: int) -> None:
@@ -57,7 +57,7 @@ class Recent(Generic[Item]):
         return self._items[number]
 
 
-class MadeUp:
+class SkinCompensation:
     """What is added to the share of every interior voxel, so that what the skin lacks is in the body all the same.
 
     The share asked for in a skin voxel goes in equal parts to the interior voxels of the box of ``reach`` mm around it: the
@@ -70,8 +70,8 @@ class MadeUp:
         """``parts`` gives the interior and the skin's shares (0 elsewhere) of a layer, None beyond the body's."""
         x, y, z = (max(2, round(reach / step)) for step in pitch)
         self._parts, self._plane, self._up = parts, (y, x), z
-        self._room = Recent(self._rooms, 2 * z + 2)
-        self._given = Recent(self._gifts, 2 * z + 2)
+        self._room = RecentLayers(self._rooms, 2 * z + 2)
+        self._given = RecentLayers(self._gifts, 2 * z + 2)
 
     @property
     def ahead(self) -> int:

@@ -12,7 +12,7 @@ from pneutouch.body.section import Window
 from pneutouch.export.voxels.bluenoise import thresholds
 from pneutouch.export.voxels.cubes import Cubes
 from pneutouch.export.voxels.job import VoxelBody, VoxelJob
-from pneutouch.export.voxels.skin import MadeUp, Recent, interior, reach_for
+from pneutouch.export.voxels.skin import RecentLayers, SkinCompensation, interior, reach_for
 
 CUBE = 1.0
 """Edge in mm of the cubes in which the dither is held against what it was given."""
@@ -22,7 +22,7 @@ FULL = 0.5
 
 
 @dataclass
-class Tally:
+class VoxelCounts:
     """What a body became: voxels, skin voxels, the sums of the second resin's share asked for and realised.
 
     ``given`` is what was left for the dither: the skin's share made up for beneath it, less what did not fit because the
@@ -40,11 +40,11 @@ class Tally:
 
 
 @dataclass
-class Slicer:
+class VoxelSlicer:
     """Slices of a job in turn. ``tallies`` by body and ``counts`` by resin are whole after the last one."""
 
     job: VoxelJob
-    tallies: dict[str, Tally] = field(default_factory=dict)
+    tallies: dict[str, VoxelCounts] = field(default_factory=dict)
     counts: dict[str, int] = field(default_factory=dict)
 
     def __iter__(self) -> Iterator[Labels]:
@@ -74,7 +74,7 @@ class _Layers:
         self._levels, rows, columns = job.raster.window(body.inside.low, body.inside.high)
         self._rows, self._columns = _wider(rows, len(job.raster.y)), _wider(columns, len(job.raster.x))
         self._window = job.raster.plane(self._rows, self._columns)
-        self.tally = Tally()
+        self.tally = VoxelCounts()
         if body.blend.share is not None:
             self._mixed = _Mixed(job, self)
 
@@ -110,7 +110,7 @@ class _Layers:
         if self.body.blend.share is not None:
             part[self._mixed.stiff(number, self.tally)] = self._labels[1]
 
-    def finish(self) -> Tally:
+    def finish(self) -> VoxelCounts:
         """The tally, its cubes looked through."""
         if self.body.blend.share is not None:
             self._mixed.finish(self.tally)
@@ -125,9 +125,9 @@ class _Mixed:
         self._z = raster.z
         self._radius = np.sqrt(layers.window.squares)
         self._noise = thresholds(raster.pitch, job.seed)
-        self._made_up = MadeUp(self._skin, raster.pitch, reach_for(layers.body.blend.most, raster.pitch))
-        self.here = Recent(layers.section, self._made_up.ahead + 4)
-        self._parts = Recent(self._parts_of, 2 * self._made_up.ahead + 2)
+        self._made_up = SkinCompensation(self._skin, raster.pitch, reach_for(layers.body.blend.most, raster.pitch))
+        self.here = RecentLayers(layers.section, self._made_up.ahead + 4)
+        self._parts = RecentLayers(self._parts_of, 2 * self._made_up.ahead + 2)
         shape = (levels.stop - levels.start, *self._radius.shape)
         self._cubes = Cubes.over(shape, raster.pitch, CUBE)
         self._given_in, self._got_in, self._voxels_in = (self._cubes.empty() for _ in range(3))
@@ -150,7 +150,7 @@ class _Mixed:
         inner, share = found
         return inner, np.where(inner, np.float32(0), share)
 
-    def stiff(self, number: int, tally: Tally) -> Flags:
+    def stiff(self, number: int, tally: VoxelCounts) -> Flags:
         """Where the second resin goes in a layer of the body."""
         found, here, more = self._parts(number), self.here(number), self._made_up.layer(number)
         assert found is not None and here is not None
@@ -167,7 +167,7 @@ class _Mixed:
             self._cubes.add(totals, layer, values)
         return chosen
 
-    def finish(self, tally: Tally) -> None:
+    def finish(self, tally: VoxelCounts) -> None:
         """Look through the cubes that are full enough."""
         held = self._voxels_in >= FULL * np.prod(self._cubes.edge)
         tally.cubes = int(np.count_nonzero(held))

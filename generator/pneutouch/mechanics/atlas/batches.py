@@ -7,11 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.atlas.press import Batch
+from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.sensor import Sensor
 
 
-def batch_of(sensor: Sensor, driving_pressures: Sequence[float] | Array) -> Batch:
+def batch_of(sensor: Sensor, driving_pressures: Sequence[float] | Array) -> SensorBatch:
     """One sensor at n driving pressures (MPa).
 
     Its own law, Poisson ratio and flange are left aside: the atlas is neo-Hookean, at 0.49, clamped at the base.
@@ -22,4 +22,4 @@ def batch_of(sensor: Sensor, driving_pressures: Sequence[float] | Array) -> Batc
         np.asarray(driving_pressures, dtype=float), sensor.depth, sensor.plate_radius, sensor.gauge_limit,
         np.inf if sensor.break_stretch is None else sensor.break_stretch,
     )  # fmt: skip
-    return Batch(*(np.array(np.broadcast_to(fact, size), dtype=float) for fact in facts))
+    return SensorBatch(*(np.array(np.broadcast_to(fact, size), dtype=float) for fact in facts))

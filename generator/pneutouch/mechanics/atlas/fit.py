@@ -8,8 +8,8 @@ import numpy as np
 from scipy.linalg import solve_triangular
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.atlas.recipe import STORED, Axes, Recipe, axes, flattened
-from pneutouch.mechanics.atlas.spline import Axis, roughness
+from pneutouch.mechanics.atlas.recipe import STORED, AtlasAxes, AtlasRecipe, axes, flattened
+from pneutouch.mechanics.atlas.spline import SplineAxis, roughness
 from pneutouch.mechanics.atlas.survey import Survey
 
 _SMOOTH = 1.0e-5
@@ -27,7 +27,7 @@ _AT_CONTACT = 4.0
 
 
 @dataclass(frozen=True)
-class System:
+class NormalEquations:
     """Least squares by its triangular factor R'R and right side, (n, n) and (n, several)."""
 
     factor: Array
@@ -41,7 +41,7 @@ class System:
 
 
 @dataclass(frozen=True)
-class Sheet:
+class WallCoefficients:
     """One wall ratio's coefficients: apex (volume,), and the systems for the potential in units of the limit pressure
     and for the fields, over (volume, depth) flat.
 
@@ -51,14 +51,14 @@ class Sheet:
     limit_volume: float
     limit_pressure: float
     apex: Array
-    potential: System
-    fields: System
+    potential: NormalEquations
+    fields: NormalEquations
     support: Array
     fold_from: float
     fold_volume: Array
 
 
-def fit_sheet(survey: Survey, recipe: Recipe) -> Sheet:
+def fit_sheet(survey: Survey, recipe: AtlasRecipe) -> WallCoefficients:
     """Least squares over all states of one survey; energy, pressure and force are met by one and the same potential."""
     way = axes(recipe)
     rest, reach = survey.free_volume[0], survey.limit_volume - survey.free_volume[0]
@@ -87,7 +87,7 @@ def fit_sheet(survey: Survey, recipe: Recipe) -> Sheet:
     wanted = np.stack([flattened(name, field) for name, field in zip(STORED, survey.fields, strict=True)], axis=1)
     support = np.zeros((way.volume.cells, way.depth.cells))
     support[way.volume.basis(nu)[0], way.depth.basis(w)[0]] = 1.0
-    return Sheet(
+    return WallCoefficients(
         survey.limit_volume, unit, apex, potential, _system([value * weight], [wanted * weight], smooth), _grown(support),
         survey.fold_from, survey.fold_volume,
     )  # fmt: skip
@@ -100,7 +100,7 @@ def _grown(support: Array) -> Array:
     return np.asarray(np.maximum.reduce([wide[i : i + rows, k : k + columns] for i in range(3) for k in range(3)]))
 
 
-def _fit_apex(survey: Survey, axis: Axis, rest: float, reach: float) -> Array:
+def _fit_apex(survey: Survey, axis: SplineAxis, rest: float, reach: float) -> Array:
     """The free apex over nu; below nu = 0, where it only gives w its meaning, as straight as smoothness allows."""
     nu = (survey.free_volume - rest) / reach
     stiff = roughness(axis.size, 2)
@@ -111,7 +111,7 @@ def _fit_apex(survey: Survey, axis: Axis, rest: float, reach: float) -> Array:
     return found
 
 
-def _smoothness(way: Axes) -> Array:
+def _smoothness(way: AtlasAxes) -> Array:
     volume, depth = way.volume.size, way.depth.size
     rough = np.concatenate([
         np.kron(roughness(volume, 4), np.eye(depth)), np.kron(np.eye(volume), roughness(depth, 4)),
@@ -119,13 +119,13 @@ def _smoothness(way: Axes) -> Array:
     return np.concatenate([_SMOOTH * rough, _ALIKE * np.eye(volume * depth)])
 
 
-def _system(rows: list[Array], values: list[Array], smooth: Array) -> System:
+def _system(rows: list[Array], values: list[Array], smooth: Array) -> NormalEquations:
     left = np.concatenate(rows)
     factor = np.linalg.qr(np.concatenate([left, smooth]), mode="r")
-    return System(np.asarray(factor), left.T @ np.concatenate(values))
+    return NormalEquations(np.asarray(factor), left.T @ np.concatenate(values))
 
 
-def join(sheets: list[Sheet], recipe: Recipe) -> dict[str, Array]:
+def join(sheets: list[WallCoefficients], recipe: AtlasRecipe) -> dict[str, Array]:
     """The tables of the atlas: splines over the logarithm of the wall ratio through every sheet's coefficients."""
     wall, shape = axes(recipe).wall, (-1, axes(recipe).volume.size, axes(recipe).depth.size)
     # Not-a-knot: no jump of the third derivative at the first and the last inner knot.
@@ -153,7 +153,7 @@ def join(sheets: list[Sheet], recipe: Recipe) -> dict[str, Array]:
     }
 
 
-def _settled(systems: list[System]) -> Array:
+def _settled(systems: list[NormalEquations]) -> Array:
     """Coefficients of all walls, (walls, n, several), where each leans on its neighbours beyond its own states.
 
     States end at another volume for every wall; a spline over the walls needs what lies beyond to agree.

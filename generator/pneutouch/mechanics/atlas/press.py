@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from pneutouch.arrays import Array, Flags, Index
-from pneutouch.mechanics.atlas.table import REST_VOLUME, Point, Slices
+from pneutouch.mechanics.atlas.table import REST_VOLUME, AtlasPoint, AtlasSlices
 from pneutouch.mechanics.solid.contact import flat_radius
 from pneutouch.mechanics.solid.mesh import longest_outer_edge
 
@@ -25,7 +25,7 @@ _BELOW_REST = 0.01
 
 
 @dataclass(frozen=True)
-class Batch:
+class SensorBatch:
     """Sensors to press, arrays of one length: mm, mm^3, MPa. break_stretch and plate_radius may be infinite."""
 
     inner_radius: Array
@@ -42,9 +42,9 @@ class Batch:
     def __len__(self) -> int:
         return self.inner_radius.size
 
-    def take(self, rows: Index | Flags | slice) -> Batch:
+    def take(self, rows: Index | Flags | slice) -> SensorBatch:
         """Some of the sensors."""
-        return Batch(*(getattr(self, field.name)[rows] for field in fields(self)))
+        return SensorBatch(*(getattr(self, field.name)[rows] for field in fields(self)))
 
     @property
     def wall_ratio(self) -> Array:
@@ -52,36 +52,36 @@ class Batch:
         return self.wall_thickness / self.inner_radius
 
 
-class Track(NamedTuple):
+class PressTrack(NamedTuple):
     """Where the plate's way leads, (n, m) each; nondimensional. ok: a stable state of the gas was found and the atlas
     knows it; margin: dp/dV of wall less gas, positive while stable."""
 
     nu: Array
     height: Array
-    point: Point
+    point: AtlasPoint
     margin: Array
     ok: Flags
 
-    def each(self, change: Callable[[Any], Any]) -> Track:
+    def each(self, change: Callable[[Any], Any]) -> PressTrack:
         """The same of changed arrays."""
-        return Track(
+        return PressTrack(
             change(self.nu), change(self.height), self.point.each(change), change(self.margin), change(self.ok)
         )
 
 
-class Solved(NamedTuple):
-    """States found, (n,) each; see `Track`."""
+class AtlasSolution(NamedTuple):
+    """States found, (n,) each; see `PressTrack`."""
 
     nu: Array
-    point: Point
+    point: AtlasPoint
     margin: Array
     ok: Flags
 
 
-class Press:
+class AtlasPress:
     """A batch with its slices, gas and inflated states; all nondimensional from here on."""
 
-    def __init__(self, batch: Batch, slices: Slices, k: Index) -> None:
+    def __init__(self, batch: SensorBatch, slices: AtlasSlices, k: Index) -> None:
         self.batch, self.slices, self.k = batch, slices, k
         mu, radius = batch.shear_modulus, batch.inner_radius
         self.pressure = batch.driving_pressure / mu
@@ -97,15 +97,15 @@ class Press:
         """Cavity volume."""
         return REST_VOLUME + nu * self.reach
 
-    def rows(self, rows: Index | Flags) -> Press:
+    def rows(self, rows: Index | Flags) -> AtlasPress:
         """Some of the sensors, inflated states kept."""
-        part = object.__new__(Press)
+        part = object.__new__(AtlasPress)
         part.batch, part.slices, part.k = self.batch.take(rows), self.slices, self.k[rows]
         for name in ("pressure", "ambient", "dead", "reach", "limit", "free", "apex", "content"):
             setattr(part, name, getattr(self, name)[rows])
         return part
 
-    def solve(self, nu: Array, height: Array) -> Solved:
+    def solve(self, nu: Array, height: Array) -> AtlasSolution:
         """States in which wall and gas have one pressure, from guesses of their volume; (n,).
 
         The last step is so small that the values follow it along their tangents, to its square.
@@ -127,9 +127,9 @@ class Press:
             pressure=point.pressure + point.by_volume * swell, force=point.force - point.by_height * swell
         )
         ok = reached & (margin > 0) & point.supported & ~point.folded
-        return Solved(nu + step, point, margin, ok)
+        return AtlasSolution(nu + step, point, margin, ok)
 
-    def march(self, indentation: Array) -> Track:
+    def march(self, indentation: Array) -> PressTrack:
         """Equilibria at plate travels (n, m) in R0, ascending along the last axis from zero."""
         nu = self.free
         ok = np.ones(nu.size, dtype=bool)
@@ -148,9 +148,9 @@ class Press:
             point = found.point._replace(force=np.where(column > _NO_TRAVEL, found.point.force, 0.0))
             columns.append((found.nu, height, *point, found.margin, ok))
         stacked = [np.stack(part, axis=1) for part in zip(*columns, strict=True)]
-        return Track(stacked[0], stacked[1], Point(*stacked[2:-2]), stacked[-2], stacked[-1])
+        return PressTrack(stacked[0], stacked[1], AtlasPoint(*stacked[2:-2]), stacked[-2], stacked[-1])
 
-    def field(self, name: str, track: Track) -> Array:
+    def field(self, name: str, track: PressTrack) -> Array:
         """A tabulated field along a track, (n, m)."""
         k = np.repeat(self.k, track.nu.shape[1])
         flat = self.slices.field(name, k, track.nu.ravel(), track.height.ravel())
@@ -163,7 +163,7 @@ class Press:
         return flat_radius(radius, longest_outer_edge(self.batch.wall_ratio))
 
 
-def _inflated(slices: Slices, k: Index, pressure: Array) -> Array:
+def _inflated(slices: AtlasSlices, k: Index, pressure: Array) -> Array:
     """The volume nu of the free dome at a pressure on the rising branch; 1 at and beyond the limit point.
 
     Newton's method, kept between brackets and halving where it would leave them: near the limit point the slope goes.

@@ -10,13 +10,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.atlas.spline import Axis
+from pneutouch.mechanics.atlas.spline import SplineAxis
 
 _HOLDING = ("stiffest", "degree", "volume_cells", "volume_stretch", "depth_cells")
 
 
 @dataclass(frozen=True)
-class Recipe:
+class AtlasRecipe:
     """The box and the resolution of the atlas, in units of R0 and mu.
 
     Coordinates: t0/R0; ``nu``, the cavity volume above the unloaded one as a share of its way to the limit point; ``w``,
@@ -77,7 +77,7 @@ class Recipe:
         return json.dumps(asdict(self), sort_keys=True)
 
     @classmethod
-    def from_text(cls, text: str) -> Recipe:
+    def from_text(cls, text: str) -> AtlasRecipe:
         """A recipe read back."""
         content: dict[str, Any] = json.loads(text)
         fields: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in content.items()}
@@ -89,25 +89,27 @@ class Recipe:
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
 
 
-class Axes(NamedTuple):
+class AtlasAxes(NamedTuple):
     """The three directions of the tables."""
 
-    wall: Axis
-    volume: Axis
-    depth: Axis
+    wall: SplineAxis
+    volume: SplineAxis
+    depth: SplineAxis
 
 
-def axes(recipe: Recipe) -> Axes:
+def axes(recipe: AtlasRecipe) -> AtlasAxes:
     """The directions of a recipe; walls in their logarithm, cubic, knots on the surveys."""
     walls = recipe.wall_ratios
-    return Axes(
-        Axis(float(np.log(walls[0])), float(np.log(walls[-1])), recipe.walls - 1, 3),
-        Axis(recipe.lowest_volume, recipe.highest_volume, recipe.volume_cells, recipe.degree, recipe.volume_stretch),
-        Axis(0.0, recipe.beyond, recipe.depth_cells, recipe.degree, recipe.depth_stretch),
+    return AtlasAxes(
+        SplineAxis(float(np.log(walls[0])), float(np.log(walls[-1])), recipe.walls - 1, 3),
+        SplineAxis(
+            recipe.lowest_volume, recipe.highest_volume, recipe.volume_cells, recipe.degree, recipe.volume_stretch
+        ),
+        SplineAxis(0.0, recipe.beyond, recipe.depth_cells, recipe.degree, recipe.depth_stretch),
     )
 
 
-RECIPE = Recipe()
+RECIPE = AtlasRecipe()
 
 FIELDS = ("contact_radius", "stretch", "von_mises", "overhang", "fold", "inner_apex")
 """What can be asked for beside the potential: see `solid.PressState`; lengths in R0, stresses in mu."""

@@ -9,13 +9,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from pneutouch.arrays import Array, Flags, Index
-from pneutouch.mechanics.atlas.press import Batch, Press, Track
+from pneutouch.mechanics.atlas.press import AtlasPress, PressTrack, SensorBatch
 from pneutouch.mechanics.atlas.table import REST_VOLUME, Atlas, shipped
-from pneutouch.mechanics.response import Lines, lines
+from pneutouch.mechanics.response import FigureArrays, lines
 from pneutouch.units import KPA
 
 ENDS = ("depth", "plate edge", "gauge range", "break strain", "inward buckling", "outside the atlas")
-"""What may end a range; in a `Response` by number. The first is no event: the whole travel was used."""
+"""What may end a range; in a `AtlasResponse` by number. The first is no event: the whole travel was used."""
 DEPTH, EDGE, GAUGE, BREAK, BUCKLING, OUTSIDE = range(len(ENDS))
 
 NEAR = 0.03
@@ -26,7 +26,7 @@ _ROUNDS = 14
 _WITHIN = 2.0e-5
 
 
-class Response(NamedTuple):
+class AtlasResponse(NamedTuple):
     """Answers for n sensors; (n,) or (n, m) arrays in mm, N, MPa, sensitivities in kPa/N.
 
     ends: number in `ENDS`. near_buckling: the wall would buckle within NEAR more of travel, so close to the edge of the
@@ -35,7 +35,7 @@ class Response(NamedTuple):
     (beyond the limit point, outside the box) are NaN throughout.
     """
 
-    lines: Lines
+    lines: FigureArrays
     ends: Index
     near_buckling: Flags
     range_end: Array
@@ -47,20 +47,20 @@ class Response(NamedTuple):
     force: Array
     rise: Array
 
-    def take(self, rows: Index | Flags) -> Response:
+    def take(self, rows: Index | Flags) -> AtlasResponse:
         """Some of the sensors."""
         some: list[Any] = [column[rows] for column in self[1:]]
-        return Response(Lines(*(column[rows] for column in self.lines)), *some)
+        return AtlasResponse(FigureArrays(*(column[rows] for column in self.lines)), *some)
 
     @classmethod
-    def join(cls, parts: Sequence[Response]) -> Response:
+    def join(cls, parts: Sequence[AtlasResponse]) -> AtlasResponse:
         """Several as one."""
         columns: list[Any] = [np.concatenate(column) for column in zip(*(part[1:] for part in parts), strict=True)]
         found = [np.concatenate(column) for column in zip(*(part.lines for part in parts), strict=True)]
-        return cls(Lines(*found), *columns)
+        return cls(FigureArrays(*found), *columns)
 
 
-def inside(batch: Batch, atlas: Atlas) -> Flags:
+def inside(batch: SensorBatch, atlas: Atlas) -> Flags:
     """Whether the atlas speaks for sensors: wall, depth, stiffness of the gas, no suction; what is negative or NaN is none.
 
     A dead volume may be negative as a deviation of a small one; half of the unloaded cavity must be left.
@@ -77,28 +77,30 @@ def inside(batch: Batch, atlas: Atlas) -> Flags:
     )  # fmt: skip
 
 
-def _harmless(batch: Batch, good: Flags, atlas: Atlas) -> Batch:
+def _harmless(batch: SensorBatch, good: Flags, atlas: Atlas) -> SensorBatch:
     """The batch with a plain sensor in place of what is none, so that no NaN or overflow reaches the others' loops."""
-    plain = Batch(*(np.array(x) for x in (1.0, atlas.recipe.thickest, 1.0, 0.0, 0.0, 0.0, 0.1, np.inf, np.inf, np.inf)))
-    return Batch(*(np.where(good, getattr(batch, f.name), getattr(plain, f.name)) for f in fields(Batch)))
+    plain = SensorBatch(
+        *(np.array(x) for x in (1.0, atlas.recipe.thickest, 1.0, 0.0, 0.0, 0.0, 0.1, np.inf, np.inf, np.inf))
+    )
+    return SensorBatch(*(np.where(good, getattr(batch, f.name), getattr(plain, f.name)) for f in fields(SensorBatch)))
 
 
-def respond(batch: Batch, steps: int = 14, atlas: Atlas | None = None) -> Response:
+def respond(batch: SensorBatch, steps: int = 14, atlas: Atlas | None = None) -> AtlasResponse:
     """Press every sensor to its depth, or to the first event that ends the range, and read off the figures."""
     chosen = atlas or shipped()
     parts = [
         _respond(batch.take(slice(start, start + _CHUNK)), steps, chosen) for start in range(0, len(batch), _CHUNK)
     ]
-    return parts[0] if len(parts) == 1 else Response.join(parts)
+    return parts[0] if len(parts) == 1 else AtlasResponse.join(parts)
 
 
-def _respond(batch: Batch, steps: int, atlas: Atlas) -> Response:
+def _respond(batch: SensorBatch, steps: int, atlas: Atlas) -> AtlasResponse:
     good = inside(batch, atlas)
     batch = _harmless(batch, good, atlas)
     walls, k = np.unique(batch.wall_ratio, return_inverse=True)
     slices = atlas.slices(walls, _FIELDS)
     limit = slices.limit_pressure[k] * batch.shear_modulus
-    press = Press(batch, slices, k)
+    press = AtlasPress(batch, slices, k)
     share = np.linspace(0.0, 1.0, steps + 1)
     depth = batch.depth / batch.inner_radius
     track = press.march(share * depth[:, None])
@@ -118,7 +120,7 @@ def _respond(batch: Batch, steps: int, atlas: Atlas) -> Response:
     for array in (indentation, force, rise):
         array[hopeless] = np.nan
     stretch = press.field("stretch", track).max(axis=1)
-    return Response(
+    return AtlasResponse(
         lines(indentation, force, rise / KPA), np.where(good, ends, OUTSIDE), good & _near(press, track),
         np.where(hopeless, np.nan, end * batch.inner_radius), np.where(good, limit, np.nan),
         np.where(hopeless, np.nan, press.apex * batch.inner_radius),
@@ -127,7 +129,7 @@ def _respond(batch: Batch, steps: int, atlas: Atlas) -> Response:
     )  # fmt: skip
 
 
-def _near(press: Press, track: Track) -> Flags:
+def _near(press: AtlasPress, track: PressTrack) -> Flags:
     """Whether a press would buckle within NEAR of travel beyond its end, gone on straight."""
     margin = np.where(track.margin[:, -1] > 0, track.margin[:, -1], 1.0)
     rate = track.point.by_height[:, -1] / margin / press.reach
@@ -135,7 +137,7 @@ def _near(press: Press, track: Track) -> Flags:
     return np.asarray(press.slices.folded(press.k, nu, height) | (track.margin[:, -1] <= 0))
 
 
-def _margins(press: Press, track: Track) -> Array:
+def _margins(press: AtlasPress, track: PressTrack) -> Array:
     """What turns positive where a range ends, in the order of `ENDS` from EDGE to BREAK; (3, n, m)."""
     batch = press.batch
     gauge = (track.point.pressure - (batch.gauge_limit / batch.shear_modulus)[:, None]) / press.limit[:, None]
@@ -144,7 +146,7 @@ def _margins(press: Press, track: Track) -> Array:
     return np.stack([edge, gauge, tear])
 
 
-def _first_end(press: Press, indentation: Array, track: Track) -> tuple[Array, Index]:
+def _first_end(press: AtlasPress, indentation: Array, track: PressTrack) -> tuple[Array, Index]:
     """Plate travel (R0) at which each range ends, and why."""
     broken = (_margins(press, track) > 0.0).any(axis=0) | ~track.ok
     hit = np.flatnonzero(broken.any(axis=1))
@@ -161,7 +163,7 @@ def _first_end(press: Press, indentation: Array, track: Track) -> tuple[Array, I
     return end, ends
 
 
-def _closed_in(press: Press, nu: Array, low: Array, high: Array) -> tuple[Array, Index]:
+def _closed_in(press: AtlasPress, nu: Array, low: Array, high: Array) -> tuple[Array, Index]:
     """Close in on the first end between a sound travel and one past it; the last sound travel, and the reason.
 
     By false position with halved weights (Illinois) on the greatest margin, by halves where the state itself is lost.
@@ -183,11 +185,11 @@ def _closed_in(press: Press, nu: Array, low: Array, high: Array) -> tuple[Array,
     return np.where(np.abs(after) < np.abs(before), high, low), ends
 
 
-def _worst(press: Press, nu: Array, indentation: Array) -> tuple[Array, Index, Array]:
+def _worst(press: AtlasPress, nu: Array, indentation: Array) -> tuple[Array, Index, Array]:
     """Greatest margin at plate travels (n,), infinite where the state is lost; its reason; and the volume nu."""
     height = press.apex - indentation
     found = press.solve(nu, height)
-    one = Track(found.nu, height, found.point, found.margin, found.ok).each(lambda column: column[:, None])
+    one = PressTrack(found.nu, height, found.point, found.margin, found.ok).each(lambda column: column[:, None])
     margins = _margins(press, one)[..., 0]
     unknown = (found.margin > 0.0) & ~found.point.supported & ~found.point.folded
     reason = np.where(found.ok, EDGE + margins.argmax(axis=0), np.where(unknown, OUTSIDE, BUCKLING))

@@ -32,7 +32,7 @@ def pieces(degree: int) -> Array:
 
 
 @dataclass(frozen=True)
-class Axis:
+class SplineAxis:
     """An interval cut into cells; it carries cells + degree coefficients.
 
     The cells are equal in z = sqrt(x - low + stretch^2), finest at the low end, or in x where ``stretch`` is None.

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.atlas.recipe import STORED, STRETCHES, Recipe
-from pneutouch.mechanics.atlas.surveyor import Equilibrium, Pressed, Surveyor
+from pneutouch.mechanics.atlas.recipe import STORED, STRETCHES, AtlasRecipe
+from pneutouch.mechanics.atlas.surveyor import Equilibrium, SurveyedPress, Surveyor
 
 _NEAR_ZERO = 0.3
 """Below this share of the limit pressure, a pressure that rises as the plate goes up belongs to a buckled wall."""
@@ -42,7 +42,7 @@ class Survey:
     fold_volume: Array
 
 
-def survey(wall_ratio: float, recipe: Recipe) -> Survey:
+def survey(wall_ratio: float, recipe: AtlasRecipe) -> Survey:
     """Ask the solid for every reachable state of one wall ratio. Raises ComputationError where the dome itself fails."""
     surveyor = Surveyor(wall_ratio, recipe)
     rows = [_down(surveyor, surveyor.touching(free)) for free in surveyor.free]
@@ -60,7 +60,7 @@ def survey(wall_ratio: float, recipe: Recipe) -> Survey:
     return _gathered(surveyor, found, *_fold(surveyor, presses))
 
 
-def _fold(surveyor: Surveyor, presses: list[Pressed]) -> tuple[float, Array]:
+def _fold(surveyor: Surveyor, presses: list[SurveyedPress]) -> tuple[float, Array]:
     """Where the sheet of states ends by buckling: the depth below the unloaded apex at which a vented press does, and the
     least volume at depths beyond; (recipe.fold_depths,).
 

@@ -9,15 +9,15 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
-from pneutouch.mechanics.atlas.recipe import Recipe
+from pneutouch.mechanics.atlas.recipe import AtlasRecipe
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid import Probe, Solid, dome, inflate
+from pneutouch.mechanics.solid import SolidModel, StrainProbe, dome, inflate
 from pneutouch.mechanics.solid.contact import Plate
 from pneutouch.mechanics.solid.events import descend
 from pneutouch.mechanics.solid.inflate import FreeState, Inflation, at_volume, state_at
-from pneutouch.mechanics.solid.newton import Scene, Stalled, State, minimise, stability
+from pneutouch.mechanics.solid.newton import NewtonFailure, SolidScene, SolverState, minimise, stability
 from pneutouch.mechanics.solid.supply import Gas, Liquid, Regulator, Supply
-from pneutouch.mechanics.solid.walker import Walker
+from pneutouch.mechanics.solid.walker import PathFollower
 
 _HOLDS = (1.0e3, 1.0e2, 1.0e4)
 """Stiffnesses in mu/R0^3 that hold the volume, tried in turn; the state keeps the volume it really has."""
@@ -39,7 +39,7 @@ class Equilibrium:
     energy by volume and height, (2, 2).
     """
 
-    state: State
+    state: SolverState
     height: float
     force: float
     by_height: Array
@@ -63,7 +63,7 @@ class Equilibrium:
         return self.state.energy - self.state.filling.energy
 
 
-class Pressed(NamedTuple):
+class SurveyedPress(NamedTuple):
     """States of one press with trapped gas, and whether it ended before the greatest depth."""
 
     path: list[Equilibrium]
@@ -73,10 +73,10 @@ class Pressed(NamedTuple):
 class Surveyor:
     """Steps from equilibrium to equilibrium of one dome with R0 = mu = 1."""
 
-    def __init__(self, wall_ratio: float, recipe: Recipe) -> None:
+    def __init__(self, wall_ratio: float, recipe: AtlasRecipe) -> None:
         self.recipe = recipe
-        self.solid = Solid(dome(1.0, wall_ratio), neo_hookean(1.0, recipe.poisson_ratio))
-        self.probe = Probe(self.solid)
+        self.solid = SolidModel(dome(1.0, wall_ratio), neo_hookean(1.0, recipe.poisson_ratio))
+        self.probe = StrainProbe(self.solid)
         self.run = run = inflate(self.solid, past_limit=1.2)
         if run.limit is None:
             raise ComputationError(f"t0/R0 = {wall_ratio:g}: no limit point: {run.why_no_limit}")
@@ -91,7 +91,7 @@ class Surveyor:
         if nu == 0.0:
             return below[0]
         found = at_volume(self.solid, below[-1:], volume)
-        if isinstance(found, Stalled):
+        if isinstance(found, NewtonFailure):
             raise ComputationError(f"t0/R0 = {self.solid.wall:g}, nu = {nu:g}: {found.why}")
         return found
 
@@ -109,13 +109,13 @@ class Surveyor:
     def _solve(self, guess: Array, volume: float, height: float, pressure: float) -> Equilibrium | None:
         plate = Plate(height, np.inf, self.solid.contact.longest)
         for hold in _HOLDS:
-            scene = Scene(self.solid, Liquid(volume + pressure / hold, hold), plate)
+            scene = SolidScene(self.solid, Liquid(volume + pressure / hold, hold), plate)
             found = minimise(scene, guess)
-            if not isinstance(found, Stalled):
+            if not isinstance(found, NewtonFailure):
                 return self._equilibrium(scene, found.state, height)
         return None
 
-    def _equilibrium(self, scene: Scene, state: State, height: float) -> Equilibrium:
+    def _equilibrium(self, scene: SolidScene, state: SolverState, height: float) -> Equilibrium:
         solid, touch, contact = self.solid, state.touch, self.solid.contact
         assert touch is not None
         active = np.where(touch.traction > 0.0, -contact.stiffness, 0.0)
@@ -144,19 +144,21 @@ class Surveyor:
         middle = self.step(a, a.state.volume + 0.5 * more, a.height + 0.5 * lift, halvings - 1)
         return None if middle is None else self.step(middle, volume, height, halvings - 1)
 
-    def pressed(self, pressure: float, ambient: float) -> Pressed:
+    def pressed(self, pressure: float, ambient: float) -> SurveyedPress:
         """The states of one press with trapped gas (vented for no ambient pressure) down to where it ends."""
         free = state_at(self.solid, pressure, self.run)
         supply: Supply = Regulator(pressure)
         if ambient > 0.0:
             supply = Gas.filled(pressure, free.volume, ambient, 0.0)
         plate = Plate(free.outer_apex, np.inf, self.solid.contact.longest)
-        walker = Walker(self.solid, supply, plate, free.unit.x)
+        walker = PathFollower(self.solid, supply, plate, free.unit.x)
         for depth in self.recipe.survey_depths[1:]:
             ended = descend(walker, plate.height - depth) is not None
             if ended:
                 break
-        return Pressed([self._equilibrium(spot.scene, spot.state, spot.height) for spot in walker.path[1:]], ended)
+        return SurveyedPress(
+            [self._equilibrium(spot.scene, spot.state, spot.height) for spot in walker.path[1:]], ended
+        )
 
     def reachable(self, found: Equilibrium) -> bool:
         """Whether a trapped gas can hold the state, started at rest or above with the plate no lower than the box allows.

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from pneutouch.arrays import Array, Flags, Index
-from pneutouch.mechanics.atlas.recipe import FIELDS, Axes, Recipe, axes, parts, unflattened
+from pneutouch.mechanics.atlas.recipe import FIELDS, AtlasAxes, AtlasRecipe, axes, parts, unflattened
 
 SHIPPED = Path(__file__).with_name("atlas.npz")
 
@@ -19,7 +19,7 @@ SHIPPED = Path(__file__).with_name("atlas.npz")
 REST_VOLUME = 2.0 / 3.0 * np.pi
 
 
-class Point(NamedTuple):
+class AtlasPoint(NamedTuple):
     """A state looked up, nondimensional; arrays of one length.
 
     by_volume, by_height: derivatives of the pressure by volume and plate height; force_by_height: of the force.
@@ -34,18 +34,18 @@ class Point(NamedTuple):
     supported: Flags
     folded: Flags
 
-    def each(self, change: Callable[[Any], Any]) -> Point:
+    def each(self, change: Callable[[Any], Any]) -> AtlasPoint:
         """The same of changed arrays."""
-        return Point(*map(change, self))
+        return AtlasPoint(*map(change, self))
 
 
 @dataclass(frozen=True)
-class Slices:
+class AtlasSlices:
     """The tables cut at wall ratios: limit_volume, limit_pressure (k,), apex (k, volume), potential (k, volume, depth),
     support (k, volume cells, depth cells), fields: tables (k, volume, depth) by name. rest_apex: outer height of the unloaded dome;
     fold_from, fold_volume (k,), (k, folds): the buckling edge, see `survey._fold`."""
 
-    way: Axes
+    way: AtlasAxes
     limit_volume: Array
     limit_pressure: Array
     apex: Array
@@ -72,7 +72,7 @@ class Slices:
         found: Array = np.matmul(weight, block[..., None])[..., 0]
         return found
 
-    def point(self, k: Index, nu: Array, height: Array) -> Point:
+    def point(self, k: Index, nu: Array, height: Array) -> AtlasPoint:
         """Pressure, force and their slopes at volumes nu and plate heights, (n,) each."""
         cell, by_nu = self.way.volume.basis(nu)
         apex = self._apex(k, cell, by_nu)
@@ -82,7 +82,7 @@ class Slices:
         force = jet[:, 0, 1]
         mixed = (jet[:, 1, 1] + jet[:, 0, 2] * rise) / reach
         along = jet[:, 2, 0] + 2 * jet[:, 1, 1] * rise + jet[:, 0, 2] * rise**2 + force * bend
-        return Point(
+        return AtlasPoint(
             (jet[:, 1, 0] + force * rise) / reach, force, along / reach**2, -mixed, -jet[:, 0, 2],
             self.support[k, cell, depth], self.folded(k, nu, height),
         )  # fmt: skip
@@ -123,16 +123,16 @@ def _contract(table: Array, k: Index, cell: Index, depth: Index, by_nu: Array, b
 class Atlas:
     """The tables over all wall ratios, and the recipe they were made by."""
 
-    def __init__(self, tables: dict[str, Array], recipe: Recipe) -> None:
+    def __init__(self, tables: dict[str, Array], recipe: AtlasRecipe) -> None:
         self.recipe = recipe
         self._tables = tables
         self._way = axes(recipe)
 
-    def boxed(self, recipe: Recipe) -> Atlas:
+    def boxed(self, recipe: AtlasRecipe) -> Atlas:
         """The same tables with the box of another recipe; its coordinates must be the same."""
         return Atlas(self._tables, recipe)
 
-    def slices(self, wall_ratio: Array, names: tuple[str, ...] = FIELDS) -> Slices:
+    def slices(self, wall_ratio: Array, names: tuple[str, ...] = FIELDS) -> AtlasSlices:
         """The tables at wall ratios inside the box, (k,), with the named fields."""
         way = self._way.wall
         cell, weight = way.basis(np.log(wall_ratio))
@@ -154,7 +154,7 @@ class Atlas:
             found: Array = (1 - share) * table[below] + share * table[below + 1]
             return found
 
-        return Slices(
+        return AtlasSlices(
             self._way, cut("limit_volume"), cut("limit_pressure"), cut("apex"), cut("potential"),
             support[below] & support[below + 1], 1.0 + wall_ratio, between("fold_from")[:, 0], between("fold_volume"),
             self.recipe.fold_depths, {part: cut(part) for name in names for part in parts(name)},
@@ -165,7 +165,7 @@ class Atlas:
 def shipped() -> Atlas:
     """The atlas that comes with the package."""
     with np.load(SHIPPED) as file:
-        recipe = Recipe.from_text(str(file["recipe"]))
+        recipe = AtlasRecipe.from_text(str(file["recipe"]))
         numbers = {name: file[name] for name in file.files if name not in ("recipe", "solid")}
     # In double precision at once: products with half precision are slow.
     return Atlas({name: table.astype(np.float64) for name, table in numbers.items()}, recipe)

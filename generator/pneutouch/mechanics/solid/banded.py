@@ -11,7 +11,7 @@ from scipy.sparse import csr_array
 from pneutouch.arrays import Array, Index
 
 
-class Pattern:
+class AssemblyPattern:
     """Where block entries go: blocks (n_blocks, d, d) with dof tables (n_blocks, d), -1 for a fixed dof.
 
     Several block families share one flat vector, in the order given.  The sum over blocks is a product with a constant
@@ -56,14 +56,14 @@ def _gatherer(tables: list[Index], size: int) -> csr_array:
 
 
 @dataclass(frozen=True)
-class Solved:
+class BandedSolution:
     """x with K x = b (size, n_rhs), and whether K is positive definite."""
 
     x: Array
     definite: bool
 
 
-def solve(band: Array, b: Array) -> Solved:
+def solve(band: Array, b: Array) -> BandedSolution:
     """Solve by Cholesky, and by pivoted LU where the matrix is not positive definite; b (size, n_rhs).
 
     A singular matrix returns non-finite x.
@@ -71,10 +71,10 @@ def solve(band: Array, b: Array) -> Solved:
     factor, info = lapack.dpbtrf(band, lower=1)
     if info == 0:
         x, _ = lapack.dpbtrs(factor, b, lower=1)
-        return Solved(x, True)
+        return BandedSolution(x, True)
     width = band.shape[0] - 1
     _, _, x, info = lapack.dgbsv(width, width, _general(band), b)
-    return Solved(x if info == 0 else np.full_like(b, np.nan), False)
+    return BandedSolution(x if info == 0 else np.full_like(b, np.nan), False)
 
 
 def _general(band: Array) -> Array:

@@ -44,7 +44,7 @@ class Plate:
 
 
 @dataclass(frozen=True)
-class Touch:
+class ContactEvaluation:
     """Contact at the quadrature points of the outer wall, (n_edges, n_points) each; nondimensional."""
 
     energy: float
@@ -84,16 +84,16 @@ class Contact:
         line = nodes[self.edges]
         return line[..., 0] @ self.shape.T, line[..., 1] @ self.shape.T
 
-    def touch(self, nodes: Array, plate: Plate) -> Touch:
+    def touch(self, nodes: Array, plate: Plate) -> ContactEvaluation:
         """Energy and tractions against the plate for positions (n_nodes, 2)."""
         r, z = self.positions(nodes)
         under, slope, curve = plate.underside(r)
         gap = under - z
         traction = np.maximum(-self.stiffness * gap, 0.0)
         energy = float(np.vdot(self.weight, traction**2)) / (2.0 * self.stiffness)
-        return Touch(energy, traction, gap, slope, curve)
+        return ContactEvaluation(energy, traction, gap, slope, curve)
 
-    def linear(self, touch: Touch, move: Array) -> Array:
+    def linear(self, touch: ContactEvaluation, move: Array) -> Array:
         """Tractions (unclipped) after a nodal displacement `move` (n_nodes, 2), the gap taken as linear in it."""
         r, z = self.positions(move)
         return np.asarray(-self.stiffness * (touch.gap + touch.slope * r - z))
@@ -106,7 +106,7 @@ class Contact:
         out[:, 0::2] = -(load * slope) @ self.shape
         return out
 
-    def hessian(self, touch: Touch, active: Flags) -> Array:
+    def hessian(self, touch: ContactEvaluation, active: Flags) -> Array:
         """Second derivative with `active` points (n_edges, n_points) in contact, (n_edges, 2 n, 2 n)."""
         stiff = np.where(active, self.stiffness, 0.0) * self.weight
         n = self._n // 2
@@ -119,7 +119,7 @@ class Contact:
             out[:, 0::2, 0::2] = (along @ self._pairs).reshape(-1, n, n)
         return out
 
-    def footprint(self, nodes: Array, touch: Touch) -> Footprint:
+    def footprint(self, nodes: Array, touch: ContactEvaluation) -> Footprint:
         """Edge of the contact, largest pressure, and how far the wall has left the plate inside that edge."""
         r, _ = self.positions(nodes)
         # Edges run from base to apex: reversed, the points go outward from the axis.

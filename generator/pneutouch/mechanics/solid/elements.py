@@ -74,7 +74,7 @@ def strain_operator(nodes: Array, cells: Index, points: Array) -> tuple[Array, A
 
 
 @dataclass(frozen=True)
-class Scheme:
+class IntegrationScheme:
     """How a cell is integrated: `gauss` points a side, and the modes on which J is averaged.
 
     pressure: 1 constant, 3 linear (1, xi, eta), 4 bilinear.  With 2 x 2 points and 4 modes J is taken point by point:
@@ -85,7 +85,7 @@ class Scheme:
     pressure: int
 
 
-DEFAULT_SCHEME = {4: Scheme(2, 1), 8: Scheme(2, 4), 9: Scheme(3, 3)}
+DEFAULT_SCHEME = {4: IntegrationScheme(2, 1), 8: IntegrationScheme(2, 4), 9: IntegrationScheme(3, 3)}
 
 
 def pressure_modes(points: Array, measure: Array, count: int) -> Array:

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from pneutouch.mechanics.solid.errors import NoConvergenceError
-from pneutouch.mechanics.solid.newton import Stalled, minimise
-from pneutouch.mechanics.solid.walker import DISSIPATION, Spot, Walker, lost_work
+from pneutouch.mechanics.solid.newton import NewtonFailure, minimise
+from pneutouch.mechanics.solid.walker import DISSIPATION, PathFollower, PlateState, lost_work
 
 #: A neo-Hookean surface creases where the stretch across it is 2.4 times the least stretch along it, strain 0.35 in
 #: plane strain (Hong, Zhao & Suo 2009, Appl. Phys. Lett. 95, 111901; quoted, not derived here).  The smooth solution
@@ -32,7 +32,7 @@ BREAKS_CURVE = ("unstable", "snap", "clamp_fold", "separation", "lost")
 
 
 @dataclass(frozen=True)
-class Event:
+class SolidEvent:
     """Something that happened at a plate travel (mm).
 
     kind, of those that end the path: unstable (the inflated state itself), snap (a jump to another branch), clamp_fold
@@ -46,7 +46,7 @@ class Event:
     detail: str
 
 
-class Point(NamedTuple):
+class PathPoint(NamedTuple):
     """A quantity y at plate travel x, with dy/dx where it is known."""
 
     x: float
@@ -55,7 +55,7 @@ class Point(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Jump:
+class PathJump:
     """Plate height (R0) of the last state before the path breaks off, and why."""
 
     kind: str
@@ -63,16 +63,16 @@ class Jump:
     why: str
 
 
-def descend(walker: Walker, height: float) -> Jump | None:
+def descend(walker: PathFollower, height: float) -> PathJump | None:
     """Take the walker down to `height`; None there, or the jump that ended the path, before which it then stands."""
     if not walker.here.stable:
-        return Jump("unstable", walker.here.height, "the state itself is unstable with its gas shut in")
+        return PathJump("unstable", walker.here.height, "the state itself is unstable with its gas shut in")
     while walker.here.height - height > 1.0e-12:
         before = walker.here
         try:
             after = walker.step(height)
         except NoConvergenceError as failure:
-            return Jump("lost", before.height, failure.why)
+            return PathJump("lost", before.height, failure.why)
         if _sound(walker.path[:-1], after):
             continue
         jump = _close_in(walker, after.height)
@@ -81,17 +81,17 @@ def descend(walker: Walker, height: float) -> Jump | None:
     return None
 
 
-def _sound(path: list[Spot], after: Spot) -> bool:
+def _sound(path: list[PlateState], after: PlateState) -> bool:
     return after.stable and lost_work(path, after) <= DISSIPATION
 
 
-def _close_in(walker: Walker, end: float) -> Jump | None:
+def _close_in(walker: PathFollower, end: float) -> PathJump | None:
     """Bisect between the last sound state and a suspect one; None if the end is reached on one branch after all.
 
     A suspect height may prove sound when approached in shorter steps, so the last bracket is walked before it counts.
     """
     walker.path.pop()
-    beyond: Spot | Stalled = Stalled("no equilibrium follows without a jump")
+    beyond: PlateState | NewtonFailure = NewtonFailure("no equilibrium follows without a jump")
     bad, tried_from_here = end, False
     for _ in range(_MOST_TRIES):
         here = walker.here
@@ -100,37 +100,37 @@ def _close_in(walker: Walker, end: float) -> Jump | None:
             break
         height = bad if closed else 0.5 * (here.height + bad)
         found = walker.solve(height)
-        if isinstance(found, Stalled) or not _sound(walker.path, found):
+        if isinstance(found, NewtonFailure) or not _sound(walker.path, found):
             beyond, bad, tried_from_here = found, height, True
             continue
         walker.path.append(found)
         if found.height <= end + 1.0e-12:
             return None
         bad, tried_from_here = end if closed else bad, False
-    if isinstance(beyond, Stalled):
+    if isinstance(beyond, NewtonFailure):
         return _past_a_stall(walker, beyond)
-    return Jump(_kind(walker.here, beyond), walker.here.height, _describe(walker.path, beyond))
+    return PathJump(_kind(walker.here, beyond), walker.here.height, _describe(walker.path, beyond))
 
 
-def _past_a_stall(walker: Walker, stalled: Stalled) -> Jump:
+def _past_a_stall(walker: PathFollower, stalled: NewtonFailure) -> PathJump:
     """A solver that found nothing is no evidence of another branch: look a little further before naming the end."""
     for further in (1, 2, 4, 8):
         found = walker.solve(walker.here.height - further * _BEYOND_STALL)
-        if not isinstance(found, Stalled) and not _sound(walker.path, found) and _stays_away(walker.here, found):
-            return Jump(_kind(walker.here, found), walker.here.height, _describe(walker.path, found))
-    return Jump("lost", walker.here.height, stalled.why)
+        if not isinstance(found, NewtonFailure) and not _sound(walker.path, found) and _stays_away(walker.here, found):
+            return PathJump(_kind(walker.here, found), walker.here.height, _describe(walker.path, found))
+    return PathJump("lost", walker.here.height, stalled.why)
 
 
-def _stays_away(here: Spot, found: Spot) -> bool:
+def _stays_away(here: PlateState, found: PlateState) -> bool:
     """Whether the plate brought back leaves the wall in a second equilibrium of lower energy: the mark of a jump."""
     back = minimise(here.scene, found.state.x)
-    if isinstance(back, Stalled):
+    if isinstance(back, NewtonFailure):
         return False
     moved = float(np.abs(back.state.x - here.state.x).max())
     return moved > _APART and back.state.energy < here.state.energy
 
 
-def _kind(here: Spot, beyond: Spot) -> str:
+def _kind(here: PlateState, beyond: PlateState) -> str:
     """clamp_fold where the wall moves most within a wall of its clamp, else snap."""
     solid = here.scene.solid
     moved = solid.rest[np.hypot(*(beyond.state.x - here.state.x).T).argmax()]
@@ -139,7 +139,7 @@ def _kind(here: Spot, beyond: Spot) -> str:
     return "clamp_fold" if near else "snap"
 
 
-def _describe(path: list[Spot], after: Spot) -> str:
+def _describe(path: list[PlateState], after: PlateState) -> str:
     solid = after.scene.solid
     r, z = solid.mesh.nodes[np.hypot(*(after.state.x - path[-1].state.x).T).argmax()]
     place = f"the wall point at rest at r {r:.2f}, z {z:.2f} mm moves most"
@@ -150,7 +150,7 @@ def _describe(path: list[Spot], after: Spot) -> str:
     return f"the force changes by {change:.1f} % at once and {share:.0f} % of a step's work is lost; {place}"
 
 
-def crossing(a: Point, b: Point, level: float) -> float | None:
+def crossing(a: PathPoint, b: PathPoint, level: float) -> float | None:
     """Where y rises through a level between two points, on the Hermite cubic if slopes are known, else on a line.
 
     A point compared with itself tells whether the level was passed from the start.

@@ -15,17 +15,17 @@ from pneutouch.mechanics.solid.events import (
     CREASE,
     OVERHANG,
     SEPARATION,
-    Event,
-    Jump,
-    Point,
+    PathJump,
+    PathPoint,
+    SolidEvent,
     crossing,
     descend,
 )
 from pneutouch.mechanics.solid.inflate import FreeState
-from pneutouch.mechanics.solid.model import Solid
-from pneutouch.mechanics.solid.stress import Probe
+from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.stress import StrainProbe
 from pneutouch.mechanics.solid.supply import Gas
-from pneutouch.mechanics.solid.walker import Spot, Walker
+from pneutouch.mechanics.solid.walker import PathFollower, PlateState
 from pneutouch.units import KPA
 
 #: A pressure this far below absolute vacuum, in mu, is rounding.
@@ -33,7 +33,7 @@ _ROUNDING = 1.0e-9
 
 
 @dataclass(frozen=True)
-class Press:
+class PressSettings:
     """How a dome is pressed: depth and plate diameter in mm (None: endless), ambient in MPa, dead volume in mm^3.
 
     steps:       equal plate steps at which states are returned.
@@ -91,7 +91,7 @@ class PressState:
 
 
 @dataclass(frozen=True)
-class Indentation:
+class IndentationPath:
     """States at the plate steps (the first at first contact) up to the depth, or to the event that ended the path.
 
     ``path`` has every state that was solved on the way, those between the steps and at located events too.
@@ -99,7 +99,7 @@ class Indentation:
 
     states: list[PressState]
     path: list[PressState]
-    events: list[Event]
+    events: list[SolidEvent]
     complete: bool
 
     def column(self, name: str) -> Array:
@@ -114,7 +114,7 @@ class Indentation:
         return figures(indentation, force, rise / KPA)
 
 
-def indent(solid: Solid, free: FreeState, press: Press) -> Indentation:
+def indent(solid: SolidModel, free: FreeState, press: PressSettings) -> IndentationPath:
     """Shut the gas in at a free state and bring the plate down.
 
     Returns every state found and typed events; `complete` is False where an event ended the path before the depth.
@@ -128,8 +128,8 @@ def indent(solid: Solid, free: FreeState, press: Press) -> Indentation:
     longest = np.array(solid.contact.longest)
     apex = float(free.positions[solid.mesh.outer, 1].max()) / length
     plate = Plate(apex, float(flat_radius(radius, longest)), float(rim_radius(radius, longest)))
-    walker = Walker(solid, gas, plate, free.unit.x)
-    recorder = _Recorder(solid, free, plate, Probe(solid))
+    walker = PathFollower(solid, gas, plate, free.unit.x)
+    recorder = _Recorder(solid, free, plate, StrainProbe(solid))
     states = [recorder.state(walker.here)]
     events = recorder.events(states[0], states[0], press)
     for k in range(1, press.steps + 1):
@@ -144,32 +144,32 @@ def indent(solid: Solid, free: FreeState, press: Press) -> Indentation:
     return _finish(states, events, None, recorder, press)
 
 
-def _floored(events: list[Event]) -> bool:
+def _floored(events: list[SolidEvent]) -> bool:
     return any(e.kind == "floor" for e in events)
 
 
 def _finish(
-    states: list[PressState], events: list[Event], jump: Jump | None, recorder: _Recorder, press: Press
-) -> Indentation:
+    states: list[PressState], events: list[SolidEvent], jump: PathJump | None, recorder: _Recorder, press: PressSettings
+) -> IndentationPath:
     """Keep the states at the plate's own steps, and say what ended the path."""
     if jump is not None:
-        events = [*events, Event(jump.kind, recorder.indentation(jump.height), jump.why)]
+        events = [*events, SolidEvent(jump.kind, recorder.indentation(jump.height), jump.why)]
     step = press.depth / press.steps
     asked = [s for s in states if abs(s.indentation / step - round(s.indentation / step)) < 1.0e-9]
-    return Indentation(asked, states, events, len(asked) == press.steps + 1)
+    return IndentationPath(asked, states, events, len(asked) == press.steps + 1)
 
 
 class _Recorder:
     """Turns solver states into dimensional ones and compares neighbours for events."""
 
-    def __init__(self, solid: Solid, free: FreeState, plate: Plate, probe: Probe) -> None:
+    def __init__(self, solid: SolidModel, free: FreeState, plate: Plate, probe: StrainProbe) -> None:
         self._solid, self._free, self._plate, self._probe = solid, free, plate, probe
 
     def indentation(self, height: float) -> float:
         """Plate travel in mm at a nondimensional height."""
         return (self._plate.height - height) * self._solid.length
 
-    def state(self, spot: Spot) -> PressState:
+    def state(self, spot: PlateState) -> PressState:
         """Everything reported at one converged state."""
         solid, x, touch = self._solid, spot.state.x, spot.state.touch
         assert touch is not None
@@ -196,7 +196,7 @@ class _Recorder:
             positions=x * length,
         )
 
-    def events(self, a: PressState, b: PressState, press: Press) -> list[Event]:
+    def events(self, a: PressState, b: PressState, press: PressSettings) -> list[SolidEvent]:
         """Levels passed between two neighbouring states."""
         wall, flat = self._solid.mesh.wall, self._plate.radius * self._solid.length
         levels = {
@@ -210,7 +210,7 @@ class _Recorder:
         }
         before, after = _watched(a), _watched(b)
         places = {kind: crossing(before[kind], after[kind], level) for kind, level in levels.items()}
-        return [Event(kind, where, DETAIL[kind]) for kind, where in places.items() if where is not None]
+        return [SolidEvent(kind, where, DETAIL[kind]) for kind, where in places.items() if where is not None]
 
 
 DETAIL = {
@@ -224,15 +224,15 @@ DETAIL = {
 }
 
 
-def _watched(s: PressState) -> dict[str, Point]:
+def _watched(s: PressState) -> dict[str, PathPoint]:
     """The quantities whose levels are events, at one state."""
     rate = s.slope * s.stiffness if np.isfinite(s.slope) else None
     return {
-        "gauge_range": Point(s.indentation, s.pressure, rate),
-        "break": Point(s.indentation, s.stretch - 1.0),
-        "crease": Point(s.indentation, s.fold),
-        "separation": Point(s.indentation, s.inside_gap),
-        "plate_rim": Point(s.indentation, s.contact_radius),
-        "floor": Point(s.indentation, -s.inner_apex),
-        "overhang": Point(s.indentation, s.overhang),
+        "gauge_range": PathPoint(s.indentation, s.pressure, rate),
+        "break": PathPoint(s.indentation, s.stretch - 1.0),
+        "crease": PathPoint(s.indentation, s.fold),
+        "separation": PathPoint(s.indentation, s.inside_gap),
+        "plate_rim": PathPoint(s.indentation, s.contact_radius),
+        "floor": PathPoint(s.indentation, -s.inner_apex),
+        "overhang": PathPoint(s.indentation, s.overhang),
     }

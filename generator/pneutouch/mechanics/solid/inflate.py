@@ -9,8 +9,8 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.solid.errors import NoConvergenceError, UnreachableLoadError
-from pneutouch.mechanics.solid.model import Solid
-from pneutouch.mechanics.solid.newton import Outcome, Scene, Stalled, State, minimise, stability
+from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.newton import NewtonFailure, NewtonResult, SolidScene, SolverState, minimise, stability
 from pneutouch.mechanics.solid.supply import Liquid, Regulator
 
 #: Volume control is this stiff, in mu/R0^3: far above -dp/dV of any dome, so the total tangent stays definite.
@@ -35,7 +35,7 @@ class FreeState:
     stable: bool
     inner_apex: float
     outer_apex: float
-    unit: State
+    unit: SolverState
     by_volume: Array
 
 
@@ -58,7 +58,7 @@ class Inflation:
         return np.array([s.volume for s in self.states])
 
 
-def free_state(solid: Solid, scene: Scene, outcome: Outcome) -> FreeState:
+def free_state(solid: SolidModel, scene: SolidScene, outcome: NewtonResult) -> FreeState:
     """Dimensional record of a converged state, with the slope dp/dV = 1/(g' K^-1 g) and the stability of K."""
     state = outcome.state
     way = stability(scene, state)
@@ -77,20 +77,20 @@ def free_state(solid: Solid, scene: Scene, outcome: Outcome) -> FreeState:
     )
 
 
-def _scene(solid: Solid, target: float) -> Scene:
-    return Scene(solid, Liquid(target, _LIQUID), None)
+def _scene(solid: SolidModel, target: float) -> SolidScene:
+    return SolidScene(solid, Liquid(target, _LIQUID), None)
 
 
-def rest_state(solid: Solid) -> FreeState:
+def rest_state(solid: SolidModel) -> FreeState:
     """The unloaded dome, with its first slope dp/dV."""
     scene = _scene(solid, solid.cavity.volume(solid.rest))
     outcome = minimise(scene, solid.rest)
-    if isinstance(outcome, Stalled):
+    if isinstance(outcome, NewtonFailure):
         raise NoConvergenceError("0 kPa", outcome.why, "a mesh without distorted cells")
     return free_state(solid, scene, outcome)
 
 
-def _guess(solid: Solid, path: list[FreeState], volume: float) -> Array:
+def _guess(solid: SolidModel, path: list[FreeState], volume: float) -> Array:
     """Positions at a volume by the tangent of the last state, or the Hermite cubic through the last two."""
     last = path[-1].unit
     ahead = volume - last.volume
@@ -116,18 +116,20 @@ def pressure_between(a: FreeState, b: FreeState, share: float) -> float:
     return a.pressure + share * rise + share * (1.0 - share) * bow
 
 
-def at_volume(solid: Solid, path: list[FreeState], volume: float, guess: Array | None = None) -> FreeState | Stalled:
+def at_volume(
+    solid: SolidModel, path: list[FreeState], volume: float, guess: Array | None = None
+) -> FreeState | NewtonFailure:
     """State at a nondimensional volume, reached from the end of a path."""
     last = path[-1]
     slope = last.stiffness * solid.length**3 / solid.mu
     pressure = last.unit.filling.pressure + slope * (volume - last.unit.volume)
     scene = _scene(solid, volume + pressure / _LIQUID)
     outcome = minimise(scene, _guess(solid, path, volume) if guess is None else guess)
-    return outcome if isinstance(outcome, Stalled) else free_state(solid, scene, outcome)
+    return outcome if isinstance(outcome, NewtonFailure) else free_state(solid, scene, outcome)
 
 
 def inflate(
-    solid: Solid, to_pressure: float | None = None, past_limit: float = 1.3, largest: float = 30.0
+    solid: SolidModel, to_pressure: float | None = None, past_limit: float = 1.3, largest: float = 30.0
 ) -> Inflation:
     """Fill (or, for a negative pressure, empty) the cavity by volume from rest.
 
@@ -145,7 +147,7 @@ def inflate(
         if ended is not None:
             return Inflation(path, limit, ended)
         step = at_volume(solid, path, last.unit.volume * (1.0 + sign * growth))
-        if isinstance(step, Stalled):
+        if isinstance(step, NewtonFailure):
             growth *= 0.4
             if growth < _SMALLEST_GROWTH and limit is not None:
                 return Inflation(path, limit, f"no equilibrium past {last.volume:.4g} mm3: {step.why}")
@@ -176,14 +178,14 @@ def _ended(
     return None
 
 
-def find_limit(solid: Solid, before: FreeState, after: FreeState, tolerance: float = 1.0e-7) -> FreeState:
+def find_limit(solid: SolidModel, before: FreeState, after: FreeState, tolerance: float = 1.0e-7) -> FreeState:
     """The state of zero dp/dV between two states of opposite slope; volume to `tolerance` of itself."""
     middle = before
     for _ in range(30):
         a, b = before.unit.volume, after.unit.volume
         root = _slope_root(before, after)
         found = at_volume(solid, [before], root, between(before, after, root))
-        if isinstance(found, Stalled):
+        if isinstance(found, NewtonFailure):
             raise NoConvergenceError("the limit point", found.why, "a finer mesh")
         middle = found
         moved = abs(middle.stiffness) * abs(b - a) <= tolerance * (abs(before.stiffness) + abs(after.stiffness)) * a
@@ -204,7 +206,7 @@ def _slope_root(before: FreeState, after: FreeState) -> float:
     return a + (b - a) * float(np.clip(share, 0.02, 0.98))
 
 
-def state_at(solid: Solid, pressure: float, inflation: Inflation | None = None) -> FreeState:
+def state_at(solid: SolidModel, pressure: float, inflation: Inflation | None = None) -> FreeState:
     """The first state at a driving pressure (gauge, MPa) on the rising branch; a given inflation is reused.
 
     Raises UnreachableLoadError at or above the limit point.
@@ -223,16 +225,16 @@ def state_at(solid: Solid, pressure: float, inflation: Inflation | None = None) 
     raise UnreachableLoadError(pressure, limit.pressure, why)
 
 
-def _between(solid: Solid, a: FreeState, b: FreeState, pressure: float) -> FreeState:
+def _between(solid: SolidModel, a: FreeState, b: FreeState, pressure: float) -> FreeState:
     """Newton at a regulated pressure, from the Hermite cubic between two states that bracket it."""
     share = np.linspace(0.0, 1.0, 201)
     curve = np.array([pressure_between(a, b, float(s)) for s in share])
     up = 1.0 if b.pressure > a.pressure else -1.0
     near = float(np.interp(up * pressure, up * curve, share))
     guess = between(a, b, a.unit.volume + near * (b.unit.volume - a.unit.volume))
-    scene = Scene(solid, Regulator(pressure / solid.mu), None)
+    scene = SolidScene(solid, Regulator(pressure / solid.mu), None)
     outcome = minimise(scene, guess)
-    if isinstance(outcome, Stalled):
+    if isinstance(outcome, NewtonFailure):
         raise NoConvergenceError(
             f"driving pressure {1e3 * pressure:.4f} kPa", outcome.why, "a pressure further below the limit"
         )

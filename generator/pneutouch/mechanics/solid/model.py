@@ -12,20 +12,26 @@ from scipy.sparse.csgraph import reverse_cuthill_mckee
 from pneutouch.arrays import Array, Index
 from pneutouch.mechanics.laws.hyperelastic import Hyperelastic
 from pneutouch.mechanics.laws.strain import Strain
-from pneutouch.mechanics.solid.banded import Pattern
+from pneutouch.mechanics.solid.banded import AssemblyPattern
 from pneutouch.mechanics.solid.cavity import Cavity
 from pneutouch.mechanics.solid.contact import Contact
-from pneutouch.mechanics.solid.elements import DEFAULT_SCHEME, Scheme, gauss_square, pressure_modes, strain_operator
+from pneutouch.mechanics.solid.elements import (
+    DEFAULT_SCHEME,
+    IntegrationScheme,
+    gauss_square,
+    pressure_modes,
+    strain_operator,
+)
 from pneutouch.mechanics.solid.mesh import SolidMesh
 
-Grade = Callable[[Array, Array], Array]
+ModulusField = Callable[[Array, Array], Array]
 
 #: Contact stiffness in mu/t0: a traction of mu leaves a penetration of 3e-5 of the wall.
 CONTACT_STIFFNESS = 3.0e4
 
 
 @dataclass(frozen=True)
-class Local:
+class PointFields:
     """Everything the integration points know at one set of positions.
 
     energy:   stored energy / (mu R0^3); inf where a point is inverted.
@@ -40,7 +46,7 @@ class Local:
     basis: Array
 
 
-class Solid:
+class SolidModel:
     """A wall on one mesh, of one law whose modulus may vary along the arc.  Positions are (n_nodes, 2) arrays in units of
     the inner radius.
 
@@ -48,7 +54,11 @@ class Solid:
     """
 
     def __init__(
-        self, mesh: SolidMesh, material: Hyperelastic, scheme: Scheme | None = None, grade: Grade | None = None
+        self,
+        mesh: SolidMesh,
+        material: Hyperelastic,
+        scheme: IntegrationScheme | None = None,
+        grade: ModulusField | None = None,
     ) -> None:
         self.mesh, self.material, self.grade = mesh, material, grade or _even
         self.scheme = scheme or DEFAULT_SCHEME[mesh.cells.shape[1]]
@@ -60,8 +70,8 @@ class Solid:
         flat = self.dofs.ravel()
         self.size = int((flat >= 0).sum())
         tables = [self.dofs[x].reshape(x.shape[0], -1) for x in (mesh.cells, mesh.inner, mesh.outer)]
-        self.pattern = Pattern(tables[:2], self.size)
-        self.contact_pattern = Pattern(tables[2:], self.size, self.pattern.width)
+        self.pattern = AssemblyPattern(tables[:2], self.size)
+        self.contact_pattern = AssemblyPattern(tables[2:], self.size, self.pattern.width)
         self._order = np.empty(self.size, dtype=np.intp)
         self._order[flat[flat >= 0]] = np.flatnonzero(flat >= 0)
         self.cavity = Cavity(mesh.inner)
@@ -97,7 +107,7 @@ class Solid:
         """Sum (size,) of forces on the edges of the outer wall, (n_edges, 2 n)."""
         return self.contact_pattern.vector([blocks])
 
-    def local(self, x: Array) -> Local:
+    def local(self, x: Array) -> PointFields:
         """Strains, energy and energy derivatives at the integration points for positions x."""
         n_cells, n_points = self._weight.shape
         gathered = x[self.mesh.cells].reshape(n_cells, -1, 1)
@@ -105,7 +115,7 @@ class Solid:
         f11, f12, f21, f22, h = np.ascontiguousarray(f.T)
         j = f11 * f22 - f12 * f21
         if not (j.min() > 0.0 and h.min() > 0.0):
-            return Local(np.inf, f, f, f)
+            return PointFields(np.inf, f, f, f)
         a = f11 * f11 + f12 * f12 + f21 * f21 + f22 * f22
         jets = self.material.energy(Strain(a, j, h)).data * (self._stiff_weight / self.mu)
         change = (j * h - 1.0).reshape(n_cells, n_points)
@@ -119,15 +129,15 @@ class Solid:
         basis[:, 0, :4] = 2.0 * f[:, :4]
         basis[:, 1, 0], basis[:, 1, 1], basis[:, 1, 2], basis[:, 1, 3] = f22, -f21, -f12, f11
         basis[:, 2, 4] = 1.0
-        return Local(energy, f, jets, basis)
+        return PointFields(energy, f, jets, basis)
 
-    def forces(self, local: Local) -> Array:
+    def forces(self, local: PointFields) -> Array:
         """Derivative of the stored energy by cell positions, (n_cells, 2 n_nodes)."""
         stress = np.matmul(local.jets[1:4].T[:, None, :], local.basis)
         blocks = np.matmul(self._wide, stress.reshape(self._weight.shape[0], -1, 1))
         return np.asarray(blocks[..., 0])
 
-    def stiffness(self, local: Local) -> Array:
+    def stiffness(self, local: PointFields) -> Array:
         """Second derivative of the stored energy by cell positions, (n_cells, 2 n_nodes, 2 n_nodes)."""
         n_cells, n_points = self._weight.shape
         jets, basis = local.jets, local.basis
@@ -145,7 +155,7 @@ class Solid:
         k_cells += self._kappa * np.matmul(np.swapaxes(swelling, 1, 2), swelling)
         return np.asarray(k_cells)
 
-    def _swelling(self, local: Local) -> Array:
+    def _swelling(self, local: PointFields) -> Array:
         """Derivative of the averaged volume modes by cell positions, (n_cells, n_modes, 2 n_nodes)."""
         n_cells, n_points = self._weight.shape
         h = local.gradient[:, 4:]

@@ -8,9 +8,9 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.mechanics.solid.banded import negative_pivots, solve
-from pneutouch.mechanics.solid.contact import Plate, Touch
-from pneutouch.mechanics.solid.model import Local, Solid
-from pneutouch.mechanics.solid.supply import Filling, Supply
+from pneutouch.mechanics.solid.contact import ContactEvaluation, Plate
+from pneutouch.mechanics.solid.model import PointFields, SolidModel
+from pneutouch.mechanics.solid.supply import FillingState, Supply
 
 #: Converged: unbalanced force below this share of the forces that balance (wall, gas, plate).
 RESIDUAL = 1.0e-9
@@ -24,16 +24,16 @@ _SETTLING = 10
 
 
 @dataclass(frozen=True)
-class Scene:
+class SolidScene:
     """A body, what fills it, and the plate above it (None: not there); nondimensional."""
 
-    solid: Solid
+    solid: SolidModel
     supply: Supply
     plate: Plate | None
 
 
 @dataclass(frozen=True)
-class State:
+class SolverState:
     """Positions x (n_nodes, 2) with all that was evaluated there.
 
     residual: gradient of the total energy (size,); inner: its part without the plate; scale: size of the forces that
@@ -45,15 +45,15 @@ class State:
     residual: Array
     inner: Array
     scale: float
-    local: Local
+    local: PointFields
     volume: float
     by_volume: Array
-    filling: Filling
-    touch: Touch | None
+    filling: FillingState
+    touch: ContactEvaluation | None
 
 
 @dataclass(frozen=True)
-class Direction:
+class NewtonDirection:
     """Solution of one tangent system K + c g g', g the gradient of the volume and c the stiffness of the filling.
 
     step: the answer (size,); soft: K^-1 g; denominator: 1 + c g.K^-1 g; stable: the whole is positive definite;
@@ -69,21 +69,21 @@ class Direction:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class NewtonResult:
     """A converged state."""
 
-    state: State
+    state: SolverState
     iterations: int
 
 
 @dataclass(frozen=True)
-class Stalled:
+class NewtonFailure:
     """Newton did not converge: why, in words."""
 
     why: str
 
 
-def evaluate(scene: Scene, x: Array) -> State | None:
+def evaluate(scene: SolidScene, x: Array) -> SolverState | None:
     """Energy and residual at x; None where a point of the wall is inverted or the cavity is gone."""
     solid = scene.solid
     local = solid.local(x)
@@ -102,26 +102,26 @@ def evaluate(scene: Scene, x: Array) -> State | None:
     noise = solid.noise if touch is None else solid.noise + solid.contact.noise
     scale = load + 1.0e-3 * solid.wall + 10.0 * noise / RESIDUAL
     energy = local.energy + filling.energy + (0.0 if touch is None else touch.energy)
-    return State(x, energy, inner + push, inner, scale, local, volume, by_volume, filling, touch)
+    return SolverState(x, energy, inner + push, inner, scale, local, volume, by_volume, filling, touch)
 
 
-def tangent(scene: Scene, state: State) -> Array:
+def tangent(scene: SolidScene, state: SolverState) -> Array:
     """Banded stiffness of wall and follower pressure, without contact and the rank-one term of the filling."""
     load = -state.filling.pressure * scene.solid.cavity.hessian(state.x)
     return scene.solid.pattern.matrix([scene.solid.stiffness(state.local), load])
 
 
-def full_tangent(scene: Scene, state: State) -> Array:
+def full_tangent(scene: SolidScene, state: SolverState) -> Array:
     """`tangent` with the contact stiffness at the state's own active points."""
     band = tangent(scene, state)
     return band if state.touch is None else band + _contact_band(scene, state.touch, state.touch.traction > 0.0)
 
 
-def _contact_band(scene: Scene, touch: Touch, active: Flags) -> Array:
+def _contact_band(scene: SolidScene, touch: ContactEvaluation, active: Flags) -> Array:
     return scene.solid.contact_pattern.matrix([scene.solid.contact.hessian(touch, active)])
 
 
-def direction(scene: Scene, state: State) -> Direction:
+def direction(scene: SolidScene, state: SolverState) -> NewtonDirection:
     """Newton step: the least of the quadratic model of wall and filling with the plate met exactly in it.
 
     Which points touch is settled inside the model, where a change costs one banded solve and no assembly; the outer
@@ -148,7 +148,7 @@ def direction(scene: Scene, state: State) -> Direction:
     return way
 
 
-def stability(scene: Scene, state: State, load: Array | None = None) -> Direction:
+def stability(scene: SolidScene, state: SolverState, load: Array | None = None) -> NewtonDirection:
     """The tangent at a converged state, its negative pivots counted where there are any; `step` answers `load` (size,).
 
     An indefinite band can still belong to a stable total, since the filling stiffens one mode:
@@ -161,7 +161,7 @@ def stability(scene: Scene, state: State, load: Array | None = None) -> Directio
     return replace(way, stable=negative_pivots(band) == 1)
 
 
-def _rank_one(state: State, band: Array, load: Array) -> Direction:
+def _rank_one(state: SolverState, band: Array, load: Array) -> NewtonDirection:
     """-(band + c g g')^-1 load by Sherman-Morrison; one negative pivot is presumed where the band is not definite."""
     solved = solve(band, np.stack([-load, state.by_volume], axis=1))
     plain, soft = solved.x[:, 0], solved.x[:, 1]
@@ -169,10 +169,10 @@ def _rank_one(state: State, band: Array, load: Array) -> Direction:
     denominator = 1.0 + rate * float(state.by_volume @ soft)
     step = plain - soft * (rate * float(state.by_volume @ plain) / denominator)
     stable = solved.definite or (denominator < 0.0 and bool(np.isfinite(step).all()))
-    return Direction(step, soft, denominator, stable, solved.definite)
+    return NewtonDirection(step, soft, denominator, stable, solved.definite)
 
 
-def _downhill(state: State, band: Array, residual: Array) -> Direction:
+def _downhill(state: SolverState, band: Array, residual: Array) -> NewtonDirection:
     """The Newton step if the tangent is positive definite, else one of a lifted tangent."""
     way = _rank_one(state, band, residual)
     if way.stable and float(way.step @ residual) <= 0.0:
@@ -181,7 +181,7 @@ def _downhill(state: State, band: Array, residual: Array) -> Direction:
     return replace(way, step=step, stable=False, lift=lift)
 
 
-def _safe_step(state: State, band: Array, residual: Array) -> tuple[Array, float]:
+def _safe_step(state: SolverState, band: Array, residual: Array) -> tuple[Array, float]:
     """A descent direction where the tangent has negative modes: the diagonal is raised until it has none."""
     lift = float(np.abs(band[0]).mean()) * 1.0e-4
     rhs = np.stack([-residual, state.by_volume], axis=1)
@@ -198,36 +198,38 @@ def _safe_step(state: State, band: Array, residual: Array) -> tuple[Array, float
     return -residual, 0.0
 
 
-def minimise(scene: Scene, x: Array, max_iterations: int = MAX_ITERATIONS) -> Outcome | Stalled:
+def minimise(scene: SolidScene, x: Array, max_iterations: int = MAX_ITERATIONS) -> NewtonResult | NewtonFailure:
     """Least total energy near x.  Returns the state, or why there is none; never an unconverged state."""
     state = evaluate(scene, x)
     if state is None:
-        return Stalled("the starting guess turns the wall inside out")
+        return NewtonFailure("the starting guess turns the wall inside out")
     left = np.inf
     for iteration in range(max_iterations):
         size = float(np.linalg.norm(state.residual))
         if size <= RESIDUAL * state.scale and left <= GAIN * _energy_scale(scene, state):
-            return Outcome(state, iteration)
+            return NewtonResult(state, iteration)
         way = direction(scene, state)
         slope = float(way.step @ state.residual)
         if slope >= 0.0 and scene.plate is not None:
             way = _downhill(state, full_tangent(scene, state), state.residual)
             slope = float(way.step @ state.residual)
         if not np.isfinite(slope) or slope >= 0.0:
-            return Stalled(f"the Newton step does not go downhill (slope {slope:.2e})")
+            return NewtonFailure(f"the Newton step does not go downhill (slope {slope:.2e})")
         moved = _search(scene, state, way.step, slope)
         if moved is None:
-            return Stalled("no step along the Newton direction lowers the energy")
+            return NewtonFailure("no step along the Newton direction lowers the energy")
         # The gain of a Newton step goes with the square of the residual it starts from.
         state, left = moved, -slope * (float(np.linalg.norm(moved.residual)) / max(size, 1.0e-300)) ** 2
-    return Stalled(f"residual {np.linalg.norm(state.residual) / state.scale:.1e} after {max_iterations} iterations")
+    return NewtonFailure(
+        f"residual {np.linalg.norm(state.residual) / state.scale:.1e} after {max_iterations} iterations"
+    )
 
 
-def _energy_scale(scene: Scene, state: State) -> float:
+def _energy_scale(scene: SolidScene, state: SolverState) -> float:
     return state.local.energy + state.scale * scene.solid.wall
 
 
-def _search(scene: Scene, state: State, step: Array, slope: float) -> State | None:
+def _search(scene: SolidScene, state: SolverState, step: Array, slope: float) -> SolverState | None:
     """Backtrack from the full step until the energy falls as Armijo asks; None when it never does.
 
     Near convergence the energy difference drowns in rounding: there a step is also taken when it lowers the slope.

@@ -10,7 +10,7 @@ from pneutouch.arrays import Array
 from pneutouch.mechanics.laws.strain import Strain
 from pneutouch.mechanics.solid.elements import strain_operator
 from pneutouch.mechanics.solid.inflate import Inflation, between, pressure_between
-from pneutouch.mechanics.solid.model import Solid
+from pneutouch.mechanics.solid.model import SolidModel
 
 #: Within this many wall thicknesses of a clamped node the elastic stress is singular and says nothing; left out.
 CLAMP_REACH = 0.5
@@ -19,7 +19,7 @@ _SEARCH = 41
 
 
 @dataclass(frozen=True)
-class Peak:
+class WallExtremes:
     """Extremes over both faces of the wall away from the clamp.
 
     stretch, von_mises (Cauchy, MPa): the largest.  fold: largest ratio of the stretch across a face to the least
@@ -31,11 +31,11 @@ class Peak:
     fold: float
 
 
-class Probe:
+class StrainProbe:
     """Evaluates strains on the faces eta = +-1 of every cell: at Gauss stations along the arc that are far enough from
     the clamp, and exactly where far enough begins, so that no station comes and goes with the wall."""
 
-    def __init__(self, solid: Solid) -> None:
+    def __init__(self, solid: SolidModel) -> None:
         self._solid = solid
         rest, cells = solid.rest, solid.mesh.cells
         stations = np.polynomial.legendre.leggauss(3)[0]
@@ -113,21 +113,21 @@ class Probe:
         around = [0, 4, 1, 5, 2, 6, 3, 7] if cells.shape[1] > 4 else [0, 1, 2, 3]
         return np.asarray(positions[cells[:, around]])
 
-    def peak(self, x: Array) -> Peak:
+    def peak(self, x: Array) -> WallExtremes:
         """Largest values for nondimensional positions x (n_nodes, 2)."""
         stretch, stress = self.principal(x)
         apart = stress - np.roll(stress, 1, axis=0)
         mises = np.sqrt(0.5 * (apart**2).sum(axis=0))
         fold = stretch[0] / np.minimum(stretch[1], stretch[2])
-        return Peak(float(stretch.max()), float(mises.max()), float(fold.max()))
+        return WallExtremes(float(stretch.max()), float(mises.max()), float(fold.max()))
 
 
-def burst(solid: Solid, inflation: Inflation, break_strain: float) -> tuple[float, float] | None:
+def burst(solid: SolidModel, inflation: Inflation, break_strain: float) -> tuple[float, float] | None:
     """Pressure (MPa) and outer apex height (mm) at which free inflation reaches a break strain (stretch - 1), or None.
 
     Bisected on the Hermite cubic between neighbouring states.
     """
-    probe = Probe(solid)
+    probe = StrainProbe(solid)
     for a, b in zip(inflation.states, inflation.states[1:], strict=False):
         if probe.peak(b.unit.x).stretch - 1.0 < break_strain:
             continue

@@ -10,7 +10,7 @@ from math import log1p
 from typing import NamedTuple, Protocol
 
 
-class Filling(NamedTuple):
+class FillingState(NamedTuple):
     """Potential, gauge pressure and -dp/dV at one volume."""
 
     energy: float
@@ -21,7 +21,7 @@ class Filling(NamedTuple):
 class Supply(Protocol):
     """Anything with a potential of the cavity volume."""
 
-    def at(self, volume: float) -> Filling | None:
+    def at(self, volume: float) -> FillingState | None:
         """Potential, pressure and rate, or None where the volume is impossible."""
         ...
 
@@ -32,9 +32,9 @@ class Regulator:
 
     pressure: float
 
-    def at(self, volume: float) -> Filling:
+    def at(self, volume: float) -> FillingState:
         """Potential -p V."""
-        return Filling(-self.pressure * volume, self.pressure, 0.0)
+        return FillingState(-self.pressure * volume, self.pressure, 0.0)
 
 
 @dataclass(frozen=True)
@@ -48,10 +48,10 @@ class Liquid:
     target: float
     stiffness: float
 
-    def at(self, volume: float) -> Filling:
+    def at(self, volume: float) -> FillingState:
         """Potential stiffness/2 (V - target)^2."""
         lack = self.target - volume
-        return Filling(0.5 * self.stiffness * lack * lack, self.stiffness * lack, self.stiffness)
+        return FillingState(0.5 * self.stiffness * lack * lack, self.stiffness * lack, self.stiffness)
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ class Gas:
         """The gas shut in at a gauge pressure and cavity volume."""
         return cls((pressure + ambient) * (volume + dead), ambient, dead, volume)
 
-    def at(self, volume: float) -> Filling | None:
+    def at(self, volume: float) -> FillingState | None:
         """Potential -[C ln((V + dead)/(start + dead)) - ambient (V - start)].
 
         Counted from the shut-in state: with a large dead volume the full potential would drown a step's work in rounding.
@@ -79,4 +79,4 @@ class Gas:
         swell = volume - self.start
         absolute = self.content / room
         energy = self.ambient * swell - self.content * log1p(swell / (self.start + self.dead))
-        return Filling(energy, absolute - self.ambient, absolute / room)
+        return FillingState(energy, absolute - self.ambient, absolute / room)

@@ -9,8 +9,8 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.mechanics.solid.contact import Plate
 from pneutouch.mechanics.solid.errors import NoConvergenceError
-from pneutouch.mechanics.solid.model import Solid
-from pneutouch.mechanics.solid.newton import Scene, Stalled, State, minimise, stability
+from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.newton import NewtonFailure, SolidScene, SolverState, minimise, stability
 from pneutouch.mechanics.solid.supply import Supply
 
 #: Longest plate travel in one solve, in R0: longer steps can land on another branch.
@@ -23,7 +23,7 @@ DISSIPATION = 0.01
 
 
 @dataclass(frozen=True)
-class Spot:
+class PlateState:
     """A converged state under the plate at `height`; all nondimensional (R0, mu).
 
     force: on the plate.  stiffness: dF/dheight (negative).  by_height: dx/dheight, (n_nodes, 2).  pressure_rate:
@@ -31,8 +31,8 @@ class Spot:
     """
 
     height: float
-    state: State
-    scene: Scene
+    state: SolverState
+    scene: SolidScene
     iterations: int
     force: float
     stiffness: float
@@ -41,7 +41,7 @@ class Spot:
     stable: bool
 
 
-def spot_of(scene: Scene, state: State, height: float, iterations: int) -> Spot:
+def spot_of(scene: SolidScene, state: SolverState, height: float, iterations: int) -> PlateState:
     """Force and the tangent of the path at a converged state."""
     solid, touch = scene.solid, state.touch
     if touch is None:
@@ -54,10 +54,10 @@ def spot_of(scene: Scene, state: State, height: float, iterations: int) -> Spot:
     stiffness = float(np.vdot(contact.weight * active, 1.0 + touch.slope * r - z))
     rate = -state.filling.rate * float(way.step @ state.by_volume)
     force = float(np.vdot(contact.weight, touch.traction))
-    return Spot(height, state, scene, iterations, force, stiffness, move, rate, way.stable)
+    return PlateState(height, state, scene, iterations, force, stiffness, move, rate, way.stable)
 
 
-def lost_work(path: list[Spot], after: Spot) -> float:
+def lost_work(path: list[PlateState], after: PlateState) -> float:
     """Energy unaccounted for from the end of a path to `after`, as a share of the plate's work in a full step.
 
     Near zero along one branch, since dPi/dheight = -force there.  The trapezium is corrected by the curvature of the
@@ -83,31 +83,31 @@ def lost_work(path: list[Spot], after: Spot) -> float:
     return max(0.0, share - allowance)
 
 
-class Walker:
+class PathFollower:
     """Keeps the states of a path and steps to new plate heights."""
 
-    def __init__(self, solid: Solid, supply: Supply, plate: Plate, start: Array) -> None:
+    def __init__(self, solid: SolidModel, supply: Supply, plate: Plate, start: Array) -> None:
         self._solid = solid
-        scene = Scene(solid, supply, plate)
+        scene = SolidScene(solid, supply, plate)
         found = minimise(scene, start)
-        if isinstance(found, Stalled):
+        if isinstance(found, NewtonFailure):
             raise NoConvergenceError("first contact", found.why, "a finer mesh")
         self.path = [spot_of(scene, found.state, plate.height, found.iterations)]
         self._plate = plate
 
     @property
-    def here(self) -> Spot:
+    def here(self) -> PlateState:
         """The newest state."""
         return self.path[-1]
 
-    def step(self, height: float) -> Spot:
+    def step(self, height: float) -> PlateState:
         """One state further down the path, at `height` or short of it where the step had to be cut; kept."""
         travel = min(self.here.height - height, LONGEST)
         why = ""
         shortest = min(_SHORTEST, 0.5 * travel)
         while travel > shortest:
             spot = self.solve(self.here.height - travel)
-            if not isinstance(spot, Stalled):
+            if not isinstance(spot, NewtonFailure):
                 self.path.append(spot)
                 return spot
             why = spot.why
@@ -115,13 +115,13 @@ class Walker:
         where = f"plate height {self.here.height * self._solid.length:.6g} mm"
         raise NoConvergenceError(where, why, "a finer mesh or a smaller depth")
 
-    def solve(self, height: float) -> Spot | Stalled:
+    def solve(self, height: float) -> PlateState | NewtonFailure:
         """State at `height` from the extrapolated path; not kept."""
         scene = replace(self.here.scene, plate=self._plate.at(height))
         found = minimise(scene, self._extrapolate(height))
-        if isinstance(found, Stalled):
+        if isinstance(found, NewtonFailure):
             found = minimise(scene, self.here.state.x)
-        if isinstance(found, Stalled):
+        if isinstance(found, NewtonFailure):
             return found
         return spot_of(scene, found.state, height, found.iterations)
 

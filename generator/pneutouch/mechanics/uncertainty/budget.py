@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from pneutouch.arrays import Flags
-from pneutouch.mechanics.atlas.press import Batch
+from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.uncertainty.propagate import Budget, propagate
 from pneutouch.mechanics.uncertainty.sources import sources
 from pneutouch.mechanics.uncertainty.sources.model import ModelErrors
@@ -14,7 +14,7 @@ from pneutouch.spec.printer import Printer
 
 
 def budget(
-    batch: Batch, material: Material, printer: Printer, *,
+    batch: SensorBatch, material: Material, printer: Printer, *,
     near_paper: Flags | bool, errors: ModelErrors, numerical: Mapping[str, float], aged: bool = True,
 ) -> Budget:  # fmt: skip
     """How sure the figures of n sensors are that share a resin and a printer.

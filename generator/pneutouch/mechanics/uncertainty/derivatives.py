@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
-from pneutouch.mechanics.atlas.press import Batch
+from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.uncertainty.neighbours import joined, log_figures, moved, unit_step
 from pneutouch.mechanics.uncertainty.source import DEAD, INPUTS
 
@@ -43,7 +43,7 @@ class Derivatives:
     one_sided: Flags
 
 
-def derivatives(batch: Batch, standard: Array, kurtosis: Array, step: float = STEP) -> Derivatives:
+def derivatives(batch: SensorBatch, standard: Array, kurtosis: Array, step: float = STEP) -> Derivatives:
     """Move every input of n sensors by a small step and over its spread.
 
     Args:

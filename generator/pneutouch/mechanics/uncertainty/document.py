@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from pneutouch.mechanics.atlas.press import Batch
+from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.uncertainty.gas_notes import ADIABATIC, ROOM, gas_notes
 from pneutouch.mechanics.uncertainty.propagate import COVERAGE, Budget
 from pneutouch.mechanics.uncertainty.source import FIGURES, INPUTS, SENSITIVITY
@@ -113,7 +113,7 @@ def text(budget: Budget, row: int = 0) -> str:
     return f"Expanded uncertainty of the sensitivity (k = {COVERAGE:g}): {interval}; measure first: {first}.{said}"
 
 
-def gas_text(batch: Batch) -> list[tuple[str, ...]]:
+def gas_text(batch: SensorBatch) -> list[tuple[str, ...]]:
     """Notes on the air of n sensors, one tuple each; empty where the atlas has no state."""
     found = gas_notes(batch)
     return [

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pneutouch.arrays import Array, Flags, Index
-from pneutouch.mechanics.atlas.press import Batch, Press
+from pneutouch.mechanics.atlas.press import AtlasPress, SensorBatch
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.response import lines
 from pneutouch.mechanics.uncertainty.neighbours import neighbourhood
@@ -40,7 +40,7 @@ class GasNotes(NamedTuple):
     fast_over_slow: Array
 
 
-def gas_notes(batch: Batch, temperature: float = ROOM) -> GasNotes:
+def gas_notes(batch: SensorBatch, temperature: float = ROOM) -> GasNotes:
     """Temperature effect at ``temperature`` (K) and gas law effect of n sensors.
 
     Ideal gas: dp = (p + p_a) dT/T - k_gas dV with k_gas = (p + p_a)/(V + V_d), and the wall gives dp = k_wall dV, so
@@ -50,7 +50,7 @@ def gas_notes(batch: Batch, temperature: float = ROOM) -> GasNotes:
     response = respond(batch, atlas=atlas)
     good = np.isfinite(response.range_end)
     walls, k = np.unique(np.where(good, batch.wall_ratio, atlas.recipe.thickest), return_inverse=True)
-    press = Press(batch, atlas.slices(walls), k)
+    press = AtlasPress(batch, atlas.slices(walls), k)
     stiffness = _wall_stiffness(press, k)
     absolute = press.pressure + press.ambient
     room = press.volume(press.free) + press.dead
@@ -61,7 +61,7 @@ def gas_notes(batch: Batch, temperature: float = ROOM) -> GasNotes:
     return GasNotes(rise, rise / response.lines.sensitivity, give, fast)
 
 
-def _wall_stiffness(press: Press, k: Index) -> Array:
+def _wall_stiffness(press: AtlasPress, k: Index) -> Array:
     """dp/dV of the free inflated wall, in mu/R0^3."""
     slices, nu = press.slices, press.free
     apex = slices.free_apex(k, nu)
@@ -70,7 +70,7 @@ def _wall_stiffness(press: Press, k: Index) -> Array:
     return np.asarray(point.by_volume + point.by_height * apex[:, 1] / slices.reach(k))
 
 
-def _sensitivity(press: Press, indentation: Array, exponent: float) -> Array:
+def _sensitivity(press: AtlasPress, indentation: Array, exponent: float) -> Array:
     """Slope of pressure over force, kPa/N, at plate travels (n, m) in mm; NaN where no state is found at one of them."""
     mu, radius = press.batch.shear_modulus[:, None], press.batch.inner_radius[:, None]
     pressure, force, found = _pressed(press, np.nan_to_num(indentation) / radius, exponent)
@@ -79,7 +79,7 @@ def _sensitivity(press: Press, indentation: Array, exponent: float) -> Array:
     return np.where(lost, np.nan, lines(indentation, force * mu * radius**2, rise).sensitivity)
 
 
-def _pressed(press: Press, indentation: Array, exponent: float) -> tuple[Array, Array, Flags]:
+def _pressed(press: AtlasPress, indentation: Array, exponent: float) -> tuple[Array, Array, Flags]:
     """Pressure and force (n, m) at plate travels in R0 with gas of constant p V^exponent, and where all were found (n,)."""
     nu, good = press.free, np.ones(press.free.size, dtype=bool)
     start = press.volume(press.free) + press.dead

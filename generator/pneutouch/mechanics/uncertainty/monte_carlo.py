@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.atlas.press import Batch
+from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.uncertainty.neighbours import log_figures, moved
-from pneutouch.mechanics.uncertainty.source import DEAD, FIGURE, FIGURES, INPUTS, Source
+from pneutouch.mechanics.uncertainty.source import DEAD, FIGURE, FIGURES, INPUTS, UncertaintySource
 
 _COVERED = 0.9545
 """Share of a normal distribution within two standard deviations."""
@@ -20,7 +20,7 @@ _GRAIN = 5e-4
 
 
 @dataclass(frozen=True)
-class Sampled:
+class SampledFigures:
     """Figures of one sensor over the samples.
 
     Attributes:
@@ -38,7 +38,9 @@ class Sampled:
     lost: Array
 
 
-def monte_carlo(batch: Batch, sources: Sequence[Source], row: int = 0, count: int = 20_000, seed: int = 1) -> Sampled:
+def monte_carlo(
+    batch: SensorBatch, sources: Sequence[UncertaintySource], row: int = 0, count: int = 20_000, seed: int = 1
+) -> SampledFigures:
     """Sample the sources of sensor ``row``; the same seed gives the same samples.
 
     Figures that the same sources count for are read off the same samples.
@@ -59,7 +61,7 @@ def monte_carlo(batch: Batch, sources: Sequence[Source], row: int = 0, count: in
 
 
 def _through_model(
-    batch: Batch, sources: Sequence[Source], row: int, count: int, seed: int, figure: int
+    batch: SensorBatch, sources: Sequence[UncertaintySource], row: int, count: int, seed: int, figure: int
 ) -> Array:  # fmt: skip
     """Logarithms of all figures, (figures, count), under the sources on inputs that count for one figure."""
     many = batch.take(np.full(count, row))
@@ -75,11 +77,11 @@ def _through_model(
     return log_figures(replace(many, wall_thickness=ratio * many.inner_radius))
 
 
-def _summary(logs: Array) -> Sampled:
+def _summary(logs: Array) -> SampledFigures:
     lost = np.isnan(logs).mean(axis=1)
     standard, low, high = (np.full(len(logs), np.nan) for _ in range(3))
     some = lost < 1.0
     standard[some] = np.nanstd(logs[some], axis=1)
     tails = [0.5 * (1.0 - _COVERED), 0.5 * (1.0 + _COVERED)]
     low[some], high[some] = np.nanquantile(logs[some], tails, axis=1)
-    return Sampled(standard, 0.5 * (high - low), np.exp(low), np.exp(high), lost)
+    return SampledFigures(standard, 0.5 * (high - low), np.exp(low), np.exp(high), lost)

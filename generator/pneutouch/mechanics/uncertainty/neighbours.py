@@ -8,14 +8,14 @@ from functools import cache
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.atlas.press import Batch
+from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.atlas.table import REST_VOLUME, Atlas, shipped
 from pneutouch.mechanics.uncertainty.source import DEAD, FIGURES, INPUTS
 from pneutouch.units import KPA
 
 _MARGIN = 0.001
-"""How far inside the surveyed data (`Recipe.beyond`) the neighbourhood of the box stays, in R0."""
+"""How far inside the surveyed data (`AtlasRecipe.beyond`) the neighbourhood of the box stays, in R0."""
 
 
 @cache
@@ -23,7 +23,7 @@ def neighbourhood() -> Atlas:
     """The shipped atlas with its box opened to nearly all the data it holds.
 
     A sensor pressed to three quarters of R0 lies on the edge of the box, where a smaller radius with the same travel is
-    outside. The survey went on to `Recipe.beyond` and to walls outside the box, so that its neighbours can be asked for.
+    outside. The survey went on to `AtlasRecipe.beyond` and to walls outside the box, so that its neighbours can be asked for.
     """
     known = shipped()
     recipe, walls = known.recipe, known.recipe.wall_ratios
@@ -38,7 +38,7 @@ def neighbourhood() -> Atlas:
     return known.boxed(open_)
 
 
-def moved(batch: Batch, name: str, by: Array) -> Batch:
+def moved(batch: SensorBatch, name: str, by: Array) -> SensorBatch:
     """The batch with one input moved, (n,): times exp(by); the dead volume plus ``by`` mm3.
 
     At least half of the unloaded cavity stays: a deviation of some 0.1 mL is more than a tiny sensor holds.
@@ -50,19 +50,21 @@ def moved(batch: Batch, name: str, by: Array) -> Batch:
     return replace(batch, dead_volume=np.maximum(value + by, least))
 
 
-def joined(batches: list[Batch]) -> Batch:
+def joined(batches: list[SensorBatch]) -> SensorBatch:
     """Batches one after the other."""
-    return Batch(*(np.concatenate([getattr(b, field) for b in batches]) for field in Batch.__dataclass_fields__))
+    return SensorBatch(
+        *(np.concatenate([getattr(b, field) for b in batches]) for field in SensorBatch.__dataclass_fields__)
+    )
 
 
-def unit_step(batch: Batch) -> Array:
+def unit_step(batch: SensorBatch) -> Array:
     """What a step of one means for each input, (inputs, n): its own size; of the dead volume all the gas, mm3."""
     steps = np.ones((len(INPUTS), len(batch)))
     steps[DEAD] = REST_VOLUME * batch.inner_radius**3 + np.maximum(batch.dead_volume, 0.0)
     return steps
 
 
-def log_figures(batch: Batch) -> Array:
+def log_figures(batch: SensorBatch) -> Array:
     """Natural logarithms of the figures, (figures, n); NaN where there is none. Units as `FIGURES` say."""
     # In order of the wall ratio, because the atlas cuts its tables once for each ratio of a chunk.
     order = np.argsort(batch.wall_ratio, kind="stable")

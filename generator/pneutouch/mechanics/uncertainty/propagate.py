@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
-from pneutouch.mechanics.atlas.press import Batch
+from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.uncertainty.derivatives import Derivatives, derivatives
-from pneutouch.mechanics.uncertainty.source import FIGURE, FIGURES, INPUTS, Source
+from pneutouch.mechanics.uncertainty.source import FIGURE, FIGURES, INPUTS, UncertaintySource
 
 COVERAGE = 2.0
 """k: about 95 % where many sources of one size add up."""
@@ -38,7 +38,7 @@ class Budget:
         freedom: Effective degrees of freedom (Welch-Satterthwaite, JCGM 100, G.4.1), (figures, n).
     """
 
-    sources: tuple[Source, ...]
+    sources: tuple[UncertaintySource, ...]
     derivatives: Derivatives
     variances: Array
     linear: Array
@@ -84,7 +84,7 @@ class Budget:
         return np.asarray(self.derivatives.one_sided.any(axis=0))
 
 
-def propagate(batch: Batch, sources: list[Source]) -> Budget:
+def propagate(batch: SensorBatch, sources: list[UncertaintySource]) -> Budget:
     """Combine the sources of n sensors through the atlas; they are taken as independent of one another."""
     found = derivatives(batch, *_by_input(batch, sources))
     variances = _variances(sources, found.slopes)
@@ -96,7 +96,7 @@ def propagate(batch: Batch, sources: list[Source]) -> Budget:
     return Budget(tuple(sources), found, variances, linear, np.where(np.isnan(effective), np.inf, effective))
 
 
-def _variances(sources: list[Source], slopes: Array) -> Array:
+def _variances(sources: list[UncertaintySource], slopes: Array) -> Array:
     """Of the logarithms, (sources, figures, n)."""
     return np.stack([
         np.where(s.counts, ((1.0 if s.acts_on == FIGURE else slopes[INPUTS.index(s.acts_on)]) * s.standard) ** 2, 0.0)
@@ -104,7 +104,7 @@ def _variances(sources: list[Source], slopes: Array) -> Array:
     ])  # fmt: skip
 
 
-def _by_input(batch: Batch, sources: list[Source]) -> tuple[Array, Array]:
+def _by_input(batch: SensorBatch, sources: list[UncertaintySource]) -> tuple[Array, Array]:
     """Of each input: standard uncertainty as it counts for each figure (inputs, figures, n), and kurtosis (inputs, n)."""
     size = len(batch)
     second = np.zeros((len(INPUTS), len(FIGURES), size))

@@ -18,7 +18,7 @@ FIGURES = (
 INPUTS = (
     "shear_modulus", "wall_thickness", "inner_radius", "dead_volume", "ambient_pressure", "driving_pressure"
 )  # fmt: skip
-"""What a source may act on through the model, in the order of every array over inputs; names of `Batch`."""
+"""What a source may act on through the model, in the order of every array over inputs; names of `SensorBatch`."""
 
 FIGURE = "figure"
 """Acts on the predicted figure itself, as a relative error."""
@@ -30,7 +30,7 @@ Distribution = Literal["normal", "rectangular", "lognormal", "log-rectangular"]
 
 
 @dataclass(frozen=True)
-class Source:
+class UncertaintySource:
     """A named source for n sensors.
 
     Attributes:

@@ -15,7 +15,7 @@ from pneutouch.mechanics.atlas_states import outside_atlas
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.viscous.known import ageing_ratio
 from pneutouch.mechanics.viscous.prony import prony_series, relaxed
-from pneutouch.mechanics.viscous.runs import Loop, Relaxation, loop, relaxation
+from pneutouch.mechanics.viscous.runs import LoopRun, RelaxationRun, loop, relaxation
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
 
@@ -35,14 +35,14 @@ BASIS = (
 
 
 @dataclass(frozen=True)
-class Viscous:
+class ViscousRuns:
     """Runs of one sensor: ``held[i][j]`` and ``loops[speed][i][j]`` of state i in series j; pressures in MPa, depth in mm."""
 
     sources: tuple[str, ...]
     driving_pressures: tuple[float, ...]
     depth: float
-    held: list[list[Relaxation]]
-    loops: dict[float, list[list[Loop]]]
+    held: list[list[RelaxationRun]]
+    loops: dict[float, list[list[LoopRun]]]
 
     def document(self) -> dict[str, Any]:
         """The figures as data: one entry a state, one a source in it."""
@@ -64,7 +64,7 @@ class Viscous:
         }  # fmt: skip
 
 
-def describe(sensor: Sensor, material: Material, driving_pressures: Sequence[float], depth: float) -> Viscous:
+def describe(sensor: Sensor, material: Material, driving_pressures: Sequence[float], depth: float) -> ViscousRuns:
     """Press a sensor at driving pressures (MPa) to a depth (mm) in every series of its resin.
 
     The sensor and its resin must be such that `known.unknown` has nothing to say. A series whose relaxed modulus leaves the
@@ -79,7 +79,7 @@ def describe(sensor: Sensor, material: Material, driving_pressures: Sequence[flo
         held.append(relaxation(own, [series], driving_pressures, depth, RAMP_SPEED))
         loops.append({v: loop(own, [series], driving_pressures, depth, v) for v in LOOP_SPEEDS})
     states = range(len(driving_pressures))
-    return Viscous(
+    return ViscousRuns(
         tuple(kept), tuple(driving_pressures), depth, [[one[i][0] for one in held] for i in states],
         {v: [[one[v][i][0] for one in loops] for i in states] for v in LOOP_SPEEDS},
     )  # fmt: skip
@@ -101,7 +101,7 @@ def ageing_shift(sensor: Sensor, material: Material, driving_pressures: Sequence
     return ratio, after / before - 1.0
 
 
-def _held(run: Relaxation) -> dict[str, Any]:
+def _held(run: RelaxationRun) -> dict[str, Any]:
     if run.ended is not None:
         return {"ended": run.ended}
     (force, force_decade), (rise, rise_decade) = run.drop(run.force), run.drop(run.rise)
@@ -112,7 +112,7 @@ def _held(run: Relaxation) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _looped(run: Loop) -> dict[str, Any]:
+def _looped(run: LoopRun) -> dict[str, Any]:
     found, ended = run.hysteresis(), {} if run.ended is None else {"ended": run.ended}
     if found is None:
         return ended

@@ -17,8 +17,8 @@ from typing import NamedTuple
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
-from pneutouch.mechanics.atlas.press import Press
-from pneutouch.mechanics.atlas.table import Point
+from pneutouch.mechanics.atlas.press import AtlasPress
+from pneutouch.mechanics.atlas.table import AtlasPoint
 
 _NEWTON = 10
 _LONGEST, _LAST_STEP = 0.05, 1.0e-4
@@ -26,7 +26,7 @@ _LONGEST, _LAST_STEP = 0.05, 1.0e-4
 _NO_TRAVEL = 1.0e-9
 
 
-class Path(NamedTuple):
+class ViscousPath(NamedTuple):
     """Where n domes went, (n, m) each; nondimensional by the relaxed modulus.
 
     elastic_force, elastic_pressure: of the relaxed dome at the same volume and plate height. known: the state and all before
@@ -66,7 +66,7 @@ class _Memory:
         self._held = self._held * decay + weight * change[..., None]
 
 
-def follow(press: Press, excess: Array, times: Array, clock: Array, travel: Array) -> Path:
+def follow(press: AtlasPress, excess: Array, times: Array, clock: Array, travel: Array) -> ViscousPath:
     """Follow n domes along plate travels (n, m), in R0, at times (n, m) s, both from first contact at 0.
 
     excess, times: Prony terms over the relaxed modulus and their times in s, (n, terms); a term of excess 0 is none.
@@ -89,10 +89,12 @@ def follow(press: Press, excess: Array, times: Array, clock: Array, travel: Arra
         memory.add(decay, weight, now - before)
         nu, before, at = np.where(known, found, nu), now, travel[:, j]
         columns.append((nu, *((1.0 + stiffer) * now + past), *now, known, lost))
-    return Path(*(np.stack(part, axis=1) for part in zip(*columns, strict=True)))
+    return ViscousPath(*(np.stack(part, axis=1) for part in zip(*columns, strict=True)))
 
 
-def _solve(press: Press, nu: Array, height: Array, stiffer: Array, past: Array) -> tuple[Array, Point, Array, Flags]:
+def _solve(
+    press: AtlasPress, nu: Array, height: Array, stiffer: Array, past: Array
+) -> tuple[Array, AtlasPoint, Array, Flags]:
     """Volumes at which ``stiffer`` P + ``past`` is the gas's pressure; with states, dp/dV of wall less gas, and whether found."""
     for _ in range(_NEWTON):
         point = press.slices.point(press.k, nu, height)

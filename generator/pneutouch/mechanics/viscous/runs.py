@@ -10,11 +10,11 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.batches import batch_of
-from pneutouch.mechanics.atlas.press import Press
+from pneutouch.mechanics.atlas.press import AtlasPress
 from pneutouch.mechanics.atlas.table import Atlas, shipped
 from pneutouch.mechanics.response import hysteresis
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.viscous.follow import Path, follow
+from pneutouch.mechanics.viscous.follow import ViscousPath, follow
 from pneutouch.mechanics.viscous.prony import Prony
 
 _Run = TypeVar("_Run")
@@ -27,7 +27,7 @@ _RAMP_STEPS, _LOOP_STEPS = 30, 48
 
 
 @dataclass(frozen=True)
-class Relaxation:
+class RelaxationRun:
     """A sensor pressed evenly to a depth and held: force (N) and pressure rise (MPa) over times (s) since the ramp's end.
 
     ``ended`` says where the run could not be followed further, with what is known before; None where it was followed.
@@ -52,7 +52,7 @@ class Relaxation:
 
 
 @dataclass(frozen=True)
-class Loop:
+class LoopRun:
     """A sensor pressed evenly to a depth and let go: indentation (mm), force (N), pressure rise (MPa) in and out.
 
     ``contact_lost`` is the plate travel (mm) at which the dome no longer follows the plate on its way out, where the loop
@@ -86,7 +86,7 @@ class Loop:
 def relaxation(
     sensor: Sensor, series: Sequence[Prony], driving_pressures: Sequence[float], depth: float, speed: float,
     times: Array = HOLD_TIMES, steps: int = _RAMP_STEPS, atlas: Atlas | None = None,
-) -> list[list[Relaxation]]:  # fmt: skip
+) -> list[list[RelaxationRun]]:  # fmt: skip
     """Press to ``depth`` mm at ``speed`` mm/s and hold for ``times`` (ascending, s, above 0); one list a driving pressure (MPa), one run a series.
 
     The sensor's modulus is the relaxed one and the sensor lies inside the atlas (`atlas_states.outside_atlas`).
@@ -109,14 +109,14 @@ def relaxation(
         asked = steps + 1 + np.searchsorted(waits, times)
         asked = asked[asked < known]
         where = None if ended is None else f"{ended} at {travel[known]:.2f} mm"
-        runs.append(Relaxation(times[: asked.size], force[i, asked], rise[i, asked], where))
+        runs.append(RelaxationRun(times[: asked.size], force[i, asked], rise[i, asked], where))
     return _by_state(runs, len(series))
 
 
 def loop(
     sensor: Sensor, series: Sequence[Prony], driving_pressures: Sequence[float], depth: float, speed: float,
     steps: int = _LOOP_STEPS, atlas: Atlas | None = None,
-) -> list[list[Loop]]:  # fmt: skip
+) -> list[list[LoopRun]]:  # fmt: skip
     """Press to ``depth`` mm and back at ``speed`` mm/s; one list a driving pressure (MPa), one run a series; see `relaxation`."""
     share = np.linspace(0.0, 1.0, steps + 1)
     travel = np.concatenate([share, share[-2::-1]]) * depth
@@ -127,7 +127,7 @@ def loop(
     return _by_state(runs, len(series))
 
 
-def _loop(travel: Array, force: Array, rise: Array, known: int, ended: str | None) -> Loop:
+def _loop(travel: Array, force: Array, rise: Array, known: int, ended: str | None) -> LoopRun:
     """One run of 2 n + 1 points, of which the first ``known`` are; cut where the plate pulls the dome, which it cannot."""
     turn, last = travel.size // 2, travel.size - 1
     where = None if ended is None else f"{ended} at {travel[known]:.2f} mm"
@@ -139,13 +139,13 @@ def _loop(travel: Array, force: Array, rise: Array, known: int, ended: str | Non
         before, after = back[:, first - 1], back[:, first]
         edge = before + before[1] / (before[1] - after[1]) * (after - before)
         back, lost, where = np.column_stack([back[:, :first], edge]), float(edge[0]), None
-    return Loop(travel[there], force[there], rise[there], back[0], back[1], back[2], lost, where)
+    return LoopRun(travel[there], force[there], rise[there], back[0], back[1], back[2], lost, where)
 
 
 def _followed(
     sensor: Sensor, series: Sequence[Prony], driving_pressures: Sequence[float], clock: Array, travel: Array,
     atlas: Atlas | None,
-) -> tuple[Press, Path]:  # fmt: skip
+) -> tuple[AtlasPress, ViscousPath]:  # fmt: skip
     """Every state with every series, series running fastest."""
     batch = batch_of(sensor, np.repeat(np.asarray(driving_pressures, dtype=float), len(series)))
     terms = max(len(one.shares) for one in series)
@@ -153,7 +153,7 @@ def _followed(
     for row, one in enumerate(series):
         excess[row, : len(one.times)], times[row, : len(one.times)] = one.excess, one.times
     slices = (atlas or shipped()).slices(batch.wall_ratio[:1], ())
-    press = Press(batch, slices, np.zeros(len(batch), dtype=np.intp))
+    press = AtlasPress(batch, slices, np.zeros(len(batch), dtype=np.intp))
     many = len(driving_pressures)
     shape = (len(batch), clock.size)
     path = follow(
@@ -163,13 +163,13 @@ def _followed(
     return press, path
 
 
-def _with_units(press: Press, path: Path) -> tuple[Array, Array]:
+def _with_units(press: AtlasPress, path: ViscousPath) -> tuple[Array, Array]:
     """Force (N) and pressure rise (MPa), (n, m)."""
     mu, radius = press.batch.shear_modulus[:, None], press.batch.inner_radius[:, None]
     return path.force * mu * radius**2, (path.pressure - path.pressure[:, :1]) * mu
 
 
-def _sound(press: Press, path: Path, i: int) -> tuple[int, str | None]:
+def _sound(press: AtlasPress, path: ViscousPath, i: int) -> tuple[int, str | None]:
     """How many states of a run are known and within the gauge's range, and why no more."""
     clipped = path.pressure[i] > press.batch.gauge_limit[i] / press.batch.shear_modulus[i]
     sound = path.known[i] & ~clipped

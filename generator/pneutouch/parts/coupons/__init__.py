@@ -1,6 +1,6 @@
 """Coupons: small prints on which a lab measures what its own machine and resins do."""
 
-from pneutouch.parts.coupons.coupon import Coupon, Ground, Nominal
+from pneutouch.parts.coupons.coupon import Coupon, CouponContext, Nominal
 from pneutouch.parts.coupons.dumbbell import DUMBBELL
 from pneutouch.parts.coupons.gauge import GAUGE
 from pneutouch.parts.coupons.leak_cap import LEAK_CAP
@@ -10,4 +10,4 @@ from pneutouch.parts.coupons.volume_plug import VOLUME_PLUG
 COUPONS: dict[str, Coupon] = {coupon.name: coupon for coupon in (PUCK, DUMBBELL, GAUGE, LEAK_CAP, VOLUME_PLUG)}
 """Every family by name, in the order of the sheet."""
 
-__all__ = ["COUPONS", "Coupon", "Ground", "Nominal"]
+__all__ = ["COUPONS", "Coupon", "CouponContext", "Nominal"]

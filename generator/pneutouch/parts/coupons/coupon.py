@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 from pneutouch.body import Solid
-from pneutouch.catalogue import Scene
+from pneutouch.catalogue import ResolvedDesign
 from pneutouch.parts.layout import Layout, lay_out
-from pneutouch.spec.fields import Kind
+from pneutouch.spec.fields import MaterialKind
 from pneutouch.spec.material import Material
 
 ROLE = "coupon"
@@ -38,17 +38,17 @@ class Nominal:
 
 
 @dataclass(frozen=True, slots=True)
-class Ground:
+class CouponContext:
     """What a coupon is drawn for: a material, and the scene of a design where it belongs to one."""
 
     material: Material
-    scene: Scene | None = None
+    scene: ResolvedDesign | None = None
 
     def layout(self) -> Layout:
         """Where everything of the design lies. Raises InputError where the design has no room for a part."""
         return lay_out(self.design())
 
-    def design(self) -> Scene:
+    def design(self) -> ResolvedDesign:
         """The scene. Raises TypeError where the coupon belongs to no design."""
         if self.scene is None:
             raise TypeError("this coupon belongs to a design; give its scene")
@@ -77,12 +77,12 @@ class Coupon:
     title: str
     belongs: Belongs
     copies: int
-    draw: Callable[[Ground], tuple[Solid, ...]]
-    nominals: Callable[[Ground], tuple[Nominal, ...]]
+    draw: Callable[[CouponContext], tuple[Solid, ...]]
+    nominals: Callable[[CouponContext], tuple[Nominal, ...]]
     steps: tuple[str, ...]
     formulas: tuple[str, ...]
     each: str = ""
-    kinds: tuple[Kind, ...] = ("elastomer", "rigid")
+    kinds: tuple[MaterialKind, ...] = ("elastomer", "rigid")
     turned_over: bool = False
 
 

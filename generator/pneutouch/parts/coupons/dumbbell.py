@@ -11,7 +11,7 @@ import math
 
 from pneutouch.body import Prism, Solid
 from pneutouch.meridian import Arc, Line, Segment
-from pneutouch.parts.coupons.coupon import CALIPER, ROLE, Coupon, Ground, Nominal
+from pneutouch.parts.coupons.coupon import CALIPER, ROLE, Coupon, CouponContext, Nominal
 
 OVERALL, END_WIDTH, NARROW_LENGTH, NARROW_WIDTH = 115.0, 25.0, 33.0, 6.0
 FILLET, OUTER_RADIUS = 14.0, 25.0
@@ -44,12 +44,12 @@ def outline() -> tuple[Segment, ...]:
     return tuple(pieces)
 
 
-def draw(ground: Ground) -> tuple[Solid, ...]:
+def draw(ground: CouponContext) -> tuple[Solid, ...]:
     """The dumbbell, lying on z = 0."""
     return (Solid("dumbbell", ROLE, ground.material, Prism(outline(), 0.0, THICKNESS)),)
 
 
-def nominals(ground: Ground) -> tuple[Nominal, ...]:
+def nominals(ground: CouponContext) -> tuple[Nominal, ...]:
     """The cross-section, the bench marks, and then the curve."""
     return (
         Nominal("width_mm", NARROW_WIDTH, "mm", CALIPER),

@@ -12,7 +12,7 @@ from itertools import accumulate, pairwise
 
 from pneutouch.body import Bore, Feature, Frame, Prism, Solid, Turned
 from pneutouch.meridian import Line, Point, Segment
-from pneutouch.parts.coupons.coupon import CALIPER, GAUGE_PINS, ROLE, Coupon, Ground, Nominal
+from pneutouch.parts.coupons.coupon import CALIPER, GAUGE_PINS, ROLE, Coupon, CouponContext, Nominal
 from pneutouch.parts.trace import cylinder
 
 WALLS = (0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.2, 1.6, 2.0)
@@ -30,7 +30,7 @@ _GAP, _MARGIN, _ROOT, _CORNER = 4.0, 4.0, 1.0, 4.0
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class GaugeRow:
     """One row of the gauge: its feature, the sizes and the height of its middle, mm."""
 
     feature: str
@@ -49,9 +49,9 @@ class Row:
         return place + 0.5 * size
 
 
-def rows() -> tuple[Row, ...]:
+def rows() -> tuple[GaugeRow, ...]:
     """The rows from the cut corner upwards."""
-    found: list[Row] = []
+    found: list[GaugeRow] = []
     here = _MARGIN
     for feature, sizes, depth in (
         ("wall", WALLS, LENGTH),
@@ -59,12 +59,12 @@ def rows() -> tuple[Row, ...]:
         ("hole", HOLES, max(HOLES)),
         ("slot", SLOTS, LENGTH),
     ):
-        found.append(Row(feature, sizes, here + 0.5 * depth))
+        found.append(GaugeRow(feature, sizes, here + 0.5 * depth))
         here += depth + _GAP
     return tuple(found)
 
 
-def draw(ground: Ground) -> tuple[Solid, ...]:
+def draw(ground: CouponContext) -> tuple[Solid, ...]:
     """The gauge plate and the step block, both standing on z = 0 with their least x and y at 0."""
     walls, pins, holes, slots = rows()
     wide, deep = max(row.end for row in rows()) + _MARGIN, slots.middle + 0.5 * LENGTH + _MARGIN
@@ -87,7 +87,7 @@ def block() -> Prism:
     return Prism(_polygon(corners), -BLOCK, 0.0, upright)
 
 
-def nominals(ground: Ground) -> tuple[Nominal, ...]:
+def nominals(ground: CouponContext) -> tuple[Nominal, ...]:
     """The block's lengths, then the rows of the gauge."""
     lengths = [("x", STEPS), ("y", (BLOCK,)), ("z", STEPS)]
     instruments = {"wall": CALIPER, "pin": CALIPER, "hole": GAUGE_PINS, "slot": "feeler gauge, or a microscope"}

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from pneutouch.body import Solid
 from pneutouch.meridian import Meridian
-from pneutouch.parts.coupons.coupon import PRESSURE, ROLE, Coupon, Ground, Nominal
+from pneutouch.parts.coupons.coupon import PRESSURE, ROLE, Coupon, CouponContext, Nominal
 from pneutouch.parts.layout import Layout
-from pneutouch.parts.trace import Path, trace
+from pneutouch.parts.trace import TracedPath, trace
 from pneutouch.spec.part import ClampedFlange
 
 TEST_PRESSURE = 20.0
@@ -21,12 +21,12 @@ _LEAST_DISC, _DISC_SHARE = 3.0, 1 / 3
 (Kirchhoff plate, E = 2.4 GPa)."""
 
 
-def draw(ground: Ground) -> tuple[Solid, ...]:
+def draw(ground: CouponContext) -> tuple[Solid, ...]:
     """The cap in the frame of its design. Raises InputError where the design has no room for a part."""
     return (Solid("leak-cap", ROLE, ground.design().connector_material, cap(ground, [], 0.0)),)
 
 
-def cap(ground: Ground, hollow: Path, top: float) -> Meridian:
+def cap(ground: CouponContext, hollow: TracedPath, top: float) -> Meridian:
     """A flange and a disc above ``top`` (mm); ``hollow`` leads from the axis at that height to the base plane."""
     scene, layout = ground.design(), ground.layout()
     # A membrane grown onto its connector leaves no gap for a part that is glued in its place.
@@ -39,7 +39,7 @@ def cap(ground: Ground, hollow: Path, top: float) -> Meridian:
     ])  # fmt: skip
 
 
-def rim_radius(ground: Ground, layout: Layout) -> float:
+def rim_radius(ground: CouponContext, layout: Layout) -> float:
     """Radius of the disc: over the whole flange, or inside the ring that clamps it."""
     scene = ground.design()
     if isinstance(scene.seat, ClampedFlange):
@@ -52,7 +52,7 @@ def disc_thickness(layout: Layout) -> float:
     return max(_LEAST_DISC, _DISC_SHARE * layout.inner_radius)
 
 
-def nominals(ground: Ground) -> tuple[Nominal, ...]:
+def nominals(ground: CouponContext) -> tuple[Nominal, ...]:
     """The leak, then the pressure after a known push of air."""
     return (
         Nominal("start_kPa", TEST_PRESSURE, "kPa", PRESSURE),

@@ -7,7 +7,7 @@ for 6 mm under the durometer, so two pucks are laid on one another for that; the
 from __future__ import annotations
 
 from pneutouch.body import Solid
-from pneutouch.parts.coupons.coupon import BALANCE, CALIPER, ROLE, Coupon, Ground, Nominal
+from pneutouch.parts.coupons.coupon import BALANCE, CALIPER, ROLE, Coupon, CouponContext, Nominal
 from pneutouch.parts.trace import cylinder
 from pneutouch.units import grams
 
@@ -15,12 +15,12 @@ DIAMETER, THICKNESS = 20.0, 3.0
 """mm; paper, Supplement A."""
 
 
-def draw(ground: Ground) -> tuple[Solid, ...]:
+def draw(ground: CouponContext) -> tuple[Solid, ...]:
     """The disc, standing on z = 0."""
     return (Solid("puck", ROLE, ground.material, cylinder(0.5 * DIAMETER, 0.0, THICKNESS)),)
 
 
-def nominals(ground: Ground) -> tuple[Nominal, ...]:
+def nominals(ground: CouponContext) -> tuple[Nominal, ...]:
     """Hardness on the scale of the material's kind, then what the density needs."""
     material = ground.material
     soft = material.kind == "elastomer"

@@ -10,7 +10,7 @@ import math
 
 from pneutouch.body import Solid
 from pneutouch.errors import InputError
-from pneutouch.parts.coupons.coupon import BALANCE, PRESSURE, ROLE, Coupon, Ground, Nominal
+from pneutouch.parts.coupons.coupon import BALANCE, PRESSURE, ROLE, Coupon, CouponContext, Nominal
 from pneutouch.parts.coupons.leak_cap import cap, rim_radius
 from pneutouch.units import ML
 
@@ -34,7 +34,7 @@ def cavity_volume(inner_radius: float) -> float:
     return next(step * decade for step in _SERIES if step * decade <= dome)
 
 
-def cavity_size(ground: Ground) -> tuple[float, float]:
+def cavity_size(ground: CouponContext) -> tuple[float, float]:
     """Radius and height of the cavity, mm. Raises InputError for a dome too small to leave a wall around it."""
     scene, layout = ground.design(), ground.layout()
     wall = scene.connector_printer.smallest.wall(scene.connector_material.kind).recommended
@@ -48,14 +48,14 @@ def cavity_size(ground: Ground) -> tuple[float, float]:
     return radius, cavity_volume(layout.inner_radius) / (math.pi * radius**2)
 
 
-def draw(ground: Ground) -> tuple[Solid, ...]:
+def draw(ground: CouponContext) -> tuple[Solid, ...]:
     """The plug in the frame of its design. Raises InputError for a dome too small to leave a wall around the cavity."""
     radius, height = cavity_size(ground)
     hollow = [("cavity top", (radius, height)), ("cavity", (radius, 0.0))]
     return (Solid("volume-plug", ROLE, ground.design().connector_material, cap(ground, hollow, height)),)
 
 
-def nominals(ground: Ground) -> tuple[Nominal, ...]:
+def nominals(ground: CouponContext) -> tuple[Nominal, ...]:
     """The pressure after the same push of air as over the cap, and the cavity's volume by weighed water."""
     volume = cavity_volume(ground.design().design.membrane.inner_radius_mm) / ML
     return (

@@ -22,7 +22,7 @@ HEIGHTS = (5.0, 4.5, 4.0, 3.5, 3.0)
 
 
 @dataclass(frozen=True, slots=True)
-class Face:
+class RingFace:
     """A ring of a horizontal face between two radii (mm) at height ``z``; ``mates`` with something it must lie flat on."""
 
     name: str
@@ -34,35 +34,35 @@ class Face:
 
 
 @dataclass(frozen=True, slots=True)
-class Spot:
+class LabelPosition:
     """Where a label goes: capitals ``height`` mm tall, centred ``radius`` mm from the axis, its foot towards the axis."""
 
-    face: Face
+    face: RingFace
     height: float
     radius: float
     angle: float
 
 
-def lettered_faces(assembly: Assembly, solid: Solid) -> list[Face]:
+def lettered_faces(assembly: Assembly, solid: Solid) -> list[RingFace]:
     """Faces of a rigid body in the order they are preferred: what can be read once mounted comes first."""
     layout, seat = assembly.layout, assembly.scene.seat
     if solid.role == "ring":
         assert isinstance(seat, ClampedFlange)
-        return [Face("ring top", seat.ring_thickness, True, 0.0, layout.ring_radius, False)]
+        return [RingFace("ring top", seat.ring_thickness, True, 0.0, layout.ring_radius, False)]
     if solid.role == "plug":
-        return [Face("plug underside", layout.under, False, 0.0, layout.plate_radius, True)]
+        return [RingFace("plug underside", layout.under, False, 0.0, layout.plate_radius, True)]
     if solid.role != "connector":
         return []
     faces = [
-        Face("plate top", layout.plate_high, True, layout.ring_radius, layout.plate_radius, False),
-        Face("plate underside", layout.plate_low, False, 0.0, layout.plate_radius, True),
+        RingFace("plate top", layout.plate_high, True, layout.ring_radius, layout.plate_radius, False),
+        RingFace("plate underside", layout.plate_low, False, 0.0, layout.plate_radius, True),
     ]
     if layout.under < layout.plate_low:
-        faces.append(Face("boss face", layout.under, False, 0.0, layout.plate_radius, True))
+        faces.append(RingFace("boss face", layout.under, False, 0.0, layout.plate_radius, True))
     return faces
 
 
-def free_area(face: Face, solid: Solid, body: Body, depth: float, edge: float) -> Any:
+def free_area(face: RingFace, solid: Solid, body: Body, depth: float, edge: float) -> Any:
     """CrossSection of a face that is bare, has ``depth`` mm of solid behind it and lies ``edge`` mm from any edge.
 
     Around a bore stays room for a screw head, which is less than twice as wide (ISO 4762).
@@ -79,7 +79,7 @@ def free_area(face: Face, solid: Solid, body: Body, depth: float, edge: float) -
     return section - CrossSection.compose(heads) if heads else section
 
 
-def spot(face: Face, area: Any, box: tuple[float, float], heights: Sequence[float]) -> Spot | None:
+def spot(face: RingFace, area: Any, box: tuple[float, float], heights: Sequence[float]) -> LabelPosition | None:
     """The place for the tallest lettering of ``heights`` (mm), or None; ``box`` is width and height at 1 mm."""
     from manifold3d import CrossSection
 
@@ -90,13 +90,13 @@ def spot(face: Face, area: Any, box: tuple[float, float], heights: Sequence[floa
         rectangle = CrossSection.square((box[0] * height, box[1] * height), True)
         for radius in _radii(reach, box[1] * height):
             for turn in range(_TURNS if radius else 1):
-                found = Spot(face, height, radius, 0.5 * math.pi + 2 * math.pi * turn / _TURNS)
+                found = LabelPosition(face, height, radius, 0.5 * math.pi + 2 * math.pi * turn / _TURNS)
                 if (placed(rectangle, found) - area).area() < 1e-9:
                     return found
     return None
 
 
-def placed(shape: Any, at: Spot) -> Any:
+def placed(shape: Any, at: LabelPosition) -> Any:
     """A CrossSection drawn about the origin, put on its spot; mirrored on a face that is read from below."""
     turn = math.degrees(at.angle) - 90.0 if at.radius else 0.0
     turned = (shape if at.face.up else shape.mirror((1.0, 0.0))).rotate(turn)

@@ -10,9 +10,9 @@ import numpy as np
 
 from pneutouch.body import Body, Solid
 from pneutouch.parts import Assembly
-from pneutouch.parts.lettering.faces import HEIGHTS, Spot, free_area, lettered_faces, placed, spot
+from pneutouch.parts.lettering.faces import HEIGHTS, LabelPosition, free_area, lettered_faces, placed, spot
 from pneutouch.parts.lettering.glyphs import is_clear, lettering, narrowest, rounded
-from pneutouch.parts.lettering.tally import Tally, tally
+from pneutouch.parts.lettering.tally import TallyRing, tally
 from pneutouch.spec.part import ClampedFlange
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.tray import Marks
@@ -62,7 +62,7 @@ class Marker:
         self._limit = printer.smallest.emboss_mm.recommended
         self._depth = _SURE * self._limit
         self._labels = labels
-        self._spots: dict[Any, Spot | None] = {}
+        self._spots: dict[Any, LabelPosition | None] = {}
 
     def marked(
         self, assembly: Assembly, solid: Solid, body: Body, label: str, number: tuple[int, int]
@@ -92,7 +92,7 @@ class Marker:
         mark = Mark("text", at.face.name, raised, self._depth, narrowest(shape), at.height, note)
         return _combined(body, (shape, ends[0], ends[1]), raised), mark
 
-    def _spot(self, assembly: Assembly, solid: Solid, body: Body) -> Spot | None:
+    def _spot(self, assembly: Assembly, solid: Solid, body: Body) -> LabelPosition | None:
         """Where the widest label of the tray has room on a geometry: all copies carry theirs at one place."""
         key = (shape_of(solid), assembly.layout)
         if key not in self._spots:
@@ -153,7 +153,7 @@ def shape_of(solid: Solid) -> Any:
     return solid.name, solid.base, solid.bores, solid.adds, solid.cuts
 
 
-def _grooves(found: Tally) -> Any:
+def _grooves(found: TallyRing) -> Any:
     from manifold3d import CrossSection
 
     return rounded(CrossSection(found.polygons()))

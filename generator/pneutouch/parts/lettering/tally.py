@@ -29,7 +29,7 @@ EXPLAINED = (
 
 
 @dataclass(frozen=True, slots=True)
-class Tally:
+class TallyRing:
     """Sectors of a ring from radius ``inner`` to ``outer`` (mm): first and last angle of each, rad."""
 
     inner: float
@@ -53,7 +53,7 @@ class Tally:
         return np.concatenate([self.outer * arc, self.inner * arc[::-1]])
 
 
-def tally(index: int, copy: int, inner: float, outer: float, width: float) -> Tally | None:
+def tally(index: int, copy: int, inner: float, outer: float, width: float) -> TallyRing | None:
     """Grooves for a value's ``index`` and a ``copy``, both from 1; ``width`` mm is the narrowest, at ``inner``.
 
     None where they do not go round the ring with a gap before the start comes again.
@@ -67,7 +67,7 @@ def tally(index: int, copy: int, inner: float, outer: float, width: float) -> Ta
         at -= _BETWEEN * width
     if at + _APART * width > 2 * math.pi * inner:
         return None
-    return Tally(inner, outer, tuple((_ASIDE + first / inner, _ASIDE + last / inner) for first, last in sectors))
+    return TallyRing(inner, outer, tuple((_ASIDE + first / inner, _ASIDE + last / inner) for first, last in sectors))
 
 
 def read(sectors: list[tuple[float, float]]) -> tuple[int, int]:

@@ -10,7 +10,16 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.body import Frame, Prism, Solid
 from pneutouch.meridian import Line
-from pneutouch.parts.specimen.family import DECIMALS, Family, Ground, Pattern, along, check_count, check_least, heights
+from pneutouch.parts.specimen.family import (
+    DECIMALS,
+    PatternContext,
+    PatternFamily,
+    PatternGeometry,
+    along,
+    check_count,
+    check_least,
+    heights,
+)
 from pneutouch.parts.specimen.mesh import Box, Mesh
 from pneutouch.spec.specimen import Bars
 
@@ -28,7 +37,7 @@ _MOST_EXACT = 500
 """Bars that are written to STEP: beyond it Open CASCADE takes minutes."""
 
 
-def places(layer: Bars, ground: Ground) -> Array:
+def places(layer: Bars, ground: PatternContext) -> Array:
     """Near sides (n,) of the bars along the path, mm: whole bars only."""
     start, end = along(layer, ground)
     pitch = layer.pitch(ground.speed)
@@ -38,7 +47,7 @@ def places(layer: Bars, ground: Ground) -> Array:
     return found
 
 
-def box(layer: Bars, ground: Ground, number: int) -> Box:
+def box(layer: Bars, ground: PatternContext, number: int) -> Box:
     """The box around all bars."""
     pitch = layer.pitch(ground.speed)
     check_least(ground, number, "width_mm", layer.width_mm, "wall")
@@ -60,7 +69,7 @@ def box(layer: Bars, ground: Ground, number: int) -> Box:
     return Box((float(lefts[0]), near, low), (float(lefts[-1]) + layer.width_mm, far, high))
 
 
-def _across(layer: Bars, ground: Ground) -> tuple[float, float]:
+def _across(layer: Bars, ground: PatternContext) -> tuple[float, float]:
     low, high = ground.block.low[1], ground.block.high[1]
     if layer.span_mm is None or layer.span_mm == high - low:
         return low, high
@@ -68,7 +77,7 @@ def _across(layer: Bars, ground: Ground) -> tuple[float, float]:
     return near, round(near + layer.span_mm, DECIMALS)
 
 
-def draw(layer: Bars, ground: Ground, number: int) -> Pattern:
+def draw(layer: Bars, ground: PatternContext, number: int) -> PatternGeometry:
     """The bars, 12 triangles each, with their exact volume."""
     around = box(layer, ground, number)
     lefts = places(layer, ground)
@@ -79,7 +88,7 @@ def draw(layer: Bars, ground: Ground, number: int) -> Pattern:
         vertices[:, :, axis] = np.array([around.low[axis], around.high[axis]])[_CORNERS[:, axis]]
     triangles = _FACES + 8 * np.arange(len(lefts))[:, None, None]
     side = (around.high[1] - around.low[1]) * (around.high[2] - around.low[2])
-    return Pattern(
+    return PatternGeometry(
         Mesh(vertices.reshape(-1, 3), triangles.reshape(-1, 3)), around, (layer.pitch(ground.speed),),
         {"count": len(lefts), "width_mm": layer.width_mm, "first_mm": float(lefts[0]), "offset_mm": layer.offset_mm},
         float((rights - lefts).sum()) * side,
@@ -88,7 +97,7 @@ def draw(layer: Bars, ground: Ground, number: int) -> Pattern:
     )  # fmt: skip
 
 
-def _solid(ground: Ground, number: int, k: int, left: float, around: Box, right: float) -> Solid:
+def _solid(ground: PatternContext, number: int, k: int, left: float, around: Box, right: float) -> Solid:
     low, high = around.low[2], around.high[2]
     corners = [(left, low), (right, low), (right, high), (left, high)]
     outline = tuple(Line(a, b, "") for a, b in pairwise([*corners, corners[0]]))
@@ -98,4 +107,4 @@ def _solid(ground: Ground, number: int, k: int, left: float, around: Box, right:
     return Solid(f"layer-{number + 1}-bar-{k + 1}", "inclusion", ground.inclusion, prism)
 
 
-FAMILY = Family(box, draw)
+FAMILY = PatternFamily(box, draw)

@@ -21,7 +21,7 @@ DECIMALS = 4
 
 
 @dataclass(frozen=True)
-class Ground:
+class PatternContext:
     """The block that a pattern is drawn in, with its file for messages; ``speed`` in mm/s, ``tolerance`` in mm."""
 
     block: Box
@@ -50,7 +50,7 @@ class Ground:
 
 
 @dataclass(frozen=True)
-class Pattern:
+class PatternGeometry:
     """A pattern drawn: its mesh, the box it fills, its pitches along the path in mm, and what else is true of it.
 
     ``volume`` is exact where there is an exact shape, else None; ``solids`` are the exact shapes for STEP.
@@ -65,29 +65,29 @@ class Pattern:
 
 
 @dataclass(frozen=True)
-class Family:
+class PatternFamily:
     """A family: the box that its pattern will fill, known before it is drawn, and how it is drawn.
 
     Both take the layer, the ground and the layer's number, for messages, and raise InputError for what cannot be.
     """
 
-    box: Callable[[Any, Ground, int], Box]
-    draw: Callable[[Any, Ground, int], Pattern]
+    box: Callable[[Any, PatternContext, int], Box]
+    draw: Callable[[Any, PatternContext, int], PatternGeometry]
 
 
-def along(layer: Layer, ground: Ground) -> tuple[float, float]:
+def along(layer: Layer, ground: PatternContext) -> tuple[float, float]:
     """Where a layer begins and ends along the path, mm."""
     end = ground.block.high[0] if layer.end_mm is None else layer.end_mm
     return round(layer.start_mm, DECIMALS), round(end, DECIMALS)
 
 
-def heights(layer: Layer, ground: Ground, height: float | None) -> tuple[float, float]:
+def heights(layer: Layer, ground: PatternContext, height: float | None) -> tuple[float, float]:
     """The least and greatest height of a layer, mm; down to the bottom of the block where it has no height."""
     top = round(ground.block.high[2] - layer.depth_mm, DECIMALS)
     return (ground.block.low[2] if height is None else round(top - height, DECIMALS)), top
 
 
-def check_inside(box: Box, ground: Ground, number: int, layer: Layer) -> None:
+def check_inside(box: Box, ground: PatternContext, number: int, layer: Layer) -> None:
     """Raise InputError where a pattern reaches out of the block, or its sides come within a micrometre of it."""
     block = ground.block
     keys = ("end_mm" if layer.end_mm is not None else "start_mm", "span_mm", "depth_mm")
@@ -106,7 +106,7 @@ def check_inside(box: Box, ground: Ground, number: int, layer: Layer) -> None:
                 raise ground.refuse(number, key, getattr(layer, key, high), text)
 
 
-def check_least(ground: Ground, number: int, key: str, value: float, kind: str, factor: float = 1.0) -> None:
+def check_least(ground: PatternContext, number: int, key: str, value: float, kind: str, factor: float = 1.0) -> None:
     """Raise InputError where ``factor`` times a value (mm) is thinner than the printer makes a ``kind``."""
     least = ground.least(kind)
     if factor * value < least - 1e-9:
@@ -116,7 +116,7 @@ def check_least(ground: Ground, number: int, key: str, value: float, kind: str, 
         )  # fmt: skip
 
 
-def check_count(ground: Ground, number: int, key: str, value: float, triangles: float) -> None:
+def check_count(ground: PatternContext, number: int, key: str, value: float, triangles: float) -> None:
     """Raise InputError where a pattern would take more triangles than files can carry."""
     if triangles > MOST_TRIANGLES:
         raise ground.refuse(

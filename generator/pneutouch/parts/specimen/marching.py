@@ -30,7 +30,7 @@ _PATHS = tuple(itertools.permutations(range(3)))
 
 
 @dataclass(frozen=True)
-class Grid:
+class MarchingGrid:
     """A box in equal steps, ``counts`` of them along each axis."""
 
     box: Box
@@ -48,7 +48,7 @@ class Grid:
         return a + 1, b + 1, c + 1
 
 
-def level_set(grid: Grid, wave: Wave, values: Array, level: float) -> Mesh:
+def level_set(grid: MarchingGrid, wave: Wave, values: Array, level: float) -> Mesh:
     """The surface on which a wave is ``level``, facing upwards; open on the box's sides.
 
     ``values`` are the wave's at the grid's nodes. Vertices lie on the surface itself, not on its interpolation.
@@ -63,7 +63,7 @@ def level_set(grid: Grid, wave: Wave, values: Array, level: float) -> Mesh:
     return Mesh(_places(grid, wave, values, level, unique), triangles)
 
 
-def between(grid: Grid, wave: Wave, values: Array, low: float | None, high: float) -> Mesh:
+def between(grid: MarchingGrid, wave: Wave, values: Array, low: float | None, high: float) -> Mesh:
     """The closed body in which a wave, ``values`` at the grid's nodes, is below ``high`` and, if given, not below ``low``."""
     top = level_set(grid, wave, values, high)
     inside = _corners(values) < high
@@ -135,7 +135,7 @@ def _key(node: Indices, steps: Indices, strides: Indices, low: int, high: int) -
     return key
 
 
-def _places(grid: Grid, wave: Wave, values: Array, level: float, keys: Indices) -> Array:
+def _places(grid: MarchingGrid, wave: Wave, values: Array, level: float, keys: Indices) -> Array:
     lower = np.stack(np.unravel_index(keys // 8, grid.shape), axis=1)
     step = np.stack([keys >> 2 & 1, keys >> 1 & 1, keys & 1], axis=1)
     upper = lower + step

@@ -10,7 +10,15 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.body.revolve import circle_count
 from pneutouch.errors import ComputationError
-from pneutouch.parts.specimen.family import Family, Ground, Pattern, along, check_count, check_least, heights
+from pneutouch.parts.specimen.family import (
+    PatternContext,
+    PatternFamily,
+    PatternGeometry,
+    along,
+    check_count,
+    check_least,
+    heights,
+)
 from pneutouch.parts.specimen.mesh import Box, Mesh
 from pneutouch.parts.specimen.struts import STRUTS, Lattice, fill, half_cells, octant
 from pneutouch.spec.specimen import StrutLattice
@@ -27,7 +35,7 @@ _CLOSE = 1e-3
 _TRIES = 8
 
 
-def box(layer: StrutLattice, ground: Ground, number: int) -> Box:
+def box(layer: StrutLattice, ground: PatternContext, number: int) -> Box:
     """The box that the lattice fills: whole width, cells from its least corner."""
     cell = layer.pitch(ground.speed)
     start, end = along(layer, ground)
@@ -49,7 +57,7 @@ def box(layer: StrutLattice, ground: Ground, number: int) -> Box:
     return around
 
 
-def draw(layer: StrutLattice, ground: Ground, number: int) -> Pattern:
+def draw(layer: StrutLattice, ground: PatternContext, number: int) -> PatternGeometry:
     """The lattice, with the radius and the fraction that it has as measured on its mesh."""
     around, cell = box(layer, ground, number), layer.pitch(ground.speed)
     (a, b, c), _ = half_cells(cell, around)
@@ -66,10 +74,10 @@ def draw(layer: StrutLattice, ground: Ground, number: int) -> Pattern:
         "cell_mm": cell, "strut_radius_mm": lattice.radius, "sides": lattice.sides,
         "volume_fraction": mesh.volume / around.volume,
     }  # fmt: skip
-    return Pattern(mesh, around, (cell,), truth)
+    return PatternGeometry(mesh, around, (cell,), truth)
 
 
-def _solved(layer: StrutLattice, ground: Ground, number: int, around: Box, sides: int) -> tuple[Lattice, Mesh]:
+def _solved(layer: StrutLattice, ground: PatternContext, number: int, around: Box, sides: int) -> tuple[Lattice, Mesh]:
     """The lattice of a volume fraction: by its octant alone where half cells fill the box, else by the whole mesh."""
     cell, target = layer.pitch(ground.speed), layer.volume_fraction or 0.0
     _check_fraction(layer, ground, number, cell, target)
@@ -100,7 +108,7 @@ def _next(tried: list[tuple[float, float]], target: float) -> float:
     return radius + (target - found) * (radius - before) / (found - was)
 
 
-def _check_fraction(layer: StrutLattice, ground: Ground, number: int, cell: float, target: float) -> None:
+def _check_fraction(layer: StrutLattice, ground: PatternContext, number: int, cell: float, target: float) -> None:
     """Raise InputError for a fraction whose struts cannot be printed or leave no matrix."""
     distances = _distances(layer.kind, cell)
     thinnest, thickest = 0.5 * ground.least("pin"), _LARGEST * float(distances.max())
@@ -133,4 +141,4 @@ def _distances(kind: str, cell: float) -> Array:
     return found
 
 
-FAMILY = Family(box, draw)
+FAMILY = PatternFamily(box, draw)

@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
-from pneutouch.parts.specimen.family import Family, Ground, Pattern, along, check_count, check_least, heights
+from pneutouch.parts.specimen.family import (
+    PatternContext,
+    PatternFamily,
+    PatternGeometry,
+    along,
+    check_count,
+    check_least,
+    heights,
+)
 from pneutouch.parts.specimen.mesh import Box
-from pneutouch.parts.specimen.surfaces import Surface, fill, fraction_of
+from pneutouch.parts.specimen.surfaces import PeriodicSurface, fill, fraction_of
 from pneutouch.spec.specimen import MinimalSurface
 
 _PER_CELL = 7.0
 """Triangles that a sheet takes per step of the grid squared and per cell's area of its two faces, measured, rounded up."""
 
 
-def box(layer: MinimalSurface, ground: Ground, number: int) -> Box:
+def box(layer: MinimalSurface, ground: PatternContext, number: int) -> Box:
     """The box that it fills: whole width, cells from its least corner."""
     if layer.thickness_mm is not None:
         check_least(ground, number, "thickness_mm", layer.thickness_mm, "wall")
@@ -22,17 +30,17 @@ def box(layer: MinimalSurface, ground: Ground, number: int) -> Box:
     if min(b - a for a, b in zip(around.low, around.high, strict=True)) < 0.5 * cell - 1e-9:
         text = f"half a cell of {cell:.4g} mm does not fit into the layer; take a smaller cell, or a higher layer"
         raise ground.refuse(number, "cell_mm", cell, text)
-    surface = Surface(layer.kind, cell, layer.form, ground.tolerance)
+    surface = PeriodicSurface(layer.kind, cell, layer.form, ground.tolerance)
     faces = 2 if layer.form == "sheet" else 1
     estimate = _PER_CELL * faces * 3.0 / cell * around.volume / surface.step**2
     check_count(ground, number, layer.period_key(), cell, estimate)
     return around
 
 
-def draw(layer: MinimalSurface, ground: Ground, number: int) -> Pattern:
+def draw(layer: MinimalSurface, ground: PatternContext, number: int) -> PatternGeometry:
     """The body, with the fraction that it has as measured on its mesh."""
     around, cell = box(layer, ground, number), layer.pitch(ground.speed)
-    surface = Surface(layer.kind, cell, layer.form, ground.tolerance)
+    surface = PeriodicSurface(layer.kind, cell, layer.form, ground.tolerance)
     asked = layer.volume_fraction
     fraction = (
         fraction_of(surface, around, layer.thickness_mm) if asked is None and layer.thickness_mm else asked or 0.0
@@ -55,7 +63,7 @@ def draw(layer: MinimalSurface, ground: Ground, number: int) -> Pattern:
         "cell_mm": cell, "form": layer.form, "volume_fraction": mesh.volume / around.volume,
         **({"mean_thickness_mm": mean} if layer.form == "sheet" else {}),
     }  # fmt: skip
-    return Pattern(mesh, around, (cell,), truth)
+    return PatternGeometry(mesh, around, (cell,), truth)
 
 
-FAMILY = Family(box, draw)
+FAMILY = PatternFamily(box, draw)

@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.parts.specimen.marching import Grid, between, level_set
+from pneutouch.parts.specimen.marching import MarchingGrid, between, level_set
 from pneutouch.parts.specimen.mesh import Box, Mesh
 
 Wave = Callable[[Array, Array, Array], Array]
@@ -51,7 +51,7 @@ _TRIES = 5
 
 
 @dataclass(frozen=True)
-class Surface:
+class PeriodicSurface:
     """A family with its cell in mm, its form, and the chord tolerance of its mesh in mm."""
 
     kind: str
@@ -64,13 +64,13 @@ class Surface:
         """Step of the grid in mm that keeps the tolerance, from the wave's least radius of curvature."""
         return math.sqrt(8 * self.tolerance * RADIUS[self.kind] * self.cell)
 
-    def grid(self, box: Box) -> Grid:
+    def grid(self, box: Box) -> MarchingGrid:
         """A grid over a box, its steps as equal as the box allows."""
         step = self.step
         a, b, c = (max(2, math.ceil((high - low) / step)) for low, high in zip(box.low, box.high, strict=True))
-        return Grid(box, (a, b, c))
+        return MarchingGrid(box, (a, b, c))
 
-    def values(self, grid: Grid) -> Array:
+    def values(self, grid: MarchingGrid) -> Array:
         """The wave at the grid's nodes; cells start at the box's least corner."""
         x, y, z = (2 * np.pi * (line - line[0]) / self.cell for line in grid.lines())
         return self._wave(x[:, None, None], y[None, :, None], z[None, None, :])
@@ -110,7 +110,7 @@ class Surface:
         return found
 
 
-def fill(surface: Surface, box: Box, fraction: float) -> Mesh:
+def fill(surface: PeriodicSurface, box: Box, fraction: float) -> Mesh:
     """The body in a box, closed, at a volume fraction of the box, met within 0.2 % as measured on the mesh."""
     grid = surface.grid(box)
     values, wave = surface.values(grid), surface.at(box)
@@ -126,7 +126,7 @@ def fill(surface: Surface, box: Box, fraction: float) -> Mesh:
     return mesh
 
 
-def fraction_of(surface: Surface, box: Box, thickness: float) -> float:
+def fraction_of(surface: PeriodicSurface, box: Box, thickness: float) -> float:
     """The volume fraction of a sheet whose volume is ``thickness`` mm times the area of its middle surface."""
     grid = surface.grid(box)
     middle = level_set(grid, surface.at(box), surface.values(grid), 0.0)

@@ -7,7 +7,15 @@ import math
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.parts.specimen.family import DECIMALS, Family, Ground, Pattern, along, check_count, check_least
+from pneutouch.parts.specimen.family import (
+    DECIMALS,
+    PatternContext,
+    PatternFamily,
+    PatternGeometry,
+    along,
+    check_count,
+    check_least,
+)
 from pneutouch.parts.specimen.mesh import Box, Mesh
 from pneutouch.spec.specimen import RandomPhase, Sinusoid
 
@@ -15,7 +23,7 @@ Wave = tuple[tuple[float, ...], tuple[float, ...], float]
 """Pitches (mm), phases (radians) and the amplitude (mm) of every sine."""
 
 
-def _wave(layer: Sinusoid | RandomPhase, ground: Ground) -> Wave:
+def _wave(layer: Sinusoid | RandomPhase, ground: PatternContext) -> Wave:
     if isinstance(layer, Sinusoid):
         pitch = layer.pitch(ground.speed)
         return (pitch,), (-2 * math.pi * layer.offset_mm / pitch,), layer.amplitude_mm
@@ -34,7 +42,7 @@ def _samples(wave: Wave, start: float, end: float, tolerance: float) -> tuple[Ar
     return x, np.asarray(amplitude * np.sum(sines, axis=0))
 
 
-def _section(layer: Sinusoid | RandomPhase, ground: Ground, number: int) -> tuple[Array, Array, float]:
+def _section(layer: Sinusoid | RandomPhase, ground: PatternContext, number: int) -> tuple[Array, Array, float]:
     """Places, heights of the top and the height of the flat bottom, mm."""
     check_least(ground, number, "height_mm", layer.height_mm, "wall")
     least = ground.least_matrix()
@@ -52,20 +60,20 @@ def _section(layer: Sinusoid | RandomPhase, ground: Ground, number: int) -> tupl
     return x, top, round(float(top.min()) - layer.height_mm, DECIMALS)
 
 
-def box(layer: Sinusoid | RandomPhase, ground: Ground, number: int) -> Box:
+def box(layer: Sinusoid | RandomPhase, ground: PatternContext, number: int) -> Box:
     """The box around the sheet."""
     x, top, floor = _section(layer, ground, number)
     low, high = ground.block.low[1], ground.block.high[1]
     return Box((float(x[0]), low, floor), (float(x[-1]), high, float(top.max())))
 
 
-def draw(layer: Sinusoid | RandomPhase, ground: Ground, number: int) -> Pattern:
+def draw(layer: Sinusoid | RandomPhase, ground: PatternContext, number: int) -> PatternGeometry:
     """The sheet."""
     x, top, floor = _section(layer, ground, number)
     pitches, phases, amplitude = _wave(layer, ground)
     low, high = ground.block.low[1], ground.block.high[1]
     area = float(np.sum(0.5 * (top[1:] + top[:-1] - 2 * floor) * np.diff(x)))
-    return Pattern(
+    return PatternGeometry(
         _swept(x, top, floor, low, high), box(layer, ground, number), pitches,
         {"amplitude_mm": amplitude, "phases_rad": list(phases), "start_mm": float(x[0])},
         area * (high - low),
@@ -89,4 +97,4 @@ def _swept(x: Array, top: Array, floor: float, low: float, high: float) -> Mesh:
     return Mesh(np.concatenate([near, far]), np.concatenate(triangles).astype(np.int64))
 
 
-FAMILY = Family(box, draw)
+FAMILY = PatternFamily(box, draw)

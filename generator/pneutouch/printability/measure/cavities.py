@@ -9,7 +9,7 @@ from typing import Any, cast
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
-from pneutouch.printability.measure.voxels import Voxels
+from pneutouch.printability.measure.voxels import PartVoxels
 from pneutouch.printability.subject import Point
 
 NARROW = 0.7
@@ -45,7 +45,7 @@ class Pocket:
         return self.opening / self.width
 
 
-def pockets(voxels: Voxels, radius: Array, most: float = NARROW) -> list[Pocket]:
+def pockets(voxels: PartVoxels, radius: Array, most: float = NARROW) -> list[Pocket]:
     """Hollows whose opening is at most the share ``most`` of their width.
 
     The space where a ball of a radius fits falls into pieces as the radius grows; a piece that does not reach the outside
@@ -77,7 +77,7 @@ def pockets(voxels: Voxels, radius: Array, most: float = NARROW) -> list[Pocket]
     return found
 
 
-def balls(voxels: Voxels) -> Array:
+def balls(voxels: PartVoxels) -> Array:
     """Radius of the largest ball around each empty cube that meets no full one, mm."""
     from scipy.ndimage import distance_transform_edt
 
@@ -125,7 +125,7 @@ def _narrowed(radius: Array, piece: Flags, low: float, high: float) -> float:
     return 0.5 * (low + high)
 
 
-def _grown(voxels: Voxels, piece: Flags, by: float) -> Flags:
+def _grown(voxels: PartVoxels, piece: Flags, by: float) -> Flags:
     """The piece with the empty cubes around it up to a distance, mm."""
     from scipy.ndimage import distance_transform_edt
 
@@ -133,7 +133,7 @@ def _grown(voxels: Voxels, piece: Flags, by: float) -> Flags:
     return cast(Flags, (away <= by + 0.5 * voxels.pitch) & (voxels.label == 0))
 
 
-def _pocket(voxels: Voxels, radius: Array, region: Flags, opening: float) -> Pocket:
+def _pocket(voxels: PartVoxels, radius: Array, region: Flags, opening: float) -> Pocket:
     cells = np.argwhere(region)
     size = (np.ptp(cells, axis=0) + 1) * voxels.pitch
     width = max(2 * float(radius[region].max()), voxels.pitch)
@@ -142,7 +142,7 @@ def _pocket(voxels: Voxels, radius: Array, region: Flags, opening: float) -> Poc
     return Pocket(min(opening, width), width, volume, float(size.max()), voxels.point(deepest), region)
 
 
-def seen(voxels: Voxels) -> Flags:
+def seen(voxels: PartVoxels) -> Flags:
     """Empty cubes that a straight jet reaches from outside, along one of 98 directions spread over the sphere."""
     empty = voxels.label == 0
     reached = np.zeros(empty.shape, bool)
@@ -178,7 +178,7 @@ def _shifted(lit: Flags, by: Any) -> Flags:
     return result
 
 
-def unseen(voxels: Voxels, radius: Array, reached: Flags) -> Flags:
+def unseen(voxels: PartVoxels, radius: Array, reached: Flags) -> Flags:
     """Empty cubes out of sight in hollows at least two cubes wide: what is narrower the cubes do not tell."""
     from scipy.ndimage import binary_dilation
 
@@ -187,7 +187,7 @@ def unseen(voxels: Voxels, radius: Array, reached: Flags) -> Flags:
     return cast(Flags, binary_dilation(core, iterations=2) & hidden)
 
 
-def supported(voxels: Voxels) -> Flags:
+def supported(voxels: PartVoxels) -> Flags:
     """Empty cubes with a full one somewhere above: what a polyjet machine fills with support."""
     full = voxels.label > 0
     above = np.maximum.accumulate(full[:, :, ::-1], axis=2)[:, :, ::-1]
@@ -197,7 +197,7 @@ def supported(voxels: Voxels) -> Flags:
     return below
 
 
-def overhangs(voxels: Voxels) -> Flags:
+def overhangs(voxels: PartVoxels) -> Flags:
     """Full cubes that a filament printer cannot lay on anything: nothing below them or beside below, one cube aside.
 
     That is an overhang beyond 45 degrees, or a bridge.

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from pneutouch.arrays import Array, Flags, Indices
 from pneutouch.printability.measure.rays import neighbours
-from pneutouch.printability.measure.samples import Samples
-from pneutouch.printability.measure.surface import Surface
+from pneutouch.printability.measure.samples import SurfaceSamples
+from pneutouch.printability.measure.surface import SurfaceMesh
 
 Side = Literal["inside", "outside"]
 
@@ -71,7 +71,7 @@ class Chords:
         return Chords(*(getattr(self, field.name)[rows] for field in fields(self)))
 
 
-def chords(manifold: Any, surface: Surface, samples: Samples, reach: float) -> dict[Side, Chords]:
+def chords(manifold: Any, surface: SurfaceMesh, samples: SurfaceSamples, reach: float) -> dict[Side, Chords]:
     """Chords of both sides no longer than ``reach`` mm. ``surface`` is the manifold's own mesh."""
     # The smooth surface's normals: those of flat faces miss the axis of a round pin or hole.
     normals = surface.smooth_normals(samples.faces, samples.points)
@@ -89,7 +89,7 @@ def chords(manifold: Any, surface: Surface, samples: Samples, reach: float) -> d
     return sides
 
 
-def described(manifold: Any, surface: Surface, found: Chords) -> Chords:
+def described(manifold: Any, surface: SurfaceMesh, found: Chords) -> Chords:
     """The chords with ``second``, ``axis`` and ``flank`` measured."""
     if not len(found):
         return found
@@ -122,7 +122,7 @@ class _Line:
     faces: Indices
 
 
-def _lines(manifold: Any, surface: Surface, middles: Array, directions: Array, lengths: Array) -> _Line:
+def _lines(manifold: Any, surface: SurfaceMesh, middles: Array, directions: Array, lengths: Array) -> _Line:
     reach = max(2.1 * float(lengths.max()), FLANK)
     hit = neighbours(manifold, middles, directions, reach)
     normals = surface.normals[hit.faces]
@@ -136,7 +136,7 @@ def _lines(manifold: Any, surface: Surface, middles: Array, directions: Array, l
     )
 
 
-def continues(manifold: Any, surface: Surface, found: Chords) -> Flags:
+def continues(manifold: Any, surface: SurfaceMesh, found: Chords) -> Flags:
     """Whether the place goes on along its axis, (n,): at both ends as narrow a width further on, or
     ended before that.
 

@@ -8,7 +8,7 @@ from typing import cast
 import numpy as np
 
 from pneutouch.arrays import Array, Indices
-from pneutouch.printability.measure.surface import Surface
+from pneutouch.printability.measure.surface import SurfaceMesh
 
 SPACING = 0.5
 """Points lie about this far apart, mm, on parts small enough."""
@@ -24,7 +24,7 @@ _GOLDEN = (0.7548776662466927, 0.5698402909980532)
 
 
 @dataclass(frozen=True)
-class Samples:
+class SurfaceSamples:
     """Points (n, 3) in mm, the face each lies on (n,), and the area each stands for (n,), mm2.
 
     Points right beside drawn edges stand for no area: they are there because a taper is thinnest at its edge.
@@ -35,7 +35,7 @@ class Samples:
     areas: Array
 
 
-def sample(surface: Surface, spacing: float = SPACING, most: int = MOST) -> Samples:
+def sample(surface: SurfaceMesh, spacing: float = SPACING, most: int = MOST) -> SurfaceSamples:
     """Spread points by area, and put one in the middle of the largest face of every smooth group at least.
 
     Every face of a mesh with fewer than ``most`` faces gets one: curved faces are cut finely, so they are seen finely.
@@ -53,13 +53,13 @@ def sample(surface: Surface, spacing: float = SPACING, most: int = MOST) -> Samp
     weights = 0.98 * np.column_stack([1 - u - v, u, v]) + 0.02 / 3
     points = np.einsum("nk,nkd->nd", weights, surface.corners[faces])
     beside, their = _beside_edges(surface, spacing)
-    return Samples(
+    return SurfaceSamples(
         np.concatenate([points, beside]), np.concatenate([faces, their]),
         np.concatenate([areas[faces] / counts[faces], np.zeros(len(their))]),
     )  # fmt: skip
 
 
-def _beside_edges(surface: Surface, spacing: float) -> tuple[Array, Indices]:
+def _beside_edges(surface: SurfaceMesh, spacing: float) -> tuple[Array, Indices]:
     """Points on both faces beside each drawn edge, in its middle and, where it is long, near its ends."""
     edges = surface.edges
     drawn = np.flatnonzero(surface.creases)
@@ -77,7 +77,7 @@ def _beside_edges(surface: Surface, spacing: float) -> tuple[Array, Indices]:
     return np.concatenate(points), np.concatenate(faces)
 
 
-def _counts(surface: Surface, spacing: float, most: int) -> Indices:
+def _counts(surface: SurfaceMesh, spacing: float, most: int) -> Indices:
     """Points of each face."""
     areas = surface.areas
     quota = max(spacing**2, float(areas.sum()) / most)

@@ -39,7 +39,7 @@ class Edges:
 
 
 @dataclass(frozen=True)
-class Surface:
+class SurfaceMesh:
     """A closed mesh, vertices (n, 3) in mm and triangles (m, 3), facing outwards."""
 
     vertices: Array

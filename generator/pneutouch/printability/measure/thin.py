@@ -14,10 +14,10 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags, Indices
 from pneutouch.printability.measure.chords import FLANK, Chords, Side, continues, described
-from pneutouch.printability.measure.surface import Surface
+from pneutouch.printability.measure.surface import SurfaceMesh
 from pneutouch.printability.subject import Point
 
-Kind = Literal["wall", "pin", "hole", "channel", "gap", "raised", "engraved"]
+FeatureKind = Literal["wall", "pin", "hole", "channel", "gap", "raised", "engraved"]
 
 ROUND = 2.0
 """An opening at most this many times as wide one way as the other is a hole, else a gap."""
@@ -46,13 +46,13 @@ _PER_GROUP = 48
 
 
 @dataclass(frozen=True)
-class Place:
+class ThinPlace:
     """One thin place: ``size`` at its narrowest, mm, at ``where``; ``length`` along it (mm) for pins and holes.
 
     ``turn`` is the greatest turn (radians) between two faces of the curves around it.
     """
 
-    kind: Kind
+    kind: FeatureKind
     size: float
     where: Point
     length: float
@@ -60,8 +60,8 @@ class Place:
 
 
 def thin_places(
-    manifold: Any, surface: Surface, sides: dict[Side, Chords], limits: dict[Side, float], exact: Any = None
-) -> list[Place]:
+    manifold: Any, surface: SurfaceMesh, sides: dict[Side, Chords], limits: dict[Side, float], exact: Any = None
+) -> list[ThinPlace]:
     """Places with a chord up to a side's limit, mm, narrowest first. ``exact`` turns chords into exact lengths."""
     places = []
     for side, found in sides.items():
@@ -81,7 +81,7 @@ def thin_places(
     return sorted(places, key=lambda place: place.size)
 
 
-def _is_round(manifold: Any, surface: Surface, short: Chords, side: Side) -> Flags:
+def _is_round(manifold: Any, surface: SurfaceMesh, short: Chords, side: Side) -> Flags:
     """Pins among chords inside, holes among those outside."""
     if side == "outside":
         return np.asarray(short.second <= ROUND * short.length)
@@ -91,7 +91,7 @@ def _is_round(manifold: Any, surface: Surface, short: Chords, side: Side) -> Fla
     return result
 
 
-def _slope(surface: Surface, some: Chords) -> Array:
+def _slope(surface: SurfaceMesh, some: Chords) -> Array:
     """How fast each chord's faces part, mm per mm, (n,); nothing where they run along each other as far as can be told."""
     near = surface.smooth_normals(some.near, some.start)
     far = surface.smooth_normals(some.far, some.start + some.length[:, None] * some.direction)
@@ -110,7 +110,7 @@ class _Sized:
     round: Flags
 
 
-def _place(side: Side, some: _Sized, faces: int) -> Place:
+def _place(side: Side, some: _Sized, faces: int) -> ThinPlace:
     """One place is of one kind: what most of it is, where flanks are concerned, and else what its narrowest tenth is.
 
     ``faces`` is the number of face groups around it.
@@ -118,17 +118,17 @@ def _place(side: Side, some: _Sized, faces: int) -> Place:
     if some.flat.mean() > 0.5:
         sizes = np.where(some.flat, np.minimum(some.lengths, some.chords.flank), np.inf)
         first = int(sizes.argmin())
-        return Place("raised" if side == "inside" else "engraved", float(sizes[first]), _spot(some, first), 0.0)
+        return ThinPlace("raised" if side == "inside" else "engraved", float(sizes[first]), _spot(some, first), 0.0)
     first = int(some.lengths.argmin())
     size, where = float(some.lengths[first]), _spot(some, first)
     narrow = some.round & (some.lengths <= 1.1 * size)
     if not narrow.any():
         first = int(some.tapered.argmin())
-        return Place("wall" if side == "inside" else "gap", float(some.tapered[first]), _spot(some, first), 0.0)
+        return ThinPlace("wall" if side == "inside" else "gap", float(some.tapered[first]), _spot(some, first), 0.0)
     along = _length(some, int(np.flatnonzero(narrow)[0]), faces)
     if side == "inside":
-        return Place("pin", size, where, along)
-    return Place("channel" if along > LONG * size else "hole", size, where, along)
+        return ThinPlace("pin", size, where, along)
+    return ThinPlace("channel" if along > LONG * size else "hole", size, where, along)
 
 
 def _length(some: _Sized, row: int, faces: int) -> float:
@@ -180,7 +180,7 @@ def _connected(some: Chords, groups: Indices, round_: Flags) -> list[Indices]:
     return [np.flatnonzero(label == number) for number in np.unique(label)]
 
 
-def _in_wedge(surface: Surface, found: Chords, side: Side) -> Flags:
+def _in_wedge(surface: SurfaceMesh, found: Chords, side: Side) -> Flags:
     """Chords in the corner between two faces that meet at less than 50 degrees, (n,) bool."""
     edges = surface.edges
     turn = edges.turn if side == "inside" else -edges.turn

@@ -20,7 +20,7 @@ _OFF = (0.4142135623730951, 0.7320508075688772)
 
 
 @dataclass(frozen=True)
-class Voxels:
+class PartVoxels:
     """Number of the part that fills each cube, from 1, and 0 where none does, (i, j, k); one empty cube all around.
 
     ``pitch`` in mm, ``origin`` the centre of cube (0, 0, 0) in the build frame, whose z points up; ``frame`` (3, 3) turns
@@ -52,7 +52,7 @@ def build_frame(up: Array) -> Array:
     return np.array([side, np.cross(up, side), up])
 
 
-def fill(parts: list[Array], frame: Array, most: int = MOST) -> Voxels:
+def fill(parts: list[Array], frame: Array, most: int = MOST) -> PartVoxels:
     """Cubes whose centres lie in the parts, given by their triangles' corners (m, 3, 3) in the design frame."""
     turned = [corners @ frame.T for corners in parts]
     low = np.min([corners.min(axis=(0, 1)) for corners in turned], axis=0)
@@ -63,7 +63,7 @@ def fill(parts: list[Array], frame: Array, most: int = MOST) -> Voxels:
     label = np.zeros(shape, dtype=np.int8)
     for number, corners in enumerate(turned, start=1):
         label[_filled((corners - origin) / pitch, shape)] = number
-    return Voxels(label, pitch, origin, frame)
+    return PartVoxels(label, pitch, origin, frame)
 
 
 def _filled(corners: Array, shape: tuple[int, ...]) -> Flags:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pneutouch.printability.finding import Finding
 from pneutouch.printability.sizes import compare
-from pneutouch.printability.view import View
+from pneutouch.printability.view import PrintView
 
 
-def check(view: View) -> list[Finding]:
+def check(view: PrintView) -> list[Finding]:
     """Compare every channel."""
     fix = "make the channel wider or shorter, or drill it through after printing"
     return compare(view, "channels", {"channel": "a channel"}, "channel", fix)

@@ -9,7 +9,7 @@ from pneutouch.printability.finding import Excess, Finding, Severity
 from pneutouch.printability.measure.cavities import NARROW, Pocket, overhangs
 from pneutouch.printability.measure.rays import first_hits
 from pneutouch.printability.subject import Point
-from pneutouch.printability.view import Job, View
+from pneutouch.printability.view import PrintJob, PrintView
 
 _VENDOR = "vendor, objet.com Tips and Tricks: a confined hollow is not cleanable; "
 _NECK = _VENDOR + "share of the width that the opening needs: own, unverified"
@@ -32,7 +32,7 @@ _BRIDGED = 50.0
 """Ceiling in mm2 that a filament printer bridges without support: about 7 mm each way."""
 
 
-def check(view: View) -> list[Finding]:
+def check(view: PrintView) -> list[Finding]:
     """Look into each job as it is printed; filament needs support only under ceilings."""
     found = []
     for job in view.jobs:
@@ -43,7 +43,7 @@ def check(view: View) -> list[Finding]:
     return found
 
 
-def _necks(job: Job) -> list[Finding]:
+def _necks(job: PrintJob) -> list[Finding]:
     found = []
     for pocket in job.pockets:
         if (
@@ -69,7 +69,7 @@ def _words(pocket: Pocket) -> str:
     )
 
 
-def _hidden(job: Job) -> list[Finding]:
+def _hidden(job: PrintJob) -> list[Finding]:
     voxels = job.voxels
     hidden = job.hidden.copy()
     for pocket in job.pockets:
@@ -92,7 +92,7 @@ def _hidden(job: Job) -> list[Finding]:
     return [_finding(job, "warning", text, fix, _SIGHT if polyjet else _FILAMENT, where, excess)]
 
 
-def _escapes(job: Job, cells: Indices) -> Flags:
+def _escapes(job: PrintJob, cells: Indices) -> Flags:
     """Whether a straight line leads from the middle of a cube to the outside, (n,)."""
     index = np.arange(_DIRECTIONS) + 0.5
     height, turn = 1 - 2 * index / _DIRECTIONS, np.pi * (1 + 5**0.5) * index
@@ -104,7 +104,7 @@ def _escapes(job: Job, cells: Indices) -> Flags:
     return np.asarray(np.isinf(hits.distances[:, 1]).reshape(len(cells), _DIRECTIONS).any(axis=1))
 
 
-def _needs_support(job: Job, region: Flags) -> bool:
+def _needs_support(job: PrintJob, region: Flags) -> bool:
     """Polyjet fills every hollow; filament needs support under ceilings too wide to bridge."""
     if job.printer.process == "polyjet":
         return True
@@ -112,7 +112,7 @@ def _needs_support(job: Job, region: Flags) -> bool:
     return float(ceiling.sum()) * job.voxels.pitch**2 > _BRIDGED
 
 
-def _slender(job: Job) -> list[Finding]:
+def _slender(job: PrintJob) -> list[Finding]:
     found = []
     for part in job.parts:
         for place in part.places:
@@ -126,7 +126,7 @@ def _slender(job: Job) -> list[Finding]:
 
 
 def _finding(
-    job: Job, severity: Severity, text: str, fix: str, source: str, where: Point, excess: Excess
+    job: PrintJob, severity: Severity, text: str, fix: str, source: str, where: Point, excess: Excess
 ) -> Finding:  # fmt: skip
     part = job.nearest(where)
     fix = part.item.hints.get("cleaning", fix)

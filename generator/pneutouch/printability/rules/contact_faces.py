@@ -12,7 +12,7 @@ from pneutouch.body import Body
 from pneutouch.printability.finding import Excess, Finding
 from pneutouch.printability.sizes import spot
 from pneutouch.printability.subject import Joint
-from pneutouch.printability.view import Part, View
+from pneutouch.printability.view import PrintPart, PrintView
 
 _SOURCE = "vendor: one closed shell per material region, shells must not occupy the same space (multi-colour guideline)"
 _FIX = "report the design: this is a fault"
@@ -24,7 +24,7 @@ _LEAST_SHARE = 0.999
 """Share of a joint's exact area that the meshes must share."""
 
 
-def check(view: View) -> list[Finding]:
+def check(view: PrintView) -> list[Finding]:
     """Measure the overlap of every two bodies and the area of the faces that they are to share."""
     overlaps = {
         frozenset((one.name, other.name)): finding
@@ -35,7 +35,7 @@ def check(view: View) -> list[Finding]:
     return [*overlaps.values(), *(finding for joint in joints for finding in _parted(view, joint))]
 
 
-def _overlap(one: Part, other: Part) -> Finding | None:
+def _overlap(one: PrintPart, other: PrintPart) -> Finding | None:
     boxes = one.item.body.bounds, other.item.body.bounds
     if (boxes[0][0] >= boxes[1][1]).any() or (boxes[1][0] >= boxes[0][1]).any():
         return None
@@ -49,7 +49,7 @@ def _overlap(one: Part, other: Part) -> Finding | None:
     return Finding("contact faces", "error", one.name, text, fix, _SOURCE, where, Excess(volume, 0.0, "mm3"))
 
 
-def _parted(view: View, joint: Joint) -> list[Finding]:
+def _parted(view: PrintView, joint: Joint) -> list[Finding]:
     one, other = view.part(joint.one), view.part(joint.other)
     if one is None or other is None:
         return []

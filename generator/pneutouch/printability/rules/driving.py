@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.printability.finding import Excess, Finding
-from pneutouch.printability.view import View
+from pneutouch.printability.view import PrintView
 from pneutouch.units import KPA
 
 _SOURCES = {
@@ -14,7 +14,7 @@ _SOURCES = {
 }
 
 
-def check(view: View) -> list[Finding]:
+def check(view: PrintView) -> list[Finding]:
     """Compare the highest driving pressure with the limit that binds."""
     if view.sensor is None:
         return []

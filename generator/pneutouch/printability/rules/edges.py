@@ -8,7 +8,7 @@ from pneutouch.arrays import Array
 from pneutouch.body import Body
 from pneutouch.printability.finding import Excess, Finding
 from pneutouch.printability.sizes import spot
-from pneutouch.printability.view import Part, View
+from pneutouch.printability.view import PrintPart, PrintView
 
 _KNIFE = 30.0
 """Angle inside the body (degrees) below which an edge is a knife's."""
@@ -20,12 +20,12 @@ _SHARP = "own, unverified: an edge thins to nothing, and below the smallest wall
 _WRITTEN = "STL holds coordinates as 32-bit floats; 3MF readers do likewise"
 
 
-def check(view: View) -> list[Finding]:
+def check(view: PrintView) -> list[Finding]:
     """Look at the angle inside of every edge, and at every triangle after rounding."""
     return [finding for part in view.sound for finding in (*_knives(part), *_collapsed(part))]
 
 
-def _knives(part: Part) -> list[Finding]:
+def _knives(part: PrintPart) -> list[Finding]:
     edges = part.surface.edges
     angle = 180.0 - np.degrees(edges.turn)
     sharp = np.flatnonzero(angle < _KNIFE - _ROUNDING)
@@ -41,7 +41,7 @@ def _knives(part: Part) -> list[Finding]:
     return [Finding("edges", "warning", part.name, text, fix, _SHARP, where, Excess(least, _KNIFE, "degrees"))]
 
 
-def _collapsed(part: Part) -> list[Finding]:
+def _collapsed(part: PrintPart) -> list[Finding]:
     body = part.item.body
     rounded = body.vertices.astype(np.float32).astype(np.float64)
     before, after = _areas(body.vertices, body), _areas(rounded, body)

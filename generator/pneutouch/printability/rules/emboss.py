@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pneutouch.printability.finding import Finding
 from pneutouch.printability.sizes import compare
-from pneutouch.printability.view import View
+from pneutouch.printability.view import PrintView
 
 
-def check(view: View) -> list[Finding]:
+def check(view: PrintView) -> list[Finding]:
     """Compare the width and the height of raised and engraved detail, whichever is less."""
     fix = "make the detail wider and higher"
     return compare(view, "emboss", {"raised": "a raised detail", "engraved": "an engraved detail"}, "emboss", fix)

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from pneutouch.printability.finding import Excess, Finding
-from pneutouch.printability.view import Job, View
+from pneutouch.printability.view import PrintJob, PrintView
 
 
-def check(view: View) -> list[Finding]:
+def check(view: PrintView) -> list[Finding]:
     """Compare the bounds along the build direction and across it, either way round on the tray."""
     return [finding for job in view.jobs if (finding := _check(job)) is not None]
 
 
-def _check(job: Job) -> Finding | None:
+def _check(job: PrintJob) -> Finding | None:
     room = job.printer.envelope_mm
     x, y, z = (float(length) for length in job.bounds[1] - job.bounds[0])
     if z <= room.z and ((x <= room.x and y <= room.y) or (x <= room.y and y <= room.x)):

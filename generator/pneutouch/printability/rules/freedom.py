@@ -6,7 +6,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.printability.finding import Excess, Finding
-from pneutouch.printability.view import Part, View
+from pneutouch.printability.view import PrintPart, PrintView
 from pneutouch.units import KPA
 
 _SOURCE = "own prediction: the mechanics knows of no body beside the dome, so where they meet its figures do not hold"
@@ -14,7 +14,7 @@ _TOUCH = 0.05
 """Depth in mm below which a meeting is the mesh's and the prediction's own error."""
 
 
-def check(view: View) -> list[Finding]:
+def check(view: PrintView) -> list[Finding]:
     """The deepest meeting of the inflated or pressed wall with each other body; nothing without predicted shapes."""
     if view.sensor is None:
         return []
@@ -37,7 +37,7 @@ def check(view: View) -> list[Finding]:
     return found
 
 
-def _deepest(part: Part, plane: Array) -> tuple[float, tuple[float, float, float]]:
+def _deepest(part: PrintPart, plane: Array) -> tuple[float, tuple[float, float, float]]:
     """Greatest depth in mm of points (n, 2) in (r, z) inside a body, in the half plane y = 0, and where; 0 outside."""
     low, high = part.item.body.bounds
     near = plane[(plane[:, 0] >= -1e-9) & (plane[:, 0] < high[0]) & (plane[:, 1] > low[2]) & (plane[:, 1] < high[2])]

@@ -9,7 +9,7 @@ import numpy as np
 from pneutouch.printability.finding import Excess, Finding
 from pneutouch.printability.measure.rays import first_hits
 from pneutouch.printability.sizes import compare, lower, severity_of, spot, wording
-from pneutouch.printability.view import Part, View
+from pneutouch.printability.view import PrintPart, PrintView
 
 _TOUCHING = 1e-3
 """Faces nearer than this (mm) are meant to touch."""
@@ -20,7 +20,7 @@ _PARALLEL = -np.cos(np.radians(10.0))
 _FIX = "widen the gap, close it, or print the bodies apart"
 
 
-def check(view: View) -> list[Finding]:
+def check(view: PrintView) -> list[Finding]:
     """Compare every gap."""
     found = compare(view, "gaps", {"gap": "a gap"}, "gap", _FIX)
     for job in view.jobs:
@@ -29,7 +29,7 @@ def check(view: View) -> list[Finding]:
     return found
 
 
-def _between(one: Part, other: Part) -> list[Finding]:
+def _between(one: PrintPart, other: PrintPart) -> list[Finding]:
     feature = one.limit("gap")
     samples, reach = one.samples, feature.recommended
     box = other.item.body.bounds + np.array([[-reach], [reach]])

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from pneutouch.printability.finding import Excess, Finding
-from pneutouch.printability.view import View
+from pneutouch.printability.view import PrintView
 
 _SOURCE = "vendor, objet.com Tips and Tricks: a confined hollow is not cleanable"
 _FILAMENT = "own, unverified: what is closed cannot be inspected, and loose support stays in it"
 
 
-def check(view: View) -> list[Finding]:
+def check(view: PrintView) -> list[Finding]:
     """Look for shells that face inwards, in each body and in what a job joins to one."""
     found = []
     for job in view.jobs:

@@ -8,7 +8,7 @@ import numpy as np
 
 from pneutouch.mechanics import Sensor
 from pneutouch.printability.finding import Excess, Finding
-from pneutouch.printability.view import Part, SensorContext, View
+from pneutouch.printability.view import PrintPart, PrintView, SensorContext
 from pneutouch.units import KPA, UM
 
 _SOURCE = "layer height and pixel as the printer's profile states them; a tenth of a step: own, unverified"
@@ -16,7 +16,7 @@ _OFF = 0.1
 """Share of a step by which a wall may miss a whole number of them."""
 
 
-def check(view: View) -> list[Finding]:
+def check(view: PrintView) -> list[Finding]:
     """Compare the wall with the steps of the machine at the pole and at the rim."""
     context = view.sensor
     part = None if context is None else view.part(context.membrane)
@@ -31,7 +31,7 @@ def check(view: View) -> list[Finding]:
     return [finding for finding in found if finding is not None]
 
 
-def _check(context: SensorContext, part: Part, where: str, unit: str, step: float, wall: float) -> Finding | None:
+def _check(context: SensorContext, part: PrintPart, where: str, unit: str, step: float, wall: float) -> Finding | None:
     count = wall / step
     off = abs(count - round(count))
     if off <= _OFF:

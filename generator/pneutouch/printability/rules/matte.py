@@ -8,7 +8,7 @@ from pneutouch.arrays import Array, Flags
 from pneutouch.printability.finding import Excess, Finding
 from pneutouch.printability.measure.rays import first_hits
 from pneutouch.printability.sizes import spot
-from pneutouch.printability.view import Job, Part, View
+from pneutouch.printability.view import PrintJob, PrintPart, PrintView
 
 _SOURCE = "vendor: faces that support touches come out matte (DOC-37004 p. 5-34); share allowed: own, unverified"
 _MOST = 0.01
@@ -19,7 +19,7 @@ _OFF = 1e-3
 """Distance from the face in mm at which the look upwards starts."""
 
 
-def check(view: View) -> list[Finding]:
+def check(view: PrintView) -> list[Finding]:
     """Measure the share of each sensing face that looks down or lies under something of the same job."""
     return [
         finding
@@ -29,7 +29,7 @@ def check(view: View) -> list[Finding]:
     ]
 
 
-def _check(job: Job, part: Part) -> Finding | None:
+def _check(job: PrintJob, part: PrintPart) -> Finding | None:
     samples, sensing = part.samples, part.item.sensing
     rows = np.flatnonzero(
         (samples.areas > 0) & (np.zeros(len(samples.areas), bool) if sensing is None else sensing(samples.points))
@@ -47,7 +47,7 @@ def _check(job: Job, part: Part) -> Finding | None:
     return Finding("matte", "warning", part.name, text, fix, _SOURCE, where, Excess(share, _MOST, ""))
 
 
-def _touched(job: Job, part: Part, points: Array, normals: Array) -> Flags:
+def _touched(job: PrintJob, part: PrintPart, points: Array, normals: Array) -> Flags:
     touched: Flags = normals @ job.up < _DOWN[part.process]
     height = float(job.bounds[1][2] - job.bounds[0][2]) + 1.0
     upwards = np.broadcast_to(job.up, points.shape)

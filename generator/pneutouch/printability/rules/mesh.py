@@ -7,7 +7,7 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.printability.finding import Excess, Finding
 from pneutouch.printability.sizes import spot
-from pneutouch.printability.view import Part, View
+from pneutouch.printability.view import PrintPart, PrintView
 from pneutouch.units import UM
 
 _SOLID = (
@@ -21,7 +21,7 @@ _FINER = 4.0
 """Chords this many times narrower than the finest step needs make at least as many times the triangles."""
 
 
-def check(view: View) -> list[Finding]:
+def check(view: PrintView) -> list[Finding]:
     """Measure closedness, the deviation from the exact solid and the width of chords."""
     found = []
     for part in view.parts:
@@ -29,7 +29,7 @@ def check(view: View) -> list[Finding]:
     return found
 
 
-def _open(part: Part) -> list[Finding]:
+def _open(part: PrintPart) -> list[Finding]:
     if not part.item.body.is_closed():
         text = "the mesh is not closed"
     elif not part.read.is_closed():
@@ -42,7 +42,7 @@ def _open(part: Part) -> list[Finding]:
     return [Finding("mesh", "error", part.name, text, fix, _SOLID)]
 
 
-def _coarse(part: Part) -> list[Finding]:
+def _coarse(part: PrintPart) -> list[Finding]:
     step = part.item.printer.finest_step(part.item.mode)
     if part.item.solid is None:
         (deviation, edge), how = part.surface.chord_error, "by the turn of its edges"
@@ -60,13 +60,13 @@ def _coarse(part: Part) -> list[Finding]:
     return [Finding("mesh", "warning", part.name, text, fix, source, spot(where), Excess(deviation, step))]
 
 
-def _points(part: Part) -> Array:
+def _points(part: PrintPart) -> Array:
     """Corners, middles of edges and middles of triangles: where a mesh is farthest off a smooth surface."""
     body, ends = part.surface, part.surface.edges.ends
     return np.concatenate([body.vertices, body.vertices[ends].mean(axis=1), body.corners.mean(axis=1)])
 
 
-def _fine(part: Part) -> list[Finding]:
+def _fine(part: PrintPart) -> list[Finding]:
     step = part.item.printer.finest_step(part.item.mode)
     sagittas = part.surface.sagittas
     curved = sagittas[sagittas > 1e-9]

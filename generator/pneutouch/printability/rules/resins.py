@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from pneutouch.printability.finding import Excess, Finding
-from pneutouch.printability.view import Job, View
+from pneutouch.printability.view import PrintJob, PrintView
 from pneutouch.spec.printer import Mode
 
 _FIX = "take resins that the machine runs together, or print the bodies one after the other"
 
 
-def check(view: View) -> list[Finding]:
+def check(view: PrintView) -> list[Finding]:
     """Compare the base resins of all materials of a job with the machine and its mode."""
     return [finding for job in view.jobs if (finding := _check(job)) is not None]
 
 
-def _check(job: Job) -> Finding | None:
+def _check(job: PrintJob) -> Finding | None:
     items = [part.item for part in job.parts]
     printer, mode = items[0].printer, items[0].mode
     source, name = mode.source, job.parts[0].name
@@ -44,7 +44,7 @@ def _check(job: Job) -> Finding | None:
     return Finding("resins", "error", name, text, fix, source, None, excess)
 
 
-def _other(job: Job, resins: list[str], digital: bool) -> str:
+def _other(job: PrintJob, resins: list[str], digital: bool) -> str:
     """A mode that would do, else the plain advice."""
     printer = job.parts[0].item.printer
 

@@ -1,5 +1,5 @@
 """The measured datasheet: what a campaign found, beside what was predicted."""
 
-from pneutouch.report.measured.beside import Beside, Measured, Verdict
+from pneutouch.report.measured.beside import CampaignReport, GroupComparison, Verdict
 
-__all__ = ["Beside", "Measured", "Verdict"]
+__all__ = ["CampaignReport", "GroupComparison", "Verdict"]

@@ -6,15 +6,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pneutouch.bench.record import Curve
-from pneutouch.bench.summary import Group
-from pneutouch.catalogue import Scene
-from pneutouch.mechanics.prediction import State
+from pneutouch.bench.record import MeasuredCurve
+from pneutouch.bench.summary import RunGroup
+from pneutouch.catalogue import ResolvedDesign
+from pneutouch.mechanics.prediction import SensorState
 from pneutouch.spec.campaign import Campaign
 
 
 @dataclass(frozen=True)
-class Beside:
+class GroupComparison:
     """A group beside its prediction.
 
     Attributes:
@@ -27,9 +27,9 @@ class Beside:
         why: Why there is no prediction; empty where there is one.
     """
 
-    group: Group
+    group: RunGroup
     label: str
-    state: State | None
+    state: SensorState | None
     uncertainty: dict[str, Any]
     predicted: dict[str, tuple[float, float | None, float | None]]
     why: str = ""
@@ -49,7 +49,7 @@ class Verdict:
 
 
 @dataclass(frozen=True)
-class Measured:
+class CampaignReport:
     """A whole campaign.
 
     Attributes:
@@ -69,10 +69,10 @@ class Measured:
     """
 
     campaign: Campaign
-    scene: Scene
+    scene: ResolvedDesign
     folder: Path
-    besides: tuple[Beside, ...]
-    curves: tuple[Curve, ...]
+    besides: tuple[GroupComparison, ...]
+    curves: tuple[MeasuredCurve, ...]
     failures: tuple[tuple[str, str], ...]
     questions: tuple[tuple[str, str], ...]
     verdicts: tuple[Verdict, ...]

@@ -9,7 +9,7 @@ from typing import Any
 
 from pneutouch import __version__
 from pneutouch.bench.interval import Estimate
-from pneutouch.report.measured.beside import Beside, Measured, Verdict
+from pneutouch.report.measured.beside import CampaignReport, GroupComparison, Verdict
 from pneutouch.report.measured.words import between, difference, listed, number, overlap, said, signed
 from pneutouch.units import KPA
 
@@ -20,7 +20,7 @@ _WORDS = ("passed", "failed", "not decided")
 Tile = list[str]
 
 
-def head(measured: Measured) -> dict[str, Any]:
+def head(measured: CampaignReport) -> dict[str, Any]:
     """Title, who, when, how many, and the mark of simulated data."""
     campaign = measured.campaign
     resins, sensors = {run.resin for run in campaign.runs}, {run.sensor for run in campaign.runs}
@@ -42,7 +42,7 @@ def counted(count: int, what: str) -> str:
     return f"{count} {what}{'' if count == 1 else 's'}"
 
 
-def dates(measured: Measured) -> str:
+def dates(measured: CampaignReport) -> str:
     """First and last day of the runs."""
     days = sorted(run.date for run in measured.campaign.runs if run.date is not None)
     if not days:
@@ -51,7 +51,7 @@ def dates(measured: Measured) -> str:
     return first if first == last else f"{first} to {last}"
 
 
-def verdict(measured: Measured) -> dict[str, Any]:
+def verdict(measured: CampaignReport) -> dict[str, Any]:
     """Whether the target is met, wish by wish, and how many runs gave nothing."""
     return {
         "word": _whole(measured.verdicts),
@@ -60,7 +60,7 @@ def verdict(measured: Measured) -> dict[str, Any]:
     }
 
 
-def _notes(measured: Measured) -> list[str]:
+def _notes(measured: CampaignReport) -> list[str]:
     """What is to be said under the verdicts."""
     failed, runs = len(measured.failures), len(measured.campaign.runs)
     doubts = sum(doubt.kind != "note" for curve in measured.curves for doubt in curve.doubts)
@@ -83,7 +83,7 @@ def _whole(verdicts: tuple[Verdict, ...]) -> str:
     return f"Target {said(False if False in passed else None if None in passed else True, _WORDS)}"
 
 
-def tiles(measured: Measured) -> list[Tile]:
+def tiles(measured: CampaignReport) -> list[Tile]:
     """Name, value, unit, condition of the figures that count; those that were not measured are left out."""
     found = [_extent(measured, _SENSITIVITY, "Sensitivity", "kPa/N"), *_against(measured)]
     for key, name in (("repeatability_kPa_per_N", "Repeatability"), ("part_to_part_kPa_per_N", "Part to part")):
@@ -98,11 +98,11 @@ def tiles(measured: Measured) -> list[Tile]:
     return [tile for tile in found if tile is not None][:6]
 
 
-def _with(measured: Measured, key: str) -> list[tuple[Beside, Estimate]]:
+def _with(measured: CampaignReport, key: str) -> list[tuple[GroupComparison, Estimate]]:
     return [(beside, beside.group.figures[key]) for beside in measured.besides if key in beside.group.figures]
 
 
-def _where(measured: Measured, beside: Beside) -> str:
+def _where(measured: CampaignReport, beside: GroupComparison) -> str:
     """A group in words: its resin and age where there are several."""
     key, keys = beside.group.key, [other.group.key for other in measured.besides]
     resin = [beside.label] if len({other.resin for other in keys}) > 1 else []
@@ -110,7 +110,7 @@ def _where(measured: Measured, beside: Beside) -> str:
     return ", ".join([*resin, f"{key.driving_pressure_kPa:g} kPa", *age])
 
 
-def _extent(measured: Measured, key: str, name: str, unit: str) -> Tile | None:
+def _extent(measured: CampaignReport, key: str, name: str, unit: str) -> Tile | None:
     """The one value that there is, or the extent from the least to the greatest group."""
     found = _with(measured, key)
     if not found:
@@ -125,7 +125,7 @@ def _extent(measured: Measured, key: str, name: str, unit: str) -> Tile | None:
     return [name, ends, unit, f"least at {_where(measured, low[0])}, greatest at {_where(measured, high[0])}"]
 
 
-def _against(measured: Measured) -> list[Tile]:
+def _against(measured: CampaignReport) -> list[Tile]:
     """How far the measured sensitivities are off the predicted, and in how many groups the intervals overlap."""
     pairs = [(b, e, b.predicted[_SENSITIVITY]) for b, e in _with(measured, _SENSITIVITY) if _SENSITIVITY in b.predicted]
     off = [(gap, b) for b, e, p in pairs if (gap := difference(e.value, p[0])) is not None]
@@ -153,7 +153,7 @@ def _against(measured: Measured) -> list[Tile]:
     ]
 
 
-def _worst(measured: Measured, key: str, name: str, unit: str, what: str) -> Tile | None:
+def _worst(measured: CampaignReport, key: str, name: str, unit: str, what: str) -> Tile | None:
     """The greatest of a figure over the groups."""
     found = [pair for pair in _with(measured, key) if math.isfinite(pair[1].value)]
     if not found:
@@ -163,7 +163,7 @@ def _worst(measured: Measured, key: str, name: str, unit: str, what: str) -> Til
     return [name, number(estimate.value), unit, f"{what}; {most}{_where(measured, beside)}"]
 
 
-def conditions(measured: Measured) -> list[list[str]]:
+def conditions(measured: CampaignReport) -> list[list[str]]:
     """Rig, air, runs and model: quantity and value."""
     campaign, rig, scene = measured.campaign, measured.campaign.rig, measured.scene
     kinds = Counter(run.kind for run in campaign.runs)
@@ -188,11 +188,11 @@ def conditions(measured: Measured) -> list[list[str]]:
     ]  # fmt: skip
 
 
-def _age(beside: Beside) -> float:
+def _age(beside: GroupComparison) -> float:
     return beside.group.key.age_days
 
 
-def _as_read(measured: Measured) -> str:
+def _as_read(measured: CampaignReport) -> str:
     """Greatest distance of a run's driving pressure from its nominal one."""
     off = [
         curve.driving / KPA - curve.run.driving_pressure_kPa

@@ -12,8 +12,8 @@ from functools import cached_property
 from itertools import groupby
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from pneutouch.bench.record import Curve
-from pneutouch.report.measured.beside import Beside
+from pneutouch.bench.record import MeasuredCurve
+from pneutouch.report.measured.beside import GroupComparison
 from pneutouch.report.style import FAINT, INK, LINES, MARKERS, MUTED, figure, svg
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ class Panel:
     """
 
     label: str
-    besides: tuple[Beside, ...]
+    besides: tuple[GroupComparison, ...]
     campaign_pressures: tuple[float, ...]
     alone: bool
 
@@ -72,11 +72,11 @@ class Panel:
         """Ages in months, ascending."""
         return sorted({beside.group.key.age_days for beside in self.besides})
 
-    def tone(self, beside: Beside) -> tuple[str, Any]:
+    def tone(self, beside: GroupComparison) -> tuple[str, Any]:
         """Colour and line style of a group's driving pressure: the same in every panel."""
         return _tone(self.campaign_pressures.index(beside.group.key.driving_pressure_kPa))
 
-    def spots(self, beside: Beside, curve: Curve) -> dict[str, Any]:
+    def spots(self, beside: GroupComparison, curve: MeasuredCurve) -> dict[str, Any]:
         """How the points of a run are drawn."""
         color, _ = self.tone(beside)
         young = beside.group.key.age_days == self.ages[0]
@@ -92,14 +92,14 @@ def _tone(k: int) -> tuple[str, Any]:
     return TONES[k % len(TONES)], LINES[k % len(LINES)]
 
 
-def panels_of(besides: Sequence[Beside]) -> list[Panel]:
+def panels_of(besides: Sequence[GroupComparison]) -> list[Panel]:
     """Groups by resin, in their order."""
     every = tuple(sorted({beside.group.key.driving_pressure_kPa for beside in besides}))
     by_resin = [tuple(some) for _, some in groupby(besides, key=lambda beside: beside.group.key.resin)]
     return [Panel(members[0].label, members, every, len(by_resin) == 1) for members in by_resin]
 
 
-def some(curves: Sequence[Curve]) -> list[Curve]:
+def some(curves: Sequence[MeasuredCurve]) -> list[MeasuredCurve]:
     """At most `MOST_RUNS` runs, spread evenly over all."""
     step = math.ceil(len(curves) / MOST_RUNS)
     return list(curves[::step]) if step else []

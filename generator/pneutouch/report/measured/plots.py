@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.record import Curve
-from pneutouch.mechanics.prediction import State
-from pneutouch.report.measured.beside import Beside
+from pneutouch.bench.record import MeasuredCurve
+from pneutouch.mechanics.prediction import SensorState
+from pneutouch.report.measured.beside import GroupComparison
 from pneutouch.report.measured.panels import Panel, Plot, band_of, ends_of, key, lines_of, multiples, some
 from pneutouch.report.style import FAINT, INK, LINES, MARKERS, MUTED
 from pneutouch.units import KPA
@@ -27,8 +27,8 @@ _MOST_TICKS = 5
 class _Axes(NamedTuple):
     """What is drawn over what: of a run, of a state, and the figure whose band the state's curve has."""
 
-    measured: Callable[[Curve], tuple[Array, Array]]
-    predicted: Callable[[State], tuple[Array, Array]]
+    measured: Callable[[MeasuredCurve], tuple[Array, Array]]
+    predicted: Callable[[SensorState], tuple[Array, Array]]
     figure: str
 
 
@@ -68,7 +68,7 @@ def _ages(panels: Sequence[Panel]) -> list[str]:
     return list({b.group.key.age_days: b.group.key.age for p in panels for b in sorted(p.besides, key=_age)}.values())
 
 
-def _age(beside: Beside) -> float:
+def _age(beside: GroupComparison) -> float:
     return beside.group.key.age_days
 
 
@@ -76,7 +76,7 @@ def _spot(k: int) -> dict[str, Any]:
     return {"marker": MARKERS[k % len(MARKERS)], "ms": 3.6, "mec": INK, "mfc": INK if k == 0 else "white", "color": INK}
 
 
-def _greatest(beside: Beside) -> float:
+def _greatest(beside: GroupComparison) -> float:
     """Upper end of what is drawn of a group."""
     measured, predicted = beside.group.figures.get(SENSITIVITY), beside.predicted.get(SENSITIVITY)
     ends = [] if measured is None else [measured.value, measured.high]
@@ -166,7 +166,9 @@ def _draw(ax: Axes, panel: Panel, over: _Axes) -> None:
     ax.set(xlim=(0, None), ylim=(0, None))
 
 
-def _predicted(ax: Axes, panel: Panel, beside: Beside, state: State, over: _Axes, *, shade: bool) -> None:
+def _predicted(
+    ax: Axes, panel: Panel, beside: GroupComparison, state: SensorState, over: _Axes, *, shade: bool
+) -> None:
     """The predicted curve up to the end of its range, and its band where it is to be shaded."""
     kept = state.indentation <= state.range_end * (1 + 1e-12)
     x, y = (values[kept] for values in over.predicted(state))
@@ -179,7 +181,7 @@ def _predicted(ax: Axes, panel: Panel, beside: Beside, state: State, over: _Axes
             ax.plot(x, end * y, color=color, ls=LINES[0], lw=0.35, zorder=2)
 
 
-def _ends(beside: Beside, figure: str) -> tuple[float, float] | None:
+def _ends(beside: GroupComparison, figure: str) -> tuple[float, float] | None:
     """Ends of a figure's band over its value."""
     value, low, high = beside.predicted.get(figure, (0.0, None, None))
     return None if not value or low is None or high is None else (low / value, high / value)

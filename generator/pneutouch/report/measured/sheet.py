@@ -7,13 +7,13 @@ from typing import Any
 
 from pneutouch.report import pages
 from pneutouch.report.measured import definition, head, plots, slow, tables
-from pneutouch.report.measured.beside import Measured
+from pneutouch.report.measured.beside import CampaignReport
 from pneutouch.report.measured.panels import MOST_RUNS, Panel, Plot, panels_of
 
 _RUNS_ONLY = ("steps", "saturation", "loop", "relaxation")
 
 
-def measured_datasheet(measured: Measured) -> dict[str, bytes]:
+def measured_datasheet(measured: CampaignReport) -> dict[str, bytes]:
     """``measured-datasheet.html`` and ``measured-datasheet.pdf``; the same bytes for the same campaign."""
     panels = panels_of(measured.besides)
     drawn = _figures(measured, panels)
@@ -29,7 +29,7 @@ def measured_datasheet(measured: Measured) -> dict[str, bytes]:
     }
 
 
-def _content(measured: Measured, panels: Sequence[Panel]) -> dict[str, Any]:
+def _content(measured: CampaignReport, panels: Sequence[Panel]) -> dict[str, Any]:
     """The sections of the sheet; every leaf is text, ready to be printed."""
     return {
         **head.head(measured),
@@ -52,10 +52,10 @@ def _listed(found: tuple[list[list[str]], str]) -> dict[str, Any]:
     return {"rows": found[0], "more": found[1]}
 
 
-Drawn = dict[str, tuple[str, str, Plot]]
+DrawnPlots = dict[str, tuple[str, str, Plot]]
 
 
-def _figures(measured: Measured, panels: Sequence[Panel]) -> Drawn:
+def _figures(measured: CampaignReport, panels: Sequence[Panel]) -> DrawnPlots:
     """Title, caption and plot by name; plots without data are left out, wide ones stand first."""
     thinned = any(len(b.group.of_kind(kind)) > MOST_RUNS for b in measured.besides for kind in _RUNS_ONLY)
     some = f" At most {MOST_RUNS} runs a group are drawn." if thinned else ""

@@ -9,8 +9,8 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.bench.figure import FIRST
-from pneutouch.bench.record import Curve
-from pneutouch.report.measured.beside import Measured
+from pneutouch.bench.record import MeasuredCurve
+from pneutouch.report.measured.beside import CampaignReport
 from pneutouch.report.measured.panels import NARROW, TONES, Panel, Plot, ends_of, key, multiples, some
 from pneutouch.report.style import INK, LINES, MARKERS, MUTED, figure, plain_ticks, svg
 from pneutouch.units import KPA
@@ -54,7 +54,7 @@ def loops(panels: Sequence[Panel]) -> Plot | None:
     return multiples(panels, draw, ("contact force  (N)", "pressure rise  (kPa)"), legend)
 
 
-def _loop_of(panel: Panel, pressure: float) -> Curve | None:
+def _loop_of(panel: Panel, pressure: float) -> MeasuredCurve | None:
     """The first loop run at a driving pressure."""
     runs = (
         curve for beside in panel.besides if beside.group.key.driving_pressure_kPa == pressure
@@ -92,11 +92,11 @@ def relaxations(panels: Sequence[Panel]) -> Plot | None:
     )
 
 
-def _relaxed(panel: Panel) -> list[Curve]:
+def _relaxed(panel: Panel) -> list[MeasuredCurve]:
     return [curve for beside in panel.besides for curve in beside.group.of_kind("relaxation")]
 
 
-def _relaxation(ax: Axes, curve: Curve, look: dict[str, Any]) -> None:
+def _relaxation(ax: Axes, curve: MeasuredCurve, look: dict[str, Any]) -> None:
     if curve.relaxation is None:
         return
     time, *channels = curve.relaxation
@@ -122,7 +122,7 @@ def _relaxation(ax: Axes, curve: Curve, look: dict[str, Any]) -> None:
         ax.plot(seconds, 100 * values / values[0], **style)
 
 
-def ageings(measured: Measured) -> Plot | None:
+def ageings(measured: CampaignReport) -> Plot | None:
     """Change of sensitivity between ages with its interval, one row a group; what the paper found in a year beside it."""
     rows = measured.ageing
     if not rows:

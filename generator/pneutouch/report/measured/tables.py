@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from pneutouch.bench.figure import FIGURES, Figure
-from pneutouch.report.measured.beside import Beside, Measured
+from pneutouch.bench.figure import FIGURES, FigureDefinition
+from pneutouch.report.measured.beside import CampaignReport, GroupComparison
 from pneutouch.report.measured.panels import Panel
 from pneutouch.report.measured.words import (
     DASH,
@@ -60,11 +60,11 @@ def resin_table(panel: Panel) -> dict[str, Any]:
     }
 
 
-def _condition(beside: Beside) -> Row:
+def _condition(beside: GroupComparison) -> Row:
     return [f"{beside.group.key.driving_pressure_kPa:g}", beside.group.key.age]
 
 
-def _figure(figure: Figure, beside: Beside) -> Row:
+def _figure(figure: FigureDefinition, beside: GroupComparison) -> Row:
     estimate, digits = beside.group.figures[figure.key], figure.digits
     measured: Bounds = (estimate.value, estimate.low, estimate.high)
     cells = [number(estimate.value, digits), between(measured, digits), f"{estimate.specimens} / {estimate.runs}"]
@@ -94,7 +94,7 @@ def specimens(panels: Sequence[Panel]) -> tuple[list[Row], str]:
     return cut(rows, MOST_SPECIMENS)
 
 
-def _of_sensor(beside: Beside, sensor: str) -> Row:
+def _of_sensor(beside: GroupComparison, sensor: str) -> Row:
     group = beside.group
     each = [found for curve, found in zip(group.curves, group.each, strict=True) if curve.run.sensor == sensor]
     cells: Row = []
@@ -110,7 +110,7 @@ def _of_sensor(beside: Beside, sensor: str) -> Row:
     return [str(count), *cells] if set(cells) != {DASH} else []
 
 
-def ageing(measured: Measured) -> list[Row]:
+def ageing(measured: CampaignReport) -> list[Row]:
     """Resin, driving pressure, age, change in percent, interval, the paper's, whose sign is not given."""
     return [
         [resin, f"{pressure:g}", age, signed(change), _percent(low, high), DASH if paper is None else f"± {paper:.3g}"]
@@ -122,7 +122,7 @@ def _percent(low: float | None, high: float | None) -> str:
     return DASH if low is None or high is None else f"{signed(low)} to {signed(high)}"
 
 
-def injections(measured: Measured) -> tuple[list[Row], str]:
+def injections(measured: CampaignReport) -> tuple[list[Row], str]:
     """Sensor, name, value, standard error, unit of leak and injection runs."""
     rows = [
         [sensor, name, number(value, 4), DASH if error is None else number(error, 2), unit]
@@ -131,7 +131,7 @@ def injections(measured: Measured) -> tuple[list[Row], str]:
     return cut(rows, MOST)
 
 
-def doubts(measured: Measured) -> tuple[list[Row], str]:
+def doubts(measured: CampaignReport) -> tuple[list[Row], str]:
     """Stretches not to be trusted: file, seconds, why, used or not; mere notes are in figures.json."""
     rows = [
         [curve.run.file, f"{doubt.start:.2f} to {doubt.end:.2f}", doubt.why, said(doubt.used)]
@@ -140,12 +140,12 @@ def doubts(measured: Measured) -> tuple[list[Row], str]:
     return cut(rows, MOST)
 
 
-def failures(measured: Measured) -> tuple[list[Row], str]:
+def failures(measured: CampaignReport) -> tuple[list[Row], str]:
     """Files that could not be read, and why."""
     # The message begins with the file's path, which stands beside it.
     return cut([[file, why.split(f"{file}: ", 1)[-1]] for file, why in measured.failures], MOST)
 
 
-def questions(measured: Measured) -> tuple[list[Row], str]:
+def questions(measured: CampaignReport) -> tuple[list[Row], str]:
     """What looks wrong and was not changed."""
     return cut([list(pair) for pair in measured.questions], MOST)

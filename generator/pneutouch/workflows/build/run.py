@@ -18,9 +18,9 @@ from pneutouch.export.step import step
 from pneutouch.export.threemf import threemf
 from pneutouch.export.threemf_read import RECIPE
 from pneutouch.output.files import MANIFEST, check_writable, digest, json_bytes, write_folder
-from pneutouch.output.recipe import Recipe, versions
+from pneutouch.output.recipe import BuildRecipe, versions
 from pneutouch.output.recipe import input_hash as hash_of
-from pneutouch.report import Sheet, datasheet, print_sheet
+from pneutouch.report import Datasheet, datasheet, print_sheet
 from pneutouch.report.picture import picture
 from pneutouch.units import KPA, ML
 
@@ -68,10 +68,10 @@ def build(evaluation: Evaluation, out: Path, progress: Progress = lambda step: N
     return folder
 
 
-def _sheet(evaluation: Evaluation) -> Sheet:
+def _sheet(evaluation: Evaluation) -> Datasheet:
     """What the datasheet is made from; the air and the charts only where the atlas knows the sensor."""
     prediction, sensor = evaluation.prediction, evaluation.sensor
-    sheet = Sheet(
+    sheet = Datasheet(
         evaluation.scene, evaluation.assembly, prediction, evaluation.findings, input_hash(evaluation),
         evaluation.resins, evaluation.uncertainty, evaluation.estimates,
     )  # fmt: skip
@@ -96,7 +96,7 @@ def refuse(evaluation: Evaluation) -> None:
 
 def inputs(evaluation: Evaluation) -> dict[str, Any]:
     """Everything that the result follows from: design, materials, printers and parts, as data."""
-    return Recipe.of(evaluation).inputs()
+    return BuildRecipe.of(evaluation).inputs()
 
 
 def input_hash(evaluation: Evaluation) -> str:
@@ -110,7 +110,7 @@ def _metadata(evaluation: Evaluation, bodies: tuple[Body, ...]) -> dict[str, str
         "Title": scene.design.document.title,
         "Application": f"pneutouch {__version__}",
         "Description": f"Pneumatic touch sensor {scene.name}: assembly of {_and(bodies)}",
-        RECIPE: Recipe.of(evaluation).text(),
+        RECIPE: BuildRecipe.of(evaluation).text(),
         "versions": json_bytes(versions()).decode(),
         "input-hash": input_hash(evaluation),
         "mesh-tolerance-mm": f"{scene.mesh_tolerance:g}",

@@ -19,7 +19,7 @@ from pneutouch.export.voxels.job import BACKGROUND, VoxelBody, VoxelJob
 from pneutouch.export.voxels.manifest import MANIFEST, manifest, shortfalls, slice_name
 from pneutouch.export.voxels.png import encode, table
 from pneutouch.export.voxels.raster import raster
-from pneutouch.export.voxels.slices import Slicer
+from pneutouch.export.voxels.slices import VoxelSlicer
 from pneutouch.output.files import check_writable, digest, exchange, json_bytes
 from pneutouch.parts import Assembly
 from pneutouch.printability import Finding
@@ -107,7 +107,7 @@ def write_voxels(
 
 def write_stack(
     job: VoxelJob, folder: Path, prefix: str, about: Mapping[str, Any], progress: Progress = lambda done, all_: None
-) -> Slicer:
+) -> VoxelSlicer:
     """Slice a job into a hidden folder and rename that to ``folder``. One slice at a time is in memory.
 
     Raises InputError that names the folder where it cannot be written, the disk is full, or somebody else's files lie
@@ -118,7 +118,7 @@ def write_stack(
     try:
         folder.parent.mkdir(parents=True, exist_ok=True)
         fresh = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
-        slicer = Slicer(job)
+        slicer = VoxelSlicer(job)
         hashes = []
         colours = table([BACKGROUND, *job.colours.values()])
         for number, labels in enumerate(slicer):

@@ -15,7 +15,7 @@ from pneutouch.report.residuals import residual_chart
 from pneutouch.spec.read import read_toml
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.workflows.calibrate.fit import Calibration
-from pneutouch.workflows.coupons import Profile, write_profiles
+from pneutouch.workflows.coupons import MeasuredProfile, write_profiles
 
 HEAD = "# Written by pneutouch calibrate"
 """First words of every file that is ours to overwrite."""
@@ -27,10 +27,10 @@ _SMALL = 4
 
 
 @dataclass(frozen=True, slots=True)
-class Saved:
+class SavedCalibration:
     """What ``--save`` writes."""
 
-    files: tuple[Profile, ...]
+    files: tuple[MeasuredProfile, ...]
 
     @property
     def paths(self) -> list[str]:
@@ -51,7 +51,7 @@ def write_calibration(found: Calibration, out: Path) -> Path:
     return folder
 
 
-def prepare(found: Calibration, name: str, root: Path, shelves: Library, *, shadow: bool = False) -> Saved:
+def prepare(found: Calibration, name: str, root: Path, shelves: Library, *, shadow: bool = False) -> SavedCalibration:
     """Check and word the files of ``name`` under ``root``: the resin where its modulus was fitted, and the design.
 
     Nothing is written. Raises InputError for a bad name, one that would hide another resin or design (unless ``shadow``), a file
@@ -64,10 +64,10 @@ def prepare(found: Calibration, name: str, root: Path, shelves: Library, *, shad
     if "modulus" in by_name:
         files.append(_material(found, by_name["modulus"], _place("materials", name, root, shelves, shadow), shelves))
     files.append(_design(found, by_name, name, _place("designs", name, root, shelves, shadow)))
-    return Saved(tuple(files))
+    return SavedCalibration(tuple(files))
 
 
-def save(saved: Saved) -> None:
+def save(saved: SavedCalibration) -> None:
     """Write what `prepare` made. Raises InputError where a folder cannot be written."""
     write_profiles(saved.files)
 
@@ -104,7 +104,7 @@ def _origin(found: Calibration) -> str:
     return f"sensor {found.sensor or 'unnamed'}, {found.title or 'unnamed campaign'}, {counts}"
 
 
-def _material(found: Calibration, estimate: dict[str, Any], path: Path, shelves: Library) -> Profile:
+def _material(found: Calibration, estimate: dict[str, Any], path: Path, shelves: Library) -> MeasuredProfile:
     interval = estimate["interval_95"]
     if interval is None:
         raise InputError(
@@ -133,10 +133,10 @@ def _material(found: Calibration, estimate: dict[str, Any], path: Path, shelves:
         [f"{base} with the shear modulus of the sensor in hand; the paper's measurements of {base} are not in it."],
     )
     changes = [{"file": str(path), "key": "shear_modulus_MPa", "before": before, "after": content["shear_modulus_MPa"]}]
-    return Profile(path, head + toml_text(content), changes)
+    return MeasuredProfile(path, head + toml_text(content), changes)
 
 
-def _design(found: Calibration, by_name: dict[str, dict[str, Any]], name: str, path: Path) -> Profile:
+def _design(found: Calibration, by_name: dict[str, dict[str, Any]], name: str, path: Path) -> MeasuredProfile:
     design = found.scene.design
     content = design.model_dump(exclude_none=True)
     lines, changes = [], []
@@ -157,7 +157,7 @@ def _design(found: Calibration, by_name: dict[str, dict[str, Any]], name: str, p
         )
         content["membrane"]["material"] = name
     KINDS["designs"].validate(content, str(path))
-    return Profile(path, _head(found, lines) + toml_text(content), changes)
+    return MeasuredProfile(path, _head(found, lines) + toml_text(content), changes)
 
 
 def _said(estimate: dict[str, Any]) -> str:

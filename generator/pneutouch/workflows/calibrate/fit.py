@@ -9,18 +9,27 @@ from typing import Any
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.calibrate import NAMES, Fit, HeldOut, Injection, Observations, fit, parameters, predict_held_out
-from pneutouch.bench.calibrate.further import Further, further_tests
-from pneutouch.bench.calibrate.goodness import Miss, Residuals, misses, residuals
-from pneutouch.bench.calibrate.identify import Ambiguity, Identified, identify
+from pneutouch.bench.calibrate import (
+    NAMES,
+    CalibrationFit,
+    HeldOutPrediction,
+    Injection,
+    Observations,
+    fit,
+    parameters,
+    predict_held_out,
+)
+from pneutouch.bench.calibrate.further import SuggestedTest, further_tests
+from pneutouch.bench.calibrate.goodness import RunResiduals, SystematicDeviation, misses, residuals
+from pneutouch.bench.calibrate.identify import CorrelatedParameters, Identifiability, identify
 from pneutouch.bench.calibrate.parameters import DEAD, KEYS, LOGARITHMIC, UNITS, outside_value
 from pneutouch.bench.calibrate.tell import sentences
-from pneutouch.bench.record import Curve
-from pneutouch.catalogue import Scene
+from pneutouch.bench.record import MeasuredCurve
+from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.parts import assemble
-from pneutouch.spec.campaign import Campaign, Run
+from pneutouch.spec.campaign import Campaign, CampaignRun
 from pneutouch.units import KPA, ML
 
 
@@ -35,15 +44,15 @@ class Calibration:
         notes: Remarks on what was read.
     """
 
-    scene: Scene
+    scene: ResolvedDesign
     sensor: str
     title: str
-    fit: Fit
-    residuals: tuple[Residuals, ...]
-    misses: list[Miss]
-    identified: Identified
-    further: list[Further]
-    held_out: tuple[HeldOut, ...]
+    fit: CalibrationFit
+    residuals: tuple[RunResiduals, ...]
+    misses: list[SystematicDeviation]
+    identified: Identifiability
+    further: list[SuggestedTest]
+    held_out: tuple[HeldOutPrediction, ...]
     notes: tuple[str, ...] = ()
 
     @property
@@ -78,7 +87,7 @@ class Calibration:
 
 
 def calibrate(
-    observations: Observations, scene: Scene, names: Sequence[str] = NAMES, *, priors: bool = True,
+    observations: Observations, scene: ResolvedDesign, names: Sequence[str] = NAMES, *, priors: bool = True,
     hold_out: Sequence[float] = (), sensor: str = "", title: str = "", notes: Sequence[str] = (),
 ) -> Calibration:  # fmt: skip
     """Fit the parameters ``names`` of a design to observations, and predict the pressures ``hold_out`` (kPa) by the others.
@@ -106,7 +115,7 @@ def calibrate(
 
 
 def observations_of(
-    campaign: Campaign, curves: Sequence[Curve], injections: Sequence[tuple[Run, Array, Array]], scene: Scene,
+    campaign: Campaign, curves: Sequence[MeasuredCurve], injections: Sequence[tuple[CampaignRun, Array, Array]], scene: ResolvedDesign,
     sensor: str | None = None,
 ) -> tuple[str, Observations, list[str]]:  # fmt: skip
     """The sensor's name, its runs of kinds steps and injection, and remarks.
@@ -134,7 +143,7 @@ def observations_of(
     return chosen, Observations(steps, blown, ambient, campaign.rig), _remarks(campaign, scene, chosen)
 
 
-def _remarks(campaign: Campaign, scene: Scene, sensor: str) -> list[str]:
+def _remarks(campaign: Campaign, scene: ResolvedDesign, sensor: str) -> list[str]:
     resin = next(run.resin for run in campaign.runs if run.sensor == sensor)
     found = ["the campaign's files are simulated, not measured"] if campaign.simulated else []
     if resin != scene.design.membrane.material:
@@ -145,7 +154,7 @@ def _remarks(campaign: Campaign, scene: Scene, sensor: str) -> list[str]:
     return found
 
 
-def _estimate(found: Fit, place: int) -> dict[str, Any]:
+def _estimate(found: CalibrationFit, place: int) -> dict[str, Any]:
     k = found.parameters.fitted[place]
     at, half = float(found.solution.at[place]), float(found.half_width[place])
     interval = None
@@ -163,7 +172,7 @@ def _estimate(found: Fit, place: int) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _correlation(found: Fit) -> dict[str, Any]:
+def _correlation(found: CalibrationFit) -> dict[str, Any]:
     matrix = found.covariance.matrix
     spread = np.sqrt(np.diag(matrix))
     scaled = matrix / np.outer(spread, spread)
@@ -173,7 +182,7 @@ def _correlation(found: Fit) -> dict[str, Any]:
     }
 
 
-def _goodness(found: Fit) -> dict[str, Any]:
+def _goodness(found: CalibrationFit) -> dict[str, Any]:
     force, rise, injection = (float(x) for x in found.channel_factor)
     return {
         "chi_squared": found.chi_squared, "degrees_of_freedom": found.freedom,
@@ -189,14 +198,14 @@ def _goodness(found: Fit) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _residual(run: Residuals) -> dict[str, Any]:
+def _residual(run: RunResiduals) -> dict[str, Any]:
     return {
         "run": run.label, "driving_pressure_kPa": _number(run.pressure),
         "force_share_of_full_scale": _number(run.force_error), "pressure_share_of_full_scale": _number(run.rise_error),
     }  # fmt: skip
 
 
-def _ambiguity(group: Ambiguity) -> dict[str, Any]:
+def _ambiguity(group: CorrelatedParameters) -> dict[str, Any]:
     return {
         "parameters": [NAMES[k] for k in group.members], "correlation": group.correlation,
         "standard_deviation_alone": [_leaving(k, x) for k, x in zip(group.members, group.alone, strict=True)],
@@ -205,7 +214,7 @@ def _ambiguity(group: Ambiguity) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _further(found: Fit, test: Further) -> dict[str, Any]:
+def _further(found: CalibrationFit, test: SuggestedTest) -> dict[str, Any]:
     widths = zip(found.parameters.fitted, test.half_width, strict=True)
     return {
         "test": test.what, "widest_interval_shrinks": test.gain,
@@ -213,7 +222,7 @@ def _further(found: Fit, test: Further) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _held_out(one: HeldOut) -> dict[str, Any]:
+def _held_out(one: HeldOutPrediction) -> dict[str, Any]:
     return {
         "driving_pressure_kPa": one.pressure, "sensitivity_measured_kPa_per_N": one.measured,
         "sensitivity_predicted_kPa_per_N": one.predicted, "sensitivity_error": one.error,

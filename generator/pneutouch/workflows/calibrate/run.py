@@ -14,7 +14,7 @@ from pneutouch.workflows.characterize import Progress, answers, load_curves, sou
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
+class CalibrationOptions:
     """What the flags ask for: see the command."""
 
     data: Path
@@ -29,7 +29,7 @@ class Asked:
 
 
 def run_calibration(
-    asked: Asked, shelves: Library | None = None, progress: Progress = lambda done, total: None
+    asked: CalibrationOptions, shelves: Library | None = None, progress: Progress = lambda done, total: None
 ) -> dict[str, Any]:
     """Read, fit and write; the calibration's document with ``written`` and ``failures``. Raises InputError.
 

@@ -6,11 +6,11 @@ from typing import Any
 
 from pneutouch.bench.figure import BY_KEY
 from pneutouch.bench.interval import LEVEL, Estimate
-from pneutouch.bench.record import Curve
-from pneutouch.report.measured import Beside, Measured
+from pneutouch.bench.record import MeasuredCurve
+from pneutouch.report.measured import CampaignReport, GroupComparison
 
 
-def document(measured: Measured) -> dict[str, Any]:
+def document(measured: CampaignReport) -> dict[str, Any]:
     """A campaign as plain data."""
     campaign = measured.campaign
     return {
@@ -37,7 +37,7 @@ def document(measured: Measured) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _group(beside: Beside) -> dict[str, Any]:
+def _group(beside: GroupComparison) -> dict[str, Any]:
     group = beside.group
     return {
         "resin": group.key.resin, "age": group.key.age, "driving_pressure_kPa": group.key.driving_pressure_kPa,
@@ -46,7 +46,7 @@ def _group(beside: Beside) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _figure(key: str, estimate: Estimate, beside: Beside) -> dict[str, Any]:
+def _figure(key: str, estimate: Estimate, beside: GroupComparison) -> dict[str, Any]:
     found: dict[str, Any] = {
         "value": estimate.value, "low": estimate.low, "high": estimate.high, "unit": BY_KEY[key].unit,
         "specimens": estimate.specimens, "runs": estimate.runs, "interval_over": estimate.over or None,
@@ -58,7 +58,7 @@ def _figure(key: str, estimate: Estimate, beside: Beside) -> dict[str, Any]:
     return found
 
 
-def _run(curve: Curve, values: dict[str, float]) -> dict[str, Any]:
+def _run(curve: MeasuredCurve, values: dict[str, float]) -> dict[str, Any]:
     run = curve.run
     return {
         "file": run.file, "kind": run.kind, "sensor": run.sensor, "resin": run.resin, "run": run.run,

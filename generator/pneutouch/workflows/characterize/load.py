@@ -11,12 +11,12 @@ from pneutouch.bench.curve import curve_of
 from pneutouch.bench.injection import leak_rate, read_injection
 from pneutouch.bench.plausible import check_leak
 from pneutouch.bench.reading import read_blocks
-from pneutouch.bench.record import Curve
+from pneutouch.bench.record import MeasuredCurve
 from pneutouch.bench.trace import Trace, trace
-from pneutouch.catalogue import Scene
+from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError, PneutouchError
 from pneutouch.evaluation.resins import resin_of
-from pneutouch.spec.campaign import Campaign, Run
+from pneutouch.spec.campaign import Campaign, CampaignRun
 from pneutouch.spec.read import read_toml, validate
 from pneutouch.units import KPA
 
@@ -33,7 +33,7 @@ _NEAR_KPA, _NEAR_SHARE = 1.0, 0.1
 
 
 @dataclass(frozen=True)
-class Loaded:
+class CampaignData:
     """What a campaign's files hold.
 
     Attributes:
@@ -49,20 +49,20 @@ class Loaded:
 
     campaign: Campaign
     folder: Path
-    curves: tuple[Curve, ...]
+    curves: tuple[MeasuredCurve, ...]
     traces: dict[str, Trace]
-    injections: tuple[tuple[Run, Array, Array], ...]
-    leaks: tuple[tuple[Run, float, float], ...]
+    injections: tuple[tuple[CampaignRun, Array, Array], ...]
+    leaks: tuple[tuple[CampaignRun, float, float], ...]
     failures: tuple[tuple[str, str], ...]
     questions: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass
 class _Gathered:
-    curves: list[Curve] = field(default_factory=list)
+    curves: list[MeasuredCurve] = field(default_factory=list)
     traces: dict[str, Trace] = field(default_factory=dict)
-    injections: list[tuple[Run, Array, Array]] = field(default_factory=list)
-    leaks: list[tuple[Run, float, float]] = field(default_factory=list)
+    injections: list[tuple[CampaignRun, Array, Array]] = field(default_factory=list)
+    leaks: list[tuple[CampaignRun, float, float]] = field(default_factory=list)
     failures: list[tuple[str, str]] = field(default_factory=list)
     questions: list[tuple[str, str]] = field(default_factory=list)
 
@@ -75,7 +75,9 @@ def campaign_of(data: Path) -> tuple[Campaign, Path]:
     return validate(Campaign, read_toml(path), str(path)), path.parent
 
 
-def load_curves(data: Path, scene: Scene | None = None, progress: Progress = lambda done, total: None) -> Loaded:
+def load_curves(
+    data: Path, scene: ResolvedDesign | None = None, progress: Progress = lambda done, total: None
+) -> CampaignData:
     """Read a campaign's folder, its campaign file, or one CSV or parquet file of a steps run.
 
     A single file is of the design's resin and of that of its driving pressures that was read before contact; ``scene``
@@ -102,7 +104,7 @@ def load_curves(data: Path, scene: Scene | None = None, progress: Progress = lam
         assert scene is not None
         gathered.curves = [_at_its_pressure(curve, scene) for curve in gathered.curves]
         campaign = campaign.model_copy(update={"runs": [curve.run for curve in gathered.curves]})
-    return Loaded(
+    return CampaignData(
         campaign, folder, tuple(gathered.curves), gathered.traces, tuple(gathered.injections), tuple(gathered.leaks),
         tuple(gathered.failures), tuple(gathered.questions),
     )  # fmt: skip
@@ -133,7 +135,7 @@ def _size(path: Path) -> int:
 
 
 def _read(
-    run: Run, campaign: Campaign, folder: Path, gathered: _Gathered, progress: Callable[[float], None]
+    run: CampaignRun, campaign: Campaign, folder: Path, gathered: _Gathered, progress: Callable[[float], None]
 ) -> None:  # fmt: skip
     path = folder / run.file
     if not path.is_file():
@@ -150,14 +152,14 @@ def _read(
         gathered.curves.append(curve_of(run, blocks, campaign.rig))
 
 
-def _single(data: Path, scene: Scene | None) -> Campaign:
+def _single(data: Path, scene: ResolvedDesign | None) -> Campaign:
     if scene is None:
         raise InputError(f"{data}: a single file needs its sensor; give --design")
-    run = Run(file=data.name, sensor=data.stem[:_LONGEST], resin=resin_of(scene))
+    run = CampaignRun(file=data.name, sensor=data.stem[:_LONGEST], resin=resin_of(scene))
     return Campaign(title=f"Run {data.name}"[:_LONGEST], runs=[run])
 
 
-def _at_its_pressure(curve: Curve, scene: Scene) -> Curve:
+def _at_its_pressure(curve: MeasuredCurve, scene: ResolvedDesign) -> MeasuredCurve:
     """A single file's curve under that of the design's pressures that it was read at, else the read one."""
     read = curve.driving / KPA
     nearest = min(scene.design.pneumatics.driving_pressures_kPa, key=lambda p: abs(p - read))

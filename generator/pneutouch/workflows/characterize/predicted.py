@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.plausible import Expected
-from pneutouch.bench.summary import Group
+from pneutouch.bench.plausible import ExpectedRun
+from pneutouch.bench.summary import RunGroup
 from pneutouch.catalogue import Library
 from pneutouch.errors import PneutouchError
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
-from pneutouch.mechanics.prediction import State
+from pneutouch.mechanics.prediction import SensorState
 from pneutouch.mechanics.response import Figures, figures
-from pneutouch.report.measured import Beside
+from pneutouch.report.measured import GroupComparison
 from pneutouch.spec.campaign import AS_DESIGNED
 from pneutouch.units import KPA
 
@@ -28,7 +28,7 @@ _OF_STATE = ("sensitivity_kPa_per_N", "stiffness_N_per_mm")
 
 
 @dataclass(frozen=True)
-class Answer:
+class StatePrediction:
     """What the model says of a resin at a driving pressure (kPa); ``why`` where it says nothing."""
 
     evaluation: Evaluation | None
@@ -36,17 +36,17 @@ class Answer:
     why: str = ""
 
     @property
-    def state(self) -> State | None:
+    def state(self) -> SensorState | None:
         """The predicted state."""
         return None if self.evaluation is None else self.evaluation.prediction.states[self.place]
 
-    def expected(self) -> Expected | None:
+    def expected(self) -> ExpectedRun | None:
         """What the files should read at the end of the range; None where nothing is known."""
         state = self.state
         if state is None or state.figures is None:
             return None
         own, kept = state.figures, state.indentation <= state.range_end * (1 + 1e-12)
-        return Expected(
+        return ExpectedRun(
             depth=float(state.indentation[kept][-1]), force=own.force_range[1],
             rise=float(state.pressure_rise[kept][-1]), sensitivity=own.sensitivity * KPA,
             curve=(state.indentation[kept], state.force[kept], state.pressure_rise[kept]),
@@ -55,29 +55,31 @@ class Answer:
 
 def answers(
     design: str, assignments: list[str], wanted: Iterable[tuple[str, float]], model: str, library: Library
-) -> dict[tuple[str, float], Answer]:
+) -> dict[tuple[str, float], StatePrediction]:
     """Predict the design in every (resin, driving pressure in kPa) wanted, resin by resin.
 
     Where a resin's pressures cannot be predicted together each is tried alone; one beyond the limit has a reason in the
     place of a state.
     """
-    found: dict[tuple[str, float], Answer] = {}
+    found: dict[tuple[str, float], StatePrediction] = {}
     pairs = sorted(set(wanted))
     for resin in dict.fromkeys(resin for resin, _ in pairs):
         pressures = [p for name, p in pairs if name == resin]
         try:
             evaluation = _evaluated(design, assignments, resin, pressures, model, library)
-            found |= {(resin, p): Answer(evaluation, k) for k, p in enumerate(pressures)}
+            found |= {(resin, p): StatePrediction(evaluation, k) for k, p in enumerate(pressures)}
         except PneutouchError:
             found |= {(resin, p): _alone(design, assignments, resin, p, model, library) for p in pressures}
     return found
 
 
-def _alone(design: str, assignments: list[str], resin: str, pressure: float, model: str, library: Library) -> Answer:
+def _alone(
+    design: str, assignments: list[str], resin: str, pressure: float, model: str, library: Library
+) -> StatePrediction:
     try:
-        return Answer(_evaluated(design, assignments, resin, [pressure], model, library), 0)
+        return StatePrediction(_evaluated(design, assignments, resin, [pressure], model, library), 0)
     except PneutouchError as error:
-        return Answer(None, 0, str(error))
+        return StatePrediction(None, 0, str(error))
 
 
 def _evaluated(
@@ -88,25 +90,25 @@ def _evaluated(
     return evaluate(design, [*assignments, *own], model=model, library=library)
 
 
-def beside(group: Group, answer: Answer) -> Beside:
+def beside(group: RunGroup, answer: StatePrediction) -> GroupComparison:
     """A group beside its prediction, which is of a fresh print."""
     state = answer.state
     if state is None or answer.evaluation is None:
-        return Beside(group, group.key.resin, None, {}, {}, answer.why)
+        return GroupComparison(group, group.key.resin, None, {}, {}, answer.why)
     label = answer.evaluation.scene.membrane_material.title
     if group.key.age_days > 0:
-        return Beside(group, label, None, {}, {}, "predictions are of fresh prints; see predict --aged")
+        return GroupComparison(group, label, None, {}, {}, "predictions are of fresh prints; see predict --aged")
     sure = answer.evaluation.uncertainty[answer.place]
-    return Beside(group, label, state, sure, _figures(state, sure, depths_of(group)))
+    return GroupComparison(group, label, state, sure, _figures(state, sure, depths_of(group)))
 
 
-def depths_of(group: Group) -> Array | None:
+def depths_of(group: RunGroup) -> Array | None:
     """The depths at which a group was measured, mm: those of its shallowest steps run; None without one."""
     curves = [curve.indentation for curve in group.of_kind("steps") if curve.indentation.size > 1]
     return min(curves, key=lambda depths: float(depths[-1])) if curves else None
 
 
-def read_at(state: State, depths: Array) -> Figures | None:
+def read_at(state: SensorState, depths: Array) -> Figures | None:
     """The predicted curve's figures at measured depths, as far as its range goes: S belongs to the range it is fitted over."""
     from scipy.interpolate import PchipInterpolator
 
@@ -121,7 +123,7 @@ def read_at(state: State, depths: Array) -> Figures | None:
 
 
 def _figures(
-    state: State, sure: dict[str, Any], depths: Array | None
+    state: SensorState, sure: dict[str, Any], depths: Array | None
 ) -> dict[str, tuple[float, float | None, float | None]]:
     own, known = state.figures, sure.get("figures", {})
     got = own if depths is None else read_at(state, depths)

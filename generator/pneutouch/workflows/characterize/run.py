@@ -10,20 +10,20 @@ from typing import Any
 
 from pneutouch import __version__
 from pneutouch.bench.plausible import check_plausible, mixed
-from pneutouch.bench.record import Curve
+from pneutouch.bench.record import MeasuredCurve
 from pneutouch.bench.summary import summarize
 from pneutouch.bench.trace import Trace
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.output.files import MANIFEST, check_writable, digest, json_bytes, write_folder
 from pneutouch.output.recipe import input_hash, versions
-from pneutouch.report.measured import Measured
+from pneutouch.report.measured import CampaignReport
 from pneutouch.spec.campaign import AS_DESIGNED
 from pneutouch.spec.read import read_toml, validate
 from pneutouch.spec.target import Target
 from pneutouch.workflows.characterize.document import document
-from pneutouch.workflows.characterize.load import Loaded, Progress, campaign_of, load_curves
-from pneutouch.workflows.characterize.predicted import Answer, answers, beside
+from pneutouch.workflows.characterize.load import CampaignData, Progress, campaign_of, load_curves
+from pneutouch.workflows.characterize.predicted import StatePrediction, answers, beside
 from pneutouch.workflows.characterize.tables import injections, points_csv, segments_csv
 from pneutouch.workflows.characterize.verdict import ageing, verdicts
 
@@ -32,10 +32,10 @@ EVIDENCE = ("doubtful", "all", "none")
 
 
 @dataclass(frozen=True)
-class Outcome:
+class CharacterizationResult:
     """What became of a campaign: the sheet's content, the folder written, and the traces of the runs by file."""
 
-    measured: Measured
+    measured: CampaignReport
     traces: Mapping[str, Trace]
     name: str
 
@@ -58,7 +58,7 @@ class Outcome:
 def characterize(
     data: Path, design: str | None = None, assignments: list[str] | None = None, *, target: Path | None = None,
     model: str = "solid", library: Library | None = None, progress: Progress = lambda done, total: None,
-) -> Outcome:  # fmt: skip
+) -> CharacterizationResult:  # fmt: skip
     """Read a campaign's folder or one file, and set its figures beside the prediction of its design.
 
     ``design`` comes before the one that the campaign names; ``assignments`` change it. Raises InputError where nothing can
@@ -78,14 +78,14 @@ def characterize(
     groups = summarize(curves)
     scene = load_scene(name, given, shelves)
     pushed, unread = injections(loaded, scene)
-    measured = Measured(
+    measured = CampaignReport(
         campaign=loaded.campaign, scene=scene, folder=loaded.folder,
         besides=tuple(beside(group, _answer(model_says, group.key.resin, group.key.driving_pressure_kPa)) for group in groups),
         curves=tuple(curves), failures=(*loaded.failures, *failures, *unread), questions=questions,
         verdicts=() if wanted is None else verdicts(wanted, groups), injections=pushed,
         ageing=ageing(groups, shelves), model=model, input_hash=_hash(loaded, scene.design.model_dump(mode="json")),
     )  # fmt: skip
-    return Outcome(measured, loaded.traces, f"{_stem(data)}-measured")
+    return CharacterizationResult(measured, loaded.traces, f"{_stem(data)}-measured")
 
 
 def _design_of(data: Path) -> tuple[str, list[str]]:
@@ -106,21 +106,21 @@ def _stem(data: Path) -> str:
     return path.parent.name if path.name == "campaign.toml" else path.stem if path.is_file() else path.name
 
 
-def _check_resins(data: Path, loaded: Loaded, shelves: Library) -> None:
+def _check_resins(data: Path, loaded: CampaignData, shelves: Library) -> None:
     for place, run in enumerate(loaded.campaign.runs):
         if run.resin != AS_DESIGNED:
             shelves.load("materials", run.resin, asked_by=f"{data}: runs[{place}].resin")
 
 
-def _answer(found: Mapping[tuple[str, float], Answer], resin: str, pressure: float) -> Answer:
-    return found.get((resin, pressure), Answer(None, 0, "not predicted"))
+def _answer(found: Mapping[tuple[str, float], StatePrediction], resin: str, pressure: float) -> StatePrediction:
+    return found.get((resin, pressure), StatePrediction(None, 0, "not predicted"))
 
 
 def sound(
-    loaded: Loaded, model_says: Mapping[tuple[str, float], Answer]
-) -> tuple[list[Curve], list[tuple[str, str]], tuple[tuple[str, str], ...]]:
+    loaded: CampaignData, model_says: Mapping[tuple[str, float], StatePrediction]
+) -> tuple[list[MeasuredCurve], list[tuple[str, str]], tuple[tuple[str, str], ...]]:
     """Curves that may be what they say, those that cannot with the reason, and what is to be asked of the others."""
-    kept: list[Curve] = []
+    kept: list[MeasuredCurve] = []
     failures: list[tuple[str, str]] = []
     questions: list[tuple[str, str]] = []
     for curve in loaded.curves:
@@ -136,7 +136,7 @@ def sound(
     return kept, failures, (*loaded.questions, *questions)
 
 
-def _hash(loaded: Loaded, design: Any) -> str:
+def _hash(loaded: CampaignData, design: Any) -> str:
     files = {run.file: _file_digest(loaded.folder / run.file) for run in loaded.campaign.runs}
     return input_hash(
         {"campaign": loaded.campaign.model_dump(mode="json"), "design": design, "files": files}, __version__
@@ -152,7 +152,7 @@ def _file_digest(path: Path) -> str | None:
         return None
 
 
-def write(outcome: Outcome, out: Path, evidence: str = "doubtful") -> Path:
+def write(outcome: CharacterizationResult, out: Path, evidence: str = "doubtful") -> Path:
     """Write the measured datasheet, the figures, the points and the evidence; returns the folder."""
     from pneutouch.report.evidence import evidence_svg
     from pneutouch.report.measured.sheet import measured_datasheet
@@ -176,7 +176,7 @@ def write(outcome: Outcome, out: Path, evidence: str = "doubtful") -> Path:
     return folder
 
 
-def _shown(measured: Measured, evidence: str) -> list[Curve]:
+def _shown(measured: CampaignReport, evidence: str) -> list[MeasuredCurve]:
     if evidence == "all":
         return list(measured.curves)
     if evidence == "none":

@@ -8,16 +8,16 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from pneutouch.bench.injection import dead_volume_of_cap
-from pneutouch.bench.record import Curve
-from pneutouch.catalogue import Scene
-from pneutouch.spec.campaign import Run
+from pneutouch.bench.record import MeasuredCurve
+from pneutouch.catalogue import ResolvedDesign
+from pneutouch.spec.campaign import CampaignRun
 from pneutouch.units import KPA, ML
-from pneutouch.workflows.characterize.load import Loaded
+from pneutouch.workflows.characterize.load import CampaignData
 
 _RUN = ("file", "sensor", "resin", "driving_pressure_kPa", "run", "age_days")
 
 
-def points_csv(curves: Iterable[Curve]) -> bytes:
+def points_csv(curves: Iterable[MeasuredCurve]) -> bytes:
     """Every loading point of every run: indentation, force, pressure rise."""
     rows = [
         [*_of(curve), f"{d:.6g}", f"{f:.6g}", f"{p / KPA:.6g}"]
@@ -27,7 +27,7 @@ def points_csv(curves: Iterable[Curve]) -> bytes:
     return _csv((*_RUN, "indentation_mm", "contact_force_N", "pressure_rise_kPa"), rows)
 
 
-def segments_csv(curves: Iterable[Curve]) -> bytes:
+def segments_csv(curves: Iterable[MeasuredCurve]) -> bytes:
     """Every indentation found, with the seconds that were read; what is doubtful stands with its reason."""
     rows = []
     for curve in curves:
@@ -64,7 +64,7 @@ def segments_csv(curves: Iterable[Curve]) -> bytes:
     return _csv(head, rows)
 
 
-def _of(curve: Curve) -> list[Any]:
+def _of(curve: MeasuredCurve) -> list[Any]:
     run = curve.run
     return [run.file, run.sensor, run.resin, f"{run.driving_pressure_kPa:g}", run.run, f"{run.age_days:g}"]
 
@@ -77,17 +77,17 @@ def _csv(head: Sequence[str], rows: Iterable[Sequence[Any]]) -> bytes:
     return buffer.getvalue().encode()
 
 
-Injection = tuple[str, str, float, float | None, str]
+InjectionRow = tuple[str, str, float, float | None, str]
 
 
-def injections(loaded: Loaded, scene: Scene) -> tuple[tuple[Injection, ...], list[tuple[str, str]]]:
+def injections(loaded: CampaignData, scene: ResolvedDesign) -> tuple[tuple[InjectionRow, ...], list[tuple[str, str]]]:
     """Leak rates, and the dead volume that an injection would mean if the line were rigid; files that say neither, and why.
 
     An injection into a sensor swells the dome, so that what it says of the dead volume alone is an upper bound; `calibrate`
     takes the dome into account.
     """
     failures = []
-    found: list[Injection] = [
+    found: list[InjectionRow] = [
         (run.sensor, f"leak, {_when(run)}", 60 * rate / KPA, 60 * error / KPA, "kPa/min")
         for run, rate, error in loaded.leaks
     ]
@@ -103,6 +103,6 @@ def injections(loaded: Loaded, scene: Scene) -> tuple[tuple[Injection, ...], lis
     return tuple(found), failures
 
 
-def _when(run: Run) -> str:
+def _when(run: CampaignRun) -> str:
     """What tells runs of one sensor and kind apart."""
     return f"{run.driving_pressure_kPa:g} kPa, run {run.run}" + (f", {run.age_days:g} d" if run.age_days else "")

@@ -8,12 +8,12 @@ from itertools import groupby
 import numpy as np
 
 from pneutouch.bench.interval import Estimate
-from pneutouch.bench.summary import Group
+from pneutouch.bench.summary import RunGroup
 from pneutouch.catalogue import Library
 from pneutouch.report.measured import Verdict
 from pneutouch.spec.campaign import AS_DESIGNED
 from pneutouch.spec.material import Material
-from pneutouch.spec.target import Target, Wanted
+from pneutouch.spec.target import Target, TargetFigures
 
 _INFINITE = float("inf")
 
@@ -23,7 +23,7 @@ _YEAR = 300.0, 430.0
 """Ages in days beside which the paper's change in a year is set."""
 
 
-def verdicts(target: Target, groups: Sequence[Group]) -> tuple[Verdict, ...]:
+def verdicts(target: Target, groups: Sequence[RunGroup]) -> tuple[Verdict, ...]:
     """Every wish of a target against every group it speaks of; a size is no matter of measurement here.
 
     A wish that no group answers is not decided.
@@ -46,7 +46,7 @@ def verdicts(target: Target, groups: Sequence[Group]) -> tuple[Verdict, ...]:
     return tuple(found)
 
 
-def _wishes(wanted: Wanted) -> list[tuple[str, str, float, float, str]]:
+def _wishes(wanted: TargetFigures) -> list[tuple[str, str, float, float, str]]:
     """What is wished: name, figure, least, most, in words."""
     found = []
     if (s := wanted.sensitivity_kPa_per_N) is not None:
@@ -78,17 +78,17 @@ def _passed(estimate: Estimate, low: float, high: float) -> bool | None:
     return False if estimate.high < low or estimate.low > high else None
 
 
-Change = tuple[str, float, str, float, float | None, float | None, float | None]
+AgeingChange = tuple[str, float, str, float, float | None, float | None, float | None]
 
 
-def ageing(groups: Sequence[Group], library: Library) -> tuple[Change, ...]:
+def ageing(groups: Sequence[RunGroup], library: Library) -> tuple[AgeingChange, ...]:
     """Change of the sensitivity since fresh, in percent of the aged one as in the paper's Supplement E.
 
     Resin, pressure, age, change with the ends of its 95 % interval, and the paper's change in a year where it measured one.
     """
     known = [group for group in groups if "sensitivity_kPa_per_N" in group.figures]
-    by_sensor: Callable[[Group], tuple[str, float]] = lambda group: (group.key.resin, group.key.driving_pressure_kPa)  # noqa: E731
-    found: list[Change] = []
+    by_sensor: Callable[[RunGroup], tuple[str, float]] = lambda group: (group.key.resin, group.key.driving_pressure_kPa)  # noqa: E731
+    found: list[AgeingChange] = []
     for (resin, pressure), some in groupby(sorted(known, key=by_sensor), key=by_sensor):
         fresh, *aged = sorted(some, key=lambda group: group.key.age_days)
         if fresh.key.age_days == 0:
@@ -107,7 +107,7 @@ def _published(resin: str, library: Library) -> float | None:
     return None if change is None else change.nominal
 
 
-def _change(fresh: Group, aged: Group) -> tuple[float, float | None, float | None]:
+def _change(fresh: RunGroup, aged: RunGroup) -> tuple[float, float | None, float | None]:
     """Change in percent with its ends; the halves of both intervals are added as squares."""
     new, old = fresh.figures["sensitivity_kPa_per_N"], aged.figures["sensitivity_kPa_per_N"]
     value = 100 * (old.value - new.value) / old.value

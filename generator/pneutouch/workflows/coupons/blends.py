@@ -16,7 +16,7 @@ differ most (docs/mixing.md)."""
 
 
 @dataclass(frozen=True, slots=True)
-class Blend:
+class CouponMix:
     """One fraction of a pair ``SOFT+STIFF`` and what it is made of."""
 
     pair: str
@@ -37,7 +37,7 @@ def resins_of(pair: str, asked_by: str) -> tuple[str, str]:
     return names[0], names[1]
 
 
-def blends(pair: str, shelves: Library) -> list[Blend]:
+def blends(pair: str, shelves: Library) -> list[CouponMix]:
     """What is printed of a pair, no farther than its mixing curve. Raises InputError where there is none."""
     soft, stiff = resins_of(pair, "--mixing")
     for name in (soft, stiff):
@@ -48,4 +48,4 @@ def blends(pair: str, shelves: Library) -> list[Blend]:
         for fraction in FRACTIONS
         if fraction <= top
     ]
-    return [Blend(f"{soft}+{stiff}", g.fractions[0], mixed_material(g, shelves, "--mixing")) for g in grades]
+    return [CouponMix(f"{soft}+{stiff}", g.fractions[0], mixed_material(g, shelves, "--mixing")) for g in grades]

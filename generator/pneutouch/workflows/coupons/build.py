@@ -15,15 +15,15 @@ from pneutouch.export.scene import stl
 from pneutouch.export.threemf import threemf
 from pneutouch.output.files import MANIFEST, check_writable, digest, json_bytes, write_folder
 from pneutouch.output.recipe import input_hash, versions
-from pneutouch.workflows.coupons.lay import Piece, lay
-from pneutouch.workflows.coupons.order import Asked, Order, order
+from pneutouch.workflows.coupons.lay import CouponPiece, lay
+from pneutouch.workflows.coupons.order import CouponOptions, CouponOrder, order
 from pneutouch.workflows.coupons.sheet import sheet, stl_name
 from pneutouch.workflows.coupons.template import results_template
 
 RESULTS = "results.toml"
 
 
-def build_coupons(asked: Asked, out: Path, library: Library | None = None) -> tuple[Path, dict[str, Any]]:
+def build_coupons(asked: CouponOptions, out: Path, library: Library | None = None) -> tuple[Path, dict[str, Any]]:
     """Write the coupons asked for into ``out/coupons-<printer>/``; the folder and what lies in it, as data.
 
     Raises InputError for what is unknown or does not fit the tray, and rather than lose readings in the folder. The same input gives the same bytes.
@@ -46,7 +46,7 @@ def build_coupons(asked: Asked, out: Path, library: Library | None = None) -> tu
     return folder, {"name": found.name, "coupons": _coupons(trays)}
 
 
-def inputs(found: Order) -> dict[str, Any]:
+def inputs(found: CouponOrder) -> dict[str, Any]:
     """Everything that the coupons follow from, as data."""
     scene = found.scene
     return {
@@ -73,7 +73,7 @@ def _check_unfilled(folder: Path) -> None:
         raise InputError(f"--out: {path} has been filled in; move it away first, or give another folder")
 
 
-def _metadata(found: Order, name: str, bodies: tuple[Body, ...]) -> dict[str, str]:
+def _metadata(found: CouponOrder, name: str, bodies: tuple[Body, ...]) -> dict[str, str]:
     return {
         "Title": f"Coupons for {name}",
         "Application": f"pneutouch {__version__}",
@@ -82,7 +82,7 @@ def _metadata(found: Order, name: str, bodies: tuple[Body, ...]) -> dict[str, st
     }
 
 
-def _coupons(trays: Mapping[str, tuple[Piece, ...]]) -> list[dict[str, Any]]:
+def _coupons(trays: Mapping[str, tuple[CouponPiece, ...]]) -> list[dict[str, Any]]:
     return [
         {
             "coupon": piece.item.coupon.name, "piece": piece.body.name, "material": piece.item.material.title,
@@ -94,7 +94,9 @@ def _coupons(trays: Mapping[str, tuple[Piece, ...]]) -> list[dict[str, Any]]:
     ]  # fmt: skip
 
 
-def _manifest(found: Order, trays: Mapping[str, tuple[Piece, ...]], files: dict[str, bytes]) -> dict[str, Any]:
+def _manifest(
+    found: CouponOrder, trays: Mapping[str, tuple[CouponPiece, ...]], files: dict[str, bytes]
+) -> dict[str, Any]:
     return {
         "name": found.name,
         "inputs": inputs(found),

@@ -9,17 +9,17 @@ import numpy as np
 from pneutouch.body import Body, Solid
 from pneutouch.errors import InputError
 from pneutouch.spec.printer import Mode, Printer
-from pneutouch.workflows.coupons.order import Item
+from pneutouch.workflows.coupons.order import CouponItem
 
 MARGIN, SPACING = 5.0, 5.0
 """mm around the tray, and between bounding boxes: room for a spatula; Objet trays refuse boxes that touch (DOC-37004)."""
 
 
 @dataclass(frozen=True)
-class Piece:
+class CouponPiece:
     """One solid of an item, its mesh lying on z = 0 with its least x and y at 0, and where its copies go."""
 
-    item: Item
+    item: CouponItem
     solid: Solid
     body: Body
     deviation: float
@@ -39,7 +39,7 @@ class Piece:
         )
 
 
-def lay(printer_name: str, items: tuple[Item, ...]) -> tuple[Piece, ...]:
+def lay(printer_name: str, items: tuple[CouponItem, ...]) -> tuple[CouponPiece, ...]:
     """The pieces of one machine with their places. Raises InputError for what does not fit, or not in one job."""
     printer = items[0].printer
     mode = job_mode(printer_name, items)
@@ -64,7 +64,7 @@ def lay(printer_name: str, items: tuple[Item, ...]) -> tuple[Piece, ...]:
     return tuple(replace(piece, places=tuple(placed[k])) for k, piece in enumerate(pieces))
 
 
-def job_mode(printer_name: str, items: tuple[Item, ...]) -> Mode:
+def job_mode(printer_name: str, items: tuple[CouponItem, ...]) -> Mode:
     """The mode that prints everything in one job. Raises InputError where there is none."""
     printer = items[0].printer
     mode = printer.mode_for(*(item.material for item in items))
@@ -77,10 +77,10 @@ def job_mode(printer_name: str, items: tuple[Item, ...]) -> Mode:
     return mode
 
 
-def _piece(item: Item, solid: Solid, printer: Printer, mode: Mode) -> Piece:
+def _piece(item: CouponItem, solid: Solid, printer: Printer, mode: Mode) -> CouponPiece:
     mesh = solid.mesh(printer.finest_step(mode))
     deviation = float(solid.distance(mesh.surface_points()).max())
     if item.coupon.turned_over:
         mesh = replace(mesh, vertices=mesh.vertices * np.array([1.0, -1.0, -1.0]))
     body = replace(mesh, name=f"{solid.name}-{item.about}").moved(-mesh.bounds[0])
-    return Piece(item, solid, body, deviation)
+    return CouponPiece(item, solid, body, deviation)

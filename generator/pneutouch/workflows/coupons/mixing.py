@@ -7,8 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from pneutouch.bench.finding import MARK, Figure, Found, Said
-from pneutouch.bench.mixing import Stiffness, stiffness
+from pneutouch.bench.finding import MARK, CouponFindings, MeasuredFigure, ReadingSource
+from pneutouch.bench.mixing import MixModulus, stiffness
 from pneutouch.catalogue import KINDS, Library
 from pneutouch.catalogue.mixture import mixing
 from pneutouch.errors import InputError
@@ -16,12 +16,12 @@ from pneutouch.spec.coupon import MixedCoupons
 from pneutouch.spec.material import Material
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.workflows.coupons.blends import resins_of
-from pneutouch.workflows.coupons.profile import Profile, check_ours, head
+from pneutouch.workflows.coupons.profile import MeasuredProfile, check_ours, head
 
 
 def local_curve(
-    pair: str, measured: Sequence[MixedCoupons], said: Said, shelves: Library, out: Path, found: Found
-) -> Profile | None:
+    pair: str, measured: Sequence[MixedCoupons], said: ReadingSource, shelves: Library, out: Path, found: CouponFindings
+) -> MeasuredProfile | None:
     """The lab's mixing curve of a pair, checked but not written; None where nothing was measured.
 
     Figures and remarks go to ``found``. Raises InputError for unknown resins, for moduli that do not rise with the fraction,
@@ -46,7 +46,7 @@ def local_curve(
     check_ours(path, f"points of {', '.join(f'{point.fraction:g}' for point in known)}")
     KINDS["mixing"].validate(content, str(path))
     found.figures += [
-        Figure(f"{pair}, {100 * point.fraction:g} %", f"shear modulus, MPa ({point.by})", point.modulus, point.spread, point.count)
+        MeasuredFigure(f"{pair}, {100 * point.fraction:g} %", f"shear modulus, MPa ({point.by})", point.modulus, point.spread, point.count)
         for point in known
     ]  # fmt: skip
     found.notes.append(
@@ -54,10 +54,10 @@ def local_curve(
         "knows when a mixed wall tears"
     )
     text = head(replace(said, where=Path(said.where).name), "the mixing curve as measured") + toml_text(content)
-    return Profile(path, text, _changes(path, content, pair, shelves))
+    return MeasuredProfile(path, text, _changes(path, content, pair, shelves))
 
 
-def _curve(pair: str, soft: str, stiff: str, known: Sequence[Stiffness], said: Said) -> dict[str, Any]:
+def _curve(pair: str, soft: str, stiff: str, known: Sequence[MixModulus], said: ReadingSource) -> dict[str, Any]:
     points = [point.content(said) for point in known]
     if known[0].fraction > 0:
         points.insert(0, {"fraction": 0.0, "material": soft, "source": "the soft resin as the catalogue has it"})

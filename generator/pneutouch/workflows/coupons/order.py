@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from pneutouch.catalogue import Library, Scene, load_scene
+from pneutouch.catalogue import Library, ResolvedDesign, load_scene
 from pneutouch.errors import InputError, nearest
-from pneutouch.parts.coupons import COUPONS, Coupon, Ground, Nominal
+from pneutouch.parts.coupons import COUPONS, Coupon, CouponContext, Nominal
 from pneutouch.spec.design import Membrane, Print
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
-from pneutouch.workflows.coupons.blends import Blend, blends
+from pneutouch.workflows.coupons.blends import CouponMix, blends
 
 MOST_COPIES = 100
 
@@ -23,7 +23,7 @@ MIXED_COPIES = 2
 
 
 @dataclass(frozen=True)
-class Asked:
+class CouponOptions:
     """What the user asked for; what is None is chosen."""
 
     profile: str | None = None
@@ -35,7 +35,7 @@ class Asked:
 
 
 @dataclass(frozen=True)
-class Item:
+class CouponItem:
     """One coupon to print: ``about`` is the material or design that the results file files it under.
 
     ``blend`` is given where it is of two resins in a known fraction, and then says where it is filed.
@@ -45,9 +45,9 @@ class Item:
     about: str
     printer_name: str
     printer: Printer
-    ground: Ground
+    ground: CouponContext
     copies: int
-    blend: Blend | None = None
+    blend: CouponMix | None = None
 
     @property
     def material(self) -> Material:
@@ -62,29 +62,29 @@ class Item:
 
 
 @dataclass(frozen=True)
-class Order:
+class CouponOrder:
     """Everything to print. ``name`` is the folder's; ``profile`` the printer asked for."""
 
     name: str
     profile: str
-    scene: Scene | None
-    items: tuple[Item, ...]
+    scene: ResolvedDesign | None
+    items: tuple[CouponItem, ...]
 
-    def machines(self) -> dict[str, tuple[Item, ...]]:
+    def machines(self) -> dict[str, tuple[CouponItem, ...]]:
         """Items by printer, the one asked for first."""
         names = dict.fromkeys((self.profile, *(item.printer_name for item in self.items)))
         found = {name: tuple(item for item in self.items if item.printer_name == name) for name in names}
         return {name: items for name, items in found.items() if items}
 
 
-def order(asked: Asked, library: Library | None = None) -> Order:
+def order(asked: CouponOptions, library: Library | None = None) -> CouponOrder:
     """Resolve every name. Raises InputError for what is unknown, contradicts, or does not run on the machine."""
     shelves = library or Library.default()
     scene = None if asked.design is None else load_scene(asked.design, [], shelves)
     profile = asked.profile or (Print().profile if scene is None else scene.design.print.profile)
     printer: Printer = shelves.load("printers", profile, asked_by="--profile")
     families = _families(asked)
-    items: list[Item] = []
+    items: list[CouponItem] = []
     for name in _materials(asked, scene, printer, profile, shelves):
         material: Material = shelves.load("materials", name, asked_by="--material")
         if printer.mode_for(material) is None:
@@ -92,7 +92,7 @@ def order(asked: Asked, library: Library | None = None) -> Order:
                 f"--material {name}: the {printer.title} cannot run {material.label}; it runs {', '.join(printer.resins)}"
             )
         items += [
-            Item(coupon, name, profile, printer, Ground(material, scene), _copies(asked, coupon))
+            CouponItem(coupon, name, profile, printer, CouponContext(material, scene), _copies(asked, coupon))
             for coupon in families
             if coupon.belongs != "design" and material.kind in coupon.kinds
         ]
@@ -102,10 +102,10 @@ def order(asked: Asked, library: Library | None = None) -> Order:
     _check_any(asked, families, items)
     pairs = dict.fromkeys(item.blend.pair for item in items if item.blend is not None)
     names = ["coupons", profile, *([scene.name] if scene else []), *pairs]
-    return Order("-".join(names), profile, scene, tuple(items))
+    return CouponOrder("-".join(names), profile, scene, tuple(items))
 
 
-def _families(asked: Asked) -> list[Coupon]:
+def _families(asked: CouponOptions) -> list[Coupon]:
     for word in (*asked.only, *asked.copies):
         if word not in COUPONS:
             flag = "--only" if word in asked.only else "--copies"
@@ -120,7 +120,9 @@ def _families(asked: Asked) -> list[Coupon]:
     return [coupon for coupon in chosen if coupon.belongs != "design" or asked.design is not None]
 
 
-def _materials(asked: Asked, scene: Scene | None, printer: Printer, profile: str, shelves: Library) -> list[str]:
+def _materials(
+    asked: CouponOptions, scene: ResolvedDesign | None, printer: Printer, profile: str, shelves: Library
+) -> list[str]:
     """As asked; else the design's membrane; else the default resin where the printer runs it, else its first."""
     if asked.materials or asked.mixing:
         return list(dict.fromkeys(asked.materials))
@@ -134,7 +136,9 @@ def _materials(asked: Asked, scene: Scene | None, printer: Printer, profile: str
     return [usual if usual in runs else runs[0]]
 
 
-def _of_mixing(asked: Asked, profile: str, printer: Printer, families: list[Coupon], shelves: Library) -> list[Item]:
+def _of_mixing(
+    asked: CouponOptions, profile: str, printer: Printer, families: list[Coupon], shelves: Library
+) -> list[CouponItem]:
     """The mixing set: every fraction of each pair; pucks alone unless dumbbells are asked for, which take a large tray."""
     chosen = [
         coupon for coupon in families
@@ -148,8 +152,8 @@ def _of_mixing(asked: Asked, profile: str, printer: Printer, families: list[Coup
                     f"--mixing {pair}: the {printer.title} cannot run {blend.material.label}; it runs {', '.join(printer.resins)}"
                 )
             found += [
-                Item(
-                    coupon, blend.about, profile, printer, Ground(blend.material),
+                CouponItem(
+                    coupon, blend.about, profile, printer, CouponContext(blend.material),
                     asked.copies.get(coupon.name, MIXED_COPIES), blend,
                 )
                 for coupon in chosen
@@ -157,24 +161,24 @@ def _of_mixing(asked: Asked, profile: str, printer: Printer, families: list[Coup
     return found
 
 
-def _of_design(asked: Asked, scene: Scene, profile: str, families: list[Coupon]) -> list[Item]:
+def _of_design(asked: CouponOptions, scene: ResolvedDesign, profile: str, families: list[Coupon]) -> list[CouponItem]:
     """Cap and plug, and the gauge of the connector's machine where that is another one."""
     machine, printer = scene.design.print.connector_profile, scene.connector_printer
-    ground, material = Ground(scene.connector_material, scene), scene.design.connector.material
+    ground, material = CouponContext(scene.connector_material, scene), scene.design.connector.material
     found = []
     for coupon in families:
         if coupon.belongs == "design":
-            found.append(Item(coupon, scene.name, machine, printer, ground, _copies(asked, coupon)))
+            found.append(CouponItem(coupon, scene.name, machine, printer, ground, _copies(asked, coupon)))
         elif coupon.belongs == "printer" and machine != profile:
-            found.append(Item(coupon, material, machine, printer, ground, _copies(asked, coupon)))
+            found.append(CouponItem(coupon, material, machine, printer, ground, _copies(asked, coupon)))
     return found
 
 
-def _copies(asked: Asked, coupon: Coupon) -> int:
+def _copies(asked: CouponOptions, coupon: Coupon) -> int:
     return asked.copies.get(coupon.name, coupon.copies)
 
 
-def _check_any(asked: Asked, families: list[Coupon], items: list[Item]) -> None:
+def _check_any(asked: CouponOptions, families: list[Coupon], items: list[CouponItem]) -> None:
     made = {item.coupon.name for item in items}
     for coupon in families:
         if asked.only and coupon.name not in made:

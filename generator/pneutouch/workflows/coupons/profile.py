@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pneutouch.bench.finding import MARK, Change, Said
+from pneutouch.bench.finding import MARK, ProfileChange, ReadingSource
 from pneutouch.catalogue import KINDS, Library
 from pneutouch.errors import InputError
 from pneutouch.spec.read import read_toml
@@ -20,7 +20,7 @@ HEAD = "# Written by pneutouch coupons"
 
 
 @dataclass(frozen=True, slots=True)
-class Profile:
+class MeasuredProfile:
     """A profile to write: its file, its text, and what it changes."""
 
     path: Path
@@ -35,7 +35,9 @@ def base_file(shelf: str, name: str, shelves: Library) -> Path:
     return next((path for path in there if not _is_ours(path)), there[0])
 
 
-def local_profiles(changes: Sequence[Change], said: Said, shelves: Library, out: Path) -> list[Profile]:
+def local_profiles(
+    changes: Sequence[ProfileChange], said: ReadingSource, shelves: Library, out: Path
+) -> list[MeasuredProfile]:
     """One profile for each material and printer that something was measured of, checked but not written.
 
     Quantities that an earlier run of the command measured and this one did not are kept. Raises InputError where a file
@@ -50,12 +52,14 @@ def local_profiles(changes: Sequence[Change], said: Said, shelves: Library, out:
         said_of = [_put(content, change, path) for change in changes if (change.shelf, change.name) == (shelf, name)]
         KINDS[shelf].validate(content, str(path))
         found.append(
-            Profile(path, head(said, "the shipped profile with what was measured") + toml_text(content), said_of)
+            MeasuredProfile(
+                path, head(said, "the shipped profile with what was measured") + toml_text(content), said_of
+            )
         )
     return found
 
 
-def head(said: Said, what: str) -> str:
+def head(said: ReadingSource, what: str) -> str:
     """The first lines of a profile that the command writes."""
     return (
         f"{HEAD} from {said.where} ({said.lab}, {said.date.isoformat()}): {what}.\n"
@@ -63,7 +67,7 @@ def head(said: Said, what: str) -> str:
     )
 
 
-def write_profiles(profiles: Sequence[Profile]) -> None:
+def write_profiles(profiles: Sequence[MeasuredProfile]) -> None:
     """Write every profile beside its place and rename it there. Raises InputError where a folder cannot be written."""
     fresh: list[tuple[Path, Path]] = []
     try:
@@ -89,7 +93,7 @@ def _is_ours(path: Path) -> bool:
         return file.readline().startswith(HEAD)
 
 
-def _earlier(path: Path, changes: Sequence[Change]) -> dict[str, Any]:
+def _earlier(path: Path, changes: Sequence[ProfileChange]) -> dict[str, Any]:
     """The content of the file that the command wrote before; nothing where there is none."""
     there = check_ours(path, ", ".join(".".join(change.keys) for change in changes))
     return read_toml(path) if there else {}
@@ -118,7 +122,7 @@ def _carry(earlier: dict[str, Any], content: dict[str, Any]) -> None:
             _carry(value, content[key])
 
 
-def _put(content: dict[str, Any], change: Change, path: Path) -> dict[str, Any]:
+def _put(content: dict[str, Any], change: ProfileChange, path: Path) -> dict[str, Any]:
     """Put a quantity in its place; what it was and what it is, as data."""
     *tables, last = change.keys
     owner = content

@@ -6,18 +6,18 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pneutouch.bench.finding import Found, Said
+from pneutouch.bench.finding import CouponFindings, ReadingSource
 from pneutouch.bench.machine import gauges
 from pneutouch.bench.resin import dumbbell, puck
 from pneutouch.bench.volume import leak, volume
 from pneutouch.catalogue import KINDS, Library, load_scene
 from pneutouch.errors import InputError
-from pneutouch.spec.coupon import Gauge, Results, read_results
+from pneutouch.spec.coupon import CouponResults, Gauge, read_results
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import read_toml
 from pneutouch.workflows.coupons.mixing import local_curve
-from pneutouch.workflows.coupons.profile import Profile, base_file, local_profiles, write_profiles
+from pneutouch.workflows.coupons.profile import MeasuredProfile, base_file, local_profiles, write_profiles
 
 
 def enter_results(path: Path, out: Path, library: Library | None = None) -> dict[str, Any]:
@@ -28,19 +28,19 @@ def enter_results(path: Path, out: Path, library: Library | None = None) -> dict
     shelves = library or Library.default()
     results = read_results(path)
     found = evaluate_results(results, str(path), shelves)
-    here = Said(str(path), results.lab, results.date)
+    here = ReadingSource(str(path), results.lab, results.date)
     curves = [local_curve(pair, read, here, shelves, out, found) for pair, read in results.mixing.items()]
     if not (found.changes or found.figures or found.notes):
         raise InputError(f"{path}: nothing measured: every list is empty; fill in some readings")
-    said = Said(path.name, results.lab, results.date)
+    said = ReadingSource(path.name, results.lab, results.date)
     profiles = local_profiles(found.changes, said, shelves, out) + [curve for curve in curves if curve is not None]
     write_profiles(profiles)
     return _document(results, found, profiles)
 
 
-def evaluate_results(results: Results, where: str, shelves: Library) -> Found:
+def evaluate_results(results: CouponResults, where: str, shelves: Library) -> CouponFindings:
     """Figures and changed quantities of a results file; ``where`` is the file, for messages."""
-    found, said = Found(), Said(where, results.lab, results.date)
+    found, said = CouponFindings(), ReadingSource(where, results.lab, results.date)
     for name, read in results.puck.items():
         puck(name, _material(name, f"{where}: puck", shelves), read, said, found)
     for name, pulled in results.dumbbell.items():
@@ -57,7 +57,9 @@ def evaluate_results(results: Results, where: str, shelves: Library) -> Found:
     return found
 
 
-def _gauges(name: str, by_material: Mapping[str, Gauge], said: Said, shelves: Library, found: Found) -> None:
+def _gauges(
+    name: str, by_material: Mapping[str, Gauge], said: ReadingSource, shelves: Library, found: CouponFindings
+) -> None:
     printer: Printer = _shipped("printers", name, f"{said.where}: gauge", shelves)
     measured = []
     for material_name, gauge in by_material.items():
@@ -89,7 +91,7 @@ def _design(name: str, where: str, shelves: Library) -> str:
     return name
 
 
-def _document(results: Results, found: Found, profiles: list[Profile]) -> dict[str, Any]:
+def _document(results: CouponResults, found: CouponFindings, profiles: list[MeasuredProfile]) -> dict[str, Any]:
     return {
         "lab": results.lab,
         "date": results.date.isoformat(),

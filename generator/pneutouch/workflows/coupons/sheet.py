@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from pneutouch.parts.coupons import Coupon, Nominal
-from pneutouch.workflows.coupons.lay import Piece, job_mode
-from pneutouch.workflows.coupons.order import Item, Order
+from pneutouch.workflows.coupons.lay import CouponPiece, job_mode
+from pneutouch.workflows.coupons.order import CouponItem, CouponOrder
 
 _CELLS = 5
 """Readings on one line."""
 
 
-def sheet(order: Order, trays: Mapping[str, tuple[Piece, ...]]) -> str:
+def sheet(order: CouponOrder, trays: Mapping[str, tuple[CouponPiece, ...]]) -> str:
     """Markdown for the operator and the bench."""
     lines = [
         f"# Coupons: print and measure ({order.name})", "",
@@ -29,7 +29,7 @@ def sheet(order: Order, trays: Mapping[str, tuple[Piece, ...]]) -> str:
     return "\n".join(lines)
 
 
-def _printing(name: str, pieces: tuple[Piece, ...], order: Order) -> list[str]:
+def _printing(name: str, pieces: tuple[CouponPiece, ...], order: CouponOrder) -> list[str]:
     printer = pieces[0].item.printer
     mode = job_mode(name, tuple(piece.item for piece in pieces))
     rows = [
@@ -48,7 +48,7 @@ def _printing(name: str, pieces: tuple[Piece, ...], order: Order) -> list[str]:
     ]  # fmt: skip
 
 
-def _mixes(pieces: tuple[Piece, ...]) -> list[str]:
+def _mixes(pieces: tuple[CouponPiece, ...]) -> list[str]:
     """How a machine that takes catalogue materials alone gets a mix."""
     if not any(piece.item.blend is not None for piece in pieces):
         return []
@@ -59,7 +59,7 @@ def _mixes(pieces: tuple[Piece, ...]) -> list[str]:
     ]  # fmt: skip
 
 
-def stl_name(piece: Piece, order: Order) -> str:
+def stl_name(piece: CouponPiece, order: CouponOrder) -> str:
     """File of a piece; that of another machine than the one asked for says which."""
     item = piece.item
     return (
@@ -67,12 +67,12 @@ def stl_name(piece: Piece, order: Order) -> str:
     )
 
 
-def _places(piece: Piece) -> str:
+def _places(piece: CouponPiece) -> str:
     wide, deep, _ = piece.size
     return ", ".join(f"({x + 0.5 * wide:.0f}, {y + 0.5 * deep:.0f})" for x, y in piece.places)
 
 
-def _measuring(coupon: Coupon, items: list[Item]) -> list[str]:
+def _measuring(coupon: Coupon, items: list[CouponItem]) -> list[str]:
     lines = [f"### {coupon.title[0].upper()}{coupon.title[1:]}", ""]
     lines += [*(f"{k}. {step}" for k, step in enumerate(coupon.steps, start=1)), ""]
     for item in items:
@@ -81,7 +81,7 @@ def _measuring(coupon: Coupon, items: list[Item]) -> list[str]:
     return [*lines, "Formulas:", "", *(f"- {formula}" for formula in coupon.formulas), ""]
 
 
-def _table(item: Item) -> list[str]:
+def _table(item: CouponItem) -> list[str]:
     """Cells to fill: a line a feature and copy; where a feature has many sizes, a line a size."""
     nominals = item.nominals
     if len({nominal.feature for nominal in nominals}) < len(nominals):

@@ -8,10 +8,10 @@ from typing import Any
 from pydantic import BaseModel
 
 from pneutouch.parts.coupons import Nominal
-from pneutouch.spec.coupon import Results
+from pneutouch.spec.coupon import CouponResults
 from pneutouch.spec.fields import table_of
 from pneutouch.spec.toml_text import key_text, value_text
-from pneutouch.workflows.coupons.order import Item, Order
+from pneutouch.workflows.coupons.order import CouponItem, CouponOrder
 
 _HEAD = """\
 # Results of coupons. Fill in what was measured, leave [] for what was not, then:
@@ -20,7 +20,7 @@ _HEAD = """\
 """
 
 
-def results_template(order: Order) -> str:
+def results_template(order: CouponOrder) -> str:
     """TOML that becomes valid once lab and date are given."""
     blocks = [_HEAD + '# lab = "who measured"\n# date = 2026-11-21']
     filed: set[tuple[str, float]] = set()
@@ -37,7 +37,7 @@ def results_template(order: Order) -> str:
     return "\n\n".join(blocks) + "\n"
 
 
-def _mixed(item: Item, *, first: bool) -> str:
+def _mixed(item: CouponItem, *, first: bool) -> str:
     """A coupon of one fraction: hardness stands in the fraction's own table, dumbbells in one below."""
     assert item.blend is not None
     path = f"mixing.{key_text(item.blend.pair)}"
@@ -48,7 +48,7 @@ def _mixed(item: Item, *, first: bool) -> str:
     return "\n".join([*lines, _empty(hardness, item.copies)])
 
 
-def _table(item: Item, path: str) -> str:
+def _table(item: CouponItem, path: str) -> str:
     nominals = item.nominals
     model = _model(item.coupon.name)
     lines = [f"# {item.coupon.title}: {item.copies} printed", f"[{path}]", *_settings(model)]
@@ -97,8 +97,8 @@ def _rows(feature: str, nominals: list[Nominal]) -> list[str]:
 
 def _model(coupon: str) -> type[BaseModel]:
     """The model of one table of a coupon in the results file."""
-    field = next(name for name, info in Results.model_fields.items() if coupon in (name, info.alias))
-    kind: Any = Results.model_fields[field].annotation
+    field = next(name for name, info in CouponResults.model_fields.items() if coupon in (name, info.alias))
+    kind: Any = CouponResults.model_fields[field].annotation
     while not (isinstance(kind, type) and issubclass(kind, BaseModel)):
         kind = kind.__args__[-1]
     return kind

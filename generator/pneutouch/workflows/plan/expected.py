@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from pneutouch.bench.protocol import CLEARANCE, Protocol
-from pneutouch.bench.simulate.curve import PressCurve, Pressed
+from pneutouch.bench.protocol import CLEARANCE, RunProtocol
+from pneutouch.bench.simulate.curve import PressCurve, PressCurves
 from pneutouch.bench.simulate.inject import line_pressure, sensor_pressure
 from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.spec.campaign import Rig
@@ -33,7 +33,7 @@ _LEAK_SHARE = 0.01
 
 
 @dataclass(frozen=True)
-class Excess:
+class PlanViolation:
     """Where the rig or the sensor would be asked for more than it has."""
 
     rule: str
@@ -64,8 +64,8 @@ def points(curve: PressCurve, depths: tuple[float, ...]) -> list[dict[str, float
 
 
 def curve_warnings(
-    resin: str, pressed: Pressed, curve: PressCurve, tests: Mapping[str, Protocol], rig: Rig
-) -> list[Excess]:
+    resin: str, pressed: PressCurves, curve: PressCurve, tests: Mapping[str, RunProtocol], rig: Rig
+) -> list[PlanViolation]:
     """What the kinds of run at one driving pressure would pass; ``tests`` are their protocols by kind."""
     driving = curve.driving / KPA
     depths = tuple(sorted({depth for test in tests.values() for depth in test.depths}))
@@ -83,7 +83,7 @@ def curve_warnings(
     def say(rule: str, depth: float | None, text: str) -> None:
         kinds = "" if depth is None else f" ({', '.join(k for k, t in tests.items() if max(t.depths) >= depth)})"
         at = "" if depth is None else f", from {depth:.2f} mm on{kinds}"
-        found.append(Excess(rule, f"{resin}, {driving:g} kPa{at}: {text}", resin, driving, depth))
+        found.append(PlanViolation(rule, f"{resin}, {driving:g} kPa{at}: {text}", resin, driving, depth))
 
     over(
         "force range",
@@ -121,16 +121,16 @@ def curve_warnings(
     return found  # fmt: skip
 
 
-def travel_warnings(depths: tuple[float, ...], rig: Rig) -> list[Excess]:
+def travel_warnings(depths: tuple[float, ...], rig: Rig) -> list[PlanViolation]:
     """Whether the stage reaches the deepest step from its clearance."""
     need = max(depths) + CLEARANCE
     if need <= rig.travel_mm:
         return []
     text = f"the deepest step needs {need:.2f} mm of travel with {CLEARANCE:g} mm clearance; the stage has {rig.travel_mm:g} mm"
-    return [Excess("travel", text, depth_mm=max(depths))]
+    return [PlanViolation("travel", text, depth_mm=max(depths))]
 
 
-def injection(pressed: Pressed, rig: Rig) -> dict[str, Any]:
+def injection(pressed: PressCurves, rig: Rig) -> dict[str, Any]:
     """Pressures after round volumes of room air, into the closed line and into the unpressed sensor; kPa, null where unknown."""
     sensor, ambient = pressed.sensor, pressed.sensor.ambient_pressure
     volumes = np.array(ROUND)
@@ -154,7 +154,7 @@ def injection(pressed: Pressed, rig: Rig) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _rows(pressed: Pressed, most: float) -> list[dict[str, float]]:
+def _rows(pressed: PressCurves, most: float) -> list[dict[str, float]]:
     sensor = pressed.sensor
     volumes = np.linspace(0.2, 1.0, 5) * most
     stated, bare, more = (
@@ -169,7 +169,7 @@ def _rows(pressed: Pressed, most: float) -> list[dict[str, float]]:
     ]  # fmt: skip
 
 
-def leak_limit(rise: float, test: Protocol) -> float:
+def leak_limit(rise: float, test: RunProtocol) -> float:
     """Greatest leak, kPa/min: `_LEAK_SHARE` of the first step's expected rise (kPa) while that indentation lasts."""
     seconds = test.hold + 2 * (test.depths[0] + CLEARANCE) / test.speed
     return 60.0 * _LEAK_SHARE * rise / seconds

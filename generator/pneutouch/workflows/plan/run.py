@@ -8,16 +8,16 @@ from pathlib import Path
 from typing import Any
 
 from pneutouch import __version__
-from pneutouch.bench.protocol import CLEARANCE, REPETITIONS, Protocol, protocol
-from pneutouch.bench.simulate.curve import Pressed
+from pneutouch.bench.protocol import CLEARANCE, REPETITIONS, RunProtocol, protocol
+from pneutouch.bench.simulate.curve import PressCurves
 from pneutouch.bench.simulate.encode import LEAK_SECONDS
 from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
-from pneutouch.evaluation.resins import Resin, pressed, resins_of
+from pneutouch.evaluation.resins import SimulatedResin, pressed, resins_of
 from pneutouch.output.files import MANIFEST, check_writable, digest, json_bytes, write_folder
 from pneutouch.output.recipe import input_hash, versions
 from pneutouch.report.plan_sheet import plan_sheet
-from pneutouch.spec.campaign import Campaign, Rig, Run, RunKind
+from pneutouch.spec.campaign import Campaign, CampaignRun, Rig, RunKind
 from pneutouch.spec.read import read_toml, validate
 from pneutouch.units import KPA, ML
 from pneutouch.workflows.plan.expected import curve_warnings, injection, leak_limit, points, travel_warnings
@@ -36,7 +36,7 @@ _REST = (("wait", 0.2), ("vent", 0.2), ("set_pressure", 0.2), ("wait", 0.4))
 
 
 @dataclass(frozen=True)
-class Plan:
+class CampaignPlan:
     """A plan as data (`document`), as a campaign file to be filled and as a sheet to be printed."""
 
     name: str
@@ -62,7 +62,7 @@ def rig_of(file: Path | None) -> Rig:
 def make_plan(
     design: str, assignments: list[str] | None = None, *, resins: tuple[str, ...] = (), specimens: int = 3,
     rig: Rig = PAPER, rig_name: str = "", library: Library | None = None,
-) -> Plan:  # fmt: skip
+) -> CampaignPlan:  # fmt: skip
     """Plan a campaign of the paper's tests for a design in each resin. Raises InputError for what cannot be."""
     if not 1 <= specimens <= 1000:
         raise InputError(f"--specimens {specimens}: must be from 1 to 1000")
@@ -97,12 +97,12 @@ def make_plan(
     }  # fmt: skip
     campaign = Campaign(
         title=f"Campaign of {scene.design.document.title}"[:120], design=design, assignments=list(assignments or []), ambient_pressure_kPa=pneumatics.ambient_pressure_kPa,
-        rig=rig, runs=[Run(**{key: run[key] for key in ("file", "kind", "sensor", "resin", "driving_pressure_kPa", "run")}) for run in listed],
+        rig=rig, runs=[CampaignRun(**{key: run[key] for key in ("file", "kind", "sensor", "resin", "driving_pressure_kPa", "run")}) for run in listed],
     )  # fmt: skip
-    return Plan(str(document["name"]), document, campaign)
+    return CampaignPlan(str(document["name"]), document, campaign)
 
 
-def write_plan(plan: Plan, out: Path) -> Path:
+def write_plan(plan: CampaignPlan, out: Path) -> Path:
     """Write ``out/<design>-plan/``: plan.json, plan.md, campaign.toml, manifest; the same input, the same bytes."""
     folder = out / plan.name
     check_writable(folder)
@@ -120,10 +120,10 @@ def write_plan(plan: Plan, out: Path) -> Path:
     return folder
 
 
-Tests = Mapping[RunKind, tuple[Protocol, tuple[float, ...]]]
+Tests = Mapping[RunKind, tuple[RunProtocol, tuple[float, ...]]]
 
 
-def plated_tests(subject: Resin) -> Tests:
+def plated_tests(subject: SimulatedResin) -> Tests:
     """Protocol and driving pressures (kPa) of each kind of run with a plate, in the order in which they are run."""
     driving = tuple(subject.scene.design.pneumatics.driving_pressures_kPa)
     top = min(SATURATION[-1], driving[-1])
@@ -138,21 +138,21 @@ def _times(kind: str) -> int:
     return REPETITIONS if kind in ("steps", "saturation") else 1
 
 
-def _pressed(subject: Resin, tests: Tests) -> Pressed:
+def _pressed(subject: SimulatedResin, tests: Tests) -> PressCurves:
     pressures = sorted({p for _, at in tests.values() for p in at})
     depth = max(depth for test, _ in tests.values() for depth in test.depths)
     return pressed(subject.name, subject.sensor, [p * KPA for p in pressures], depth, "auto")
 
 
-def _warnings(subject: Resin, found: Pressed, tests: Tests, rig: Rig) -> Iterator[Any]:
+def _warnings(subject: SimulatedResin, found: PressCurves, tests: Tests, rig: Rig) -> Iterator[Any]:
     for curve in found.curves:
-        here: dict[str, Protocol] = {
+        here: dict[str, RunProtocol] = {
             k: t for k, (t, at) in tests.items() if any(abs(p * KPA - curve.driving) < 1e-12 for p in at)
         }
         yield from curve_warnings(subject.name, found, curve, here, rig)
 
 
-def _expected(subject: Resin, found: Pressed, tests: Tests, rig: Rig) -> dict[str, Any]:
+def _expected(subject: SimulatedResin, found: PressCurves, tests: Tests, rig: Rig) -> dict[str, Any]:
     """What one resin must read: at every depth of every kind, after injected air, and the leak it may have."""
     depths = tuple(sorted({depth for test, _ in tests.values() for depth in test.depths}))
     states = [
@@ -171,7 +171,9 @@ def _expected(subject: Resin, found: Pressed, tests: Tests, rig: Rig) -> dict[st
     }  # fmt: skip
 
 
-def _runs(subject: Resin, sensor: str, tests: Tests, found: Pressed, rig: Rig, before: int) -> list[dict[str, Any]]:
+def _runs(
+    subject: SimulatedResin, sensor: str, tests: Tests, found: PressCurves, rig: Rig, before: int
+) -> list[dict[str, Any]]:
     """Every run of one specimen in order: leak and dead volume first, relaxation last, for it strains the wall longest."""
     top = max(subject.scene.design.pneumatics.driving_pressures_kPa)
     volume = injection(found, rig)["sensor_volume_mL"]
@@ -196,7 +198,7 @@ def _step(action: str, value: float | None, unit: str, seconds: float) -> dict[s
     return {"action": action, "value": value, "unit": unit, "seconds": seconds}
 
 
-def steps_of(test: Protocol, pressure: float, rig: Rig) -> list[dict[str, Any]]:
+def steps_of(test: RunProtocol, pressure: float, rig: Rig) -> list[dict[str, Any]]:
     """What rig and hand do in one run with a plate; travels count from first contact, below zero the plate is clear."""
     steps = [_step("record", rig.rate_Hz, "Hz", 0.0)]
     for k, depth in enumerate(test.depths):

@@ -8,15 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from pneutouch.report.scalogram import Scanned, scalogram_chart
+from pneutouch.report.scalogram import ScannedState, scalogram_chart
 from pneutouch.texture.detect import Detection
 from pneutouch.texture.scalogram import scalogram
 from pneutouch.texture.scan import NOISE, RATE, STEP, pressure_amplitude
 from pneutouch.texture.separate import noise_amplitude
 from pneutouch.texture.signal import Signal, decimated
-from pneutouch.texture.substrate import FIRST_ZERO, Bars, patch_filter
+from pneutouch.texture.substrate import FIRST_ZERO, BarRow, patch_filter
 from pneutouch.units import GAUGE_LIMIT, KPA
-from pneutouch.workflows.scan.run import ScanRun, Seen
+from pneutouch.workflows.scan.run import AnalysedSignal, ScanRun
 from pneutouch.workflows.specimen import inputs as specimen_inputs
 
 ASSUMPTIONS = (
@@ -67,7 +67,9 @@ def spectra(run: ScanRun) -> str:
         kept = decimated(seen.signal, high)
         mean = float(kept.pressure.mean())
         shown = Signal(kept.start, kept.step, kept.pressure - mean)
-        states.append(Scanned(f"{seen.label}, about {mean / KPA:.3g} kPa", shown, scalogram(seen.signal, low, high)))
+        states.append(
+            ScannedState(f"{seen.label}, about {mean / KPA:.3g} kPa", shown, scalogram(seen.signal, low, high))
+        )
     return scalogram_chart(states, {_names(run, frequency): frequency for frequency in frequencies})
 
 
@@ -78,7 +80,7 @@ def _names(run: ScanRun, frequency: float) -> str:
     )
 
 
-def _pattern(run: ScanRun, row: Bars) -> dict[str, Any]:
+def _pattern(run: ScanRun, row: BarRow) -> dict[str, Any]:
     frequency = run.frequencies[row.name]
     young = run.specimen.inclusion.young_modulus_MPa
     return {
@@ -89,7 +91,7 @@ def _pattern(run: ScanRun, row: Bars) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _state(run: ScanRun, number: int, seen: Seen) -> dict[str, Any]:
+def _state(run: ScanRun, number: int, seen: AnalysedSignal) -> dict[str, Any]:
     found: dict[str, Any] = {
         "label": seen.label,
         "signal": f"signal-{number + 1}.csv",
@@ -110,7 +112,7 @@ def _state(run: ScanRun, number: int, seen: Seen) -> dict[str, Any]:
     return found
 
 
-def _found(run: ScanRun, seen: Seen, row: Bars, found: Detection | None) -> dict[str, Any]:
+def _found(run: ScanRun, seen: AnalysedSignal, row: BarRow, found: Detection | None) -> dict[str, Any]:
     """One pattern in one signal. Patterns of one pitch share what is found: a spectrum does not tell them apart."""
     text: dict[str, Any] = {"name": row.name, "true_frequency_Hz": run.frequencies[row.name]}
     if seen.touch is not None and seen.substrate is not None:
@@ -133,7 +135,7 @@ def _found(run: ScanRun, seen: Seen, row: Bars, found: Detection | None) -> dict
     }  # fmt: skip
 
 
-def _notes(bars: Sequence[Bars], radius: float) -> list[str]:
+def _notes(bars: Sequence[BarRow], radius: float) -> list[str]:
     """What the patch makes of the patterns' pitches."""
     near = sorted({row.pitch for row in bars if row.pitch < 4.0 * radius})
     if not near:

@@ -9,21 +9,21 @@ from typing import Any
 
 import numpy as np
 
-from pneutouch.catalogue import Library, Scene, load_scene
+from pneutouch.catalogue import Library, ResolvedDesign, load_scene
 from pneutouch.errors import InputError, nearest
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.mechanics import Sensor
 from pneutouch.parts import assemble
 from pneutouch.parts.specimen.bars import places
-from pneutouch.spec.specimen import Bars as BarLayer
-from pneutouch.texture.contact import Touch, touch
+from pneutouch.spec.specimen import Bars
+from pneutouch.texture.contact import PreloadContact, touch
 from pneutouch.texture.detect import Detection, detect, least_duration
 from pneutouch.texture.record import read_signal
-from pneutouch.texture.scan import CONTROLS, NOISE, PRELOAD, Recorder, Scan, Way, scan
+from pneutouch.texture.scan import CONTROLS, NOISE, PRELOAD, Recorder, ScanPath, TextureScan, scan
 from pneutouch.texture.signal import Signal
-from pneutouch.texture.substrate import Bars, Matrix, Substrate
+from pneutouch.texture.substrate import BarRow, MatrixLayer, Substrate
 from pneutouch.units import KPA
-from pneutouch.workflows.specimen import SpecimenScene, draw, load_specimen, specimen_file
+from pneutouch.workflows.specimen import ResolvedSpecimen, draw, load_specimen, specimen_file
 
 KEPT = 20.0
 """Highest frequency of the signals in CSV files, Hz, or twice the highest pattern's; they keep five times as many samples."""
@@ -39,7 +39,7 @@ PRESSURES = (0.0, 22.0 * KPA)
 
 
 @dataclass(frozen=True)
-class Asked:
+class ScanOptions:
     """How a scan was asked for: pressures in MPa, N, mm/s (None: the specimen's), MPa rms, measured signals."""
 
     pressures: tuple[float, ...] = PRESSURES
@@ -52,30 +52,30 @@ class Asked:
 
 
 @dataclass(frozen=True)
-class Seen:
+class AnalysedSignal:
     """One signal, simulated or measured, with what was detected in it; touch, substrate and scan of a simulated one."""
 
     label: str
     signal: Signal
     detections: tuple[Detection, ...]
-    touch: Touch | None = None
+    touch: PreloadContact | None = None
     substrate: Substrate | None = None
-    scan: Scan | None = None
+    scan: TextureScan | None = None
 
 
 @dataclass(frozen=True)
 class ScanRun:
     """A whole run; ``frequencies`` are the patterns' at the speed of the scan, Hz, by name."""
 
-    specimen: SpecimenScene
-    design: Scene
+    specimen: ResolvedSpecimen
+    design: ResolvedDesign
     sensor: Sensor
-    matrix: Matrix
-    bars: tuple[Bars, ...]
-    asked: Asked
-    way: Way
+    matrix: MatrixLayer
+    bars: tuple[BarRow, ...]
+    asked: ScanOptions
+    way: ScanPath
     frequencies: dict[str, float]
-    seen: tuple[Seen, ...]
+    seen: tuple[AnalysedSignal, ...]
 
     @property
     def name(self) -> str:
@@ -89,7 +89,7 @@ class ScanRun:
 
 
 def run_scan(
-    specimen: str, design: str, asked: Asked = Asked(), assignments: list[str] | None = None, library: Library | None = None
+    specimen: str, design: str, asked: ScanOptions = ScanOptions(), assignments: list[str] | None = None, library: Library | None = None
 ) -> ScanRun:  # fmt: skip
     """Scan a specimen with a sensor, both by name or path; ``assignments`` change the design.
 
@@ -105,7 +105,7 @@ def run_scan(
     states = [touch(sensor, pressure, asked.preload) for pressure in asked.pressures]
     margin = max((state.contact_radius for state in states), default=0.0)
     length = ground.specimen.block.length_mm
-    way = Way(margin, length - margin, speed, asked.control)  # type: ignore[arg-type]
+    way = ScanPath(margin, length - margin, speed, asked.control)  # type: ignore[arg-type]
     frequencies = {row.name: speed / row.pitch for row in bars}
     _check_length(ground, way, frequencies)
     simulated = [
@@ -118,7 +118,7 @@ def run_scan(
 
 def load_both(
     specimen: str, design: str, assignments: list[str] | None, library: Library, scanned: bool = True
-) -> tuple[SpecimenScene, Scene, Sensor]:
+) -> tuple[ResolvedSpecimen, ResolvedDesign, Sensor]:
     """A specimen and a sensor; one that is ``scanned`` is checked as it is for printing.
 
     Raises InputError, also where one is the other.
@@ -134,11 +134,11 @@ def load_both(
     return ground, scene, sensor_of(assemble(scene))
 
 
-def bars_of(ground: SpecimenScene) -> tuple[Bars, ...]:
+def bars_of(ground: ResolvedSpecimen) -> tuple[BarRow, ...]:
     """The specimen's rows of bars. Raises InputError for layers of another kind, which the scan model does not know."""
     found = []
     for number, layer in enumerate(ground.specimen.layer):
-        if not isinstance(layer, BarLayer):
+        if not isinstance(layer, Bars):
             raise InputError(
                 f"{ground.where}: layer[{number}].kind = {layer.kind!r}: the scan model knows bars alone; with --data, "
                 "measured signals of any specimen can be read against a specimen of bars with the same pitches"
@@ -147,14 +147,14 @@ def bars_of(ground: SpecimenScene) -> tuple[Bars, ...]:
         edges = np.stack([left, left + layer.width_mm], axis=1)
         pitch = layer.pitch(ground.specimen.scan.speed_mm_per_s)
         name = layer.name or f"layer {number + 1}"
-        found.append(Bars(name, pitch, layer.width_mm, layer.height_mm, layer.depth_mm, edges))
+        found.append(BarRow(name, pitch, layer.width_mm, layer.height_mm, layer.depth_mm, edges))
     names = [row.name for row in found]
     if len(set(names)) < len(names):
         raise InputError(f"{ground.where}: layer: two patterns have one name; give each its own")
     return tuple(found)
 
 
-def matrix_of(ground: SpecimenScene) -> Matrix:
+def matrix_of(ground: ResolvedSpecimen) -> MatrixLayer:
     """The block's matrix. Raises InputError for one without a shear modulus."""
     modulus, poisson = ground.matrix.shear_modulus_MPa, ground.matrix.poisson_ratio
     if modulus is None or poisson is None:
@@ -162,21 +162,21 @@ def matrix_of(ground: SpecimenScene) -> Matrix:
             f"{ground.where}: block.matrix = {ground.specimen.block.matrix!r}: has no shear modulus; the scan model "
             "takes a soft matrix with stiff bars"
         )
-    return Matrix(ground.specimen.block.height_mm, modulus.nominal, poisson.nominal)
+    return MatrixLayer(ground.specimen.block.height_mm, modulus.nominal, poisson.nominal)
 
 
-def _at_speed(ground: SpecimenScene, speed: float) -> Any:
+def _at_speed(ground: ResolvedSpecimen, speed: float) -> Any:
     """The specimen at another speed; the bars stay where the file's own speed put them."""
     own = ground.specimen.scan.speed_mm_per_s
     layers = [
         layer.model_copy(update={"pitch_mm": layer.pitch(own), "target_frequency_Hz": None})
-        if isinstance(layer, BarLayer) else layer for layer in ground.specimen.layer
+        if isinstance(layer, Bars) else layer for layer in ground.specimen.layer
     ]  # fmt: skip
     update = {"scan": ground.specimen.scan.model_copy(update={"speed_mm_per_s": speed}), "layer": layers}
     return ground.specimen.model_copy(update=update)
 
 
-def check_asked(asked: Asked) -> None:
+def check_asked(asked: ScanOptions) -> None:
     """Raise InputError for an option that no scan can have, in the words of the command line."""
     if asked.control not in CONTROLS:
         raise InputError(f"--control {asked.control}: unknown.{nearest(asked.control, CONTROLS)}")
@@ -190,7 +190,7 @@ def check_asked(asked: Asked) -> None:
         raise InputError("--pressures: none given, and no --data; nothing to scan")
 
 
-def _check_length(ground: SpecimenScene, way: Way, frequencies: dict[str, float]) -> None:
+def _check_length(ground: ResolvedSpecimen, way: ScanPath, frequencies: dict[str, float]) -> None:
     """Refuse a path too short to tell a pattern's frequency, in terms of the specimen."""
     lasts = (way.end - way.start) / way.speed
     for name, frequency in frequencies.items():
@@ -212,12 +212,14 @@ def _detected(signal: Signal, frequencies: dict[str, float], where: str) -> tupl
     return tuple(by[frequency] for frequency in frequencies.values())
 
 
-def _simulated(state: Touch, substrate: Substrate, way: Way, asked: Asked, frequencies: dict[str, float]) -> Seen:
+def _simulated(
+    state: PreloadContact, substrate: Substrate, way: ScanPath, asked: ScanOptions, frequencies: dict[str, float]
+) -> AnalysedSignal:
     found = scan(state, substrate, way, Recorder(noise=asked.noise, seed=asked.seed))
     label = f"{state.driving_pressure / KPA:g} kPa"
-    return Seen(label, found.signal, _detected(found.signal, frequencies, label), state, substrate, found)
+    return AnalysedSignal(label, found.signal, _detected(found.signal, frequencies, label), state, substrate, found)
 
 
-def _measured(path: Path, frequencies: dict[str, float]) -> Seen:
+def _measured(path: Path, frequencies: dict[str, float]) -> AnalysedSignal:
     signal = read_signal(path)
-    return Seen(path.name, signal, _detected(signal, frequencies, str(path)))
+    return AnalysedSignal(path.name, signal, _detected(signal, frequencies, str(path)))

@@ -9,17 +9,17 @@ from typing import Any
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.catalogue import Library, Scene
+from pneutouch.catalogue import Library, ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import elastomers
-from pneutouch.mechanics.atlas.press import Batch
+from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.texture.separate import Pattern, Separation, noise_amplitude, separate
+from pneutouch.texture.separate import BarPattern, Separation, noise_amplitude, separate
 from pneutouch.units import KPA
-from pneutouch.workflows.scan.run import Asked, check_asked, load_both, matrix_of
+from pneutouch.workflows.scan.run import ScanOptions, check_asked, load_both, matrix_of
 
 _RADII, _RATIOS, _PRESSURES = 8, 8, 9
 _SMALLEST, _LARGEST = 4.0, 20.0
@@ -28,7 +28,7 @@ _SHOWN = 8
 
 
 @dataclass(frozen=True)
-class Domes:
+class DomeCandidates:
     """Candidates, (n,) each: resin by number in ``names``, mm, and one row a driving pressure."""
 
     names: tuple[str, ...]
@@ -36,10 +36,10 @@ class Domes:
     radius: Array
     wall: Array
     dome: Array
-    batch: Batch
+    batch: SensorBatch
 
 
-def parse_patterns(text: str) -> tuple[Pattern, Pattern]:
+def parse_patterns(text: str) -> tuple[BarPattern, BarPattern]:
     """Two patterns out of ``PITCH1@DEPTH1,PITCH2@DEPTH2`` in mm. Raises InputError."""
     number = r"\s*(\d+(?:\.\d+)?)\s*"
     match = re.fullmatch(f"{number}@{number},{number}@{number}", text)
@@ -50,11 +50,11 @@ def parse_patterns(text: str) -> tuple[Pattern, Pattern]:
         raise InputError(f"--separate {text}: a pitch must be more than 0 mm")
     if (a, b) == (c, d):
         raise InputError(f"--separate {text}: both patterns are the same; there is nothing to tell apart")
-    return Pattern(a, b), Pattern(c, d)
+    return BarPattern(a, b), BarPattern(c, d)
 
 
 def separating(
-    specimen: str, design: str, text: str, asked: Asked, assignments: list[str] | None = None,
+    specimen: str, design: str, text: str, asked: ScanOptions, assignments: list[str] | None = None,
     library: Library | None = None,
 ) -> dict[str, Any]:  # fmt: skip
     """The domes that best tell two patterns apart, as a document; the specimen gives matrix and speed, the design the rest."""
@@ -74,7 +74,7 @@ def separating(
     }  # fmt: skip
 
 
-def _dome(domes: Domes, found: Separation, k: int) -> dict[str, Any]:
+def _dome(domes: DomeCandidates, found: Separation, k: int) -> dict[str, Any]:
     row = int(np.flatnonzero(domes.dome == found.dome[k])[0])
     return {
         "rank": k + 1, "resin": domes.names[int(domes.resin[row])], "inner_radius_mm": float(round(domes.radius[row], 2)),
@@ -86,7 +86,7 @@ def _dome(domes: Domes, found: Separation, k: int) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def candidates(scene: Scene, sensor: Sensor, library: Library) -> Domes:
+def candidates(scene: ResolvedDesign, sensor: Sensor, library: Library) -> DomeCandidates:
     """A grid over the resins that the design's printer runs and the atlas knows, wall ratio, radius and pressure."""
     recipe, feature = shipped().recipe, scene.printer.smallest.wall("elastomer")
     least = feature.least or feature.recommended
@@ -109,12 +109,12 @@ def candidates(scene: Scene, sensor: Sensor, library: Library) -> Domes:
     dome = np.repeat(np.arange(resin.size // _PRESSURES, dtype=float), _PRESSURES)[keep]
     resin, ratio, radius, pressure = resin[keep], ratio[keep], radius[keep], pressure[keep]
     ones = np.ones(radius.size)
-    batch = Batch(
+    batch = SensorBatch(
         radius, ratio * radius, mu[resin.astype(int)], ones * sensor.ambient_pressure, ones * sensor.dead_volume, pressure,
         radius * min(sensor.depth / sensor.inner_radius, recipe.deepest), ones * sensor.plate_radius,
         ones * sensor.gauge_limit, ones * np.inf,
     )  # fmt: skip
-    return Domes(tuple(resins), resin, radius, ratio * radius, dome, batch)
+    return DomeCandidates(tuple(resins), resin, radius, ratio * radius, dome, batch)
 
 
 def _grid(*axes: Array) -> list[Array]:

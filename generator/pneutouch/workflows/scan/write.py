@@ -12,10 +12,10 @@ from pneutouch import __version__
 from pneutouch.output.files import MANIFEST, check_writable, digest, json_bytes, write_folder
 from pneutouch.output.recipe import input_hash, versions
 from pneutouch.texture.signal import decimated
-from pneutouch.texture.substrate import Bars
+from pneutouch.texture.substrate import BarRow
 from pneutouch.units import KPA
 from pneutouch.workflows.scan.document import document, inputs, spectra
-from pneutouch.workflows.scan.run import ScanRun, Seen
+from pneutouch.workflows.scan.run import AnalysedSignal, ScanRun
 
 
 def write_scan(run: ScanRun, out: Path) -> Path:
@@ -34,7 +34,7 @@ def write_scan(run: ScanRun, out: Path) -> Path:
     return folder
 
 
-def signal_csv(seen: Seen, bars: Sequence[Bars], highest: float) -> bytes:
+def signal_csv(seen: AnalysedSignal, bars: Sequence[BarRow], highest: float) -> bytes:
     """A signal decimated for ``highest`` Hz; a simulated one with place, noiseless pressure and true patterns."""
     kept = decimated(seen.signal, highest)
     columns = {"time_s": kept.time, "pressure_kPa": kept.pressure / KPA}

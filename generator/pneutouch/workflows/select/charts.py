@@ -9,15 +9,15 @@ from pathlib import Path
 
 from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
-from pneutouch.evaluation.chart_data import Spot, TradeOff, Tuning
+from pneutouch.evaluation.chart_data import ChartPoint, TradeOff, TuningChart
 from pneutouch.evaluation.tuning import curve, interval
 from pneutouch.report.tradeoff import tradeoff_chart
 from pneutouch.report.tuning import tuning_chart
-from pneutouch.selection import Choice
+from pneutouch.selection import Candidate
 from pneutouch.selection.front import front
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
-from pneutouch.workflows.select.run import Selection
+from pneutouch.workflows.select.run import SelectionRun
 
 _SIZE = (130.0, 90.0)
 """Width and height of a chart, mm."""
@@ -27,7 +27,7 @@ _DESIGNS = 5
 
 
 def write_charts(
-    selection: Selection, folder: Path, chosen: Choice | None = None, library: Library | None = None
+    selection: SelectionRun, folder: Path, chosen: Candidate | None = None, library: Library | None = None
 ) -> list[Path]:
     """Write ``trade-off.svg``, and ``tuning.svg`` of a chosen design, else the best, where there is one.
 
@@ -42,7 +42,7 @@ def write_charts(
     return [_write(folder / name, text) for name, text in charts.items()]
 
 
-def tradeoff(selection: Selection) -> TradeOff:
+def tradeoff(selection: SelectionRun) -> TradeOff:
     """Fronts at the target's driving pressure, the best design's where that is free; its window and the designs in it."""
     problem, designs = selection.problem, _best(selection)
     pressure = problem.driving_pressure
@@ -60,7 +60,7 @@ def tradeoff(selection: Selection) -> TradeOff:
     )  # fmt: skip
 
 
-def tuning(selection: Selection, library: Library, chosen: Choice | None = None) -> Tuning | None:
+def tuning(selection: SelectionRun, library: Library, chosen: Candidate | None = None) -> TuningChart | None:
     """A design's curve to its rated pressure (the best's, where none is chosen), and those of other resins as far."""
     designs = _best(selection)
     if not designs:
@@ -80,20 +80,20 @@ def tuning(selection: Selection, library: Library, chosen: Choice | None = None)
         if choice.resin.name != chosen.resin.name
     )
     working = {float(chosen.pool.pressure[0]) / KPA: float(chosen.pool.response.lines.sensitivity[0])}
-    return Tuning(drawn, low, high, working, tuple(other for other in others if other is not None))
+    return TuningChart(drawn, low, high, working, tuple(other for other in others if other is not None))
 
 
-def _best(selection: Selection) -> list[Choice]:
+def _best(selection: SelectionRun) -> list[Candidate]:
     """The best design of each resin, best resin first."""
-    first: dict[str, Choice] = {}
+    first: dict[str, Candidate] = {}
     for choice in selection.answer.designs:
         first.setdefault(choice.resin.name, choice)
     return list(first.values())[:_DESIGNS]
 
 
-def _spot(rank: int, choice: Choice) -> Spot:
+def _spot(rank: int, choice: Candidate) -> ChartPoint:
     title, force = choice.resin.material.title, float(choice.pool.force[0])
-    return Spot(title, f"{rank}  {title}, {force:.3g} N", float(choice.pool.response.lines.sensitivity[0]), force)
+    return ChartPoint(title, f"{rank}  {title}, {force:.3g} N", float(choice.pool.response.lines.sensitivity[0]), force)
 
 
 def _write(path: Path, text: str) -> Path:

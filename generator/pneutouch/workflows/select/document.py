@@ -10,15 +10,15 @@ import numpy as np
 from pneutouch.errors import InputError
 from pneutouch.mechanics.atlas.respond import ENDS
 from pneutouch.output.new import write_design
-from pneutouch.selection import Choice, Way
-from pneutouch.spec.design import Design
+from pneutouch.selection import Candidate, DroppedWish
+from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import override, validate
 from pneutouch.spec.template import design_template
 from pneutouch.units import KPA, ML
-from pneutouch.workflows.select.run import Confirmation, Selection
+from pneutouch.workflows.select.run import Confirmation, SelectionRun
 
 
-def document(selection: Selection) -> dict[str, Any]:
+def document(selection: SelectionRun) -> dict[str, Any]:
     """The selection as ``select --json`` prints it."""
     answer = selection.answer
     confirmed = [*selection.confirmed, *[None] * (len(answer.designs) - len(selection.confirmed))]
@@ -40,11 +40,11 @@ def document(selection: Selection) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _is_runner_up(designs: list[Choice], index: int) -> bool:
+def _is_runner_up(designs: list[Candidate], index: int) -> bool:
     return any(designs[index].resin.name == other.resin.name for other in designs[:index])
 
 
-def _choice(selection: Selection, choice: Choice, solid: Confirmation | None) -> dict[str, Any]:
+def _choice(selection: SelectionRun, choice: Candidate, solid: Confirmation | None) -> dict[str, Any]:
     pool, lines = choice.pool, choice.pool.response.lines
     sensitivity = float(lines.sensitivity[0])
     batch = selection.problem.batch(pool.resin, pool.radius, pool.wall, pool.pressure)
@@ -78,7 +78,7 @@ def _choice(selection: Selection, choice: Choice, solid: Confirmation | None) ->
     }  # fmt: skip
 
 
-def would_need(selection: Selection, way: Way) -> str:
+def would_need(selection: SelectionRun, way: DroppedWish) -> str:
     """What a wish would have to be for the best design without it."""
     pool, lines = way.best.pool, way.best.pool.response.lines
     if way.wish == "sensitivity":
@@ -90,23 +90,23 @@ def would_need(selection: Selection, way: Way) -> str:
     return f"{2 * float(pool.radius[0] + pool.wall[0]):.4g} mm instead of {selection.problem.max_diameter:g}"
 
 
-def write_choice(selection: Selection, choice: Choice, name: str, folder: Path) -> Path:
+def write_choice(selection: SelectionRun, choice: Candidate, name: str, folder: Path) -> Path:
     """Save a choice as ``folder/name.toml``, a design that ``build`` takes; never over a file."""
     return write_assigned(selection.base.design, selection.assignments(choice), name, folder)
 
 
-def write_assigned(design: Design, assignments: list[str], name: str, folder: Path) -> Path:
+def write_assigned(design: DesignFile, assignments: list[str], name: str, folder: Path) -> Path:
     """Save a design with ``table.key=value`` assignments as ``folder/name.toml``; never over a file."""
     base = design.model_dump(by_alias=True)
-    content = override(base, assignments, Design)
+    content = override(base, assignments, DesignFile)
     content["document"] = {**base["document"], "title": name}
     content["pneumatics"]["driving_pressures_kPa"] = [float(p) for p in content["pneumatics"]["driving_pressures_kPa"]]
-    chosen = validate(Design, content, name)
+    chosen = validate(DesignFile, content, name)
     note = "Every key may be left out; it then takes its default."
     return write_design(name, folder, design_template(name, chosen.model_dump(by_alias=True), note))
 
 
-def pick(selection: Selection, rank: int) -> Choice:
+def pick(selection: SelectionRun, rank: int) -> Candidate:
     """The design of a rank, from 1. Raises InputError where there is none."""
     designs = selection.answer.designs
     if not 1 <= rank <= len(designs):

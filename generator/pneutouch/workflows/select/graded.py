@@ -6,22 +6,22 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pneutouch.catalogue import Library, Scene
+from pneutouch.catalogue import Library, ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.parts import assemble
-from pneutouch.selection.grade_search import Progress, Search, Trial, Wish, grade_search, shares
-from pneutouch.selection.graded import Constant, middle_wall, nearest_fraction, trial_of
+from pneutouch.selection.grade_search import GradeSearch, GradeTarget, GradeTrial, Progress, grade_search, shares
+from pneutouch.selection.graded import UniformMembrane, middle_wall, nearest_fraction, trial_of
 from pneutouch.selection.mixes import levels
-from pneutouch.selection.problem import Problem
+from pneutouch.selection.problem import SelectionProblem
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA
-from pneutouch.workflows.select.mix import Pair
+from pneutouch.workflows.select.mix import ResinPair
 from pneutouch.workflows.select.run import base_scene, grade_text, pair_asked, problem_of
 
 _LEVELS = 4
@@ -30,7 +30,7 @@ _TRIALS = 48
 
 
 @dataclass(frozen=True)
-class GradedSelection:
+class GradedSelectionRun:
     """A search for a grade with everything needed to show and write it.
 
     sensor: the base's, with the radius and wall searched at. constants: catalogue resins and, last, the nearest constant mix.
@@ -38,12 +38,12 @@ class GradedSelection:
     """
 
     target: Target
-    base: Scene
+    base: ResolvedDesign
     sensor: Sensor
-    pair: Pair
-    wish: Wish
-    search: Search
-    constants: tuple[Constant, ...]
+    pair: ResinPair
+    wish: GradeTarget
+    search: GradeSearch
+    constants: tuple[UniformMembrane, ...]
     left_out: dict[str, str]
 
     @property
@@ -52,7 +52,7 @@ class GradedSelection:
         return len(self.search.trials) + len(self.constants)
 
     @property
-    def nearest(self) -> Constant:
+    def nearest(self) -> UniformMembrane:
         """The constant mix nearest to the wish."""
         return self.constants[-1]
 
@@ -61,7 +61,7 @@ class GradedSelection:
         """The best grade."""
         return self.pair.grade(self.search.best.pole, self.search.best.rim)
 
-    def meets(self, trial: Trial) -> bool:
+    def meets(self, trial: GradeTrial) -> bool:
         """Whether a membrane keeps every tolerance and limit."""
         return max(shares(self.wish, trial).values()) <= 1.0
 
@@ -81,7 +81,7 @@ class GradedSelection:
 def select_graded(
     target: Target, where: str, library: Library | None = None, progress: Progress = lambda trial, done, most: None,
     trials: int | None = None,
-) -> GradedSelection:  # fmt: skip
+) -> GradedSelectionRun:  # fmt: skip
     """Answer a target that asks for a grade. Raises InputError where it names what there is not.
 
     ``where`` names the file in messages; ``trials`` bounds the solid solves of the search.
@@ -94,27 +94,27 @@ def select_graded(
     problem = problem_of(target, scene, base, (pair.resin(float(levels(pair.law, 3)[1])),))
     sensor = replace(base, wall_thickness=_wall(target, where, wish, problem, base))
 
-    def solve(pole: float, rim: float) -> Trial:
+    def solve(pole: float, rim: float) -> GradeTrial:
         return trial_of(_in(sensor, pair.material(pair.grade(pole, rim))), wish.pressures, pole, rim)
 
     found = grade_search(wish, levels(pair.law, _LEVELS), solve, progress, trials or _TRIALS)
     constants, left_out = _catalogue(scene, sensor, wish, shelves)
     nearest = _nearest(wish, problem, pair, sensor, found)
-    return GradedSelection(target, scene, sensor, pair, wish, found, (*constants, nearest), left_out)
+    return GradedSelectionRun(target, scene, sensor, pair, wish, found, (*constants, nearest), left_out)
 
 
-def _wish(target: Target) -> Wish:
+def _wish(target: Target) -> GradeTarget:
     wanted = target.target
     assert wanted.sensitivity_kPa_per_N is not None
     both = wanted.same_sensitivity_at_kPa
     pressures = both if both is not None else [wanted.driving_pressure_kPa or 0.0]
-    return Wish(
+    return GradeTarget(
         wanted.sensitivity_kPa_per_N, wanted.tolerance_percent / 100, tuple(p * KPA for p in pressures),
         None if both is None else wanted.same_within_percent / 100, wanted.force_range_N, wanted.widest_range,
     )  # fmt: skip
 
 
-def _wall(target: Target, where: str, wish: Wish, problem: Problem, base: Sensor) -> float:
+def _wall(target: Target, where: str, wish: GradeTarget, problem: SelectionProblem, base: Sensor) -> float:
     """The wall given; else that with which the mix of middle modulus has the sensitivity, else the base's."""
     radius, room = base.inner_radius, target.target.max_diameter_mm
     thickest = np.inf if room is None else 0.5 * room - radius
@@ -142,7 +142,9 @@ def _in(sensor: Sensor, material: Material) -> Sensor:
     )  # fmt: skip
 
 
-def _catalogue(scene: Scene, sensor: Sensor, wish: Wish, library: Library) -> tuple[list[Constant], dict[str, str]]:
+def _catalogue(
+    scene: ResolvedDesign, sensor: Sensor, wish: GradeTarget, library: Library
+) -> tuple[list[UniformMembrane], dict[str, str]]:
     """Every elastomer of the catalogue at this size, softest first, and why the others are left out."""
     found, out = [], {}
     for name, material in library.all("materials", Material).items():
@@ -153,10 +155,12 @@ def _catalogue(scene: Scene, sensor: Sensor, wish: Wish, library: Library) -> tu
         else:
             found.append((material_sensor(material).shear_modulus, name, material))
     order = sorted(found, key=lambda entry: entry[:2])
-    return [Constant(name, None, trial_of(_in(sensor, m), wish.pressures)) for _, name, m in order], out
+    return [UniformMembrane(name, None, trial_of(_in(sensor, m), wish.pressures)) for _, name, m in order], out
 
 
-def _nearest(wish: Wish, problem: Problem, pair: Pair, sensor: Sensor, found: Search) -> Constant:
+def _nearest(
+    wish: GradeTarget, problem: SelectionProblem, pair: ResinPair, sensor: Sensor, found: GradeSearch
+) -> UniformMembrane:
     """The constant mix nearest to the wish: found by the atlas, else the nearest of those tried; solved by the solid."""
     middle, recipe = problem.resins[0].material, shipped().recipe
     fraction = None
@@ -170,4 +174,4 @@ def _nearest(wish: Wish, problem: Problem, pair: Pair, sensor: Sensor, found: Se
         even = [trial for trial in found.trials if trial.pole == trial.rim]
         fraction = min(even, key=lambda trial: max(shares(wish, trial).values())).pole
     grade = pair.grade(round(fraction, 4))
-    return Constant(grade.label, grade.fractions[0], trial_of(_in(sensor, pair.material(grade)), wish.pressures))
+    return UniformMembrane(grade.label, grade.fractions[0], trial_of(_in(sensor, pair.material(grade)), wish.pressures))

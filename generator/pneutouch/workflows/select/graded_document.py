@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from pneutouch.selection.grade_search import Trial, shares
+from pneutouch.selection.grade_search import GradeTrial, shares
 from pneutouch.units import KPA, ML
 from pneutouch.workflows.select.document import write_assigned
-from pneutouch.workflows.select.graded import GradedSelection
+from pneutouch.workflows.select.graded import GradedSelectionRun
 
 
-def graded_document(selection: GradedSelection) -> dict[str, Any]:
+def graded_document(selection: GradedSelectionRun) -> dict[str, Any]:
     """The search as ``select --graded --json`` prints it; ``share_used`` is at most 1 where a tolerance or limit is kept."""
     search, sensor = selection.search, selection.sensor
     return {
@@ -40,7 +40,7 @@ def graded_document(selection: GradedSelection) -> dict[str, Any]:
     }
 
 
-def _figures(selection: GradedSelection, trial: Trial) -> dict[str, Any]:
+def _figures(selection: GradedSelectionRun, trial: GradeTrial) -> dict[str, Any]:
     return {
         "driving_pressures_kPa": [p / KPA for p in selection.wish.pressures],
         "sensitivity_kPa_per_N": _known(trial.sensitivity),
@@ -57,7 +57,7 @@ def _known(values: tuple[float, ...]) -> list[float | None]:
     return [float(value) if np.isfinite(value) else None for value in values]
 
 
-def missed(selection: GradedSelection) -> list[str]:
+def missed(selection: GradedSelectionRun) -> list[str]:
     """What the best grade misses, and how far it can be moved at this size, in words."""
     wish, best = selection.wish, selection.search.best
     values = ", ".join(f"{value:.3f}" for value in best.sensitivity)
@@ -78,6 +78,6 @@ def missed(selection: GradedSelection) -> list[str]:
     return lines
 
 
-def write_graded(selection: GradedSelection, name: str, folder: Path) -> Path:
+def write_graded(selection: GradedSelectionRun, name: str, folder: Path) -> Path:
     """Save the grade as ``folder/name.toml``, a design that ``build`` takes; never over a file."""
     return write_assigned(selection.base.design, selection.assignments(), name, folder)

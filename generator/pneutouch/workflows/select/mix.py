@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.catalogue import Library
-from pneutouch.catalogue.mixture import Mixing, mixed_material, mixing
+from pneutouch.catalogue.mixture import ResolvedMixingCurve, mixed_material, mixing
 from pneutouch.errors import InputError
-from pneutouch.mechanics.atlas.recipe import Recipe
+from pneutouch.mechanics.atlas.recipe import AtlasRecipe
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.selection.mixes import levels
-from pneutouch.selection.problem import Resin
+from pneutouch.selection.problem import CandidateResin
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
@@ -22,12 +22,12 @@ USUAL = "TangoPlus+VeroClear"
 
 
 @dataclass(frozen=True)
-class Pair:
+class ResinPair:
     """A soft and a stiff resin with their mixing curve. ``where`` names the file in messages."""
 
     soft: str
     stiff: str
-    law: Mixing
+    law: ResolvedMixingCurve
     library: Library
     where: str
 
@@ -45,21 +45,21 @@ class Pair:
         """The material of a grade."""
         return mixed_material(grade, self.library, self.where)
 
-    def resin(self, fraction: float) -> Resin:
+    def resin(self, fraction: float) -> CandidateResin:
         """A constant mix as the search takes a resin."""
         grade = self.grade(fraction)
         material = self.material(grade)
         own = material_sensor(material)
-        return Resin(grade.label, material, own.shear_modulus, own.break_stretch or np.inf, grade)
+        return CandidateResin(grade.label, material, own.shear_modulus, own.break_stretch or np.inf, grade)
 
 
-def pair_of(name: str, printer: Printer, library: Library, where: str, asked: bool = True) -> Pair:
+def pair_of(name: str, printer: Printer, library: Library, where: str, asked: bool = True) -> ResinPair:
     """The pair of ``SOFT+STIFF``. Raises InputError where a name is unknown or the printer does not hold both.
 
     ``asked`` says whether the user named the pair.
     """
     soft, stiff = (part.strip() for part in name.split("+"))
-    pair = Pair(soft, stiff, mixing(soft, stiff, library, asked_by=f"{where}: given.mix"), library, where)
+    pair = ResinPair(soft, stiff, mixing(soft, stiff, library, asked_by=f"{where}: given.mix"), library, where)
     if printer.mode_for(pair.material(pair.grade(0.5 * float(pair.law.fraction[-1])))) is None:
         way = "name a pair that it holds with --mix, or another printer with --profile"
         raise InputError(
@@ -69,7 +69,9 @@ def pair_of(name: str, printer: Printer, library: Library, where: str, asked: bo
     return pair
 
 
-def mix_resins(pair: Pair, ambient_pressure: float, recipe: Recipe) -> tuple[tuple[Resin, ...], dict[str, str]]:
+def mix_resins(
+    pair: ResinPair, ambient_pressure: float, recipe: AtlasRecipe
+) -> tuple[tuple[CandidateResin, ...], dict[str, str]]:
     """Mixes of a pair that the atlas knows, and why the others are left out."""
     resins, out = [], {}
     for fraction in levels(pair.law):

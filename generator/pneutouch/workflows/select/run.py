@@ -9,11 +9,11 @@ from functools import cached_property
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.catalogue import Library, Scene, default_scene, load_scene
+from pneutouch.catalogue import Library, ResolvedDesign, default_scene, load_scene
 from pneutouch.errors import InputError, PneutouchError
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.evaluation.table_s1 import is_near_paper
-from pneutouch.mechanics.atlas.press import Batch
+from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.ladder import NUMERICAL
 from pneutouch.mechanics.paper_sensor import material_sensor
@@ -21,10 +21,10 @@ from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.uncertainty import ModelErrors, budget, model_errors
 from pneutouch.mechanics.uncertainty.source import FIGURES, SENSITIVITY
 from pneutouch.parts import assemble
-from pneutouch.selection import Answer, Choice, Problem, Resin, choose
+from pneutouch.selection import Candidate, CandidateResin, SelectionProblem, SelectionResult, choose
 from pneutouch.selection.mixes import met_by_fraction
-from pneutouch.selection.pool import Pool
-from pneutouch.spec.design import Design
+from pneutouch.selection.pool import CandidatePool
+from pneutouch.spec.design import DesignFile
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
@@ -32,7 +32,7 @@ from pneutouch.spec.read import read_toml, validate
 from pneutouch.spec.target import Target
 from pneutouch.spec.toml_text import value_text
 from pneutouch.units import KPA
-from pneutouch.workflows.select.mix import USUAL, Pair, mix_resins, pair_of
+from pneutouch.workflows.select.mix import USUAL, ResinPair, mix_resins, pair_of
 
 _CONFIRMED = 3
 """Designs that the solid is asked about."""
@@ -49,18 +49,18 @@ class Confirmation:
 
 
 @dataclass(frozen=True)
-class Selection:
+class SelectionRun:
     """An answer with everything needed to show, check and write it. left_out: resins and why."""
 
     target: Target
-    base: Scene
+    base: ResolvedDesign
     sensor: Sensor
-    problem: Problem
-    answer: Answer
+    problem: SelectionProblem
+    answer: SelectionResult
     left_out: dict[str, str]
     confirmed: tuple[Confirmation, ...]
 
-    def assignments(self, choice: Choice) -> list[str]:
+    def assignments(self, choice: Candidate) -> list[str]:
         """What turns the base design into a choice, as ``table.key=value``."""
         pressure = float(choice.pool.pressure[0]) / KPA
         pressures = sorted({0.0, round(pressure, 6)})
@@ -75,7 +75,7 @@ class Selection:
             found.append(f"indentation.depth_mm={self.problem.depth_share * float(choice.pool.radius[0]):.8g}")
         return found + self._setting
 
-    def sensor_of(self, choice: Choice) -> Sensor:
+    def sensor_of(self, choice: Candidate) -> Sensor:
         """A choice as a sensor, in everything else the base design's."""
         pool, resin = choice.pool, choice.resin
         batch = self.problem.batch(pool.resin, pool.radius, pool.wall, pool.pressure)
@@ -95,7 +95,7 @@ class Selection:
         return [f"{key}={value}" for key, value in values.items() if value is not None]
 
 
-def select(target: Target, where: str, library: Library | None = None) -> Selection:
+def select(target: Target, where: str, library: Library | None = None) -> SelectionRun:
     """Answer a target. Raises InputError where it names what there is not; ``where`` names the file in messages."""
     shelves = library or Library.default()
     scene = base_scene(target, where, shelves)
@@ -110,11 +110,11 @@ def select(target: Target, where: str, library: Library | None = None) -> Select
         problem, (target.weights.robustness, target.weights.tunability), _uncertainty(scene, sensor, shelves),
         None if pair is None else _refined(pair),
     )  # fmt: skip
-    found = Selection(target, scene, sensor, problem, answer, left_out, ())
+    found = SelectionRun(target, scene, sensor, problem, answer, left_out, ())
     return replace(found, confirmed=tuple(_confirm(found, choice) for choice in answer.designs[:_CONFIRMED]))
 
 
-def _written(resin: Resin) -> str:
+def _written(resin: CandidateResin) -> str:
     """A resin as a design names it: by its name, or as the mix that it is."""
     return resin.name if resin.grade is None else grade_text(resin.grade)
 
@@ -124,7 +124,7 @@ def grade_text(grade: Grade) -> str:
     return value_text(grade.model_dump(by_alias=True, exclude_none=True))
 
 
-def pair_asked(target: Target, where: str, printer: Printer, library: Library) -> Pair | None:
+def pair_asked(target: Target, where: str, printer: Printer, library: Library) -> ResinPair | None:
     """The pair to mix: the one named, the usual one for a grade; None where resins are to be chosen from."""
     given = target.given
     if given.mix is None and not given.graded:
@@ -132,11 +132,11 @@ def pair_asked(target: Target, where: str, printer: Printer, library: Library) -
     return pair_of(given.mix or USUAL, printer, library, where, asked=given.mix is not None)
 
 
-def _refined(pair: Pair) -> Callable[[Problem, Pool], tuple[Problem, Pool]]:
+def _refined(pair: ResinPair) -> Callable[[SelectionProblem, CandidatePool], tuple[SelectionProblem, CandidatePool]]:
     return lambda problem, pool: met_by_fraction(problem, pool, pair.law, pair.resin)
 
 
-def base_scene(target: Target, where: str, library: Library) -> Scene:
+def base_scene(target: Target, where: str, library: Library) -> ResolvedDesign:
     """The scene that gives everything the target does not; its own dome is replaced by the candidates'."""
     setting, given = target.setting, target.given
     values = {
@@ -158,7 +158,7 @@ def _some_resin(target: Target, where: str, library: Library) -> str:
     profile = setting.profile
     if profile is None:
         base = library.design_file(setting.base) if setting.base else None
-        design = validate(Design, read_toml(base), str(base)) if base else Design()
+        design = validate(DesignFile, read_toml(base), str(base)) if base else DesignFile()
         profile = design.print.profile
     printer: Printer = library.load("printers", profile, asked_by=f"{where}: setting.profile")
     pair = pair_asked(target, where, printer, library)
@@ -176,8 +176,8 @@ def _some_resin(target: Target, where: str, library: Library) -> str:
 
 
 def _resins(
-    target: Target, where: str, scene: Scene, sensor: Sensor, library: Library
-) -> tuple[tuple[Resin, ...], dict[str, str]]:
+    target: Target, where: str, scene: ResolvedDesign, sensor: Sensor, library: Library
+) -> tuple[tuple[CandidateResin, ...], dict[str, str]]:
     """Resins the printer runs and the atlas knows, and why the others are left out."""
     known = library.all("materials", Material)
     names = target.given.materials or sorted(name for name, m in known.items() if m.kind == "elastomer")
@@ -192,15 +192,17 @@ def _resins(
         elif sensor.ambient_pressure > recipe.stiffest * own.shear_modulus:
             out[name] = "it is too soft for the atlas in so high an ambient pressure"
         else:
-            resins.append(Resin(name, material, own.shear_modulus, own.break_stretch or np.inf))
+            resins.append(CandidateResin(name, material, own.shear_modulus, own.break_stretch or np.inf))
     return tuple(resins), out
 
 
-def problem_of(target: Target, scene: Scene, sensor: Sensor, resins: tuple[Resin, ...]) -> Problem:
+def problem_of(
+    target: Target, scene: ResolvedDesign, sensor: Sensor, resins: tuple[CandidateResin, ...]
+) -> SelectionProblem:
     """The search in numbers, on a base with its sensor."""
     wanted, given = target.target, target.given
     feature = scene.printer.smallest.wall("elastomer")
-    return Problem(
+    return SelectionProblem(
         resins=resins, sensitivity=wanted.sensitivity_kPa_per_N, tolerance=wanted.tolerance_percent / 100,
         driving_pressure=None if wanted.driving_pressure_kPa is None else wanted.driving_pressure_kPa * KPA,
         force_range=wanted.force_range_N, stiffness=(wanted.stiffness_least_N_per_mm, wanted.stiffness_most_N_per_mm),
@@ -212,7 +214,7 @@ def problem_of(target: Target, scene: Scene, sensor: Sensor, resins: tuple[Resin
     )  # fmt: skip
 
 
-def _dead_volume(scene: Scene, sensor: Sensor) -> Callable[[Array], Array]:
+def _dead_volume(scene: ResolvedDesign, sensor: Sensor) -> Callable[[Array], Array]:
     """Dead volume (mm3) over the inner radius: drawn at a few radii where the connector's channel follows it."""
     if scene.design.pneumatics.dead_volume_mL is not None:
         return lambda radius: np.full_like(radius, sensor.dead_volume)
@@ -224,7 +226,7 @@ def _dead_volume(scene: Scene, sensor: Sensor) -> Callable[[Array], Array]:
     return lambda radius: np.interp(radius, at, volumes)
 
 
-def _drawn(scene: Scene, radius: float) -> float | None:
+def _drawn(scene: ResolvedDesign, radius: float) -> float | None:
     """Dead volume of the scene's connector on another dome, or None where it cannot be drawn."""
     membrane = scene.design.membrane.model_copy(
         update={"inner_radius_mm": radius, "wall_thickness_mm": 0.15 * radius}
@@ -235,13 +237,15 @@ def _drawn(scene: Scene, radius: float) -> float | None:
         return None
 
 
-def _uncertainty(scene: Scene, sensor: Sensor, library: Library) -> Callable[[Resin, Batch], Array]:
+def _uncertainty(
+    scene: ResolvedDesign, sensor: Sensor, library: Library
+) -> Callable[[CandidateResin, SensorBatch], Array]:
     materials = library.all("materials", Material)
     known = {
         name: model_errors(material, materials.values()) for name, material in materials.items() if material.measured
     }
 
-    def relative(resin: Resin, batch: Batch) -> Array:
+    def relative(resin: CandidateResin, batch: SensorBatch) -> Array:
         errors = known.get(resin.name) or ModelErrors(pool=next(iter(known.values())).pool if known else ())
         near = np.array([is_near_paper(_like(sensor, batch, i)) for i in range(len(batch))])
         found = budget(
@@ -253,14 +257,14 @@ def _uncertainty(scene: Scene, sensor: Sensor, library: Library) -> Callable[[Re
     return relative
 
 
-def _like(sensor: Sensor, batch: Batch, i: int) -> Sensor:
+def _like(sensor: Sensor, batch: SensorBatch, i: int) -> Sensor:
     return replace(
         sensor, inner_radius=float(batch.inner_radius[i]), wall_thickness=float(batch.wall_thickness[i]),
         dead_volume=float(batch.dead_volume[i]), flange=None,
     )  # fmt: skip
 
 
-def _confirm(selection: Selection, choice: Choice) -> Confirmation:
+def _confirm(selection: SelectionRun, choice: Candidate) -> Confirmation:
     """The solid's sensitivity beside the atlas's."""
     from pneutouch.mechanics.solid_states import solid_result
 

@@ -10,7 +10,7 @@ import numpy as np
 from pneutouch.arrays import Labels
 from pneutouch.errors import InputError
 from pneutouch.export.voxels.png import encode
-from pneutouch.export.voxels.read import Stack, read_stack
+from pneutouch.export.voxels.read import VoxelStack, read_stack
 
 _BACKGROUND = np.uint32(0xFFFFFFFF)
 """White in the picture, where the stack has black."""
@@ -30,7 +30,7 @@ def show_stack(folder: Path, picture: Path | None = None) -> dict[str, Any]:
     return document(stack)
 
 
-def document(stack: Stack) -> dict[str, Any]:
+def document(stack: VoxelStack) -> dict[str, Any]:
     """Sizes, counts, volumes and fractions; those of the slices, not of the manifest."""
     held, filled = stack.manifest, max(1, sum(stack.counts.values()))
     keys = ("name", "printer", "mode", "prefix", "pixels", "layers", "dpi", "pixel_um", "layer_um", "size_mm", "bodies",
@@ -48,7 +48,7 @@ def document(stack: Stack) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def draw(stack: Stack, path: Path) -> None:
+def draw(stack: VoxelStack, path: Path) -> None:
     """A PNG of the section through the middle (x across, z up) above the middle slice (x across, y up), to one scale."""
     x, y = stack.manifest["pixel_um"]
     upper = _stretched(stack.section[::-1], stack.manifest["layer_um"] / x)

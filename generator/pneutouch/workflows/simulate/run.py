@@ -14,26 +14,26 @@ from pneutouch import __version__
 from pneutouch.arrays import Array
 from pneutouch.bench.simulate import (
     Population,
-    Samples,
-    Specimens,
-    Truth,
+    RecordSamples,
+    SimulatedSpecimens,
+    SimulationTruth,
     population,
     simulate_leak,
     simulate_run,
     specimen_figures,
 )
-from pneutouch.bench.simulate.curve import Pressed
+from pneutouch.bench.simulate.curve import PressCurves
 from pneutouch.bench.simulate.encode import LEAK_SECONDS, MARK, encoded
 from pneutouch.bench.simulate.inject import sensor_pressure
 from pneutouch.bench.simulate.parameter import parameters
 from pneutouch.bench.simulate.truth import aged
 from pneutouch.catalogue import Library
 from pneutouch.errors import InputError, nearest
-from pneutouch.evaluation.resins import Resin, pressed, resins_of
+from pneutouch.evaluation.resins import SimulatedResin, pressed, resins_of
 from pneutouch.mechanics import Sensor
 from pneutouch.output.files import MANIFEST, digest, json_bytes, replacing
 from pneutouch.output.recipe import input_hash, versions
-from pneutouch.spec.campaign import Campaign, Rig, Run, RunKind
+from pneutouch.spec.campaign import Campaign, CampaignRun, Rig, RunKind
 from pneutouch.spec.read import validate
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.units import KPA, ML
@@ -50,7 +50,7 @@ PUSHED = np.linspace(0.0, 0.5, 11) * ML
 
 
 @dataclass(frozen=True)
-class Asked:
+class SimulationOptions:
     """What shall be simulated. Pressures in kPa (None: the design's), rate in Hz, ages in days."""
 
     resins: tuple[str, ...] = ()
@@ -63,14 +63,14 @@ class Asked:
     model: str = "solid"
     ages: tuple[float, ...] = (0.0,)
     parquet: bool = False
-    truth: Truth = field(default_factory=Truth)
+    truth: SimulationTruth = field(default_factory=SimulationTruth)
 
 
 Progress = Callable[[int, int], None]
 
 
 def simulate(
-    design: str, out: Path, assignments: list[str] | None = None, asked: Asked = Asked(), library: Library | None = None,
+    design: str, out: Path, assignments: list[str] | None = None, asked: SimulationOptions = SimulationOptions(), library: Library | None = None,
     progress: Progress = lambda done, total: None,
 ) -> Path:  # fmt: skip
     """Write ``out/<design>-campaign/``: campaign.toml, runs, truth.json, manifest; the same input, the same bytes.
@@ -107,9 +107,13 @@ class _Writer:
 
 
 def _write_all(
-    named: tuple[str, list[str]], subjects: list[Resin], asked: Asked, writer: _Writer, progress: Progress
+    named: tuple[str, list[str]],
+    subjects: list[SimulatedResin],
+    asked: SimulationOptions,
+    writer: _Writer,
+    progress: Progress,
 ) -> None:
-    runs: list[Run] = []
+    runs: list[CampaignRun] = []
     truth: dict[str, Any] = {"specimens": {}, "populations": [], "notes": []}
     total = len(subjects) * asked.specimens * len(asked.ages)
     for subject in subjects:
@@ -144,24 +148,24 @@ def campaign_toml(campaign: Campaign, comment: str) -> bytes:
     return f"{comment}\n{toml_text(content)}".encode()
 
 
-def _pressures(subject: Resin, asked: Asked) -> list[float]:
+def _pressures(subject: SimulatedResin, asked: SimulationOptions) -> list[float]:
     """Driving pressures in kPa."""
     given = subject.scene.design.pneumatics.driving_pressures_kPa if asked.pressures is None else asked.pressures
     return sorted(given)
 
 
-def _depth(subject: Resin, asked: Asked) -> float:
+def _depth(subject: SimulatedResin, asked: SimulationOptions) -> float:
     """The deepest plate travel of the kinds asked for, mm."""
     reach = subject.sensor.inner_radius
     kinds = [kind for kind in asked.kinds if kind in PRESSED] or ["steps"]
     return max(max(subject.truth.protocol(kind, reach, np.inf).depths) for kind in kinds)
 
 
-def _pressed(subject: Resin, sensor: Sensor, asked: Asked, who: str) -> Pressed:
+def _pressed(subject: SimulatedResin, sensor: Sensor, asked: SimulationOptions, who: str) -> PressCurves:
     return pressed(who, sensor, [p * KPA for p in _pressures(subject, asked)], _depth(subject, asked), asked.model)
 
 
-def _populations(subject: Resin, age: float, asked: Asked) -> Iterator[dict[str, Any]]:
+def _populations(subject: SimulatedResin, age: float, asked: SimulationOptions) -> Iterator[dict[str, Any]]:
     nominal = _pressed(subject, aged(subject.sensor, subject.truth, age), asked, subject.name)
     for k, pressure in enumerate(_pressures(subject, asked)):
         found: Population = population(nominal, k, subject.truth, asked.rate, (asked.seed, _number(subject.name)))
@@ -171,10 +175,14 @@ def _populations(subject: Resin, age: float, asked: Asked) -> Iterator[dict[str,
         }  # fmt: skip
 
 
-def _specimen(subject: Resin, age: float, k: int, asked: Asked, truth: dict[str, Any]) -> Iterator[tuple[Run, bytes]]:
+def _specimen(
+    subject: SimulatedResin, age: float, k: int, asked: SimulationOptions, truth: dict[str, Any]
+) -> Iterator[tuple[CampaignRun, bytes]]:
     """Every run of one specimen at one age, and what is true of it."""
     name = f"{subject.name}-{k + 1}"
-    drawn = Specimens.draw(subject.truth.scatter, 1, np.random.default_rng([asked.seed, _number(subject.name), k]))
+    drawn = SimulatedSpecimens.draw(
+        subject.truth.scatter, 1, np.random.default_rng([asked.seed, _number(subject.name), k])
+    )
     sensor = aged(drawn.sensor(subject.sensor, 0), subject.truth, age)
     found = _pressed(subject, sensor, asked, name)
     known: dict[str, Any] = {
@@ -193,7 +201,7 @@ def _specimen(subject: Resin, age: float, k: int, asked: Asked, truth: dict[str,
                 continue
             for number in range(1, (asked.runs if kind in REPEATED else 1) + 1):
                 at = 0.0 if kind == "injection" else pressure
-                run = Run(
+                run = CampaignRun(
                     file=f"runs/{_label(name, age, asked)}-{at:g}kPa-{kind}-{number}.{'parquet' if asked.parquet else 'csv'}",
                     kind=kind,  # type: ignore[arg-type]
                     sensor=name, resin=subject.name, driving_pressure_kPa=at, run=number, age_days=age,
@@ -205,14 +213,21 @@ def _specimen(subject: Resin, age: float, k: int, asked: Asked, truth: dict[str,
                 yield run, encoded(_columns(kind, subject, found, place, asked, rng), parquet=asked.parquet)
 
 
-def _note_end(run: Run, subject: Resin, reach: float, ends: tuple[str, float] | None, truth: dict[str, Any]) -> None:
+def _note_end(
+    run: CampaignRun, subject: SimulatedResin, reach: float, ends: tuple[str, float] | None, truth: dict[str, Any]
+) -> None:
     wanted = max(subject.truth.protocol(run.kind, subject.sensor.inner_radius, np.inf).depths)
     if ends is not None and wanted > reach * (1 + 1e-9):
         truth["notes"].append(f"{run.label}: stops at {reach:.2f} mm instead of {wanted:.2f} mm, before {ends[0]}")
 
 
 def _columns(
-    kind: str, subject: Resin, found: Pressed, place: int, asked: Asked, rng: np.random.Generator
+    kind: str,
+    subject: SimulatedResin,
+    found: PressCurves,
+    place: int,
+    asked: SimulationOptions,
+    rng: np.random.Generator,
 ) -> dict[str, Array]:
     """The columns of one run in the units of its file."""
     truth, curve, sensor = subject.truth, found.curves[place], found.sensor
@@ -225,13 +240,15 @@ def _columns(
         still = simulate_leak(curve.driving, LEAK_SECONDS, truth.rig, asked.rate, rng)
         return {"time_s": still.time, "pressure_kPa": still.pressure / KPA}
     asked_for = truth.protocol(kind, sensor.inner_radius, curve.reach)
-    record: Samples = simulate_run(curve, asked_for, truth.rig, asked.rate, rng, wall=truth.wall, scatter=truth.scatter)
+    record: RecordSamples = simulate_run(
+        curve, asked_for, truth.rig, asked.rate, rng, wall=truth.wall, scatter=truth.scatter
+    )
     return {
         "time_s": record.time, "position_mm": record.position, "force_N": record.force, "pressure_kPa": record.pressure / KPA,
     }  # fmt: skip
 
 
-def _label(name: str, age: float, asked: Asked) -> str:
+def _label(name: str, age: float, asked: SimulationOptions) -> str:
     return name if asked.ages == (0.0,) else f"{name}-{age:g}d"
 
 
@@ -240,7 +257,7 @@ def _number(name: str) -> int:
     return zlib.crc32(name.encode())
 
 
-def _inputs(subjects: list[Resin], asked: Asked) -> dict[str, Any]:
+def _inputs(subjects: list[SimulatedResin], asked: SimulationOptions) -> dict[str, Any]:
     first = subjects[0]
     return {
         "design": first.scene.design.model_dump(mode="json"),
@@ -254,7 +271,7 @@ def _inputs(subjects: list[Resin], asked: Asked) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _check(asked: Asked) -> None:
+def _check(asked: SimulationOptions) -> None:
     """Raise InputError for what cannot be simulated."""
     bounds = (
         ("--specimens", asked.specimens, 1, 1000), ("--runs", asked.runs, 1, 1000), ("--rate", asked.rate, 10.0, 1e5),

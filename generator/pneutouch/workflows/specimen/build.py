@@ -17,10 +17,10 @@ from pneutouch.output.files import MANIFEST, check_writable, digest, json_bytes,
 from pneutouch.output.recipe import input_hash, versions
 from pneutouch.parts.specimen.plate import holes, outline
 from pneutouch.printability import Finding
-from pneutouch.workflows.specimen.draw import Drawn, draw
+from pneutouch.workflows.specimen.draw import SpecimenBodies, draw
 from pneutouch.workflows.specimen.drawing import drawing_svg
 from pneutouch.workflows.specimen.findings import findings, refuse
-from pneutouch.workflows.specimen.load import SpecimenScene, load_specimen
+from pneutouch.workflows.specimen.load import ResolvedSpecimen, load_specimen
 from pneutouch.workflows.specimen.sheet import sheet
 from pneutouch.workflows.specimen.truth import truth
 
@@ -67,7 +67,7 @@ def check_specimen(
     return found
 
 
-def inputs(scene: SpecimenScene) -> dict[str, Any]:
+def inputs(scene: ResolvedSpecimen) -> dict[str, Any]:
     """Everything that the result follows from, as data."""
     return {
         "specimen": scene.specimen.model_dump(mode="json"),
@@ -78,7 +78,7 @@ def inputs(scene: SpecimenScene) -> dict[str, Any]:
     }
 
 
-def solids(drawn: Drawn) -> tuple[Solid, ...]:
+def solids(drawn: SpecimenBodies) -> tuple[Solid, ...]:
     """The exact shapes of block and patterns in the block's frame; none where a pattern has no exact shape."""
     bars = [solid for pattern in drawn.patterns for solid in pattern.solids]
     if not all(pattern.solids for pattern in drawn.patterns):
@@ -90,7 +90,7 @@ def solids(drawn: Drawn) -> tuple[Solid, ...]:
     return (block, *bars, *_frame_solid(drawn))
 
 
-def _frame_solid(drawn: Drawn) -> tuple[Solid, ...]:
+def _frame_solid(drawn: SpecimenBodies) -> tuple[Solid, ...]:
     """The frame without its letters."""
     frame, material, block = drawn.scene.specimen.frame, drawn.scene.frame, drawn.scene.block
     if frame is None or material is None:
@@ -106,7 +106,7 @@ def _polygon(corners: list[tuple[float, float]]) -> tuple[Line, ...]:
     return tuple(Line(a, b, "") for a, b in pairwise([*corners, corners[0]]))
 
 
-def _files(drawn: Drawn, found: list[Finding], progress: Progress) -> dict[str, bytes]:
+def _files(drawn: SpecimenBodies, found: list[Finding], progress: Progress) -> dict[str, bytes]:
     scene, bodies = drawn.scene, drawn.printed
     whole = input_hash(inputs(scene), __version__)
     progress("3MF")
@@ -128,7 +128,7 @@ def _files(drawn: Drawn, found: list[Finding], progress: Progress) -> dict[str, 
     return files
 
 
-def _metadata(drawn: Drawn, whole: str) -> dict[str, str]:
+def _metadata(drawn: SpecimenBodies, whole: str) -> dict[str, str]:
     scene = drawn.scene
     return {
         "Title": scene.specimen.document.title,
@@ -140,7 +140,7 @@ def _metadata(drawn: Drawn, whole: str) -> dict[str, str]:
     }
 
 
-def _manifest(drawn: Drawn, found: list[Finding], files: dict[str, bytes]) -> dict[str, Any]:
+def _manifest(drawn: SpecimenBodies, found: list[Finding], files: dict[str, bytes]) -> dict[str, Any]:
     scene = drawn.scene
     content = inputs(scene)
     return {

@@ -11,24 +11,24 @@ from pneutouch.arrays import Array
 from pneutouch.body import Body
 from pneutouch.errors import ComputationError, InputError
 from pneutouch.parts.lettering.glyphs import lettering, rounded
-from pneutouch.parts.specimen import FAMILIES, Box, Mesh, Pattern, complement
+from pneutouch.parts.specimen import FAMILIES, Box, Mesh, PatternGeometry, complement
 from pneutouch.parts.specimen.family import MOST_TRIANGLES, check_inside
 from pneutouch.parts.specimen.mesh import joined
 from pneutouch.parts.specimen.plate import plate
 from pneutouch.spec.material import Material
-from pneutouch.spec.specimen import Frame
-from pneutouch.workflows.specimen.load import SpecimenScene
+from pneutouch.spec.specimen import FramePlate
+from pneutouch.workflows.specimen.load import ResolvedSpecimen
 
 _MARK = 1.2
 """Letters are cut this many times as deep as the printer's recommended detail."""
 
 
 @dataclass(frozen=True)
-class Drawn:
+class SpecimenBodies:
     """The patterns in the order of the file, and the bodies in the block's frame, mm: matrix, inclusion, frame."""
 
-    scene: SpecimenScene
-    patterns: tuple[Pattern, ...]
+    scene: ResolvedSpecimen
+    patterns: tuple[PatternGeometry, ...]
     bodies: tuple[Body, ...]
 
     @cached_property
@@ -43,7 +43,7 @@ class Drawn:
         return tuple(body.moved(self.offset) for body in self.bodies)
 
 
-def draw(scene: SpecimenScene) -> Drawn:
+def draw(scene: ResolvedSpecimen) -> SpecimenBodies:
     """Draw every layer and part the block among the bodies.
 
     Raises InputError for layers that cannot be or meet one another, ComputationError where a body is not closed.
@@ -60,10 +60,10 @@ def draw(scene: SpecimenScene) -> Drawn:
             raise ComputationError(
                 f"{scene.where}: the {body.name} does not come out closed; change a pitch, cell or depth by 0.01 mm, or report it"
             )
-    return Drawn(scene, patterns, bodies)
+    return SpecimenBodies(scene, patterns, bodies)
 
 
-def _patterns(scene: SpecimenScene) -> tuple[Pattern, ...]:
+def _patterns(scene: ResolvedSpecimen) -> tuple[PatternGeometry, ...]:
     ground, layers = scene.ground, scene.specimen.layer
     boxes: list[Box] = []
     for number, layer in enumerate(layers):
@@ -92,7 +92,7 @@ def _span(corner: tuple[float, float, float]) -> str:
     return "(" + ", ".join(f"{value:.4g}" for value in corner) + ")"
 
 
-def _frame(scene: SpecimenScene, frame: Frame, material: Material, bodies: list[Mesh]) -> Mesh:
+def _frame(scene: ResolvedSpecimen, frame: FramePlate, material: Material, bodies: list[Mesh]) -> Mesh:
     """The plate, with its letters between the block and the near edge."""
     where, smallest = scene.where, scene.printer.smallest
     land = 0.5 * (frame.border_mm - frame.hole_diameter_mm)
@@ -115,7 +115,7 @@ def _frame(scene: SpecimenScene, frame: Frame, material: Material, bodies: list[
     )
 
 
-def _letters(scene: SpecimenScene, frame: Frame) -> tuple[list[Array], float]:
+def _letters(scene: ResolvedSpecimen, frame: FramePlate) -> tuple[list[Array], float]:
     if not frame.mark:
         return [], 0.0
     least = scene.printer.smallest.emboss_mm.recommended

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pneutouch.parts.specimen import Mesh, Pattern
+from pneutouch.parts.specimen import Mesh, PatternGeometry
 from pneutouch.report.style import ACCENT, BOLD, INK, MUTED, figure, halo, svg
-from pneutouch.workflows.specimen.draw import Drawn
+from pneutouch.workflows.specimen.draw import SpecimenBodies
 from pneutouch.workflows.specimen.truth import frequencies, title
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ _LINE = 5.0
 """Height of a line of the table, mm."""
 
 
-def drawing_svg(drawn: Drawn) -> bytes:
+def drawing_svg(drawn: SpecimenBodies) -> bytes:
     """SVG of the section; the same bytes every time."""
     box, frame = drawn.scene.block, drawn.scene.specimen.frame
     under = 0.0 if frame is None else frame.thickness_mm
@@ -41,7 +41,7 @@ def drawing_svg(drawn: Drawn) -> bytes:
         return svg(page).encode()
 
 
-def _head(page: Figure, drawn: Drawn) -> None:
+def _head(page: Figure, drawn: SpecimenBodies) -> None:
     document, block = drawn.scene.specimen.document, drawn.scene.specimen.block
     text = (
         f"{document.title}, revision {document.revision}: {block.length_mm:g} x {block.width_mm:g} x {block.height_mm:g} mm, "
@@ -50,7 +50,7 @@ def _head(page: Figure, drawn: Drawn) -> None:
     page.suptitle(text, x=0.01, ha="left", fontsize=8.5, **BOLD)
 
 
-def _section(ax: Axes, drawn: Drawn, under: float, aside: float) -> None:
+def _section(ax: Axes, drawn: SpecimenBodies, under: float, aside: float) -> None:
     from matplotlib.patches import Rectangle
 
     box, scene = drawn.scene.block, drawn.scene
@@ -79,7 +79,7 @@ def _section(ax: Axes, drawn: Drawn, under: float, aside: float) -> None:
     ax.grid(visible=False)
 
 
-def _cut(ax: Axes, pattern: Pattern, colour: str) -> None:
+def _cut(ax: Axes, pattern: PatternGeometry, colour: str) -> None:
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
 
@@ -100,7 +100,7 @@ def section(mesh: Mesh, y: float) -> list[Any]:
     return list(whole.slice(y).to_polygons())
 
 
-def _label(ax: Axes, number: int, pattern: Pattern) -> None:
+def _label(ax: Axes, number: int, pattern: PatternGeometry) -> None:
     """The layer's number at its end, its first pitch as a dimension, and its depth."""
     low, high = pattern.box.low, pattern.box.high
     middle = 0.5 * (low[2] + high[2])
@@ -121,7 +121,7 @@ def _label(ax: Axes, number: int, pattern: Pattern) -> None:
     ax.text(low[0] + pitch + 0.4, height, f"{pitch:.4g}", va="center", fontsize=6.5, zorder=6, path_effects=halo())
 
 
-def _table(ax: Axes, drawn: Drawn) -> None:
+def _table(ax: Axes, drawn: SpecimenBodies) -> None:
     """The layers in words, under the section."""
     ax.set_axis_off()
     ax.set_xlim(0, 1)

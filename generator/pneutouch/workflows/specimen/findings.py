@@ -11,8 +11,8 @@ from pneutouch.body import Body
 from pneutouch.errors import RuleBrokenError
 from pneutouch.parts.specimen import Box
 from pneutouch.printability import Finding, check
-from pneutouch.printability.subject import Item, Joint, Subject
-from pneutouch.workflows.specimen.draw import Drawn
+from pneutouch.printability.subject import Joint, PrintItem, PrintSubject
+from pneutouch.workflows.specimen.draw import SpecimenBodies
 
 OPEN = frozenset({"holes", "channels", "gaps", "hollows", "cleaning", "emboss", "matte"})
 """Rules on open space: what one body leaves open another one fills, so they look at the block as a whole."""
@@ -26,7 +26,7 @@ _MOST_CHECKED = 40_000
 _JOB = "specimen"
 
 
-def findings(drawn: Drawn) -> list[Finding]:
+def findings(drawn: SpecimenBodies) -> list[Finding]:
     """What the rules say of the bodies, and of the block with its frame as one."""
     own = [
         _bonded(finding)
@@ -38,7 +38,7 @@ def findings(drawn: Drawn) -> list[Finding]:
     return sorted([*own, *whole, *_unmeasured(drawn)], key=lambda finding: order[finding.severity])
 
 
-def refuse(drawn: Drawn, found: list[Finding]) -> None:
+def refuse(drawn: SpecimenBodies, found: list[Finding]) -> None:
     """Raise RuleBrokenError where a finding is an error."""
     errors = [finding for finding in found if finding.severity == "error"]
     if errors:
@@ -46,33 +46,33 @@ def refuse(drawn: Drawn, found: list[Finding]) -> None:
         raise RuleBrokenError("\n".join(f"{where}: {f.rule}: {f.body}: {f.message}; {f.fix}" for f in errors))
 
 
-def bodies_of(drawn: Drawn) -> Subject:
+def bodies_of(drawn: SpecimenBodies) -> PrintSubject:
     """The bodies as one job, with the faces that they must share; those too large to be measured left out."""
     measured = [body for body in drawn.bodies if len(body.triangles) <= _MOST_CHECKED]
     names = {body.name for body in measured}
     joints = (_joint(drawn),) if {"matrix", "inclusion"} <= names else ()
-    return Subject(tuple(_item(drawn, body) for body in measured), joints, drawn.scene.name)
+    return PrintSubject(tuple(_item(drawn, body) for body in measured), joints, drawn.scene.name)
 
 
-def block_of(drawn: Drawn) -> Subject:
+def block_of(drawn: SpecimenBodies) -> PrintSubject:
     """The block as one body, and the frame."""
     rest = [body for body in drawn.bodies if body.name == "frame"]
     block = _box(drawn.scene.block)
     whole = replace(drawn.bodies[0], name="block", role="block", vertices=block[0], triangles=block[1])
-    return Subject(tuple(_item(drawn, body) for body in (whole, *rest)), (), drawn.scene.name)
+    return PrintSubject(tuple(_item(drawn, body) for body in (whole, *rest)), (), drawn.scene.name)
 
 
-def _item(drawn: Drawn, body: Body) -> Item:
+def _item(drawn: SpecimenBodies, body: Body) -> PrintItem:
     hints = {
         "walls": "raise width_mm, height_mm or depth_mm of the layer, or the pitch",
         "pins": "raise width_mm or strut_radius_mm of the layer",
         "envelope": "take a smaller block, or another print.profile",
         "resins": "take another material, or another print.profile",
     }
-    return Item(body, drawn.scene.printer, drawn.scene.mode, job=_JOB, hints=hints)
+    return PrintItem(body, drawn.scene.printer, drawn.scene.mode, job=_JOB, hints=hints)
 
 
-def _joint(drawn: Drawn) -> Joint:
+def _joint(drawn: SpecimenBodies) -> Joint:
     """All of the inclusion but its footprints on the sides of the block meets the matrix."""
     inclusion = drawn.bodies[1]
     corners, block = inclusion.corners, drawn.scene.block
@@ -84,7 +84,7 @@ def _joint(drawn: Drawn) -> Joint:
     return Joint("matrix", "inclusion", area, (x, y, z))
 
 
-def _rounding(drawn: Drawn, finding: Finding) -> bool:
+def _rounding(drawn: SpecimenBodies, finding: Finding) -> bool:
     """Whether an overlap is the kernel's rounding on coincident facets: the faces are one and the same by construction."""
     excess = finding.excess
     if finding.rule != "contact faces" or excess is None or excess.unit != "mm3":
@@ -102,7 +102,7 @@ def _bonded(finding: Finding) -> Finding:
     return replace(finding, severity=severity, message=text)
 
 
-def _unmeasured(drawn: Drawn) -> list[Finding]:
+def _unmeasured(drawn: SpecimenBodies) -> list[Finding]:
     return [
         Finding(
             "mesh", "note", body.name, f"{len(body.triangles)} triangles: closed, but thin places were not measured",

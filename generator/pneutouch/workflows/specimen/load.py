@@ -8,7 +8,7 @@ from typing import Any
 
 from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
-from pneutouch.parts.specimen import Box, Ground
+from pneutouch.parts.specimen import Box, PatternContext
 from pneutouch.spec.fields import Table
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Mode, Printer
@@ -17,7 +17,7 @@ from pneutouch.spec.specimen import Specimen, validate_specimen
 
 
 @dataclass(frozen=True, slots=True)
-class SpecimenScene:
+class ResolvedSpecimen:
     """All that a specimen names. ``where`` is the file as the user gave it, for messages."""
 
     name: str
@@ -41,10 +41,10 @@ class SpecimenScene:
         return self.printer.finest_step(self.mode)
 
     @property
-    def ground(self) -> Ground:
+    def ground(self) -> PatternContext:
         """What patterns are drawn in."""
         speed = self.specimen.scan.speed_mm_per_s
-        return Ground(self.block, self.printer, self.matrix, self.inclusion, speed, self.tolerance, self.where)
+        return PatternContext(self.block, self.printer, self.matrix, self.inclusion, speed, self.tolerance, self.where)
 
 
 def is_specimen(content: dict[str, Any]) -> bool:
@@ -66,7 +66,7 @@ def specimen_file(name: str, library: Library) -> Path | None:
 
 def load_specimen(
     name: str, assignments: list[str] | None = None, library: Library | None = None
-) -> SpecimenScene:  # fmt: skip
+) -> ResolvedSpecimen:  # fmt: skip
     """Load a specimen by name or path, apply ``table.key=value`` overrides and resolve its names.
 
     Raises InputError that names file, key and value.
@@ -80,7 +80,7 @@ def load_specimen(
     return _resolved(path.stem, str(path), validate_specimen(content, str(path)), shelves)
 
 
-def _resolved(name: str, where: str, specimen: Specimen, shelves: Library) -> SpecimenScene:
+def _resolved(name: str, where: str, specimen: Specimen, shelves: Library) -> ResolvedSpecimen:
     def find(kind: str, table: Table, section: str, key: str) -> Any:
         return shelves.load(kind, getattr(table, key), asked_by=f"{where}: {section}.{key}")
 
@@ -98,4 +98,4 @@ def _resolved(name: str, where: str, specimen: Specimen, shelves: Library) -> Sp
             f"{where}: print.profile = {specimen.print.profile!r}: the {printer.title} cannot hold {labels} together; it runs "
             f"{', '.join(printer.resins)}, {printer.resins_at_once} at once"
         )
-    return SpecimenScene(name, where, specimen, matrix, inclusion, frame, printer, mode)
+    return ResolvedSpecimen(name, where, specimen, matrix, inclusion, frame, printer, mode)

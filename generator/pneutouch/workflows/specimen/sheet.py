@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from pneutouch.printability import Finding
 from pneutouch.units import grams
-from pneutouch.workflows.specimen.draw import Drawn
+from pneutouch.workflows.specimen.draw import SpecimenBodies
 from pneutouch.workflows.specimen.truth import frequencies, title
 
 
-def sheet(drawn: Drawn, found: list[Finding], input_hash: str) -> str:
+def sheet(drawn: SpecimenBodies, found: list[Finding], input_hash: str) -> str:
     """Markdown for the operator. Print files carry names and colours; the resin is chosen at the machine."""
     scene, document = drawn.scene, drawn.scene.specimen.document
     speed = scene.specimen.scan.speed_mm_per_s
@@ -29,7 +29,7 @@ def sheet(drawn: Drawn, found: list[Finding], input_hash: str) -> str:
     ])  # fmt: skip
 
 
-def _bodies(drawn: Drawn) -> list[str]:
+def _bodies(drawn: SpecimenBodies) -> list[str]:
     rows = []
     for body in drawn.bodies:
         size = " x ".join(f"{length:.1f}" for length in body.bounds[1] - body.bounds[0])
@@ -40,7 +40,7 @@ def _bodies(drawn: Drawn) -> list[str]:
     return rows
 
 
-def _layers(drawn: Drawn) -> list[str]:
+def _layers(drawn: SpecimenBodies) -> list[str]:
     rows, top = [], drawn.scene.block.high[2]
     for number, (layer, pattern) in enumerate(zip(drawn.scene.specimen.layer, drawn.patterns, strict=True)):
         low, high = pattern.box.low, pattern.box.high
@@ -53,7 +53,7 @@ def _layers(drawn: Drawn) -> list[str]:
     return rows
 
 
-def _steps(drawn: Drawn) -> list[str]:
+def _steps(drawn: SpecimenBodies) -> list[str]:
     scene = drawn.scene
     under = "the frame" if scene.frame is not None else "the bottom"
     marked = " The cut corner of the frame is at x = y = 0, the start of the path." if scene.frame is not None else ""

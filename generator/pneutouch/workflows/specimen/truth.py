@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from pneutouch.parts.specimen import Pattern
+from pneutouch.parts.specimen import PatternGeometry
 from pneutouch.spec.specimen import Layer
-from pneutouch.workflows.specimen.draw import Drawn
+from pneutouch.workflows.specimen.draw import SpecimenBodies
 
 _DIGITS = 6
 
 
-def truth(drawn: Drawn) -> dict[str, Any]:
+def truth(drawn: SpecimenBodies) -> dict[str, Any]:
     """Block, path and layers in the block's frame: x along the path from its start, depths below the scanned surface; mm."""
     scene, block = drawn.scene, drawn.scene.specimen.block
     volumes = {body.name: body.volume for body in drawn.bodies}
@@ -39,12 +39,12 @@ def title(layer: Layer, number: int) -> str:
     return layer.name or f"layer {number + 1}"
 
 
-def frequencies(drawn: Drawn, pattern: Pattern) -> list[float]:
+def frequencies(drawn: SpecimenBodies, pattern: PatternGeometry) -> list[float]:
     """Frequencies in Hz of a pattern at the speed of the scan."""
     return [drawn.scene.specimen.scan.speed_mm_per_s / pitch for pitch in pattern.pitches]
 
 
-def _layer(drawn: Drawn, layer: Layer, pattern: Pattern) -> dict[str, Any]:
+def _layer(drawn: SpecimenBodies, layer: Layer, pattern: PatternGeometry) -> dict[str, Any]:
     number, top = drawn.scene.specimen.layer.index(layer), drawn.scene.block.high[2]
     low, high = pattern.box.low, pattern.box.high
     return {

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 from pneutouch import __version__
 from pneutouch.errors import ComputationError, InputError, PneutouchError
 from pneutouch.output.files import digest
-from pneutouch.workflows.sweep.study import Study
-from pneutouch.workflows.sweep.work import Chunk, Record, compute, unpack
+from pneutouch.workflows.sweep.study import SweepStudy
+from pneutouch.workflows.sweep.work import Record, SweepChunk, compute, unpack
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -27,7 +27,7 @@ _QUEUED = 3
 """Chunks sent ahead a core of the cluster: more only lengthen what a stop throws away."""
 
 
-def on_cluster(study: Study, chunks: list[Chunk], address: str) -> Iterator[list[Record]]:
+def on_cluster(study: SweepStudy, chunks: list[SweepChunk], address: str) -> Iterator[list[Record]]:
     """Compute chunks on the cluster of a scheduler; records come in the order in which chunks are done.
 
     A chunk whose worker is lost is computed again elsewhere by Dask. Raises InputError where there is no cluster
@@ -43,7 +43,7 @@ def on_cluster(study: Study, chunks: list[Chunk], address: str) -> Iterator[list
         raise ComputationError(f"--scheduler {address}: the connection was lost ({type(error).__name__})") from None
 
 
-def _computed(client: Client, study: Study, chunks: list[Chunk], address: str) -> Iterator[list[Record]]:
+def _computed(client: Client, study: SweepStudy, chunks: list[SweepChunk], address: str) -> Iterator[list[Record]]:
     from distributed import as_completed
 
     waiting = iter(chunks)
@@ -62,7 +62,7 @@ def _computed(client: Client, study: Study, chunks: list[Chunk], address: str) -
         yield _result(future, address)
 
 
-def compute_there(chunk: Chunk, files: dict[str, str], version: str) -> list[Record]:
+def compute_there(chunk: SweepChunk, files: dict[str, str], version: str) -> list[Record]:
     """Compute a chunk on a machine that may have nothing of the user's: the files come with it."""
     if version != __version__:
         raise InputError(f"a worker has pneutouch {__version__}, this is {version}; they must be the same")

@@ -14,11 +14,11 @@ import numpy as np
 
 from pneutouch import __version__
 from pneutouch.errors import InputError
-from pneutouch.spec.design import Design
+from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import declaration, table_of
 from pneutouch.workflows.sweep.plan import PRESSURES
-from pneutouch.workflows.sweep.study import Study
-from pneutouch.workflows.sweep.variables import POINT, STATE, Variable
+from pneutouch.workflows.sweep.study import SweepStudy
+from pneutouch.workflows.sweep.variables import POINT, STATE, SweepVariable
 from pneutouch.workflows.sweep.work import Record
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ PRESSURE = "driving_pressure_kPa"
 """The dimension of the driving pressures: all that any point asks for."""
 
 
-def dataset(study: Study, records: dict[int, Record]) -> xarray.Dataset:
+def dataset(study: SweepStudy, records: dict[int, Record]) -> xarray.Dataset:
     """The dataset of a finished sweep: ``records`` holds every point.
 
     Dimensions are those of the grid, or ``point``, and the driving pressure. Numbers that are not there are NaN,
@@ -94,7 +94,7 @@ def _by_pressure(
     return rows
 
 
-def _variable(variable: Variable, values: Any, shape: tuple[int, ...], dims: tuple[str, ...]) -> Any:
+def _variable(variable: SweepVariable, values: Any, shape: tuple[int, ...], dims: tuple[str, ...]) -> Any:
     names = {"long_name": variable.long_name}
     if variable.text:
         texts = np.array(["" if v is None else v for v in np.array(values, object).ravel()], object)
@@ -102,7 +102,7 @@ def _variable(variable: Variable, values: Any, shape: tuple[int, ...], dims: tup
     return dims, np.array(values, float).reshape(shape), {"units": variable.units, **names}
 
 
-def _coordinates(study: Study) -> dict[str, Any]:
+def _coordinates(study: SweepStudy) -> dict[str, Any]:
     """Values of the varied fields: along their own dimension in a grid, along ``point`` in a list."""
     plan = study.plan
     if plan.axes:
@@ -122,7 +122,7 @@ def _coordinates(study: Study) -> dict[str, Any]:
 def _column(key: str, values: Sequence[Any]) -> tuple[Any, dict[str, str]]:
     """Values of one field, with what its declaration says of it."""
     table_name, field = key.split(".")
-    table = table_of(Design, table_name)
+    table = table_of(DesignFile, table_name)
     assert table is not None
     said = declaration(table, field)
     names = {"long_name": said.help, "key": key}
@@ -133,7 +133,7 @@ def _column(key: str, values: Sequence[Any]) -> tuple[Any, dict[str, str]]:
     return np.array(values, float), {"units": said.unit or "1", **names}
 
 
-def _attributes(study: Study, rows: list[list[dict[str, Any]]], content: dict[str, Any]) -> dict[str, str]:
+def _attributes(study: SweepStudy, rows: list[list[dict[str, Any]]], content: dict[str, Any]) -> dict[str, str]:
     plan = study.plan
     bases = sorted({text for text in content["error_sensitivity_basis"][1].ravel() if text})
     design = study.base.model_dump(mode="json")

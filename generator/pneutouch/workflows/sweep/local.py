@@ -13,7 +13,7 @@ from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 
 from pneutouch.errors import ComputationError
-from pneutouch.workflows.sweep.work import Chunk, Record, compute
+from pneutouch.workflows.sweep.work import Record, SweepChunk, compute
 
 _QUEUED = 2
 """Chunks waiting a worker: enough that none idles, few enough that a stop is soon done."""
@@ -24,13 +24,13 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def in_process(chunks: list[Chunk], folder: Path) -> Iterator[list[Record]]:
+def in_process(chunks: list[SweepChunk], folder: Path) -> Iterator[list[Record]]:
     """Compute one chunk after the other, here."""
     for chunk in chunks:
         yield compute(chunk, folder)
 
 
-def in_pool(chunks: list[Chunk], folder: Path, workers: int) -> Iterator[list[Record]]:
+def in_pool(chunks: list[SweepChunk], folder: Path, workers: int) -> Iterator[list[Record]]:
     """Compute chunks in ``workers`` processes; records come in the order in which chunks are done.
 
     Raises ComputationError where a worker dies.

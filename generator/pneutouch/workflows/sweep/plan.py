@@ -10,7 +10,7 @@ from pneutouch.errors import InputError, nearest
 from pneutouch.evaluation.evaluate import CLAMPS
 from pneutouch.mechanics import MODELS
 from pneutouch.mechanics.contact import CLOSURES
-from pneutouch.spec.design import Design
+from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import table_of
 
 PRESSURES = "pneumatics.driving_pressures_kPa"
@@ -23,7 +23,7 @@ Settings = dict[str, Value]
 
 
 @dataclass(frozen=True, slots=True)
-class Axis:
+class SweepAxis:
     """One field of the design, ``table.key``, and the values it takes."""
 
     key: str
@@ -36,7 +36,7 @@ class Axis:
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class SweepPlan:
     """A base design, what is set for all points, and either the ``axes`` of a grid or a list of ``points``.
 
     ``where`` names the sweep file or the flags, for messages; ``design`` is a name or a path.
@@ -46,7 +46,7 @@ class Plan:
     where: str
     design: str
     settings: Settings
-    axes: tuple[Axis, ...] = ()
+    axes: tuple[SweepAxis, ...] = ()
     points: tuple[Settings, ...] = ()
     model: str = "solid"
     closure: str = "variational"
@@ -114,11 +114,11 @@ def assignments(settings: Settings) -> list[str]:
 
 def _check_key(where: str, key: str) -> None:
     table_name, dot, field = key.partition(".")
-    table = table_of(Design, table_name)
+    table = table_of(DesignFile, table_name)
     if not dot:
         raise InputError(f"{where}: {key}: write table.key, such as membrane.wall_thickness_mm")
     if table is None:
-        raise InputError(f"{where}: {key}: unknown table {table_name}.{nearest(table_name, Design.model_fields)}")
+        raise InputError(f"{where}: {key}: unknown table {table_name}.{nearest(table_name, DesignFile.model_fields)}")
     if field not in table.model_fields:
         raise InputError(f"{where}: {key}: unknown key.{nearest(field, table.model_fields)}")
     if table_name == "document":

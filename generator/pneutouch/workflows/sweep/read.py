@@ -9,7 +9,7 @@ from typing import Any
 
 from pneutouch.errors import InputError, nearest
 from pneutouch.spec.read import read_toml
-from pneutouch.workflows.sweep.plan import PRESSURES, Axis, Plan, Settings, Value
+from pneutouch.workflows.sweep.plan import PRESSURES, Settings, SweepAxis, SweepPlan, Value
 
 KEYS = ("design", "model", "closure", "clamp", "set", "grid", "point")
 """What a sweep file may hold."""
@@ -19,7 +19,7 @@ MAX_VALUES = 10_000
 _RANGE = {"from", "to", "count"}
 
 
-def plan_of_file(path: Path, assignments: list[str] | None = None, **options: str | None) -> Plan:
+def plan_of_file(path: Path, assignments: list[str] | None = None, **options: str | None) -> SweepPlan:
     """Read a sweep file; ``assignments`` and ``options`` (model, closure, clamp) come before what it says.
 
     Raises InputError naming file, key and value.
@@ -50,7 +50,7 @@ def plan_of_file(path: Path, assignments: list[str] | None = None, **options: st
 
 def plan_of_flags(
     design: str, over: list[str], assignments: list[str] | None = None, **options: str | None
-) -> Plan:  # fmt: skip
+) -> SweepPlan:  # fmt: skip
     """A grid from ``--over table.key=VALUES``: values with commas between, or ``from:to:count``."""
     grid: dict[str, list[Any]] = {}
     for text in over:
@@ -67,14 +67,16 @@ def plan_of_flags(
 def _plan(
     name: str, where: str, design: str, fixed: Settings, grid: dict[str, list[Any]], points: tuple[Settings, ...],
     words: dict[str, str],
-) -> Plan:  # fmt: skip
+) -> SweepPlan:  # fmt: skip
     """The plan; a grid's driving pressures become those of every point, for they are a dimension already."""
     if PRESSURES in grid:
         if PRESSURES in fixed:
             raise InputError(f"{where}: {PRESSURES} = {fixed[PRESSURES]!r}: set for all points and varied too")
         fixed = {**fixed, PRESSURES: grid[PRESSURES]}
-    axes = tuple(Axis(key, tuple(values)) for key, values in grid.items() if key != PRESSURES)
-    return Plan(name, where, design, fixed, axes, points or (({},) if PRESSURES in grid and not axes else ()), **words)
+    axes = tuple(SweepAxis(key, tuple(values)) for key, values in grid.items() if key != PRESSURES)
+    return SweepPlan(
+        name, where, design, fixed, axes, points or (({},) if PRESSURES in grid and not axes else ()), **words
+    )
 
 
 def spread(where: str, key: str, start: Any, stop: Any, count: Any) -> list[float | int]:

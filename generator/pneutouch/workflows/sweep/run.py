@@ -14,8 +14,8 @@ from pneutouch.workflows.sweep.cluster import on_cluster
 from pneutouch.workflows.sweep.dataset import dataset, netcdf, stored_fingerprint, stored_states
 from pneutouch.workflows.sweep.journal import Journal
 from pneutouch.workflows.sweep.local import cores, in_pool, in_process
-from pneutouch.workflows.sweep.plan import Plan
-from pneutouch.workflows.sweep.study import Study, study
+from pneutouch.workflows.sweep.plan import SweepPlan
+from pneutouch.workflows.sweep.study import SweepStudy, study
 from pneutouch.workflows.sweep.work import Record, chunks, unpack
 from pneutouch.workflows.sweep.workfolder import WorkFolder
 
@@ -24,7 +24,7 @@ Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class SweepResult:
     """A finished sweep: its file, how many points it has, how many of them were ``computed`` by this call, and how
     many states are ok, refused or failed."""
 
@@ -36,7 +36,7 @@ class Outcome:
 
 
 @dataclass(frozen=True, slots=True)
-class Machines:
+class ComputeResources:
     """Where a sweep is computed: ``workers`` processes here (None: one a core), or the cluster of ``scheduler``."""
 
     workers: int | None = None
@@ -44,9 +44,9 @@ class Machines:
 
 
 def sweep(
-    plan: Plan, out: Path, machines: Machines = Machines(), *,
+    plan: SweepPlan, out: Path, machines: ComputeResources = ComputeResources(), *,
     fresh: bool = False, progress: Progress = lambda done, total: None, library: Library | None = None,
-) -> Outcome:  # fmt: skip
+) -> SweepResult:  # fmt: skip
     """Compute every point of a plan and write the dataset to ``out``; returns what was done.
 
     Progress is kept in ``out`` with ``.parts`` added. A sweep that was stopped, in whatever way, goes on there and
@@ -73,7 +73,7 @@ def sweep(
         return _outcome(resolved, out, plan.count - before, content["status"].values.ravel().tolist())
 
 
-def _is_there(study: Study, out: Path, *, fresh: bool, resumed: bool) -> bool:
+def _is_there(study: SweepStudy, out: Path, *, fresh: bool, resumed: bool) -> bool:
     """Whether ``out`` is this sweep's dataset already. Raises InputError where it is something to be kept."""
     if not out.exists():
         return False
@@ -89,7 +89,7 @@ def _is_there(study: Study, out: Path, *, fresh: bool, resumed: bool) -> bool:
 
 
 def _compute(
-    study: Study, machines: Machines, folder: WorkFolder, journal: Journal, records: dict[int, Record], progress: Progress
+    study: SweepStudy, machines: ComputeResources, folder: WorkFolder, journal: Journal, records: dict[int, Record], progress: Progress
 ) -> None:  # fmt: skip
     """Fill ``records`` with every point, each kept in the journal as soon as it is done."""
     total = study.plan.count
@@ -117,7 +117,7 @@ def _keeping(folder: WorkFolder, records: dict[int, Record], total: int) -> Iter
 
 
 def _batches(
-    study: Study, machines: Machines, folder: WorkFolder, records: dict[int, Record]
+    study: SweepStudy, machines: ComputeResources, folder: WorkFolder, records: dict[int, Record]
 ) -> Generator[list[Record], None, None]:
     """Records of the points that are missing, as they are done."""
     pieces = chunks(study, [i for i in range(study.plan.count) if i not in records])
@@ -129,9 +129,9 @@ def _batches(
     yield from in_pool(pieces, folder.files, workers) if workers > 1 else in_process(pieces, folder.files)
 
 
-def _outcome(study: Study, out: Path, computed: int, states: list[str]) -> Outcome:
+def _outcome(study: SweepStudy, out: Path, computed: int, states: list[str]) -> SweepResult:
     counted = Counter(states)
-    return Outcome(
+    return SweepResult(
         out,
         study.plan.count,
         computed,

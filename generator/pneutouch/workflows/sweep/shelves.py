@@ -10,7 +10,7 @@ from pneutouch.catalogue import Library
 
 
 @dataclass(frozen=True)
-class Shelves(Library):
+class CachedLibrary(Library):
     """A library over ``folders`` that do not change while it is used; what it hands out is immutable and shared."""
 
     _shelves: dict[str, dict[str, Path]] = field(default_factory=dict, repr=False, compare=False)

@@ -10,15 +10,15 @@ from pneutouch import __version__
 from pneutouch.catalogue import KINDS, Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.output.files import digest, json_bytes
-from pneutouch.spec.design import Design
+from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import declaration, table_of
 from pneutouch.spec.read import read_toml, validate
-from pneutouch.workflows.sweep.plan import PRESSURES, Plan, assignments
-from pneutouch.workflows.sweep.shelves import Shelves
+from pneutouch.workflows.sweep.plan import PRESSURES, SweepPlan, assignments
+from pneutouch.workflows.sweep.shelves import CachedLibrary
 
 
 @dataclass(frozen=True, slots=True)
-class Point:
+class SweepPoint:
     """One design of a sweep: its number, its ``table.key=value`` overrides, and its driving pressures in kPa."""
 
     index: int
@@ -27,7 +27,7 @@ class Point:
 
 
 @dataclass(frozen=True)
-class Study:
+class SweepStudy:
     """A checked plan. ``base`` is the design file alone; ``files`` (path to text) is a library of what it names.
 
     The work reads ``files`` and not the shelves: a sweep does not notice when somebody edits a material while it
@@ -35,29 +35,29 @@ class Study:
     the figures follow from.
     """
 
-    plan: Plan
+    plan: SweepPlan
     name: str
-    base: Design
+    base: DesignFile
     files: dict[str, str]
     fingerprint: str
 
-    def point(self, index: int) -> Point:
+    def point(self, index: int) -> SweepPoint:
         """The point of a number."""
         settings = self.plan.overrides(index)
         given = settings.pop(PRESSURES, self.base.pneumatics.driving_pressures_kPa)
         assert isinstance(given, list)
-        return Point(index, tuple(assignments(settings)), tuple(sorted(float(p) for p in given)))
+        return SweepPoint(index, tuple(assignments(settings)), tuple(sorted(float(p) for p in given)))
 
 
-def study(plan: Plan, library: Library) -> Study:
+def study(plan: SweepPlan, library: Library) -> SweepStudy:
     """Resolve and check a plan; raises InputError naming file, key and value.
 
     A value that fits no point at all is a mistake. A combination that does not fit, such as a thick wall on a
     small radius in one corner of a grid, is a result: the dataset records it as refused.
     """
-    library = Shelves(library.folders)
+    library = CachedLibrary(library.folders)
     path = library.design_file(plan.design)
-    base = validate(Design, read_toml(path), str(path))
+    base = validate(DesignFile, read_toml(path), str(path))
     _check(plan, library)
     files, things = {f"designs/{path.stem}.toml": path.read_text(encoding="utf-8-sig")}, {}
     names = _names(plan, base)
@@ -72,14 +72,14 @@ def study(plan: Plan, library: Library) -> Study:
         "name": path.stem, "design": base.model_dump(mode="json"), "things": things, "settings": plan.settings,
         "axes": [[axis.key, axis.values] for axis in plan.axes], "points": plan.points,
     }  # fmt: skip
-    return Study(plan, path.stem, base, files, digest(json_bytes(facts)))
+    return SweepStudy(plan, path.stem, base, files, digest(json_bytes(facts)))
 
 
-def _names(plan: Plan, base: Design) -> set[tuple[str, str]]:
+def _names(plan: SweepPlan, base: DesignFile) -> set[tuple[str, str]]:
     """Kind and name of everything that a point of the sweep may name."""
     found: set[tuple[str, str]] = set()
-    for table_name in Design.model_fields:
-        table = table_of(Design, table_name)
+    for table_name in DesignFile.model_fields:
+        table = table_of(DesignFile, table_name)
         assert table is not None
         for field in table.model_fields:
             kind, key = declaration(table, field).registry, f"{table_name}.{field}"
@@ -89,7 +89,7 @@ def _names(plan: Plan, base: Design) -> set[tuple[str, str]]:
     return found
 
 
-def _chosen(plan: Plan, key: str, default: Any) -> list[Any]:
+def _chosen(plan: SweepPlan, key: str, default: Any) -> list[Any]:
     """The values that a field has at any point; ``default`` where a point says nothing."""
     for axis in plan.axes:
         if axis.key == key:
@@ -97,7 +97,7 @@ def _chosen(plan: Plan, key: str, default: Any) -> list[Any]:
     return [point.get(key, default) for point in plan.points] or [default]
 
 
-def _check(plan: Plan, library: Library) -> None:
+def _check(plan: SweepPlan, library: Library) -> None:
     """Raise InputError where a value fits no point: first down a diagonal that passes every value, then by value."""
     if plan.points:
         for index, point in enumerate(plan.points):
@@ -129,7 +129,7 @@ def _stride(shape: tuple[int, ...], k: int) -> int:
     return stride
 
 
-def _common_fault(plan: Plan, indices: Iterable[int], library: Library) -> str | None:
+def _common_fault(plan: SweepPlan, indices: Iterable[int], library: Library) -> str | None:
     """Why none of the points is possible, in the words of the first, or None where one is."""
     first = None
     for index in indices:
@@ -140,7 +140,7 @@ def _common_fault(plan: Plan, indices: Iterable[int], library: Library) -> str |
     return first
 
 
-def _fault(plan: Plan, index: int, library: Library) -> str | None:
+def _fault(plan: SweepPlan, index: int, library: Library) -> str | None:
     """Why a point is not a design, or None."""
     try:
         load_scene(plan.design, assignments(plan.overrides(index)), library)

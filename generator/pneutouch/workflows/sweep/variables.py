@@ -10,7 +10,7 @@ Document = dict[str, Any]
 
 
 @dataclass(frozen=True, slots=True)
-class Variable:
+class SweepVariable:
     """One variable: how it is read from a state or a prediction, as ``predict --json`` prints them."""
 
     name: str
@@ -32,8 +32,8 @@ def _at(*keys: str) -> Callable[[Document], Any]:
     return read
 
 
-def _number(name: str, units: str, long_name: str, *keys: str) -> Variable:
-    return Variable(name, units, long_name, _at(*(keys or (name,))))
+def _number(name: str, units: str, long_name: str, *keys: str) -> SweepVariable:
+    return SweepVariable(name, units, long_name, _at(*(keys or (name,))))
 
 
 def _force(end: int) -> Callable[[Document], Any]:
@@ -44,18 +44,18 @@ def _range_event(state: Document) -> str:
     return next((event["kind"] for event in state["events"] if event["ends_range"]), "depth")
 
 
-STATE: tuple[Variable, ...] = (
-    Variable("status", "", "ok, refused (not possible), failed (not computed); empty where not asked", lambda _: "ok", True),
-    Variable("message", "", "why a state is refused or failed", lambda _: "", True),
+STATE: tuple[SweepVariable, ...] = (
+    SweepVariable("status", "", "ok, refused (not possible), failed (not computed); empty where not asked", lambda _: "ok", True),
+    SweepVariable("message", "", "why a state is refused or failed", lambda _: "", True),
     _number("sensitivity_kPa_per_N", "kPa/N", "slope of pressure rise over contact force, first contact to range end"),
     _number("sensitivity_through_origin_kPa_per_N", "kPa/N", "the same slope of a line through the origin"),
     _number("r_squared", "1", "coefficient of determination of the straight line"),
     _number("nonlinearity_percent", "percent", "greatest distance from the straight line over the full-scale rise"),
     _number("stiffness_N_per_mm", "N/mm", "mean slope of contact force over indentation, first contact to range end"),
     _number("range_end_mm", "mm", "indentation up to which the figures hold"),
-    Variable("range_end_event", "", "what ends the range: depth (nothing does), or the event", _range_event, True),
-    Variable("force_range_low_N", "N", "least contact force of the range", _force(0)),
-    Variable("force_range_high_N", "N", "greatest contact force of the range", _force(1)),
+    SweepVariable("range_end_event", "", "what ends the range: depth (nothing does), or the event", _range_event, True),
+    SweepVariable("force_range_low_N", "N", "least contact force of the range", _force(0)),
+    SweepVariable("force_range_high_N", "N", "greatest contact force of the range", _force(1)),
     _number("saturation_force_N", "N", "force where the local slope falls below half the fitted one; none: NaN"),
     _number("apex_height_inner_mm", "mm", "apex height of the inner surface, inflated, before contact"),
     _number("apex_height_outer_mm", "mm", "apex height of the outer surface, inflated, before contact"),
@@ -63,12 +63,12 @@ STATE: tuple[Variable, ...] = (
 )  # fmt: skip
 """Variables of every point and driving pressure."""
 
-POINT: tuple[Variable, ...] = (
+POINT: tuple[SweepVariable, ...] = (
     _number("limit_point_kPa", "kPa", "driving pressure of the limit point; none: NaN", "limits", "limit_point_kPa"),
     _number("break_strain_kPa", "kPa", "driving pressure at which the resin may tear; not before the limit point: NaN",
             "limits", "break_strain_kPa"),
     _number("gauge_range_kPa", "kPa", "range of the pressure sensor", "limits", "gauge_range_kPa"),
-    Variable("binding_limit", "", "the limit that is met first", _at("limits", "binding"), True),
+    SweepVariable("binding_limit", "", "the limit that is met first", _at("limits", "binding"), True),
     _number("limit_point_apex_height_inner_mm", "mm", "apex height of the inner surface at the limit point",
             "limit_point", "apex_height_inner_mm"),
     _number("limit_point_apex_height_outer_mm", "mm", "apex height of the outer surface at the limit point",
@@ -78,7 +78,7 @@ POINT: tuple[Variable, ...] = (
             "error_estimate", "sensitivity_relative"),
     _number("error_limit_pressure_relative", "1", "known error of the limit pressure; unknown: NaN",
             "error_estimate", "limit_pressure_relative"),
-    Variable("error_sensitivity_basis", "", "what the error of the sensitivity rests on",
+    SweepVariable("error_sensitivity_basis", "", "what the error of the sensitivity rests on",
              _at("error_estimate", "sensitivity_basis"), True),
 )  # fmt: skip
 """Variables of every point."""

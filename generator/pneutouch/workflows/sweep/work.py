@@ -14,8 +14,8 @@ from pneutouch.errors import BeyondLimitError, InputError, PneutouchError
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.units import KPA
 from pneutouch.workflows.sweep.plan import PRESSURES, assignments
-from pneutouch.workflows.sweep.shelves import Shelves
-from pneutouch.workflows.sweep.study import Point, Study
+from pneutouch.workflows.sweep.shelves import CachedLibrary
+from pneutouch.workflows.sweep.study import SweepPoint, SweepStudy
 from pneutouch.workflows.sweep.variables import point_values, state_values
 
 CHUNK_POINTS = {"membrane": 32}
@@ -26,21 +26,21 @@ Record = dict[str, Any]
 
 
 @dataclass(frozen=True, slots=True)
-class Chunk:
+class SweepChunk:
     """Points to compute alike: which design and rung."""
 
-    points: tuple[Point, ...]
+    points: tuple[SweepPoint, ...]
     design: str
     model: str
     closure: str
     clamp: str
 
 
-def chunks(study: Study, indices: list[int]) -> list[Chunk]:
+def chunks(study: SweepStudy, indices: list[int]) -> list[SweepChunk]:
     """The points of these numbers, cut into chunks."""
     plan, size = study.plan, CHUNK_POINTS.get(study.plan.model, 1)
     return [
-        Chunk(
+        SweepChunk(
             tuple(study.point(i) for i in indices[start : start + size]), study.name,
             plan.model, plan.closure, plan.clamp,
         )
@@ -56,13 +56,13 @@ def unpack(files: dict[str, str], folder: Path) -> None:
         path.write_text(text, encoding="utf-8")
 
 
-def compute(chunk: Chunk, folder: Path) -> list[Record]:
+def compute(chunk: SweepChunk, folder: Path) -> list[Record]:
     """Predict every point of a chunk from the files in ``folder``; a point that cannot be is a record too."""
-    library = Shelves((folder,))
+    library = CachedLibrary((folder,))
     return [_record(chunk, point, library) for point in chunk.points]
 
 
-def _record(chunk: Chunk, point: Point, library: Library) -> Record:
+def _record(chunk: SweepChunk, point: SweepPoint, library: Library) -> Record:
     """One point. Driving pressures beyond the limit are refused one by one, and the rest is predicted."""
     left = point
     states: list[dict[str, Any]] = []
@@ -98,7 +98,7 @@ def _record(chunk: Chunk, point: Point, library: Library) -> Record:
     return {"point": point.index, "states": states + refused, "values": values}
 
 
-def _predicted(chunk: Chunk, point: Point, library: Library) -> tuple[list[dict[str, Any]], dict[str, Any]]:
+def _predicted(chunk: SweepChunk, point: SweepPoint, library: Library) -> tuple[list[dict[str, Any]], dict[str, Any]]:
     pressures = assignments({PRESSURES: list(point.pressures)})
     prediction = evaluate(
         chunk.design, [*point.assignments, *pressures], model=chunk.model, closure=chunk.closure, clamp=chunk.clamp,

@@ -11,8 +11,8 @@ from pneutouch.errors import InputError
 from pneutouch.parts import Assembly, assemble
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
-from pneutouch.spec.tray import Entry, Setting
-from pneutouch.workflows.tray.order import Order, assignments
+from pneutouch.spec.tray import Entry, EntryValue
+from pneutouch.workflows.tray.order import TrayOrder, assignments
 
 LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ"
 """Without I and O, which read as 1 and 0."""
@@ -22,23 +22,23 @@ MOST_PARTS = 2000
 
 
 @dataclass(frozen=True)
-class Value:
+class TrayVariant:
     """One design of a tray. ``index`` counts from 1 and ``letter`` says it; ``key`` and ``value`` are what was varied."""
 
     index: int
     letter: str
     design: str
     key: str | None
-    value: Setting | None
+    value: EntryValue | None
     copies: int
     assembly: Assembly
 
 
 @dataclass(frozen=True)
-class Piece:
+class TrayPiece:
     """What of a value is printed as one: a body, or the bodies of an assembly grown in one print."""
 
-    value: Value
+    value: TrayVariant
     solids: tuple[Solid, ...]
 
     @property
@@ -48,23 +48,25 @@ class Piece:
 
 
 @dataclass(frozen=True)
-class Expanded:
+class ExpandedTray:
     """All pieces of a tray for its printer, and in words what is left out and why."""
 
     printer: Printer
     profile: str
-    pieces: tuple[Piece, ...]
+    pieces: tuple[TrayPiece, ...]
     left_out: tuple[str, ...]
 
 
-def expand(order: Order, library: Library | None = None) -> Expanded:
+def expand(order: TrayOrder, library: Library | None = None) -> ExpandedTray:
     """Load and draw every design of a tray; nothing is predicted. Raises InputError where one is wrong or none is left."""
     shelves = library or Library.default()
     values = [value for entry in order.tray.entry for value in _values(order, entry, shelves)]
-    values = [Value(**{**vars(value), "index": k, "letter": letter(k)}) for k, value in enumerate(values, start=1)]
+    values = [
+        TrayVariant(**{**vars(value), "index": k, "letter": letter(k)}) for k, value in enumerate(values, start=1)
+    ]
     profile = order.tray.tray.profile or values[0].assembly.scene.design.print.profile
     printer = shelves.load("printers", profile, asked_by=f"{order.where}: tray.profile")
-    pieces: list[Piece] = []
+    pieces: list[TrayPiece] = []
     notes: list[str] = []
     for value in values:
         mine, others = _pieces(value, printer, order)
@@ -78,7 +80,7 @@ def expand(order: Order, library: Library | None = None) -> Expanded:
         )
     if sum(len(piece.solids) * piece.value.copies for piece in pieces) > MOST_PARTS:
         raise InputError(f"{order.where}: more than {MOST_PARTS} bodies; take fewer copies")
-    return Expanded(printer, profile, tuple(pieces), left_out)
+    return ExpandedTray(printer, profile, tuple(pieces), left_out)
 
 
 def letter(index: int) -> str:
@@ -90,17 +92,17 @@ def letter(index: int) -> str:
     return text
 
 
-def _values(order: Order, entry: Entry, library: Library) -> list[Value]:
+def _values(order: TrayOrder, entry: Entry, library: Library) -> list[TrayVariant]:
     key = next(iter(entry.over), None)
     found = []
     for value in entry.over[key] if key is not None else [None]:
         settings = {**entry.set, **({key: value} if key is not None and value is not None else {})}
         assembly = _assembly(order, entry, settings, library)
-        found.append(Value(0, "", entry.design, key, value, entry.copies, assembly))
+        found.append(TrayVariant(0, "", entry.design, key, value, entry.copies, assembly))
     return found
 
 
-def _assembly(order: Order, entry: Entry, settings: dict[str, Any], library: Library) -> Assembly:
+def _assembly(order: TrayOrder, entry: Entry, settings: dict[str, Any], library: Library) -> Assembly:
     try:
         return assemble(load_scene(order.design(entry.design), [*assignments(settings), *order.overrides], library))
     except InputError as error:
@@ -108,7 +110,7 @@ def _assembly(order: Order, entry: Entry, settings: dict[str, Any], library: Lib
         raise InputError(f"{order.where}: entry {entry.design!r}: {text}") from None
 
 
-def _pieces(value: Value, printer: Printer, order: Order) -> tuple[list[Piece], list[str]]:
+def _pieces(value: TrayVariant, printer: Printer, order: TrayOrder) -> tuple[list[TrayPiece], list[str]]:
     """The pieces of a value by print job, and notes of what is left out."""
     assembly, wanted = value.assembly, order.tray.tray.bodies
     groups: dict[str, list[Solid]] = {}
@@ -126,5 +128,5 @@ def _pieces(value: Value, printer: Printer, order: Order) -> tuple[list[Piece], 
             continue
         if asked != names:
             notes.append(f"{' and '.join(names)} of {value.design} grow in one print: all of it is on the tray")
-        pieces.append(Piece(value, tuple(solids)))
+        pieces.append(TrayPiece(value, tuple(solids)))
     return pieces, notes

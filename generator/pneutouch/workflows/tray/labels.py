@@ -8,7 +8,7 @@ from typing import Any
 
 from pneutouch.parts.lettering.tally import EXPLAINED
 from pneutouch.units import grams
-from pneutouch.workflows.tray.lay import Job, Laid, Part, counted, fill, layers
+from pneutouch.workflows.tray.lay import TrayJob, TrayLayout, TrayPart, counted, fill, layers
 from pneutouch.workflows.tray.rules import TrayFinding
 
 COLUMNS = (
@@ -19,12 +19,12 @@ COLUMNS = (
 """Columns of labels.csv; x and y are the middle of the part on the tray."""
 
 
-def rows(laid: Laid) -> list[dict[str, Any]]:
+def rows(laid: TrayLayout) -> list[dict[str, Any]]:
     """One row a body, in the order of the labels within each job."""
     return [row for job in laid.jobs for part in job.parts for row in _rows(laid, job, part)]
 
 
-def labels_csv(laid: Laid) -> bytes:
+def labels_csv(laid: TrayLayout) -> bytes:
     """The list for a spreadsheet or a label printer."""
     text = io.StringIO()
     writer = csv.DictWriter(text, COLUMNS, lineterminator="\n")
@@ -33,7 +33,7 @@ def labels_csv(laid: Laid) -> bytes:
     return text.getvalue().encode()
 
 
-def labels_md(laid: Laid, found: tuple[TrayFinding, ...] = ()) -> bytes:
+def labels_md(laid: TrayLayout, found: tuple[TrayFinding, ...] = ()) -> bytes:
     """The list to print and stick: a head, a table a job, and what the print rules found."""
     printer, head = laid.printer, laid.order.tray.tray
     lines = [
@@ -48,7 +48,7 @@ def labels_md(laid: Laid, found: tuple[TrayFinding, ...] = ()) -> bytes:
     return "\n".join(lines).encode()
 
 
-def _rows(laid: Laid, job: Job, part: Part) -> list[dict[str, Any]]:
+def _rows(laid: TrayLayout, job: TrayJob, part: TrayPart) -> list[dict[str, Any]]:
     across, along = part.footprint
     found = []
     for solid, body, mark in zip(part.solids, part.bodies, part.marks, strict=True):
@@ -68,7 +68,7 @@ def _rows(laid: Laid, job: Job, part: Part) -> list[dict[str, Any]]:
     return found
 
 
-def _job_lines(laid: Laid, job: Job, number: int) -> list[str]:
+def _job_lines(laid: TrayLayout, job: TrayJob, number: int) -> list[str]:
     shares = fill(job, laid.printer)
     table = [
         f"| **{row['label']}** | {row['body']} | {_value(row)} | {_resin(row)} | "
@@ -96,7 +96,7 @@ def _resin(row: dict[str, Any]) -> str:
     return f"{row['material']} ({row['base_resins']})" if mixed else str(row["material"])
 
 
-def _coarser(laid: Laid, job: Job) -> list[str]:
+def _coarser(laid: TrayLayout, job: TrayJob) -> list[str]:
     """Materials that a job of their own would print in a finer mode."""
     own = {
         solid.material.label: laid.printer.mode_for(*(s.material for s in part.solids))
@@ -114,7 +114,7 @@ def _mark(row: dict[str, Any]) -> str:
     return f"{where}; {row['mark_note']}" if row["mark_note"] else where
 
 
-def _marks(laid: Laid) -> list[str]:
+def _marks(laid: TrayLayout) -> list[str]:
     """How each kind of mark that is on the tray is read."""
     marks = [mark for part in laid.parts for mark in part.marks]
     kinds = {mark.kind for mark in marks}

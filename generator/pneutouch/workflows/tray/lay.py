@@ -16,25 +16,25 @@ from pneutouch.errors import ComputationError, InputError
 from pneutouch.parts.lettering.mark import Mark, Marker, shape_of
 from pneutouch.spec.printer import Mode, Printer
 from pneutouch.units import UM
-from pneutouch.workflows.tray.expand import Expanded, Piece, Value, expand
-from pneutouch.workflows.tray.order import Order
-from pneutouch.workflows.tray.pack import Place, Room, pack
+from pneutouch.workflows.tray.expand import ExpandedTray, TrayPiece, TrayVariant, expand
+from pneutouch.workflows.tray.order import TrayOrder
+from pneutouch.workflows.tray.pack import PackedPosition, PackingArea, pack
 from pneutouch.workflows.tray.resins import changes, jobs
 
 Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class TrayPart:
     """One part of a tray. Its bodies (named ``label-role``) lie in one frame with the smallest corner at the origin."""
 
     label: str
-    value: Value
+    value: TrayVariant
     copy: int
     solids: tuple[Solid, ...]
     bodies: tuple[Body, ...]
     marks: tuple[Mark, ...]
-    place: Place
+    place: PackedPosition
 
     @property
     def name(self) -> str:
@@ -68,12 +68,12 @@ class Part:
 
 
 @dataclass(frozen=True, eq=False)
-class Job:
+class TrayJob:
     """One run of the printer: a mode, the resins loaded, and parts on the tray."""
 
     mode: Mode
     resins: tuple[str, ...]
-    parts: tuple[Part, ...]
+    parts: tuple[TrayPart, ...]
 
     @property
     def height(self) -> float:
@@ -87,12 +87,12 @@ class Job:
 
 
 @dataclass(frozen=True, eq=False)
-class Laid:
+class TrayLayout:
     """A tray ready to be written."""
 
-    order: Order
-    expanded: Expanded
-    jobs: tuple[Job, ...]
+    order: TrayOrder
+    expanded: ExpandedTray
+    jobs: tuple[TrayJob, ...]
 
     @property
     def printer(self) -> Printer:
@@ -100,7 +100,7 @@ class Laid:
         return self.expanded.printer
 
     @property
-    def parts(self) -> tuple[Part, ...]:
+    def parts(self) -> tuple[TrayPart, ...]:
         """All parts, job after job."""
         return tuple(part for job in self.jobs for part in job.parts)
 
@@ -112,13 +112,13 @@ class Laid:
         count = changes([frozenset(job.resins) for job in self.jobs])
         return f"{len(self.jobs)} jobs in this order, {count} {'resin' if count == 1 else 'resins'} loaded anew between them"
 
-    def name(self, job: Job) -> str:
+    def name(self, job: TrayJob) -> str:
         """Name of a job's files."""
         name = self.order.name
         return name if len(self.jobs) == 1 else f"{name}-{self.jobs.index(job) + 1}"
 
 
-def lay(order: Order, library: Library | None = None, progress: Progress = lambda step: None) -> Laid:
+def lay(order: TrayOrder, library: Library | None = None, progress: Progress = lambda step: None) -> TrayLayout:
     """Draw, group, mesh, mark and pack what a tray asks for. Raises InputError where it cannot be or does not fit."""
     progress("designs")
     expanded = expand(order, library)
@@ -130,10 +130,10 @@ def lay(order: Order, library: Library | None = None, progress: Progress = lambd
     for group in groups:
         progress("parts")
         laid.append(_job([pieces[k] for k in group], printer, marker, order))
-    return Laid(order, expanded, tuple(laid))
+    return TrayLayout(order, expanded, tuple(laid))
 
 
-def counted(parts: Sequence[Part]) -> str:
+def counted(parts: Sequence[TrayPart]) -> str:
     """How many parts, in words."""
     return f"{len(parts)} part{'' if len(parts) == 1 else 's'}"
 
@@ -143,7 +143,7 @@ def layers(height: float, mode: Mode) -> int:
     return math.ceil((height - UM) / (UM * mode.layer_height_um))
 
 
-def fill(job: Job, printer: Printer) -> dict[str, float]:
+def fill(job: TrayJob, printer: Printer) -> dict[str, float]:
     """Shares of the envelope's footprint: of the parts' bounding boxes, and of their true outlines."""
     whole = printer.envelope_mm.x * printer.envelope_mm.y
     boxes = sum(part.footprint[0] * part.footprint[1] for part in job.parts)
@@ -164,7 +164,7 @@ def outline(bodies: Sequence[Body]) -> Any:
     return CrossSection.batch_boolean([body.manifold().project() for body in bodies], OpType.Add)
 
 
-def _job(pieces: list[Piece], printer: Printer, marker: Marker, order: Order) -> Job:
+def _job(pieces: list[TrayPiece], printer: Printer, marker: Marker, order: TrayOrder) -> TrayJob:
     mode = printer.mode_for(*(material for piece in pieces for material in piece.materials))
     assert mode is not None
     tolerance = printer.finest_step(mode)
@@ -178,15 +178,17 @@ def _job(pieces: list[Piece], printer: Printer, marker: Marker, order: Order) ->
         parts += [_part(piece, plain, copy, marker) for copy in range(1, piece.value.copies + 1)]
     _check_height(parts, printer, order.where)
     head, room = order.tray.tray, printer.envelope_mm
-    places = pack([_box(part) for part in parts], Room(room.x, room.y, head.margin_mm, head.spacing_mm), order.where)
+    places = pack(
+        [_box(part) for part in parts], PackingArea(room.x, room.y, head.margin_mm, head.spacing_mm), order.where
+    )
     parts = [replace(part, place=place) for part, place in zip(parts, places, strict=True)]
     for part in parts:
         _check_closed(part)
     resins = dict.fromkeys(resin for piece in pieces for material in piece.materials for resin in material.base_resins)
-    return Job(mode, tuple(sorted(resins)), tuple(parts))
+    return TrayJob(mode, tuple(sorted(resins)), tuple(parts))
 
 
-def _part(piece: Piece, plain: list[Body], copy: int, marker: Marker) -> Part:
+def _part(piece: TrayPiece, plain: list[Body], copy: int, marker: Marker) -> TrayPart:
     """A part with its marks, at the origin. In an assembly the rigid body is marked, and the membrane left alone."""
     value, label = piece.value, f"{piece.value.letter}{copy}"
     bodies, marks = [], []
@@ -199,16 +201,16 @@ def _part(piece: Piece, plain: list[Body], copy: int, marker: Marker) -> Part:
         marks.append(mark)
     low = np.min([body.bounds[0] for body in bodies], axis=0)
     moved = tuple(body.moved(-low) for body in bodies)
-    return Part(label, value, copy, piece.solids, moved, tuple(marks), Place(0.0, 0.0, False))
+    return TrayPart(label, value, copy, piece.solids, moved, tuple(marks), PackedPosition(0.0, 0.0, False))
 
 
-def _box(part: Part) -> tuple[float, float]:
+def _box(part: TrayPart) -> tuple[float, float]:
     """Width and depth in whole micrometres, rounded up."""
     x, y, _ = part.size
     return math.ceil(x / UM - 1e-6) * UM, math.ceil(y / UM - 1e-6) * UM
 
 
-def _check_height(parts: list[Part], printer: Printer, where: str) -> None:
+def _check_height(parts: list[TrayPart], printer: Printer, where: str) -> None:
     for part in parts:
         if part.size[2] > printer.envelope_mm.z:
             raise InputError(
@@ -217,7 +219,7 @@ def _check_height(parts: list[Part], printer: Printer, where: str) -> None:
             )
 
 
-def _check_closed(part: Part) -> None:
+def _check_closed(part: TrayPart) -> None:
     """Readers of STL merge vertices in float32, in the tray's frame."""
     for body in part.on_tray():
         if not body.welded().is_closed():

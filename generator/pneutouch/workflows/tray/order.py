@@ -11,13 +11,13 @@ from typing import Any
 
 from pneutouch.errors import InputError
 from pneutouch.spec.read import read_toml, validate
-from pneutouch.spec.tray import LEAST_COPIES, MOST_COPIES, Setting, Tray
+from pneutouch.spec.tray import LEAST_COPIES, MOST_COPIES, EntryValue, Tray
 
 _OPENING = ("[", "{", "'", '"')
 
 
 @dataclass(frozen=True)
-class Order:
+class TrayOrder:
     """A tray with the name of its output, the file or flags it is from (for messages), and overrides for all entries."""
 
     name: str
@@ -36,7 +36,7 @@ def is_tray_file(path: Path) -> bool:
     return path.suffix == ".toml" and path.is_file() and not {"tray", "entry"}.isdisjoint(read_toml(path))
 
 
-def order_of_file(path: Path, overrides: Sequence[str] = (), **head: Any) -> Order:
+def order_of_file(path: Path, overrides: Sequence[str] = (), **head: Any) -> TrayOrder:
     """Read a tray file; ``head`` (profile, marks) comes before its [tray]. Raises InputError naming file and key."""
     content = read_toml(path)
     given = {key: value for key, value in head.items() if value is not None}
@@ -44,12 +44,12 @@ def order_of_file(path: Path, overrides: Sequence[str] = (), **head: Any) -> Ord
         table = content.setdefault("tray", {})
         if isinstance(table, dict):
             table.update(given)
-    return Order(path.stem, str(path), validate(Tray, content, str(path)), tuple(overrides), path.parent)
+    return TrayOrder(path.stem, str(path), validate(Tray, content, str(path)), tuple(overrides), path.parent)
 
 
 def order_of_flags(
     designs: Sequence[str], over: Sequence[str] = (), copies: int = 1, overrides: Sequence[str] = (), **head: Any
-) -> Order:  # fmt: skip
+) -> TrayOrder:  # fmt: skip
     """One entry a design, each over the values of ``--over table.key=A,B,C``, ``copies`` of each.
 
     Raises InputError naming the flag.
@@ -61,10 +61,10 @@ def order_of_flags(
     stem = Path(designs[0]).stem
     title = f"{stem}, {copies} of each" if len(designs) == 1 else f"{len(designs)} designs, {copies} of each"
     content = {"tray": {"title": title, **{k: v for k, v in head.items() if v is not None}}, "entry": entries}
-    return Order(f"{stem}-tray", "the command line", validate(Tray, content, "the command line"), tuple(overrides))
+    return TrayOrder(f"{stem}-tray", "the command line", validate(Tray, content, "the command line"), tuple(overrides))
 
 
-def assignments(settings: dict[str, Setting]) -> list[str]:
+def assignments(settings: dict[str, EntryValue]) -> list[str]:
     """Settings as ``--set`` takes them; JSON of numbers, texts and lists is TOML."""
     return [f"{key}={json.dumps(value)}" for key, value in settings.items()]
 

@@ -15,7 +15,7 @@ _DECIMALS = 3
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class PackedPosition:
     """Lower left corner of a rectangle in mm, and whether it is turned by 90 degrees counter-clockwise."""
 
     x: float
@@ -24,7 +24,7 @@ class Place:
 
 
 @dataclass(frozen=True, slots=True)
-class Room:
+class PackingArea:
     """A rectangle to pack into: width and depth in mm, the free border, and the least gap between rectangles."""
 
     width: float
@@ -33,7 +33,7 @@ class Room:
     spacing: float
 
 
-def pack(sizes: Sequence[tuple[float, float]], room: Room, where: str = "tray") -> list[Place]:
+def pack(sizes: Sequence[tuple[float, float]], room: PackingArea, where: str = "tray") -> list[PackedPosition]:
     """Places for rectangles of ``sizes`` (width, depth; mm), in their order; the same for the same input.
 
     Rectangles lie on shelves along the width. Each shelf is as deep as its first rectangle, and rectangles come in
@@ -52,11 +52,13 @@ def pack(sizes: Sequence[tuple[float, float]], room: Room, where: str = "tray") 
     return [place for place in best[2] if place is not None]
 
 
-def _shelves(sizes: Sequence[tuple[float, float]], room: Room, flat: bool) -> tuple[int, float, list[Place | None]]:
+def _shelves(
+    sizes: Sequence[tuple[float, float]], room: PackingArea, flat: bool
+) -> tuple[int, float, list[PackedPosition | None]]:
     """How many were placed, the depth taken, and the places; ``flat`` lays the longer sides along the shelf."""
     laid = [_laid(size, room, flat) for size in sizes]
     order = sorted(range(len(sizes)), key=lambda k: (-laid[k][1], -laid[k][0], k))
-    places: list[Place | None] = [None] * len(sizes)
+    places: list[PackedPosition | None] = [None] * len(sizes)
     shelves: list[list[float]] = []  # y, depth, x where the next one may start
     top, count = room.margin, 0
     for k in order:
@@ -68,13 +70,13 @@ def _shelves(sizes: Sequence[tuple[float, float]], room: Room, flat: bool) -> tu
             shelf = [top, depth, room.margin]
             shelves.append(shelf)
             top = _up(top + depth + room.spacing)
-        places[k] = Place(shelf[2], shelf[0], turned)
+        places[k] = PackedPosition(shelf[2], shelf[0], turned)
         shelf[2] = _up(shelf[2] + width + room.spacing)
         count += 1
     return count, top, places
 
 
-def _laid(size: tuple[float, float], room: Room, flat: bool) -> tuple[float, float, bool]:
+def _laid(size: tuple[float, float], room: PackingArea, flat: bool) -> tuple[float, float, bool]:
     """Width, depth and whether turned: as ``flat`` asks, else the way that fits at all."""
     ways = [(size[0], size[1], False), (size[1], size[0], True)]
     ways.sort(key=lambda way: (way[1] if flat else way[0], way[2]))
@@ -85,7 +87,7 @@ def _laid(size: tuple[float, float], room: Room, flat: bool) -> tuple[float, flo
     return (fitting or ways)[0]
 
 
-def _fits(start: float, length: float, whole: float, room: Room) -> bool:
+def _fits(start: float, length: float, whole: float, room: PackingArea) -> bool:
     return start + length <= whole - room.margin + _ROUNDING
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pneutouch.errors import RuleBrokenError
 from pneutouch.parts.lettering.mark import shape_of
 from pneutouch.printability import Finding, check
-from pneutouch.workflows.tray.lay import Laid
+from pneutouch.workflows.tray.lay import TrayLayout
 from pneutouch.workflows.tray.subject import subject
 
 
@@ -26,7 +26,7 @@ class TrayFinding:
         return f"{found.severity}: {parts}: {found.rule}: {found.message}; {found.fix}"
 
 
-def findings(laid: Laid) -> tuple[TrayFinding, ...]:
+def findings(laid: TrayLayout) -> tuple[TrayFinding, ...]:
     """What the rules say, errors first. Copies, and resins of one kind in one shape, are judged by the first of them."""
     found = []
     for job in laid.jobs:
@@ -42,7 +42,7 @@ def findings(laid: Laid) -> tuple[TrayFinding, ...]:
     return tuple(sorted(found, key=lambda one: order.index(one.finding.severity)))
 
 
-def refuse(laid: Laid, found: tuple[TrayFinding, ...]) -> None:
+def refuse(laid: TrayLayout, found: tuple[TrayFinding, ...]) -> None:
     """Raise RuleBrokenError where a finding is an error."""
     broken = [f"{laid.order.where}: {one.text}" for one in found if one.finding.severity == "error"]
     if broken:

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from pneutouch.printability.subject import Item, Subject
+from pneutouch.printability.subject import PrintItem, PrintSubject
 from pneutouch.spec.printer import Mode, Printer
-from pneutouch.workflows.tray.lay import Part
+from pneutouch.workflows.tray.lay import TrayPart
 
 
-def subject(part: Part, printer: Printer, mode: Mode) -> Subject:
+def subject(part: TrayPart, printer: Printer, mode: Mode) -> PrintSubject:
     """The bodies of a part in its own frame, marked, in the mode of the tray's job.
 
     They carry no exact shape: that stands in the design frame and knows nothing of marks.
     """
-    items = (Item(body, printer, mode, job=part.label if len(part.bodies) > 1 else "") for body in part.bodies)
-    return Subject(tuple(items), name=part.name)
+    items = (PrintItem(body, printer, mode, job=part.label if len(part.bodies) > 1 else "") for body in part.bodies)
+    return PrintSubject(tuple(items), name=part.name)

@@ -8,7 +8,7 @@ import numpy as np
 
 from pneutouch.parts.lettering.mark import shape_of
 from pneutouch.report.style import BOLD, INK, MM, MUTED, figure, halo, svg
-from pneutouch.workflows.tray.lay import Job, Laid, Part, counted, outline
+from pneutouch.workflows.tray.lay import TrayJob, TrayLayout, TrayPart, counted, outline
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -17,7 +17,7 @@ _WIDTH = 170.0
 """Of the drawing, mm."""
 
 
-def tray_svg(laid: Laid, job: Job) -> bytes:
+def tray_svg(laid: TrayLayout, job: TrayJob) -> bytes:
     """SVG of one job."""
     room = laid.printer.envelope_mm
     head = laid.order.tray.tray
@@ -51,7 +51,7 @@ def _table(ax: Axes, width: float, depth: float, margin: float) -> None:
     ax.set_ylabel("y, mm")
 
 
-def _part(ax: Axes, part: Part, polygons: list[Any], width: float) -> None:
+def _part(ax: Axes, part: TrayPart, polygons: list[Any], width: float) -> None:
     """One part: its resin's colour, its outline, its label as large as it has room for."""
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path

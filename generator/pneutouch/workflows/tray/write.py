@@ -9,18 +9,18 @@ from typing import Any
 from pneutouch import __version__
 from pneutouch.body import Body
 from pneutouch.export.scene import stl
-from pneutouch.export.threemf_tray import TRAY_RECIPE, Item, threemf_tray
+from pneutouch.export.threemf_tray import TRAY_RECIPE, TrayItem, threemf_tray
 from pneutouch.output.files import MANIFEST, check_writable, digest, json_bytes, write_folder
 from pneutouch.output.recipe import scene_shelves, versions
 from pneutouch.workflows.tray.labels import labels_csv, labels_md, rows
-from pneutouch.workflows.tray.lay import Job, Laid, Part, Progress, counted, fill
+from pneutouch.workflows.tray.lay import Progress, TrayJob, TrayLayout, TrayPart, counted, fill
 from pneutouch.workflows.tray.rules import TrayFinding, findings, refuse
 from pneutouch.workflows.tray.view import tray_svg
 
 """Name of the metadata entry that holds what a tray follows from."""
 
 
-def write_tray(laid: Laid, folder: Path, progress: Progress = lambda step: None) -> Path:
+def write_tray(laid: TrayLayout, folder: Path, progress: Progress = lambda step: None) -> Path:
     """Write everything of a tray into ``folder`` and return it. The same input gives the same bytes.
 
     Raises RuleBrokenError, with nothing written, where a part breaks a print rule.
@@ -46,7 +46,7 @@ def write_tray(laid: Laid, folder: Path, progress: Progress = lambda step: None)
     return folder
 
 
-def document(laid: Laid, folder: Path) -> dict[str, Any]:
+def document(laid: TrayLayout, folder: Path) -> dict[str, Any]:
     """What ``pneutouch tray --json`` prints."""
     return {
         "tray": laid.order.name, "folder": str(folder), "printer": laid.printer.title, "parts": len(laid.parts),
@@ -55,7 +55,7 @@ def document(laid: Laid, folder: Path) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def inputs(laid: Laid) -> dict[str, Any]:
+def inputs(laid: TrayLayout) -> dict[str, Any]:
     """Everything that a tray follows from: what was asked for, the printer, and each value's scene resolved.
 
     ``values`` say by letter which of ``things`` each scene is made of: they share most of them.
@@ -81,20 +81,20 @@ def inputs(laid: Laid) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _item(part: Part) -> Item:
+def _item(part: TrayPart) -> TrayItem:
     """Copies without marks are one shape: their object carries the value's letter instead of the label."""
     if any(mark.kind != "none" for mark in part.marks):
-        return Item(part.name, part.name, part.bodies, part.transform)
+        return TrayItem(part.name, part.name, part.bodies, part.transform)
     letter = part.value.letter
     bodies = tuple(_named(body, f"{letter}-{solid.name}") for body, solid in zip(part.bodies, part.solids, strict=True))
-    return Item(part.name, bodies[0].name, bodies, part.transform)
+    return TrayItem(part.name, bodies[0].name, bodies, part.transform)
 
 
 def _named(body: Body, name: str) -> Body:
     return Body(name, body.role, body.material, body.vertices, body.triangles)
 
 
-def _metadata(laid: Laid, job: Job, recipe: str) -> dict[str, str]:
+def _metadata(laid: TrayLayout, job: TrayJob, recipe: str) -> dict[str, str]:
     return {
         "Title": laid.order.tray.tray.title,
         "Application": f"pneutouch {__version__}",
@@ -105,7 +105,7 @@ def _metadata(laid: Laid, job: Job, recipe: str) -> dict[str, str]:
     }
 
 
-def _said(laid: Laid, job: Job) -> dict[str, Any]:
+def _said(laid: TrayLayout, job: TrayJob) -> dict[str, Any]:
     return {
         "name": laid.name(job), "mode": job.mode.name, "layer_height_um": job.mode.layer_height_um,
         "layers": job.layers, "height_mm": round(job.height, 3), "resins": list(job.resins), "parts": len(job.parts),
@@ -114,7 +114,7 @@ def _said(laid: Laid, job: Job) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _manifest(laid: Laid, files: dict[str, bytes], found: tuple[TrayFinding, ...]) -> dict[str, Any]:
+def _manifest(laid: TrayLayout, files: dict[str, bytes], found: tuple[TrayFinding, ...]) -> dict[str, Any]:
     content = inputs(laid)
     return {
         "name": laid.order.name, "inputs": content, "input_hash": digest(json_bytes(content))[:12],

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from pneutouch.arrays import Flags
-from pneutouch.mechanics.atlas.press import Batch
-from pneutouch.mechanics.uncertainty.source import Source
+from pneutouch.mechanics.atlas.press import SensorBatch
+from pneutouch.mechanics.uncertainty.source import UncertaintySource
 from pneutouch.mechanics.uncertainty.sources.build import build_sources
 from pneutouch.mechanics.uncertainty.sources.model import ModelErrors, model_sources, numerical_sources
 from pneutouch.mechanics.uncertainty.sources.modulus import ageing_sources, modulus_sources
@@ -17,9 +17,9 @@ from pneutouch.spec.printer import Printer
 
 
 def sources(
-    batch: Batch, material: Material, printer: Printer, *,
+    batch: SensorBatch, material: Material, printer: Printer, *,
     near_paper: Flags | bool, errors: ModelErrors, numerical: Mapping[str, float], aged: bool = True,
-) -> list[Source]:  # fmt: skip
+) -> list[UncertaintySource]:  # fmt: skip
     """Sources that count for at least one figure of one sensor; see `budget` for the arguments."""
     size = len(batch)
     near = np.broadcast_to(np.asarray(near_paper, dtype=bool), size)

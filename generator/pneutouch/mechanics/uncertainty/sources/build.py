@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.atlas.press import Batch
-from pneutouch.mechanics.uncertainty.source import Distribution, Source, counting
+from pneutouch.mechanics.atlas.press import SensorBatch
+from pneutouch.mechanics.uncertainty.source import Distribution, UncertaintySource, counting
 from pneutouch.spec.printer import Printer
 from pneutouch.units import KPA
 
@@ -30,7 +30,7 @@ _LIMITS = 3.0
 _ROOT = np.sqrt(3.0)
 
 
-def build_sources(batch: Batch, printer: Printer) -> list[Source]:
+def build_sources(batch: SensorBatch, printer: Printer) -> list[UncertaintySource]:
     """Sources on dimensions, dead volume, ambient and driving pressure of n sensors from one printer."""
     accuracy = printer.accuracy_mm.nominal
     said = (
@@ -38,8 +38,10 @@ def build_sources(batch: Batch, printer: Printer) -> list[Source]:
     )
     bore = 2.0 * BORE_TOLERANCE / BORE
 
-    def source(name: str, acts_on: str, standard: Array, shape: Distribution, origin: str, known: bool) -> Source:
-        return Source(name, acts_on, standard, shape, counting(len(batch)), origin, known)
+    def source(
+        name: str, acts_on: str, standard: Array, shape: Distribution, origin: str, known: bool
+    ) -> UncertaintySource:
+        return UncertaintySource(name, acts_on, standard, shape, counting(len(batch)), origin, known)
 
     return [
         source("wall thickness", "wall_thickness", accuracy / _ROOT / batch.wall_thickness, "rectangular", said, True),

@@ -13,8 +13,8 @@ from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.uncertainty.neighbours import joined
-from pneutouch.mechanics.uncertainty.source import FIGURE, FIGURES, SENSITIVITY, Source, counting
-from pneutouch.spec.material import Material, Measured
+from pneutouch.mechanics.uncertainty.source import FIGURE, FIGURES, SENSITIVITY, UncertaintySource, counting
+from pneutouch.spec.material import Material, PaperMeasurements
 from pneutouch.units import KPA
 
 UNEXPLAINED = 1.5
@@ -49,7 +49,7 @@ def table_s1_errors(materials: list[Material]) -> list[tuple[float, ...]]:
     return [() if m.measured is None else _against(m.measured, next(found)) for m in materials]
 
 
-def _against(measured: Measured, sensitivity: Array) -> tuple[float, ...]:
+def _against(measured: PaperMeasurements, sensitivity: Array) -> tuple[float, ...]:
     truth = measured.sensitivity_0kPa_kPa_per_N.nominal, measured.sensitivity_22kPa_kPa_per_N.nominal
     errors = sensitivity / np.array(truth) - 1.0
     return tuple(float(error) for error in errors[np.isfinite(errors)])
@@ -64,7 +64,7 @@ def _spread(errors: tuple[float, ...]) -> float:
     return float(np.sqrt(np.mean(np.log1p(errors) ** 2)))
 
 
-def model_sources(near: Flags, errors: ModelErrors) -> list[Source]:
+def model_sources(near: Flags, errors: ModelErrors) -> list[UncertaintySource]:
     """The model's error in sensitivity: the resin's own near the paper's sensor, elsewhere the pool's; (n,) flags.
 
     A resin left out of the pool keeps its own error everywhere. Nothing of the kind is known for the other figures.
@@ -85,17 +85,17 @@ def model_sources(near: Flags, errors: ModelErrors) -> list[Source]:
             standard: Array = np.full(near.size, _spread(known))
             counts = counting(near.size, only=(SENSITIVITY,)) & rows
             origin = f"{_spread(known):.1%} root mean square against " + origin.format(n=len(known))
-            found.append(Source(name, FIGURE, standard, "lognormal", counts, origin, True, len(known)))
+            found.append(UncertaintySource(name, FIGURE, standard, "lognormal", counts, origin, True, len(known)))
     return found
 
 
-def numerical_sources(size: int, numerical: Mapping[str, float]) -> list[Source]:
+def numerical_sources(size: int, numerical: Mapping[str, float]) -> list[UncertaintySource]:
     """Discretisation and interpolation: greatest relative errors by figure. Raises InputError for an unknown figure."""
     found = []
     for name, greatest in numerical.items():
         if name not in FIGURES:
             raise InputError(f"numerical error of {name!r}: no such figure; there are {', '.join(FIGURES)}")
-        found.append(Source(
+        found.append(UncertaintySource(
             "numerical", FIGURE, np.full(size, greatest / np.sqrt(3.0)), "rectangular",
             counting(size, only=(FIGURES.index(name),)), f"greatest error found, {greatest:.2g} of {name}", True,
         ))  # fmt: skip

@@ -7,7 +7,7 @@ import numpy as np
 from pneutouch.arrays import Array, Flags
 from pneutouch.catalogue.mixture import FROM_CURVE
 from pneutouch.mechanics.uncertainty.hardness import logarithmic_change, logarithmic_slope, shore_a
-from pneutouch.mechanics.uncertainty.source import SENSITIVITY, Source, counting
+from pneutouch.mechanics.uncertainty.source import SENSITIVITY, UncertaintySource, counting
 from pneutouch.spec.material import Material
 from pneutouch.spec.quantity import Quantity
 
@@ -38,7 +38,7 @@ def _filled(value: float, size: int) -> Array:
     return np.full(size, value)
 
 
-def modulus_sources(material: Material, validated: Flags) -> list[Source]:
+def modulus_sources(material: Material, validated: Flags) -> list[UncertaintySource]:
     """Sources on the shear modulus of n sensors in one resin.
 
     ``validated``, (n,), says where the model's error on a sensor was measured in this resin: that error contains the
@@ -48,7 +48,7 @@ def modulus_sources(material: Material, validated: Flags) -> list[Source]:
     assert modulus is not None
     size = validated.size
     if modulus.spread is not None:
-        return [Source(
+        return [UncertaintySource(
             "modulus as measured", "shear_modulus", _filled(modulus.spread / modulus.nominal, size), "lognormal",
             counting(size), f"spread of the shear modulus, {modulus.source}; the scatter between prints is in it", True,
         )]  # fmt: skip
@@ -60,9 +60,9 @@ def modulus_sources(material: Material, validated: Flags) -> list[Source]:
     return [_published(modulus, validated), _between_prints(material, size)]
 
 
-def _mixing_fraction(modulus: Quantity, size: int) -> Source:
+def _mixing_fraction(modulus: Quantity, size: int) -> UncertaintySource:
     """How far an assumed mixing curve may be off; see `pneutouch.catalogue.mixture.Mixing.band_at`."""
-    return Source(
+    return UncertaintySource(
         "mixing fraction", "shear_modulus", _filled(_log_rectangular(modulus.most / modulus.least), size),
         "log-rectangular", counting(size),
         f"assumed: {modulus.least:.3g} to {modulus.most:.3g} MPa, as the laws differ by which the catalogue's moduli are given "
@@ -80,7 +80,7 @@ def _log_rectangular(factor: float) -> float:
     return float(np.log(factor) / np.sqrt(12.0))
 
 
-def _published(modulus: Quantity, validated: Flags) -> Source:
+def _published(modulus: Quantity, validated: Flags) -> UncertaintySource:
     known = modulus.low is not None and modulus.high is not None
     factor = modulus.most / modulus.least if known else ASSUMED_FACTOR
     standard = _log_rectangular(factor)
@@ -93,7 +93,7 @@ def _published(modulus: Quantity, validated: Flags) -> Source:
     )
     if validated.any():
         origin += "; near the paper's sensor not counted for the sensitivity, whose model error holds it"
-    return Source(
+    return UncertaintySource(
         "published modulus",
         "shear_modulus",
         _filled(standard, validated.size),
@@ -111,7 +111,7 @@ def _hardness(material: Material) -> tuple[float, bool]:
     return shore_a(_ELASTIC * material.shear_modulus_MPa.nominal), False
 
 
-def _between_prints(material: Material, size: int) -> Source:
+def _between_prints(material: Material, size: int) -> UncertaintySource:
     shore, read = _hardness(material)
     given = material.shore_a.spread if material.shore_a is not None else None
     known = read and given is not None
@@ -121,13 +121,13 @@ def _between_prints(material: Material, size: int) -> Source:
         if known and material.shore_a is not None
         else "assumed, as the seven resins of the paper's Table 1"
     )
-    return Source(
+    return UncertaintySource(
         "modulus between prints", "shear_modulus", _filled(logarithmic_slope(shore) * spread, size), "lognormal",
         counting(size), origin, known, _READINGS - 1 if known else np.inf,
     )  # fmt: skip
 
 
-def ageing_sources(material: Material, size: int) -> list[Source]:
+def ageing_sources(material: Material, size: int) -> list[UncertaintySource]:
     """What a year in light and air does: to the modulus by the hardness, to the sensitivity as it was measured.
 
     The age at use is taken as anything from fresh to a year. A deviation even over 0 to c has the mean square c^2/3 about
@@ -136,7 +136,7 @@ def ageing_sources(material: Material, size: int) -> list[Source]:
     return [_ageing_by_hardness(material, size), _ageing_of_sensitivity(material, size)]
 
 
-def _ageing_by_hardness(material: Material, size: int) -> Source:
+def _ageing_by_hardness(material: Material, size: int) -> UncertaintySource:
     shore, _ = _hardness(material)
     aged = material.shore_a_one_year
     known = aged is not None and material.shore_a is not None
@@ -145,13 +145,13 @@ def _ageing_by_hardness(material: Material, size: int) -> Source:
     origin = f"{_GENT}: Shore A {shore:.3g} to {after:.3g} in a year, modulus {np.expm1(change):+.0%}; " + (
         aged.source if aged is not None and known else "change assumed, as the seven resins of the paper's Table 1"
     )
-    return Source(
+    return UncertaintySource(
         "ageing of the modulus", "shear_modulus", _filled(abs(change) / np.sqrt(3.0), size), "log-rectangular",
         counting(size, without=(SENSITIVITY,)), origin, known,
     )  # fmt: skip
 
 
-def _ageing_of_sensitivity(material: Material, size: int) -> Source:
+def _ageing_of_sensitivity(material: Material, size: int) -> UncertaintySource:
     given = material.measured.sensitivity_change_one_year_percent if material.measured is not None else None
     change = ASSUMED_AGEING if given is None else given.nominal / 100
     origin = (
@@ -159,7 +159,7 @@ def _ageing_of_sensitivity(material: Material, size: int) -> Source:
         if given is None
         else given.source
     )
-    return Source(
+    return UncertaintySource(
         "ageing", "figure", _filled(change / np.sqrt(3.0), size), "rectangular", counting(size, only=(SENSITIVITY,)),
         f"sensitivity {change:.1%} off after a year: {origin}", given is not None,
     )  # fmt: skip
