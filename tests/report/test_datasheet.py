@@ -157,7 +157,7 @@ def test_rating_stays_below_the_limit_that_binds(evaluated, built):
 
 def test_a_resin_that_cannot_be_solved_does_not_stop_the_sheet(evaluated, library, monkeypatch):
     from pneutouch.errors import ComputationError
-    from pneutouch.report import variants
+    from pneutouch.evaluation import variants
     from pneutouch.spec.material import Material
 
     def fail(*words, **options):

@@ -32,7 +32,7 @@ def _printable(text: str) -> str:
 Printable = Annotated[str, AfterValidator(_printable)]
 
 
-class Document(Table):
+class DocumentHead(Table):
     """[document]: what stands in the head of the datasheet."""
 
     title: Printable = Field(default="Pneumatic touch sensor", max_length=80, description="Title of the datasheet.")
@@ -118,7 +118,7 @@ class Print(Table):
 class DesignFile(Table):
     """A whole design file."""
 
-    document: Document = Document()
+    document: DocumentHead = DocumentHead()
     membrane: Membrane = Membrane()
     connector: Connector = Connector()
     pneumatics: Pneumatics = Pneumatics()

@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, SerializeAsAny, model_validator
 
 from pneutouch.errors import InputError, nearest
-from pneutouch.spec.design import Document, Printable
+from pneutouch.spec.design import DocumentHead, Printable
 from pneutouch.spec.fields import Table, name, number
 from pneutouch.spec.read import validate
 
@@ -228,7 +228,7 @@ class SpecimenPrint(Table):
 class Specimen(Table):
     """A whole specimen file; ``layer`` holds models of LAYERS."""
 
-    document: Document = Document(title="Texture specimen")
+    document: DocumentHead = DocumentHead(title="Texture specimen")
     block: Block = Block()
     scan: Scan = Scan()
     layer: list[SerializeAsAny[Layer]] = Field(min_length=1, max_length=50, description="one [[layer]] a pattern")
