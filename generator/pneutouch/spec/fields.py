@@ -17,7 +17,7 @@ from pydantic.fields import FieldInfo
 class Table(BaseModel):
     """Base of every TOML table: no unknown keys, no silent conversions, no infinities, immutable."""
 
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False, defer_build=True)
 
 
 @dataclass(frozen=True, slots=True)
