@@ -12,7 +12,10 @@ from pneutouch.arrays import Array
 from pneutouch.mechanics.events import range_end
 from pneutouch.mechanics.membrane import membrane_states
 from pneutouch.mechanics.response import figures
-from pneutouch.mechanics.solid import PressSettings, SolidModel, dome, indent, inflate, state_at
+from pneutouch.mechanics.solid.indent import PressSettings, indent
+from pneutouch.mechanics.solid.inflate import inflate, state_at
+from pneutouch.mechanics.solid.mesh import dome
+from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid_states import _curve, _events
 from pneutouch.units import KPA
 

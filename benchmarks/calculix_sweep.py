@@ -13,7 +13,7 @@ from pathlib import Path
 
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.exact_membrane import RISING_BRANCH
-from pneutouch.mechanics.solid import dome
+from pneutouch.mechanics.solid.mesh import dome
 
 _INCREMENTS = "0.2,1.,0.002,0.3"
 """First, total, least and greatest increment, as shares of the thin membrane's limit pressure."""

@@ -16,7 +16,7 @@ from scipy.sparse.linalg import splu
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics import Sensor
-from pneutouch.mechanics.solid import SolidMesh, dome
+from pneutouch.mechanics.solid.mesh import SolidMesh, dome
 
 _TOP = 1.9
 _COUNTS = (6, 8, 12, 18, 27, 40)

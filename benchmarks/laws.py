@@ -9,7 +9,9 @@ from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
 from benchmarks.scenes import MOONEY_RIVLIN_AGILUS30, OGDEN_AGILUS30, PAPER
 from pneutouch.mechanics.laws import Hyperelastic, hyperelastic, neo_hookean
-from pneutouch.mechanics.solid import Inflation, SolidModel, dome, inflate
+from pneutouch.mechanics.solid.inflate import Inflation, inflate
+from pneutouch.mechanics.solid.mesh import dome
+from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.report.style import ACCENT, INK, LINES, MUTED, figure, svg
 
 NU = 0.49

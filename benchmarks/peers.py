@@ -49,7 +49,9 @@ def solve(name: str, arc: int, through: int, count: int = 0) -> tuple[float, int
         from benchmarks.felupe_sweep import felupe_limit
 
         return felupe_limit(PAPER, arc, through, name == "FElupe Q2/P1", count or None)
-    from pneutouch.mechanics.solid import SolidModel, dome, inflate
+    from pneutouch.mechanics.solid.inflate import inflate
+    from pneutouch.mechanics.solid.mesh import dome
+    from pneutouch.mechanics.solid.model import SolidModel
 
     mesh = dome(PAPER.inner_radius, PAPER.wall_thickness, arc=arc, through=through)
     run = inflate(SolidModel(mesh, PAPER.material), past_limit=1.0)

@@ -15,7 +15,10 @@ from benchmarks.speed_accuracy import solid_limit
 from benchmarks.theory import Cell, table_s1
 from pneutouch.catalogue import Library
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid import PressSettings, SolidModel, dome, indent, inflate, state_at
+from pneutouch.mechanics.solid.indent import PressSettings, indent
+from pneutouch.mechanics.solid.inflate import inflate, state_at
+from pneutouch.mechanics.solid.mesh import dome
+from pneutouch.mechanics.solid.model import SolidModel
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "validation.md"

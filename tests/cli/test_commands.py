@@ -107,7 +107,14 @@ def modules_after(*words):
 
 
 @pytest.mark.parametrize(
-    "words", [["--help"], ["predict", "--help"], ["predict", "paper-dome", "--model", "membrane", "--json"], ["list"]]
+    "words",
+    [
+        ["--help"],
+        ["predict", "--help"],
+        ["predict", "paper-dome", "--model", "membrane", "--json"],
+        ["predict", "paper-dome", "--model", "atlas"],
+        ["list"],
+    ],
 )
 def test_light_commands_load_no_heavy_package(words):
     assert modules_after(*words) & HEAVY == set()

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.solid import SolidModel
 from pneutouch.mechanics.solid.banded import solve
 from pneutouch.mechanics.solid.elements import IntegrationScheme
+from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene, SolverState, evaluate, full_tangent
 from pneutouch.mechanics.solid.supply import Regulator, Supply
 

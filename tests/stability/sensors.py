@@ -9,7 +9,10 @@ import numpy as np
 
 from pneutouch.catalogue import Library
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.mechanics.solid import PressSettings, SolidModel, dome, inflate, state_at
+from pneutouch.mechanics.solid.indent import PressSettings
+from pneutouch.mechanics.solid.inflate import inflate, state_at
+from pneutouch.mechanics.solid.mesh import dome
+from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.spec.material import Material
 from pneutouch.units import ML
 from tests.stability.truth import Study

@@ -11,7 +11,10 @@ import numpy as np
 import pytest
 
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid import PressSettings, SolidModel, dome, state_at
+from pneutouch.mechanics.solid.indent import PressSettings
+from pneutouch.mechanics.solid.inflate import state_at
+from pneutouch.mechanics.solid.mesh import dome
+from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure, minimise
 from tests.stability.plain import active_set, newton
 from tests.stability.truth import Study

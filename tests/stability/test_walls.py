@@ -15,7 +15,10 @@ from scipy.optimize import minimize_scalar
 
 from pneutouch.mechanics.inflation import LIMIT_PRESSURE
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid import PressSettings, SolidModel, dome, inflate, state_at
+from pneutouch.mechanics.solid.indent import PressSettings
+from pneutouch.mechanics.solid.inflate import inflate, state_at
+from pneutouch.mechanics.solid.mesh import dome
+from pneutouch.mechanics.solid.model import SolidModel
 from tests.stability.plain import DISPLACEMENT
 from tests.stability.truth import Study, free_unbalance
 

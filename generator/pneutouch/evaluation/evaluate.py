@@ -5,23 +5,26 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pneutouch.catalogue import Library, ResolvedDesign, load_scene
 from pneutouch.errors import BeyondLimitError, InputError, nearest
-from pneutouch.evaluation.subject import subject_of
 from pneutouch.evaluation.table_s1 import sensitivity_error
 from pneutouch.mechanics import Sensor, SensorPrediction, predict
 from pneutouch.mechanics.ladder import DEFAULT_TOLERANCE
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.viscous.known import AGED, ageing_ratio
 from pneutouch.parts import Assembly, assemble
-from pneutouch.printability import Finding, SensorContext, check
-from pneutouch.printability.estimate import JobEstimate, estimate
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
+
+if TYPE_CHECKING:
+    from pneutouch.printability import Finding
+    from pneutouch.printability.estimate import JobEstimate
+
+# The print rules and the uncertainty load where they are asked for: figures alone need neither.
 
 CLAMPS = ("base", "flange")
 """Where the solid is held."""
@@ -63,11 +66,17 @@ class Evaluation:
     @cached_property
     def findings(self) -> list[Finding]:
         """What the rules say."""
+        from pneutouch.evaluation.subject import subject_of
+        from pneutouch.printability import SensorContext, check
+
         return check(subject_of(self.assembly), SensorContext(self.prediction, self.sensor))
 
     @cached_property
     def estimates(self) -> tuple[JobEstimate, ...]:
         """What each print job takes: resin, support, layers, time."""
+        from pneutouch.evaluation.subject import subject_of
+        from pneutouch.printability.estimate import estimate
+
         return tuple(estimate(subject_of(self.assembly)))
 
     def deep_findings(self) -> list[Finding]:

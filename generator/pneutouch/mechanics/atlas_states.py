@@ -18,8 +18,7 @@ from pneutouch.mechanics.limits import LimitPoint, Limits
 from pneutouch.mechanics.prediction import InflationCurve, ModelResult, SensorState
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.solid.events import CREASE, OVERHANG, PathPoint, crossing
-from pneutouch.mechanics.solid.indent import DETAIL
+from pneutouch.mechanics.solid.events import CREASE, DETAIL, OVERHANG, PathPoint, crossing
 from pneutouch.units import KPA
 
 _DETAIL = {

@@ -13,21 +13,12 @@ from pneutouch.mechanics.limits import LimitPoint, Limits
 from pneutouch.mechanics.prediction import DeformedShape, InflationCurve, ModelResult, SensorState
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.solid import (
-    FreeState,
-    IndentationPath,
-    Inflation,
-    PressSettings,
-    PressState,
-    SolidModel,
-    StrainProbe,
-    burst,
-    dome,
-    indent,
-    inflate,
-    printed_dome,
-    state_at,
-)
+from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, PressState, indent
+from pneutouch.mechanics.solid.inflate import FreeState, Inflation, inflate, state_at
+from pneutouch.mechanics.solid.mesh import dome
+from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.printed import printed_dome
+from pneutouch.mechanics.solid.stress import StrainProbe, burst
 from pneutouch.meridian.arc import arc_share
 from pneutouch.units import KPA
 

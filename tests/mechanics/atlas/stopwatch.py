@@ -32,7 +32,10 @@ def seconds(work: Callable[[], object], runs: int = 5) -> float:
 def one_solid(case) -> None:
     """A full response by the solid: the mesh, the driving pressure, the press."""
     from pneutouch.mechanics.laws import neo_hookean
-    from pneutouch.mechanics.solid import PressSettings, SolidModel, dome, indent, inflate, state_at
+    from pneutouch.mechanics.solid.indent import PressSettings, indent
+    from pneutouch.mechanics.solid.inflate import inflate, state_at
+    from pneutouch.mechanics.solid.mesh import dome
+    from pneutouch.mechanics.solid.model import SolidModel
 
     solid = SolidModel(dome(1.0, case.wall), neo_hookean(1.0, POISSON))
     run = inflate(solid, past_limit=1.0)

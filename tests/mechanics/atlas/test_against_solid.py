@@ -16,8 +16,10 @@ from pneutouch.mechanics.events import range_end
 from pneutouch.mechanics.exact_membrane import RISING_BRANCH
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.prediction import ModelResult
-from pneutouch.mechanics.solid import SolidModel, StrainProbe, dome, inflate
-from pneutouch.mechanics.solid.inflate import at_volume
+from pneutouch.mechanics.solid.inflate import at_volume, inflate
+from pneutouch.mechanics.solid.mesh import dome
+from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.stress import StrainProbe
 from pneutouch.mechanics.solid_states import solid_result
 from pneutouch.units import KPA, STANDARD_ATMOSPHERE
 

@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 
 from pneutouch.mechanics.laws import neo_hookean, ogden
-from pneutouch.mechanics.solid import SolidModel, dome, printed_dome
 from pneutouch.mechanics.solid.banded import negative_pivots
 from pneutouch.mechanics.solid.cavity import Cavity
 from pneutouch.mechanics.solid.contact import Plate
+from pneutouch.mechanics.solid.mesh import dome
+from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene, evaluate, full_tangent
+from pneutouch.mechanics.solid.printed import printed_dome
 from pneutouch.mechanics.solid.supply import Gas, Liquid
 
 

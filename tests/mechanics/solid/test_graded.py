@@ -16,8 +16,11 @@ from pneutouch.mechanics.ladder import climb
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.solid import PressSettings, SolidModel, dome, indent, inflate, state_at
 from pneutouch.mechanics.solid.contact import Plate
+from pneutouch.mechanics.solid.indent import PressSettings, indent
+from pneutouch.mechanics.solid.inflate import inflate, state_at
+from pneutouch.mechanics.solid.mesh import dome
+from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene, evaluate, full_tangent
 from pneutouch.mechanics.solid.supply import Gas
 from pneutouch.mechanics.solid_states import solid_result

@@ -5,7 +5,11 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from pneutouch.mechanics.laws import mooney_rivlin, neo_hookean, yeoh
-from pneutouch.mechanics.solid import SolidModel, UnreachableLoadError, burst, dome, inflate, state_at
+from pneutouch.mechanics.solid.errors import UnreachableLoadError
+from pneutouch.mechanics.solid.inflate import inflate, state_at
+from pneutouch.mechanics.solid.mesh import dome
+from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.stress import burst
 
 
 def sphere_limit(a, b):

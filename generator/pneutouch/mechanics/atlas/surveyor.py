@@ -11,11 +11,13 @@ from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
 from pneutouch.mechanics.atlas.recipe import AtlasRecipe
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid import SolidModel, StrainProbe, dome, inflate
 from pneutouch.mechanics.solid.contact import Plate
-from pneutouch.mechanics.solid.events import descend
-from pneutouch.mechanics.solid.inflate import FreeState, Inflation, at_volume, state_at
+from pneutouch.mechanics.solid.descend import descend
+from pneutouch.mechanics.solid.inflate import FreeState, Inflation, at_volume, inflate, state_at
+from pneutouch.mechanics.solid.mesh import dome
+from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure, SolidScene, SolverState, minimise, stability
+from pneutouch.mechanics.solid.stress import StrainProbe
 from pneutouch.mechanics.solid.supply import Gas, Liquid, Regulator, Supply
 from pneutouch.mechanics.solid.walker import PathFollower
 

@@ -9,17 +9,17 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.mechanics.response import Figures, figures
 from pneutouch.mechanics.solid.contact import Plate, flat_radius, rim_radius
+from pneutouch.mechanics.solid.descend import PathJump, descend
 from pneutouch.mechanics.solid.errors import UnreachableLoadError
 from pneutouch.mechanics.solid.events import (
     BREAKS_CURVE,
     CREASE,
+    DETAIL,
     OVERHANG,
     SEPARATION,
-    PathJump,
     PathPoint,
     SolidEvent,
     crossing,
-    descend,
 )
 from pneutouch.mechanics.solid.inflate import FreeState
 from pneutouch.mechanics.solid.model import SolidModel
@@ -211,17 +211,6 @@ class _Recorder:
         before, after = _watched(a), _watched(b)
         places = {kind: crossing(before[kind], after[kind], level) for kind, level in levels.items()}
         return [SolidEvent(kind, where, DETAIL[kind]) for kind, where in places.items() if where is not None]
-
-
-DETAIL = {
-    "gauge_range": "the pressure sensor's range ends",
-    "break": "the material's break strain is reached",
-    "crease": "a face of the wall is compressed enough to crease",
-    "separation": "the wall leaves the plate inside the contact",
-    "plate_rim": "the contact reaches the plate's rim",
-    "floor": "the inner wall reaches the base plane",
-    "overhang": "the wall hangs below its base plane, where nothing it would lie on is modelled",
-}
 
 
 def _watched(s: PressState) -> dict[str, PathPoint]:

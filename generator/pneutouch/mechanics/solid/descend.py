@@ -1,0 +1,115 @@
+"""The plate's way down on one branch, and how it ends where the branch does."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pneutouch.mechanics.solid.errors import NoConvergenceError
+from pneutouch.mechanics.solid.newton import NewtonFailure, minimise
+from pneutouch.mechanics.solid.walker import DISSIPATION, PathFollower, PlateState, lost_work
+
+#: Position of a jump, in R0.
+JUMP_WITHIN = 5.0e-4
+#: How far past a stall a second equilibrium is first looked for, in R0.
+_BEYOND_STALL = 3.5e-3
+_MOST_TRIES = 40
+#: Two equilibria whose positions differ by more than this, in R0, are two.
+_APART = 1.0e-3
+
+
+@dataclass(frozen=True)
+class PathJump:
+    """Plate height (R0) of the last state before the path breaks off, and why."""
+
+    kind: str
+    height: float
+    why: str
+
+
+def descend(walker: PathFollower, height: float) -> PathJump | None:
+    """Take the walker down to `height`; None there, or the jump that ended the path, before which it then stands."""
+    if not walker.here.stable:
+        return PathJump("unstable", walker.here.height, "the state itself is unstable with its gas shut in")
+    while walker.here.height - height > 1.0e-12:
+        before = walker.here
+        try:
+            after = walker.step(height)
+        except NoConvergenceError as failure:
+            return PathJump("lost", before.height, failure.why)
+        if _sound(walker.path[:-1], after):
+            continue
+        jump = _close_in(walker, after.height)
+        if jump is not None:
+            return jump
+    return None
+
+
+def _sound(path: list[PlateState], after: PlateState) -> bool:
+    return after.stable and lost_work(path, after) <= DISSIPATION
+
+
+def _close_in(walker: PathFollower, end: float) -> PathJump | None:
+    """Bisect between the last sound state and a suspect one; None if the end is reached on one branch after all.
+
+    A suspect height may prove sound when approached in shorter steps, so the last bracket is walked before it counts.
+    """
+    walker.path.pop()
+    beyond: PlateState | NewtonFailure = NewtonFailure("no equilibrium follows without a jump")
+    bad, tried_from_here = end, False
+    for _ in range(_MOST_TRIES):
+        here = walker.here
+        closed = here.height - bad <= JUMP_WITHIN
+        if closed and tried_from_here:
+            break
+        height = bad if closed else 0.5 * (here.height + bad)
+        found = walker.solve(height)
+        if isinstance(found, NewtonFailure) or not _sound(walker.path, found):
+            beyond, bad, tried_from_here = found, height, True
+            continue
+        walker.path.append(found)
+        if found.height <= end + 1.0e-12:
+            return None
+        bad, tried_from_here = end if closed else bad, False
+    if isinstance(beyond, NewtonFailure):
+        return _past_a_stall(walker, beyond)
+    return PathJump(_kind(walker.here, beyond), walker.here.height, _describe(walker.path, beyond))
+
+
+def _past_a_stall(walker: PathFollower, stalled: NewtonFailure) -> PathJump:
+    """A solver that found nothing is no evidence of another branch: look a little further before naming the end."""
+    for further in (1, 2, 4, 8):
+        found = walker.solve(walker.here.height - further * _BEYOND_STALL)
+        if not isinstance(found, NewtonFailure) and not _sound(walker.path, found) and _stays_away(walker.here, found):
+            return PathJump(_kind(walker.here, found), walker.here.height, _describe(walker.path, found))
+    return PathJump("lost", walker.here.height, stalled.why)
+
+
+def _stays_away(here: PlateState, found: PlateState) -> bool:
+    """Whether the plate brought back leaves the wall in a second equilibrium of lower energy: the mark of a jump."""
+    back = minimise(here.scene, found.state.x)
+    if isinstance(back, NewtonFailure):
+        return False
+    moved = float(np.abs(back.state.x - here.state.x).max())
+    return moved > _APART and back.state.energy < here.state.energy
+
+
+def _kind(here: PlateState, beyond: PlateState) -> str:
+    """clamp_fold where the wall moves most within a wall of its clamp, else snap."""
+    solid = here.scene.solid
+    moved = solid.rest[np.hypot(*(beyond.state.x - here.state.x).T).argmax()]
+    held = solid.rest[solid.mesh.clamped]
+    near = held.size > 0 and np.hypot(*(held - moved).T).min() < solid.wall
+    return "clamp_fold" if near else "snap"
+
+
+def _describe(path: list[PlateState], after: PlateState) -> str:
+    solid = after.scene.solid
+    r, z = solid.mesh.nodes[np.hypot(*(after.state.x - path[-1].state.x).T).argmax()]
+    place = f"the wall point at rest at r {r:.2f}, z {z:.2f} mm moves most"
+    if not after.stable:
+        return f"the tangent has a negative mode; {place}"
+    share = 100.0 * lost_work(path, after)
+    change = 100.0 * (after.force / max(path[-1].force, 1.0e-300) - 1.0)
+    return f"the force changes by {change:.1f} % at once and {share:.0f} % of a step's work is lost; {place}"
