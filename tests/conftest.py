@@ -1,10 +1,8 @@
-"""Fixtures that several test files share. Builds and evaluations are cached: they are immutable."""
+"""Fixtures that several test files share. Builds and evaluations are kept: nobody changes them."""
 
 from __future__ import annotations
 
-import os
 import subprocess
-import sys
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -15,11 +13,14 @@ from hypothesis import settings
 from pneutouch.catalogue import Library
 from pneutouch.evaluation import Evaluation, evaluate
 from pneutouch.workflows.build import build as build_design
+from tests.running import Shared, in_new_process, in_process
 
 ROOT = Path(__file__).resolve().parents[1]
 
 settings.register_profile("everyday", deadline=None, max_examples=40, derandomize=True)
 settings.load_profile("everyday")
+
+Command = Callable[..., subprocess.CompletedProcess[str]]
 
 
 @pytest.fixture(scope="session")
@@ -33,6 +34,11 @@ def library() -> Library:
 
 
 @pytest.fixture(scope="session")
+def shared(tmp_path_factory: pytest.TempPathFactory) -> Shared:
+    return Shared(tmp_path_factory)
+
+
+@pytest.fixture(scope="session")
 def evaluated(library: Library) -> Callable[..., Evaluation]:
     @cache
     def run(name: str, *assignments: str, model: str = "solid", closure: str = "variational") -> Evaluation:
@@ -42,23 +48,31 @@ def evaluated(library: Library) -> Callable[..., Evaluation]:
 
 
 @pytest.fixture(scope="session")
-def built(evaluated: Callable[..., Evaluation], tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+def built(evaluated: Callable[..., Evaluation], shared: Shared) -> Callable[[str], Path]:
+    """The output folder of a design, built once for all tests: to be read, not written."""
+
     @cache
     def run(name: str) -> Path:
-        return build_design(evaluated(name), tmp_path_factory.mktemp("outputs"))
+        return shared.folder(f"build-{name}", lambda fresh: build_design(evaluated(name), fresh)) / name
 
     return run
 
 
 @pytest.fixture
-def command(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
-    """Run the command line in an empty folder, as a user does."""
+def command(tmp_path: Path) -> Command:
+    """Run the command line in an empty folder, in the process of the tests."""
 
     def run(*words: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
-        environment = {**os.environ, "COLUMNS": "200"}
-        return subprocess.run(
-            [sys.executable, "-m", "pneutouch", *words], cwd=cwd or tmp_path, env=environment,
-            capture_output=True, text=True, timeout=120, check=False,
-        )  # fmt: skip
+        return in_process(words, cwd or tmp_path)
+
+    return run
+
+
+@pytest.fixture
+def process(tmp_path: Path) -> Command:
+    """Run the command line in an empty folder as a process of its own, as a user does; it costs a second of imports."""
+
+    def run(*words: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+        return in_new_process(words, cwd or tmp_path)
 
     return run

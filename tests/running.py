@@ -1,0 +1,85 @@
+"""Running the command line inside the process of the tests, and building what several tests read once for all workers."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import io
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from unittest import mock
+
+import pytest
+
+
+@contextlib.contextmanager
+def captured() -> Iterator[tuple[io.BytesIO, io.BytesIO]]:
+    """The bytes that ``sys.stdout`` and ``sys.stderr`` take, neither of them a terminal."""
+    out, err = io.BytesIO(), io.BytesIO()
+    texts = [io.TextIOWrapper(stream, encoding="utf-8", write_through=True) for stream in (out, err)]
+    with contextlib.redirect_stdout(texts[0]), contextlib.redirect_stderr(texts[1]):
+        yield out, err
+    for text in texts:
+        text.detach()
+
+
+def in_process(words: Sequence[str], folder: Path) -> subprocess.CompletedProcess[str]:
+    """Run ``pneutouch WORDS`` in ``folder`` in this process: the same entry point, without the imports of a new one."""
+    from pneutouch.cli import run
+
+    code: int | str | None = 0
+    with (
+        contextlib.chdir(folder),
+        mock.patch.object(sys, "argv", ["pneutouch", *words]),
+        mock.patch.dict(os.environ, {"COLUMNS": "200"}),
+        captured() as (out, err),
+    ):
+        try:
+            run()
+        except SystemExit as exit_:
+            code = exit_.code
+    assert isinstance(code, int | None), code
+    return subprocess.CompletedProcess(words, code or 0, out.getvalue().decode(), err.getvalue().decode())
+
+
+def in_new_process(
+    words: Sequence[str], folder: Path, environment: dict[str, str] | None = None
+) -> subprocess.CompletedProcess[str]:
+    """Run ``pneutouch WORDS`` in ``folder`` as a user does."""
+    return subprocess.run(
+        [sys.executable, "-m", "pneutouch", *words],
+        cwd=folder,
+        env={**os.environ, "COLUMNS": "200", **(environment or {})},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+class Shared:
+    """Folders that are filled once in a run of the tests, whichever worker of pytest-xdist asks first."""
+
+    def __init__(self, factory: pytest.TempPathFactory) -> None:
+        base = factory.getbasetemp()
+        self._root = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "shared"
+
+    def folder(self, name: str, fill: Callable[[Path], object]) -> Path:
+        """The folder ``name``; ``fill`` is called with an empty one where no worker has filled it yet."""
+        self._root.mkdir(exist_ok=True)
+        target = self._root / name
+        with (self._root / f"{name}.lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            if not target.exists():
+                fresh = Path(tempfile.mkdtemp(dir=self._root))
+                try:
+                    fill(fresh)
+                except BaseException:
+                    shutil.rmtree(fresh)
+                    raise
+                fresh.rename(target)
+        return target
