@@ -28,13 +28,14 @@ class Rename:
 
 
 def renamed(key: str, path: Sequence[str], renames: Sequence[Rename]) -> str:
-    """The new name of a key that stands below ``path``; numbers in the path count entries of lists."""
+    """The new name of a key that stands below ``path``, old or new names; numbers in the path count entries of lists."""
     parents = [part for part in path if not part.isdigit()]
     for rename in renames:
         if rename.old == key:
             return rename.new
         *above, last = rename.old.split(".")
-        if above and last == key and parents[-len(above) :] == above:
+        here = parents[-len(above) :]
+        if above and last == key and here in (above, [renamed(part, (), renames) for part in above]):
             return rename.new.rsplit(".", 1)[-1]
     return key
 

@@ -78,6 +78,13 @@ def test_a_dotted_key_is_renamed_below_its_parent_alone():
     assert not list(differences(DOCUMENT, new, [Rename(("*",), "states.told", "states.notes")]))
 
 
+def test_a_dotted_key_is_found_where_its_parent_is_renamed_too():
+    new = {**DOCUMENT, "loads": [{**DOCUMENT["states"][0], "notes": 2}]}
+    del new["loads"][0]["told"], new["states"]
+    renames = [Rename(("*",), "states", "loads"), Rename(("*",), "states.told", "loads.notes")]
+    assert not list(differences(DOCUMENT, new, renames))
+
+
 def test_a_name_that_stands_as_a_value_is_renamed_with_the_key():
     new = {**DOCUMENT, "states": [{**DOCUMENT["states"][0], "load_N": [0.0, 1.5], "figures": ["load_N"]}]}
     del new["states"][0]["force_N"]
