@@ -16,8 +16,8 @@ from pneutouch.evaluation import evaluate
 from pneutouch.evaluation.evaluate import PredictionOptions, elastomers
 from pneutouch.export.threemf import threemf
 from pneutouch.export.threemf_read import Package, read_threemf
+from pneutouch.output.manifest import input_hash as hash_of
 from pneutouch.output.recipe import BuildRecipe, evaluate_recipe, scene_shelves
-from pneutouch.output.recipe import input_hash as hash_of
 from pneutouch.output.recipe_read import read_recipe
 from pneutouch.parts import assemble
 from pneutouch.workflows.build import build

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from pneutouch.evaluation.uncertainty import documents
 from pneutouch.mechanics.viscous.known import AGED, ageing_ratio, unknown
+from pneutouch.rounding import rounded
 
 if TYPE_CHECKING:
     from pneutouch.evaluation.evaluate import Evaluation
@@ -27,7 +28,7 @@ def viscous(evaluation: Evaluation) -> dict[str, Any]:
     if not depth > 0:
         return {"unknown": "a state has no range"}
     found = describe(sensor, material, [state.driving_pressure for state in prediction.states], depth)
-    return _rounded(found.document())  # type: ignore[no-any-return]
+    return rounded(found.document(), _DIGITS)  # type: ignore[no-any-return]
 
 
 def prediction_document(evaluation: Evaluation, samples: int = 0) -> dict[str, Any]:
@@ -49,15 +50,5 @@ def full_document(evaluation: Evaluation, samples: int = 0) -> dict[str, Any]:
     content = {**prediction_document(evaluation, samples), "viscous": viscous(evaluation)}
     if evaluation.asked.aged:
         ratio = ageing_ratio(evaluation.scene.membrane_material)
-        content["aged"] = {"modulus_ratio": _rounded(ratio), "assumes": AGED}
+        content["aged"] = {"modulus_ratio": rounded(ratio, _DIGITS), "assumes": AGED}
     return content
-
-
-def _rounded(value: Any) -> Any:
-    if isinstance(value, float):
-        return float(f"{value:.{_DIGITS}g}")
-    if isinstance(value, dict):
-        return {key: _rounded(item) for key, item in value.items()}
-    if isinstance(value, list):
-        return [_rounded(item) for item in value]
-    return value

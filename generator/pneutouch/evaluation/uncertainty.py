@@ -11,6 +11,7 @@ from pneutouch.evaluation.graded_uncertainty import even_wall, notes_on
 from pneutouch.evaluation.table_s1 import is_near_paper
 from pneutouch.mechanics import Sensor, SensorPrediction, SensorState
 from pneutouch.mechanics.ladder import DISCRETISATION, NUMERICAL
+from pneutouch.rounding import rounded
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 from pneutouch.units import KPA
@@ -104,7 +105,7 @@ def documents(
         for name in lacking:
             del said["figures"][name], said["elasticities"][name]
         more = {"monte_carlo": _sampled(found, row, samples, said["figures"])} if samples else {}
-        content.append(_rounded({**said, "summary": text(found.budget, row), **more}))
+        content.append(rounded({**said, "summary": text(found.budget, row), **more}, _DIGITS, _NOTHING))
     return tuple(content)
 
 
@@ -135,13 +136,3 @@ def _sampled(found: SensorBudget, row: int, samples: int, figures: Document) -> 
                 "low": scale * float(drawn.low[i]), "high": scale * float(drawn.high[i]), "lost": float(drawn.lost[i]),
             }  # fmt: skip
     return {"samples": samples, "figures": intervals}
-
-
-def _rounded(value: Any) -> Any:
-    if isinstance(value, float):
-        return float(f"{value:.{_DIGITS}g}") if abs(value) >= _NOTHING else 0.0
-    if isinstance(value, dict):
-        return {key: _rounded(item) for key, item in value.items()}
-    if isinstance(value, list):
-        return [_rounded(item) for item in value]
-    return value

@@ -5,16 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from pneutouch.arrays import Array
 from pneutouch.mechanics.events import Event
 from pneutouch.mechanics.limits import LimitPoint, Limits
 from pneutouch.mechanics.response import Figures, tangent_stiffness
+from pneutouch.rounding import rounded
 from pneutouch.units import KPA, ML
 
 _DIGITS = 12
 """Significant digits written: rounding of the last bits differs between processors."""
+
+_NOTHING = 1e-12
+"""Forces and pressure rises below this (N, kPa) are rounding."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,20 +156,4 @@ class SensorPrediction:
             "states": [state.document() for state in self.states],
             "assumptions": list(self.assumptions),
         }
-        return {key: _rounded(value) for key, value in content.items()}
-
-
-_NOTHING = 1e-12
-"""Forces and pressure rises below this (N, kPa) are rounding."""
-
-
-def _rounded(value: Any) -> Any:
-    if isinstance(value, float):
-        if abs(value) < _NOTHING:
-            return 0.0
-        return float(np.format_float_positional(value, _DIGITS, unique=False, fractional=False)) + 0.0
-    if isinstance(value, dict):
-        return {key: _rounded(item) for key, item in value.items()}
-    if isinstance(value, list):
-        return [_rounded(item) for item in value]
-    return value
+        return rounded(content, _DIGITS, _NOTHING)  # type: ignore[no-any-return]

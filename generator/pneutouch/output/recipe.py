@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.metadata
 import json
 from dataclasses import dataclass, fields
 from typing import Any
@@ -11,13 +10,9 @@ from pneutouch import __version__
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import Evaluation, PredictionOptions, Resins, evaluate_scene
-from pneutouch.output.files import digest, json_bytes
 
 FORMAT = 1
 """Number of the form that recipes have; a recipe of another form is refused."""
-
-LIBRARIES = ("numpy", "manifold3d", "trimesh", "lib3mf", "cadquery", "matplotlib", "jinja2", "typst")
-"""Libraries whose versions the bytes of a build depend on."""
 
 SETTINGS = ("model", "closure", "clamp", "tolerance")
 """Names of the settings among a recipe's inputs."""
@@ -70,16 +65,6 @@ def evaluate_recipe(recipe: BuildRecipe) -> Evaluation:
         if str(error).startswith(where):
             raise
         raise InputError(f"{where}: {error}") from None
-
-
-def input_hash(inputs: dict[str, Any], version: str) -> str:
-    """First twelve digits of the SHA-256 of the inputs and the version."""
-    return digest(json_bytes({"inputs": inputs, "version": version}))[:12]
-
-
-def versions() -> dict[str, str]:
-    """The versions that the bytes of a build depend on."""
-    return {"pneutouch": __version__, **{name: importlib.metadata.version(name) for name in LIBRARIES}}
 
 
 def scene_shelves() -> dict[str, str]:

@@ -16,7 +16,8 @@ from pneutouch.evaluation.evaluate import CLAMPS, PredictionOptions, Resins
 from pneutouch.export.threemf_read import Package
 from pneutouch.mechanics.contact import CLOSURES
 from pneutouch.mechanics.ladder import MODELS
-from pneutouch.output.recipe import FORMAT, SETTINGS, BuildRecipe, input_hash, scene_shelves, versions
+from pneutouch.output.manifest import input_hash, versions
+from pneutouch.output.recipe import FORMAT, SETTINGS, BuildRecipe, scene_shelves
 from pneutouch.spec.fields import Table
 from pneutouch.spec.read import validate
 

@@ -17,9 +17,10 @@ from pneutouch.export.scene import cut_open, glb, stl, viewer_html
 from pneutouch.export.step import step
 from pneutouch.export.threemf import threemf
 from pneutouch.export.threemf_read import RECIPE
-from pneutouch.output.files import MANIFEST, check_writable, digest, json_bytes, write_folder
-from pneutouch.output.recipe import BuildRecipe, versions
-from pneutouch.output.recipe import input_hash as hash_of
+from pneutouch.output.files import check_writable, json_bytes, write_folder
+from pneutouch.output.manifest import input_hash as hash_of
+from pneutouch.output.manifest import versions, with_manifest
+from pneutouch.output.recipe import BuildRecipe
 from pneutouch.report import Datasheet, datasheet, print_sheet
 from pneutouch.report.picture import picture
 from pneutouch.units import KPA, ML
@@ -63,8 +64,7 @@ def build(evaluation: Evaluation, out: Path, progress: Progress = lambda step: N
     files |= datasheet(sheet, evaluation.sensor, viewer_html(bodies))
     files["print-sheet.md"] = print_sheet(sheet).encode()
     progress("files")
-    files[MANIFEST] = json_bytes(_manifest(evaluation, bodies, files))
-    write_folder(folder, files)
+    write_folder(folder, with_manifest(files, scene.name, inputs(evaluation), **_measured(evaluation, bodies)))
     return folder
 
 
@@ -101,7 +101,7 @@ def inputs(evaluation: Evaluation) -> dict[str, Any]:
 
 def input_hash(evaluation: Evaluation) -> str:
     """First twelve digits of the SHA-256 of the inputs and the version."""
-    return hash_of(inputs(evaluation), __version__)
+    return hash_of(inputs(evaluation))
 
 
 def _metadata(evaluation: Evaluation, bodies: tuple[Body, ...]) -> dict[str, str]:
@@ -132,13 +132,10 @@ def _thumbnail(evaluation: Evaluation) -> bytes:
     )
 
 
-def _manifest(evaluation: Evaluation, bodies: tuple[Body, ...], files: dict[str, bytes]) -> dict[str, Any]:
+def _measured(evaluation: Evaluation, bodies: tuple[Body, ...]) -> dict[str, Any]:
+    """Entries of the manifest on bodies, findings and estimates."""
     assembly = evaluation.assembly
     return {
-        "name": evaluation.scene.name,
-        "inputs": inputs(evaluation),
-        "input_hash": input_hash(evaluation),
-        "versions": versions(),
         "print_frame_offset_mm": assembly.print_offset.tolist(),
         "mesh": {
             body.name: {
@@ -153,5 +150,4 @@ def _manifest(evaluation: Evaluation, bodies: tuple[Body, ...], files: dict[str,
         "findings": [finding.document() for finding in evaluation.findings],
         "estimates": [job.document() for job in evaluation.estimates],
         "glue_mL": assembly.glue_volume / ML,
-        "files": {name: {"sha256": digest(content), "bytes": len(content)} for name, content in sorted(files.items())},
     }

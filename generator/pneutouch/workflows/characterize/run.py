@@ -8,15 +8,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pneutouch import __version__
 from pneutouch.bench.plausible import check_plausible, mixed
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.bench.summary import summarize
 from pneutouch.bench.trace import Trace
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.errors import InputError
-from pneutouch.output.files import MANIFEST, check_writable, digest, json_bytes, write_folder
-from pneutouch.output.recipe import input_hash, versions
+from pneutouch.output.files import MANIFEST, check_writable, json_bytes, write_folder
+from pneutouch.output.manifest import entry, input_hash, manifest
 from pneutouch.report.measured import CampaignReport
 from pneutouch.spec.campaign import AS_DESIGNED
 from pneutouch.spec.read import read_toml, validate
@@ -138,9 +137,7 @@ def sound(
 
 def _hash(loaded: CampaignData, design: Any) -> str:
     files = {run.file: _file_digest(loaded.folder / run.file) for run in loaded.campaign.runs}
-    return input_hash(
-        {"campaign": loaded.campaign.model_dump(mode="json"), "design": design, "files": files}, __version__
-    )
+    return input_hash({"campaign": loaded.campaign.model_dump(mode="json"), "design": design, "files": files})
 
 
 def _file_digest(path: Path) -> str | None:
@@ -168,10 +165,8 @@ def write(outcome: CharacterizationResult, out: Path, evidence: str = "doubtful"
         number = measured.campaign.runs.index(curve.run) + 1
         path = f"evidence/{number:03d}-{Path(curve.run.file).stem}.svg"
         files[path] = evidence_svg(curve, outcome.traces[curve.run.file], measured.campaign.simulated).encode()
-    files[MANIFEST] = json_bytes({
-        "name": outcome.name, "input_hash": measured.input_hash, "versions": versions(),
-        "files": {name: {"sha256": digest(content), "bytes": len(content)} for name, content in sorted(files.items())},
-    })  # fmt: skip
+    listed = {name: entry(content) for name, content in sorted(files.items())}
+    files[MANIFEST] = manifest(listed, outcome.name, input_hash=measured.input_hash)
     write_folder(folder, files)
     return folder
 

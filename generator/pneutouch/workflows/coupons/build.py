@@ -13,8 +13,8 @@ from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
 from pneutouch.export.scene import stl
 from pneutouch.export.threemf import threemf
-from pneutouch.output.files import MANIFEST, check_writable, digest, json_bytes, write_folder
-from pneutouch.output.recipe import input_hash, versions
+from pneutouch.output.files import MANIFEST, check_writable, digest, write_folder
+from pneutouch.output.manifest import input_hash, with_manifest
 from pneutouch.workflows.coupons.lay import CouponPiece, lay
 from pneutouch.workflows.coupons.order import CouponOptions, CouponOrder, order
 from pneutouch.workflows.coupons.sheet import sheet, stl_name
@@ -41,9 +41,9 @@ def build_coupons(asked: CouponOptions, out: Path, library: Library | None = Non
         files |= {f"stl/{stl_name(piece, found)}": stl(piece.body) for piece in pieces}
     files["measure.md"] = sheet(found, trays).encode()
     files[RESULTS] = results_template(found).encode()
-    files[MANIFEST] = json_bytes(_manifest(found, trays, files))
-    write_folder(folder, files)
-    return folder, {"name": found.name, "coupons": _coupons(trays)}
+    coupons = _coupons(trays)
+    write_folder(folder, with_manifest(files, found.name, inputs(found), coupons=coupons))
+    return folder, {"name": found.name, "coupons": coupons}
 
 
 def inputs(found: CouponOrder) -> dict[str, Any]:
@@ -78,7 +78,7 @@ def _metadata(found: CouponOrder, name: str, bodies: tuple[Body, ...]) -> dict[s
         "Title": f"Coupons for {name}",
         "Application": f"pneutouch {__version__}",
         "Description": f"{len(bodies)} coupons to print and measure; see measure.md",
-        "input-hash": input_hash(inputs(found), __version__),
+        "input-hash": input_hash(inputs(found)),
     }
 
 
@@ -92,16 +92,3 @@ def _coupons(trays: Mapping[str, tuple[CouponPiece, ...]]) -> list[dict[str, Any
         }
         for name, pieces in trays.items() for piece in pieces
     ]  # fmt: skip
-
-
-def _manifest(
-    found: CouponOrder, trays: Mapping[str, tuple[CouponPiece, ...]], files: dict[str, bytes]
-) -> dict[str, Any]:
-    return {
-        "name": found.name,
-        "inputs": inputs(found),
-        "input_hash": input_hash(inputs(found), __version__),
-        "versions": versions(),
-        "coupons": _coupons(trays),
-        "files": {name: {"sha256": digest(content), "bytes": len(content)} for name, content in sorted(files.items())},
-    }

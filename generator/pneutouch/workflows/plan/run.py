@@ -7,15 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pneutouch import __version__
 from pneutouch.bench.protocol import CLEARANCE, REPETITIONS, RunProtocol, protocol
 from pneutouch.bench.simulate.curve import PressCurves
 from pneutouch.bench.simulate.encode import LEAK_SECONDS
 from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
 from pneutouch.evaluation.resins import SimulatedResin, pressed, resins_of
-from pneutouch.output.files import MANIFEST, check_writable, digest, json_bytes, write_folder
-from pneutouch.output.recipe import input_hash, versions
+from pneutouch.output.files import check_writable, json_bytes, write_folder
+from pneutouch.output.manifest import with_manifest
 from pneutouch.report.plan_sheet import plan_sheet
 from pneutouch.spec.campaign import Campaign, CampaignRun, Rig, RunKind
 from pneutouch.spec.read import read_toml, validate
@@ -112,11 +111,7 @@ def write_plan(plan: CampaignPlan, out: Path) -> Path:
         "campaign.toml": campaign_toml(plan.campaign, note),
     }  # fmt: skip
     inputs = {key: plan.document[key] for key in ("design", "rig", "sensors", "tests")}
-    manifest = {
-        "name": plan.name, "inputs": inputs, "input_hash": input_hash(inputs, __version__), "versions": versions(),
-        "files": {name: {"sha256": digest(data), "bytes": len(data)} for name, data in sorted(files.items())},
-    }  # fmt: skip
-    write_folder(folder, {**files, MANIFEST: json_bytes(manifest)})
+    write_folder(folder, with_manifest(files, plan.name, inputs))
     return folder
 
 

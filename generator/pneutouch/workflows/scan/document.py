@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from pneutouch.report.scalogram import ScannedState, scalogram_chart
+from pneutouch.rounding import rounded
 from pneutouch.texture.detect import Detection
 from pneutouch.texture.scalogram import scalogram
 from pneutouch.texture.scan import NOISE, RATE, STEP, pressure_amplitude
@@ -42,7 +43,7 @@ def document(run: ScanRun) -> dict[str, Any]:
         "states": [_state(run, number, seen) for number, seen in enumerate(run.seen)],
         "assumptions": list(ASSUMPTIONS),
     }  # fmt: skip
-    return {key: _rounded(value) for key, value in found.items()}
+    return rounded(found, _DIGITS)  # type: ignore[no-any-return]
 
 
 def inputs(run: ScanRun) -> dict[str, Any]:
@@ -51,8 +52,8 @@ def inputs(run: ScanRun) -> dict[str, Any]:
     asked = run.asked
     return {
         "specimen": specimen_inputs(run.specimen), "design": design.design.model_dump(mode="json"),
-        "membrane": design.membrane_material.model_dump(mode="json"), "dead_volume_mm3": _rounded(run.sensor.dead_volume),
-        "pressures_kPa": [_rounded(p / KPA) for p in asked.pressures], "preload_N": asked.preload, "control": asked.control,
+        "membrane": design.membrane_material.model_dump(mode="json"), "dead_volume_mm3": rounded(run.sensor.dead_volume, _DIGITS),
+        "pressures_kPa": [rounded(p / KPA, _DIGITS) for p in asked.pressures], "preload_N": asked.preload, "control": asked.control,
         "speed_mm_per_s": run.way.speed, "noise_kPa": asked.noise / KPA, "seed": asked.seed,
         "data": [path.name for path in asked.data],
     }  # fmt: skip
@@ -145,12 +146,3 @@ def _notes(bars: Sequence[BarRow], radius: float) -> list[str]:
         f"pitches {', '.join(f'{pitch:g}' for pitch in near)} mm are below twice the patch ({4 * radius:.2f} mm), which averages "
         f"over them; of bars at the surface it feels nothing at a pitch of {blind:.2f} mm"
     ]
-
-
-def _rounded(value: Any) -> Any:
-    """Numbers to `_DIGITS` digits: rounding of the last bits differs between processors."""
-    if isinstance(value, float):
-        return float(f"{value:.{_DIGITS}g}")
-    if isinstance(value, dict):
-        return {key: _rounded(item) for key, item in value.items()}
-    return [_rounded(item) for item in value] if isinstance(value, list) else value

@@ -8,9 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from pneutouch import __version__
-from pneutouch.output.files import MANIFEST, check_writable, digest, json_bytes, write_folder
-from pneutouch.output.recipe import input_hash, versions
+from pneutouch.output.files import check_writable, json_bytes, write_folder
+from pneutouch.output.manifest import with_manifest
 from pneutouch.texture.signal import decimated
 from pneutouch.texture.substrate import BarRow
 from pneutouch.units import KPA
@@ -25,12 +24,7 @@ def write_scan(run: ScanRun, out: Path) -> Path:
     files = {"scan.json": json_bytes(document(run)), "scan.svg": spectra(run).encode()}
     for number, seen in enumerate(run.seen):
         files[f"signal-{number + 1}.csv"] = signal_csv(seen, run.bars, run.kept)
-    content = inputs(run)
-    manifest = {
-        "name": run.name, "inputs": content, "input_hash": input_hash(content, __version__), "versions": versions(),
-        "files": {name: {"sha256": digest(data), "bytes": len(data)} for name, data in sorted(files.items())},
-    }  # fmt: skip
-    write_folder(folder, {**files, MANIFEST: json_bytes(manifest)})
+    write_folder(folder, with_manifest(files, run.name, inputs(run)))
     return folder
 
 

@@ -10,7 +10,6 @@ from typing import Any, get_args
 
 import numpy as np
 
-from pneutouch import __version__
 from pneutouch.arrays import Array
 from pneutouch.bench.simulate import (
     Population,
@@ -31,8 +30,8 @@ from pneutouch.catalogue import Library
 from pneutouch.errors import InputError, nearest
 from pneutouch.evaluation.resins import SimulatedResin, pressed, resins_of
 from pneutouch.mechanics import Sensor
-from pneutouch.output.files import MANIFEST, digest, json_bytes, replacing
-from pneutouch.output.recipe import input_hash, versions
+from pneutouch.output.files import MANIFEST, json_bytes, replacing
+from pneutouch.output.manifest import entry, input_hash, manifest
 from pneutouch.spec.campaign import Campaign, CampaignRun, Rig, RunKind
 from pneutouch.spec.read import validate
 from pneutouch.spec.toml_text import toml_text
@@ -85,10 +84,8 @@ def simulate(
         writer = _Writer(fresh)
         _write_all((design, list(assignments or [])), subjects, asked, writer, progress)
         inputs = _inputs(subjects, asked)
-        writer.put(MANIFEST, json_bytes({
-            "name": name, "inputs": inputs, "input_hash": input_hash(inputs, __version__), "versions": versions(),
-            "files": dict(sorted(writer.files.items())),
-        }))  # fmt: skip
+        listed = dict(sorted(writer.files.items()))
+        writer.put(MANIFEST, manifest(listed, name, inputs=inputs, input_hash=input_hash(inputs)))
     return folder
 
 
@@ -103,7 +100,7 @@ class _Writer:
         path = self.folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(content)
-        self.files[name] = {"sha256": digest(content), "bytes": len(content)}
+        self.files[name] = entry(content)
 
 
 def _write_all(

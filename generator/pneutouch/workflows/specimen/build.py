@@ -13,8 +13,8 @@ from pneutouch.catalogue import Library
 from pneutouch.export.scene import glb, stl
 from pneutouch.export.threemf import threemf
 from pneutouch.meridian import Line
-from pneutouch.output.files import MANIFEST, check_writable, digest, json_bytes, write_folder
-from pneutouch.output.recipe import input_hash, versions
+from pneutouch.output.files import check_writable, json_bytes, write_folder
+from pneutouch.output.manifest import input_hash, versions, with_manifest
 from pneutouch.parts.specimen.plate import holes, outline
 from pneutouch.printability import Finding
 from pneutouch.workflows.specimen.draw import SpecimenBodies, draw
@@ -49,8 +49,7 @@ def build_specimen(
     refuse(drawn, found)
     files = _files(drawn, found, progress)
     progress("files")
-    files[MANIFEST] = json_bytes(_manifest(drawn, found, files))
-    write_folder(folder, files)
+    write_folder(folder, with_manifest(files, scene.name, inputs(scene), **_measured(drawn, found)))
     return folder, found
 
 
@@ -108,7 +107,7 @@ def _polygon(corners: list[tuple[float, float]]) -> tuple[Line, ...]:
 
 def _files(drawn: SpecimenBodies, found: list[Finding], progress: Progress) -> dict[str, bytes]:
     scene, bodies = drawn.scene, drawn.printed
-    whole = input_hash(inputs(scene), __version__)
+    whole = input_hash(inputs(scene))
     progress("3MF")
     files = {f"{scene.name}.3mf": threemf(scene.name, bodies, _metadata(drawn, whole))}
     progress("STL")
@@ -140,14 +139,10 @@ def _metadata(drawn: SpecimenBodies, whole: str) -> dict[str, str]:
     }
 
 
-def _manifest(drawn: SpecimenBodies, found: list[Finding], files: dict[str, bytes]) -> dict[str, Any]:
+def _measured(drawn: SpecimenBodies, found: list[Finding]) -> dict[str, Any]:
+    """Entries of the manifest on the bodies."""
     scene = drawn.scene
-    content = inputs(scene)
     return {
-        "name": scene.name,
-        "inputs": content,
-        "input_hash": input_hash(content, __version__),
-        "versions": versions(),
         "print_frame_offset_mm": drawn.offset.tolist(),
         "mesh": {
             body.name: {
@@ -156,5 +151,4 @@ def _manifest(drawn: SpecimenBodies, found: list[Finding], files: dict[str, byte
             for body in drawn.bodies
         },
         "findings": [finding.document() for finding in found],
-        "files": {name: {"sha256": digest(content), "bytes": len(content)} for name, content in sorted(files.items())},
     }  # fmt: skip

@@ -10,8 +10,9 @@ from pneutouch import __version__
 from pneutouch.body import Body
 from pneutouch.export.scene import stl
 from pneutouch.export.threemf_tray import TRAY_RECIPE, TrayItem, threemf_tray
-from pneutouch.output.files import MANIFEST, check_writable, digest, json_bytes, write_folder
-from pneutouch.output.recipe import scene_shelves, versions
+from pneutouch.output.files import check_writable, digest, json_bytes, write_folder
+from pneutouch.output.manifest import with_manifest
+from pneutouch.output.recipe import scene_shelves
 from pneutouch.workflows.tray.labels import labels_csv, labels_md, rows
 from pneutouch.workflows.tray.lay import Progress, TrayJob, TrayLayout, TrayPart, counted, fill
 from pneutouch.workflows.tray.rules import TrayFinding, findings, refuse
@@ -41,8 +42,10 @@ def write_tray(laid: TrayLayout, folder: Path, progress: Progress = lambda step:
         files["tray.svg" if len(laid.jobs) == 1 else f"tray-{laid.jobs.index(job) + 1}.svg"] = tray_svg(laid, job)
     files["labels.csv"], files["labels.md"] = labels_csv(laid), labels_md(laid, found)
     progress("files")
-    files[MANIFEST] = json_bytes(_manifest(laid, files, found))
-    write_folder(folder, files)
+    content = inputs(laid)
+    # A tray's hash is of its inputs alone, without the version.
+    short = digest(json_bytes(content))[:12]
+    write_folder(folder, with_manifest(files, laid.order.name, content, input_hash=short, **_jobs(laid, found)))
     return folder
 
 
@@ -114,12 +117,10 @@ def _said(laid: TrayLayout, job: TrayJob) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _manifest(laid: TrayLayout, files: dict[str, bytes], found: tuple[TrayFinding, ...]) -> dict[str, Any]:
-    content = inputs(laid)
+def _jobs(laid: TrayLayout, found: tuple[TrayFinding, ...]) -> dict[str, Any]:
+    """Entries of the manifest on jobs and findings."""
     return {
-        "name": laid.order.name, "inputs": content, "input_hash": digest(json_bytes(content))[:12],
-        "versions": versions(), "jobs": [_said(laid, job) for job in laid.jobs],
+        "jobs": [_said(laid, job) for job in laid.jobs],
         "left_out": list(laid.expanded.left_out), "resin_changes": laid.resin_note,
         "findings": [{"labels": list(one.labels), **one.finding.document()} for one in found],
-        "files": {name: {"sha256": digest(content), "bytes": len(content)} for name, content in sorted(files.items())},
     }  # fmt: skip

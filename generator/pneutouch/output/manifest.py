@@ -1,0 +1,42 @@
+"""The manifest of an output folder: what it was made from, by which versions, and the digest of every file in it."""
+
+from __future__ import annotations
+
+import importlib.metadata
+from collections.abc import Mapping
+from typing import Any
+
+from pneutouch import __version__
+from pneutouch.output.files import MANIFEST, digest, json_bytes
+
+LIBRARIES = ("numpy", "manifold3d", "trimesh", "lib3mf", "cadquery", "matplotlib", "jinja2", "typst")
+"""Libraries whose versions the bytes of a build depend on."""
+
+_DIGITS = 12
+"""Digits of an input hash."""
+
+
+def input_hash(inputs: Mapping[str, Any], version: str = __version__) -> str:
+    """First twelve digits of the SHA-256 of the inputs and the version."""
+    return digest(json_bytes({"inputs": inputs, "version": version}))[:_DIGITS]
+
+
+def versions() -> dict[str, str]:
+    """The versions that the bytes of a build depend on."""
+    return {"pneutouch": __version__, **{name: importlib.metadata.version(name) for name in LIBRARIES}}
+
+
+def entry(content: bytes) -> dict[str, Any]:
+    """What a manifest states of a file."""
+    return {"sha256": digest(content), "bytes": len(content)}
+
+
+def with_manifest(files: Mapping[str, bytes], name: str, inputs: Mapping[str, Any], **more: Any) -> dict[str, bytes]:
+    """The files of a folder and their manifest. ``more`` are further entries; an ``input_hash`` among them stands as it is."""
+    listed = {path: entry(content) for path, content in sorted(files.items())}
+    return {**files, MANIFEST: manifest(listed, name, inputs=inputs, **{"input_hash": input_hash(inputs), **more})}
+
+
+def manifest(listed: Mapping[str, Mapping[str, Any]], name: str, **more: Any) -> bytes:
+    """The manifest of files whose entries (see `entry`) are given by path."""
+    return json_bytes({"name": name, "versions": versions(), "files": listed, **more})
