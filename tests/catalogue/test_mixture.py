@@ -29,7 +29,7 @@ POINTS = {point.material: point.fraction for point in LAW.curve.points}
 
 def mixed(fraction, at=None, library=LIBRARY):
     content = {"from": "TangoPlus", "to": "VeroClear", "fraction": fraction, **({} if at is None else {"at": at})}
-    return mixed_material(Grade.model_validate(content), library, "here")
+    return mixed_material(Grade.model_validate(content), library, file="here")
 
 
 knots = st.lists(st.floats(0.01, 0.99), max_size=6, unique_by=lambda x: round(x, 2)).map(

@@ -30,7 +30,7 @@ def logs(sensor: Sensor, pressure: float) -> float:
 def graded(sensor: Sensor, fractions: list[float], library) -> Sensor:
     """The sensor with its wall graded another way."""
     grade = Grade.model_validate({"from": "TangoPlus", "to": "VeroClear", "fraction": fractions})
-    other = material_sensor(mixed_material(grade, library, "here"))
+    other = material_sensor(mixed_material(grade, library, file="here"))
     return replace(sensor, shear_modulus=other.shear_modulus, grade=other.grade)
 
 

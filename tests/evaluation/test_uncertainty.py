@@ -77,7 +77,7 @@ def test_outside_the_atlas_every_state_says_why(evaluated):
     assert "flange" in flange.uncertainty[0]["unknown"]
     membrane = evaluated("paper-dome", model="membrane").uncertainty
     assert len(membrane) == 4
-    assert "--model atlas" in membrane[0]["unknown"]
+    assert "model atlas" in membrane[0]["unknown"]
 
 
 def test_samples_of_the_same_sources_give_nearly_the_same_interval(evaluated):

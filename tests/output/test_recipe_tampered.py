@@ -141,7 +141,7 @@ def test_what_cannot_be_evaluated_names_the_3mf(cheap, tmp_path):
         recipe["inputs"] |= {"model": "auto", "closure": "variational", "tolerance": 1e-4}
 
     strict = with_recipe(cheap, tmp_path / "b.3mf", tight)
-    with pytest.raises(InputError, match=r"b\.3mf: --tolerance 0\.01%"):
+    with pytest.raises(InputError, match=r"b\.3mf: tolerance = '0\.01%'"):
         evaluate_recipe(read_recipe(read_threemf(strict)))
 
 

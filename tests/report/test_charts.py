@@ -104,7 +104,7 @@ def test_charts_of_a_selection_are_written_whole_and_repeat(selection, library, 
     for name in ("trade-off.svg", "tuning.svg"):
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
     (tmp_path / "file").write_text("x")
-    with pytest.raises(InputError, match="--charts"):
+    with pytest.raises(InputError, match="charts: "):
         write_charts(selection, tmp_path / "file", library=library)
 
 

@@ -115,7 +115,7 @@ def test_without_the_solid_the_sheet_says_where_shapes_come_from(evaluated, tmp_
     from pneutouch.workflows.build import build
 
     page = (build(evaluated("fingertip-dome", model="atlas"), tmp_path) / "datasheet.html").read_text(encoding="utf-8")
-    assert "build with --model solid" in page
+    assert "build with model solid" in page
     assert "greatest principal stretch; thin" not in page
     assert page.count("<svg") == 8
 

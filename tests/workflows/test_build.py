@@ -150,7 +150,7 @@ def test_folders_that_are_not_ours_are_not_touched(tmp_path):
 
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="needs a folder that nobody can write to")
 def test_a_folder_that_cannot_be_written_is_an_input_error():
-    with pytest.raises(InputError, match="--out"):
+    with pytest.raises(InputError, match="out: "):
         write_folder(Path("/proc/self/outputs"), {"manifest.json": b"{}"})
 
 

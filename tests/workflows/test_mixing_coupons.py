@@ -90,7 +90,7 @@ def enter(tmp_path):
 
 def mixed(library, fraction):
     grade = Grade.model_validate({"from": "TangoPlus", "to": "VeroClear", "fraction": fraction})
-    return mixed_material(grade, library, "here").shear_modulus_MPa
+    return mixed_material(grade, library, file="here").shear_modulus_MPa
 
 
 def test_the_labs_own_curve_comes_before_the_shipped_one(enter, tmp_path):
@@ -187,14 +187,14 @@ def test_bad_pairs_are_said(enter, pair, said):
 @pytest.mark.parametrize(
     ("asked", "said"),
     [
-        (CouponOptions(mixing=("TangoPlus",)), "--mixing TangoPlus: write two resins"),
+        (CouponOptions(mixing=("TangoPlus",)), "mixing = 'TangoPlus': write two resins"),
         (CouponOptions(mixing=("TangoPlus+VeroBlue",)), "no such name among the materials"),
         (
             CouponOptions(mixing=("TangoPlus+ABS",)),
-            "--mixing: no mixing curve of ABS in TangoPlus; known: TangoPlus+VeroClear",
+            "mixing: no mixing curve of ABS in TangoPlus; known: TangoPlus+VeroClear",
         ),
-        (CouponOptions(mixing=(PAIR,), profile="abs-filament"), f"--mixing {PAIR}: the"),
-        (CouponOptions(mixing=(PAIR,), only=("gauge",)), "--only gauge"),
+        (CouponOptions(mixing=(PAIR,), profile="abs-filament"), f"mixing = '{PAIR}': the"),
+        (CouponOptions(mixing=(PAIR,), only=("gauge",)), "only = 'gauge'"),
     ],
 )
 def test_bad_orders_are_said(asked, said):

@@ -118,7 +118,7 @@ def test_an_unreachable_target_exits_1_with_the_nearest_and_why(monkeypatch):
     ("flags", "said"),
     [
         (["--graded", "--sensitivity", "1.9"], "given.graded needs target.same_sensitivity_at_kPa"),
-        (["--sensitivity", "1.9", "--same-at", "0,22"], "--graded"),
+        (["--sensitivity", "1.9", "--same-at", "0,22"], "given.graded = true"),
         (["--graded", "--same-at", "0,22", "--force-range", "9"], "needs sensitivity_kPa_per_N"),
         (["--graded", "--sensitivity", "1.9", "--same-at", "22,0"], "two rising driving pressures"),
         (["--graded", "--sensitivity", "1.9", "--same-at", "some"], "--same-at some"),

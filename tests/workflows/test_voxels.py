@@ -153,7 +153,7 @@ def test_too_large_too_low_and_too_many_colours_are_found(library, tmp_path):
 
 
 def test_an_unknown_mode_is_named(library):
-    with pytest.raises(InputError, match=r"--voxel-mode High Mixx: unknown\. Did you mean High Mix"):
+    with pytest.raises(InputError, match=r"voxel_mode = 'High Mixx': unknown\. Did you mean High Mix"):
         plan_voxels(small_assembly(), mode="High Mixx", library=library)
 
 

@@ -97,12 +97,12 @@ class Library:
                 found.setdefault(path.stem, path)
         return dict(sorted(found.items()))
 
-    def load(self, kind: str, name: str, *, asked_by: str = "") -> Any:
-        """Load one thing by name; ``asked_by`` (file and key) heads the message where it is unknown."""
+    def load(self, kind: str, name: str, *, file: str | None = None, key: str | None = None) -> Any:
+        """Load one thing by name; ``file`` and ``key`` say where the name was written, for the error."""
         shelf = self.shelf(kind)
         if name not in shelf:
-            head = f"{asked_by} = {name!r}: " if asked_by else f"{name}: "
-            raise InputError(f"{head}no such name among the {kind}.{nearest(name, shelf)}")
+            problem = f"no such name among the {kind}.{nearest(name, shelf)}"
+            raise InputError(problem if key else f"{name}: {problem}", file=file, key=key, value=name if key else None)
         path = shelf[name]
         return KINDS[kind].validate(read_toml(path), str(path))
 

@@ -64,17 +64,20 @@ class ResolvedMixingCurve:
         return np.interp(fraction, self.fraction[known], self.elongation[known])
 
 
-def mixing(soft: str, stiff: str, library: Library, *, asked_by: str = "") -> ResolvedMixingCurve:
+def mixing(
+    soft: str, stiff: str, library: Library, *, file: str | None = None, key: str | None = None
+) -> ResolvedMixingCurve:
     """The curve of two base resins.
 
     Raises InputError where there is none, where it is another pair's, and where its modulus falls with the fraction.
     """
     shelf = library.shelf("mixing")
     if f"{soft}+{stiff}" not in shelf:
-        head, turned = f"{asked_by}: " if asked_by else "", f"{stiff}+{soft}" in shelf
+        turned = f"{stiff}+{soft}" in shelf
         hint = f"the soft resin goes first: {stiff}" if turned else f"known: {', '.join(shelf) or 'none'}"
-        raise InputError(f"{head}no mixing curve of {stiff} in {soft}; {hint} (printprofiles/mixing)")
-    curve: MixingCurve = library.load("mixing", f"{soft}+{stiff}", asked_by=asked_by)
+        remedy = f"{hint} (printprofiles/mixing)"
+        raise InputError(f"no mixing curve of {stiff} in {soft}", file=file, key=key, remedy=remedy)
+    curve: MixingCurve = library.load("mixing", f"{soft}+{stiff}", file=file, key=key)
     where = str(shelf[f"{soft}+{stiff}"])
     if (curve.soft, curve.stiff) != (soft, stiff):
         raise InputError(
@@ -97,7 +100,7 @@ def _resolved(point: MixingPoint, curve: MixingCurve, library: Library, where: s
         assert point.shear_modulus_MPa is not None
         spread, torn = point.shear_modulus_spread_MPa, point.elongation_at_break_percent
         return point.shear_modulus_MPa, np.nan if spread is None else spread, np.nan if torn is None else torn
-    material: Material = library.load("materials", point.material, asked_by=f"{where}: points.material")
+    material: Material = library.load("materials", point.material, file=where, key="points.material")
     foreign = [resin for resin in material.base_resins if resin not in (curve.soft, curve.stiff)]
     if foreign:
         raise InputError(
@@ -115,23 +118,21 @@ def _resolved(point: MixingPoint, curve: MixingCurve, library: Library, where: s
     )
 
 
-def mixed_material(grade: Grade, library: Library, where: str) -> Material:
+def mixed_material(grade: Grade, library: Library, *, file: str | None, key: str = "membrane.material") -> Material:
     """The material of a grade; of one that varies the mean over the dome's wall, with its course ``along`` the arc.
 
     Raises InputError for resins without a curve and for fractions beyond its last point.
     """
-    key = f"{where}: membrane.material"
     # The names first: of an unknown resin there is no curve either, and that would be said of the pair.
-    soft: Material = library.load("materials", grade.from_, asked_by=f"{key}.from")
-    stiff: Material = library.load("materials", grade.to, asked_by=f"{key}.to")
-    law = mixing(grade.from_, grade.to, library, asked_by=key)
+    soft: Material = library.load("materials", grade.from_, file=file, key=f"{key}.from")
+    stiff: Material = library.load("materials", grade.to, file=file, key=f"{key}.to")
+    law = mixing(grade.from_, grade.to, library, file=file, key=key)
     top = float(law.fraction[-1])
     for value in grade.fractions:
         if value > top + _SLACK:
-            raise InputError(
-                f"{key}: fraction = {value:g}: no modulus is known beyond {top:g} of {grade.to} in {grade.from_} "
-                f"(printprofiles/mixing); it must be at most that"
-            )
+            problem = f"no modulus is known beyond {top:g} of {grade.to} in {grade.from_} (printprofiles/mixing)"
+            label, remedy = f"{key}: fraction", "it must be at most that"
+            raise InputError(problem, file=file, key=label, value=value, remedy=remedy)
     arc = np.linspace(0.0, 1.0, _STATIONS)
     fraction = ArcProfile(grade.knots, grade.fractions)(arc)
     # The dome's wall has its area even over the height: the weight of an arc position is the cosine of its latitude.

@@ -89,7 +89,7 @@ def default_scene(assignments: list[str] | None = None, library: Library | None 
 def _resolved(name: str, where: str, design: DesignFile, shelves: Library) -> ResolvedDesign:
     def find(kind: str, table: str, key: str) -> Any:
         chosen = getattr(getattr(design, table), key)
-        return shelves.load(kind, chosen, asked_by=f"{where}: {table}.{key}")
+        return shelves.load(kind, chosen, file=where, key=f"{table}.{key}")
 
     scene = ResolvedDesign(
         name=name, where=where, design=design,
@@ -110,8 +110,8 @@ def _membrane_material(design: DesignFile, where: str, shelves: Library) -> Mate
     """The resin that the design names, or the mix that it describes."""
     chosen = design.membrane.material
     if isinstance(chosen, Grade):
-        return mixed_material(chosen, shelves, where)
-    found: Material = shelves.load("materials", chosen, asked_by=f"{where}: membrane.material")
+        return mixed_material(chosen, shelves, file=where)
+    found: Material = shelves.load("materials", chosen, file=where, key="membrane.material")
     return found
 
 
@@ -126,16 +126,16 @@ def check_scene(scene: ResolvedDesign) -> None:
 
 def _tube(design: DesignFile, where: str, shelves: Library) -> Tube:
     """The tube that the design names, else the usual one of its port. Raises InputError where it does not fit."""
-    port = shelves.load("ports", design.connector.port, asked_by=f"{where}: connector.port")
+    port = shelves.load("ports", design.connector.port, file=where, key="connector.port")
     name = design.pneumatics.tube
     if name is not None:
-        shelves.load("tubes", name, asked_by=f"{where}: pneumatics.tube")
+        shelves.load("tubes", name, file=where, key="pneumatics.tube")
         if name not in port.tubes:
             raise InputError(
                 f"{where}: pneumatics.tube = {name!r}: the port {design.connector.port} takes {', '.join(port.tubes)}; "
                 "give one of these, or another connector.port"
             )
-    found: Tube = shelves.load("tubes", name or port.tubes[0], asked_by=f"{where}: tubes of connector.port")
+    found: Tube = shelves.load("tubes", name or port.tubes[0], file=where, key="tubes of connector.port")
     return found
 
 

@@ -6,15 +6,42 @@ import os
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
 from pneutouch import __version__
 from pneutouch.errors import PneutouchError
 
+
+class Commands(TyperGroup):
+    """The commands. An error of the library ends one with a message in its own words, and the error's exit code."""
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the command that was asked for."""
+        try:
+            return super().invoke(ctx)
+        except PneutouchError as error:
+            command = self.get_command(ctx, ctx.invoked_subcommand or "")
+            typer.echo(f"error: {error.message(partial(option, command))}", err=True)
+            raise typer.Exit(error.exit_code) from None
+
+
+def option(command: Any, parameter: str) -> str | None:
+    """What ``command`` calls a parameter of the library, such as --noise for noise_kPa; None where it has none."""
+    known = {str(found.name).strip("_"): found for found in (command.params if command else ())}
+    names = sorted((name for name in known if f"_{name}_" in f"_{parameter}_"), key=len)
+    if not names:
+        return None
+    found = known[names[-1]]
+    return str(found.metavar or found.name).upper() if found.param_type_name == "argument" else max(found.opts, key=len)
+
+
 app = typer.Typer(
+    cls=Commands,
     add_completion=False, no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False,
     help="Pneumatic touch sensors: from a design file to print files, a prediction and a datasheet.",
 )  # fmt: skip
@@ -44,16 +71,13 @@ OutOption = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder th
 
 @contextmanager
 def reporting() -> Iterator[None]:
-    """Turn errors into one message on stderr and the exit code of design section 4."""
+    """Turn a fault of ours into one message on stderr and exit code 3; errors of the library go on to `Commands`."""
     try:
         yield
-    except PneutouchError as error:
-        typer.echo(f"error: {error}", err=True)
-        raise typer.Exit(error.exit_code) from None
     except BrokenPipeError:
         sys.stderr.close()
         raise typer.Exit(0) from None
-    except typer.Exit:
+    except (typer.Exit, PneutouchError):
         raise
     except Exception as error:
         if isinstance(error.__cause__ or error.__context__, KeyboardInterrupt):

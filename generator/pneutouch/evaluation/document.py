@@ -32,7 +32,7 @@ def viscous(evaluation: Evaluation) -> dict[str, Any]:
 
 
 def prediction_document(evaluation: Evaluation, samples: int = 0) -> dict[str, Any]:
-    """The prediction as ``predict --json`` prints it, every state with its ``uncertainty``."""
+    """The prediction as ``predict`` prints it, every state with its ``uncertainty``."""
     content = evaluation.prediction.document()
     found = evaluation.uncertainty
     if samples:

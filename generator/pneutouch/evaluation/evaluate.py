@@ -106,7 +106,7 @@ def evaluate(
     ``aged`` shifts the resin's modulus by its hardness after a year (docs/ageing.md).
     """
     if clamp not in CLAMPS:
-        raise InputError(f"--clamp {clamp}: unknown.{nearest(clamp, CLAMPS)}")
+        raise InputError(f"unknown.{nearest(clamp, CLAMPS)}", key="clamp", value=clamp)
     shelves = library or Library.default()
     scene = load_scene(name, assignments, shelves)
     return evaluate_scene(scene, lambda: elastomers(shelves), PredictionOptions(model, closure, clamp, tolerance, aged))

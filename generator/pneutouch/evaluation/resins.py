@@ -48,9 +48,9 @@ def resins_of(
     found = []
     for name in names:
         if name not in known and name != AS_DESIGNED:
-            raise InputError(f"--resins {name}: no such elastomer.{nearest(name, known)}")
+            raise InputError(f"no such elastomer.{nearest(name, known)}", key="resins", value=name)
         if names.count(name) > 1:
-            raise InputError(f"--resins {name}: named twice; must be there once")
+            raise InputError("named twice", key="resins", value=name, remedy="must be there once")
         change = [] if name == AS_DESIGNED else [f"membrane.material={name}"]
         scene = load_scene(design, [*(assignments or []), *change], shelves)
         material = scene.membrane_material

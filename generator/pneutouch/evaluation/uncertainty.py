@@ -32,7 +32,7 @@ _NOTHING = 1e-9
 
 _TREND = (
     f"the membrane's sensitivity follows the trend only, up to {1 + NUMERICAL['membrane']:.0f} times off the solid's; "
-    "take --model atlas, solid or auto"
+    "take model atlas, solid or auto"
 )
 
 

@@ -48,10 +48,8 @@ def climb(sensor: Sensor, tolerance: float) -> ModelSequence:
     """
     least = min(NUMERICAL.values())
     if not tolerance >= least:
-        raise InputError(
-            f"--tolerance {100 * tolerance:g}%: no rung can state so small an error; the best is the solid's "
-            f"{100 * least:g}% in sensitivity"
-        )
+        problem = f"no rung can state so small an error; the best is the solid's {100 * least:g}% in sensitivity"
+        raise InputError(problem, key="tolerance", value=f"{100 * tolerance:g}%")
     passed, rungs = [], []
     for rung in RUNGS:
         error = NUMERICAL[rung]
@@ -84,5 +82,5 @@ def parse_tolerance(text: str) -> float:
     except ValueError:
         value = float("nan")
     if not 0.0 < value < 100.0:
-        raise InputError(f"--tolerance {text}: it must be a positive share, such as 2% or 0.02")
+        raise InputError("it must be a positive share, such as 2% or 0.02", key="tolerance", value=text)
     return value

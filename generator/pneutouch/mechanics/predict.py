@@ -53,6 +53,9 @@ _COMMON_ASSUMPTIONS = (
 )
 
 
+_OTHER = "take `model` auto or solid"
+
+
 def _merged(one: dict[str, Any], other: dict[str, Any]) -> dict[str, Any]:
     return {**one, **other, "summary": [*one.get("summary", []), *other.get("summary", [])]}
 
@@ -70,9 +73,9 @@ def predict(
     ComputationError where no equilibrium is found.
     """
     if model not in MODELS:
-        raise InputError(f"--model {model}: unknown model.{nearest(model, MODELS)}")
+        raise InputError(f"unknown model.{nearest(model, MODELS)}", key="model", value=model)
     if closure not in CLOSURES:
-        raise InputError(f"--closure {closure}: unknown closure.{nearest(closure, CLOSURES)}")
+        raise InputError(f"unknown closure.{nearest(closure, CLOSURES)}", key="closure", value=closure)
     pressures = np.array(driving_pressures, float)
     rung, found, why = _found(sensor, pressures, model, closure, tolerance)
     errors, assumptions = _stated(rung, sensor, pressures)
@@ -96,7 +99,7 @@ def _found(
     if model != "auto":
         found, lacking = _asked(model, sensor, pressures, closure)
         if lacking is not None and lacking.fatal:
-            raise InputError(f"--model {model}: {lacking.why}; take --model auto or solid")
+            raise InputError(lacking.why, key="model", value=model, remedy=_OTHER)
         return model, found, None if lacking is None else f"asked for by name, although {lacking.why}"
     way = climb(sensor, tolerance)
     passed = list(way.passed)
@@ -113,14 +116,14 @@ def _asked(rung: str, sensor: Sensor, pressures: Array, closure: str) -> tuple[M
     """One rung's answer, and what it lacks."""
     if rung == "membrane":
         if sensor.grade is not None:
-            raise InputError("--model membrane: the wall is graded along its arc; take --model auto or solid")
+            raise InputError("the wall is graded along its arc", key="model", value=rung, remedy=_OTHER)
         return membrane_result(sensor, pressures, closure), None
     if rung == "atlas":
         from pneutouch.mechanics.atlas_states import atlas_result, outside_atlas
 
         why = outside_atlas(sensor)
         if why is not None:
-            raise InputError(f"--model atlas: {why}; take --model auto or solid")
+            raise InputError(why, key="model", value=rung, remedy=_OTHER)
         return atlas_result(sensor, pressures)
     from pneutouch.mechanics.solid_states import solid_result
 

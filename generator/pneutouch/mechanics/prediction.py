@@ -52,7 +52,7 @@ class SensorState:
     shapes: tuple[DeformedShape, ...] = ()
 
     def document(self) -> dict[str, Any]:
-        """The state as ``predict --json`` prints it."""
+        """The state as ``predict`` prints it."""
         f = self.figures
         return {
             "driving_pressure_kPa": self.driving_pressure / KPA,
@@ -124,7 +124,7 @@ class SensorPrediction:
     assumptions: tuple[str, ...]
 
     def document(self) -> dict[str, Any]:
-        """The prediction as ``predict --json`` prints it and ``prediction.json`` keeps it."""
+        """The prediction as ``predict`` prints it and ``prediction.json`` keeps it."""
         point, caps = self.limit_point, self.limits
         content = {
             "design": self.design,

@@ -29,16 +29,16 @@ def json_bytes(document: object) -> bytes:
 def check_writable(folder: Path) -> None:
     """Raise InputError where an output folder cannot be made or written, or holds somebody else's files."""
     if folder.exists() and not folder.is_dir():
-        raise InputError(f"--out: {folder} is a file; it must be a folder")
+        raise InputError(f"{folder} is a file", key="out", remedy="it must be a folder")
     if folder.is_symlink():
-        raise InputError(f"--out: {folder} is a link; give the folder it leads to")
+        raise InputError(f"{folder} is a link", key="out", remedy="give the folder it leads to")
     if folder.is_dir() and any(folder.iterdir()):
         _our_files(folder)
     parent = next(path for path in (folder.parent, *folder.parent.parents) if path.exists())
     if not parent.is_dir():
-        raise InputError(f"--out: {parent} is a file; it must be a folder")
+        raise InputError(f"{parent} is a file", key="out", remedy="it must be a folder")
     if not os.access(parent, os.W_OK | os.X_OK):
-        raise InputError(f"--out: {parent} cannot be written; give a folder you may write to")
+        raise InputError(f"{parent} cannot be written", key="out", remedy="give a folder you may write to")
 
 
 def write_folder(folder: Path, files: dict[str, bytes]) -> None:
@@ -65,12 +65,14 @@ def replacing(folder: Path) -> Iterator[Path]:
         folder.parent.mkdir(parents=True, exist_ok=True)
         fresh = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
     except OSError as error:
-        raise InputError(f"--out: {folder.parent}: {error.strerror}; give a folder you may write to") from None
+        raise InputError(
+            f"{folder.parent}: {error.strerror}", key="out", remedy="give a folder you may write to"
+        ) from None
     try:
         yield fresh
         _swap(folder, fresh)
     except OSError as error:
-        raise InputError(f"--out: {folder}: {error.strerror}; the previous output is unchanged") from None
+        raise InputError(f"{folder}: {error.strerror}", key="out", remedy="the previous output is unchanged") from None
     finally:
         shutil.rmtree(fresh, ignore_errors=True)
 
@@ -107,7 +109,7 @@ def _our_files(folder: Path) -> set[str]:
         text = f"holds files but no {MANIFEST}: not written by pneutouch"
     except (OSError, ValueError, KeyError, TypeError):
         text = f"has a {MANIFEST} that pneutouch did not write or that is damaged"
-    raise InputError(f"--out: {folder} {text}; give another folder, or empty this one")
+    raise InputError(f"{folder} {text}", key="out", remedy="give another folder, or empty this one")
 
 
 def _keep_foreign(folder: Path, fresh: Path) -> None:

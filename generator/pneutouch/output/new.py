@@ -19,13 +19,12 @@ def new_design(name: str, folder: Path) -> Path:
 def check_name(name: str, folder: Path) -> Path:
     """The file of a new design. Raises InputError for a bad name, and for one that would hide another design."""
     if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]*", name):
-        raise InputError(f"NAME = {name!r}: use letters, digits, - and _, starting with a letter or digit")
+        raise InputError("use letters, digits, - and _, starting with a letter or digit", key="name", value=name)
     path = folder / f"{name}.toml"
     known = Library.default().shelf("designs").get(name)
     if known is not None and known.resolve() != path.resolve():
-        raise InputError(
-            f"NAME = {name!r}: {known} is a design of this name, which the new file would hide; give another name"
-        )
+        problem = f"{known} is a design of this name, which the new file would hide"
+        raise InputError(problem, key="name", value=name, remedy="give another name")
     return path
 
 
@@ -39,7 +38,7 @@ def write_design(name: str, folder: Path, text: str) -> Path:
         what = "there is such a file already; give another name" if path.exists() else f"{folder} is not a folder"
         raise InputError(f"{path}: {what}") from None
     except OSError as error:
-        raise InputError(f"{path}: {error.strerror}; give a folder you may write to with --out") from None
+        raise InputError(str(error.strerror), file=path, remedy="give a folder you may write to with `out`") from None
     with os.fdopen(handle, "w", encoding="utf-8") as file:
         file.write(text)
     return path

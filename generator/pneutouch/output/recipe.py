@@ -62,9 +62,9 @@ def evaluate_recipe(recipe: BuildRecipe) -> Evaluation:
     try:
         return evaluate_scene(recipe.scene, lambda: recipe.resins, recipe.asked)
     except InputError as error:
-        if str(error).startswith(where):
-            raise
-        raise InputError(f"{where}: {error}") from None
+        if error.file is None and not str(error).startswith(where):
+            error.file = where
+        raise
 
 
 def scene_shelves() -> dict[str, str]:

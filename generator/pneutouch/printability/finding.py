@@ -17,7 +17,7 @@ class Excess:
     unit: str = "mm"
 
     def document(self) -> dict[str, Any]:
-        """The numbers as ``check --json`` prints them."""
+        """The numbers as ``check`` prints them."""
         return {"measured": float(f"{self.measured:.4g}"), "limit": float(f"{self.limit:.4g}"), "unit": self.unit}
 
 
@@ -35,7 +35,7 @@ class Finding:
     excess: Excess | None = None
 
     def document(self) -> dict[str, Any]:
-        """The finding as ``check --json`` prints it."""
+        """The finding as ``check`` prints it."""
         return {
             "rule": self.rule,
             "severity": self.severity,

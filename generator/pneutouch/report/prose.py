@@ -43,7 +43,7 @@ TUNING = (
     "(grey); circles: the predicted states."
 )
 SHAPES = "Half sections of the deformed wall, shaded by the greatest principal stretch; thin outlines at rest."
-NO_SHAPES = "Half sections of the deformed wall are drawn by the solid alone: build with --model solid."
+NO_SHAPES = "Half sections of the deformed wall are drawn by the solid alone: build with model solid."
 
 
 def tradeoff(pressure: float, dead_volume: float) -> str:

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from pneutouch.errors import InputError, nearest
+from pneutouch.errors import InputError, joined, nearest
 from pneutouch.spec.fields import declaration, table_of
 
 Model = TypeVar("Model", bound=BaseModel)
@@ -35,8 +35,7 @@ def validate(model: type[Model], content: dict[str, Any], where: str) -> Model:
     try:
         return model.model_validate(content)
     except ValidationError as error:
-        lines = [_explain(model, detail) for detail in error.errors()]
-        raise InputError("\n".join(f"{where}: {line}" for line in lines)) from None
+        raise joined([_explain(model, detail, where) for detail in error.errors()]) from None
 
 
 def override(content: dict[str, Any], assignments: list[str], model: type[BaseModel]) -> dict[str, Any]:
@@ -46,15 +45,17 @@ def override(content: dict[str, Any], assignments: list[str], model: type[BaseMo
         key, equals, text = assignment.partition("=")
         path = key.strip().split(".")
         if not equals or len(path) != 2:
-            raise InputError(f"--set {assignment}: write table.key=value, such as membrane.material=FLX9960")
+            raise InputError("write table.key=value, such as membrane.material=FLX9960", key="set", value=assignment)
         table = table_of(model, path[0])
         if table is None:
-            raise InputError(f"--set {assignment}: unknown table {path[0]}.{nearest(path[0], model.model_fields)}")
+            problem = f"unknown table {path[0]}.{nearest(path[0], model.model_fields)}"
+            raise InputError(problem, key="set", value=assignment)
         if path[1] not in table.model_fields:
-            raise InputError(f"--set {assignment}: unknown key {key}.{nearest(path[1], table.model_fields)}")
+            problem = f"unknown key {key}.{nearest(path[1], table.model_fields)}"
+            raise InputError(problem, key="set", value=assignment)
         section = result.setdefault(path[0], {})
         if not isinstance(section, dict):
-            raise InputError(f"{path[0]} = {section!r}: must be a table")
+            raise InputError("must be a table", key=path[0], value=section)
         section[path[1]] = _toml_value(text.strip())
     return result
 
@@ -67,8 +68,8 @@ def _toml_value(text: str) -> Any:
     return found["value"] if set(found) == {"value"} else text
 
 
-def _explain(model: type[BaseModel], detail: Any) -> str:
-    """One line for one pydantic error: the key, the value, and what would be right."""
+def _explain(model: type[BaseModel], detail: Any, where: str) -> InputError:
+    """The error for one of pydantic's: the key, the value, and what would be right."""
     # Names in angle brackets tell the kinds of a value apart that may be of several; they are no keys.
     path = [str(step) for step in detail["loc"] if not isinstance(step, int) and not str(step).startswith("<")]
     index = next((step for step in detail["loc"] if isinstance(step, int)), None)
@@ -78,18 +79,18 @@ def _explain(model: type[BaseModel], detail: Any) -> str:
     key = ".".join(path)
     if detail["type"] == "extra_forbidden" and owner is not None:
         kind = "table" if isinstance(detail["input"], dict) else "key"
-        return f"{key}: unknown {kind}.{nearest(path[-1], _keys(owner))}"
+        return InputError(f"unknown {kind}.{nearest(path[-1], _keys(owner))}", file=where, key=key)
     if detail["type"] == "missing":
-        return f"{key}: missing; give {_right(owner, path)}"
+        return InputError("missing", file=where, key=key, remedy=f"give {_right(owner, path)}")
     if detail["type"] == "value_error":
-        return f"{key}: {detail['ctx']['error']}" if key else str(detail["ctx"]["error"])
+        return InputError(str(detail["ctx"]["error"]), file=where, key=key)
     if not path:
-        return str(detail["msg"])
+        return InputError(str(detail["msg"]), file=where)
     if detail["type"] == "literal_error":
-        return f"{key} = {_shown(detail['input'])}: must be {detail['ctx']['expected']}"
+        return InputError(f"must be {detail['ctx']['expected']}", file=where, key=key, value=detail["input"])
     label = f"{key}[{index}]" if index is not None else key
     right = f"{_wanted(detail)}{_right(owner, path)}".strip()
-    return f"{label} = {_shown(detail['input'])}: {f'must be {right}' if right else detail['msg']}"
+    return InputError(f"must be {right}" if right else detail["msg"], file=where, key=label, value=detail["input"])
 
 
 def _keys(owner: type[BaseModel]) -> list[str]:
@@ -113,8 +114,3 @@ def _right(owner: type[BaseModel] | None, path: list[str]) -> str:
     if owner is None or not path or path[-1] not in owner.model_fields:
         return "a valid value"
     return declaration(owner, path[-1]).right
-
-
-def _shown(value: Any) -> str:
-    text = repr(value)
-    return text if len(text) <= 60 else f"{text[:57]}..."

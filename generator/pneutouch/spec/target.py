@@ -154,15 +154,11 @@ class Target(Table):
     def _grade_and_its_wish(self) -> Target:
         wanted, graded = self.target, self.given.graded
         if wanted.is_for_a_grade and not graded:
-            raise ValueError(
-                "same_sensitivity_at_kPa and widest_range are met by grades; give given.graded = true (--graded) too"
-            )
+            raise ValueError("same_sensitivity_at_kPa and widest_range are met by grades; give given.graded = true too")
         if graded and not wanted.is_for_a_grade:
-            raise ValueError(
-                "given.graded needs target.same_sensitivity_at_kPa (--same-at) or target.widest_range (--widest-range)"
-            )
+            raise ValueError("given.graded needs target.same_sensitivity_at_kPa or target.widest_range")
         if graded and wanted.sensitivity_kPa_per_N is None:
-            raise ValueError("given.graded needs target.sensitivity_kPa_per_N (--sensitivity)")
+            raise ValueError("given.graded needs target.sensitivity_kPa_per_N")
         if graded and (wanted.stiffness_least_N_per_mm, wanted.stiffness_most_N_per_mm) != (None, None):
             raise ValueError("the search for a grade takes no bounds on the stiffness; leave them out")
         return self

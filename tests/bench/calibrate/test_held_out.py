@@ -50,7 +50,7 @@ def test_the_prediction_is_better_than_the_designs(library, solid_curves):
 def test_what_cannot_be_held_out_is_refused(library):
     parameters = chosen(library, "modulus")
     seen = curves(DESIGNED, (22.0,), 3, np.random.default_rng(1))
-    with pytest.raises(InputError, match=r"--hold-out 12: no run .* measured: 22 kPa"):
+    with pytest.raises(InputError, match=r"hold_out_kPa = 12.*: no run .* measured: 22 kPa"):
         predict_held_out(Observations(seen), DESIGNED, parameters, 12.0)
     with pytest.raises(InputError, match="all runs are at this driving pressure"):
         predict_held_out(Observations(seen), DESIGNED, parameters, 22.0)

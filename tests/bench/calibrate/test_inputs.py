@@ -61,7 +61,7 @@ def test_a_dome_that_stood_its_pressure_is_stiffer_than_the_limit_says(library):
 
 
 @pytest.mark.parametrize(("names", "words"), [
-    (["moduls"], "--fit moduls: no such parameter. Did you mean modulus"), (["wall", "wall"], "wall is there twice"), ([], "empty"),
+    (["moduls"], "fit = 'moduls': no such parameter. Did you mean modulus"), (["wall", "wall"], "wall is there twice"), ([], "empty"),
 ])  # fmt: skip
 def test_names_of_parameters_are_checked(names, words):
     with pytest.raises(InputError, match=words):

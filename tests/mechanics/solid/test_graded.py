@@ -38,7 +38,7 @@ def sensor(*fractions: float) -> Sensor:
     """The paper's sensor of TangoPlus with these fractions of VeroClear at even knots."""
     fraction = fractions[0] if len(fractions) == 1 else list(fractions)
     grade = Grade.model_validate({"from": "TangoPlus", "to": "VeroClear", "fraction": fraction})
-    return material_sensor(mixed_material(grade, Library.default(), "test"))
+    return material_sensor(mixed_material(grade, Library.default(), file="test"))
 
 
 def moduli(one: Sensor) -> np.ndarray:
@@ -268,7 +268,7 @@ def test_many_random_grades_are_solved():
 @pytest.mark.parametrize("model", ["membrane", "atlas"])
 def test_rungs_that_know_no_grade_refuse_it_by_name(model):
     with pytest.raises(
-        InputError, match=rf"--model {model}: the wall is graded along its arc; take --model auto or solid"
+        InputError, match=rf"model = '{model}': the wall is graded along its arc; take `model` auto or solid"
     ):
         predict("test", sensor(0.0, 0.2), [0.0], model=model)
 

@@ -22,7 +22,7 @@ POINTS = {point.material: point.fraction for point in LIBRARY.load("mixing", "Ta
 
 def mixed(fraction):
     grade = Grade.model_validate({"from": "TangoPlus", "to": "VeroClear", "fraction": fraction})
-    return mixed_material(grade, LIBRARY, "here")
+    return mixed_material(grade, LIBRARY, file="here")
 
 
 def standard(material):

@@ -155,7 +155,7 @@ def test_a_single_file_of_any_name_is_a_run_of_its_design(folder, library):
     outcome = characterize(long, "paper-dome", model="atlas", library=library)
     (group,) = outcome.document["groups"]
     assert group["driving_pressure_kPa"] == 22.0 and group["figures"]["sensitivity_kPa_per_N"]["low"] is None
-    with pytest.raises(InputError, match="--design"):
+    with pytest.raises(InputError, match="give `design`"):
         characterize(long, library=library)
 
 
@@ -180,7 +180,7 @@ def test_aged_runs_are_not_set_beside_a_fresh_prediction(folder, library):
             "number repetitions",
         ),
         (lambda c: c.pop("runs"), "runs: missing"),
-        (lambda c: c.pop("design"), "--design"),
+        (lambda c: c.pop("design"), "give `design`"),
     ],
 )
 def test_a_wrong_campaign_file_says_what_is_wrong(folder, library, change, said):

@@ -78,7 +78,7 @@ def test_an_output_that_cannot_be_is_refused(out, library, tmp_path):
     (tmp_path / "file").write_text("x")
     (tmp_path / "link.nc").symlink_to(tmp_path / "file")
     plan = plan_of_flags("paper-dome", ["membrane.wall_thickness_mm=1"], model="membrane")
-    with pytest.raises(InputError, match="--out"):
+    with pytest.raises(InputError, match="out: "):
         sweep(plan, tmp_path / out, library=library)
     assert len(list(tmp_path.iterdir())) == 3
 
@@ -110,7 +110,7 @@ def test_flags_are_read(text, values):
     "text", ["", "membrane.material", "membrane.material=", "=1", "membrane.material=1:2", "membrane.material=a,,b:c:d"]
 )
 def test_flags_that_say_nothing_are_refused(text):
-    with pytest.raises(InputError, match="--over"):
+    with pytest.raises(InputError, match="over"):
         plan_of_flags("x", [text])
 
 
@@ -120,7 +120,7 @@ def test_any_text_is_a_plan_or_an_input_error(text):
         try:
             plan = plan_of_flags("x", words)
         except InputError as error:
-            assert "--over" in str(error)
+            assert "over" in str(error)
         else:
             assert plan.count == len(plan.axes[0].values)
 

@@ -174,7 +174,7 @@ def test_progress_of_other_inputs_is_refused_and_fresh_starts_over(single, libra
     out = tmp_path / "sweep.nc"
     stopped(out, library, 2)
     for other in (six(closure="printed"), six(model="solid"), small(), six(design="stiff-dome")):
-        with pytest.raises(InputError, match=r"sweep\.nc\.parts: holds the progress of another sweep.*--fresh"):
+        with pytest.raises(InputError, match=r"sweep\.nc\.parts: holds the progress of another sweep.*`fresh`"):
             sweep(other, out, ALONE, library=library)
     assert journal_lines(out) == 2
     assert sweep(six(closure="printed"), out, ALONE, library=library, fresh=True).computed == 6

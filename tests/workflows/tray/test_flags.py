@@ -43,7 +43,7 @@ def test_any_toml_values_come_back(values):
 
 @pytest.mark.parametrize("text", ["[1,2", "1,[2", "'a,b", "[[1],2"])
 def test_what_is_not_closed_is_said(text):
-    with pytest.raises(InputError, match=r"--over .*not closed") as error:
+    with pytest.raises(InputError, match=r"over = .*not closed") as error:
         over(text)
     assert text in str(error.value)
 
@@ -72,4 +72,4 @@ def test_so_it_is_in_a_tray_file(table, tmp_path):
 def test_copies_are_told_by_their_flag(copies):
     with pytest.raises(InputError) as error:
         order_of_flags(["paper-dome", "agilus-dome"], [], copies)
-    assert str(error.value) == f"--copies {copies}: must be from 1 to 200"
+    assert str(error.value) == f"copies = {copies}: must be from 1 to 200"

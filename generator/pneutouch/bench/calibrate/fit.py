@@ -91,7 +91,7 @@ def fit(
     if not parameters.priors and int(points.use.sum()) <= fitted:
         raise InputError(
             f"calibrate: {int(points.use.sum())} values for {fitted} parameters without priors; there must be more values, or "
-            "fewer parameters with --fit"
+            "fewer parameters with `fit`"
         )
     model = AtlasModel(sensor, points)
     # A start that trusts neither the shape of the model nor single points: all errors alike, as shares of full scale.

@@ -55,12 +55,12 @@ def predict_held_out(
     """
     known = observations.pressures
     if pressure not in known:
-        raise InputError(f"--hold-out {pressure:g}: no run at this driving pressure; measured: {_listed(known)} kPa")
+        problem = f"no run at this driving pressure; measured: {_listed(known)} kPa"
+        raise InputError(problem, key="hold_out_kPa", value=pressure)
     rest = observations.without(pressure)
     if not rest.curves and not rest.injections:
-        raise InputError(
-            f"--hold-out {pressure:g}: all runs are at this driving pressure; there must be runs at another to fit"
-        )
+        problem, remedy = "all runs are at this driving pressure", "there must be runs at another to fit"
+        raise InputError(problem, key="hold_out_kPa", value=pressure, remedy=remedy)
     fitted = fit(rest, sensor, parameters)
     points = points_of(observations.only(pressure))
     model = AtlasModel(replace(sensor, ambient_pressure=observations.ambient), points)
@@ -68,10 +68,11 @@ def predict_held_out(
     shape = points.there.shape
     use = ok[0][: points.there.size].reshape(shape) & points.there
     if (use.sum(axis=1) < 2).any():
-        raise InputError(
-            f"--hold-out {pressure:g}: the model fitted to the rest has fewer than two points of a run at this pressure (beyond "
-            "its limit point or buckled); hold out another"
+        problem = (
+            "the model fitted to the rest has fewer than two points of a run at this pressure (beyond its limit point or "
+            "buckled)"
         )
+        raise InputError(problem, key="hold_out_kPa", value=pressure, remedy="hold out another")
     force, rise = (part.reshape(shape) for part in (values[0][: use.size], values[0][use.size : 2 * use.size]))
     rows = [_row(points.travel[i], points.force[i], points.rise[i], force[i], rise[i], use[i]) for i in range(len(use))]
     mean = np.mean(rows, axis=0)

@@ -95,11 +95,12 @@ def parse_names(names: Iterable[str]) -> tuple[int, ...]:
     words = [name.strip() for name in names]
     for word in words:
         if word not in NAMES:
-            raise InputError(f"--fit {word}: no such parameter.{nearest(word, NAMES)}")
+            raise InputError(f"no such parameter.{nearest(word, NAMES)}", key="fit", value=word)
         if words.count(word) > 1:
-            raise InputError(f"--fit {','.join(words)}: {word} is there twice; must be there once")
+            problem = f"{word} is there twice"
+            raise InputError(problem, key="fit", value=",".join(words), remedy="must be there once")
     if not words:
-        raise InputError(f"--fit: empty; must name at least one of {', '.join(NAMES)}")
+        raise InputError("empty", key="fit", remedy=f"must name at least one of {', '.join(NAMES)}")
     return tuple(sorted(NAMES.index(word) for word in words))
 
 

@@ -143,7 +143,7 @@ def _descend(problem: LeastSquaresProblem, at: Array) -> LeastSquaresSolution:
                 break
     else:
         raise ComputationError(
-            f"calibrate: no least sum of squares within {_ROUNDS} steps; fit fewer parameters with --fit"
+            f"calibrate: no least sum of squares within {_ROUNDS} steps; fit fewer parameters with `fit`"
         )
     keep = use[:, None]
     own = np.zeros_like(residual)

@@ -99,7 +99,7 @@ def _far(fit: CalibrationFit) -> list[str]:
         if away > _FAR and fit.parameters.priors:
             found.append(
                 f"{WORDS[k]}: the estimate is {away:.1f} prior standard deviations from the design's value; where the design does "
-                "not say what was built, mend it or leave the priors aside (--no-priors)"
+                "not say what was built, mend it or leave the priors aside"
             )
     return found
 

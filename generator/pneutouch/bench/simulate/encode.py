@@ -30,9 +30,8 @@ def encoded(columns: dict[str, Array], *, parquet: bool = False) -> bytes:
         import pyarrow
         from pyarrow import parquet as files
     except ImportError:
-        raise InputError(
-            "--parquet: needs pyarrow; pip install 'pneutouch[parquet]', or leave it out for CSV"
-        ) from None
+        remedy = "pip install 'pneutouch[parquet]', or leave it out for CSV"
+        raise InputError("needs pyarrow", key="parquet", remedy=remedy) from None
     table = pyarrow.table(rounded).replace_schema_metadata({"comment": MARK.removeprefix("# ")})
     target = io.BytesIO()
     files.write_table(table, target)

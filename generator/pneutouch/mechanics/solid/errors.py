@@ -1,15 +1,11 @@
-"""What can go wrong in a solve, said so that a caller can act on it."""
+"""How a solve can end without an equilibrium, for callers that act on it; users see a ComputationError."""
 
 from __future__ import annotations
 
 from pneutouch.errors import BeyondLimitError, ComputationError
 
 
-class SolidError(ComputationError):
-    """Base of every failure of the solid solver."""
-
-
-class NoConvergenceError(SolidError):
+class NoConvergenceError(ComputationError):
     """No equilibrium met the tolerances, even after every cutback.
 
     load:   the load that could not be reached, in words with its unit.
@@ -18,13 +14,11 @@ class NoConvergenceError(SolidError):
     """
 
     def __init__(self, load: str, why: str, advice: str) -> None:
-        super().__init__(f"no equilibrium at {load}: {why}; try {advice}")
-        self.load = load
-        self.why = why
-        self.advice = advice
+        super().__init__(f"no equilibrium at {load}: {why}", remedy=f"try {advice}")
+        self.load, self.why, self.advice = load, why, advice
 
 
-class UnreachableLoadError(BeyondLimitError, SolidError):
+class UnreachableLoadError(BeyondLimitError):
     """A driving pressure beyond what the dome can carry.
 
     pressure: what was asked for.  limit: the largest pressure that has an equilibrium; both gauge, MPa.

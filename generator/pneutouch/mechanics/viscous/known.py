@@ -7,7 +7,7 @@ from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.viscous.prony import prony_series, relaxed
 from pneutouch.spec.material import Material
 
-_MEMBRANE = "the membrane has no stiffness of its own to relax; take --model atlas, solid or auto"
+_MEMBRANE = "the membrane has no stiffness of its own to relax; take model atlas, solid or auto"
 
 AGED = (
     "The ratio alone of Gent's relation of Shore A to modulus (Rubber Chem. Technol. 31, 896, 1958) is used, not its level; above "
@@ -45,7 +45,8 @@ def ageing_ratio(material: Material) -> float:
     """
     why = ageing_unknown(material)
     if why is not None:
-        raise InputError(f"aged: {why}; give shore_a and shore_a_one_year in its material file, or leave --aged out")
+        remedy = "give shore_a and shore_a_one_year in its material file, or leave `aged` out"
+        raise InputError(f"aged: {why}", remedy=remedy)
     from pneutouch.mechanics.uncertainty.hardness import young_modulus
 
     assert material.shore_a is not None and material.shore_a_one_year is not None

@@ -43,7 +43,7 @@ def cavity_size(ground: CouponContext) -> tuple[float, float]:
     if radius <= 0.5 * layout.inner_radius:
         raise InputError(
             f"{scene.where}: membrane.inner_radius_mm = {layout.inner_radius:g}: too small for a volume plug, whose wall on "
-            f"the {scene.connector_printer.title} must be {wall:g} mm; leave it out with --only, or take a finer printer"
+            f"the {scene.connector_printer.title} must be {wall:g} mm; leave it out with `only`, or take a finer printer"
         )
     return radius, cavity_volume(layout.inner_radius) / (math.pi * radius**2)
 

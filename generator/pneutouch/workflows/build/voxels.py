@@ -135,7 +135,9 @@ def write_stack(
         return slicer
     except OSError as error:
         raise InputError(
-            f"--out: {folder}: {error.strerror or error}; no stack was written, and an earlier one is unchanged"
+            f"{folder}: {error.strerror or error}",
+            key="out",
+            remedy="no stack was written, and an earlier one is unchanged",
         ) from None
     finally:
         if fresh is not None:
@@ -149,13 +151,15 @@ def check_stack_folder(folder: Path) -> None:
         return
     if not (folder / MANIFEST).is_file():
         raise InputError(
-            f"--out: {folder} holds files but no {MANIFEST}: not written by pneutouch; give another folder"
+            f"{folder} holds files but no {MANIFEST}: not written by pneutouch", key="out", remedy="give another folder"
         )
     foreign = next(
         (path for path in sorted(folder.iterdir()) if path.name != MANIFEST and not _SLICE.fullmatch(path.name)), None
     )
     if foreign is not None:
-        raise InputError(f"--out: {foreign} is not of the stack that is to be written anew; move it elsewhere")
+        raise InputError(
+            f"{foreign} is not of the stack that is to be written anew", key="out", remedy="move it elsewhere"
+        )
 
 
 def _mode(assembly: Assembly, name: str | None) -> Mode:
@@ -164,5 +168,5 @@ def _mode(assembly: Assembly, name: str | None) -> Mode:
         return own
     found = next((mode for mode in printer.mode if mode.name.lower() == name.lower()), None)
     if found is None:
-        raise InputError(f"--voxel-mode {name}: unknown.{nearest(name, [mode.name for mode in printer.mode])}")
+        raise InputError(f"unknown.{nearest(name, [mode.name for mode in printer.mode])}", key="voxel_mode", value=name)
     return found

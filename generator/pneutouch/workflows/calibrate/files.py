@@ -28,7 +28,7 @@ _SMALL = 4
 
 @dataclass(frozen=True, slots=True)
 class SavedCalibration:
-    """What ``--save`` writes."""
+    """What is saved of a calibration."""
 
     files: tuple[MeasuredProfile, ...]
 
@@ -58,7 +58,7 @@ def prepare(found: Calibration, name: str, root: Path, shelves: Library, *, shad
     that the command did not write, and estimates that have no interval.
     """
     if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]*", name):
-        raise InputError(f"--save {name}: use letters, digits, - and _, starting with a letter or digit")
+        raise InputError("use letters, digits, - and _, starting with a letter or digit", key="save", value=name)
     by_name = {estimate["parameter"]: estimate for estimate in found.estimates}
     files = []
     if "modulus" in by_name:
@@ -77,13 +77,18 @@ def _place(kind: str, name: str, root: Path, shelves: Library, shadow: bool) -> 
     other = shelves.shelf(kind).get(name)
     if other is not None and other.resolve() != path.resolve() and not shadow:
         raise InputError(
-            f"--save {name}: {other} is of this name, which the new file would hide; give another name, or --shadow to hide it"
+            f"{other} is of this name, which the new file would hide",
+            key="save",
+            value=name,
+            remedy="give another name, or `shadow` to hide it",
         )
     if path.is_symlink() or path.exists():
         ours = path.is_file() and not path.is_symlink() and _is_ours(path)
         if not ours:
             raise InputError(
-                f"{path}: was not written by pneutouch calibrate, so it is left as it is; move it away or give another --save"
+                "was not written by pneutouch calibrate, so it is left as it is",
+                file=path,
+                remedy="move it away or give another `save`",
             )
     return path
 
@@ -108,12 +113,14 @@ def _material(found: Calibration, estimate: dict[str, Any], path: Path, shelves:
     interval = estimate["interval_95"]
     if interval is None:
         raise InputError(
-            "--save: the shear modulus has no interval (on its bound, or not seen): there is no resin to save"
+            "the shear modulus has no interval (on its bound, or not seen): there is no resin to save", key="save"
         )
     base = found.scene.design.membrane.material
     if not isinstance(base, str):
         raise InputError(
-            f"--save: {base.label} is a mix of two resins; a modulus can be saved of a resin that has a file"
+            f"{base.label} is a mix of two resins",
+            key="save",
+            remedy="a modulus can be saved of a resin that has a file",
         )
     content = read_toml(shelves.shelf("materials")[base])
     before = content["shear_modulus_MPa"]

@@ -124,10 +124,12 @@ def observations_of(
     """
     known = sorted({run.sensor for run in campaign.runs})
     if sensor is None and len(known) > 1:
-        raise InputError(f"--sensor: the campaign holds {', '.join(known)}; name one")
+        raise InputError(f"the campaign holds {', '.join(known)}", key="sensor", remedy="name one")
     chosen = known[0] if sensor is None else sensor
     if chosen not in known:
-        raise InputError(f"--sensor {chosen}: no such sensor in the campaign; there are {', '.join(known)}")
+        raise InputError(
+            "no such sensor in the campaign", key="sensor", value=chosen, remedy=f"there are {', '.join(known)}"
+        )
     steps = tuple(curve for curve in curves if curve.run.sensor == chosen and curve.run.kind == "steps")
     pushed = [found for found in injections if found[0].sensor == chosen]
     for run, _, _ in pushed:
@@ -136,7 +138,12 @@ def observations_of(
                 f"{run.file}: driving_pressure_kPa = {run.driving_pressure_kPa:g}: an injection must begin at ambient pressure, 0"
             )
     if not steps and not pushed:
-        raise InputError(f"--sensor {chosen}: no readable run of kind steps or injection; there must be at least one")
+        raise InputError(
+            "no readable run of kind steps or injection",
+            key="sensor",
+            value=chosen,
+            remedy="there must be at least one",
+        )
     given = campaign.ambient_pressure_kPa
     ambient = (scene.design.pneumatics.ambient_pressure_kPa if given is None else given) * KPA
     blown = tuple(Injection(run.label, volume, pressure) for run, volume, pressure in pushed)

@@ -37,11 +37,11 @@ def run_calibration(
     """
     library = shelves or Library.default()
     if asked.shadow and asked.save is None:
-        raise InputError("--shadow: goes with --save NAME")
+        raise InputError("goes with `save` NAME", key="shadow")
     loaded = load_curves(asked.data, progress=progress)
     design = asked.design or loaded.campaign.design
     if design is None:
-        raise InputError(f"{asked.data}: names no design; give --design")
+        raise InputError("names no design", file=asked.data, remedy="give `design`")
     scene = load_scene(design, loaded.campaign.assignments, library)
     pairs = [(curve.run.resin, curve.run.driving_pressure_kPa) for curve in loaded.curves]
     expected = answers(design, loaded.campaign.assignments, pairs, "atlas", library)

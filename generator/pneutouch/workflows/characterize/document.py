@@ -1,4 +1,4 @@
-"""What ``characterize --json`` prints: every figure measured and predicted, and everything that is doubtful."""
+"""What ``characterize`` prints: every figure measured and predicted, and everything that is doubtful."""
 
 from __future__ import annotations
 

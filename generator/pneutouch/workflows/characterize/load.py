@@ -154,7 +154,7 @@ def _read(
 
 def _single(data: Path, scene: ResolvedDesign | None) -> Campaign:
     if scene is None:
-        raise InputError(f"{data}: a single file needs its sensor; give --design")
+        raise InputError("a single file needs its sensor", file=data, remedy="give `design`")
     run = CampaignRun(file=data.name, sensor=data.stem[:_LONGEST], resin=resin_of(scene))
     return Campaign(title=f"Run {data.name}"[:_LONGEST], runs=[run])
 

@@ -97,7 +97,7 @@ def beside(group: RunGroup, answer: StatePrediction) -> GroupComparison:
         return GroupComparison(group, group.key.resin, None, {}, {}, answer.why)
     label = answer.evaluation.scene.membrane_material.title
     if group.key.age_days > 0:
-        return GroupComparison(group, label, None, {}, {}, "predictions are of fresh prints; see predict --aged")
+        return GroupComparison(group, label, None, {}, {}, "predictions are of fresh prints; see aged predictions")
     sure = answer.evaluation.uncertainty[answer.place]
     return GroupComparison(group, label, state, sure, _figures(state, sure, depths_of(group)))
 

@@ -92,10 +92,12 @@ def _design_of(data: Path) -> tuple[str, list[str]]:
     if not (data.is_dir() or data.suffix == ".toml"):
         if not data.exists():
             raise InputError(f"{data}: no such file or folder")
-        raise InputError(f"{data}: a single file needs its sensor; give --design")
+        raise InputError("a single file needs its sensor", file=data, remedy="give `design`")
     campaign, folder = campaign_of(data)
     if campaign.design is None:
-        raise InputError(f'{folder}: the campaign names no design; give --design, or design = "..." in its file')
+        raise InputError(
+            "the campaign names no design", file=folder, remedy='give `design`, or design = "..." in its file'
+        )
     beside = folder / campaign.design
     return (str(beside) if beside.suffix == ".toml" and beside.is_file() else campaign.design), campaign.assignments
 
@@ -108,7 +110,7 @@ def _stem(data: Path) -> str:
 def _check_resins(data: Path, loaded: CampaignData, shelves: Library) -> None:
     for place, run in enumerate(loaded.campaign.runs):
         if run.resin != AS_DESIGNED:
-            shelves.load("materials", run.resin, asked_by=f"{data}: runs[{place}].resin")
+            shelves.load("materials", run.resin, file=str(data), key=f"runs[{place}].resin")
 
 
 def _answer(found: Mapping[tuple[str, float], StatePrediction], resin: str, pressure: float) -> StatePrediction:

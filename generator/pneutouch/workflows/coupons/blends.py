@@ -29,23 +29,24 @@ class CouponMix:
         return f"{self.pair}-{100 * self.fraction:g}"
 
 
-def resins_of(pair: str, asked_by: str) -> tuple[str, str]:
+def resins_of(pair: str, *, file: str | None = None, key: str) -> tuple[str, str]:
     """The soft and the stiff resin of ``SOFT+STIFF``. Raises InputError for anything else."""
     names = [name.strip() for name in pair.split("+")]
     if len(names) != 2 or not all(names) or names[0] == names[1]:
-        raise InputError(f"{asked_by} {pair}: write two resins, SOFT+STIFF, such as TangoPlus+VeroClear")
+        raise InputError("write two resins, SOFT+STIFF, such as TangoPlus+VeroClear", file=file, key=key, value=pair)
     return names[0], names[1]
 
 
 def blends(pair: str, shelves: Library) -> list[CouponMix]:
     """What is printed of a pair, no farther than its mixing curve. Raises InputError where there is none."""
-    soft, stiff = resins_of(pair, "--mixing")
+    soft, stiff = resins_of(pair, key="mixing")
     for name in (soft, stiff):
-        shelves.load("materials", name, asked_by="--mixing")
-    top = float(mixing(soft, stiff, shelves, asked_by="--mixing").fraction[-1])
+        shelves.load("materials", name, key="mixing")
+    top = float(mixing(soft, stiff, shelves, key="mixing").fraction[-1])
     grades = [
         Grade.model_validate({"from": soft, "to": stiff, "fraction": fraction})
         for fraction in FRACTIONS
         if fraction <= top
     ]
-    return [CouponMix(f"{soft}+{stiff}", g.fractions[0], mixed_material(g, shelves, "--mixing")) for g in grades]
+    pair = f"{soft}+{stiff}"
+    return [CouponMix(pair, g.fractions[0], mixed_material(g, shelves, file=None, key="mixing")) for g in grades]

@@ -70,7 +70,7 @@ def _check_unfilled(folder: Path) -> None:
         return
     written = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))["files"].get(RESULTS, {}).get("sha256")
     if digest(path.read_bytes()) != written:
-        raise InputError(f"--out: {path} has been filled in; move it away first, or give another folder")
+        raise InputError(f"{path} has been filled in", key="out", remedy="move it away first, or give another folder")
 
 
 def _metadata(found: CouponOrder, name: str, bodies: tuple[Body, ...]) -> dict[str, str]:

@@ -55,10 +55,12 @@ def lay(printer_name: str, items: tuple[CouponItem, ...]) -> tuple[CouponPiece, 
             if x > MARGIN and x + wide + MARGIN > room.x:
                 x, y, depth = MARGIN, y + depth + SPACING, 0.0
             if x + wide + MARGIN > room.x or y + deep + MARGIN > room.y or high > room.z:
-                raise InputError(
-                    f"{printer_name}: {pieces[k].body.name} is {wide:.1f} x {deep:.1f} x {high:.1f} mm and no longer fits the tray of "
-                    f"{room.x:g} x {room.y:g} x {room.z:g} mm beside the others; take fewer --copies, --only some, or fewer --material"
+                problem = (
+                    f"{pieces[k].body.name} is {wide:.1f} x {deep:.1f} x {high:.1f} mm and no longer fits the tray of "
+                    f"{room.x:g} x {room.y:g} x {room.z:g} mm beside the others"
                 )
+                remedy = "take fewer `copies`, `only` some, or fewer `material`"
+                raise InputError(problem, file=printer_name, remedy=remedy)
             placed[k].append((round(x, 3), round(y, 3)))
             x, depth = x + wide + SPACING, max(depth, deep)
     return tuple(replace(piece, places=tuple(placed[k])) for k, piece in enumerate(pieces))
@@ -71,8 +73,9 @@ def job_mode(printer_name: str, items: tuple[CouponItem, ...]) -> Mode:
     if mode is None:
         names = ", ".join(dict.fromkeys(item.about for item in items))
         raise InputError(
-            f"{printer_name}: {names} do not run in one job on the {printer.title}, which holds {printer.resins_at_once} resins; "
-            "ask for fewer --material at a time"
+            f"{names} do not run in one job on the {printer.title}, which holds {printer.resins_at_once} resins",
+            file=printer_name,
+            remedy="ask for fewer `material` at a time",
         )
     return mode
 

@@ -28,10 +28,10 @@ def local_curve(
     and where a curve of that name was not written by the command.
     """
     where = f"{said.where}: mixing"
-    soft_name, stiff_name = resins_of(pair, where)
+    soft_name, stiff_name = resins_of(pair, file=said.where, key="mixing")
     pair = f"{soft_name}+{stiff_name}"
-    soft: Material = shelves.load("materials", soft_name, asked_by=where)
-    stiff: Material = shelves.load("materials", stiff_name, asked_by=where)
+    soft: Material = shelves.load("materials", soft_name, file=said.where, key="mixing")
+    stiff: Material = shelves.load("materials", stiff_name, file=said.where, key="mixing")
     if soft.kind != "elastomer":
         raise InputError(f"{where}.{pair}: {soft.label} is rigid; write the soft resin first, SOFT+STIFF")
     known = stiffness(pair, soft, stiff, measured, said)

@@ -82,14 +82,17 @@ def order(asked: CouponOptions, library: Library | None = None) -> CouponOrder:
     shelves = library or Library.default()
     scene = None if asked.design is None else load_scene(asked.design, [], shelves)
     profile = asked.profile or (Print().profile if scene is None else scene.design.print.profile)
-    printer: Printer = shelves.load("printers", profile, asked_by="--profile")
+    printer: Printer = shelves.load("printers", profile, key="profile")
     families = _families(asked)
     items: list[CouponItem] = []
     for name in _materials(asked, scene, printer, profile, shelves):
-        material: Material = shelves.load("materials", name, asked_by="--material")
+        material: Material = shelves.load("materials", name, key="material")
         if printer.mode_for(material) is None:
             raise InputError(
-                f"--material {name}: the {printer.title} cannot run {material.label}; it runs {', '.join(printer.resins)}"
+                f"the {printer.title} cannot run {material.label}",
+                key="material",
+                value=name,
+                remedy=f"it runs {', '.join(printer.resins)}",
             )
         items += [
             CouponItem(coupon, name, profile, printer, CouponContext(material, scene), _copies(asked, coupon))
@@ -108,15 +111,17 @@ def order(asked: CouponOptions, library: Library | None = None) -> CouponOrder:
 def _families(asked: CouponOptions) -> list[Coupon]:
     for word in (*asked.only, *asked.copies):
         if word not in COUPONS:
-            flag = "--only" if word in asked.only else "--copies"
-            raise InputError(f"{flag} {word}: no such coupon.{nearest(word, COUPONS)}")
+            key = "only" if word in asked.only else "copies"
+            raise InputError(f"no such coupon.{nearest(word, COUPONS)}", key=key, value=word)
     for word, count in asked.copies.items():
         if not 1 <= count <= MOST_COPIES:
-            raise InputError(f"--copies {word}={count}: must be from 1 to {MOST_COPIES}")
+            raise InputError(f"must be from 1 to {MOST_COPIES}", key="copies", value=f"{word}={count}")
     chosen = [COUPONS[name] for name in COUPONS if not asked.only or name in asked.only]
     needs = [coupon.name for coupon in chosen if coupon.belongs == "design"]
     if asked.only and needs and asked.design is None:
-        raise InputError(f"--only {needs[0]}: the {COUPONS[needs[0]].title} belongs to a design; give --design")
+        raise InputError(
+            f"the {COUPONS[needs[0]].title} belongs to a design", key="only", value=needs[0], remedy="give `design`"
+        )
     return [coupon for coupon in chosen if coupon.belongs != "design" or asked.design is not None]
 
 
@@ -131,7 +136,9 @@ def _materials(
         return [chosen] if isinstance(chosen, str) else [chosen.from_]
     runs = [name for name, one in shelves.all("materials", Material).items() if printer.mode_for(one) is not None]
     if not runs:
-        raise InputError(f"--profile {profile}: no known material runs on the {printer.title}; give --material")
+        raise InputError(
+            f"no known material runs on the {printer.title}", key="profile", value=profile, remedy="give `material`"
+        )
     usual = Membrane().material
     return [usual if usual in runs else runs[0]]
 
@@ -149,7 +156,10 @@ def _of_mixing(
         for blend in blends(pair, shelves):
             if printer.mode_for(blend.material) is None:
                 raise InputError(
-                    f"--mixing {pair}: the {printer.title} cannot run {blend.material.label}; it runs {', '.join(printer.resins)}"
+                    f"the {printer.title} cannot run {blend.material.label}",
+                    key="mixing",
+                    value=pair,
+                    remedy=f"it runs {', '.join(printer.resins)}",
                 )
             found += [
                 CouponItem(
@@ -183,7 +193,10 @@ def _check_any(asked: CouponOptions, families: list[Coupon], items: list[CouponI
     for coupon in families:
         if asked.only and coupon.name not in made:
             raise InputError(
-                f"--only {coupon.name}: the {coupon.title} is for {' or '.join(coupon.kinds)}; give another --material"
+                f"the {coupon.title} is for {' or '.join(coupon.kinds)}",
+                key="only",
+                value=coupon.name,
+                remedy="give another `material`",
             )
     if not items:
-        raise InputError("nothing to print; give another --only")
+        raise InputError("nothing to print", remedy="give another `only`")

@@ -82,7 +82,9 @@ def write_profiles(profiles: Sequence[MeasuredProfile]) -> None:
         for beside, path in fresh:
             beside.replace(path)
     except OSError as error:
-        raise InputError(f"{error.filename}: {error.strerror}; give a folder you may write to with --out") from None
+        raise InputError(
+            str(error.strerror), file=error.filename, remedy="give a folder you may write to with `out`"
+        ) from None
     finally:
         for beside, _ in fresh:
             beside.unlink(missing_ok=True)
@@ -106,8 +108,9 @@ def check_ours(path: Path, keys: str) -> bool:
     if path.is_file() and not path.is_symlink() and _is_ours(path):
         return True
     raise InputError(
-        f"{path}: was not written by pneutouch coupons, so it is left as it is; put {keys} into it by hand, move it away, or "
-        "give another folder with --out"
+        "was not written by pneutouch coupons, so it is left as it is",
+        file=path,
+        remedy=f"put {keys} into it by hand, move it away, or give another folder with `out`",
     )
 
 

@@ -42,9 +42,9 @@ def evaluate_results(results: CouponResults, where: str, shelves: Library) -> Co
     """Figures and changed quantities of a results file; ``where`` is the file, for messages."""
     found, said = CouponFindings(), ReadingSource(where, results.lab, results.date)
     for name, read in results.puck.items():
-        puck(name, _material(name, f"{where}: puck", shelves), read, said, found)
+        puck(name, _material(name, where, "puck", shelves), read, said, found)
     for name, pulled in results.dumbbell.items():
-        dumbbell(name, _material(name, f"{where}: dumbbell", shelves), pulled, said, found)
+        dumbbell(name, _material(name, where, "dumbbell", shelves), pulled, said, found)
     for name, by_material in results.gauge.items():
         _gauges(name, by_material, said, shelves, found)
     for name in dict.fromkeys((*results.leak_cap, *results.volume_plug)):
@@ -60,10 +60,10 @@ def evaluate_results(results: CouponResults, where: str, shelves: Library) -> Co
 def _gauges(
     name: str, by_material: Mapping[str, Gauge], said: ReadingSource, shelves: Library, found: CouponFindings
 ) -> None:
-    printer: Printer = _shipped("printers", name, f"{said.where}: gauge", shelves)
+    printer: Printer = _shipped("printers", name, said.where, "gauge", shelves)
     measured = []
     for material_name, gauge in by_material.items():
-        material = _material(material_name, f"{said.where}: gauge.{name}", shelves)
+        material = _material(material_name, said.where, f"gauge.{name}", shelves)
         if printer.mode_for(material) is None:
             raise InputError(
                 f"{said.where}: gauge.{name}.{material_name}: the {printer.title} cannot run {material.label}; it runs "
@@ -73,21 +73,21 @@ def _gauges(
     gauges(name, printer, measured, said, found)
 
 
-def _material(name: str, asked_by: str, shelves: Library) -> Material:
-    found: Material = _shipped("materials", name, asked_by, shelves)
+def _material(name: str, file: str, key: str, shelves: Library) -> Material:
+    found: Material = _shipped("materials", name, file, key, shelves)
     return found
 
 
-def _shipped(shelf: str, name: str, asked_by: str, shelves: Library) -> Any:
+def _shipped(shelf: str, name: str, file: str, key: str, shelves: Library) -> Any:
     """A profile as it was before the command wrote one. Raises InputError where the name is unknown."""
-    shelves.load(shelf, name, asked_by=asked_by)
+    shelves.load(shelf, name, file=file, key=key)
     path = base_file(shelf, name, shelves)
     return KINDS[shelf].validate(read_toml(path), str(path))
 
 
 def _design(name: str, where: str, shelves: Library) -> str:
     if name not in shelves.shelf("designs"):
-        shelves.load("designs", name, asked_by=f"{where}: leak-cap or volume-plug")
+        shelves.load("designs", name, file=where, key="leak-cap or volume-plug")
     return name
 
 

@@ -64,7 +64,7 @@ def make_plan(
 ) -> CampaignPlan:  # fmt: skip
     """Plan a campaign of the paper's tests for a design in each resin. Raises InputError for what cannot be."""
     if not 1 <= specimens <= 1000:
-        raise InputError(f"--specimens {specimens}: must be from 1 to 1000")
+        raise InputError("must be from 1 to 1000", key="specimens", value=specimens)
     subjects = resins_of(design, assignments, resins, library=library)
     scene = subjects[0].scene
     tests = plated_tests(subjects[0])

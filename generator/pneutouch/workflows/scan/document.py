@@ -1,4 +1,4 @@
-"""A scan as the document that ``scan --json`` prints and ``scan.json`` keeps, and as its figure."""
+"""A scan as the document that ``scan`` prints and ``scan.json`` keeps, and as its figure."""
 
 from __future__ import annotations
 

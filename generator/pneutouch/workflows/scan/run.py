@@ -125,7 +125,9 @@ def load_both(
     """
     ground = load_specimen(specimen, None, library)
     if specimen_file(design, library) is not None:
-        raise InputError(f"--design {design}: is a specimen; give the name or path of a sensor's design")
+        raise InputError(
+            "is a specimen", key="design", value=design, remedy="give the name or path of a sensor's design"
+        )
     matrix_of(ground)
     if scanned:
         bars_of(ground)
@@ -139,10 +141,13 @@ def bars_of(ground: ResolvedSpecimen) -> tuple[BarRow, ...]:
     found = []
     for number, layer in enumerate(ground.specimen.layer):
         if not isinstance(layer, Bars):
-            raise InputError(
-                f"{ground.where}: layer[{number}].kind = {layer.kind!r}: the scan model knows bars alone; with --data, "
-                "measured signals of any specimen can be read against a specimen of bars with the same pitches"
+            problem, remedy = (
+                "the scan model knows bars alone",
+                (
+                    "with `data`, measured signals of any specimen can be read against a specimen of bars with the same pitches"
+                ),
             )
+            raise InputError(problem, file=ground.where, key=f"layer[{number}].kind", value=layer.kind, remedy=remedy)
         left = places(layer, ground.ground)
         edges = np.stack([left, left + layer.width_mm], axis=1)
         pitch = layer.pitch(ground.specimen.scan.speed_mm_per_s)
@@ -179,15 +184,15 @@ def _at_speed(ground: ResolvedSpecimen, speed: float) -> Any:
 def check_asked(asked: ScanOptions) -> None:
     """Raise InputError for an option that no scan can have, in the words of the command line."""
     if asked.control not in CONTROLS:
-        raise InputError(f"--control {asked.control}: unknown.{nearest(asked.control, CONTROLS)}")
+        raise InputError(f"unknown.{nearest(asked.control, CONTROLS)}", key="control", value=asked.control)
     if not math.isfinite(asked.preload) or asked.preload <= 0:
-        raise InputError(f"--preload {asked.preload:g}: must be a force above 0 N")
+        raise InputError("must be a force above 0 N", key="preload_N", value=asked.preload)
     if asked.speed is not None and not SPEEDS[0] <= asked.speed <= SPEEDS[1]:
-        raise InputError(f"--speed {asked.speed:g}: must be from {SPEEDS[0]:g} to {SPEEDS[1]:g} mm/s")
+        raise InputError(f"must be from {SPEEDS[0]:g} to {SPEEDS[1]:g} mm/s", key="speed_mm_per_s", value=asked.speed)
     if not 0 <= asked.noise <= MOST_NOISE:
-        raise InputError(f"--noise {asked.noise / KPA:g}: must be from 0 to {MOST_NOISE / KPA:g} kPa")
+        raise InputError(f"must be from 0 to {MOST_NOISE / KPA:g} kPa", key="noise_kPa", value=asked.noise / KPA)
     if not asked.pressures and not asked.data:
-        raise InputError("--pressures: none given, and no --data; nothing to scan")
+        raise InputError("none given, and no `data`", key="driving_pressures_kPa", remedy="nothing to scan")
 
 
 def _check_length(ground: ResolvedSpecimen, way: ScanPath, frequencies: dict[str, float]) -> None:

@@ -44,12 +44,14 @@ def parse_patterns(text: str) -> tuple[BarPattern, BarPattern]:
     number = r"\s*(\d+(?:\.\d+)?)\s*"
     match = re.fullmatch(f"{number}@{number},{number}@{number}", text)
     if match is None:
-        raise InputError(f"--separate {text}: must be PITCH1@DEPTH1,PITCH2@DEPTH2 in mm, such as 3@0,6@2")
+        raise InputError("must be PITCH1@DEPTH1,PITCH2@DEPTH2 in mm, such as 3@0,6@2", key="separate", value=text)
     a, b, c, d = (float(part) for part in match.groups())
     if min(a, c) <= 0:
-        raise InputError(f"--separate {text}: a pitch must be more than 0 mm")
+        raise InputError("a pitch must be more than 0 mm", key="separate", value=text)
     if (a, b) == (c, d):
-        raise InputError(f"--separate {text}: both patterns are the same; there is nothing to tell apart")
+        raise InputError(
+            "both patterns are the same", key="separate", value=text, remedy="there is nothing to tell apart"
+        )
     return BarPattern(a, b), BarPattern(c, d)
 
 

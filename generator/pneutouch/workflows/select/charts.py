@@ -109,5 +109,5 @@ def _write(path: Path, text: str) -> Path:
         finally:
             Path(beside).unlink(missing_ok=True)
     except OSError as error:
-        raise InputError(f"--charts: {path}: {error.strerror}; give a folder you may write to") from None
+        raise InputError(f"{path}: {error.strerror}", key="charts", remedy="give a folder you may write to") from None
     return path

@@ -19,7 +19,7 @@ from pneutouch.workflows.select.run import Confirmation, SelectionRun
 
 
 def document(selection: SelectionRun) -> dict[str, Any]:
-    """The selection as ``select --json`` prints it."""
+    """The selection as ``select`` prints it."""
     answer = selection.answer
     confirmed = [*selection.confirmed, *[None] * (len(answer.designs) - len(selection.confirmed))]
     return {
@@ -110,5 +110,5 @@ def pick(selection: SelectionRun, rank: int) -> Candidate:
     """The design of a rank, from 1. Raises InputError where there is none."""
     designs = selection.answer.designs
     if not 1 <= rank <= len(designs):
-        raise InputError(f"--pick {rank}: must be from 1 to {len(designs)}")
+        raise InputError(f"must be from 1 to {len(designs)}", key="pick", value=rank)
     return designs[rank - 1]

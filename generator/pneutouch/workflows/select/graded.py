@@ -1,4 +1,4 @@
-"""``select --graded``: a target that no constant mix meets to a grade that does, beside the constant ones of its size."""
+"""A graded selection: a target that no constant mix meets to a grade that does, beside the constant ones of its size."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from pneutouch.workflows.select.graded import GradedSelectionRun
 
 
 def graded_document(selection: GradedSelectionRun) -> dict[str, Any]:
-    """The search as ``select --graded --json`` prints it; ``share_used`` is at most 1 where a tolerance or limit is kept."""
+    """The search as ``select`` prints it; ``share_used`` is at most 1 where a tolerance or limit is kept."""
     search, sensor = selection.search, selection.sensor
     return {
         "target": selection.target.model_dump(mode="json"),

@@ -43,7 +43,7 @@ class ResinPair:
 
     def material(self, grade: Grade) -> Material:
         """The material of a grade."""
-        return mixed_material(grade, self.library, self.where)
+        return mixed_material(grade, self.library, file=self.where)
 
     def resin(self, fraction: float) -> CandidateResin:
         """A constant mix as the search takes a resin."""
@@ -59,9 +59,9 @@ def pair_of(name: str, printer: Printer, library: Library, where: str, asked: bo
     ``asked`` says whether the user named the pair.
     """
     soft, stiff = (part.strip() for part in name.split("+"))
-    pair = ResinPair(soft, stiff, mixing(soft, stiff, library, asked_by=f"{where}: given.mix"), library, where)
+    pair = ResinPair(soft, stiff, mixing(soft, stiff, library, file=where, key="given.mix"), library, where)
     if printer.mode_for(pair.material(pair.grade(0.5 * float(pair.law.fraction[-1])))) is None:
-        way = "name a pair that it holds with --mix, or another printer with --profile"
+        way = "name a pair that it holds with `mix`, or another printer with `profile`"
         raise InputError(
             f"{where}: given.mix = {name!r}{'' if asked else ' (none was named)'}: the {printer.title} cannot mix {soft} with "
             f"{stiff}; it runs {', '.join(printer.resins)}, {printer.resins_at_once} at once; {way}"

@@ -160,10 +160,10 @@ def _some_resin(target: Target, where: str, library: Library) -> str:
         base = library.design_file(setting.base) if setting.base else None
         design = validate(DesignFile, read_toml(base), str(base)) if base else DesignFile()
         profile = design.print.profile
-    printer: Printer = library.load("printers", profile, asked_by=f"{where}: setting.profile")
+    printer: Printer = library.load("printers", profile, file=where, key="setting.profile")
     pair = pair_asked(target, where, printer, library)
     names = [pair.soft] if pair else target.given.materials or sorted(library.shelf("materials"))
-    loaded = {name: library.load("materials", name, asked_by=f"{where}: given.materials") for name in names}
+    loaded = {name: library.load("materials", name, file=where, key="given.materials") for name in names}
     for name in target.given.materials or []:
         if loaded[name].kind != "elastomer":
             raise InputError(f"{where}: given.materials: {name} is {loaded[name].kind}; it must be an elastomer")
@@ -183,7 +183,7 @@ def _resins(
     names = target.given.materials or sorted(name for name, m in known.items() if m.kind == "elastomer")
     recipe, resins, out = shipped().recipe, [], {}
     for name in names:
-        material = library.load("materials", name, asked_by=f"{where}: given.materials")
+        material = library.load("materials", name, file=where, key="given.materials")
         own = material_sensor(material)
         if scene.printer.mode_for(material) is None:
             out[name] = f"the {scene.printer.title} cannot run it"

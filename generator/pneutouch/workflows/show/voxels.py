@@ -26,7 +26,7 @@ def show_stack(folder: Path, picture: Path | None = None) -> dict[str, Any]:
         try:
             draw(stack, picture)
         except OSError as error:
-            raise InputError(f"--out: {picture}: {error.strerror or error}") from None
+            raise InputError(f"{picture}: {error.strerror or error}", key="out") from None
     return document(stack)
 
 

@@ -271,16 +271,16 @@ def _inputs(subjects: list[SimulatedResin], asked: SimulationOptions) -> dict[st
 def _check(asked: SimulationOptions) -> None:
     """Raise InputError for what cannot be simulated."""
     bounds = (
-        ("--specimens", asked.specimens, 1, 1000), ("--runs", asked.runs, 1, 1000), ("--rate", asked.rate, 10.0, 1e5),
-        *(("--pressures", p, 0.0, 1000.0) for p in asked.pressures or ()), *(("--ages", a, 0.0, 36_500.0) for a in asked.ages),
-        *((("--rest", asked.truth.rest, 0.2, 3600.0),) if asked.truth.rest is not None else ()),
+        ("specimens", asked.specimens, 1, 1000), ("runs", asked.runs, 1, 1000), ("rate_Hz", asked.rate, 10.0, 1e5),
+        *(("driving_pressures_kPa", p, 0.0, 1000.0) for p in asked.pressures or ()), *(("ages", a, 0.0, 36_500.0) for a in asked.ages),
+        *((("rest", asked.truth.rest, 0.2, 3600.0),) if asked.truth.rest is not None else ()),
     )  # fmt: skip
-    for flag, value, low, high in bounds:
+    for key, value, low, high in bounds:
         if not low <= value <= high:
-            raise InputError(f"{flag} {value:g}: must be from {low:g} to {high:g}")
-    for flag, values in (("--pressures", asked.pressures), ("--ages", asked.ages), ("--kinds", asked.kinds)):
+            raise InputError(f"must be from {low:g} to {high:g}", key=key, value=value)
+    for key, values in (("driving_pressures_kPa", asked.pressures), ("ages", asked.ages), ("kinds", asked.kinds)):
         if values is not None and (not values or len(set(values)) != len(values)):
-            raise InputError(f"{flag} {','.join(map(str, values))}: must name at least one, and each once")
+            raise InputError("must name at least one, and each once", key=key, value=",".join(map(str, values)))
     for kind in asked.kinds:
         if kind not in KINDS:
-            raise InputError(f"--kinds {kind}: unknown.{nearest(kind, KINDS)}")
+            raise InputError(f"unknown.{nearest(kind, KINDS)}", key="kinds", value=kind)

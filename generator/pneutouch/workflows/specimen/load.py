@@ -82,7 +82,7 @@ def load_specimen(
 
 def _resolved(name: str, where: str, specimen: Specimen, shelves: Library) -> ResolvedSpecimen:
     def find(kind: str, table: Table, section: str, key: str) -> Any:
-        return shelves.load(kind, getattr(table, key), asked_by=f"{where}: {section}.{key}")
+        return shelves.load(kind, getattr(table, key), file=where, key=f"{section}.{key}")
 
     printer: Printer = find("printers", specimen.print, "print", "profile")
     matrix = find("materials", specimen.block, "block", "matrix")

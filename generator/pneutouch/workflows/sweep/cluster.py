@@ -40,7 +40,9 @@ def on_cluster(study: SweepStudy, chunks: list[SweepChunk], address: str) -> Ite
         raise
     # Dask says that its scheduler is gone by whatever it was doing at that moment: a dozen kinds of error.
     except (Exception, CancelledError) as error:
-        raise ComputationError(f"--scheduler {address}: the connection was lost ({type(error).__name__})") from None
+        raise ComputationError(
+            f"the connection was lost ({type(error).__name__})", key="scheduler", value=address
+        ) from None
 
 
 def _computed(client: Client, study: SweepStudy, chunks: list[SweepChunk], address: str) -> Iterator[list[Record]]:
@@ -78,13 +80,16 @@ def _result(future: Any, address: str) -> list[Record]:
         return found
     error = future.exception() if future.status == "error" else None
     if isinstance(error, InputError):
-        raise InputError(f"--scheduler {address}: {error}")
+        raise InputError(str(error), key="scheduler", value=address)
     if isinstance(error, ImportError):
         raise InputError(
-            f"--scheduler {address}: a worker cannot load pneutouch {__version__} ({error}); install it there"
+            f"a worker cannot load pneutouch {__version__} ({error})",
+            key="scheduler",
+            value=address,
+            remedy="install it there",
         )
     why = "the connection was lost" if error is None else f"{type(error).__name__}: {error}"
-    raise ComputationError(f"--scheduler {address}: a piece of the sweep was not computed: {why}")
+    raise ComputationError(f"a piece of the sweep was not computed: {why}", key="scheduler", value=address)
 
 
 @contextlib.contextmanager
@@ -94,7 +99,7 @@ def _connected(address: str) -> Iterator[Client]:
         from distributed import Client
     except ImportError:
         raise InputError(
-            f"--scheduler {address}: needs Dask, which is not installed: pip install pneutouch[cluster]"
+            "needs Dask, which is not installed: pip install pneutouch[cluster]", key="scheduler", value=address
         ) from None
     # Dask tells its troubles on stderr as they happen; they are told here, once and in words.
     for name in ("distributed", "distributed.client", "distributed.core", "distributed.comm", "tornado.application"):
@@ -105,7 +110,9 @@ def _connected(address: str) -> Iterator[Client]:
         try:
             client.wait_for_workers(1, timeout=_PATIENCE)
         except TimeoutError:
-            raise InputError(f"--scheduler {address}: has no worker; start some with: dask worker {address}") from None
+            raise InputError(
+                "has no worker", key="scheduler", value=address, remedy=f"start some with: dask worker {address}"
+            ) from None
         yield client
     finally:
         with contextlib.suppress(Exception):
@@ -124,8 +131,10 @@ def _require_scheduler(address: str) -> None:
         kind = "what listens there speaks another language"
     if kind != "Scheduler":
         raise InputError(
-            f"--scheduler {address}: no Dask scheduler answers there ({kind}); give the address that it printed when "
-            "it started, such as tcp://host:8786"
+            f"no Dask scheduler answers there ({kind})",
+            key="scheduler",
+            value=address,
+            remedy="give the address that it printed when it started, such as tcp://host:8786",
         )
 
 

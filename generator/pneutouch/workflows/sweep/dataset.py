@@ -70,7 +70,9 @@ def stored_fingerprint(path: Path) -> str:
     # scipy meets a truncated file with whatever its arrays make of it.
     except Exception:
         raise InputError(
-            f"--out: {path}: not a dataset that pneutouch sweep wrote, or damaged; move it away or give another --out"
+            f"{path}: not a dataset that pneutouch sweep wrote, or damaged",
+            key="out",
+            remedy="move it away or give another `out`",
         ) from None
 
 

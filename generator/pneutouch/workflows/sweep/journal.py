@@ -38,10 +38,12 @@ class Journal:
             content = _content(line)
             assert content is not None
             if content["sweep"] != self.fingerprint:
-                raise InputError(
-                    f"{self.path.parent}: holds the progress of another sweep: the design, a material, the printer, "
-                    "the model, the values or the version has changed; --fresh starts over, or give another --out"
+                problem = (
+                    "holds the progress of another sweep: the design, a material, the printer, the model, the values or "
+                    "the version has changed"
                 )
+                remedy = "`fresh` starts over, or give another `out`"
+                raise InputError(problem, file=self.path.parent, remedy=remedy)
             records |= {record["point"]: record for record in content["records"]}
         if lines != [*whole, b""]:
             self._rewrite(whole)

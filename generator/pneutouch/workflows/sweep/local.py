@@ -51,7 +51,7 @@ def in_pool(chunks: list[SweepChunk], folder: Path, workers: int) -> Iterator[li
                     yield future.result()
         except BrokenProcessPool:
             raise ComputationError(
-                "a worker process died, perhaps for want of memory; try fewer with --workers"
+                "a worker process died, perhaps for want of memory", remedy="try fewer with `workers`"
             ) from None
         finally:
             pool.shutdown(wait=False, cancel_futures=True)

@@ -108,7 +108,7 @@ class SweepPlan:
 
 
 def assignments(settings: Settings) -> list[str]:
-    """Settings as ``--set`` takes them; JSON of numbers, texts and lists is TOML."""
+    """Settings as ``table.key=VALUE``; JSON of numbers, texts and lists is TOML."""
     return [f"{key}={json.dumps(value)}" for key, value in settings.items()]
 
 

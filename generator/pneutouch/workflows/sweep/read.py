@@ -51,17 +51,17 @@ def plan_of_file(path: Path, assignments: list[str] | None = None, **options: st
 def plan_of_flags(
     design: str, over: list[str], assignments: list[str] | None = None, **options: str | None
 ) -> SweepPlan:  # fmt: skip
-    """A grid from ``--over table.key=VALUES``: values with commas between, or ``from:to:count``."""
+    """A grid from ``table.key=VALUES``: values with commas between, or ``from:to:count``."""
     grid: dict[str, list[Any]] = {}
     for text in over:
         key, equals, values = (part.strip() for part in text.partition("="))
         if not equals or not values:
-            raise InputError(f"--over {text}: write table.key=VALUES, such as membrane.wall_thickness_mm=1:2:5")
+            raise InputError("write table.key=VALUES, such as membrane.wall_thickness_mm=1:2:5", key="over", value=text)
         if key in grid:
-            raise InputError(f"--over {text}: {key} is given twice")
-        grid[key] = _values("--over", key, _flag_values(text, values))
+            raise InputError(f"{key} is given twice", key="over", value=text)
+        grid[key] = _values("over", key, _flag_values(text, values))
     words = {key: value for key, value in options.items() if value is not None}
-    return _plan(f"{Path(design).stem}-sweep", "--over", design, _assigned(assignments or []), grid, (), words)
+    return _plan(f"{Path(design).stem}-sweep", "over", design, _assigned(assignments or []), grid, (), words)
 
 
 def _plan(
@@ -150,13 +150,13 @@ def _assigned(assignments: list[str]) -> Settings:
     for text in assignments:
         key, equals, value = (part.strip() for part in text.partition("="))
         if not equals:
-            raise InputError(f"--set {text}: write table.key=value, such as membrane.material=FLX9960")
-        found[key] = _value("--set", key, _toml(value))
+            raise InputError("write table.key=value, such as membrane.material=FLX9960", key="set", value=text)
+        found[key] = _value("set", key, _toml(value))
     return found
 
 
 def _flag_values(flag: str, text: str) -> Any:
-    """The values of ``--over``: a range, a TOML list without its brackets or with them, or bare words."""
+    """The values of a ``table.key=VALUES``: a range, a TOML list without its brackets or with them, or bare words."""
     parts = text.split(":")
     if len(parts) == 3:
         start, stop, count = (_toml(part.strip()) for part in parts)
@@ -165,7 +165,7 @@ def _flag_values(flag: str, text: str) -> Any:
     if isinstance(listed, list):
         return listed
     if len(parts) > 1:
-        raise InputError(f"--over {flag}: a range is written from:to:count, such as 1:2:5")
+        raise InputError("a range is written from:to:count, such as 1:2:5", key="over", value=flag)
     return [_toml(part.strip()) for part in text.split(",")]
 
 

@@ -55,7 +55,7 @@ def sweep(
     Raises InputError before any work starts, ComputationError where it stopped on the way, its progress kept.
     """
     if machines.workers is not None and machines.workers < 1:
-        raise InputError(f"--workers {machines.workers}: must be at least 1")
+        raise InputError("must be at least 1", key="workers", value=machines.workers)
     resolved = study(plan, library or Library.default())
     with WorkFolder(out) as folder:
         journal = Journal(folder.journal, resolved.fingerprint)
@@ -82,8 +82,9 @@ def _is_there(study: SweepStudy, out: Path, *, fresh: bool, resumed: bool) -> bo
         return not fresh
     if not fresh and not resumed:
         raise InputError(
-            f"--out: {out} is the dataset of another sweep (input hash {found[:12]}, this one {study.fingerprint[:12]}); "
-            "--fresh replaces it, or give another --out"
+            f"{out} is the dataset of another sweep (input hash {found[:12]}, this one {study.fingerprint[:12]})",
+            key="out",
+            remedy="`fresh` replaces it, or give another `out`",
         )
     return False
 
@@ -111,8 +112,8 @@ def _keeping(folder: WorkFolder, records: dict[int, Record], total: int) -> Iter
         if isinstance(error, OSError):
             why = f"{error.filename or folder.path}: cannot be written: {error.strerror or error}"
         raise ComputationError(
-            f"{why}\n{len(records)} of {total} points are done and kept in {folder.path}; the same command"
-            " (without --fresh) goes on from there"
+            f"{why}\n{len(records)} of {total} points are done and kept in {folder.path}",
+            remedy="the same command (without `fresh`) goes on from there",
         ) from None
 
 

@@ -22,8 +22,8 @@ class CachedLibrary(Library):
             self._shelves[kind] = super().shelf(kind)
         return self._shelves[kind]
 
-    def load(self, kind: str, name: str, *, asked_by: str = "") -> Any:
+    def load(self, kind: str, name: str, *, file: str | None = None, key: str | None = None) -> Any:
         """Load one thing by name; raises InputError as a library does."""
         if (kind, name) not in self._things:
-            self._things[kind, name] = super().load(kind, name, asked_by=asked_by)
+            self._things[kind, name] = super().load(kind, name, file=file, key=key)
         return self._things[kind, name]

@@ -11,7 +11,7 @@ Document = dict[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class SweepVariable:
-    """One variable: how it is read from a state or a prediction, as ``predict --json`` prints them."""
+    """One variable: how it is read from a state or a prediction, as ``predict`` prints them."""
 
     name: str
     units: str

@@ -36,10 +36,14 @@ class WorkFolder:
                 self.path.mkdir(parents=True, exist_ok=True)
                 foreign = sorted(path.name for path in self.path.iterdir() if path.name not in _OURS)
                 if foreign:
-                    raise InputError(f"--out: {self.path} holds {foreign[0]}, which no sweep wrote; give another --out")
+                    raise InputError(
+                        f"{self.path} holds {foreign[0]}, which no sweep wrote", key="out", remedy="give another `out`"
+                    )
                 self._lock = self._take()
         except OSError as error:
-            raise InputError(f"--out: {self.path}: {error.strerror}; give a file where you may write") from None
+            raise InputError(
+                f"{self.path}: {error.strerror}", key="out", remedy="give a file where you may write"
+            ) from None
         return self
 
     def __exit__(
@@ -85,7 +89,9 @@ class WorkFolder:
             holder = file.read(20).decode(errors="replace").strip() or "another process"
             file.close()
             raise InputError(
-                f"--out: {self.out}: process {holder} is sweeping into it; wait for it, or give another --out"
+                f"{self.out}: process {holder} is sweeping into it",
+                key="out",
+                remedy="wait for it, or give another `out`",
             ) from None
         file.close()
         return None
@@ -100,12 +106,12 @@ class WorkFolder:
 def check_output(out: Path) -> None:
     """Raise InputError where ``out`` cannot be a dataset's file."""
     if out.suffix != ".nc":
-        raise InputError(f"--out: {out}: a dataset is a netCDF file; give a name that ends in .nc")
+        raise InputError(f"{out}: a dataset is a netCDF file", key="out", remedy="give a name that ends in .nc")
     if out.is_symlink() or (out.exists() and not out.is_file()):
-        raise InputError(f"--out: {out} is not a plain file; give the name of a file")
+        raise InputError(f"{out} is not a plain file", key="out", remedy="give the name of a file")
     parent = next(path for path in out.absolute().parents if path.exists())
     if not parent.is_dir() or not os.access(parent, os.W_OK | os.X_OK):
-        raise InputError(f"--out: {parent} is no folder that you may write to; give a file in one")
+        raise InputError(f"{parent} is no folder that you may write to", key="out", remedy="give a file in one")
 
 
 def _sync_folder(folder: Path) -> None:

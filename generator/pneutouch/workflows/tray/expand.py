@@ -65,7 +65,7 @@ def expand(order: TrayOrder, library: Library | None = None) -> ExpandedTray:
         TrayVariant(**{**vars(value), "index": k, "letter": letter(k)}) for k, value in enumerate(values, start=1)
     ]
     profile = order.tray.tray.profile or values[0].assembly.scene.design.print.profile
-    printer = shelves.load("printers", profile, asked_by=f"{order.where}: tray.profile")
+    printer = shelves.load("printers", profile, file=order.where, key="tray.profile")
     pieces: list[TrayPiece] = []
     notes: list[str] = []
     for value in values:
@@ -106,8 +106,7 @@ def _assembly(order: TrayOrder, entry: Entry, settings: dict[str, Any], library:
     try:
         return assemble(load_scene(order.design(entry.design), [*assignments(settings), *order.overrides], library))
     except InputError as error:
-        text = str(error).removeprefix("--set ")
-        raise InputError(f"{order.where}: entry {entry.design!r}: {text}") from None
+        raise InputError(f"entry {entry.design!r}: {error}", file=order.where) from None
 
 
 def _pieces(value: TrayVariant, printer: Printer, order: TrayOrder) -> tuple[list[TrayPiece], list[str]]:

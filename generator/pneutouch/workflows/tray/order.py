@@ -50,12 +50,12 @@ def order_of_file(path: Path, overrides: Sequence[str] = (), **head: Any) -> Tra
 def order_of_flags(
     designs: Sequence[str], over: Sequence[str] = (), copies: int = 1, overrides: Sequence[str] = (), **head: Any
 ) -> TrayOrder:  # fmt: skip
-    """One entry a design, each over the values of ``--over table.key=A,B,C``, ``copies`` of each.
+    """One entry a design, each over the values of ``table.key=A,B,C``, ``copies`` of each.
 
-    Raises InputError naming the flag.
+    Raises InputError naming the parameter.
     """
     if not LEAST_COPIES <= copies <= MOST_COPIES:
-        raise InputError(f"--copies {copies}: must be from {LEAST_COPIES} to {MOST_COPIES}")
+        raise InputError(f"must be from {LEAST_COPIES} to {MOST_COPIES}", key="copies", value=copies)
     varied = _varied(over)
     entries = [{"design": design, "copies": copies, "over": varied} for design in designs]
     stem = Path(designs[0]).stem
@@ -65,7 +65,7 @@ def order_of_flags(
 
 
 def assignments(settings: dict[str, EntryValue]) -> list[str]:
-    """Settings as ``--set`` takes them; JSON of numbers, texts and lists is TOML."""
+    """Settings as ``table.key=VALUE``; JSON of numbers, texts and lists is TOML."""
     return [f"{key}={json.dumps(value)}" for key, value in settings.items()]
 
 
@@ -74,14 +74,16 @@ def _varied(over: Sequence[str]) -> dict[str, list[Any]]:
     for text in over:
         key, equals, values = (part.strip() for part in text.partition("="))
         if not equals or not values:
-            raise InputError(f"--over {text}: write table.key=VALUES, such as membrane.material=TangoPlus,FLX9940")
+            raise InputError(
+                "write table.key=VALUES, such as membrane.material=TangoPlus,FLX9940", key="over", value=text
+            )
         if key in varied:
-            raise InputError(f"--over {text}: {key} is given twice")
-        varied[key] = _values(values, f"--over {text}")
+            raise InputError(f"{key} is given twice", key="over", value=text)
+        varied[key] = _values(values, text)
     return varied
 
 
-def _values(text: str, where: str) -> list[Any]:
+def _values(text: str, given: str) -> list[Any]:
     """TOML values and bare words, parted by the commas that are in no bracket or quote; one after the last is no harm."""
     pieces = text.removesuffix(",").split(",")
     found = []
@@ -91,9 +93,8 @@ def _values(text: str, where: str) -> list[Any]:
             while not (read := _toml(value)) and pieces:
                 value = f"{value},{pieces.pop(0)}".rstrip()
             if not read:
-                raise InputError(
-                    f"{where}: {value} is not closed, or not TOML; write lists as [1, 2] and texts as 'A, B'"
-                )
+                remedy = "write lists as [1, 2] and texts as 'A, B'"
+                raise InputError(f"{value} is not closed, or not TOML", key="over", value=given, remedy=remedy)
         found += _toml(value) or [value]
     return found
 
