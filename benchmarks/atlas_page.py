@@ -40,7 +40,7 @@ def measure() -> dict[str, Any]:
         return [float(f"{value:.{_DIGITS}g}") for value in values]
 
     return {
-        "asked": COUNT, **{key: column([getattr(gap.case, key) for gap in gaps]) for key in KEYS},
+        "requested": COUNT, **{key: column([getattr(gap.case, key) for gap in gaps]) for key in KEYS},
         **{name: column([getattr(gap, name) for gap in gaps]) for name in ERRORS},
         "end_off": column([gap.positions[1] - gap.positions[0] for gap in gaps]),
         "states": {name: _states(gaps, f"every_{name}") for name in ("force", "pressure")},
@@ -111,7 +111,7 @@ def _accuracy(data: dict[str, Any]) -> list[str]:
     ]
     return [
         "## How near it is to the solid", "",
-        f"{data['asked']:,} random presses in the box that took no part in making it, by both: walls and gas stiffness even in their "
+        f"{data['requested']:,} random presses in the box that took no part in making it, by both: walls and gas stiffness even in their "
         f"logarithm, driving pressure 0 to 97 % of the limit, dead volume 0 to several R0^3, depth 0.2 to 0.75 R0, some with a gauge limit "
         f"or a break strain ({count:,} have a range to compare). `make check-slow` presses them again and prints these figures.", "",
         "| error | median | 99 of 100 | greatest | above 0.5 % |", "|---|---|---|---|---|",

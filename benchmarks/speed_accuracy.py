@@ -151,7 +151,7 @@ def rung(method: str, scene: Scene) -> dict[str, str]:
     """What is to be told of a rung on a scene: why it has no answer, or which one was chosen."""
     if method == ATLAS and atlas_answer(scene) is None:
         return {"no_answer": why_no_answer(scene)}
-    return {"rung": auto_answer(scene)[1]} if method == AUTO else {}
+    return {"model": auto_answer(scene)[1]} if method == AUTO else {}
 
 
 def describe(scene: Scene, truth: Reference) -> dict[str, Any]:

@@ -43,9 +43,9 @@ def _what(data: dict[str, Any]) -> list[str]:
 def _scan(data: dict[str, Any]) -> list[str]:
     said = data["scan"]
     rows = [
-        f"| {state['label']} | {pattern['name']} | {pattern['true_frequency_Hz']:.3f} | {pattern['found_frequency_Hz']:.3f} | "
+        f"| {state['label']} | {pattern['name']} | {pattern['true_frequency_Hz']:.3f} | {pattern['detected_frequency_Hz']:.3f} | "
         f"{1e3 * pattern['model_amplitude_kPa']:.2f} | {1e3 * pattern['amplitude_kPa']:.2f} | {pattern['detection_figure']:.1f} | "
-        f"{pattern['p_value']:.3f} | {'yes' if pattern['found'] else 'no'} | {pattern['sinking_amplitude_um']:.2f} | {pattern['relief_equivalent_um']:.0f} |"
+        f"{pattern['p_value']:.3f} | {'yes' if pattern['detected'] else 'no'} | {pattern['sinking_amplitude_um']:.2f} | {pattern['relief_equivalent_um']:.0f} |"
         for state in said["states"] for pattern in state["patterns"]
     ]  # fmt: skip
     states = [
@@ -270,7 +270,7 @@ def _found(states: list[dict[str, Any]]) -> str:
     """Which patterns each state shows."""
     said = []
     for state in states:
-        names = [pattern["name"] for pattern in state["patterns"] if pattern["found"]]
+        names = [pattern["name"] for pattern in state["patterns"] if pattern["detected"]]
         said.append(f"at {state['label']} {', '.join(names) or 'none'}")
     return "; ".join(said)
 

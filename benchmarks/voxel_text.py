@@ -89,7 +89,7 @@ def stacks(rows: list[dict[str, Any]]) -> list[str]:
         )
         lines.append(
             f"| {row['mode']}, {row['layer_um']:g} um | {row['layers']} of {wide} x {tall} | {row['seconds']:.1f} | {row['peak_MB']:.0f} | "
-            f"{row['MB']:.0f} | {row['reading_seconds']:.1f} | {off} | {body['fraction_asked']:.3%}, {body['fraction_realised']:.3%} | "
+            f"{row['MB']:.0f} | {row['reading_seconds']:.1f} | {off} | {body['fraction_requested']:.3%}, {body['fraction_realised']:.3%} | "
             f"{body['worst_cube']:.2%} |"
         )
     return lines

@@ -72,7 +72,7 @@ def _rung_words(data: dict[str, Any]) -> list[str]:
         row, took, plain = atlas[scene], auto[scene], solid[scene]
         said = f"no answer: {row['no_answer']}" if "no_answer" in row else f"{row['sensitivity_error']:+.2%}"
         lines.append(
-            f"| {scene} | {said} | {took['rung']} | {took['sensitivity_error']:+.2%} | "
+            f"| {scene} | {said} | {took['model']} | {took['sensitivity_error']:+.2%} | "
             f"{took['processor_s'] / plain['processor_s']:.3f} |"
         )
     inside = [row for row in atlas.values() if "no_answer" not in row]

@@ -33,7 +33,7 @@ def test_stiff_state_shows_both_patterns_within_three_percent(scanned):
     assert [state["label"] for state in said["states"]] == ["0 kPa", "22 kPa"]
     stiff = said["states"][1]
     for pattern in stiff["patterns"]:
-        assert pattern["found"] and abs(pattern["frequency_error_relative"]) < 0.03
+        assert pattern["detected"] and abs(pattern["frequency_error_relative"]) < 0.03
     surface = stiff["patterns"][0]
     assert surface["true_frequency_Hz"] == pytest.approx(4 / 3, rel=1e-6)
     assert surface["amplitude_kPa"] == pytest.approx(surface["model_amplitude_kPa"], rel=0.1)
@@ -78,7 +78,7 @@ def test_measured_signals_are_read_like_simulated_ones(tmp_path):
     assert result.exit_code == 0, result.stderr
     (state,) = json.loads(result.stdout)["states"]
     for pattern, size in zip(state["patterns"], (0.02, 0.03, 0.03), strict=True):
-        assert pattern["found"] and pattern["amplitude_kPa"] == pytest.approx(size, rel=0.05)
+        assert pattern["detected"] and pattern["amplitude_kPa"] == pytest.approx(size, rel=0.05)
 
 
 def test_held_force_and_speed(tmp_path):

@@ -32,7 +32,7 @@ OUTSIDE = {
 
 
 def said(prediction):
-    return prediction.error_estimate["rung"]
+    return prediction.error_estimate["model_choice"]
 
 
 @pytest.mark.parametrize(
@@ -150,7 +150,7 @@ def test_a_press_that_leaves_the_known_states_goes_to_the_solid(monkeypatch):
 def test_auto_is_the_rung_it_names():
     auto, atlas = (predict("x", PAPER, [0.012, 0.022], model=m) for m in ("auto", "atlas"))
     assert [s.figures for s in auto.states] == [s.figures for s in atlas.states]
-    assert "rung" not in atlas.error_estimate
+    assert "model_choice" not in atlas.error_estimate
     assert auto.assumptions == atlas.assumptions
 
 
@@ -174,7 +174,7 @@ def test_the_command_line_takes_a_tolerance(command, root):
     result = command(*words, "--tolerance", "2%", cwd=root)
     assert result.returncode == 0, result.stderr
     document = json.loads(result.stdout)
-    assert document["model"] == "atlas" and "meets 2.0%" in document["error_estimate"]["rung"]
+    assert document["model"] == "atlas" and "meets 2.0%" in document["error_estimate"]["model_choice"]
 
 
 @pytest.mark.parametrize("words", [

@@ -141,7 +141,7 @@ def test_what_was_asked_of_auto_is_asked_again(library, tmp_path):
     folder = build(evaluation, tmp_path / "one")
     again = rebuilt(folder / "paper-dome.3mf", tmp_path / "two")
     assert again == content(folder)
-    assert "meets 3.0%" in json.loads(again["prediction.json"])["error_estimate"]["rung"]
+    assert "meets 3.0%" in json.loads(again["prediction.json"])["error_estimate"]["model_choice"]
 
 
 def test_a_changed_library_does_not_change_a_rebuild_but_does_change_a_build(tmp_path, library):

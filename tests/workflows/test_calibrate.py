@@ -63,7 +63,7 @@ def test_the_document_holds_the_truth_and_is_json(found):
     (held,) = document["held_out"]
     assert abs(held["sensitivity_error"]) < 0.02
     assert len(document["residuals"]) == 10
-    assert all(isinstance(line, str) for line in document["told"])
+    assert all(isinstance(line, str) for line in document["notes"])
 
 
 def test_the_same_data_give_the_same_bytes(found, observations, scene):

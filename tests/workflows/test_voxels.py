@@ -51,7 +51,7 @@ def test_round_trip_counts_volumes_and_fractions(written):
         entry = stack.manifest["bodies"][body.solid.name]
         assert entry["voxels"] * stack.voxel == pytest.approx(body.solid.volume, rel=0.01)
     membrane = stack.manifest["bodies"]["membrane"]
-    assert membrane["fraction_realised"] == pytest.approx(membrane["fraction_asked"], abs=1e-3)
+    assert membrane["fraction_realised"] == pytest.approx(membrane["fraction_requested"], abs=1e-3)
     assert membrane["worst_cube"] <= 0.005
     soft = membrane["voxels"] * (1 - membrane["fraction_realised"])
     assert stack.counts["TangoPlus"] == pytest.approx(soft, abs=1)
@@ -252,7 +252,7 @@ def test_the_full_graded_dome_keeps_time_memory_and_volume(library, tmp_path):
     bodies = read_stack(folder).manifest["bodies"]
     for body in bodies.values():
         assert body["volume_mm3"] == pytest.approx(body["exact_volume_mm3"], rel=0.003)
-    assert abs(bodies["membrane"]["fraction_realised"] - bodies["membrane"]["fraction_asked"]) < 1e-3
+    assert abs(bodies["membrane"]["fraction_realised"] - bodies["membrane"]["fraction_requested"]) < 1e-3
     assert bodies["membrane"]["worst_cube"] < 0.005
 
 

@@ -22,7 +22,7 @@ def calibration_text(document: dict[str, Any]) -> str:
         head,
         columns([], rows),
         "" if chi is None else f"chi-squared per degree of freedom: {chi:.2f}",
-        "\n".join(f"note: {note}" for note in document["told"]),
+        "\n".join(f"note: {note}" for note in document["notes"]),
         "\n".join(f"not read: {file}: {why}" for file, why in document["failures"]),
         "\n".join(f"written: {path}" for path in document["written"]),
     ]

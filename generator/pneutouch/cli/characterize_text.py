@@ -15,7 +15,7 @@ def measured_text(document: dict[str, Any]) -> str:
         lines += ["", *_group(group)]
     for entry in document["target"]:
         word = {True: "met", False: "NOT met", None: "not decided"}[entry["passed"]]
-        lines.append(f"\ntarget {word}: {entry['what']}: wanted {entry['wanted']}, measured {entry['measured']}")
+        lines.append(f"\ntarget {word}: {entry['what']}: required {entry['required']}, measured {entry['measured']}")
     for change in document["ageing"]:
         lines.append(f"\nageing: {change['resin']}, {change['driving_pressure_kPa']:g} kPa, {change['age']}: {change['sensitivity_change_percent']:+.1f} %")  # fmt: skip
     for entry in document["injections"]:
@@ -28,7 +28,7 @@ def measured_text(document: dict[str, Any]) -> str:
 
 def _doubts(runs: list[dict[str, Any]]) -> list[str]:
     """How many stretches were left out, and how many are noted but used."""
-    every = [doubt for run in runs for doubt in run["doubts"] if doubt["kind"] != "note"]
+    every = [doubt for run in runs for doubt in run["warnings"] if doubt["kind"] != "note"]
     left = sum(not doubt["used"] for doubt in every)
     if not every:
         return []

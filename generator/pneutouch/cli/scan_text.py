@@ -34,8 +34,8 @@ def _pattern(found: dict[str, Any]) -> list[str]:
     if "p_value" not in found:
         return [true, "-", model, "-", "-", "-", "no signal"]
     return [
-        true, f"{found['found_frequency_Hz']:.4g}", model, f"{1e3 * found['amplitude_kPa']:.3g}",
-        f"{found['detection_figure']:.1f}", f"{found['p_value']:.3f}", "found" if found["found"] else "not found",
+        true, f"{found['detected_frequency_Hz']:.4g}", model, f"{1e3 * found['amplitude_kPa']:.3g}",
+        f"{found['detection_figure']:.1f}", f"{found['p_value']:.3f}", "detected" if found["detected"] else "not detected",
     ]  # fmt: skip
 
 

@@ -33,7 +33,7 @@ def stack_text(document: dict[str, Any]) -> str:
         [
             name, str(body["voxels"]), f"{body['volume_mm3']:.2f}", f"{body['volume_mm3'] / body['exact_volume_mm3'] - 1:+.2%}",
             body.get("stiff_resin", "-"),
-            *(f"{body[key]:.3%}" if key in body else "-" for key in ("fraction_asked", "fraction_realised")),
+            *(f"{body[key]:.3%}" if key in body else "-" for key in ("fraction_requested", "fraction_realised")),
         ]
         for name, body in document["bodies"].items()
     ]  # fmt: skip

@@ -82,7 +82,7 @@ def predict(
     if sensitivity_error is not None:
         errors = _merged(errors, sensitivity_error(rung))
     if why:
-        errors = _merged({"rung": why, "summary": [f"Model {rung}: {why}."]}, errors)
+        errors = _merged({"model_choice": why, "summary": [f"Model {rung}: {why}."]}, errors)
     gas = f"dead volume {sensor.dead_volume / ML:.4g} mL, ambient pressure {sensor.ambient_pressure / KPA:g} kPa"
     held = _CLAMPED_FLANGE if rung == "solid" and sensor.flange is not None else _CLAMPED_BASE
     return SensorPrediction(

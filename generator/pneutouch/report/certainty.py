@@ -106,7 +106,7 @@ def _rung(prediction: SensorPrediction) -> list[list[str]]:
     exact = f"within {NUMERICAL[prediction.model]:.1%} in sensitivity" if prediction.model != "membrane" else (
         f"up to {1 + NUMERICAL['membrane']:.0f} times off the solid's sensitivity"
     )  # fmt: skip
-    why = error.get("rung", "asked for by name, or the default")
+    why = error.get("model_choice", "asked for by name, or the default")
     return [["Model", prediction.model], ["Numerical error", exact], ["Why this model", why]]
 
 

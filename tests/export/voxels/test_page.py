@@ -66,6 +66,6 @@ def test_the_whole_dome_kept_its_limits(stored):
     for row in stored["stacks"]:
         membrane = row["bodies"]["membrane"]
         assert membrane["worst_cube"] < 0.005
-        assert abs(membrane["fraction_realised"] - membrane["fraction_asked"]) < 1e-3
+        assert abs(membrane["fraction_realised"] - membrane["fraction_requested"]) < 1e-3
         for body in row["bodies"].values():
             assert body["volume_mm3"] == pytest.approx(body["exact_volume_mm3"], rel=0.003)

@@ -88,7 +88,7 @@ def _body(body: VoxelBody, tally: VoxelCounts, pitch: tuple[float, float, float]
         return entry
     return {
         **entry, "made_up_within_mm": round(reach_for(body.blend.most, pitch), 6), "stiff_resin": body.blend.resins[1], "skin_voxels": tally.skin,
-        "fraction_asked": round(tally.asked / tally.voxels, 9), "fraction_given": round(tally.given / tally.voxels, 9),
+        "fraction_requested": round(tally.asked / tally.voxels, 9), "fraction_given": round(tally.given / tally.voxels, 9),
         "fraction_realised": round(tally.realised / tally.voxels, 9),
         "worst_cube": round(tally.worst, 9), "cubes": tally.cubes,
     }  # fmt: skip

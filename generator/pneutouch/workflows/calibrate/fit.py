@@ -79,10 +79,10 @@ class Calibration:
                 {"driving_pressure_kPa": m.pressure, "channel": m.channel, "from_mm": m.start, "to_mm": m.end, "share": m.share}
                 for m in self.misses
             ],
-            "not_told_apart": [_ambiguity(group) for group in self.identified.ambiguities],
-            "not_seen": [NAMES[k] for k in self.identified.unseen],
+            "strongly_correlated": [_ambiguity(group) for group in self.identified.ambiguities],
+            "unidentified": [NAMES[k] for k in self.identified.unseen],
             "further_tests": [_further(self.fit, test) for test in self.further],
-            "held_out": [_held_out(one) for one in self.held_out], "told": self.told,
+            "held_out": [_held_out(one) for one in self.held_out], "notes": self.told,
         }  # fmt: skip
 
 

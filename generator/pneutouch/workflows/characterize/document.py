@@ -30,7 +30,7 @@ def document(measured: CampaignReport) -> dict[str, Any]:
             for resin, pressure, age, value, low, high, published in measured.ageing
         ],
         "target": [
-            {"what": v.what, "wanted": v.wanted, "measured": v.measured, "passed": v.passed} for v in measured.verdicts
+            {"what": v.what, "required": v.wanted, "measured": v.measured, "passed": v.passed} for v in measured.verdicts
         ],
         "questions": [{"file": file, "question": text} for file, text in measured.questions],
         "failures": [{"file": file, "message": text} for file, text in measured.failures],
@@ -64,7 +64,7 @@ def _run(curve: MeasuredCurve, values: dict[str, float]) -> dict[str, Any]:
         "file": run.file, "kind": run.kind, "sensor": run.sensor, "resin": run.resin, "run": run.run,
         "driving_pressure_kPa": run.driving_pressure_kPa, "age_days": run.age_days, "points": len(curve.force) - 1,
         "figures": dict(values),
-        "doubts": [
+        "warnings": [
             {"start_s": round(d.start, 4), "end_s": round(d.end, 4), "why": d.why, "used": d.used, "kind": d.kind} for d in curve.doubts
         ],
     }  # fmt: skip

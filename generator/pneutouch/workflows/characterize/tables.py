@@ -49,7 +49,7 @@ def segments_csv(curves: Iterable[MeasuredCurve]) -> bytes:
             rows.append(
                 [
                     *_of(curve),
-                    "doubt",
+                    "warning",
                     f"{doubt.start:.4f}",
                     f"{doubt.end:.4f}",
                     *blank,

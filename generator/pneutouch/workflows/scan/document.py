@@ -127,9 +127,9 @@ def _found(run: ScanRun, seen: AnalysedSignal, row: BarRow, found: Detection | N
             "relief_equivalent_um": 1e3 * relief / felt,
         }
     if found is None:
-        return text | {"found": False}
+        return text | {"detected": False}
     return text | {
-        "found": found.found, "found_frequency_Hz": found.frequency, "amplitude_kPa": found.amplitude / KPA,
+        "detected": found.found, "detected_frequency_Hz": found.frequency, "amplitude_kPa": found.amplitude / KPA,
         "noise_floor_kPa": found.floor / KPA, "detection_figure": found.ratio, "threshold": found.threshold,
         "p_value": found.p_value, "level": found.level,
         "frequency_error_relative": found.frequency / found.asked - 1.0,

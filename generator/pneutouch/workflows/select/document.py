@@ -32,8 +32,8 @@ def document(selection: SelectionRun) -> dict[str, Any]:
             for rank, (choice, solid) in enumerate(zip(answer.designs, confirmed, strict=True), start=1)
         ],
         "nearest": None if answer.nearest is None else _choice(selection, answer.nearest, None),
-        "give_up": [
-            {"wish": way.wish, "would_need": would_need(selection, way), "design": _choice(selection, way.best, None)}
+        "dropped_requirements": [
+            {"requirement": way.wish, "attainable": would_need(selection, way), "design": _choice(selection, way.best, None)}
             for way in answer.ways
         ],
         "left_out": selection.left_out,

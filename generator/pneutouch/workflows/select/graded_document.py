@@ -49,7 +49,7 @@ def _figures(selection: GradedSelectionRun, trial: GradeTrial) -> dict[str, Any]
         "range_ends_with": list(trial.ends),
         "rated_pressure_kPa": None if trial.note else trial.rated / KPA,
         "meets": selection.meets(trial),
-        "why_not": trial.note or None,
+        "reason": trial.note or None,
     }
 
 

@@ -259,7 +259,7 @@ def _inputs(subjects: list[SimulatedResin], asked: SimulationOptions) -> dict[st
     return {
         "design": first.scene.design.model_dump(mode="json"),
         "resins": {subject.name: subject.scene.membrane_material.model_dump(mode="json") for subject in subjects},
-        "asked": {
+        "options": {
             key: value for key in ("specimens", "pressures", "runs", "kinds", "rate", "seed", "model", "ages", "parquet")
             if (value := getattr(asked, key)) is not None
         },
