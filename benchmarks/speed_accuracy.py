@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from benchmarks.answer import Answer, membrane_answer, solid_answer, solid_limit
-from benchmarks.rungs import (
+from benchmarks.models import (
     ATLAS,
     AUTO,
-    RUNG_METHODS,
+    MODEL_METHODS,
     atlas_answer,
     atlas_limit,
     auto_answer,
@@ -35,7 +35,7 @@ MESHES: dict[str, tuple[int | None, int | None]] = {
 }  # fmt: skip
 """The default is 24 to 48 cells along the arc and one or two across, by the wall ratio."""
 
-METHODS = ("membrane variational", "membrane printed", *RUNG_METHODS, *MESHES)
+METHODS = ("membrane variational", "membrane printed", *MODEL_METHODS, *MESHES)
 _RUNS = 3
 _SHY = 0.98
 """Finer meshes fold a little earlier: what comes so near an event of a coarser one is not computed."""
@@ -147,8 +147,8 @@ FIGURES = (
 )  # fmt: skip
 
 
-def rung(method: str, scene: Scene) -> dict[str, str]:
-    """What is to be told of a rung on a scene: why it has no answer, or which one was chosen."""
+def model_note(method: str, scene: Scene) -> dict[str, str]:
+    """What the table states of a model on a scene: why it has no answer, or which one was chosen."""
     if method == ATLAS and atlas_answer(scene) is None:
         return {"no_answer": why_no_answer(scene)}
     return {"model": auto_answer(scene)[1]} if method == AUTO else {}
@@ -193,7 +193,7 @@ def measure(scenes: tuple[Scene, ...] = SCENES) -> dict[str, Any]:
             blank = {"method": method, "scene": scene.name, **dict.fromkeys(FIGURES), "processor_s": None}
             taken = {"processor_s": statistics.median(seconds[method])}
             row = blank if answer is None else {**compare(method, scene, answer, truths[scene.name]), **taken}
-            rows.append({**row, **rung(method, scene)})
+            rows.append({**row, **model_note(method, scene)})
     return {
         "refinements": [list(r) for r in REFINEMENTS],
         "scenes": [describe(scene, truths[scene.name]) for scene in scenes],

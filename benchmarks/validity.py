@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.answer import Answer, membrane_answer, solid_answer, solid_limit
-from benchmarks.rungs import ATLAS, atlas_answer
+from benchmarks.models import ATLAS, atlas_answer
 from benchmarks.scenes import PAPER, Scene
 from pneutouch.errors import PneutouchError
 from pneutouch.report.style import ACCENT, INK, MUTED, figure, svg

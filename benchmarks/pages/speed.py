@@ -5,9 +5,9 @@ from __future__ import annotations
 import statistics
 from typing import Any
 
+from benchmarks.models import AT_ONCE, MODEL_METHODS
 from benchmarks.pages.speed_chart import CUT, DEFAULT, SENSITIVITY_TARGET, of, sizes
 from benchmarks.peers import OURS, WITHIN, cheapest
-from benchmarks.rungs import AT_ONCE, RUNG_METHODS
 from benchmarks.speed_accuracy import METHODS
 
 SECONDS_TARGET, FELUPE_TARGET, CALCULIX_TARGET = 0.25, 1 / 5, 1 / 3
@@ -36,7 +36,7 @@ def section(data: dict[str, Any], peers: dict[str, Any], shares: dict[str, float
         "scenes by an event that the reference does not have. Right: the paper's sensor in TangoPlus.", "",
         "Errors, median / worst scene; times over the default's, median over scenes, processor time of the same run. A scene "
         f"is cut where the method's range ends before {CUT:.0%} of the reference's.", "",
-        *table(data), *_rung_words(data), *_default_words(data), *scene_table(data), *_target_section(data, peers), *_peer_section(peers),
+        *table(data), *_model_words(data), *_default_words(data), *scene_table(data), *_target_section(data, peers), *_peer_section(peers),
         *_share_section(shares),
     ]  # fmt: skip
 
@@ -63,9 +63,9 @@ def _default_words(data: dict[str, Any]) -> list[str]:
     ]  # fmt: skip
 
 
-def _rung_words(data: dict[str, Any]) -> list[str]:
-    """What the atlas leaves to the solid, scene by scene, and what the ladder took."""
-    atlas, auto = ({row["scene"]: row for row in data["rows"] if row["method"] == m} for m in RUNG_METHODS)
+def _model_words(data: dict[str, Any]) -> list[str]:
+    """What the atlas leaves to the solid, scene by scene, and what `auto` took."""
+    atlas, auto = ({row["scene"]: row for row in data["rows"] if row["method"] == m} for m in MODEL_METHODS)
     solid = {row["scene"]: row for row in of(data["rows"], DEFAULT)}
     lines = []
     for scene in (s["scene"] for s in data["scenes"]):
@@ -79,10 +79,10 @@ def _rung_words(data: dict[str, Any]) -> list[str]:
     base = statistics.median(row["processor_s"] for row in solid.values())
     ratio = statistics.median(solid[row["scene"]]["processor_s"] / row["processor_s"] for row in inside)
     return [
-        "### The atlas and the ladder's choice", "",
+        "### The atlas and the choice of auto", "",
         f"The [atlas](atlas.md) is timed as one sensor alone, warm; it answers {len(inside)} of {len(atlas)} scenes, "
         f"{ratio:.0f} times as fast as the default solid in the median, and shares the solid's errors because it is made from it. "
-        f"{AT_ONCE:,} sensors in one call cost {base / data['atlas_at_once_s']:,.0f} times less each than the default. `auto` takes the cheapest rung "
+        f"{AT_ONCE:,} sensors in one call cost {base / data['atlas_at_once_s']:,.0f} times less each than the default. `auto` takes the cheapest model "
         "whose stated error meets its tolerance and goes to the solid where the atlas does not speak for a scene, or where the press ends by buckling or at the break strain, which the solid places more exactly.", "",
         "| scene | atlas's error in sensitivity | auto took | its error | its time / default |", "|---|---|---|---|---|", *lines, "",
     ]  # fmt: skip

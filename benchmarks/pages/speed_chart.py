@@ -5,8 +5,8 @@ from __future__ import annotations
 import statistics
 from typing import TYPE_CHECKING, Any
 
+from benchmarks.models import AT_ONCE, ATLAS, MODEL_METHODS
 from benchmarks.peers import WITHIN
-from benchmarks.rungs import AT_ONCE, ATLAS, RUNG_METHODS
 from benchmarks.speed_accuracy import METHODS
 from pneutouch.report.style import ACCENT, FAINT, INK, LINES, MARKERS, MUTED, figure, svg
 
@@ -59,7 +59,7 @@ def _sensitivity_panel(ax: Axes, data: dict[str, Any]) -> None:
         errors = [100 * e for e in sizes(rows, "sensitivity_error")]
         cost = 1e3 * statistics.median(row["processor_s"] for row in rows)
         middle, worst = statistics.median(errors), max(errors)
-        membrane, chosen, table = method.startswith("membrane"), method == DEFAULT, method in RUNG_METHODS
+        membrane, chosen, table = method.startswith("membrane"), method == DEFAULT, method in MODEL_METHODS
         marker = MARKERS[2] if membrane else (MARKERS[3] if chosen else MARKERS[1 if table else 0])
         colour = MUTED if membrane else (ACCENT if chosen or table else INK)
         cut = sum(row["range_share"] < CUT for row in rows) > len(rows) // 4

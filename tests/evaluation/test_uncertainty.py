@@ -1,4 +1,4 @@
-"""Intervals of a prediction: the budget's, about the figures of the rung that was asked, or a word why there are none."""
+"""Intervals of a prediction: the budget's, about the figures of the model that was asked, or a word why there are none."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 from pneutouch.evaluation import evaluate
 from pneutouch.evaluation.document import prediction_document
 from pneutouch.evaluation.uncertainty import documents
-from pneutouch.mechanics.ladder import NUMERICAL
+from pneutouch.mechanics.models import NUMERICAL
 from pneutouch.mechanics.uncertainty import FIGURES, batch_of, budget, gas_text, model_errors
 from pneutouch.output.files import json_bytes
 from pneutouch.spec.material import Material
@@ -29,7 +29,7 @@ def own_budget(evaluation, library, near):
 
 
 @pytest.mark.parametrize(("name", "near"), [("paper-dome", True), ("long-tube", False)])
-def test_widths_are_the_budgets_and_values_the_rungs(evaluated, library, name, near):
+def test_widths_are_the_budgets_and_values_the_models(evaluated, library, name, near):
     evaluation = evaluated(name)
     batch, found = own_budget(evaluation, library, near)
     for row, (state, said) in enumerate(zip(evaluation.prediction.states, evaluation.uncertainty, strict=True)):
@@ -48,7 +48,7 @@ def test_widths_are_the_budgets_and_values_the_rungs(evaluated, library, name, n
         assert set(gas_text(batch)[row]) <= set(said["notes"])
 
 
-def test_the_rung_that_solves_more_exactly_has_the_smaller_share(evaluated):
+def test_the_model_that_solves_more_exactly_has_the_smaller_share(evaluated):
     solid, atlas = (
         evaluated("paper-dome", model=model).uncertainty[0]["figures"][SENSITIVITY]["shares"]["numerical"]
         for model in ("solid", "atlas")

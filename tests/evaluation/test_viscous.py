@@ -81,7 +81,7 @@ def test_the_text_has_one_line(agilus, library):
     assert "not known: no relaxation data for TangoPlus" in plain
 
 
-def test_the_membrane_rung_does_not_pay_for_the_atlas():
+def test_the_membrane_model_does_not_pay_for_the_atlas():
     code = (
         "import sys; from pneutouch.evaluation import evaluate; from pneutouch.evaluation.document import full_document; "
         "print('unknown' in full_document(evaluate('agilus-dome', model='membrane'))['viscous'], 'scipy' in sys.modules)"

@@ -1,4 +1,4 @@
-"""The rung ``atlas`` in the form of a prediction: beside the solid's, field by field."""
+"""The model ``atlas`` in the form of a prediction: beside the solid's, field by field."""
 
 from __future__ import annotations
 

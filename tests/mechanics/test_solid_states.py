@@ -1,4 +1,4 @@
-"""The solid as a rung of the ladder: the paper's figures, ranges, events, and what leaves the program."""
+"""The model `solid`: the paper's figures, ranges, events, and what leaves the program."""
 
 from __future__ import annotations
 

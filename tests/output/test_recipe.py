@@ -83,7 +83,7 @@ def test_numbers_and_text_come_back_exactly(library, radius, share, tolerance, p
     assert read_recipe(package_of(recipe)) == dataclasses.replace(recipe, scene=renamed(scene))
 
 
-def test_settings_that_the_rung_does_not_use_do_not_change_the_inputs(library):
+def test_settings_that_the_model_does_not_use_do_not_change_the_inputs(library):
     scene = load_scene("paper-dome", [], library)
     plain = BuildRecipe(scene, {}, PredictionOptions("solid")).inputs()
     assert BuildRecipe(scene, {}, PredictionOptions("solid", closure="printed", tolerance=0.5)).inputs() == plain

@@ -103,12 +103,12 @@ def test_model_and_why_it_was_taken_stand_on_the_sheet(evaluated):
     from pneutouch.report.certainty import how_sure
 
     chosen = evaluate("paper-dome", model="auto", tolerance=0.02)
-    rung = dict(how_sure(chosen.prediction, chosen.uncertainty)["rung"])
-    assert rung["Model"] == "atlas"
-    assert rung["Numerical error"] == "within 1.8% in sensitivity"
-    assert "passed over membrane" in rung["Why this model"]
+    model = dict(how_sure(chosen.prediction, chosen.uncertainty)["model"])
+    assert model["Model"] == "atlas"
+    assert model["Numerical error"] == "within 1.8% in sensitivity"
+    assert "passed over membrane" in model["Why this model"]
     asked = evaluated("paper-dome", model="atlas")
-    assert "asked for" in dict(how_sure(asked.prediction, asked.uncertainty)["rung"])["Why this model"]
+    assert "asked for" in dict(how_sure(asked.prediction, asked.uncertainty)["model"])["Why this model"]
 
 
 def test_without_the_solid_the_sheet_says_where_shapes_come_from(evaluated, tmp_path):
@@ -181,8 +181,8 @@ def test_resins_are_compared_by_the_atlas_as_respond_has_them(evaluated, library
     assert set(found) == {m.title for m in elastic.values()}
     assert drawn_by(found) == "drawn by the atlas"
     for material in elastic.values():
-        pressure, sensitivity, rung = found[material.title]
-        assert rung == "atlas"
+        pressure, sensitivity, model = found[material.title]
+        assert model == "atlas"
         assert pressure[0] == 0
         assert pressure[-1] == pytest.approx(22)
         own = respond(batch_of(in_resin(sensor, material), (1e-3 * pressure).tolist()), sensor.steps)
@@ -198,7 +198,7 @@ def test_a_resin_outside_the_atlas_is_drawn_by_the_solid_and_the_caption_says_so
     odd = hard.model_copy(update={"poisson_ratio": hard.poisson_ratio.model_copy(update={"value": 0.48})})
     sensor = evaluated("paper-dome").sensor
     found = resin_curves(sensor, {"a": tango, "b": odd}, 0.02, "solid", None)
-    assert [curve.rung for curve in found.values()] == ["atlas", "solid"]
+    assert [curve.model for curve in found.values()] == ["atlas", "solid"]
     assert drawn_by(found) == "drawn by the atlas, FLX9960-DM by the solid"
     same = resin_curves(sensor, {"b": hard}, 0.02, "solid", None)["FLX9960-DM"]
     near = np.interp(found["FLX9960-DM"].pressure, same.pressure, same.sensitivity)

@@ -52,7 +52,9 @@ def test_the_document_says_so():
     said = document(answer({**FINGERTIP, "force_range_N": 150.0}))
     assert said["met"] is False
     assert said["designs"] == []
-    assert "150" in next(entry["attainable"] for entry in said["dropped_requirements"] if entry["requirement"] == "force range")
+    assert "150" in next(
+        entry["attainable"] for entry in said["dropped_requirements"] if entry["requirement"] == "force range"
+    )
     assert said["nearest"]["margins"]["force range"] < 0
 
 

@@ -53,7 +53,11 @@ SetOption = Annotated[
 ]
 ModelOption = Annotated[
     str | None,
-    typer.Option("--model", help="Rung of the ladder of models: membrane, atlas, solid or auto.", show_default="solid"),
+    typer.Option(
+        "--model",
+        help="Model: membrane, atlas, solid or auto (the cheapest that is good enough).",
+        show_default="solid",
+    ),
 ]
 ToleranceOption = Annotated[
     str | None,
@@ -125,7 +129,7 @@ def predict(
         from pneutouch.evaluation.document import full_document
         from pneutouch.evaluation.evaluate import evaluate
 
-        evaluation = evaluate(design, set_, closure=closure, clamp=clamp, aged=aged, **rung(model, tolerance))
+        evaluation = evaluate(design, set_, closure=closure, clamp=clamp, aged=aged, **model_options(model, tolerance))
         document = full_document(evaluation, monte_carlo)
         if json:
             print_json(document)
@@ -165,10 +169,10 @@ def new(
         typer.echo(str(new_design(name, out)))
 
 
-def rung(model: str | None, tolerance: str | None) -> dict[str, Any]:
-    """The rung asked for; a tolerance alone asks for the cheapest that meets it."""
+def model_options(model: str | None, tolerance: str | None) -> dict[str, Any]:
+    """The model asked for; a tolerance alone asks for the cheapest that meets it."""
     from pneutouch.errors import InputError
-    from pneutouch.mechanics.ladder import DEFAULT_TOLERANCE, parse_tolerance
+    from pneutouch.mechanics.models import DEFAULT_TOLERANCE, parse_tolerance
 
     if tolerance is None:
         return {"model": model or "solid", "tolerance": DEFAULT_TOLERANCE}

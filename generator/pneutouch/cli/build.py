@@ -19,10 +19,10 @@ from pneutouch.cli.app import (
     SetOption,
     ToleranceOption,
     app,
+    model_options,
     print_json,
     refuse_flags,
     reporting,
-    rung,
 )
 from pneutouch.cli.progress import bar
 
@@ -63,7 +63,7 @@ def build(
         else:
             evaluation = (
                 _from_3mf(design, context) if design.lower().endswith(".3mf")
-                else _evaluated(design, set_, closure=closure, clamp=clamp, **rung(model, tolerance))
+                else _evaluated(design, set_, closure=closure, clamp=clamp, **model_options(model, tolerance))
             )  # fmt: skip
             plan = _planned(evaluation, out, voxel_mode) if voxels or voxel_mode else None
             name, folder, findings = _build_sensor(evaluation, out)

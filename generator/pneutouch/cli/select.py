@@ -100,7 +100,7 @@ def _graded(target: Target, where: str, write: str | None, out: Path, *, json: b
 def _target(path: Path | None, values: dict[str, Any]) -> Target:
     """The target of a file, flags laid over it; or of flags alone."""
     from pneutouch.errors import InputError
-    from pneutouch.mechanics.ladder import parse_tolerance
+    from pneutouch.mechanics.models import parse_tolerance
     from pneutouch.spec.read import read_toml, validate
     from pneutouch.spec.target import Target
 

@@ -15,7 +15,7 @@ from pneutouch.errors import InputError
 if TYPE_CHECKING:
     from pneutouch.workflows.sweep import SweepPlan, SweepResult
 
-_MODEL_HELP = "Rung of the ladder of models; solid where neither this nor the file says."
+_MODEL_HELP = "Model; solid where neither this nor the file gives one."
 
 
 @app.command()

@@ -29,7 +29,7 @@ def air(evaluation: Evaluation) -> GasNotes:
 def tuning(evaluation: Evaluation, highest: float) -> TuningChart | None:
     """The design's sensitivity from no driving pressure to ``highest`` (MPa); None where the atlas has no curve.
 
-    The sensitivities at its own driving pressures are those of the prediction's rung.
+    The sensitivities at its own driving pressures are those of the prediction's model.
     """
     scene, sensor, prediction = evaluation.scene, evaluation.sensor, evaluation.prediction
     drawn = curve(sensor, highest, "this design")

@@ -13,7 +13,7 @@ from pneutouch.catalogue import Library, ResolvedDesign, load_scene
 from pneutouch.errors import BeyondLimitError, InputError, nearest
 from pneutouch.evaluation.table_s1 import sensitivity_error
 from pneutouch.mechanics import Sensor, SensorPrediction, predict
-from pneutouch.mechanics.ladder import DEFAULT_TOLERANCE
+from pneutouch.mechanics.models import DEFAULT_TOLERANCE
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.viscous.known import AGED, ageing_ratio
 from pneutouch.parts import Assembly, assemble
@@ -35,7 +35,7 @@ Resins = dict[str, Material]
 
 @dataclass(frozen=True)
 class PredictionOptions:
-    """How a prediction was asked for: the rung, the membrane's closure, the clamp and what ``auto`` must meet.
+    """How a prediction was asked for: the model, the membrane's closure, the clamp and what ``auto`` must meet.
 
     ``aged`` asks for the sensor after a year; a recipe does not carry it: what is printed is fresh.
     """
@@ -125,7 +125,7 @@ def evaluate_scene(scene: ResolvedDesign, find_resins: Callable[[], Resins], ask
     try:
         prediction = predict(
             scene.name, sensor, pressures, model=asked.model, closure=asked.closure, tolerance=asked.tolerance,
-            sensitivity_error=lambda rung: sensitivity_error(scene.membrane_material, sensor, rung, asked.closure),
+            sensitivity_error=lambda model: sensitivity_error(scene.membrane_material, sensor, model, asked.closure),
         )  # fmt: skip
     except BeyondLimitError as error:
         raise _beyond_limit(scene, error) from None

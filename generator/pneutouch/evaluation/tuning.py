@@ -41,14 +41,14 @@ def curve(sensor: Sensor, highest: float, label: str) -> TuningCurve | None:
 
 
 def interval(
-    sensor: Sensor, drawn: TuningCurve, material: Material, materials: Sequence[Material], printer: Printer, rung: str
+    sensor: Sensor, drawn: TuningCurve, material: Material, materials: Sequence[Material], printer: Printer, model: str
 ) -> tuple[Array, Array]:
     """Lower and upper end of a curve's k = 2 interval, kPa/N, (n,) each.
 
-    ``materials`` are all that there are; ``rung`` gives the numerical error.
+    ``materials`` are all that there are; ``model`` gives the numerical error.
     """
     at = np.linspace(drawn.pressure[0], drawn.pressure[-1], _BUDGETS)
-    found = known(sensor, (at * KPA).tolist(), material, materials, printer, rung)
+    found = known(sensor, (at * KPA).tolist(), material, materials, printer, model)
     widths = found.budget.expanded[_SENSITIVITY]
     good = np.isfinite(widths)
     width = np.interp(drawn.pressure, at[good], widths[good])

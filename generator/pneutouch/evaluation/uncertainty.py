@@ -1,4 +1,4 @@
-"""How sure a prediction is, state by state: the budget at its driving pressures, with the figures of its own rung."""
+"""How sure a prediction is, state by state: the budget at its driving pressures, with the figures of its own model."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pneutouch.catalogue import ResolvedDesign
 from pneutouch.evaluation.graded_uncertainty import even_wall, notes_on
 from pneutouch.evaluation.table_s1 import is_near_paper
 from pneutouch.mechanics import Sensor, SensorPrediction, SensorState
-from pneutouch.mechanics.ladder import DISCRETISATION, NUMERICAL
+from pneutouch.mechanics.models import DISCRETISATION, NUMERICAL
 from pneutouch.rounding import rounded
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
@@ -44,9 +44,9 @@ class SensorBudget:
     budget: Budget
 
 
-def unknown(sensor: Sensor, rung: str) -> str | None:
-    """Why nothing can be said of how sure a rung's prediction is, or None where it can."""
-    if rung == "membrane":
+def unknown(sensor: Sensor, model: str) -> str | None:
+    """Why nothing can be said of how sure a model's prediction is, or None where it can."""
+    if model == "membrane":
         return _TREND
     from pneutouch.mechanics.atlas_states import outside_atlas
 
@@ -56,11 +56,11 @@ def unknown(sensor: Sensor, rung: str) -> str | None:
 
 def known(
     sensor: Sensor, pressures: Sequence[float], material: Material, materials: Sequence[Material], printer: Printer,
-    rung: str,
+    model: str,
 ) -> SensorBudget:  # fmt: skip
     """The budget of a sensor inside the atlas at driving pressures (MPa).
 
-    ``materials`` are all that there are: the model's error is taken from those that were measured. ``rung`` gives the
+    ``materials`` are all that there are: the model's error is taken from those that were measured. ``model`` gives the
     numerical error.
     """
     from pneutouch.mechanics.uncertainty import batch_of, budget, model_errors
@@ -69,7 +69,7 @@ def known(
     found = budget(
         batch, material, printer, near_paper=is_near_paper(sensor), errors=model_errors(material, materials),
         numerical={
-            "sensitivity_kPa_per_N": NUMERICAL[rung], "limit_pressure_kPa": DISCRETISATION["limit_pressure_relative"]
+            "sensitivity_kPa_per_N": NUMERICAL[model], "limit_pressure_kPa": DISCRETISATION["limit_pressure_relative"]
         },
     )  # fmt: skip
     return SensorBudget(batch, found)
@@ -86,16 +86,16 @@ def documents(
 
     ``resins`` gives the elastomers whose measurements the model's error is taken from. ``samples`` > 0 adds ``monte_carlo``: the same sources sampled that often, the 95.45 % interval of every figure.
     """
-    states, rung = prediction.states, prediction.model
+    states, model = prediction.states, prediction.model
     notes_of_wall, sensor = notes_on(sensor), even_wall(sensor)
-    why = unknown(sensor, rung)
+    why = unknown(sensor, model)
     if why is not None:
         return tuple({"unknown": why} for _ in states)
     from pneutouch.mechanics.uncertainty import document, gas_text, text
 
     found = known(
         sensor, [state.driving_pressure for state in states], scene.membrane_material,
-        list(resins().values()), scene.printer, rung,
+        list(resins().values()), scene.printer, model,
     )  # fmt: skip
     content = []
     for row, (state, notes) in enumerate(zip(states, gas_text(found.batch), strict=True)):
@@ -110,7 +110,7 @@ def documents(
 
 
 def _values(prediction: SensorPrediction, state: SensorState) -> dict[str, float]:
-    """The figures of the budget as the rung has them; without those it lacks."""
+    """The figures of the budget as the model has them; without those it lacks."""
     peak, figures = prediction.limits.limit_point, state.figures
     return {
         **({} if peak is None else {"limit_pressure_kPa": peak / KPA}),
@@ -124,7 +124,7 @@ def _values(prediction: SensorPrediction, state: SensorState) -> dict[str, float
 
 
 def _sampled(found: SensorBudget, row: int, samples: int, figures: Document) -> Document:
-    """The 95.45 % intervals of the samples about the rung's figures, and the share of samples without a figure."""
+    """The 95.45 % intervals of the samples about the model's figures, and the share of samples without a figure."""
     from pneutouch.mechanics.uncertainty import FIGURES, monte_carlo
 
     drawn = monte_carlo(found.batch, found.budget.sources, row, samples)

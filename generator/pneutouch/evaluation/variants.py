@@ -26,11 +26,11 @@ _LIMIT_SHARE = {"membrane": 1.0, "solid": 0.8}
 
 
 class ResinCurve(NamedTuple):
-    """Sensitivity (kPa/N) over driving pressure (kPa), (n,) each, and the rung that drew it."""
+    """Sensitivity (kPa/N) over driving pressure (kPa), (n,) each, and the model that drew it."""
 
     pressure: Array
     sensitivity: Array
-    rung: str
+    model: str
 
 
 def in_resin(sensor: Sensor, material: Material) -> Sensor:
@@ -52,10 +52,10 @@ def resin_curves(
     """
     variants = {m.title: in_resin(sensor, m) for m in materials.values() if m.kind == "elastomer"}
     looked_up = {} if model == "membrane" else _by_atlas(variants, highest)
-    rung = "membrane" if model == "membrane" else "solid"
+    model = "membrane" if model == "membrane" else "solid"
     curves = {}
     for title, variant in variants.items():
-        found = looked_up.get(title) or _by_rung(variant, highest, rung, closure)
+        found = looked_up.get(title) or _by_model(variant, highest, model, closure)
         if found is not None:
             curves[title] = found
     return curves
@@ -87,26 +87,26 @@ def _by_atlas(variants: dict[str, Sensor], highest: float) -> dict[str, ResinCur
     }  # fmt: skip
 
 
-def _by_rung(variant: Sensor, highest: float, rung: str, closure: str | None) -> ResinCurve | None:
-    """One resin's curve by a rung of its own; None where this geometry cannot be solved in it, which must not stop the
+def _by_model(variant: Sensor, highest: float, model: str, closure: str | None) -> ResinCurve | None:
+    """One resin's curve by a model of its own; None where this geometry cannot be solved in it, which must not stop the
     sheet."""
-    top = min(highest, _MARGIN * _LIMIT_SHARE[rung] * limit_point(variant).driving_pressure)
-    pressures = np.linspace(0.0, top, _POINTS[rung])
+    top = min(highest, _MARGIN * _LIMIT_SHARE[model] * limit_point(variant).driving_pressure)
+    pressures = np.linspace(0.0, top, _POINTS[model])
     try:
-        states = predict("", variant, pressures.tolist(), model=rung, closure=closure or "variational").states
+        states = predict("", variant, pressures.tolist(), model=model, closure=closure or "variational").states
     except ComputationError:
         return None
     values = [(p / KPA, s.figures.sensitivity) for p, s in zip(pressures, states, strict=True) if s.figures]
     if not values:
         return None
     x, y = zip(*values, strict=True)
-    return ResinCurve(np.array(x), np.array(y), rung)
+    return ResinCurve(np.array(x), np.array(y), model)
 
 
 def drawn_by(curves: dict[str, ResinCurve]) -> str:
-    """Which rung drew which resins, in words."""
-    rungs = sorted({curve.rung for curve in curves.values()})
-    if len(rungs) == 1:
-        return f"drawn by the {rungs[0]}"
-    solid = ", ".join(title for title, curve in curves.items() if curve.rung != "atlas")
+    """Which model drew which resins, in words."""
+    models = sorted({curve.model for curve in curves.values()})
+    if len(models) == 1:
+        return f"drawn by the {models[0]}"
+    solid = ", ".join(title for title, curve in curves.items() if curve.model != "atlas")
     return f"drawn by the atlas, {solid} by the solid"

@@ -1,4 +1,4 @@
-"""The rung ``atlas``: the solid's answers looked up for a sensor, in the form that every rung returns."""
+"""The model ``atlas``: the solid's answers looked up for a sensor, in the form that every model returns."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The rung ``membrane``: the paper's theory run for a sensor, states I and II."""
+"""The model ``membrane``: the paper's theory run for a sensor, states I and II."""
 
 from __future__ import annotations
 

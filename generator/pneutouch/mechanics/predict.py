@@ -1,4 +1,4 @@
-"""Predict a sensor with one rung of the ladder of models."""
+"""Predict a sensor with one of the models."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.errors import InputError, nearest
 from pneutouch.mechanics.contact import CLOSURES
-from pneutouch.mechanics.ladder import DEFAULT_TOLERANCE, DISCRETISATION, MODELS, NUMERICAL, TABULATION, climb
 from pneutouch.mechanics.membrane import error_against_exact_membrane, membrane_result
+from pneutouch.mechanics.models import DEFAULT_TOLERANCE, DISCRETISATION, MODEL_CHOICES, NUMERICAL, TABULATION, climb
 from pneutouch.mechanics.prediction import ModelResult, SensorPrediction
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.units import KPA, ML
@@ -65,37 +65,37 @@ def predict(
     model: str = "solid", closure: str = "variational", tolerance: float = DEFAULT_TOLERANCE,
     sensitivity_error: Callable[[str], Error] | None = None,
 ) -> SensorPrediction:  # fmt: skip
-    """Predict a sensor at ascending driving pressures (MPa) with one rung; ``closure`` is the membrane's.
+    """Predict a sensor at ascending driving pressures (MPa) with one model; ``closure`` is the membrane's.
 
-    ``auto`` takes the cheapest rung whose stated error meets the tolerance (a fraction) and says why.
-    ``sensitivity_error`` tells what is known of a rung's error in sensitivity for this resin. Raises InputError for
+    ``auto`` takes the cheapest model whose stated error meets the tolerance (a fraction) and says why.
+    ``sensitivity_error`` tells what is known of a model's error in sensitivity for this resin. Raises InputError for
     an unknown model or closure and for a sensor outside the atlas's box, BeyondLimitError beyond the limit point,
     ComputationError where no equilibrium is found.
     """
-    if model not in MODELS:
-        raise InputError(f"unknown model.{nearest(model, MODELS)}", key="model", value=model)
+    if model not in MODEL_CHOICES:
+        raise InputError(f"unknown model.{nearest(model, MODEL_CHOICES)}", key="model", value=model)
     if closure not in CLOSURES:
         raise InputError(f"unknown closure.{nearest(closure, CLOSURES)}", key="closure", value=closure)
     pressures = np.array(driving_pressures, float)
-    rung, found, why = _found(sensor, pressures, model, closure, tolerance)
-    errors, assumptions = _stated(rung, sensor, pressures)
+    chosen, answer, why = _answer(sensor, pressures, model, closure, tolerance)
+    errors, assumptions = _stated(chosen, sensor, pressures)
     if sensitivity_error is not None:
-        errors = _merged(errors, sensitivity_error(rung))
+        errors = _merged(errors, sensitivity_error(chosen))
     if why:
-        errors = _merged({"model_choice": why, "summary": [f"Model {rung}: {why}."]}, errors)
+        errors = _merged({"model_choice": why, "summary": [f"Model {chosen}: {why}."]}, errors)
     gas = f"dead volume {sensor.dead_volume / ML:.4g} mL, ambient pressure {sensor.ambient_pressure / KPA:g} kPa"
-    held = _CLAMPED_FLANGE if rung == "solid" and sensor.flange is not None else _CLAMPED_BASE
+    held = _CLAMPED_FLANGE if chosen == "solid" and sensor.flange is not None else _CLAMPED_BASE
     return SensorPrediction(
-        design=design, model=rung, closure=closure if rung == "membrane" else None, error_estimate=errors,
-        limit_point=found.limit_point, limits=found.limits, dead_volume=sensor.dead_volume,
-        inflation=found.inflation, states=found.states, assumptions=(*assumptions, held, *_COMMON_ASSUMPTIONS, gas),
+        design=design, model=chosen, closure=closure if chosen == "membrane" else None, error_estimate=errors,
+        limit_point=answer.limit_point, limits=answer.limits, dead_volume=sensor.dead_volume,
+        inflation=answer.inflation, states=answer.states, assumptions=(*assumptions, held, *_COMMON_ASSUMPTIONS, gas),
     )  # fmt: skip
 
 
-def _found(
+def _answer(
     sensor: Sensor, pressures: Array, model: str, closure: str, tolerance: float
 ) -> tuple[str, ModelResult, str | None]:
-    """The rung that answered, its answer, and why it was taken where it was not asked for by name."""
+    """The model that answered, its answer, and why it was taken where it was not asked for by name."""
     if model != "auto":
         found, lacking = _asked(model, sensor, pressures, closure)
         if lacking is not None and lacking.fatal:
@@ -103,39 +103,39 @@ def _found(
         return model, found, None if lacking is None else f"asked for by name, although {lacking.why}"
     way = climb(sensor, tolerance)
     passed = list(way.passed)
-    for rung in way.rungs:
-        found, lacking = _asked(rung, sensor, pressures, closure)
+    for model in way.models:
+        found, lacking = _asked(model, sensor, pressures, closure)
         if lacking is None:
             break
-        passed.append(f"{rung}: {lacking.why}")
-    why = f"the cheapest whose stated error, {NUMERICAL[rung]:.1%} in sensitivity, meets {tolerance:.1%}"
-    return rung, found, "; ".join([why, *(f"passed over {text}" for text in passed)])
+        passed.append(f"{model}: {lacking.why}")
+    why = f"the cheapest whose stated error, {NUMERICAL[model]:.1%} in sensitivity, meets {tolerance:.1%}"
+    return model, found, "; ".join([why, *(f"passed over {text}" for text in passed)])
 
 
-def _asked(rung: str, sensor: Sensor, pressures: Array, closure: str) -> tuple[ModelResult, MissingAnswer | None]:
-    """One rung's answer, and what it lacks."""
-    if rung == "membrane":
+def _asked(model: str, sensor: Sensor, pressures: Array, closure: str) -> tuple[ModelResult, MissingAnswer | None]:
+    """One model's answer, and what it lacks."""
+    if model == "membrane":
         if sensor.grade is not None:
-            raise InputError("the wall is graded along its arc", key="model", value=rung, remedy=_OTHER)
+            raise InputError("the wall is graded along its arc", key="model", value=model, remedy=_OTHER)
         return membrane_result(sensor, pressures, closure), None
-    if rung == "atlas":
+    if model == "atlas":
         from pneutouch.mechanics.atlas_states import atlas_result, outside_atlas
 
         why = outside_atlas(sensor)
         if why is not None:
-            raise InputError(why, key="model", value=rung, remedy=_OTHER)
+            raise InputError(why, key="model", value=model, remedy=_OTHER)
         return atlas_result(sensor, pressures)
     from pneutouch.mechanics.solid_states import solid_result
 
     return solid_result(sensor, pressures), None
 
 
-def _stated(rung: str, sensor: Sensor, pressures: Array) -> tuple[Error, tuple[str, ...]]:
-    """Numerical errors and assumptions of a rung."""
-    if rung == "membrane":
+def _stated(model: str, sensor: Sensor, pressures: Array) -> tuple[Error, tuple[str, ...]]:
+    """Numerical errors and assumptions of a model."""
+    if model == "membrane":
         return error_against_exact_membrane(sensor, pressures), _MEMBRANE_ASSUMPTIONS
     law = f"law {sensor.material.convention}, Poisson ratio {sensor.poisson_ratio:g}"
-    if rung == "atlas":
+    if model == "atlas":
         errors = {**DISCRETISATION, "sensitivity_tabulation_relative": TABULATION, "summary": [_TABULATION_SUMMARY]}
         return errors, (law, *_SOLID_ASSUMPTIONS)
     return {**DISCRETISATION, "summary": [_DISCRETISATION_SUMMARY]}, (law, *_SOLID_ASSUMPTIONS)

@@ -100,7 +100,7 @@ class InflationCurve:
 
 @dataclass(frozen=True, slots=True)
 class ModelResult:
-    """What a rung computes: the limit point (None where the pressure has no maximum), the limits and the states."""
+    """What a model computes: the limit point (None where the pressure has no maximum), the limits and the states."""
 
     limit_point: LimitPoint | None
     limits: Limits

@@ -1,4 +1,4 @@
-"""The rung ``solid``: the paper's finite element study (section 2-C and Supplement B) run for a sensor."""
+"""The model ``solid``: the paper's finite element study (section 2-C and Supplement B) run for a sensor."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ class BuildRecipe:
         return BuildRecipe(evaluation.scene, evaluation.resins, evaluation.asked)
 
     def inputs(self) -> dict[str, Any]:
-        """Everything that the result follows from, as data; what the rung asked for does not use is null."""
+        """Everything that the result follows from, as data; what the model asked for does not use is null."""
         asked = self.asked
         return {
             "model": asked.model,

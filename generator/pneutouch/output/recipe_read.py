@@ -15,7 +15,7 @@ from pneutouch.errors import InputError, nearest
 from pneutouch.evaluation.evaluate import CLAMPS, PredictionOptions, Resins
 from pneutouch.export.threemf_read import Package
 from pneutouch.mechanics.contact import CLOSURES
-from pneutouch.mechanics.ladder import MODELS
+from pneutouch.mechanics.models import MODEL_CHOICES
 from pneutouch.output.manifest import input_hash, versions
 from pneutouch.output.recipe import FORMAT, SETTINGS, BuildRecipe, scene_shelves
 from pneutouch.spec.fields import Table
@@ -118,8 +118,8 @@ def _resins(content: Any, where: str) -> Resins:
 
 
 def _asked(inputs: dict[str, Any], where: str) -> PredictionOptions:
-    """How the prediction is asked for; what is null keeps its default, which the rung does not use."""
-    model = _one_of(inputs, "model", MODELS, where)
+    """How the prediction is asked for; what is null keeps its default, which the model does not use."""
+    model = _one_of(inputs, "model", MODEL_CHOICES, where)
     needed = {"closure": model in ("membrane", "auto"), "tolerance": model == "auto"}
     given: dict[str, Any] = {"model": model, "clamp": _one_of(inputs, "clamp", CLAMPS, where)}
     for key, used in needed.items():

@@ -1,11 +1,11 @@
-"""The section "How sure" of a datasheet: intervals, sources and the rung, as plain data."""
+"""The section "How sure" of a datasheet: intervals, sources and the model, as plain data."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from pneutouch.mechanics import SensorPrediction
-from pneutouch.mechanics.ladder import NUMERICAL
+from pneutouch.mechanics.models import NUMERICAL
 from pneutouch.units import KPA
 
 Document = dict[str, Any]
@@ -55,7 +55,7 @@ def how_sure(prediction: SensorPrediction, documents: tuple[Document, ...]) -> d
         "figures": _figures(found),
         "sources": [_source(source) for source in last.get("sources", []) if source["standard_uncertainty"] > 0],
         "notes": [_plain(f"{note}.") for note in last.get("notes", [])],
-        "rung": _rung(prediction),
+        "model": _model_rows(prediction),
     }
 
 
@@ -100,7 +100,7 @@ def _source(source: dict[str, Any]) -> list[str]:
     return [source["name"], value, acts_on, "known" if source["known"] else "assumed", _plain(source["origin"])]
 
 
-def _rung(prediction: SensorPrediction) -> list[list[str]]:
+def _model_rows(prediction: SensorPrediction) -> list[list[str]]:
     """Which model gave the figures, how exactly it solves its equations, and why it was taken."""
     error = prediction.error_estimate
     exact = f"within {NUMERICAL[prediction.model]:.1%} in sensitivity" if prediction.model != "membrane" else (

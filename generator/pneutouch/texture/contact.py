@@ -36,7 +36,7 @@ class PreloadContact:
         indentation, contact_radius, pressure: At the preload; pressure is gauge.
         stiffness: dF/d(indentation), N/mm, gas included.
         pressure_slope: dp/d(indentation), MPa/mm, gas included.
-        model: The rung that answered.
+        model: The model that answered.
         travel, force, rise: Loading curve, (n,), from first contact on; rise is pressure above the driving one.
         force_slope, rise_slope: Their derivatives by travel, (n,).
     """

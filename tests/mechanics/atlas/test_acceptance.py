@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from benchmarks.atlas_presses import Gap, compare_all, random_cases
 
-from pneutouch.mechanics.ladder import TABULATION
+from pneutouch.mechanics.models import TABULATION
 
 COUNT = 2000
 HALF = 0.005
@@ -105,7 +105,7 @@ def test_sensitivity_over_the_common_range(gaps, say):
 
 
 def test_sensitivity_over_each_ones_own_range(gaps, say):
-    """Held where the ladder takes the atlas by itself; ranges that buckling or tearing ends it leaves to the solid."""
+    """Held where `auto` takes the atlas; ranges that buckling or tearing ends it leaves to the solid."""
     errors, left = of(gaps, "own"), np.array([bool({*gap.ends} & LEFT_TO_THE_SOLID) or gap.near for gap in gaps])
     taken = [gap for gap, out in zip(gaps, left, strict=True) if not out]
     say(f"atlas, sensitivity over each one's own range: all {spread(errors)}\n  the {len(taken)} that end at depth or gauge "

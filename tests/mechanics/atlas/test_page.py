@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from benchmarks import atlas_page
 from benchmarks.atlas_presses import compare, random_cases
-from benchmarks.rungs import ATLAS, AUTO, atlas_answer, atlas_limit, auto_answer, why_no_answer
+from benchmarks.models import ATLAS, AUTO, atlas_answer, atlas_limit, auto_answer, why_no_answer
 from benchmarks.scenes import SCENES
 from benchmarks.speed_accuracy import limit, run
 
@@ -47,9 +47,9 @@ def test_scenes_in_the_box_are_answered_near_the_solid_and_the_others_are_left_t
     assert 8 <= len(inside) < len(SCENES)
     assert sum(auto_answer(scene)[1] == ATLAS for scene in SCENES) >= 5
     for scene in SCENES:
-        answer, rung = auto_answer(scene)
+        answer, model = auto_answer(scene)
         sure = scene in inside and atlas_answer(scene).ends in ("depth", "gauge range")
-        assert rung in ((ATLAS, "solid") if sure else ("solid",)) and answer.end > 0.0
+        assert model in ((ATLAS, "solid") if sure else ("solid",)) and answer.end > 0.0
     for scene in inside[1::3]:
         ours, theirs = run(ATLAS, scene), run("solid default", scene)
         grid = np.linspace(0.0, min(ours.end, theirs.end), 15)

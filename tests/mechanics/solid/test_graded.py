@@ -12,8 +12,8 @@ from pneutouch.catalogue import Library
 from pneutouch.catalogue.mixture import mixed_material
 from pneutouch.errors import InputError
 from pneutouch.mechanics import predict
-from pneutouch.mechanics.ladder import climb
 from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.models import climb
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.contact import Plate
@@ -262,11 +262,11 @@ def test_many_random_grades_are_solved():
     assert_solved(seed=12, count=200)
 
 
-# ------------------------------------------------------------------------------------------------ the ladder
+# ------------------------------------------------------------------------------------------------ the choice of the model
 
 
 @pytest.mark.parametrize("model", ["membrane", "atlas"])
-def test_rungs_that_know_no_grade_refuse_it_by_name(model):
+def test_models_that_know_no_grade_refuse_it_by_name(model):
     with pytest.raises(
         InputError, match=rf"model = '{model}': the wall is graded along its arc; take `model` auto or solid"
     ):
@@ -275,5 +275,5 @@ def test_rungs_that_know_no_grade_refuse_it_by_name(model):
 
 def test_auto_climbs_to_the_solid_and_says_why():
     way = climb(sensor(0.0, 0.2), 0.05)
-    assert way.rungs == ("solid",)
+    assert way.models == ("solid",)
     assert "atlas: the wall is graded along its arc" in way.passed

@@ -34,7 +34,7 @@ def test_the_document_is_plain_and_consistent(paper):
     assert any("kPa/K" in note for note in content["notes"])
 
 
-def test_another_rungs_value_keeps_the_relative_uncertainty(paper):
+def test_another_models_value_keeps_the_relative_uncertainty(paper):
     own, other = document(paper, 0), document(paper, 0, values={SENSITIVITY: 4.0})
     ratio = 4.0 / own["figures"][SENSITIVITY]["value"]
     for key in ("low", "high", "expanded_uncertainty"):

@@ -31,7 +31,7 @@ def document(
     Args:
         budget: What `budget` gave.
         row: Which of its sensors.
-        values: The figures as another rung has them, by name, with the budget's relative uncertainty; the atlas's else.
+        values: The figures as another model has them, by name, with the budget's relative uncertainty; the atlas's else.
         notes: More notes, such as `gas_text`.
 
     Returns:

@@ -17,11 +17,11 @@ AGED = (
 """What the step from hardness to modulus assumes."""
 
 
-def unknown(sensor: Sensor, material: Material, rung: str) -> str | None:
+def unknown(sensor: Sensor, material: Material, model: str) -> str | None:
     """Why nothing can be said of relaxation and hysteresis, or None where it can."""
     if not material.relaxation:
         return f"no relaxation data for {material.title}; no other resin's are put in their place"
-    if rung == "membrane":
+    if model == "membrane":
         return _MEMBRANE
     from pneutouch.mechanics.atlas_states import outside_atlas
 

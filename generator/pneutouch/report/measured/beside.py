@@ -64,7 +64,7 @@ class CampaignReport:
         injections: Figures of leak and injection runs: sensor, name, value, standard error, unit.
         ageing: Change of sensitivity between ages: resin, pressure, age, change in percent with its interval, and what the
             paper measured of this resin in a year, or None.
-        model: Rung of the predictions.
+        model: Model of the predictions.
         input_hash: Of campaign, design and files.
     """
 

@@ -15,7 +15,7 @@ from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.evaluation.table_s1 import is_near_paper
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.table import shipped
-from pneutouch.mechanics.ladder import NUMERICAL
+from pneutouch.mechanics.models import NUMERICAL
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.uncertainty import ModelErrors, budget, model_errors

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from pneutouch.errors import InputError, nearest
 from pneutouch.evaluation.evaluate import CLAMPS
-from pneutouch.mechanics import MODELS
+from pneutouch.mechanics import MODEL_CHOICES
 from pneutouch.mechanics.contact import CLOSURES
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import table_of
@@ -55,7 +55,7 @@ class SweepPlan:
     def __post_init__(self) -> None:
         """Raise InputError where the plan contradicts itself or names what does not exist."""
         for option, value, known in (
-            ("model", self.model, MODELS), ("closure", self.closure, CLOSURES), ("clamp", self.clamp, CLAMPS),
+            ("model", self.model, MODEL_CHOICES), ("closure", self.closure, CLOSURES), ("clamp", self.clamp, CLAMPS),
         ):  # fmt: skip
             if value not in known:
                 raise InputError(f"{self.where}: {option} = {value!r}: unknown.{nearest(value, known)}")

@@ -1,6 +1,6 @@
 """The work itself: a chunk of points in, a list of records out. Runs in this process, in others, or on a cluster.
 
-A rung that takes many points at once has its place in ``compute``.
+A model that takes many points at once has its place in ``compute``.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ Record = dict[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class SweepChunk:
-    """Points to compute alike: which design and rung."""
+    """Points to compute alike: which design and model."""
 
     points: tuple[SweepPoint, ...]
     design: str

@@ -1,4 +1,4 @@
-"""The ladder: which rung answers at which tolerance, why, and what it says of itself."""
+"""Which model answers at which tolerance, why, and what it states of itself."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from pneutouch.errors import BeyondLimitError, InputError
 from pneutouch.mechanics import Sensor, predict
-from pneutouch.mechanics.ladder import NUMERICAL, RUNGS, climb, parse_tolerance
+from pneutouch.mechanics.models import MODELS, NUMERICAL, climb, parse_tolerance
 from pneutouch.units import KPA, ML
 
 PAPER = Sensor(
@@ -53,18 +53,18 @@ def test_a_percentage_and_its_share_are_the_same(value):
     assert parse_tolerance(f"{100 * value!r}%") == pytest.approx(parse_tolerance(repr(value)), rel=1e-12)
 
 
-def test_stated_errors_fall_as_the_rungs_get_dearer():
-    errors = [NUMERICAL[rung] for rung in RUNGS]
+def test_stated_errors_fall_as_the_models_get_dearer():
+    errors = [NUMERICAL[model] for model in MODELS]
     assert errors == sorted(errors, reverse=True) and len(set(errors)) == len(errors)
 
 
 @given(st.floats(min(NUMERICAL.values()), 50.0))
-def test_every_rung_on_the_way_meets_the_tolerance_and_the_rest_say_why_not(tolerance):
+def test_every_model_on_the_way_meets_the_tolerance_and_the_rest_say_why_not(tolerance):
     way = climb(PAPER, tolerance)
-    assert way.rungs[-1] == "solid"
-    assert all(NUMERICAL[rung] <= tolerance for rung in way.rungs)
-    assert list(way.rungs) == [rung for rung in RUNGS if rung in way.rungs]
-    assert {line.split(":")[0] for line in way.passed} == set(RUNGS) - set(way.rungs)
+    assert way.models[-1] == "solid"
+    assert all(NUMERICAL[model] <= tolerance for model in way.models)
+    assert list(way.models) == [model for model in MODELS if model in way.models]
+    assert {line.split(":")[0] for line in way.passed} == set(MODELS) - set(way.models)
 
 
 def test_at_two_percent_the_atlas_answers_and_names_both_parts_of_its_error():
@@ -98,7 +98,7 @@ def test_outside_its_box_the_atlas_is_passed_over_and_the_reason_told(case):
     sensor = replace(PAPER, **changes)
     way = climb(sensor, 0.02)
     (line,) = [text for text in way.passed if text.startswith("atlas")]
-    assert way.rungs == ("solid",) and re.search(reason, line)
+    assert way.models == ("solid",) and re.search(reason, line)
     with pytest.raises(InputError, match=reason):
         predict("x", sensor, [0.0], model="atlas")
 
@@ -147,14 +147,14 @@ def test_a_press_that_leaves_the_known_states_goes_to_the_solid(monkeypatch):
     assert found.model == "solid" and "leaves the states that the atlas knows" in said(found)
 
 
-def test_auto_is_the_rung_it_names():
+def test_auto_is_the_model_it_names():
     auto, atlas = (predict("x", PAPER, [0.012, 0.022], model=m) for m in ("auto", "atlas"))
     assert [s.figures for s in auto.states] == [s.figures for s in atlas.states]
     assert "model_choice" not in atlas.error_estimate
     assert auto.assumptions == atlas.assumptions
 
 
-def test_beyond_the_limit_point_every_rung_says_so_with_nearly_the_same_limit():
+def test_beyond_the_limit_point_every_model_says_so_with_nearly_the_same_limit():
     limits = []
     for model in ("atlas", "auto", "solid"):
         with pytest.raises(BeyondLimitError) as caught:

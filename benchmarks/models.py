@@ -1,4 +1,4 @@
-"""The rungs above the plain methods on the scenes: the atlas, and the ladder's own choice."""
+"""The models above the plain methods on the scenes: the atlas, and the choice of `auto`."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from pneutouch.mechanics.atlas.press import AtlasPress
 from pneutouch.mechanics.atlas.respond import BREAK, BUCKLING, EDGE, ENDS, OUTSIDE, respond
 from pneutouch.mechanics.atlas.table import AtlasSlices, shipped
 from pneutouch.mechanics.atlas_states import outside_atlas
-from pneutouch.mechanics.ladder import DEFAULT_TOLERANCE, climb
+from pneutouch.mechanics.models import DEFAULT_TOLERANCE, climb
 
 ATLAS, AUTO = "atlas", f"auto at {DEFAULT_TOLERANCE:.0%}"
-RUNG_METHODS = (ATLAS, AUTO)
+MODEL_METHODS = (ATLAS, AUTO)
 AT_ONCE = 1000
 _LEFT_TO_THE_SOLID = (ENDS[BUCKLING], ENDS[BREAK])
 
@@ -56,8 +56,8 @@ def atlas_limit(scene: Scene) -> float:
 
 
 def auto_answer(scene: Scene) -> tuple[Answer, str]:
-    """The answer of the cheapest rung that states the default tolerance, and which it was."""
-    if ATLAS in climb(scene.sensor, DEFAULT_TOLERANCE).rungs:
+    """The answer of the cheapest model that states the default tolerance, and which it was."""
+    if ATLAS in climb(scene.sensor, DEFAULT_TOLERANCE).models:
         answer = atlas_answer(scene)
         if answer is not None and answer.ends not in _LEFT_TO_THE_SOLID and not _near_buckling(scene):
             return answer, ATLAS

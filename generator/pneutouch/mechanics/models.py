@@ -1,4 +1,4 @@
-"""The ladder of models: what each rung's error is, where it holds, and the cheapest one that is good enough."""
+"""The models, cheapest first: what the error of each is, where it holds, and the cheapest one that is good enough."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from pneutouch.errors import InputError
 from pneutouch.mechanics.sensor import Sensor
 
-RUNGS = ("membrane", "atlas", "solid")
-"""The rungs, cheapest first."""
+MODELS = ("membrane", "atlas", "solid")
+"""The models, cheapest first."""
 
-MODELS = (*RUNGS, "auto")
+MODEL_CHOICES = (*MODELS, "auto")
 
 DEFAULT_TOLERANCE = 0.02
 
@@ -29,47 +29,47 @@ NUMERICAL = {
     "atlas": DISCRETISATION["sensitivity_discretisation_relative"] + TABULATION,
     "solid": DISCRETISATION["sensitivity_discretisation_relative"],
 }
-"""Stated relative error in sensitivity of each rung as a numerical answer: how far from the exact solution of its
-equations, or for the membrane from the solid's. What the equations leave out comes on top, for every rung."""
+"""Stated relative error in sensitivity of each model as a numerical answer: how far from the exact solution of its
+equations, or for the membrane from the solid's. What the equations leave out comes on top, for every model."""
 
 
 @dataclass(frozen=True)
 class ModelSequence:
-    """Rungs to try in order, and why those before them were passed over."""
+    """Models to try in order, and why those before them were passed over."""
 
-    rungs: tuple[str, ...]
+    models: tuple[str, ...]
     passed: tuple[str, ...]
 
 
 def climb(sensor: Sensor, tolerance: float) -> ModelSequence:
-    """The rungs whose stated error meets a tolerance (a fraction), cheapest first.
+    """The models whose stated error meets a tolerance (a fraction), cheapest first.
 
     Raises InputError for a tolerance that none can state.
     """
     least = min(NUMERICAL.values())
     if not tolerance >= least:
-        problem = f"no rung can state so small an error; the best is the solid's {100 * least:g}% in sensitivity"
+        problem = f"no model can state so small an error; the best is the solid's {100 * least:g}% in sensitivity"
         raise InputError(problem, key="tolerance", value=f"{100 * tolerance:g}%")
-    passed, rungs = [], []
-    for rung in RUNGS:
-        error = NUMERICAL[rung]
-        why = _outside(rung, sensor)
+    passed, models = [], []
+    for model in MODELS:
+        error = NUMERICAL[model]
+        why = _outside(model, sensor)
         if error > tolerance:
-            passed.append(f"{rung}: its stated error of {error:.1%} is more than {tolerance:.1%}")
+            passed.append(f"{model}: its stated error of {error:.1%} is more than {tolerance:.1%}")
         elif why is not None:
-            passed.append(f"{rung}: {why}")
+            passed.append(f"{model}: {why}")
         else:
-            rungs.append(rung)
-    return ModelSequence(tuple(rungs), tuple(passed))
+            models.append(model)
+    return ModelSequence(tuple(models), tuple(passed))
 
 
-def _outside(rung: str, sensor: Sensor) -> str | None:
-    """Why a sensor lies outside a rung's validity, or None."""
-    if rung == "atlas":
+def _outside(model: str, sensor: Sensor) -> str | None:
+    """Why a sensor lies outside a model's validity, or None."""
+    if model == "atlas":
         from pneutouch.mechanics.atlas_states import outside_atlas
 
         return outside_atlas(sensor)
-    if rung == "membrane" and not (sensor.law is None and sensor.flange is None and sensor.grade is None):
+    if model == "membrane" and not (sensor.law is None and sensor.flange is None and sensor.grade is None):
         return "it knows neither other laws, nor a held flange, nor a graded wall"
     return None
 
