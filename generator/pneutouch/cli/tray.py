@@ -20,7 +20,7 @@ def tray(
     what: Annotated[list[str], typer.Argument(metavar="TRAY.toml | DESIGN...", help="Tray file, or names or paths of designs.")],
     over: Annotated[
         list[str] | None,
-        typer.Option("--over", metavar="TABLE.KEY=VALUES", help="One part a value: A,B,C. Not with a tray file."),
+        typer.Option("--over", metavar="TABLE.KEY=VALUES", help="One part a value: A,B,C or FROM:TO:COUNT. Not with a tray file."),
     ] = None,
     copies: Annotated[int | None, typer.Option("--copies", help="Copies of each. Not with a tray file.")] = None,
     profile: Annotated[str | None, typer.Option("--profile", help="Printer; left out: the file's, or the membrane's.")] = None,

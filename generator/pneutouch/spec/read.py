@@ -10,6 +10,7 @@ from pydantic import BaseModel, ValidationError
 
 from pneutouch.errors import InputError, joined, nearest
 from pneutouch.spec.fields import declaration, table_of
+from pneutouch.spec.toml_text import toml_value
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -56,16 +57,8 @@ def override(content: dict[str, Any], assignments: list[str], model: type[BaseMo
         section = result.setdefault(path[0], {})
         if not isinstance(section, dict):
             raise InputError("must be a table", key=path[0], value=section)
-        section[path[1]] = _toml_value(text.strip())
+        section[path[1]] = toml_value(text.strip())
     return result
-
-
-def _toml_value(text: str) -> Any:
-    try:
-        found = tomllib.loads(f"value = {text}")
-    except tomllib.TOMLDecodeError:
-        return text
-    return found["value"] if set(found) == {"value"} else text
 
 
 def _explain(model: type[BaseModel], detail: Any, where: str) -> InputError:

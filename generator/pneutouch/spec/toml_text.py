@@ -5,6 +5,7 @@ from __future__ import annotations
 import datetime
 import json
 import re
+import tomllib
 from collections.abc import Mapping
 from typing import Any
 
@@ -14,6 +15,15 @@ _BARE = re.compile(r"[A-Za-z0-9_-]+")
 def toml_text(content: Mapping[str, Any]) -> str:
     """TOML of nested tables, lists, text, numbers, booleans and dates; what is None is left out."""
     return "\n\n".join(_blocks(content, ())) + "\n"
+
+
+def toml_value(text: str) -> Any:
+    """The value that TOML reads from a text; the very same text where it is a bare word."""
+    try:
+        content = tomllib.loads(f"value = {text}")
+    except tomllib.TOMLDecodeError:
+        return text
+    return content["value"] if set(content) == {"value"} else text
 
 
 def value_text(value: Any) -> str:

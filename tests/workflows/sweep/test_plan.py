@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pneutouch.errors import InputError
+from pneutouch.spec.over import spread
 from pneutouch.workflows.sweep import plan_of_file, plan_of_flags, sweep, work
-from pneutouch.workflows.sweep.read import spread
 from pneutouch.workflows.sweep.run import ComputeResources
 
 BASE = 'design = "paper-dome"\nmodel = "membrane"\n'

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from dataclasses import dataclass
 
@@ -105,11 +104,6 @@ class SweepPlan:
             return {**self.settings, **self.points[index]}
         place = self.position(index)
         return {**self.settings, **{axis.key: axis.values[k] for axis, k in zip(self.axes, place, strict=True)}}
-
-
-def assignments(settings: Settings) -> list[str]:
-    """Settings as ``table.key=VALUE``; JSON of numbers, texts and lists is TOML."""
-    return [f"{key}={json.dumps(value)}" for key, value in settings.items()]
 
 
 def _check_key(where: str, key: str) -> None:

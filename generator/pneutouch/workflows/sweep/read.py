@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from pathlib import Path
 from typing import Any
 
 from pneutouch.errors import InputError, nearest
+from pneutouch.spec.over import MAX_VALUES, parse_over, spread
 from pneutouch.spec.read import read_toml
+from pneutouch.spec.toml_text import toml_value
 from pneutouch.workflows.sweep.plan import PRESSURES, Settings, SweepAxis, SweepPlan, Value
 
 KEYS = ("design", "model", "closure", "clamp", "set", "grid", "point")
 """What a sweep file may hold."""
-
-MAX_VALUES = 10_000
 
 _RANGE = {"from", "to", "count"}
 
@@ -52,14 +51,7 @@ def plan_of_flags(
     design: str, over: list[str], assignments: list[str] | None = None, **options: str | None
 ) -> SweepPlan:  # fmt: skip
     """A grid from ``table.key=VALUES``: values with commas between, or ``from:to:count``."""
-    grid: dict[str, list[Any]] = {}
-    for text in over:
-        key, equals, values = (part.strip() for part in text.partition("="))
-        if not equals or not values:
-            raise InputError("write table.key=VALUES, such as membrane.wall_thickness_mm=1:2:5", key="over", value=text)
-        if key in grid:
-            raise InputError(f"{key} is given twice", key="over", value=text)
-        grid[key] = _values("over", key, _flag_values(text, values))
+    grid = {key: _values("over", key, _unwrapped(values)) for key, values in parse_over(over).items()}
     words = {key: value for key, value in options.items() if value is not None}
     return _plan(f"{Path(design).stem}-sweep", "over", design, _assigned(assignments or []), grid, (), words)
 
@@ -79,23 +71,6 @@ def _plan(
     )
 
 
-def spread(where: str, key: str, start: Any, stop: Any, count: Any) -> list[float | int]:
-    """``count`` values at equal distances, both ends included; whole numbers where all of them are."""
-    shown = f"{where}: {key}: from {start} to {stop} count {count}"
-    if any(
-        isinstance(end, bool) or not isinstance(end, int | float) or not math.isfinite(end) for end in (start, stop)
-    ):
-        raise InputError(f"{shown}: the ends must be finite numbers")
-    if isinstance(count, bool) or not isinstance(count, int) or not 2 <= count <= MAX_VALUES:
-        raise InputError(f"{shown}: the count must be a whole number from 2 to {MAX_VALUES}")
-    # Twelve digits: the values are read and selected by people, and 1.1 must be 1.1.
-    inner = [float(f"{start + (stop - start) * (k / (count - 1)):.12g}") for k in range(1, count - 1)]
-    values: list[float | int] = [start, *inner, stop]
-    if isinstance(start, int) and isinstance(stop, int) and all(float(v).is_integer() for v in values):
-        return [int(v) for v in values]
-    return [float(v) for v in values]
-
-
 def _values(where: str, key: str, given: Any) -> list[Any]:
     """The values of one axis: a list, or a table ``{from, to, count}``."""
     if isinstance(given, dict):
@@ -113,6 +88,11 @@ def _values(where: str, key: str, given: Any) -> list[Any]:
             raise InputError(f"{where}: {key}[{k}] = {value!r}: every value may appear once only")
         seen.add(value)
     return values
+
+
+def _unwrapped(values: list[Any]) -> list[Any]:
+    """The values of one axis; a sweep's are scalars, so that a list in brackets is that list."""
+    return values[0] if len(values) == 1 and isinstance(values[0], list) else values
 
 
 def _value(where: str, key: str, given: Any) -> Value:
@@ -151,31 +131,8 @@ def _assigned(assignments: list[str]) -> Settings:
         key, equals, value = (part.strip() for part in text.partition("="))
         if not equals:
             raise InputError("write table.key=value, such as membrane.material=FLX9960", key="set", value=text)
-        found[key] = _value("set", key, _toml(value))
+        found[key] = _value("set", key, toml_value(value))
     return found
-
-
-def _flag_values(flag: str, text: str) -> Any:
-    """The values of a ``table.key=VALUES``: a range, a TOML list without its brackets or with them, or bare words."""
-    parts = text.split(":")
-    if len(parts) == 3:
-        start, stop, count = (_toml(part.strip()) for part in parts)
-        return {"from": start, "to": stop, "count": count}
-    listed = _toml(text if text.startswith("[") else f"[{text}]")
-    if isinstance(listed, list):
-        return listed
-    if len(parts) > 1:
-        raise InputError("a range is written from:to:count, such as 1:2:5", key="over", value=flag)
-    return [_toml(part.strip()) for part in text.split(",")]
-
-
-def _toml(text: str) -> Any:
-    """A TOML value, or the text itself where it is a bare word."""
-    try:
-        found = tomllib.loads(f"value = {text}")
-    except tomllib.TOMLDecodeError:
-        return text
-    return found["value"] if set(found) == {"value"} else text
 
 
 def _text(where: str, key: str, given: Any) -> str:

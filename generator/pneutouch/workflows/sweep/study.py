@@ -12,8 +12,9 @@ from pneutouch.errors import InputError
 from pneutouch.output.files import digest, json_bytes
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import declaration, table_of
+from pneutouch.spec.over import assignments
 from pneutouch.spec.read import read_toml, validate
-from pneutouch.workflows.sweep.plan import PRESSURES, SweepPlan, assignments
+from pneutouch.workflows.sweep.plan import PRESSURES, SweepPlan
 from pneutouch.workflows.sweep.shelves import CachedLibrary
 
 

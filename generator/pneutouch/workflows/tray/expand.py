@@ -10,9 +10,10 @@ from pneutouch.catalogue import Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.parts import Assembly, assemble
 from pneutouch.spec.material import Material
+from pneutouch.spec.over import assignments
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.tray import Entry, EntryValue
-from pneutouch.workflows.tray.order import TrayOrder, assignments
+from pneutouch.workflows.tray.order import TrayOrder
 
 LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ"
 """Without I and O, which read as 1 and 0."""

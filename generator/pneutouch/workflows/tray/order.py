@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import json
-import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from pneutouch.errors import InputError
+from pneutouch.spec.over import parse_over
 from pneutouch.spec.read import read_toml, validate
-from pneutouch.spec.tray import LEAST_COPIES, MOST_COPIES, EntryValue, Tray
-
-_OPENING = ("[", "{", "'", '"')
+from pneutouch.spec.tray import LEAST_COPIES, MOST_COPIES, Tray
 
 
 @dataclass(frozen=True)
@@ -50,59 +47,15 @@ def order_of_file(path: Path, overrides: Sequence[str] = (), **head: Any) -> Tra
 def order_of_flags(
     designs: Sequence[str], over: Sequence[str] = (), copies: int = 1, overrides: Sequence[str] = (), **head: Any
 ) -> TrayOrder:  # fmt: skip
-    """One entry a design, each over the values of ``table.key=A,B,C``, ``copies`` of each.
+    """One entry a design, each over the values of ``table.key=VALUES`` (see `spec.over`), ``copies`` of each.
 
     Raises InputError naming the parameter.
     """
     if not LEAST_COPIES <= copies <= MOST_COPIES:
         raise InputError(f"must be from {LEAST_COPIES} to {MOST_COPIES}", key="copies", value=copies)
-    varied = _varied(over)
+    varied = parse_over(over)
     entries = [{"design": design, "copies": copies, "over": varied} for design in designs]
     stem = Path(designs[0]).stem
     title = f"{stem}, {copies} of each" if len(designs) == 1 else f"{len(designs)} designs, {copies} of each"
     content = {"tray": {"title": title, **{k: v for k, v in head.items() if v is not None}}, "entry": entries}
     return TrayOrder(f"{stem}-tray", "the command line", validate(Tray, content, "the command line"), tuple(overrides))
-
-
-def assignments(settings: dict[str, EntryValue]) -> list[str]:
-    """Settings as ``table.key=VALUE``; JSON of numbers, texts and lists is TOML."""
-    return [f"{key}={json.dumps(value)}" for key, value in settings.items()]
-
-
-def _varied(over: Sequence[str]) -> dict[str, list[Any]]:
-    varied: dict[str, list[Any]] = {}
-    for text in over:
-        key, equals, values = (part.strip() for part in text.partition("="))
-        if not equals or not values:
-            raise InputError(
-                "write table.key=VALUES, such as membrane.material=TangoPlus,FLX9940", key="over", value=text
-            )
-        if key in varied:
-            raise InputError(f"{key} is given twice", key="over", value=text)
-        varied[key] = _values(values, text)
-    return varied
-
-
-def _values(text: str, given: str) -> list[Any]:
-    """TOML values and bare words, parted by the commas that are in no bracket or quote; one after the last is no harm."""
-    pieces = text.removesuffix(",").split(",")
-    found = []
-    while pieces:
-        value = pieces.pop(0).strip()
-        if value[:1] in _OPENING:
-            while not (read := _toml(value)) and pieces:
-                value = f"{value},{pieces.pop(0)}".rstrip()
-            if not read:
-                remedy = "write lists as [1, 2] and texts as 'A, B'"
-                raise InputError(f"{value} is not closed, or not TOML", key="over", value=given, remedy=remedy)
-        found += _toml(value) or [value]
-    return found
-
-
-def _toml(text: str) -> list[Any]:
-    """A TOML value alone in a list; nothing where it is none."""
-    try:
-        found = tomllib.loads(f"value = {text}")
-    except tomllib.TOMLDecodeError:
-        return []
-    return [found["value"]] if set(found) == {"value"} else []
