@@ -11,7 +11,7 @@ import pneutouch
 PACKAGE = Path(pneutouch.__file__).parent
 
 LAYERS = [
-    {"errors", "units", "arrays", "rounding"},
+    {"errors", "units", "arrays", "rounding", "tables"},
     {"spec"},
     {"catalogue"},
     {"meridian"},

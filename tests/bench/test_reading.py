@@ -41,7 +41,7 @@ def test_blocks_are_the_means_of_the_samples(file, samples):
 
 def test_chunks_do_not_show(file, monkeypatch):
     once = read(file)
-    monkeypatch.setattr("pneutouch.bench.csv_table.CHUNK", 7001)
+    monkeypatch.setattr("pneutouch.tables.csv_table.CHUNK", 7001)
     many = read(file)
     for name in ("first_row", "time", "position", "force_spread", "pressure_extreme"):
         assert getattr(many, name) == pytest.approx(getattr(once, name), rel=1e-12, abs=1e-15)

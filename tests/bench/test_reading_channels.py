@@ -31,7 +31,7 @@ def test_gaps_are_doubts_and_most_of_a_record_missing_is_an_error(tmp_path, samp
 def test_missed_samples_are_counted_across_chunks(tmp_path, monkeypatch):
     lossy = small(missed=0.02)
     path = write(tmp_path / "a.csv", lossy)
-    monkeypatch.setattr("pneutouch.bench.csv_table.CHUNK", 3001)
+    monkeypatch.setattr("pneutouch.tables.csv_table.CHUNK", 3001)
     lost = round((lossy[0, -1] - lossy[0, 0]) * 1000) + 1 - lossy.shape[1]
     (doubt,) = read(path).doubts
     assert doubt.why.startswith(f"{lost} of {lossy.shape[1] + lost} samples missed")

@@ -12,9 +12,9 @@ from pneutouch.arrays import Array
 from pneutouch.bench.reading import scaled
 from pneutouch.bench.record import Blocks
 from pneutouch.bench.statistics import Mean
-from pneutouch.bench.table import whole
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import ColumnMap
+from pneutouch.tables.read import whole
 
 LEAST_POINTS = 3
 
@@ -29,7 +29,7 @@ _ABSOLUTE = 0.7
 def read_injection(path: Path, columns: ColumnMap) -> tuple[Array, Array]:
     """Injected volume (mm3, at ambient pressure) and gauge pressure (MPa), (n,) each, in the file's order.
 
-    Raises InputError for what `table.chunks` refuses, fewer than three rows, a volume that does not vary, and a
+    Raises InputError for what `tables.read.chunks` refuses, fewer than three rows, a volume that does not vary, and a
     pressure that does not rise with it.
     """
     rows, (volume, pressure) = whole(path, [columns.volume.name, columns.pressure.name])

@@ -11,9 +11,9 @@ import numpy as np
 from pneutouch.arrays import Array, Flags
 from pneutouch.bench.blocks import BlockCollector
 from pneutouch.bench.record import Blocks, SuspectInterval
-from pneutouch.bench.table import chunks
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import UNITS, ColumnMap, Rig
+from pneutouch.tables.read import chunks
 from pneutouch.units import KPA
 
 CLIPPED = 0.98
@@ -51,7 +51,7 @@ def read_blocks(
 
     Of a run without a plate (``plate`` False: a leak run) only time and pressure are read; position and force are zero.
 
-    Raises InputError, naming file, column and row, for what `table.chunks` refuses, time that does not run on, more than
+    Raises InputError, naming file, column and row, for what `tables.read.chunks` refuses, time that does not run on, more than
     half of the samples missing, and a channel that is dead; a run in which nothing moves, as a leak run, has no dead channel.
     """
     names = {key: getattr(columns, key).name for key in _CHANNELS}

@@ -1,4 +1,4 @@
-"""CSV files in chunks of bytes that end at a line end, so that every row keeps its number and every fault its place."""
+"""CSV files in chunks of bytes that end at a line end, so that every row keeps its number and every fault its location."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from typing import BinaryIO, NamedTuple
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.chunk import RowChunk, places
 from pneutouch.errors import InputError
+from pneutouch.tables.chunk import RowChunk, places
 
 CHUNK = 4 * 2**20
 """Bytes parsed at once: about 100 000 rows; larger ones are not faster and take more memory."""
@@ -22,6 +22,7 @@ CHUNK = 4 * 2**20
 _LONGEST_LINE = 2**16
 _SEPARATORS = (",", ";", "\t")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+_TOO_LONG = f"over {_LONGEST_LINE} bytes without a line end; not a CSV file of numbers"
 
 
 class _Layout(NamedTuple):
@@ -31,26 +32,31 @@ class _Layout(NamedTuple):
     names: Sequence[str]
     places: list[int]
 
+    def fault(self, row: int, problem: str, remedy: str | None = None) -> InputError:
+        return _fault(self.path, row, problem, remedy)
+
+
+def _fault(path: Path, row: int, problem: str, remedy: str | None = None) -> InputError:
+    return InputError(problem, file=path, key=f"row {row}", remedy=remedy)
+
 
 def csv_chunks(path: Path, names: Sequence[str]) -> Iterator[RowChunk]:
-    """Chunks of a UTF-8 file with commas, semicolons or tabs and decimal points; see `table.chunks`.
+    """Chunks of a UTF-8 file with commas, semicolons or tabs and decimal points; see `read.chunks`.
 
-    Comment lines (``#``) before the header and a byte order mark are passed over, empty lines skipped but counted. A
-    last row without a line end is given apart where it is whole, for its last number may be cut.
+    Comment lines (``#``) before the header and a byte order mark are skipped, empty lines skipped but counted. A complete
+    last row without a line end is returned as `RowChunk.last`, because its last number may be cut.
     """
     size = path.stat().st_size
     with path.open("rb") as stream:
         layout = _header(path, stream, names)
-        row, rest, read = 2, b"", stream.tell()
+        row, rest, read = 2, b"", stream.seek(0, io.SEEK_CUR)
         while data := stream.read(CHUNK):
             read += len(data)
             data = rest + data
             end = data.rfind(b"\n") + 1
             data, rest = data[:end], data[end:]
             if len(rest) > _LONGEST_LINE:
-                raise InputError(
-                    f"{path}: row {row}: over {_LONGEST_LINE} bytes without a line end; not a CSV file of numbers"
-                )
+                raise _fault(path, row, _TOO_LONG)
             if not data:
                 continue
             rows, values, lines = _parse(data, row, layout)
@@ -63,26 +69,26 @@ def csv_chunks(path: Path, names: Sequence[str]) -> Iterator[RowChunk]:
 
 
 def _header(path: Path, stream: BinaryIO, names: Sequence[str]) -> _Layout:
-    start = stream.read(4)
+    start, columns = stream.read(4), f"as {','.join(names)}"
     if start[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):
-        raise InputError(f"{path}: UTF-16 text; save it as UTF-8")
+        raise InputError("UTF-16 text", file=path, remedy="save it as UTF-8")
     stream.seek(3 if start.startswith(codecs.BOM_UTF8) else 0)
     while True:
         line = stream.readline(_LONGEST_LINE)
         text = _text(path, line, 1)
         if not line:
-            raise InputError(f"{path}: no header row; must name the columns, as {','.join(names)}")
+            raise InputError("no header row", file=path, remedy=f"must name the columns, {columns}")
         if not line.endswith(b"\n") and len(line) == _LONGEST_LINE:
-            raise InputError(f"{path}: row 1: over {_LONGEST_LINE} bytes without a line end; not a CSV file")
+            raise _fault(path, 1, _TOO_LONG)
         if text.strip() and not text.lstrip().startswith("#"):
             break
     if "\r" in text.rstrip("\r\n"):
-        raise InputError(f"{path}: row 1: carriage returns within it; rows must end in line feeds: save it as CSV anew")
+        raise _fault(path, 1, "carriage returns within it", "rows must end in line feeds: save it as CSV again")
     headers = {separator: _cells(text, separator) for separator in _SEPARATORS}
     separator = max(_SEPARATORS, key=lambda key: (sum(name in headers[key] for name in names), len(headers[key])))
     header = headers[separator]
     if all(_NUMBER.fullmatch(name) for name in header):
-        raise InputError(f"{path}: row 1 holds numbers; must be a header that names the columns, as {','.join(names)}")
+        raise InputError(f"row 1 holds numbers; must be a header that names the columns, {columns}", file=path)
     return _Layout(path, separator, len(header), names, places(path, header, names))
 
 
@@ -90,12 +96,12 @@ def _text(path: Path, data: bytes, row: int) -> str:
     """Text of some lines, of which the first is ``row``."""
     if b"\0" in data:
         at = row + data.count(b"\n", 0, data.index(b"\0"))
-        raise InputError(f"{path}: row {at}: holds a zero byte: a binary file; must be CSV text")
+        raise _fault(path, at, "holds a zero byte: a binary file", "must be CSV text")
     try:
         return data.decode("utf-8")
     except UnicodeDecodeError as error:
         at = row + data.count(b"\n", 0, error.start)
-        raise InputError(f"{path}: row {at}: not UTF-8 text (byte 0x{data[error.start]:02x})") from None
+        raise _fault(path, at, f"not UTF-8 text (byte 0x{data[error.start]:02x})") from None
 
 
 def _cells(line: str, separator: str) -> list[str]:
@@ -108,7 +114,7 @@ def _cells(line: str, separator: str) -> list[str]:
 
 
 def _blank(line: str, separator: str) -> bool:
-    """Whether a line is one that the parser passes over: of spaces and tabs alone, but not of separators."""
+    """Whether the parser skips a line: one of spaces and tabs alone, but not of separators."""
     return not line.strip(" \r\t" if separator != "\t" else " \r")
 
 
@@ -123,7 +129,7 @@ def _parse(data: bytes, row: int, layout: _Layout) -> tuple[Array, Array, int]:
     if not data.isascii() or b"\0" in data:
         _text(layout.path, data, row)
     lines = data.count(b"\n")
-    # The parser passes over superfluous fields in silence, so they are counted here.
+    # The parser ignores superfluous fields without an error, so they are counted here.
     uneven = data.count(layout.separator.encode()) != lines * (layout.width - 1)
     kept = _check_widths(data, row, layout) if uneven or b'"' in data or layout.width == 1 else None
     rows = row + (np.arange(lines, dtype=float) if kept is None else kept)
@@ -131,26 +137,32 @@ def _parse(data: bytes, row: int, layout: _Layout) -> tuple[Array, Array, int]:
         return rows, np.empty((len(layout.places), 0)), lines
     try:
         frame = pd.read_csv(
-            io.BytesIO(data), sep=layout.separator, header=None, names=list(range(layout.width)), index_col=False,
-            usecols=layout.places, dtype="float64", engine="c", encoding="utf-8",
-        )  # fmt: skip
+            io.BytesIO(data),
+            sep=layout.separator,
+            header=None,
+            names=list(range(layout.width)),
+            index_col=False,
+            usecols=layout.places,
+            dtype="float64",
+            engine="c",
+        )
         values = np.stack([frame[place].to_numpy() for place in layout.places])
     except (ValueError, pd.errors.ParserError):
         values = np.full((len(layout.places), rows.size), np.nan)
     if values.shape[1] != rows.size or not np.isfinite(values).all():
-        _tell_fault(data, row, layout)
+        _raise_fault(data, row, layout)
     return rows, values, lines
 
 
 def _check_widths(data: bytes, row: int, layout: _Layout) -> Array:
-    """Places of the lines that are not empty. Raises InputError for one with too few or too many fields."""
+    """Indices of the lines that are not empty. Raises InputError for one with too few or too many fields."""
     kept = []
-    # Rows are what line feeds end: other marks that Unicode takes for line ends are a cell's own.
+    # Line feeds end rows: the other line ends of Unicode belong to the cell.
     for k, line in enumerate(data.decode("utf-8").split("\n")[:-1]):
         if _blank(line, layout.separator):
             continue
         if "\r" in line.rstrip("\r"):
-            raise InputError(f"{layout.path}: row {row + k}: a carriage return within it; rows must end in line feeds")
+            raise layout.fault(row + k, "a carriage return within it", "rows must end in line feeds")
         _check_width(len(_cells(line, layout.separator)), row + k, layout)
         kept.append(k)
     return np.array(kept, float)
@@ -159,11 +171,11 @@ def _check_widths(data: bytes, row: int, layout: _Layout) -> Array:
 def _check_width(count: int, row: int, layout: _Layout) -> None:
     if count != layout.width:
         comma = " Decimals must have a point." if count > layout.width and layout.separator == "," else ""
-        raise InputError(f"{layout.path}: row {row}: {count} fields; the header has {layout.width}.{comma}")
+        raise layout.fault(row, f"{count} fields; the header has {layout.width}.{comma}")
 
 
-def _tell_fault(data: bytes, row: int, layout: _Layout) -> None:
-    """Reads slowly what could not be read quickly, for the row and the cell."""
+def _raise_fault(data: bytes, row: int, layout: _Layout) -> None:
+    """Find the row and the cell that the fast parser could not read, cell by cell."""
     lines = data.decode("utf-8").split("\n")[:-1]
     for k, line in enumerate(lines):
         if _blank(line, layout.separator):
@@ -172,24 +184,20 @@ def _tell_fault(data: bytes, row: int, layout: _Layout) -> None:
         for name, place in zip(layout.names, layout.places, strict=True):
             text = cells[place]
             if not _NUMBER.fullmatch(text) or not np.isfinite(float(text)):
-                told = f"'{text[:40]}' is no finite number" if text else "empty"
-                raise InputError(
-                    f"{layout.path}: row {row + k}: column {name}: {told}; must be a number with a decimal point"
-                )
-    raise InputError(f"{layout.path}: rows {row} to {row + len(lines) - 1}: cannot be read as columns of numbers")
+                problem = f"column {name}: '{text[:40]}' is no finite number" if text else f"column {name}: empty"
+                raise layout.fault(row + k, problem, "must be a number with a decimal point")
+    raise InputError(f"rows {row} to {row + len(lines) - 1}: cannot be read as columns of numbers", file=layout.path)
 
 
 def _last(rest: bytes, row: int, layout: _Layout) -> Array:
-    """Values (k, 1) of a last row without a line end. Raises InputError where it is not whole."""
+    """Values (k, 1) of a last row without a line end. Raises InputError where it is not complete."""
     text = _text(layout.path, rest, row)
     cells = _cells(text, layout.separator)
     if len(cells) < layout.width or not all(_NUMBER.fullmatch(cells[place]) for place in layout.places):
-        raise InputError(
-            f"{layout.path}: row {row}: the file ends within this row, '{text.strip()[:60]}'; it is cut off: "
-            "copy it anew, or delete its last row"
-        )
+        problem = f"the file ends within this row, '{text.strip()[:60]}'; it is cut off"
+        raise layout.fault(row, f"{problem}: copy it again, or delete its last row")
     _check_width(len(cells), row, layout)
     values = np.array([[float(cells[place])] for place in layout.places])
     if not np.isfinite(values).all():
-        _tell_fault(rest + b"\n", row, layout)
+        _raise_fault(rest + b"\n", row, layout)
     return values

@@ -1,0 +1,1 @@
+"""Tables of numbers in CSV and parquet files, read with one set of messages."""
