@@ -24,7 +24,7 @@ SEATS = sorted(LIBRARY.shelf("seats"))
 TOLERANCE = 0.016
 
 
-def ground(material="TangoPlus", seat="glued-flange", *more):
+def context(material="TangoPlus", seat="glued-flange", *more):
     chosen = [f"connector.seat={seat}", *more]
     if seat == "one-piece":
         chosen += ["connector.material=VeroClear", "print.connector_profile=objet260-connex"]
@@ -34,7 +34,7 @@ def ground(material="TangoPlus", seat="glued-flange", *more):
 def drawn():
     for name, coupon in COUPONS.items():
         for seat in SEATS if coupon.belongs == "design" else SEATS[:1]:
-            for solid in coupon.draw(ground(seat=seat)):
+            for solid in coupon.draw(context(seat=seat)):
                 yield pytest.param(solid, id=f"{solid.name}-{seat}" if coupon.belongs == "design" else name)
 
 
@@ -53,18 +53,18 @@ def test_every_coupon_is_exact_and_closed(solid):
 def test_every_family_says_what_is_measured_and_how():
     for name, coupon in COUPONS.items():
         assert coupon.name == name
-        nominals = coupon.nominals(ground())
+        nominals = coupon.nominals(context())
         assert nominals and coupon.steps and coupon.formulas
         assert all(nominal.instrument and nominal.unit for nominal in nominals)
         assert len({(nominal.feature, nominal.value) for nominal in nominals}) == len(nominals)
 
 
 def test_the_puck_is_the_papers():
-    (solid,) = COUPONS["puck"].draw(ground())
+    (solid,) = COUPONS["puck"].draw(context())
     assert solid.volume == pytest.approx(math.pi * 10**2 * 3, rel=1e-12)
-    assert [n.value for n in COUPONS["puck"].nominals(ground())] == [27.6, pytest.approx(solid.mass), 20, 3]
-    assert COUPONS["puck"].copies * COUPONS["puck"].nominals(ground())[0].readings == 20
-    assert COUPONS["puck"].nominals(ground("VeroClear"))[0].unit == "Shore D"
+    assert [n.value for n in COUPONS["puck"].nominals(context())] == [27.6, pytest.approx(solid.mass), 20, 3]
+    assert COUPONS["puck"].copies * COUPONS["puck"].nominals(context())[0].readings == 20
+    assert COUPONS["puck"].nominals(context("VeroClear"))[0].unit == "Shore D"
 
 
 def test_the_dumbbell_is_die_c_and_smooth():
@@ -99,7 +99,7 @@ def test_gauge_features_stand_apart_on_the_plate():
         assert list(row.sizes) == sorted(row.sizes)
         ends = [(x - size / 2, x + size / 2) for x, size in row.places()]
         assert all(after[0] - before[1] == pytest.approx(4) for before, after in itertools.pairwise(ends))
-    plate, block = COUPONS["gauge"].draw(ground())
+    plate, block = COUPONS["gauge"].draw(context())
     assert plate.mesh(TOLERANCE).bounds[1] == pytest.approx([52.3, 46, 8])
     assert block.mesh(TOLERANCE).bounds.tolist() == [[0, 0, 0], [20, 20, 20]]
     assert block.volume == pytest.approx(20 * (20 * 5 + 15 * 5 + 10 * 5 + 5 * 5))
@@ -107,7 +107,7 @@ def test_gauge_features_stand_apart_on_the_plate():
 
 @pytest.mark.parametrize("seat", SEATS)
 def test_the_cap_has_the_flange_of_the_membrane_and_no_cavity(seat):
-    where = ground(seat=seat)
+    where = context(seat=seat)
     layout = lay_out(where.scene)
     fit = where.scene.fit_clearance - layout.clearance
     ours, theirs = cap(where, [], 0.0), membrane_meridian(layout)
@@ -123,7 +123,7 @@ def test_the_cap_has_the_flange_of_the_membrane_and_no_cavity(seat):
 
 @pytest.mark.parametrize("seat", SEATS)
 def test_the_plug_adds_one_millilitre(seat):
-    where = ground(seat=seat)
+    where = context(seat=seat)
     (plain,), (plug,) = COUPONS["leak-cap"].draw(where), COUPONS["volume-plug"].draw(where)
     radius, height = cavity_size(where)
     assert math.pi * radius**2 * height == pytest.approx(1000, rel=1e-12)
@@ -142,7 +142,7 @@ def test_cavities_are_round_numbers_below_the_dome():
 
 def test_a_dome_too_small_for_a_plug_is_named():
     small = ["membrane.inner_radius_mm=3", "membrane.wall_thickness_mm=0.05", "connector.mount=plain"]
-    where = ground("TangoPlus", "clamped-flange-M2", *small)
+    where = context("TangoPlus", "clamped-flange-M2", *small)
     assert COUPONS["leak-cap"].draw(where)
     with pytest.raises(InputError, match=r"inner_radius_mm = 3: too small for a volume plug"):
         COUPONS["volume-plug"].draw(where)

@@ -154,8 +154,8 @@ def test_small_things_on_a_large_part_are_seen():
 
 def test_the_gauge_is_measured_feature_by_feature():
     """The coupon that tells what a machine resolves has a row each of walls, pins, holes and slots of known sizes."""
-    ground = CouponContext(material("VeroClear"))
-    gauge = next(solid for solid in COUPONS["gauge"].draw(ground) if solid.name == "gauge")
+    context = CouponContext(material("VeroClear"))
+    gauge = next(solid for solid in COUPONS["gauge"].draw(context) if solid.name == "gauge")
     body = gauge.mesh(printer().finest_step(printer().mode[0]))
     found = PrintPart(PrintItem(body, printer(), printer().mode[0], gauge)).places
     for kinds, sizes, most in (

@@ -65,7 +65,7 @@ def test_coupons_lie_apart_and_inside_the_tray():
     for name, items in order(WHOLE, LIBRARY).machines().items():
         room = items[0].printer.envelope_mm
         boxes = [body.bounds for piece in lay(name, items) for body in piece.copies()]
-        assert len(boxes) == sum(item.copies * len(item.coupon.draw(item.ground)) for item in items)
+        assert len(boxes) == sum(item.copies * len(item.coupon.draw(item.context)) for item in items)
         for box in boxes:
             assert box[0][:2].min() >= 4.9
             assert box[0][2] == pytest.approx(0, abs=1e-9)
@@ -107,6 +107,6 @@ def test_the_template_lists_every_nominal_and_is_valid_once_signed():
     assert len(results.dumbbell["TangoPlus"].specimen) == 5
     gauge = results.gauge["objet260-connex"]["TangoPlus"]
     listed = [(row, size.nominal_mm) for row in type(gauge).model_fields for size in getattr(gauge, row)]
-    nominals = COUPONS["gauge"].nominals(order(WHOLE, LIBRARY).items[0].ground)
+    nominals = COUPONS["gauge"].nominals(order(WHOLE, LIBRARY).items[0].context)
     assert listed == [(nominal.feature, nominal.value) for nominal in nominals]
     assert set(results.leak_cap) == set(results.volume_plug) == {"paper-dome"}

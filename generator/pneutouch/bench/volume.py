@@ -71,13 +71,13 @@ def volume(
     )
 
 
-def cavity_measured(ground: CouponContext, plug: VolumePlug) -> Mean:
+def cavity_measured(context: CouponContext, plug: VolumePlug) -> Mean:
     """The cavity's volume in mL: weighed, or as drawn with the printer's accuracy on its diameter and height."""
     if plug.water_g:
         water = mean(plug.water_g)
         return Mean(water.value / WATER, water.spread / WATER, water.count)
-    scene = ground.design()
-    (radius, height), accuracy = cavity_size(ground), scene.connector_printer.accuracy_mm.nominal
+    scene = context.design()
+    (radius, height), accuracy = cavity_size(context), scene.connector_printer.accuracy_mm.nominal
     drawn = cavity_volume(scene.design.membrane.inner_radius_mm) / ML
     # Diameter and height each lie evenly within the accuracy (JCGM 100, 4.3.7).
     return Mean(drawn, drawn * math.hypot(accuracy / radius, accuracy / height) / math.sqrt(3), 1)

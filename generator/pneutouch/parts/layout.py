@@ -116,7 +116,7 @@ def lay_out(scene: ResolvedDesign) -> Layout:
 
 
 def _ring_radius(scene: ResolvedDesign, groove: float, flange: float) -> float:
-    """Outer radius of the rigid ring around the flange; a clamping ring carries its screw heads on flat ground."""
+    """Outer radius of the rigid ring around the flange; a clamping ring carries its screw heads on flat context."""
     seat = scene.seat
     if isinstance(seat, ClampedFlange):
         least = scene.connector_printer.smallest.wall_rigid_mm.recommended

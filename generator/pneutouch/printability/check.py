@@ -4,26 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from pneutouch.printability.finding import Finding
+from pneutouch.printability.finding import Finding, by_severity
 from pneutouch.printability.rules import (
-    channels,
     cleaning,
     contact_faces,
     driving,
     edges,
-    emboss,
     envelope,
+    feature_sizes,
     freedom,
     gaps,
-    holes,
     hollows,
     layers,
     matte,
     mesh,
-    pins,
     resins,
-    walls,
-)  # fmt: skip
+)
 from pneutouch.printability.subject import PrintSubject
 from pneutouch.printability.view import PrintView, SensorContext
 
@@ -34,12 +30,12 @@ RULES: dict[str, Rule] = {
     "contact faces": contact_faces.check,
     "envelope": envelope.check,
     "resins": resins.check,
-    "walls": walls.check,
-    "pins": pins.check,
-    "holes": holes.check,
-    "channels": channels.check,
+    "walls": feature_sizes.CHECKS["walls"],
+    "pins": feature_sizes.CHECKS["pins"],
+    "holes": feature_sizes.CHECKS["holes"],
+    "channels": feature_sizes.CHECKS["channels"],
     "gaps": gaps.check,
-    "emboss": emboss.check,
+    "emboss": feature_sizes.CHECKS["emboss"],
     "edges": edges.check,
     "hollows": hollows.check,
     "cleaning": cleaning.check,
@@ -49,8 +45,6 @@ RULES: dict[str, Rule] = {
     "freedom": freedom.check,
 }
 
-_ORDER = {"error": 0, "warning": 1, "note": 2}
-
 
 def check(subject: PrintSubject, sensor_context: SensorContext | None = None) -> list[Finding]:
     """All findings, errors first.
@@ -59,5 +53,5 @@ def check(subject: PrintSubject, sensor_context: SensorContext | None = None) ->
     working (driving, layers) say nothing without ``sensor_context``.
     """
     view = PrintView(subject, sensor_context)
-    found = [finding for rule in RULES.values() for finding in rule(view)]
-    return sorted(found, key=lambda finding: _ORDER[finding.severity])
+    findings = [finding for rule in RULES.values() for finding in rule(view)]
+    return by_severity(findings)

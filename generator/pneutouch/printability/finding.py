@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 Severity = Literal["error", "warning", "note"]
 
@@ -46,3 +47,8 @@ class Finding:
             "fix": self.fix,
             "source": self.source,
         }
+
+
+def by_severity(findings: Iterable[Finding]) -> list[Finding]:
+    """Errors first, then warnings, then notes; the order within each is kept."""
+    return sorted(findings, key=lambda finding: get_args(Severity).index(finding.severity))

@@ -1,4 +1,4 @@
-"""The paper's block and printer as the ground of patterns, and a body of a mesh."""
+"""The paper's block and printer as the context of patterns, and a body of a mesh."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ J735 = LIBRARY.load("printers", "j735")
 STEP = 0.014
 
 
-def ground(length: float = 20.0, width: float = 10.0, height: float = 8.0, speed: float = 4.0) -> PatternContext:
+def context(length: float = 20.0, width: float = 10.0, height: float = 8.0, speed: float = 4.0) -> PatternContext:
     return PatternContext(Box((0.0, 0.0, 0.0), (length, width, height)), J735, AGILUS, VERO, speed, STEP, "test.toml")
 
 

@@ -12,7 +12,7 @@ from pneutouch.parts.specimen.mesh import joined
 from pneutouch.parts.specimen.struts import STRUTS
 from pneutouch.parts.specimen.surfaces import SURFACES
 from pneutouch.printability.rules.contact_faces import overlap_volume, shared_area
-from tests.parts.specimen.shapes import body, drawn, ground
+from tests.parts.specimen.shapes import body, context, drawn
 
 FRACTIONS = {
     "schwarz-p network": (0.25, 0.4, 0.6),
@@ -49,7 +49,7 @@ def check(at, pattern):
 @pytest.mark.parametrize("kind", STRUTS)
 @pytest.mark.parametrize("cell", [5.0, 5.3], ids=["whole cells", "cut cells"])
 def test_struts_at_three_fractions(kind, share, cell):
-    at, fraction = ground(15, 10, 8), FRACTIONS.get(kind, (0.1, 0.2, 0.4))[share]
+    at, fraction = context(15, 10, 8), FRACTIONS.get(kind, (0.1, 0.2, 0.4))[share]
     pattern = drawn(at, kind, cell_mm=cell, volume_fraction=fraction, depth_mm=1.0, height_mm=5.0)
     assert pattern.mesh.volume / pattern.box.volume == pytest.approx(fraction, rel=0.01)
     check(at, pattern)
@@ -59,7 +59,7 @@ def test_struts_at_three_fractions(kind, share, cell):
 @pytest.mark.parametrize("form", ["sheet", "network"])
 @pytest.mark.parametrize("kind", SURFACES)
 def test_surfaces_at_three_fractions(kind, form, share):
-    at, fraction = ground(12, 10, 8), FRACTIONS.get(f"{kind} {form}", (0.4, 0.5, 0.7))[share]
+    at, fraction = context(12, 10, 8), FRACTIONS.get(f"{kind} {form}", (0.4, 0.5, 0.7))[share]
     pattern = drawn(at, kind, cell_mm=6.0, form=form, volume_fraction=fraction, depth_mm=0.0, height_mm=6.0)
     assert pattern.mesh.volume / pattern.box.volume == pytest.approx(fraction, rel=0.01)
     check(at, pattern)
@@ -67,7 +67,7 @@ def test_surfaces_at_three_fractions(kind, form, share):
 
 @pytest.mark.parametrize("kind", [*STRUTS, "gyroid"])
 def test_a_lattice_through_the_whole_block_is_flush_with_every_side(kind):
-    at = ground(10, 10, 10)
+    at = context(10, 10, 10)
     pattern = drawn(at, kind, cell_mm=5.0, volume_fraction=0.4)
     assert pattern.box == at.block
     check(at, pattern)
@@ -75,7 +75,7 @@ def test_a_lattice_through_the_whole_block_is_flush_with_every_side(kind):
 
 @pytest.mark.parametrize("kind", ["gyroid", "schwarz-p", "diamond"])
 def test_a_sheet_of_a_thickness_has_it_times_its_middle_surface(kind):
-    pattern = drawn(ground(12, 12, 12), kind, cell_mm=6.0, thickness_mm=0.8)
+    pattern = drawn(context(12, 12, 12), kind, cell_mm=6.0, thickness_mm=0.8)
     # Area of the minimal surface in a unit cell: 3.09144 (gyroid) and 2.34510 (P); of D, 3.83778 in its own cubic cell,
     # which is half of the wave's (Schroeder-Turk et al. 2006). The waves are approximations of the surfaces.
     area = {"gyroid": 3.0914, "schwarz-p": 2.3451, "diamond": 3.8378}[kind]
@@ -88,7 +88,7 @@ def test_a_sheet_of_a_thickness_has_it_times_its_middle_surface(kind):
 )  # fmt: skip
 def test_bars_of_any_size_are_exact(count, width, space, height, depth, span):
     width, space, height, depth = (round(value, 3) for value in (width, space, height, depth))
-    at = ground(round(count * (width + space), 3), 10.0, 8.0)
+    at = context(round(count * (width + space), 3), 10.0, 8.0)
     keys = {} if span is None else {"span_mm": round(span, 3)}
     pattern = drawn(
         at, "bars", pitch_mm=round(width + space, 3), width_mm=width, height_mm=height, depth_mm=depth, **keys
@@ -102,14 +102,14 @@ def test_bars_of_any_size_are_exact(count, width, space, height, depth, span):
 
 
 def test_bars_flush_with_every_side_are_built():
-    at = ground(11.0, 10.0, 8.0)
+    at = context(11.0, 10.0, 8.0)
     pattern = drawn(at, "bars", pitch_mm=8.0, width_mm=3.0, height_mm=8.0)
     assert pattern.box == at.block
     check(at, pattern)
 
 
 def test_waves_meet_their_integral():
-    at = ground(30, 10, 8)
+    at = context(30, 10, 8)
     sine = drawn(at, "sinusoid", pitch_mm=3.0, amplitude_mm=0.5, height_mm=1.0, depth_mm=1.0)
     # Crest to floor is 2 mm; a whole number of waves has its mean half way between trough and crest.
     assert sine.mesh.volume == pytest.approx(30 * 10 * 1.5, rel=2e-3)
@@ -121,7 +121,7 @@ def test_waves_meet_their_integral():
 
 
 def test_several_patterns_together():
-    at = ground(30, 20, 12)
+    at = context(30, 20, 12)
     parts = [
         drawn(at, "bars", pitch_mm=3.0, height_mm=1.0),
         drawn(at, "octet", cell_mm=5.0, volume_fraction=0.25, depth_mm=2.0, height_mm=5.0),
@@ -135,7 +135,7 @@ def test_several_patterns_together():
 
 def test_many_holes_are_cut_into_parts_that_still_conform():
     box = Box((0.0, 0.0, 0.0), (900.0, 10.0, 8.0))
-    pattern = drawn(ground(900, 10, 8), "bars", pitch_mm=3.0, width_mm=1.5, height_mm=1.0, depth_mm=3.0)
+    pattern = drawn(context(900, 10, 8), "bars", pitch_mm=3.0, width_mm=1.5, height_mm=1.0, depth_mm=3.0)
     matrix = complement(box, pattern.mesh)
     assert matrix.is_closed()
     assert matrix.volume + pattern.mesh.volume == pytest.approx(box.volume, rel=1e-12)

@@ -12,7 +12,7 @@ import pytest
 from pneutouch.body.revolve import circle_count
 from pneutouch.parts.specimen import Box, complement
 from pneutouch.parts.specimen.struts import STRUTS, Lattice, fill
-from tests.parts.specimen.shapes import STEP, bars_by_hand, body, drawn, ground
+from tests.parts.specimen.shapes import STEP, bars_by_hand, body, context, drawn
 
 # Struts in a cell, counted once where cells share them.
 PER_CELL = {"simple-cubic": 3, "bcc": 8, "fcc": 24, "octet": 36, "kelvin": 24}
@@ -89,6 +89,6 @@ def test_ten_thousand_bars_take_under_a_second(depth):
 
 @pytest.mark.slow
 def test_bars_of_the_family_cost_no_more_than_by_hand():
-    taken, pattern = best(lambda: drawn(ground(1000, 20, 8), "bars", pitch_mm=2.0, width_mm=1.0, height_mm=1.0))
+    taken, pattern = best(lambda: drawn(context(1000, 20, 8), "bars", pitch_mm=2.0, width_mm=1.0, height_mm=1.0))
     assert pattern.truth["count"] == 500
     assert taken < 0.1

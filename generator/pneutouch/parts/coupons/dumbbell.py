@@ -44,12 +44,12 @@ def outline() -> tuple[Segment, ...]:
     return tuple(pieces)
 
 
-def draw(ground: CouponContext) -> tuple[Solid, ...]:
+def draw(context: CouponContext) -> tuple[Solid, ...]:
     """The dumbbell, lying on z = 0."""
-    return (Solid("dumbbell", ROLE, ground.material, Prism(outline(), 0.0, THICKNESS)),)
+    return (Solid("dumbbell", ROLE, context.material, Prism(outline(), 0.0, THICKNESS)),)
 
 
-def nominals(ground: CouponContext) -> tuple[Nominal, ...]:
+def nominals(context: CouponContext) -> tuple[Nominal, ...]:
     """The cross-section, the bench marks, and then the curve."""
     return (
         Nominal("width_mm", NARROW_WIDTH, "mm", CALIPER),

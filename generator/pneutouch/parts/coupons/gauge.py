@@ -64,7 +64,7 @@ def rows() -> tuple[GaugeRow, ...]:
     return tuple(found)
 
 
-def draw(ground: CouponContext) -> tuple[Solid, ...]:
+def draw(context: CouponContext) -> tuple[Solid, ...]:
     """The gauge plate and the step block, both standing on z = 0 with their least x and y at 0."""
     walls, pins, holes, slots = rows()
     wide, deep = max(row.end for row in rows()) + _MARGIN, slots.middle + 0.5 * LENGTH + _MARGIN
@@ -73,8 +73,8 @@ def draw(ground: CouponContext) -> tuple[Solid, ...]:
     adds += [_pin(x, size, pins.middle) for x, size in pins.places()]
     bores = tuple(Bore(x, holes.middle, 0.5 * size, 0.0, PLATE) for x, size in holes.places())
     cuts = tuple(_slot(x, size, slots.middle) for x, size in slots.places())
-    plate = Solid("gauge", ROLE, ground.material, Prism(_polygon(corners), 0.0, PLATE), bores, tuple(adds), cuts)
-    return plate, Solid("block", ROLE, ground.material, block())
+    plate = Solid("gauge", ROLE, context.material, Prism(_polygon(corners), 0.0, PLATE), bores, tuple(adds), cuts)
+    return plate, Solid("block", ROLE, context.material, block())
 
 
 def block() -> Prism:
@@ -87,7 +87,7 @@ def block() -> Prism:
     return Prism(_polygon(corners), -BLOCK, 0.0, upright)
 
 
-def nominals(ground: CouponContext) -> tuple[Nominal, ...]:
+def nominals(context: CouponContext) -> tuple[Nominal, ...]:
     """The block's lengths, then the rows of the gauge."""
     lengths = [("x", STEPS), ("y", (BLOCK,)), ("z", STEPS)]
     instruments = {"wall": CALIPER, "pin": CALIPER, "hole": GAUGE_PINS, "slot": "feeler gauge, or a microscope"}

@@ -21,27 +21,27 @@ _LEAST_DISC, _DISC_SHARE = 3.0, 1 / 3
 (Kirchhoff plate, E = 2.4 GPa)."""
 
 
-def draw(ground: CouponContext) -> tuple[Solid, ...]:
+def draw(context: CouponContext) -> tuple[Solid, ...]:
     """The cap in the frame of its design. Raises InputError where the design has no room for a part."""
-    return (Solid("leak-cap", ROLE, ground.design().connector_material, cap(ground, [], 0.0)),)
+    return (Solid("leak-cap", ROLE, context.design().connector_material, cap(context, [], 0.0)),)
 
 
-def cap(ground: CouponContext, hollow: TracedPath, top: float) -> Meridian:
+def cap(context: CouponContext, hollow: TracedPath, top: float) -> Meridian:
     """A flange and a disc above ``top`` (mm); ``hollow`` leads from the axis at that height to the base plane."""
-    scene, layout = ground.design(), ground.layout()
+    scene, layout = context.design(), context.layout()
     # A membrane grown onto its connector leaves no gap for a part that is glued in its place.
     slack = scene.fit_clearance - layout.clearance
     inner, flange, low = layout.inner_radius + slack, layout.flange_radius - slack, -layout.flange_thickness
-    rim, high = rim_radius(ground, layout), top + disc_thickness(layout)
+    rim, high = rim_radius(context, layout), top + disc_thickness(layout)
     return trace((0.0, top), [
         *hollow, ("base plane", (inner, 0.0)), ("held", (inner, low)), ("held", (flange, low)), ("held", (flange, 0.0)),
         ("flange top", (rim, 0.0)), ("side", (rim, high)), ("top", (0.0, high)),
     ])  # fmt: skip
 
 
-def rim_radius(ground: CouponContext, layout: Layout) -> float:
+def rim_radius(context: CouponContext, layout: Layout) -> float:
     """Radius of the disc: over the whole flange, or inside the ring that clamps it."""
-    scene = ground.design()
+    scene = context.design()
     if isinstance(scene.seat, ClampedFlange):
         return layout.outer_radius
     return layout.flange_radius - (scene.fit_clearance - layout.clearance)
@@ -52,7 +52,7 @@ def disc_thickness(layout: Layout) -> float:
     return max(_LEAST_DISC, _DISC_SHARE * layout.inner_radius)
 
 
-def nominals(ground: CouponContext) -> tuple[Nominal, ...]:
+def nominals(context: CouponContext) -> tuple[Nominal, ...]:
     """The leak, then the pressure after a known push of air."""
     return (
         Nominal("start_kPa", TEST_PRESSURE, "kPa", PRESSURE),

@@ -15,18 +15,18 @@ DIAMETER, THICKNESS = 20.0, 3.0
 """mm; paper, Supplement A."""
 
 
-def draw(ground: CouponContext) -> tuple[Solid, ...]:
+def draw(context: CouponContext) -> tuple[Solid, ...]:
     """The disc, standing on z = 0."""
-    return (Solid("puck", ROLE, ground.material, cylinder(0.5 * DIAMETER, 0.0, THICKNESS)),)
+    return (Solid("puck", ROLE, context.material, cylinder(0.5 * DIAMETER, 0.0, THICKNESS)),)
 
 
-def nominals(ground: CouponContext) -> tuple[Nominal, ...]:
+def nominals(context: CouponContext) -> tuple[Nominal, ...]:
     """Hardness on the scale of the material's kind, then what the density needs."""
-    material = ground.material
+    material = context.material
     soft = material.kind == "elastomer"
     known = material.shore_a if soft else material.shore_d
     scale = "Shore A" if soft else "Shore D"
-    mass = grams(draw(ground)[0].volume, material.density_g_per_cm3.nominal)
+    mass = grams(draw(context)[0].volume, material.density_g_per_cm3.nominal)
     key, nominal = "shore_a" if soft else "shore_d", None if known is None else known.nominal
     return (
         Nominal(key, nominal, scale, f"{scale} durometer", 5),

@@ -34,12 +34,12 @@ def cavity_volume(inner_radius: float) -> float:
     return next(step * decade for step in _SERIES if step * decade <= dome)
 
 
-def cavity_size(ground: CouponContext) -> tuple[float, float]:
+def cavity_size(context: CouponContext) -> tuple[float, float]:
     """Radius and height of the cavity, mm. Raises InputError for a dome too small to leave a wall around it."""
-    scene, layout = ground.design(), ground.layout()
+    scene, layout = context.design(), context.layout()
     wall = scene.connector_printer.smallest.wall(scene.connector_material.kind).recommended
     ledge = min(_LEDGE, _LEDGE_SHARE * layout.inner_radius)
-    radius = min(layout.inner_radius - ledge, rim_radius(ground, layout) - wall)
+    radius = min(layout.inner_radius - ledge, rim_radius(context, layout) - wall)
     if radius <= 0.5 * layout.inner_radius:
         raise InputError(
             f"{scene.where}: membrane.inner_radius_mm = {layout.inner_radius:g}: too small for a volume plug, whose wall on "
@@ -48,16 +48,16 @@ def cavity_size(ground: CouponContext) -> tuple[float, float]:
     return radius, cavity_volume(layout.inner_radius) / (math.pi * radius**2)
 
 
-def draw(ground: CouponContext) -> tuple[Solid, ...]:
+def draw(context: CouponContext) -> tuple[Solid, ...]:
     """The plug in the frame of its design. Raises InputError for a dome too small to leave a wall around the cavity."""
-    radius, height = cavity_size(ground)
+    radius, height = cavity_size(context)
     hollow = [("cavity top", (radius, height)), ("cavity", (radius, 0.0))]
-    return (Solid("volume-plug", ROLE, ground.design().connector_material, cap(ground, hollow, height)),)
+    return (Solid("volume-plug", ROLE, context.design().connector_material, cap(context, hollow, height)),)
 
 
-def nominals(ground: CouponContext) -> tuple[Nominal, ...]:
+def nominals(context: CouponContext) -> tuple[Nominal, ...]:
     """The pressure after the same push of air as over the cap, and the cavity's volume by weighed water."""
-    volume = cavity_volume(ground.design().design.membrane.inner_radius_mm) / ML
+    volume = cavity_volume(context.design().design.membrane.inner_radius_mm) / ML
     return (
         Nominal("pressure_kPa", None, "kPa", PRESSURE),
         Nominal("water_g", WATER * volume, "g", BALANCE),

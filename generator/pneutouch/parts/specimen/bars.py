@@ -37,50 +37,50 @@ _MOST_EXACT = 500
 """Bars that are written to STEP: beyond it Open CASCADE takes minutes."""
 
 
-def places(layer: Bars, ground: PatternContext) -> Array:
+def places(layer: Bars, context: PatternContext) -> Array:
     """Near sides (n,) of the bars along the path, mm: whole bars only."""
-    start, end = along(layer, ground)
-    pitch = layer.pitch(ground.speed)
+    start, end = along(layer, context)
+    pitch = layer.pitch(context.speed)
     first = start + layer.offset_mm
     count = math.floor((end - first - layer.width_mm) / pitch + 1e-9) + 1
     found: Array = np.round(first + pitch * np.arange(max(count, 0)), DECIMALS)
     return found
 
 
-def box(layer: Bars, ground: PatternContext, number: int) -> Box:
+def box(layer: Bars, context: PatternContext, number: int) -> Box:
     """The box around all bars."""
-    pitch = layer.pitch(ground.speed)
-    check_least(ground, number, "width_mm", layer.width_mm, "wall")
-    check_least(ground, number, "height_mm", layer.height_mm, "wall")
+    pitch = layer.pitch(context.speed)
+    check_least(context, number, "width_mm", layer.width_mm, "wall")
+    check_least(context, number, "height_mm", layer.height_mm, "wall")
     between = pitch - layer.width_mm
-    if between < ground.least_matrix() - 1e-9:
-        raise ground.refuse(
+    if between < context.least_matrix() - 1e-9:
+        raise context.refuse(
             number, "width_mm", layer.width_mm, f"leaves {between:.4g} mm of matrix between bars at a pitch of {pitch:.4g} mm; "
-            f"the {ground.printer.title} makes no wall of {ground.matrix.label} thinner than {ground.least_matrix():g} mm",
+            f"the {context.printer.title} makes no wall of {context.matrix.label} thinner than {context.least_matrix():g} mm",
         )  # fmt: skip
-    check_count(ground, number, layer.period_key(), pitch, 30 * (ground.block.high[0] / pitch))
-    lefts = places(layer, ground)
+    check_count(context, number, layer.period_key(), pitch, 30 * (context.block.high[0] / pitch))
+    lefts = places(layer, context)
     if not len(lefts):
-        start, end = along(layer, ground)
+        start, end = along(layer, context)
         text = f"no bar {layer.width_mm:g} mm wide fits between {start:g} and {end:g} mm; lower it or raise end_mm"
-        raise ground.refuse(number, "offset_mm", layer.offset_mm, text)
-    low, high = heights(layer, ground, layer.height_mm)
-    near, far = _across(layer, ground)
+        raise context.refuse(number, "offset_mm", layer.offset_mm, text)
+    low, high = heights(layer, context, layer.height_mm)
+    near, far = _across(layer, context)
     return Box((float(lefts[0]), near, low), (float(lefts[-1]) + layer.width_mm, far, high))
 
 
-def _across(layer: Bars, ground: PatternContext) -> tuple[float, float]:
-    low, high = ground.block.low[1], ground.block.high[1]
+def _across(layer: Bars, context: PatternContext) -> tuple[float, float]:
+    low, high = context.block.low[1], context.block.high[1]
     if layer.span_mm is None or layer.span_mm == high - low:
         return low, high
     near = round(0.5 * (low + high - layer.span_mm), DECIMALS)
     return near, round(near + layer.span_mm, DECIMALS)
 
 
-def draw(layer: Bars, ground: PatternContext, number: int) -> PatternGeometry:
+def draw(layer: Bars, context: PatternContext, number: int) -> PatternGeometry:
     """The bars, 12 triangles each, with their exact volume."""
-    around = box(layer, ground, number)
-    lefts = places(layer, ground)
+    around = box(layer, context, number)
+    lefts = places(layer, context)
     rights = np.round(lefts + layer.width_mm, DECIMALS)
     vertices = np.empty((len(lefts), 8, 3))
     vertices[:, :, 0] = np.where(_CORNERS[:, 0] == 1, rights[:, None], lefts[:, None])
@@ -89,22 +89,22 @@ def draw(layer: Bars, ground: PatternContext, number: int) -> PatternGeometry:
     triangles = _FACES + 8 * np.arange(len(lefts))[:, None, None]
     side = (around.high[1] - around.low[1]) * (around.high[2] - around.low[2])
     return PatternGeometry(
-        Mesh(vertices.reshape(-1, 3), triangles.reshape(-1, 3)), around, (layer.pitch(ground.speed),),
+        Mesh(vertices.reshape(-1, 3), triangles.reshape(-1, 3)), around, (layer.pitch(context.speed),),
         {"count": len(lefts), "width_mm": layer.width_mm, "first_mm": float(lefts[0]), "offset_mm": layer.offset_mm},
         float((rights - lefts).sum()) * side,
-        tuple(_solid(ground, number, k, float(x), around, float(end)) for k, (x, end) in enumerate(zip(lefts, rights, strict=True)))
+        tuple(_solid(context, number, k, float(x), around, float(end)) for k, (x, end) in enumerate(zip(lefts, rights, strict=True)))
         if len(lefts) <= _MOST_EXACT else (),
     )  # fmt: skip
 
 
-def _solid(ground: PatternContext, number: int, k: int, left: float, around: Box, right: float) -> Solid:
+def _solid(context: PatternContext, number: int, k: int, left: float, around: Box, right: float) -> Solid:
     low, high = around.low[2], around.high[2]
     corners = [(left, low), (right, low), (right, high), (left, high)]
     outline = tuple(Line(a, b, "") for a, b in pairwise([*corners, corners[0]]))
     # Its own y is the block's z, so its axis runs against y.
     upright = Frame(axis=(0.0, -1.0, 0.0), across=(1.0, 0.0, 0.0))
     prism = Prism(outline, -around.high[1], -around.low[1], upright)
-    return Solid(f"layer-{number + 1}-bar-{k + 1}", "inclusion", ground.inclusion, prism)
+    return Solid(f"layer-{number + 1}-bar-{k + 1}", "inclusion", context.inclusion, prism)
 
 
 FAMILY = PatternFamily(box, draw)

@@ -68,34 +68,34 @@ class PatternGeometry:
 class PatternFamily:
     """A family: the box that its pattern will fill, known before it is drawn, and how it is drawn.
 
-    Both take the layer, the ground and the layer's number, for messages, and raise InputError for what cannot be.
+    Both take the layer, the context and the layer's number, for messages, and raise InputError for what cannot be.
     """
 
     box: Callable[[Any, PatternContext, int], Box]
     draw: Callable[[Any, PatternContext, int], PatternGeometry]
 
 
-def along(layer: Layer, ground: PatternContext) -> tuple[float, float]:
+def along(layer: Layer, context: PatternContext) -> tuple[float, float]:
     """Where a layer begins and ends along the path, mm."""
-    end = ground.block.high[0] if layer.end_mm is None else layer.end_mm
+    end = context.block.high[0] if layer.end_mm is None else layer.end_mm
     return round(layer.start_mm, DECIMALS), round(end, DECIMALS)
 
 
-def heights(layer: Layer, ground: PatternContext, height: float | None) -> tuple[float, float]:
+def heights(layer: Layer, context: PatternContext, height: float | None) -> tuple[float, float]:
     """The least and greatest height of a layer, mm; down to the bottom of the block where it has no height."""
-    top = round(ground.block.high[2] - layer.depth_mm, DECIMALS)
-    return (ground.block.low[2] if height is None else round(top - height, DECIMALS)), top
+    top = round(context.block.high[2] - layer.depth_mm, DECIMALS)
+    return (context.block.low[2] if height is None else round(top - height, DECIMALS)), top
 
 
-def check_inside(box: Box, ground: PatternContext, number: int, layer: Layer) -> None:
+def check_inside(box: Box, context: PatternContext, number: int, layer: Layer) -> None:
     """Raise InputError where a pattern reaches out of the block, or its sides come within a micrometre of it."""
-    block = ground.block
+    block = context.block
     keys = ("end_mm" if layer.end_mm is not None else "start_mm", "span_mm", "depth_mm")
     for axis, key in enumerate(keys):
         low, high = block.low[axis], block.high[axis]
         if box.low[axis] < low - 1e-9 or box.high[axis] > high + 1e-9:
             size = ("length_mm", "width_mm", "height_mm")[axis]
-            raise ground.refuse(
+            raise context.refuse(
                 number, key, getattr(layer, key, high),
                 f"the pattern reaches from {box.low[axis]:g} to {box.high[axis]:g} mm along {'xyz'[axis]}; it must stay "
                 f"between {low:g} and {high:g} mm, so make it smaller or raise block.{size}",
@@ -103,23 +103,23 @@ def check_inside(box: Box, ground: PatternContext, number: int, layer: Layer) ->
         for gap in (box.low[axis] - low, high - box.high[axis]):
             if 0 < gap < 1e-3:
                 text = f"a gap of {1e3 * gap:.2g} um to the side of the block; make it flush or at least 1 um"
-                raise ground.refuse(number, key, getattr(layer, key, high), text)
+                raise context.refuse(number, key, getattr(layer, key, high), text)
 
 
-def check_least(ground: PatternContext, number: int, key: str, value: float, kind: str, factor: float = 1.0) -> None:
+def check_least(context: PatternContext, number: int, key: str, value: float, kind: str, factor: float = 1.0) -> None:
     """Raise InputError where ``factor`` times a value (mm) is thinner than the printer makes a ``kind``."""
-    least = ground.least(kind)
+    least = context.least(kind)
     if factor * value < least - 1e-9:
-        raise ground.refuse(
-            number, key, value, f"the {ground.printer.title} makes no {kind} of {ground.inclusion.label} thinner than {least:g} mm; "
+        raise context.refuse(
+            number, key, value, f"the {context.printer.title} makes no {kind} of {context.inclusion.label} thinner than {least:g} mm; "
             f"it must be at least {least / factor:g} mm",
         )  # fmt: skip
 
 
-def check_count(ground: PatternContext, number: int, key: str, value: float, triangles: float) -> None:
+def check_count(context: PatternContext, number: int, key: str, value: float, triangles: float) -> None:
     """Raise InputError where a pattern would take more triangles than files can carry."""
     if triangles > MOST_TRIANGLES:
-        raise ground.refuse(
+        raise context.refuse(
             number, key, value, f"the pattern would take about {triangles / 1e6:.3g} million triangles; the most is "
             f"{MOST_TRIANGLES / 1e6:g} million (about 1.5 GiB), so take a larger cell or pitch, or a smaller block",
         )  # fmt: skip

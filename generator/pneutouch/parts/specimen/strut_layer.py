@@ -35,41 +35,41 @@ _CLOSE = 1e-3
 _TRIES = 8
 
 
-def box(layer: StrutLattice, ground: PatternContext, number: int) -> Box:
+def box(layer: StrutLattice, context: PatternContext, number: int) -> Box:
     """The box that the lattice fills: whole width, cells from its least corner."""
-    cell = layer.pitch(ground.speed)
-    start, end = along(layer, ground)
-    low, high = heights(layer, ground, layer.height_mm)
-    around = Box((start, ground.block.low[1], low), (end, ground.block.high[1], high))
+    cell = layer.pitch(context.speed)
+    start, end = along(layer, context)
+    low, high = heights(layer, context, layer.height_mm)
+    around = Box((start, context.block.low[1], low), (end, context.block.high[1], high))
     for axis, key in ((0, "cell_mm"), (1, "cell_mm"), (2, "height_mm" if layer.height_mm else "cell_mm")):
         if around.high[axis] - around.low[axis] < 0.5 * cell - 1e-9:
             length = around.high[axis] - around.low[axis]
             text = f"half a cell of {cell:.4g} mm does not fit into {length:.4g} mm along {'xyz'[axis]}; take a smaller cell"
-            raise ground.refuse(number, key, getattr(layer, key) or cell, text)
+            raise context.refuse(number, key, getattr(layer, key) or cell, text)
     if layer.strut_radius_mm is not None:
-        check_least(ground, number, "strut_radius_mm", layer.strut_radius_mm, "pin", 2.0)
+        check_least(context, number, "strut_radius_mm", layer.strut_radius_mm, "pin", 2.0)
         most = _LARGEST * _greatest(layer.kind, cell)
         if layer.strut_radius_mm > most:
-            raise ground.refuse(
+            raise context.refuse(
                 number, "strut_radius_mm", layer.strut_radius_mm, f"leaves no matrix between the struts of a {layer.kind} cell of "
                 f"{cell:.4g} mm; it must be at most {most:.3g} mm",
             )  # fmt: skip
     return around
 
 
-def draw(layer: StrutLattice, ground: PatternContext, number: int) -> PatternGeometry:
+def draw(layer: StrutLattice, context: PatternContext, number: int) -> PatternGeometry:
     """The lattice, with the radius and the fraction that it has as measured on its mesh."""
-    around, cell = box(layer, ground, number), layer.pitch(ground.speed)
+    around, cell = box(layer, context, number), layer.pitch(context.speed)
     (a, b, c), _ = half_cells(cell, around)
     first = layer.strut_radius_mm or _guess(layer.kind, cell, layer.volume_fraction or 0.0)
-    sides = circle_count(first, ground.tolerance)
-    check_count(ground, number, layer.period_key(), cell, a * b * c * 2.5 * sides * len(STRUTS[layer.kind]))
+    sides = circle_count(first, context.tolerance)
+    check_count(context, number, layer.period_key(), cell, a * b * c * 2.5 * sides * len(STRUTS[layer.kind]))
     if layer.strut_radius_mm is not None:
         lattice = Lattice(layer.kind, cell, layer.strut_radius_mm, sides)
         mesh = fill(lattice, around)
     else:
-        lattice, mesh = _solved(layer, ground, number, around, sides)
-        check_count(ground, number, layer.period_key(), cell, len(mesh.triangles))
+        lattice, mesh = _solved(layer, context, number, around, sides)
+        check_count(context, number, layer.period_key(), cell, len(mesh.triangles))
     truth = {
         "cell_mm": cell, "strut_radius_mm": lattice.radius, "sides": lattice.sides,
         "volume_fraction": mesh.volume / around.volume,
@@ -77,10 +77,10 @@ def draw(layer: StrutLattice, ground: PatternContext, number: int) -> PatternGeo
     return PatternGeometry(mesh, around, (cell,), truth)
 
 
-def _solved(layer: StrutLattice, ground: PatternContext, number: int, around: Box, sides: int) -> tuple[Lattice, Mesh]:
+def _solved(layer: StrutLattice, context: PatternContext, number: int, around: Box, sides: int) -> tuple[Lattice, Mesh]:
     """The lattice of a volume fraction: by its octant alone where half cells fill the box, else by the whole mesh."""
-    cell, target = layer.pitch(ground.speed), layer.volume_fraction or 0.0
-    _check_fraction(layer, ground, number, cell, target)
+    cell, target = layer.pitch(context.speed), layer.volume_fraction or 0.0
+    _check_fraction(layer, context, number, cell, target)
     _, whole = half_cells(cell, around)
     radius = _guess(layer.kind, cell, target)
     tried: list[tuple[float, float]] = []
@@ -94,7 +94,7 @@ def _solved(layer: StrutLattice, ground: PatternContext, number: int, around: Bo
         tried.append((radius, found))
         radius = _next(tried, target)
     raise ComputationError(
-        f"{ground.where}: layer[{number}].volume_fraction = {target:g}: no strut radius found within {_TRIES} steps; "
+        f"{context.where}: layer[{number}].volume_fraction = {target:g}: no strut radius found within {_TRIES} steps; "
         "give strut_radius_mm instead"
     )
 
@@ -108,14 +108,14 @@ def _next(tried: list[tuple[float, float]], target: float) -> float:
     return radius + (target - found) * (radius - before) / (found - was)
 
 
-def _check_fraction(layer: StrutLattice, ground: PatternContext, number: int, cell: float, target: float) -> None:
+def _check_fraction(layer: StrutLattice, context: PatternContext, number: int, cell: float, target: float) -> None:
     """Raise InputError for a fraction whose struts cannot be printed or leave no matrix."""
     distances = _distances(layer.kind, cell)
-    thinnest, thickest = 0.5 * ground.least("pin"), _LARGEST * float(distances.max())
+    thinnest, thickest = 0.5 * context.least("pin"), _LARGEST * float(distances.max())
     low, high = (float((distances < radius).mean()) for radius in (thinnest, thickest))
     radius = _guess(layer.kind, cell, target)
     if radius > thickest or radius < thinnest:
-        raise ground.refuse(
+        raise context.refuse(
             number, "volume_fraction", target, f"{layer.kind} struts in a cell of {cell:.4g} mm would be {2 * radius:.3g} mm thick; "
             + (f"it must be from {low:.3f} to {high:.3f}, {2 * thinnest:g} to {2 * thickest:.3g} mm" if thinnest < thickest else
                f"no fraction is printable, so take a cell_mm over {cell * thinnest / thickest:.3g}"),

@@ -19,28 +19,28 @@ _PER_CELL = 7.0
 """Triangles that a sheet takes per step of the grid squared and per cell's area of its two faces, measured, rounded up."""
 
 
-def box(layer: MinimalSurface, ground: PatternContext, number: int) -> Box:
+def box(layer: MinimalSurface, context: PatternContext, number: int) -> Box:
     """The box that it fills: whole width, cells from its least corner."""
     if layer.thickness_mm is not None:
-        check_least(ground, number, "thickness_mm", layer.thickness_mm, "wall")
-    start, end = along(layer, ground)
-    low, high = heights(layer, ground, layer.height_mm)
-    around = Box((start, ground.block.low[1], low), (end, ground.block.high[1], high))
-    cell = layer.pitch(ground.speed)
+        check_least(context, number, "thickness_mm", layer.thickness_mm, "wall")
+    start, end = along(layer, context)
+    low, high = heights(layer, context, layer.height_mm)
+    around = Box((start, context.block.low[1], low), (end, context.block.high[1], high))
+    cell = layer.pitch(context.speed)
     if min(b - a for a, b in zip(around.low, around.high, strict=True)) < 0.5 * cell - 1e-9:
         text = f"half a cell of {cell:.4g} mm does not fit into the layer; take a smaller cell, or a higher layer"
-        raise ground.refuse(number, "cell_mm", cell, text)
-    surface = PeriodicSurface(layer.kind, cell, layer.form, ground.tolerance)
+        raise context.refuse(number, "cell_mm", cell, text)
+    surface = PeriodicSurface(layer.kind, cell, layer.form, context.tolerance)
     faces = 2 if layer.form == "sheet" else 1
     estimate = _PER_CELL * faces * 3.0 / cell * around.volume / surface.step**2
-    check_count(ground, number, layer.period_key(), cell, estimate)
+    check_count(context, number, layer.period_key(), cell, estimate)
     return around
 
 
-def draw(layer: MinimalSurface, ground: PatternContext, number: int) -> PatternGeometry:
+def draw(layer: MinimalSurface, context: PatternContext, number: int) -> PatternGeometry:
     """The body, with the fraction that it has as measured on its mesh."""
-    around, cell = box(layer, ground, number), layer.pitch(ground.speed)
-    surface = PeriodicSurface(layer.kind, cell, layer.form, ground.tolerance)
+    around, cell = box(layer, context, number), layer.pitch(context.speed)
+    surface = PeriodicSurface(layer.kind, cell, layer.form, context.tolerance)
     asked = layer.volume_fraction
     fraction = (
         fraction_of(surface, around, layer.thickness_mm) if asked is None and layer.thickness_mm else asked or 0.0
@@ -48,15 +48,15 @@ def draw(layer: MinimalSurface, ground: PatternContext, number: int) -> PatternG
     low, high = surface.limits()
     if not low < fraction < high:
         key, value = ("thickness_mm", layer.thickness_mm) if asked is None else ("volume_fraction", asked)
-        raise ground.refuse(
+        raise context.refuse(
             number, key, value, f"the {layer.kind} {layer.form} would fill {fraction:.3g} of the layer; it hangs together from "
             f"{low:.3f} to {high:.3f} only",
         )  # fmt: skip
     mean = fraction / fraction_of(surface, around, 1.0)
-    if layer.form == "sheet" and asked is not None and mean < ground.least("wall") - 1e-9:
-        raise ground.refuse(
-            number, "volume_fraction", asked, f"the sheet would be {mean:.3g} mm thick on average; the {ground.printer.title} makes no "
-            f"wall thinner than {ground.least('wall'):g} mm, so it must be at least {asked * ground.least('wall') / mean:.3f}, or take a larger cell_mm",
+    if layer.form == "sheet" and asked is not None and mean < context.least("wall") - 1e-9:
+        raise context.refuse(
+            number, "volume_fraction", asked, f"the sheet would be {mean:.3g} mm thick on average; the {context.printer.title} makes no "
+            f"wall thinner than {context.least('wall'):g} mm, so it must be at least {asked * context.least('wall') / mean:.3f}, or take a larger cell_mm",
         )  # fmt: skip
     mesh = fill(surface, around, fraction)
     truth = {

@@ -23,11 +23,11 @@ Wave = tuple[tuple[float, ...], tuple[float, ...], float]
 """Pitches (mm), phases (radians) and the amplitude (mm) of every sine."""
 
 
-def _wave(layer: Sinusoid | RandomPhase, ground: PatternContext) -> Wave:
+def _wave(layer: Sinusoid | RandomPhase, context: PatternContext) -> Wave:
     if isinstance(layer, Sinusoid):
-        pitch = layer.pitch(ground.speed)
+        pitch = layer.pitch(context.speed)
         return (pitch,), (-2 * math.pi * layer.offset_mm / pitch,), layer.amplitude_mm
-    pitches = layer.pitches(ground.speed)
+    pitches = layer.pitches(context.speed)
     phases = np.random.default_rng(layer.seed).uniform(0.0, 2 * math.pi, len(pitches))
     return tuple(pitches), tuple(round(float(phase), 6) for phase in phases), layer.amplitude_mm
 
@@ -42,39 +42,39 @@ def _samples(wave: Wave, start: float, end: float, tolerance: float) -> tuple[Ar
     return x, np.asarray(amplitude * np.sum(sines, axis=0))
 
 
-def _section(layer: Sinusoid | RandomPhase, ground: PatternContext, number: int) -> tuple[Array, Array, float]:
+def _section(layer: Sinusoid | RandomPhase, context: PatternContext, number: int) -> tuple[Array, Array, float]:
     """Places, heights of the top and the height of the flat bottom, mm."""
-    check_least(ground, number, "height_mm", layer.height_mm, "wall")
-    least = ground.least_matrix()
+    check_least(context, number, "height_mm", layer.height_mm, "wall")
+    least = context.least_matrix()
     if layer.depth_mm < least - 1e-9:
-        raise ground.refuse(
+        raise context.refuse(
             number, "depth_mm", layer.depth_mm, f"the matrix would thin to nothing over the crests; it must be at least {least:g} mm, the "
-            f"thinnest wall of {ground.matrix.label} on the {ground.printer.title}",
+            f"thinnest wall of {context.matrix.label} on the {context.printer.title}",
         )  # fmt: skip
-    start, end = along(layer, ground)
-    wave = _wave(layer, ground)
+    start, end = along(layer, context)
+    wave = _wave(layer, context)
     key = layer.period_key()
-    check_count(ground, number, key, min(wave[0]), 60 * (end - start) / min(wave[0]))
-    x, rise = _samples(wave, start, end, ground.tolerance)
-    top = np.round(ground.block.high[2] - layer.depth_mm + rise - rise.max(), DECIMALS)
+    check_count(context, number, key, min(wave[0]), 60 * (end - start) / min(wave[0]))
+    x, rise = _samples(wave, start, end, context.tolerance)
+    top = np.round(context.block.high[2] - layer.depth_mm + rise - rise.max(), DECIMALS)
     return x, top, round(float(top.min()) - layer.height_mm, DECIMALS)
 
 
-def box(layer: Sinusoid | RandomPhase, ground: PatternContext, number: int) -> Box:
+def box(layer: Sinusoid | RandomPhase, context: PatternContext, number: int) -> Box:
     """The box around the sheet."""
-    x, top, floor = _section(layer, ground, number)
-    low, high = ground.block.low[1], ground.block.high[1]
+    x, top, floor = _section(layer, context, number)
+    low, high = context.block.low[1], context.block.high[1]
     return Box((float(x[0]), low, floor), (float(x[-1]), high, float(top.max())))
 
 
-def draw(layer: Sinusoid | RandomPhase, ground: PatternContext, number: int) -> PatternGeometry:
+def draw(layer: Sinusoid | RandomPhase, context: PatternContext, number: int) -> PatternGeometry:
     """The sheet."""
-    x, top, floor = _section(layer, ground, number)
-    pitches, phases, amplitude = _wave(layer, ground)
-    low, high = ground.block.low[1], ground.block.high[1]
+    x, top, floor = _section(layer, context, number)
+    pitches, phases, amplitude = _wave(layer, context)
+    low, high = context.block.low[1], context.block.high[1]
     area = float(np.sum(0.5 * (top[1:] + top[:-1] - 2 * floor) * np.diff(x)))
     return PatternGeometry(
-        _swept(x, top, floor, low, high), box(layer, ground, number), pitches,
+        _swept(x, top, floor, low, high), box(layer, context, number), pitches,
         {"amplitude_mm": amplitude, "phases_rad": list(phases), "start_mm": float(x[0])},
         area * (high - low),
     )  # fmt: skip

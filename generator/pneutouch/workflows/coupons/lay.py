@@ -43,7 +43,7 @@ def lay(printer_name: str, items: tuple[CouponItem, ...]) -> tuple[CouponPiece, 
     """The pieces of one machine with their places. Raises InputError for what does not fit, or not in one job."""
     printer = items[0].printer
     mode = job_mode(printer_name, items)
-    pieces = [_piece(item, solid, printer, mode) for item in items for solid in item.coupon.draw(item.ground)]
+    pieces = [_piece(item, solid, printer, mode) for item in items for solid in item.coupon.draw(item.context)]
     room = printer.envelope_mm
     x = y = MARGIN
     depth = 0.0

@@ -45,19 +45,19 @@ class CouponItem:
     about: str
     printer_name: str
     printer: Printer
-    ground: CouponContext
+    context: CouponContext
     copies: int
     blend: CouponMix | None = None
 
     @property
     def material(self) -> Material:
         """What it is printed in."""
-        return self.ground.material
+        return self.context.material
 
     @property
     def nominals(self) -> tuple[Nominal, ...]:
         """What is measured on it; of a mixed puck the hardness alone, for a mixing curve has no density."""
-        found = self.coupon.nominals(self.ground)
+        found = self.coupon.nominals(self.context)
         return found if self.blend is None or self.coupon.name != MIXED[0] else found[:1]
 
 
@@ -174,13 +174,13 @@ def _of_mixing(
 def _of_design(asked: CouponOptions, scene: ResolvedDesign, profile: str, families: list[Coupon]) -> list[CouponItem]:
     """Cap and plug, and the gauge of the connector's machine where that is another one."""
     machine, printer = scene.design.print.connector_profile, scene.connector_printer
-    ground, material = CouponContext(scene.connector_material, scene), scene.design.connector.material
+    context, material = CouponContext(scene.connector_material, scene), scene.design.connector.material
     found = []
     for coupon in families:
         if coupon.belongs == "design":
-            found.append(CouponItem(coupon, scene.name, machine, printer, ground, _copies(asked, coupon)))
+            found.append(CouponItem(coupon, scene.name, machine, printer, context, _copies(asked, coupon)))
         elif coupon.belongs == "printer" and machine != profile:
-            found.append(CouponItem(coupon, material, machine, printer, ground, _copies(asked, coupon)))
+            found.append(CouponItem(coupon, material, machine, printer, context, _copies(asked, coupon)))
     return found
 
 

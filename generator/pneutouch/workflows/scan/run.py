@@ -97,23 +97,23 @@ def run_scan(
     """
     shelves = library or Library.default()
     check_asked(asked)
-    ground, scene, sensor = load_both(specimen, design, assignments, shelves)
+    context, scene, sensor = load_both(specimen, design, assignments, shelves)
     if asked.speed is not None:
-        ground = replace(ground, specimen=_at_speed(ground, asked.speed))
-    speed = ground.specimen.scan.speed_mm_per_s
-    bars, matrix = bars_of(ground), matrix_of(ground)
+        context = replace(context, specimen=_at_speed(context, asked.speed))
+    speed = context.specimen.scan.speed_mm_per_s
+    bars, matrix = bars_of(context), matrix_of(context)
     states = [touch(sensor, pressure, asked.preload) for pressure in asked.pressures]
     margin = max((state.contact_radius for state in states), default=0.0)
-    length = ground.specimen.block.length_mm
+    length = context.specimen.block.length_mm
     way = ScanPath(margin, length - margin, speed, asked.control)  # type: ignore[arg-type]
     frequencies = {row.name: speed / row.pitch for row in bars}
-    _check_length(ground, way, frequencies)
+    _check_length(context, way, frequencies)
     simulated = [
         _simulated(state, Substrate(matrix, bars, length, state.contact_radius), way, asked, frequencies)
         for state in states
     ]
     measured = [_measured(path, frequencies) for path in asked.data]
-    return ScanRun(ground, scene, sensor, matrix, bars, asked, way, frequencies, (*simulated, *measured))
+    return ScanRun(context, scene, sensor, matrix, bars, asked, way, frequencies, (*simulated, *measured))
 
 
 def load_both(
@@ -123,23 +123,23 @@ def load_both(
 
     Raises InputError, also where one is the other.
     """
-    ground = load_specimen(specimen, None, library)
+    context = load_specimen(specimen, None, library)
     if specimen_file(design, library) is not None:
         raise InputError(
             "is a specimen", key="design", value=design, remedy="give the name or path of a sensor's design"
         )
-    matrix_of(ground)
+    matrix_of(context)
     if scanned:
-        bars_of(ground)
-        draw(ground)
+        bars_of(context)
+        draw(context)
     scene = load_scene(design, assignments, library)
-    return ground, scene, sensor_of(assemble(scene))
+    return context, scene, sensor_of(assemble(scene))
 
 
-def bars_of(ground: ResolvedSpecimen) -> tuple[BarRow, ...]:
+def bars_of(context: ResolvedSpecimen) -> tuple[BarRow, ...]:
     """The specimen's rows of bars. Raises InputError for layers of another kind, which the scan model does not know."""
     found = []
-    for number, layer in enumerate(ground.specimen.layer):
+    for number, layer in enumerate(context.specimen.layer):
         if not isinstance(layer, Bars):
             problem, remedy = (
                 "the scan model knows bars alone",
@@ -147,38 +147,38 @@ def bars_of(ground: ResolvedSpecimen) -> tuple[BarRow, ...]:
                     "with `data`, measured signals of any specimen can be read against a specimen of bars with the same pitches"
                 ),
             )
-            raise InputError(problem, file=ground.where, key=f"layer[{number}].kind", value=layer.kind, remedy=remedy)
-        left = places(layer, ground.ground)
+            raise InputError(problem, file=context.where, key=f"layer[{number}].kind", value=layer.kind, remedy=remedy)
+        left = places(layer, context.context)
         edges = np.stack([left, left + layer.width_mm], axis=1)
-        pitch = layer.pitch(ground.specimen.scan.speed_mm_per_s)
+        pitch = layer.pitch(context.specimen.scan.speed_mm_per_s)
         name = layer.name or f"layer {number + 1}"
         found.append(BarRow(name, pitch, layer.width_mm, layer.height_mm, layer.depth_mm, edges))
     names = [row.name for row in found]
     if len(set(names)) < len(names):
-        raise InputError(f"{ground.where}: layer: two patterns have one name; give each its own")
+        raise InputError(f"{context.where}: layer: two patterns have one name; give each its own")
     return tuple(found)
 
 
-def matrix_of(ground: ResolvedSpecimen) -> MatrixLayer:
+def matrix_of(context: ResolvedSpecimen) -> MatrixLayer:
     """The block's matrix. Raises InputError for one without a shear modulus."""
-    modulus, poisson = ground.matrix.shear_modulus_MPa, ground.matrix.poisson_ratio
+    modulus, poisson = context.matrix.shear_modulus_MPa, context.matrix.poisson_ratio
     if modulus is None or poisson is None:
         raise InputError(
-            f"{ground.where}: block.matrix = {ground.specimen.block.matrix!r}: has no shear modulus; the scan model "
+            f"{context.where}: block.matrix = {context.specimen.block.matrix!r}: has no shear modulus; the scan model "
             "takes a soft matrix with stiff bars"
         )
-    return MatrixLayer(ground.specimen.block.height_mm, modulus.nominal, poisson.nominal)
+    return MatrixLayer(context.specimen.block.height_mm, modulus.nominal, poisson.nominal)
 
 
-def _at_speed(ground: ResolvedSpecimen, speed: float) -> Any:
+def _at_speed(context: ResolvedSpecimen, speed: float) -> Any:
     """The specimen at another speed; the bars stay where the file's own speed put them."""
-    own = ground.specimen.scan.speed_mm_per_s
+    own = context.specimen.scan.speed_mm_per_s
     layers = [
         layer.model_copy(update={"pitch_mm": layer.pitch(own), "target_frequency_Hz": None})
-        if isinstance(layer, Bars) else layer for layer in ground.specimen.layer
+        if isinstance(layer, Bars) else layer for layer in context.specimen.layer
     ]  # fmt: skip
-    update = {"scan": ground.specimen.scan.model_copy(update={"speed_mm_per_s": speed}), "layer": layers}
-    return ground.specimen.model_copy(update=update)
+    update = {"scan": context.specimen.scan.model_copy(update={"speed_mm_per_s": speed}), "layer": layers}
+    return context.specimen.model_copy(update=update)
 
 
 def check_asked(asked: ScanOptions) -> None:
@@ -195,14 +195,14 @@ def check_asked(asked: ScanOptions) -> None:
         raise InputError("none given, and no `data`", key="driving_pressures_kPa", remedy="nothing to scan")
 
 
-def _check_length(ground: ResolvedSpecimen, way: ScanPath, frequencies: dict[str, float]) -> None:
+def _check_length(context: ResolvedSpecimen, way: ScanPath, frequencies: dict[str, float]) -> None:
     """Refuse a path too short to tell a pattern's frequency, in terms of the specimen."""
     lasts = (way.end - way.start) / way.speed
     for name, frequency in frequencies.items():
         needed = least_duration(frequency)
         if lasts < needed:
             raise InputError(
-                f"{ground.where}: {name}: {frequency:.4g} Hz at {way.speed:g} mm/s: the path of {max(way.end - way.start, 0):.4g} mm "
+                f"{context.where}: {name}: {frequency:.4g} Hz at {way.speed:g} mm/s: the path of {max(way.end - way.start, 0):.4g} mm "
                 f"between the block's ends lasts {max(lasts, 0):.4g} s and must last {needed:.4g} s; block.length_mm must be at least "
                 f"{needed * way.speed + 2 * way.start:.4g}"
             )

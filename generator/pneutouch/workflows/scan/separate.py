@@ -63,11 +63,11 @@ def separating(
     shelves = library or Library.default()
     check_asked(asked)
     patterns = parse_patterns(text)
-    ground, scene, sensor = load_both(specimen, design, assignments, shelves, scanned=False)
-    speed = ground.specimen.scan.speed_mm_per_s if asked.speed is None else asked.speed
+    context, scene, sensor = load_both(specimen, design, assignments, shelves, scanned=False)
+    speed = context.specimen.scan.speed_mm_per_s if asked.speed is None else asked.speed
     floor = tuple(noise_amplitude(speed / pattern.pitch, asked.noise) for pattern in patterns)
     domes = candidates(scene, sensor, shelves)
-    found = separate(domes.batch, domes.dome, asked.preload, matrix_of(ground), patterns, (floor[0], floor[1]))
+    found = separate(domes.batch, domes.dome, asked.preload, matrix_of(context), patterns, (floor[0], floor[1]))
     return {
         "patterns": [{"pitch_mm": p.pitch, "depth_mm": p.depth, "frequency_Hz": speed / p.pitch,
                       "noise_amplitude_kPa": f / KPA} for p, f in zip(patterns, floor, strict=True)],

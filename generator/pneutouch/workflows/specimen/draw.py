@@ -64,21 +64,21 @@ def draw(scene: ResolvedSpecimen) -> SpecimenBodies:
 
 
 def _patterns(scene: ResolvedSpecimen) -> tuple[PatternGeometry, ...]:
-    ground, layers = scene.ground, scene.specimen.layer
+    context, layers = scene.context, scene.specimen.layer
     boxes: list[Box] = []
     for number, layer in enumerate(layers):
-        box = FAMILIES[layer.kind].box(layer, ground, number)
-        check_inside(box, ground, number, layer)
+        box = FAMILIES[layer.kind].box(layer, context, number)
+        check_inside(box, context, number, layer)
         for other, earlier in enumerate(boxes):
             gap = box.gap(earlier)
             if gap < 1e-3:
                 meet = "overlaps" if gap < 0 else "touches" if gap == 0 else "comes within a micrometre of"
-                raise ground.refuse(
+                raise context.refuse(
                     number, "depth_mm", layer.depth_mm, f"{meet} layer[{other}], which reaches from {_span(earlier.low)} to "
                     f"{_span(earlier.high)} mm; change depth_mm, start_mm or end_mm until matrix lies between them",
                 )  # fmt: skip
         boxes.append(box)
-    found = tuple(FAMILIES[layer.kind].draw(layer, ground, number) for number, layer in enumerate(layers))
+    found = tuple(FAMILIES[layer.kind].draw(layer, context, number) for number, layer in enumerate(layers))
     total = sum(len(pattern.mesh.triangles) for pattern in found)
     if total > MOST_TRIANGLES:
         raise InputError(

@@ -11,6 +11,7 @@ from pneutouch.body import Body
 from pneutouch.errors import RuleBrokenError
 from pneutouch.parts.specimen import Box
 from pneutouch.printability import Finding, check
+from pneutouch.printability.finding import by_severity
 from pneutouch.printability.subject import Joint, PrintItem, PrintSubject
 from pneutouch.workflows.specimen.draw import SpecimenBodies
 
@@ -34,8 +35,7 @@ def findings(drawn: SpecimenBodies) -> list[Finding]:
         if finding.rule not in OPEN and not _rounding(drawn, finding)
     ]
     whole = [finding for finding in check(block_of(drawn)) if finding.rule in OPEN]
-    order = {"error": 0, "warning": 1, "note": 2}
-    return sorted([*own, *whole, *_unmeasured(drawn)], key=lambda finding: order[finding.severity])
+    return by_severity([*own, *whole, *_unmeasured(drawn)])
 
 
 def refuse(drawn: SpecimenBodies, found: list[Finding]) -> None:

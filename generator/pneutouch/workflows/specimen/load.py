@@ -1,4 +1,4 @@
-"""A specimen's file with every name in it resolved: its materials, its printer and the ground its patterns are drawn in."""
+"""A specimen's file with every name in it resolved: its materials, its printer and the context its patterns are drawn in."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class ResolvedSpecimen:
         return self.printer.finest_step(self.mode)
 
     @property
-    def ground(self) -> PatternContext:
+    def context(self) -> PatternContext:
         """What patterns are drawn in."""
         speed = self.specimen.scan.speed_mm_per_s
         return PatternContext(self.block, self.printer, self.matrix, self.inclusion, speed, self.tolerance, self.where)
