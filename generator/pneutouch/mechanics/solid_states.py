@@ -54,8 +54,9 @@ def solid_result(
     mesh = dome(*size, arc=cells) if sensor.flange is None else printed_dome(*size, *sensor.flange, arc=cells)
     solid = SolidModel(mesh, sensor.material, grade=_grade(sensor))
     run = inflate(solid, past_limit=past_limit)
-    states = tuple(_state(sensor, solid, run, float(p)) for p in driving_pressures)
-    return ModelResult(_limit_point(sensor, run), _limits(sensor, solid, run), _inflation(solid, run), states)
+    probe = StrainProbe(solid)
+    states = tuple(_state(sensor, probe, run, float(p)) for p in driving_pressures)
+    return ModelResult(_limit_point(sensor, run), _limits(sensor, probe, run), _inflation(solid, run), states)
 
 
 def _grade(sensor: Sensor) -> Callable[[Array, Array], Array] | None:
@@ -92,9 +93,9 @@ def _inflation(solid: SolidModel, run: Inflation) -> InflationCurve:
     )  # fmt: skip
 
 
-def _limits(sensor: Sensor, solid: SolidModel, run: Inflation) -> Limits:
+def _limits(sensor: Sensor, probe: StrainProbe, run: Inflation) -> Limits:
     """Driving pressures at which the limits are met on the rising branch, the one that can be driven to."""
-    torn = None if sensor.break_stretch is None else burst(solid, run, sensor.break_stretch - 1)
+    torn = None if sensor.break_stretch is None else burst(probe, run, sensor.break_stretch - 1)
     if torn is not None and run.limit is not None and torn[1] > run.limit.outer_apex:
         torn = None
     return Limits(
@@ -104,13 +105,13 @@ def _limits(sensor: Sensor, solid: SolidModel, run: Inflation) -> Limits:
     )
 
 
-def _state(sensor: Sensor, solid: SolidModel, run: Inflation, pressure: float) -> SensorState:
-    free = state_at(solid, pressure, run)
+def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) -> SensorState:
+    free = state_at(probe.solid, pressure, run)
     press = PressSettings(
         sensor.depth, sensor.steps, 2 * sensor.plate_radius, sensor.ambient_pressure, sensor.dead_volume,
         sensor.gauge_limit, np.inf if sensor.break_stretch is None else sensor.break_stretch - 1,
     )  # fmt: skip
-    found = indent(solid, free, press)
+    found = indent(probe.solid, free, press, probe)
     happened = _events(found)
     end = min(range_end(happened, sensor.depth), found.path[-1].indentation)
     grid = np.linspace(0.0, end, sensor.steps + 1)
@@ -121,7 +122,7 @@ def _state(sensor: Sensor, solid: SolidModel, run: Inflation, pressure: float) -
         indentation=found.column("indentation"), force=found.column("force"),
         pressure_rise=found.column("rise"), contact_radius=found.column("contact_radius"),
         max_stretch=found.column("stretch"), max_von_mises=found.column("von_mises"),
-        events=tuple(happened), shapes=_shapes(solid, free, found, end),
+        events=tuple(happened), shapes=_shapes(probe, free, found, end),
     )  # fmt: skip
 
 
@@ -141,9 +142,9 @@ def _curve(path: list[PressState], grid: Array) -> tuple[Array, Array]:
     return hermite(grid, x, force, stiffness), hermite(grid, x, rise, rate)
 
 
-def _shapes(solid: SolidModel, free: FreeState, found: IndentationPath, end: float) -> tuple[DeformedShape, ...]:
+def _shapes(probe: StrainProbe, free: FreeState, found: IndentationPath, end: float) -> tuple[DeformedShape, ...]:
     """The wall at rest, inflated, and pressed to the end of the range."""
-    probe = StrainProbe(solid)
+    solid = probe.solid
     last = max((s for s in found.path if s.indentation <= end * (1 + 1e-9)), key=lambda s: s.indentation)
     positions = [(None, solid.rest * solid.length), (0.0, free.positions), (last.indentation, last.positions)]
     return tuple(DeformedShape(at, probe.outlines(x), probe.cell_stretch(x / solid.length)) for at, x in positions)

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import lapack
-from scipy.sparse import csr_array
 
 from pneutouch.arrays import Array, Index
 
@@ -14,8 +13,8 @@ from pneutouch.arrays import Array, Index
 class AssemblyPattern:
     """Where block entries go: blocks (n_blocks, d, d) with dof tables (n_blocks, d), -1 for a fixed dof.
 
-    Several block families share one flat vector, in the order given.  The sum over blocks is a product with a constant
-    sparse 0/1 matrix, several times faster than an indexed accumulation.
+    Several block families share one flat vector, in the order given.  Entries of one place are counted up by `bincount`:
+    as fast as a product with a sparse 0/1 matrix, whose package costs a tenth of SciPy's import.
     """
 
     def __init__(self, tables: list[Index], size: int, width: int = 0) -> None:
@@ -30,29 +29,31 @@ class AssemblyPattern:
             cols.append(j[keep])
             flat.append(keep + offset)
             offset += i.size
-        i, j, self._flat = np.concatenate(rows), np.concatenate(cols), np.concatenate(flat)
+        i, j, self._entries = np.concatenate(rows), np.concatenate(cols), np.concatenate(flat)
         self.width = max(width, int((i - j).max()))
-        place = (i - j) + j * (self.width + 1)
-        ones = np.ones(place.size)
-        self._sum = csr_array((ones, (place, self._flat)), shape=(size * (self.width + 1), offset))
-        self._gather = _gatherer(tables, size)
+        self._places, self._number = np.unique((i - j) + j * (self.width + 1), return_inverse=True)
+        place = np.concatenate([t.ravel() for t in tables])
+        self._free = np.flatnonzero(place >= 0)
+        self._unknown = place[self._free]
 
     def matrix(self, blocks: list[Array]) -> Array:
         """Lower band (width + 1, size), Fortran ordered, of the sum of blocks."""
-        flat = np.concatenate([b.ravel() for b in blocks])
-        band: Array = (self._sum @ flat).reshape(self.size, self.width + 1).T
-        return band
+        return self._added(np.zeros(self.size * (self.width + 1)), blocks)
+
+    def added(self, band: Array, blocks: list[Array]) -> Array:
+        """A band, as `matrix` gives it, with the sum of blocks added; a new one."""
+        return self._added(band.T.flatten(), blocks)
+
+    def _added(self, flat: Array, blocks: list[Array]) -> Array:
+        entries = np.concatenate([b.ravel() for b in blocks])[self._entries]
+        flat[self._places] += np.bincount(self._number, entries)
+        return flat.reshape(self.size, self.width + 1).T
 
     def vector(self, blocks: list[Array]) -> Array:
         """Sum (size,) of block vectors, each (n_blocks, d)."""
-        total: Array = self._gather @ np.concatenate([b.ravel() for b in blocks])
+        entries = np.concatenate([b.ravel() for b in blocks])[self._free]
+        total: Array = np.bincount(self._unknown, entries, self.size)
         return total
-
-
-def _gatherer(tables: list[Index], size: int) -> csr_array:
-    place = np.concatenate([t.ravel() for t in tables])
-    keep = np.flatnonzero(place >= 0)
-    return csr_array((np.ones(keep.size), (place[keep], keep)), shape=(size, place.size))
 
 
 @dataclass(frozen=True)
@@ -110,7 +111,7 @@ def _dense(band: Array, start: int, stop: int) -> Array:
     """Rows and columns start..stop as a full symmetric matrix."""
     m = stop - start
     out = np.zeros((m, m))
+    flat = out.reshape(-1)
     for k in range(min(band.shape[0], m)):
-        index = np.arange(m - k)
-        out[index + k, index] = out[index, index + k] = band[k, start : stop - k]
+        flat[k * m :: m + 1][: m - k] = flat[k : (m - k) * m : m + 1] = band[k, start : stop - k]
     return out

@@ -52,6 +52,12 @@ def gauss_square(n: int) -> tuple[Array, Array]:
     return grid, np.outer(w, w).ravel()
 
 
+def positions(nodes: Array, cells: Index, points: Array) -> Array:
+    """Positions (n_cells, n_points, 2) of local points of every cell."""
+    found: Array = np.einsum("qa,eai->eqi", cell_shapes(points, cells.shape[1])[0], nodes[cells])
+    return found
+
+
 def strain_operator(nodes: Array, cells: Index, points: Array) -> tuple[Array, Array, Array]:
     """Constant map from nodal positions to strain at local points of every cell.
 
@@ -65,7 +71,7 @@ def strain_operator(nodes: Array, cells: Index, points: Array) -> tuple[Array, A
     if not (np.abs(determinant).min() > 0.0 and (np.sign(determinant) == np.sign(determinant.flat[0])).all()):
         raise ValueError("a cell is inverted or degenerate in the reference mesh")
     gradient = np.einsum("qak,eqki->eqai", local, np.linalg.inv(jacobian))
-    position = np.einsum("qa,eai->eqi", value, corners)
+    position = positions(nodes, cells, points)
     b = np.zeros((*determinant.shape, 5, 2 * cells.shape[1]))
     b[..., 0, 0::2], b[..., 1, 0::2] = gradient[..., 0], gradient[..., 1]
     b[..., 2, 1::2], b[..., 3, 1::2] = gradient[..., 0], gradient[..., 1]

@@ -114,8 +114,10 @@ class IndentationPath:
         return figures(indentation, force, rise / KPA)
 
 
-def indent(solid: SolidModel, free: FreeState, press: PressSettings) -> IndentationPath:
-    """Shut the gas in at a free state and bring the plate down.
+def indent(
+    solid: SolidModel, free: FreeState, press: PressSettings, probe: StrainProbe | None = None
+) -> IndentationPath:
+    """Shut the gas in at a free state and bring the plate down; many presses of one solid share its ``probe``.
 
     Returns every state found and typed events; `complete` is False where an event ended the path before the depth.
     Raises NoConvergenceError only if not even first contact has an equilibrium.
@@ -129,7 +131,7 @@ def indent(solid: SolidModel, free: FreeState, press: PressSettings) -> Indentat
     apex = float(free.positions[solid.mesh.outer, 1].max()) / length
     plate = Plate(apex, float(flat_radius(radius, longest)), float(rim_radius(radius, longest)))
     walker = PathFollower(solid, gas, plate, free.unit.x)
-    recorder = _Recorder(solid, free, plate, StrainProbe(solid))
+    recorder = _Recorder(solid, free, plate, probe or StrainProbe(solid))
     states = [recorder.state(walker.here)]
     events = recorder.events(states[0], states[0], press)
     for k in range(1, press.steps + 1):

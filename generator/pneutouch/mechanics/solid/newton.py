@@ -94,8 +94,7 @@ def evaluate(scene: SolidScene, x: Array) -> SolverState | None:
     if filling is None:
         return None
     touch = None if scene.plate is None else solid.contact.touch(x, scene.plate)
-    no_cell = np.zeros((solid.mesh.cells.shape[0], 2 * solid.mesh.cells.shape[1]))
-    by_volume = solid.pattern.vector([no_cell, edge_gradient])
+    by_volume = solid.swell(edge_gradient)
     inner = solid.pattern.vector([solid.forces(local), -filling.pressure * edge_gradient])
     push = 0.0 * inner if touch is None else solid.push(solid.contact.force(touch.traction, touch.slope))
     load = abs(filling.pressure) * float(np.linalg.norm(by_volume)) + float(np.linalg.norm(push))
@@ -114,11 +113,11 @@ def tangent(scene: SolidScene, state: SolverState) -> Array:
 def full_tangent(scene: SolidScene, state: SolverState) -> Array:
     """`tangent` with the contact stiffness at the state's own active points."""
     band = tangent(scene, state)
-    return band if state.touch is None else band + _contact_band(scene, state.touch, state.touch.traction > 0.0)
+    return band if state.touch is None else _touching(scene, band, state.touch, state.touch.traction > 0.0)
 
 
-def _contact_band(scene: SolidScene, touch: ContactEvaluation, active: Flags) -> Array:
-    return scene.solid.contact_pattern.matrix([scene.solid.contact.hessian(touch, active)])
+def _touching(scene: SolidScene, band: Array, touch: ContactEvaluation, active: Flags) -> Array:
+    return scene.solid.contact_pattern.added(band, [scene.solid.contact.hessian(touch, active)])
 
 
 def direction(scene: SolidScene, state: SolverState) -> NewtonDirection:
@@ -136,7 +135,7 @@ def direction(scene: SolidScene, state: SolverState) -> NewtonDirection:
     seen = {active.tobytes()}
     for _ in range(_SETTLING):
         pull = state.inner + scene.solid.push(contact.force(np.where(active, linear, 0.0), touch.slope))
-        way = _downhill(state, band + _contact_band(scene, touch, active), pull)
+        way = _downhill(state, _touching(scene, band, touch, active), pull)
         if way.lift:
             # Keep what made this tangent definite for the rest of the settling: fewer failed factorisations.
             band = band.copy(order="F")

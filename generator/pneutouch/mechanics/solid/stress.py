@@ -8,7 +8,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.laws.strain import Strain
-from pneutouch.mechanics.solid.elements import strain_operator
+from pneutouch.mechanics.solid.elements import positions, strain_operator
 from pneutouch.mechanics.solid.inflate import Inflation, between, pressure_between
 from pneutouch.mechanics.solid.model import SolidModel
 
@@ -36,7 +36,7 @@ class StrainProbe:
     the clamp, and exactly where far enough begins, so that no station comes and goes with the wall."""
 
     def __init__(self, solid: SolidModel) -> None:
-        self._solid = solid
+        self.solid = solid
         rest, cells = solid.rest, solid.mesh.cells
         stations = np.polynomial.legendre.leggauss(3)[0]
         points = np.stack([np.tile(stations, 2), np.repeat([-1.0, 1.0], 3)], axis=1)
@@ -57,7 +57,7 @@ class StrainProbe:
 
     def _distance(self, points: Array) -> Array:
         """Distance of points (n, 2) at rest from the nearest clamped node."""
-        held = self._solid.rest[self._solid.mesh.clamped]
+        held = self.solid.rest[self.solid.mesh.clamped]
         if held.size == 0:
             return np.full(points.shape[0], np.inf)
         return np.asarray(np.hypot(*(points[:, None, :] - held[None, :, :]).T).min(axis=0))
@@ -65,11 +65,11 @@ class StrainProbe:
     def _edges(self) -> list[tuple[int, Array]]:
         """Cells and local points on their faces where the distance from the clamp passes the reach."""
         along = np.linspace(-1.0, 1.0, _SEARCH)
-        reach = CLAMP_REACH * self._solid.wall
+        reach = CLAMP_REACH * self.solid.wall
         found = []
         for face in (-1.0, 1.0):
             local = np.stack([along, np.full_like(along, face)], axis=1)
-            place = strain_operator(self._solid.rest, self._solid.mesh.cells, local)[2]
+            place = positions(self.solid.rest, self.solid.mesh.cells, local)
             beyond = self._distance(place.reshape(-1, 2)).reshape(place.shape[:2]) - reach
             for cell, k in zip(*np.nonzero(beyond[:, :-1] * beyond[:, 1:] < 0.0), strict=True):
                 share = beyond[cell, k] / (beyond[cell, k] - beyond[cell, k + 1])
@@ -78,7 +78,7 @@ class StrainProbe:
 
     def principal(self, x: Array) -> tuple[Array, Array]:
         """Principal stretches and deviator-carrying stresses lambda dW/dlambda / J (MPa), (3, n_points) each."""
-        nodes = x[self._solid.mesh.cells].reshape(self._solid.mesh.cells.shape[0], -1, 1)
+        nodes = x[self.solid.mesh.cells].reshape(self.solid.mesh.cells.shape[0], -1, 1)
         f = np.matmul(self._b, nodes).reshape(-1, 5)[self._far]
         f = np.concatenate([f, np.matmul(self._edge_b, nodes[self._edge_cells])[..., 0]])
         # At the tip of a crease a face can turn over between sound integration points: shown as an immense fold.
@@ -86,7 +86,7 @@ class StrainProbe:
         a, h = np.maximum((f[:, :4] ** 2).sum(axis=1), 2.0 * j), np.maximum(f[:, 4], _TURNED_OVER)
         plus, minus = np.sqrt(a + 2.0 * j), np.sqrt(np.maximum(a - 2.0 * j, 0.0))
         stretch = np.stack([0.5 * (plus + minus), 0.5 * (plus - minus), h])
-        jet = self._solid.material.energy(Strain(a, j, h)).data
+        jet = self.solid.material.energy(Strain(a, j, h)).data
         common = jet[2] * j
         stress = np.stack(
             [2.0 * jet[1] * stretch[0] ** 2 + common, 2.0 * jet[1] * stretch[1] ** 2 + common, h * jet[3]]
@@ -100,7 +100,7 @@ class StrainProbe:
 
     def cell_stretch(self, x: Array) -> Array:
         """Greatest principal stretch at the centre of every cell (n_cells,) for nondimensional positions x."""
-        cells = self._solid.mesh.cells
+        cells = self.solid.mesh.cells
         f = np.matmul(self._centre, x[cells].reshape(cells.shape[0], -1, 1))[..., 0]
         j = f[:, 0] * f[:, 3] - f[:, 1] * f[:, 2]
         a = (f[:, :4] ** 2).sum(axis=1)
@@ -109,7 +109,7 @@ class StrainProbe:
 
     def outlines(self, positions: Array) -> Array:
         """Outlines of the cells (n_cells, 4 or 8, 2), in the unit of the positions (n_nodes, 2)."""
-        cells = self._solid.mesh.cells
+        cells = self.solid.mesh.cells
         around = [0, 4, 1, 5, 2, 6, 3, 7] if cells.shape[1] > 4 else [0, 1, 2, 3]
         return np.asarray(positions[cells[:, around]])
 
@@ -122,12 +122,12 @@ class StrainProbe:
         return WallExtremes(float(stretch.max()), float(mises.max()), float(fold.max()))
 
 
-def burst(solid: SolidModel, inflation: Inflation, break_strain: float) -> tuple[float, float] | None:
+def burst(probe: StrainProbe, inflation: Inflation, break_strain: float) -> tuple[float, float] | None:
     """Pressure (MPa) and outer apex height (mm) at which free inflation reaches a break strain (stretch - 1), or None.
 
     Bisected on the Hermite cubic between neighbouring states.
     """
-    probe = StrainProbe(solid)
+    solid = probe.solid
     for a, b in zip(inflation.states, inflation.states[1:], strict=False):
         if probe.peak(b.unit.x).stretch - 1.0 < break_strain:
             continue
