@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from pneutouch.arrays import Array, Indices
+from pneutouch.body.triangles import enclosed_volume, is_closed, welded
 from pneutouch.spec.material import Material
 
 
@@ -32,8 +33,7 @@ class Body:
     @property
     def volume(self) -> float:
         """Volume in mm3 by the divergence theorem."""
-        a, b, c = np.moveaxis(self.corners - self.vertices.mean(axis=0), 1, 0)
-        return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
+        return enclosed_volume(self.vertices, self.triangles)
 
     @property
     def bounds(self) -> Array:
@@ -41,17 +41,13 @@ class Body:
         return np.array([self.vertices.min(axis=0), self.vertices.max(axis=0)])
 
     def is_closed(self) -> bool:
-        """Whether every edge is shared by exactly two triangles that run along it in opposite ways."""
-        edges = self.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
-        key = edges[:, 0] * (len(self.vertices) + 1) + edges[:, 1]
-        back = edges[:, 1] * (len(self.vertices) + 1) + edges[:, 0]
-        return len(np.unique(key)) == len(key) and bool(np.array_equal(np.sort(key), np.sort(back)))
+        """Whether every edge is shared by exactly two triangles, in opposite directions."""
+        return is_closed(self.triangles, len(self.vertices))
 
     def welded(self) -> Body:
         """The body as a file reader sees it: vertices rounded to float32 and merged by position."""
-        single = self.vertices.astype(np.float32).astype(np.float64)
-        merged, index = np.unique(single, axis=0, return_inverse=True)
-        return replace(self, vertices=merged, triangles=index.reshape(-1)[self.triangles])
+        vertices, indices = welded(self.vertices, self.triangles)
+        return replace(self, vertices=vertices, triangles=indices)
 
     def manifold(self) -> Any:
         """The body as manifold3d takes it; empty where it is not closed."""

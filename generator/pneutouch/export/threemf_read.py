@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneutouch.arrays import Array, Indices
+from pneutouch.body.triangles import enclosed_volume
 from pneutouch.errors import InputError
 from pneutouch.export.threemf import read_strictly
 from pneutouch.export.threemf_metadata import NAMESPACE, metadata_of
@@ -53,10 +54,7 @@ class StoredBody:
     @property
     def volume(self) -> float:
         """Volume in mm3 by the divergence theorem; of a closed mesh."""
-        if not len(self.triangles):
-            return 0.0
-        a, b, c = np.moveaxis((self.vertices - self.vertices.mean(axis=0))[self.triangles], 1, 0)
-        return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
+        return enclosed_volume(self.vertices, self.triangles) if len(self.triangles) else 0.0
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array, Indices
+from pneutouch.body.triangles import enclosed_volume, is_closed, welded
 
 Point = tuple[float, float, float]
 
@@ -41,14 +42,12 @@ class Mesh:
     @property
     def volume(self) -> float:
         """Volume in mm3 by the divergence theorem; the mesh must be closed."""
-        a, b, c = np.moveaxis(self.vertices[self.triangles], 1, 0)
-        return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
+        return enclosed_volume(self.vertices, self.triangles)
 
     def is_closed(self) -> bool:
-        """Whether every edge is two triangles' own, run both ways, by index and once vertices are merged in float32."""
-        single, number = np.unique(self.vertices.astype(np.float32), axis=0, return_inverse=True)
-        merged = number.reshape(-1)[self.triangles]
-        return _paired(self.triangles, len(self.vertices)) and _paired(merged, len(single))
+        """Whether every edge is shared by exactly two triangles, before and after vertices are merged in float32."""
+        vertices, triangles = welded(self.vertices, self.triangles)
+        return is_closed(self.triangles, len(self.vertices)) and is_closed(triangles, len(vertices))
 
     def compact(self) -> Mesh:
         """The mesh without vertices that no triangle has."""
@@ -56,12 +55,6 @@ class Mesh:
         used[self.triangles.reshape(-1)] = True
         number = np.cumsum(used) - 1
         return Mesh(self.vertices[used], number[self.triangles].astype(np.int64))
-
-
-def _paired(triangles: Indices, size: int) -> bool:
-    edges = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
-    forth, back = edges[:, 0] * size + edges[:, 1], edges[:, 1] * size + edges[:, 0]
-    return len(np.unique(forth)) == len(forth) and bool(np.array_equal(np.sort(forth), np.sort(back)))
 
 
 def joined(meshes: list[Mesh]) -> Mesh:
