@@ -52,8 +52,7 @@ class AssemblyPattern:
     def vector(self, blocks: list[Array]) -> Array:
         """Sum (size,) of block vectors, each (n_blocks, d)."""
         entries = np.concatenate([b.ravel() for b in blocks])[self._free]
-        total: Array = np.bincount(self._unknown, entries, self.size)
-        return total
+        return np.asarray(np.bincount(self._unknown, entries, self.size), dtype=np.float64)
 
 
 @dataclass(frozen=True)
