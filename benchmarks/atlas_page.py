@@ -24,7 +24,7 @@ ERRORS = {
     "pressure": "pressure at the worst state of a press, over its greatest rise",
     "gauge": "the same, over its greatest gauge pressure",
     "common": "sensitivity over the common range",
-    "own": "sensitivity over each one's own range",
+    "own": "sensitivity, each over its range",
     "limit": "limit pressure",
 }
 LEVELS = (0.001, 0.002, 0.005)
@@ -60,26 +60,26 @@ def page(data: dict[str, Any]) -> str:
 
 
 def _what() -> list[str]:
-    way = axes(RECIPE)
+    grid = axes(RECIPE)
     return [
         "# The atlas", "",
-        "The atlas is the finite element `solid` tabulated once: the same answers in a small part of its time, inside a stated box. "
-        "`pneutouch predict DESIGN --model atlas` asks for it; `--model auto` takes it where its stated error meets the tolerance.", "",
-        "## What it holds", "",
-        "For a wall that is neo-Hookean, everything scales with the shear modulus mu and the inner radius R0. What is left of a dome "
-        "under a plate is its elastic energy E(t0/R0, V, h): wall ratio, cavity volume, plate height. Pressure and force are its slopes,",
+        "The atlas is the finite element `solid` tabulated once: the same results in a small part of the time, within stated limits. "
+        "`pneutouch predict DESIGN --model atlas` selects it; `--model auto` takes it where its stated error meets the tolerance.", "",
+        "## What it contains", "",
+        "For a neo-Hookean wall everything scales with the shear modulus mu and the inner radius R0. A dome "
+        "under a plate is then described by its elastic energy E(t0/R0, V, h): wall ratio, cavity volume, plate height. Pressure and force are its slopes,",
         "", "    p = dE/dV,   F = -dE/dh,", "",
-        "so the two always belong together: no work is won on a round trip. Gas, dead volume, ambient pressure, modulus and size are "
-        "not in the table. They enter afterwards and exactly, by Boyle's law: (p + pa)(V + Vd) stays what it was at first contact.", "",
-        "| coordinate | meaning | box | coefficients |", "|---|---|---|---|",
-        f"| t0/R0 | wall ratio, in its logarithm | {RECIPE.thinnest:g} to {RECIPE.thickest:g} | {way.wall.size}, cubic |",
-        f"| nu | volume above the unloaded one over its way to the limit point | {RECIPE.lowest_volume:g} to {RECIPE.highest_volume:g} | "
-        f"{way.volume.size}, degree {RECIPE.degree} |",
+        "so the two are always consistent: a closed path does no work. Gas, dead volume, ambient pressure, modulus and size are "
+        "not in the table. They enter afterwards and exactly, by Boyle's law: (p + pa)(V + Vd) keeps its value at first contact.", "",
+        "| coordinate | meaning | limits | coefficients |", "|---|---|---|---|",
+        f"| t0/R0 | wall ratio, in its logarithm | {RECIPE.thinnest:g} to {RECIPE.thickest:g} | {grid.wall.size}, cubic |",
+        f"| nu | volume above the unloaded one over the same at the limit point | {RECIPE.lowest_volume:g} to {RECIPE.highest_volume:g} | "
+        f"{grid.volume.size}, degree {RECIPE.degree} |",
         f"| w | plate below the free apex at that volume, over R0 | 0 to {RECIPE.deepest:g} of travel | "
-        f"{way.depth.size}, degree {RECIPE.degree} |",
+        f"{grid.depth.size}, degree {RECIPE.degree} |",
         "",
         f"Ambient pressure up to {RECIPE.stiffest:g} mu, any dead volume, Poisson ratio {RECIPE.poisson_ratio:g}, base clamped, any "
-        "driving pressure below the limit point. Beside the energy it holds what events are read from: contact radius, greatest stretch "
+        "driving pressure below the limit point. In addition to the energy it holds the quantities that define events: contact radius, greatest stretch "
         "and stress, the fold of a face, the overhang, the inner apex.", "",
     ]  # fmt: skip
 
@@ -87,11 +87,11 @@ def _what() -> list[str]:
 def _made() -> list[str]:
     return [
         "## How it is made", "",
-        f"`make atlas` asks the solid at its default mesh for {RECIPE.walls} walls, a little beyond the box: volume and plate height are "
-        "held, energy, pressure, force and their derivatives are kept, on every state that some trapped gas can hold stably. Presses with "
-        "trapped gas line the edge at zero pressure and find where the wall buckles. One energy in B-splines is fitted to all of them by "
-        f"least squares. It takes minutes on two cores and writes `atlas.npz` ({SHIPPED.stat().st_size / 1e6:.1f} MB); a stopped run goes on "
-        "where it was. The file carries a fingerprint of the solid's answers, and a test fails when the solid no longer gives them.", "",
+        f"`make atlas` solves the solid at its default mesh for {RECIPE.walls} walls, a little beyond the limits. Volume and plate height are "
+        "prescribed; energy, pressure, force and their derivatives are stored for every state that is stable with some trapped gas. Presses with "
+        "trapped gas cover the edge at zero pressure and locate the buckling of the wall. One energy in B-splines is fitted to all states by "
+        f"least squares. The command takes minutes on two cores and writes `atlas.npz` ({SHIPPED.stat().st_size / 1e6:.1f} MB); a stopped run resumes. "
+        "The file carries a fingerprint of the solid's results, and a test fails when the solid no longer gives them.", "",
     ]  # fmt: skip
 
 
@@ -110,14 +110,14 @@ def _accuracy(data: dict[str, Any]) -> list[str]:
         for name, values in data["states"].items()
     ]
     return [
-        "## How near it is to the solid", "",
-        f"{data['requested']:,} random presses in the box that took no part in making it, by both: walls and gas stiffness even in their "
+        "## Error against the solid", "",
+        f"{data['requested']:,} random presses within the limits, none of them used to make the atlas, computed by both: walls and gas stiffness uniform in their "
         f"logarithm, driving pressure 0 to 97 % of the limit, dead volume 0 to several R0^3, depth 0.2 to 0.75 R0, some with a gauge limit "
-        f"or a break strain ({count:,} have a range to compare). `make check-slow` presses them again and prints these figures.", "",
+        f"or a break strain ({count:,} have a range to compare). `make check-slow` repeats them and prints these figures.", "",
         "| error | median | 99 of 100 | greatest | above 0.5 % |", "|---|---|---|---|---|",
         *(_row(name, words, data) for name, words in ERRORS.items()), *states, "",
-        f"What ends the range is the same in {same:,} of {count:,} presses; where, differs by at most {off.max():.4f} R0 (the solid itself "
-        "locates a jump to 0.0005 R0). On top comes the solid's own error against a refined mesh, see [accuracy](accuracy.md).", "",
+        f"The event that ends the range is the same in {same:,} of {count:,} presses; its position differs by at most {off.max():.4f} R0 (the solid itself "
+        "locates a jump to 0.0005 R0). The error of the solid against a refined mesh comes in addition, see [accuracy](accuracy.md).", "",
     ]  # fmt: skip
 
 
@@ -129,15 +129,15 @@ def _worst(data: dict[str, Any]) -> list[str]:
         for i in order
     ]
     return [
-        "## Where it is worst, and why", "",
+        "## Where the error is greatest, and why", "",
         "![Greatest error in force over wall ratio and driving pressure, and over wall ratio and depth](atlas.svg)", "",
-        "- **No pressure.** Pressure in the cavity is what makes a thin dome round under its plate. Without it the force of the solid "
-        "itself is wavy as the contact's edge walks over the elements one by one: at t0/R0 = 0.06 by up to 0.6 % of full scale "
-        "against a mesh twice as fine, at 0.2 by 0.3 %. The atlas goes smoothly through the waves.",
-        "- **Shortly before buckling.** The stiffness runs to zero along an edge that lies elsewhere for every wall. Between two walls "
-        "of the survey the table sees it only as a bend.",
+        "- **No pressure.** Pressure in the cavity keeps a thin dome round under its plate. Without it the force of the solid "
+        "oscillates as the contact edge moves over the elements one by one: at t0/R0 = 0.06 by up to 0.6 % of full scale "
+        "against a mesh twice as fine, at 0.2 by 0.3 %. The atlas smooths these oscillations.",
+        "- **Shortly before buckling.** The stiffness goes to zero along an edge whose position changes with the wall. Between two tabulated walls "
+        "the table shows it only as a bend.",
         "- **Just below the limit point.** The free pressure is flat there: a small error in pressure is a large one in volume.", "",
-        "The six worst in force:", "",
+        "The six greatest errors in force:", "",
         "| t0/R0 | driving, of the limit | ambient/mu | dead volume/R0^3 | depth/R0 | force | pressure | sensitivity |",
         "|---|---|---|---|---|---|---|---|", *rows, "",
     ]  # fmt: skip
@@ -145,12 +145,12 @@ def _worst(data: dict[str, Any]) -> list[str]:
 
 def _outside() -> list[str]:
     return [
-        "## What lies outside", "",
-        "Another law or Poisson ratio, a flange held as printed, walls or depths outside the box, very soft resin in high ambient "
-        "pressure, a press that leaves the tabulated states, a contact that reaches the plate's edge (the edge's own shape is not in the "
-        "table). The atlas then gives no figures and says which of these it was; `--model auto` goes on to the solid and tells so under "
-        "`error_estimate`. It also leaves ranges to the solid that end by buckling or at the break strain: the atlas answers those "
-        "when asked by name, but the solid places the end more exactly. The deformed shapes of the wall come from the solid alone.", "",
+        "## What it does not cover", "",
+        "Another law or Poisson ratio, a flange held as printed, walls or depths outside the limits, very soft resin in high ambient "
+        "pressure, a press that leaves the tabulated states, a contact that reaches the edge of the plate (its shape is not in the "
+        "table). The atlas then gives no figures and reports the reason; `--model auto` uses the solid and reports this under "
+        "`error_estimate`. `auto` also uses the solid for ranges that end by buckling or at the break strain: the atlas computes those "
+        "when it is selected by name, but the solid locates the end more exactly. The deformed shapes of the wall come only from the solid.", "",
     ]  # fmt: skip
 
 

@@ -22,8 +22,8 @@ DOCS = ROOT / "docs"
 
 HEAD = [
     "# Accuracy and cost, measured", "",
-    "`make chart` writes this page and [validation.md](validation.md). Nothing is fitted; every cell is listed, the bad ones too. "
-    "Times are processor times of one run on one core: read their ratios.", "",
+    "`make chart` writes this page and [validation.md](validation.md). Nothing is fitted; every cell is listed, including the bad ones. "
+    "Times are processor times of one run on one core: only their ratios are comparable.", "",
 ]  # fmt: skip
 
 
@@ -45,7 +45,7 @@ def main() -> None:
     sections = [
         *contact_section(cells), *speed.section(speeds, programs, shares.shares()), *validity.section(map_rows),
         *inflation_section(), *laws.section(law_curves),
-        "The print meshes beside other kernels: [meshing.md](meshing.md).", "",
+        "The print meshes compared with other kernels: [meshing.md](meshing.md).", "",
     ]  # fmt: skip
     _write("accuracy.md", "\n".join([*HEAD, *sections]))
     _write("validation.md", validation.page())
@@ -88,10 +88,10 @@ def contact_section(cells: list[Cell]) -> list[str]:
         f"solid **{median['solid']:.1%}**, membrane variational {median['variational']:.0%}, printed {median['printed']:.0%}.", "",
         "| resin | driving kPa | measured | solid | error | variational | error | printed | error | solid's range ends, mm |",
         "|---|---|---|---|---|---|---|---|---|---|", *rows, "",
-        "What may explain the bad cells. The moduli of FLX9985-DM and FLX9995-DM come from another source than the other five (a "
-        "quasi-static E, not a relaxed modulus); the model reads FLX9995-DM twice too sensitive, as if its wall were stiffer than "
-        "that modulus says, which stays unexplained, and FLX9985-DM a little too insensitive. The membrane has no bending "
-        "stiffness, so the resin hardly moves "
+        "Possible reasons for the bad cells: the moduli of FLX9985-DM and FLX9995-DM come from another source than the other five (a "
+        "quasi-static E, not a relaxed modulus). The model computes twice the sensitivity for FLX9995-DM, as if its wall were stiffer than "
+        "that modulus, which is unexplained, and a slightly low sensitivity for FLX9985-DM. The membrane has no bending "
+        "stiffness, so the resin has little effect on "
         "its sensitivity; at zero driving pressure F = p pi rho^2 even bounds S from below by 1/(pi R0^2) = 3.72 kPa/N, above "
         "every measured value. Use the membrane for inflation, limits and trends; choose a resin by the solid.", "",
     ]  # fmt: skip

@@ -43,8 +43,8 @@ def summary(found: dict[str, list[Row]]) -> list[str]:
         alone = [ours[r.tolerance].milliseconds / r.milliseconds for r in rows if r.method == MANIFOLD]
         kernels = [ratio for t in TOLERANCES if (ratio := same_error(rows, t, "CadQuery")) is not None]
         lines.append(
-            f"{label}: {min(alone):.2f} to {max(alone):.2f} of manifold3d's own time; CadQuery takes "
-            f"{min(kernels):.0f} to {max(kernels):.0f} times ours at the same measured error"
+            f"{label}: {min(alone):.2f} to {max(alone):.2f} of the time of manifold3d alone; CadQuery takes "
+            f"{min(kernels):.0f} to {max(kernels):.0f} times as long at the same measured error"
         )
     return lines
 
@@ -52,10 +52,10 @@ def summary(found: dict[str, list[Row]]) -> list[str]:
 def page(found: dict[str, list[Row]]) -> list[str]:
     lines = [
         "# Print meshes: time against deviation, measured", "",
-        "`make chart-meshes` writes this page. Time is processor time over ours in the same run (median of seven, taken in "
-        "turn); deviation is the greatest distance of dense points on the mesh from the exact surface over the tolerance "
-        "asked for. *manifold3d alone* does the same operations on inscribed outlines: its own revolve, cylinders and one "
-        "batch boolean each way.", "",
+        "`make chart-meshes` writes this page. Time is processor time relative to pneutouch in the same run (median of seven, taken in "
+        "turn); deviation is the greatest distance of dense points on the mesh from the exact surface over the requested "
+        "tolerance. *manifold3d alone* does the same operations on inscribed outlines: its revolve, its cylinders and one "
+        "batch boolean for union and one for difference.", "",
         "![Measured deviation over processor time and over triangles, three bodies](meshing.svg)", "",
         *[f"- {line}" for line in summary(found)], "",
     ]  # fmt: skip
@@ -74,8 +74,8 @@ def page(found: dict[str, list[Row]]) -> list[str]:
         ] + [""]  # fmt: skip
     return [
         *lines,
-        "Ours needs fewer triangles because each ring has only as many vertices as its radius asks for, and because the "
-        "error is split between inside and outside so that the volume is kept. CadQuery hands its tolerance to Open CASCADE "
+        "pneutouch needs fewer triangles because each ring has only as many vertices as its radius requires, and because the "
+        "error is split between inside and outside so that the volume is kept. CadQuery passes its tolerance to Open CASCADE "
         "as a relative one and misses an absolute one; its meshes are open by index until vertices are merged.", "",
     ]  # fmt: skip
 

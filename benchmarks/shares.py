@@ -30,7 +30,7 @@ CLOSING_IN = ("events.py", "_close_in")
 
 
 def shares(scenes: tuple[Scene, ...] = SCENES) -> dict[str, float]:
-    """Share of the profiled time in each part; "closing in on a jump" counts over all parts."""
+    """Share of the profiled time in each part; "locating a jump" counts over all parts."""
     profile = cProfile.Profile()
     for scene in scenes:
         profile.runcall(run, "solid default", scene)
@@ -42,5 +42,5 @@ def shares(scenes: tuple[Scene, ...] = SCENES) -> dict[str, float]:
             inside[key] = inside.get(key, 0.0) + cumulative
     total = pstats.Stats(profile).total_tt  # type: ignore[attr-defined]
     found = {part: sum(inside.get(key, 0.0) for key in keys) / total for part, keys in PARTS.items()}
-    found["Newton's control, line search, the rest"] = 1.0 - sum(found.values())
-    return {**found, "closing in on a jump": inside.get(CLOSING_IN, 0.0) / total}
+    found["Newton control, line search, the rest"] = 1.0 - sum(found.values())
+    return {**found, "locating a jump": inside.get(CLOSING_IN, 0.0) / total}

@@ -19,24 +19,24 @@ def _what(data: dict[str, Any]) -> list[str]:
     return [
         "# Texture: which state shows which pattern", "",
         "`make texture-page` writes this page. `pneutouch scan texture-specimen --design paper-dome` slides the paper's sensor over the "
-        "specimen of its Figure 9 in a reduced model; this page says what the model is, how far it is off, and what it says of the "
+        "specimen of its Figure 9 in a reduced model. This page describes the model, its error, and its result for the "
         "paper's claim.", "",
         "## What modulates the pressure", "",
         "The dome (stiffness k) and the specimen (compliance c) are springs in series. The sensor is lowered to the preload F, then held "
-        "at that height. Where the specimen gives less, the dome is pressed more:", "",
+        "at that height. Where the specimen yields less, the dome is pressed more:", "",
         "    dp = -dp/d(delta) F dc / (1 + k c)", "",
-        "k, dp/d(delta) and the patch's radius rho come from the atlas (or the solid), Boyle's gas and dead volume included. For c, bars "
-        "of Vero in Agilus30 are 4,500 times stiffer than what is round them: a perturbation in the moduli is of no use, and a bar is a "
-        "beam that spreads the patch's load over "
+        "k, dp/d(delta) and the radius rho of the contact patch come from the atlas (or the solid), including Boyle's gas and dead volume. For c, bars "
+        "of Vero in Agilus30 are 4,500 times stiffer than the matrix: a perturbation in the moduli is not applicable, and a bar is a "
+        "beam that spreads the load of the patch over "
         f"{min(bend):.1f} (surface) to {max(bend):.1f} mm (buried) of its length, against patches {2 * min(rho):.1f} and {2 * max(rho):.1f} mm across: the buried bars "
-        "hardly bend, the surface bars do under the larger patch. Bars are taken to stand still: over a bar the cover "
-        "alone sinks, over a gap the whole layer, and between the two goes the true bar profile, each harmonic through", "",
-        "- the patch: 2 J1(k rho)/(k rho), no uniform disc feels a pattern at k rho = 3.83;",
-        "- the cover: what reaches a plate at the bars' depth of a pressure wave on top;",
-        "- the field: mean compliance with bars over that without, of every row that shares the place.", "",
-        "At a held force the dome's state does not change at all in this model: the pressure shows nothing, only the sensor's height "
-        "does. The paper presses to 0.5 N and then moves; it does not say which was held. With a controller it would have seen the "
-        "little that this model leaves out.", "",
+        "hardly bend, the surface bars do under the larger patch. Bars are assumed to be fixed: over a bar only the cover "
+        "is indented, over a gap the whole layer. Between the two the model uses the true bar profile, with each harmonic filtered by", "",
+        "- the patch: 2 J1(k rho)/(k rho), so that a uniform disc does not detect a pattern at k rho = 3.83;",
+        "- the cover: the part of a pressure wave on top that reaches a plate at the depth of the bars;",
+        "- the field: mean compliance with bars over that without, of every row at the same position.", "",
+        "At constant force the state of the dome does not change at all in this model: the pressure shows nothing, only the height of the sensor "
+        "does. The paper presses to 0.5 N and then moves; it does not state which of the two was held constant. With a force controller it would have measured only the "
+        "small effects that this model leaves out.", "",
     ]  # fmt: skip
 
 
@@ -57,15 +57,15 @@ def _scan(data: dict[str, Any]) -> list[str]:
         "## The shipped specimen under the paper's sensor", "",
         "![Pressure less its mean, and scalogram, at 0 and at 22 kPa](texture-scan.svg)", "",
         "| state | patch radius mm | k N/mm | dp/d(delta) kPa/mm | mean c mm/N |", "|---|---|---|---|---|", *states, "",
-        "| state | pattern | true Hz | found Hz | model Pa | read Pa | over noise | p | found | sinking um | relief um |",
+        "| state | pattern | true Hz | detected Hz | model Pa | measured Pa | over noise | p | detected | sinking um | relief um |",
         "|---|---|---|---|---|---|---|---|---|---|---|", *rows, "",
-        "Patterns 1 and 2 have one pitch and one half of the path each; the spectrum's line is that of both. The floor is read from the same "
-        "record, of which a few independent stretches lie outside the cone: a line five times above it can still be chance. *Sinking* is the "
-        "amplitude by which the specimen gives under the patch and 0.5 N. *Relief* is the amplitude of a wave of the surface at the same pitch that "
-        "the patch would feel as strongly: a few micrometres, where a printed layer is 27 um.", "",
-        "Amplitudes are a few pascal, at most a third of one step of the recorder (0.0153 kPa). They are found because noise of "
-        "0.015 kPa a sample at 10 kHz, which is assumed, leaves a voice at these frequencies with about 0.1 Pa; whatever drifts or hums "
-        "in a real rig comes on top.", "",
+        "Patterns 1 and 2 have the same pitch and one half of the path each; the spectral line is that of both. The noise floor is estimated from the same "
+        "record, of which a few independent segments lie outside the cone of influence: a line five times above it can still be chance. *Sinking* is the "
+        "amplitude by which the specimen yields under the patch and 0.5 N. *Relief* is the amplitude of a surface wave at the same pitch with "
+        "the same effect on the patch: a few micrometres, where a printed layer is 27 um.", "",
+        "Amplitudes are a few pascal, at most a third of one step of the recorder (0.0153 kPa). They are detected because noise of "
+        "0.015 kPa a sample at 10 kHz, which is assumed, leaves about 0.1 Pa in a voice at these frequencies; drift and hum "
+        "of a real rig come in addition.", "",
     ]  # fmt: skip
 
 
@@ -83,9 +83,9 @@ def _check(data: dict[str, Any]) -> list[str]:
     return [
         "## The reduced model against finite elements", "",
         "![Amplitude of the compliance over depth by both](texture-check.svg)", "",
-        "A strip of Agilus30 with bars that have Vero's own modulus, meshed in section and in Fourier waves along the bars, under a "
-        "uniform disc: nothing of the reduced model is in it. Amplitude of c at the pitch in um/N, negative where c is least over a bar. "
-        "*Cells* is what halving them from 0.5 to 0.25 mm changed; what is left is about as much: under 4 % where the amplitude is above "
+        "The reference is a strip of Agilus30 with bars of Vero, meshed in section and in Fourier waves along the bars, under a "
+        "uniform disc. It contains nothing of the reduced model. Amplitude of c at the pitch in um/N, negative where c is least over a bar. "
+        "*Cells* is the change from halving the cells from 0.5 to 0.25 mm; the remaining error is about as large: under 4 % where the amplitude is above "
         "0.03 um/N.", "",
         "| pitch mm | depth mm | patch mm | finite elements | cells | reduced | ratio |", "|---|---|---|---|---|---|---|", *rows, "",
         *_ratios(data),
@@ -120,10 +120,10 @@ def _plane(data: dict[str, Any]) -> list[str]:
     rows = data["plane"]
     change = max(abs(row["coarse"] / row["fe"] - 1) for row in rows)
     return [
-        "**Plane strain is another specimen.** The same strip under a patch endless along the bars, which lets bars sink as a whole "
-        f"(cells of 0.25 and 0.125 mm, {100 * change:.1f} % apart at most). There a bar does not hold still, and the pattern is strongest "
-        f"{_strongest(rows)}. A reduced model made for plane strain would answer the "
-        "wrong question; this one does not answer that.", "",
+        "**Plane strain is a different specimen.** The same strip under a patch infinite along the bars, which lets bars sink as a whole "
+        f"(cells of 0.25 and 0.125 mm, {100 * change:.1f} % apart at most). There a bar is not fixed, and the pattern is strongest "
+        f"{_strongest(rows)}. A reduced model made for plane strain would not apply "
+        "here, and this one does not apply to plane strain.", "",
         "| pitch mm | depth mm | half width mm | amplitude um/(N/mm) |", "|---|---|---|---|",
         *(f"| {row['pitch']:g} | {row['depth']:g} | {row['radius']:.2f} | {1e3 * row['fe']:+.2f} |" for row in rows), "",
     ]  # fmt: skip
@@ -144,7 +144,7 @@ def _speed(data: dict[str, Any]) -> list[str]:
     speed = data["speed"]
     return [
         f"**Speed.** The finite elements (cells of 0.5 mm, eight places) take {_round(speed['fe_over_reduced'])} times the processor time of the reduced "
-        f"model's whole path. Sliding over the 60 mm block at 10 kHz and the scalogram, without the dome's loading curve and the detection, take {speed['scan_with_spectrum_s']:.2f} s.", "",
+        f"model on the whole path. Sliding over the 60 mm block at 10 kHz and the scalogram, without the dome's loading curve and the detection, take {speed['scan_with_spectrum_s']:.2f} s.", "",
     ]  # fmt: skip
 
 
@@ -158,7 +158,7 @@ def _sweeps(data: dict[str, Any]) -> list[str]:
         "## Over driving pressure, depth, pitch and preload", "",
         "![Pressure amplitude over driving pressure, depth, pitch and preload](texture.svg)", "",
         "Single rows, bar as wide as gap, 0.5 N unless given. The amplitude is the root mean square over patches 15 % smaller, as predicted, and "
-        "15 % larger: a real patch has no sharp edge and no exact zero. The dotted line is what white noise reads as at "
+        "15 % larger, since a real patch has no sharp edge and no exact zero. The dotted line is the reading of white noise at "
         f"1.33 Hz ({noise[0]:.2f} Pa; {noise[1]:.2f} Pa at 0.67 Hz).", "",
         *_trends(data),
     ]  # fmt: skip
@@ -181,10 +181,10 @@ def _trends(data: dict[str, Any]) -> list[str]:
     )
     return [
         f"- From 0 to 22 kPa the three patterns of the first panel gain {gains} times: the patch is smaller at the same force.",
-        f"- Soft shows more than stiff {where} the {len(pairs)} depths, pitches and preloads drawn{most}.",
-        "- Depth costs a short pitch more than a long one: 3 mm bars are gone at 3 mm, 6 mm bars at 6 mm.",
+        f"- The soft state shows more than the stiff one {where} the {len(pairs)} depths, pitches and preloads drawn{most}.",
+        "- Depth attenuates a short pitch more than a long one: 3 mm bars cannot be detected at 3 mm, 6 mm bars at 6 mm.",
         f"- More preload is more force on a larger patch. From {sweeps['preload']['x'][0]:g} to {sweeps['preload']['x'][-1]:g} N the four lines change by "
-        f"{preload} times, and have their extremes on the way.", "",
+        f"{preload} times, with extremes in between.", "",
     ]  # fmt: skip
 
 
@@ -200,9 +200,9 @@ def _verdict(data: dict[str, Any]) -> list[str]:
     return [
         f"Reduced over finite elements: pitch 6 mm under the small patch {span(6.0, True)}, under the large one {span(6.0, False)}; pitch 3 mm "
         f"{span(3.0, True)} and {span(3.0, False)}. At 3 mm it is too high because bars 1 mm high do sink with their neighbours. At 6 mm the large patch "
-        "stands next to its filter's zero (rho = 0.61 pitches); there, and where next to nothing is left (3 mm, 2 mm deep and deeper), the model says no "
+        "is close to the zero of its filter (rho = 0.61 pitches). There, and where almost nothing is left (3 mm, 2 mm deep and deeper), the model result is no "
         "more than 'small': it has the zero of the surface at every depth, while the load under a deep bar has no sharp edge. Where the surface pattern "
-        "lies over the buried one, the buried one is shielded more than the model says.", "",
+        "lies over the buried one, the buried one is shielded more than in the model.", "",
     ]  # fmt: skip
 
 
@@ -211,16 +211,16 @@ def _claim(data: dict[str, Any]) -> list[str]:
     rows = [f"| {name} | {a:.2f} | {b:.2f} | {b / a:.1f} | {c:.2f} | {d:.2f} |" for name, (a, b, c, d) in found.items()]
     return [
         "## The paper's claim", "",
-        "Figure 9's caption says that the soft state (0 kPa) shows the surface pattern, at the higher frequency, more sharply, and the stiff state "
-        "(22 kPa) the buried one. The body text says that the soft state is better at the lower frequency. Both cannot be. (3 and 6 mm at "
+        "The caption of Figure 9 states that the soft state (0 kPa) shows the surface pattern, at the higher frequency, more sharply, and the stiff state "
+        "(22 kPa) the buried one. The body text states that the soft state is better at the lower frequency. These contradict each other. (3 and 6 mm at "
         "4 mm/s are 1.33 and 0.67 Hz, not the 1.5 and 0.75 Hz of the caption.)", "",
         "| pattern, in the shipped specimen | soft Pa, FE | stiff Pa, FE | stiff/soft | soft Pa, reduced | stiff Pa, reduced |",
         "|---|---|---|---|---|---|", *rows, "",
         *_compared(found, data["scan"]["states"]),
-        "- **What the model cannot say.** A soft state that is better at the surface needs something that grows with softness and is felt at short "
+        "- **What the model does not cover.** A soft state that is better at the surface needs an effect that grows with softness and acts at short "
         "distance: relief of the surface, into which an unpressurised wall sags; friction, which the paper lowers with lubricant "
-        "but does not remove; the wall's own bending over an edge. None of them is in the model, and a relief of some micrometres (table above) "
-        "is worth as much as all that the specimen gives. The paper states neither the depths nor the sections of its bars, nor amplitudes: "
+        "but does not remove; bending of the wall over an edge. None of them is in the model, and a relief of some micrometres (table above) "
+        "has as much effect as the whole compliance of the specimen. The paper states neither the depths nor the sections of its bars, nor amplitudes: "
         "its figure cannot be compared number by number.", "",
     ]  # fmt: skip
 
@@ -254,15 +254,15 @@ def _compared(found: dict[str, tuple[float, float, float, float]], states: list[
     two, one = lean["pattern 2"], lean["pattern 1"]
     nearer = [found["pattern 2, 2 mm deep"][k] / found["pattern 1, 4 mm deep"][k] for k in (0, 1)]
     return [
-        f"- **Every pattern is shown better by the stiff state**, by finite elements {min(gains):.1f} to {max(gains):.1f} times, for one reason: its patch is "
-        "smaller. That the soft state be better at the lower frequency (body text) or at the higher (caption), taken as amplitudes, is "
-        "reproduced by neither.",
-        f"- **Which is the larger of the two.** Surface over buried, soft and stiff: {two[0]:.2f} and {two[1]:.2f} over pattern 2, {one[0]:.2f} and {one[1]:.2f} "
-        "over pattern 1. Over pattern 2 that is the caption's order (soft: the surface a little larger; stiff: the buried one), over pattern 1 "
-        "the reverse. The reduced model has the caption's order much more strongly over pattern 2, but only because its patch of 3.58 mm stands next to the zero "
-        "for 6 mm, where its error is greatest: that is no support.",
+        f"- **The stiff state shows every pattern better**, by finite elements {min(gains):.1f} to {max(gains):.1f} times, for one reason: its patch is "
+        "smaller. Neither statement, that the soft state is better at the lower frequency (body text) or at the higher (caption), is "
+        "reproduced in terms of amplitudes.",
+        f"- **Which of the two patterns is larger.** Surface over buried, soft and stiff: {two[0]:.2f} and {two[1]:.2f} over pattern 2, {one[0]:.2f} and {one[1]:.2f} "
+        "over pattern 1. Over pattern 2 this is the order of the caption (soft: the surface a little larger; stiff: the buried one), over pattern 1 "
+        "the reverse. The reduced model has the caption's order much more strongly over pattern 2, but only because its patch of 3.58 mm is close to the zero "
+        "for 6 mm, where its error is greatest: this is no support.",
         f"- **Pattern 2 sharper than pattern 1** in the stiff state, since it is nearer: yes, {nearer[1]:.1f} times. In the soft state they are alike ({nearer[0]:.2f}).",
-        f"- **What is found, with the noise assumed here** (p up to 0.05, seed 0): {_found(states)}. With less noise both states would show both.",
+        f"- **What is detected, with the noise assumed here** (p up to 0.05, seed 0): {_found(states)}. With less noise both states would show both.",
     ]  # fmt: skip
 
 
@@ -299,22 +299,22 @@ def _separate(data: dict[str, Any]) -> list[str]:
         for dome in found["domes"]
     ]  # fmt: skip
     return [
-        "## Which dome tells two patterns apart", "",
-        "`pneutouch scan texture-specimen --design paper-dome --separate 3@0,6@2` looks at "
-        f"{found['candidates']:,} candidates (resin, radius, wall, driving pressure; everything else the design's). *Contrast*: by how much more one "
-        "driving pressure favours the surface pattern than another does. Amplitudes are those of the surface and the buried pattern in Pa; each state must "
-        "show its own three times above white noise, and no dome is chosen for standing on a zero (the same 15 % as above).", "",
+        "## Which dome distinguishes two patterns", "",
+        "`pneutouch scan texture-specimen --design paper-dome --separate 3@0,6@2` searches "
+        f"{found['candidates']:,} candidates (resin, radius, wall, driving pressure; everything else from the design). *Contrast*: the ratio by which one "
+        "driving pressure favours the surface pattern more than another. Amplitudes are those of the surface and the buried pattern in Pa; each state must "
+        "show its pattern three times above white noise, and no dome is selected for being at a zero (the same 15 % as above).", "",
         "| | resin | R0 mm | t0 mm | 1st kPa | Pa | 2nd kPa | Pa | contrast |", "|---|---|---|---|---|---|---|---|---|", *rows, "",
-        "The winners are of stiff resins that bear up to 90 kPa: there the driving pressure changes the patch most. They owe part of their contrast to "
-        "the short pitch's lobes, where the model is two- to fivefold too high: a shortlist for a test, not a promise.", "",
+        "The best domes are of stiff resins that withstand up to 90 kPa: there the driving pressure changes the patch most. Part of their contrast comes from "
+        "the side lobes of the short pitch, where the model is two- to fivefold too high. The list is a selection for a test, not a result.", "",
     ]  # fmt: skip
 
 
 def _cannot() -> list[str]:
     return [
         "## What is left out", "",
-        "Relief of the surface, friction, adhesion, inertia, relaxation of the resins (a bar passes in 0.4 s, and Agilus30 at that rate is several times "
-        "stiffer than the relaxed modulus used: c is lower by as much); the pressure under the dome is not uniform, least of all without "
-        "driving pressure; the block's sides; bars that touch the floor; layers other than bars, which `scan` refuses. The pressure sensor's and the "
-        "recorder's noise are assumptions: `--noise` sets them.", "",
+        "Not included: relief of the surface, friction, adhesion, inertia; relaxation of the resins (a bar passes in 0.4 s, and Agilus30 at that rate is several times "
+        "stiffer than the relaxed modulus used: c is lower by the same factor); the non-uniform pressure under the dome, most of all without "
+        "driving pressure; the sides of the block; bars that touch the floor; layers other than bars, which `scan` refuses. The noise of the pressure sensor and the "
+        "recorder is assumed: `--noise` sets it.", "",
     ]  # fmt: skip

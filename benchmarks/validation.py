@@ -115,7 +115,7 @@ def pressed_membrane() -> list[str]:
             )
     return [
         "## Pressed membrane: shooting", "",
-        "The solid with t0/R0 = 0.01 against the exact membrane under a plate with its gas shut in.", "",
+        "The solid with t0/R0 = 0.01 against the exact membrane under a plate with sealed gas.", "",
         "| driving kPa | indentation mm | cavity kPa | solid | force N | solid | contact radius mm | solid |",
         "|---|---|---|---|---|---|---|---|", *rows, "",
     ]  # fmt: skip
@@ -133,7 +133,7 @@ def refinement() -> list[str]:
     return [
         "## Refinement: the paper's wall", "",
         "Limit pressure p R0/(mu t0) at nu 0.49, both directions halved, against the value extrapolated with the order that the last "
-        f"three show, **{order:.1f}**. The clamped corner is singular, which keeps it below that of the smooth sphere (four, in the "
+        f"three show, **{order:.1f}**. The clamped corner is singular, so the order is below that of the smooth sphere (four, in the "
         "tests).", "",
         "| cells | p R0/(mu t0) | error |", "|---|---|---|", *rows, "",
     ]  # fmt: skip
@@ -153,7 +153,7 @@ def invariances() -> list[str]:
     return [
         "## Scale invariance, and energy against work", "",
         "The limit pressure over mu must not depend on size or modulus; the stored energy must be the integral of p dV: over the "
-        f"whole inflation they differ by {abs(work.sum() / (energy[-1] - energy[0]) - 1):.1e} (the integration's own error).", "",
+        f"whole inflation they differ by {abs(work.sum() / (energy[-1] - energy[0]) - 1):.1e} (the error of the integration).", "",
         "| R0 mm | mu MPa | relative change of p/mu |", "|---|---|---|", *rows, "",
     ]  # fmt: skip
 
@@ -161,7 +161,7 @@ def invariances() -> list[str]:
 def calculix() -> list[str]:
     """The same inflation by CalculiX, where it is installed."""
     if shutil.which("ccx") is None:
-        return ["## CalculiX", "", "Not installed where this page was written: not compared.", ""]
+        return ["## CalculiX", "", "Not installed on the machine that wrote this page: not compared.", ""]
     sensor = PAPER
     ours = solid_limit(Scene("", sensor, 0.0), 24, 2)
     theirs = calculix_limit(sensor, 24, 2)[0]
@@ -181,8 +181,8 @@ def incompressibility() -> list[str]:
         rows.append(f"| {nu:g} | {default:.5f} | {default / fine - 1:+.1e} |")
     return [
         "## Nearly incompressible walls", "",
-        "Limit pressure at the default resolution, and its distance from a refined mesh at the same Poisson ratio: locking "
-        "would make it grow.", "",
+        "Limit pressure at the default resolution, and its distance from a refined mesh at the same Poisson ratio: with locking "
+        "it would grow.", "",
         "| nu | p R0/(mu t0) | against 72 x 4 cells |", "|---|---|---|", *rows, "",
     ]  # fmt: skip
 
@@ -205,7 +205,7 @@ def dead_volumes(library: Library) -> list[str]:
     return [
         "## The paper's Table S1 with the dead volume varied", "",
         "The paper does not state its dead volume. Errors in sensitivity of the solid, all fourteen cells, nothing fitted; "
-        "the median leaves out FLX9995-DM, which is off by a factor of two for a reason not known. A dead volume lowers every cell, those of "
+        "the median leaves out FLX9995-DM, which is off by a factor of two for an unknown reason. A dead volume lowers every cell, those of "
         "hard resins most: it does not explain why FLX9970-DM and FLX9985-DM read low without one. The last column holds the "
         "rim as it is printed, in its groove, in place of the clamped base plane.", "",
         f"| resin | driving kPa | measured | {heads} |", "|---|---|---|" + "---|" * len(runs), *rows, "",

@@ -123,8 +123,8 @@ def section(rows: list[dict[str, Any]]) -> list[str]:
         "## Map of validity", "",
         f"The paper's sensor in TangoPlus with walls of {WALL_RATIOS[0]:g} to {WALL_RATIOS[-1]:g} R0, driven to shares of its "
         "limit pressure and pressed to four depths; data in `validity.json`. Within 5 % means the sensitivity from first contact to the depth "
-        f"against the solid on {FINE[0]} x {FINE[1]} cells. \"ends before\": the method's own range ends before the depth; \"fails\": it "
-        "raised an error; \"outside its box\": the atlas says so and gives no figures; \"no such state\": the refined solid itself meets an event before the depth.", "",
+        f"against the solid on {FINE[0]} x {FINE[1]} cells. \"ends before\": the range of the method ends before the depth; \"fails\": it "
+        "raised an error; \"outside its box\": the atlas reports this and gives no figures; \"no such state\": the refined solid has an event before the depth.", "",
         "![Where each method holds](validity.svg)", "",
         "| method | " + " | ".join(LOOKS) + " |", "|---|" + "---|" * len(LOOKS), *lines, "",
     ]  # fmt: skip

@@ -13,7 +13,6 @@ NOT_YET_CLEAN = {
     "body",
     "catalogue",
     "cli",
-    "docs",
     "errors",
     "evaluation",
     "export",

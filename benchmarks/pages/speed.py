@@ -26,9 +26,9 @@ def section(data: dict[str, Any], peers: dict[str, Any], shares: dict[str, float
         f"{len(truths)} scenes that differ in wall ratio (0.05 to 0.4), law, driving pressure, dead volume and depth "
         "(`benchmarks/scenes.py`; raw numbers in `speed-accuracy.json` and `peers.json`). The work timed is study 1 from the "
         "mesh to the driving pressure and study 2 in 14 steps. The reference is extrapolated from three refinements "
-        f"({meshes} nine-node cells along and across the wall); its own error, the size of what was extrapolated, is in "
+        f"({meshes} nine-node cells along and across the wall); its error, the size of the extrapolation, is in "
         f"sensitivity {_both(own['sensitivity_error'])}, in force {_both(own['force_error'])}, in limit pressure "
-        f"{_both(own['limit_error'])} (median / worst scene). **Force and sensitivity are compared over one and the same range: "
+        f"{_both(own['limit_error'])} (median / worst scene). **Force and sensitivity are compared over the same range: "
         "from first contact to the first event that ends the range of the reference, on any of its meshes, or of the method.** "
         "Force is the greatest difference over the greatest force.", "",
         "![Error over processor time with the Pareto front](speed-accuracy.svg)", "",
@@ -53,37 +53,37 @@ def _default_words(data: dict[str, Any]) -> list[str]:
     return [
         "### Why this default", "",
         "The default takes 24 to 48 cells along the arc (three to the bending length sqrt(R0 t0)) and one across up to "
-        "t0/R0 = 0.055, else two. It is the cheapest mesh on the front that keeps every scene within 1 %: one cell across is "
+        "t0/R0 = 0.055, else two. It is the cheapest mesh on the Pareto front that keeps every scene within 1 %: one cell across is "
         f"off by {worst['solid 24 x 1']:.1%} in the worst scene, a thick wall; fewer than 24 along make the contact's edge so "
-        "coarse that the wall seems to leave the plate "
+        "coarse that the wall appears to leave the plate "
         f"({cut['solid 8 x 1']}, {cut['solid 12 x 1']} and {cut['solid 16 x 1']} scenes cut at 8, 12 and 16). 36 x 2 costs "
         f"{dear:.1f} times as much and its worst scene is at {worst['solid 36 x 2']:.2%}, against {worst[DEFAULT]:.2%}. "
         "What the default does not resolve is the fold at the clamped corner: where the reference ends with it, the "
-        "default's own range is longer, and its figure over it (last column) is not checked here: the slope falls with depth.", "",
+        "range of the default is longer, and its figure over that range (last column) is not checked here: the slope falls with depth.", "",
     ]  # fmt: skip
 
 
 def _model_words(data: dict[str, Any]) -> list[str]:
-    """What the atlas leaves to the solid, scene by scene, and what `auto` took."""
+    """What the atlas leaves to the solid, scene by scene, and what ``auto`` took."""
     atlas, auto = ({row["scene"]: row for row in data["rows"] if row["method"] == m} for m in MODEL_METHODS)
     solid = {row["scene"]: row for row in of(data["rows"], DEFAULT)}
     lines = []
     for scene in (s["scene"] for s in data["scenes"]):
         row, took, plain = atlas[scene], auto[scene], solid[scene]
-        said = f"no answer: {row['no_answer']}" if "no_answer" in row else f"{row['sensitivity_error']:+.2%}"
+        cell = f"none: {row['no_answer']}" if "no_answer" in row else f"{row['sensitivity_error']:+.2%}"
         lines.append(
-            f"| {scene} | {said} | {took['model']} | {took['sensitivity_error']:+.2%} | "
+            f"| {scene} | {cell} | {took['model']} | {took['sensitivity_error']:+.2%} | "
             f"{took['processor_s'] / plain['processor_s']:.3f} |"
         )
     inside = [row for row in atlas.values() if "no_answer" not in row]
     base = statistics.median(row["processor_s"] for row in solid.values())
     ratio = statistics.median(solid[row["scene"]]["processor_s"] / row["processor_s"] for row in inside)
     return [
-        "### The atlas and the choice of auto", "",
-        f"The [atlas](atlas.md) is timed as one sensor alone, warm; it answers {len(inside)} of {len(atlas)} scenes, "
-        f"{ratio:.0f} times as fast as the default solid in the median, and shares the solid's errors because it is made from it. "
+        "### The atlas and the choice of `auto`", "",
+        f"The [atlas](atlas.md) is timed for one sensor per call, warm; it covers {len(inside)} of {len(atlas)} scenes, "
+        f"{ratio:.0f} times as fast as the default solid in the median, and has the errors of the solid because it is made from it. "
         f"{AT_ONCE:,} sensors in one call cost {base / data['atlas_at_once_s']:,.0f} times less each than the default. `auto` takes the cheapest model "
-        "whose stated error meets its tolerance and goes to the solid where the atlas does not speak for a scene, or where the press ends by buckling or at the break strain, which the solid places more exactly.", "",
+        "whose stated error meets its tolerance. It uses the solid where the atlas does not cover a scene, or where the press ends by buckling or at the break strain, which the solid locates more exactly.", "",
         "| scene | atlas's error in sensitivity | auto took | its error | its time / default |", "|---|---|---|---|---|", *lines, "",
     ]  # fmt: skip
 
@@ -96,20 +96,20 @@ def _peer_section(peers: dict[str, Any]) -> list[str]:
     rows = peers["rows"]
     base = cheapest(rows, OURS, "solve_s")
     if base is None or len({row["program"] for row in rows}) < 2:
-        return ["### Peers", "", *[f"- {name}: {why}." for name, why in peers["missing"].items()], ""]
+        return ["### Other programs", "", *[f"- {name}: {why}." for name, why in peers["missing"].items()], ""]
     lines = [
         f"| {r['program']} | {r['cells_along']} x {r['cells_across']} | {r['steps']} | {r['limit_error']:+.3%} | "
         f"{r['solve_s'] / base['solve_s']:.1f} | {r['whole_s'] / base['solve_s']:.1f} |"
         for r in rows
     ]
     return [
-        "### Peers", "",
-        "The paper's sensor in TangoPlus blown up to and through its limit point, nu 0.49, one thread. Processor times over our "
-        "cheapest solve within 0.5 %, median of three processes: the solve with its mesh, and the whole process with start, "
+        "### Other programs", "",
+        "The paper's sensor in TangoPlus inflated to and through its limit point, nu 0.49, one thread. Processor times over the "
+        "cheapest pneutouch solve within 0.5 %, median of three processes: the solve with its mesh, and the whole process with start, "
         "imports and files. FElupe has no cavity, so it gets the apex height prescribed with the pressure as one more "
-        "unknown (our border around its matrices), a guess along the last step and the least number of steps that its Newton "
-        "follows, found beforehand and not charged. CalculiX has no arc length: its pressure rises until no increment of "
-        "0.2 % converges, so that its error does not shrink with its mesh. Both get the meshes they do best with.", "",
+        "unknown (a border around its matrices, added here), a guess along the last step and the least number of steps with which its Newton "
+        "iteration converges, determined beforehand and not counted. CalculiX has no arc length: its pressure rises until no increment of "
+        "0.2 % converges, so that its error does not shrink with its mesh. Both run with the meshes that suit them best.", "",
         "| program | cells | steps | limit pressure | solve | whole process |", "|---|---|---|---|---|---|", *lines, "",
         f"{_same_mesh(rows)}", "",
     ]  # fmt: skip
@@ -123,20 +123,20 @@ def _same_mesh(rows: list[dict[str, Any]]) -> str:
         if r["program"] != OURS and (key := (r["cells_along"], r["cells_across"])) == (24, 2) and key in mine
     ]
     return (
-        "On one and the same mesh, 24 x 2, our solve costs of theirs: "
+        "On the same mesh, 24 x 2, the solve of pneutouch costs this fraction of theirs: "
         + ", ".join(parts)
-        + ". The gain at 0.5 % comes from "
-        "the element too: its coarsest meshes are within it. Whole processes are the start of Python, NumPy and SciPy, which "
-        "a running program pays once; CalculiX, compiled, has no such start."
+        + ". The gain at 0.5 % comes also from "
+        "the element: its coarsest meshes are within 0.5 %. Most of a whole process is the start of Python, NumPy and SciPy, which "
+        "a running program needs once; CalculiX, compiled, has no such start."
     )
 
 
 def _share_section(shares: dict[str, float]) -> list[str]:
     return [
         "### Where the time goes", "",
-        "The default on all scenes under the profiler (which charges small functions more than they cost).", "",
+        "The default on all scenes under the profiler (which overestimates the cost of small functions).", "",
         "| part | share |", "|---|---|", *(f"| {part} | {share:.0%} |" for part, share in shares.items()), "",
-        "Closing in on a jump is counted over all the other rows.", "",
+        "The time of locating a jump is also contained in the other rows.", "",
     ]  # fmt: skip
 
 
@@ -154,13 +154,13 @@ def table(data: dict[str, Any]) -> list[str]:
         cut = sum(row["range_share"] < CUT for row in rows)
         lines.append(f"| {method} | {cost:.3g} | {' | '.join(cells)} | {cut} | {len(rows)} |")
     return [
-        "| method (cells along x across) | time / default | apex height | limit pressure | force | sensitivity | scenes cut | answered |",
+        "| method (cells along x across) | time / default | apex height | limit pressure | force | sensitivity | scenes cut | covered |",
         "|---|---|---|---|---|---|---|---|", *lines, "",
     ]  # fmt: skip
 
 
 def scene_table(data: dict[str, Any]) -> list[str]:
-    """The default on every scene, beside the reference and its own error."""
+    """The default on every scene, with the reference and its error."""
     mine = {row["scene"]: row for row in of(data["rows"], DEFAULT)}
     lines = []
     for scene in data["scenes"]:
@@ -171,7 +171,7 @@ def scene_table(data: dict[str, Any]) -> list[str]:
             f"{truth['ends']} | {row['own_sensitivity_kPa_per_N']:.4f} to {row['range_end_mm']:.2f}, {row['ends']} |"
         )
     return [
-        "| scene | reference kPa/N | default's error | force | compared to mm | reference ends with | default over its own range |",
+        "| scene | reference kPa/N | default's error | force | compared to mm | reference ends with | default over its full range |",
         "|---|---|---|---|---|---|---|", *lines, "",
     ]  # fmt: skip
 
@@ -185,10 +185,10 @@ def verdicts(data: dict[str, Any], peers: dict[str, Any]) -> list[str]:
     slow = [r["scene"] for r in rows if r["processor_s"] > SECONDS_TARGET]
     out = [
         f"- Sensitivity at the default resolution within {SENSITIVITY_TARGET:.0%} of the reference in every scene: "
-        + (f"**no**, not in {', '.join(r['scene'] for r in missed)}" if missed else "**holds**")
+        + (f"**not met** in {', '.join(r['scene'] for r in missed)}" if missed else "**met**")
         + f"; the worst is {worst['scene']}, {worst['sensitivity_error']:+.2%}.",
         f"- Studies 1 and 2 at the default resolution in at most {SECONDS_TARGET} s, median over the scenes: "
-        f"**{'holds' if statistics.median(times) <= SECONDS_TARGET else 'no'}**, {statistics.median(times):.3f} s here, "
+        f"**{'met' if statistics.median(times) <= SECONDS_TARGET else 'not met'}**, {statistics.median(times):.3f} s here, "
         f"greatest {max(times):.3f} s" + (f"; above the target: {', '.join(slow)}." if slow else "."),
     ]
     for program, target in (("FElupe", FELUPE_TARGET), ("CalculiX", CALCULIX_TARGET)):
@@ -199,15 +199,15 @@ def verdicts(data: dict[str, Any], peers: dict[str, Any]) -> list[str]:
 
 def _against(rows: list[dict[str, Any]], program: str, target: float) -> str:
     parts = []
-    for key, words in (("solve_s", "solve alone"), ("whole_s", "whole process")):
+    for key, words in (("solve_s", "solve only"), ("whole_s", "whole process")):
         ours, theirs = cheapest(rows, OURS, key), cheapest(rows, program, key)
         if ours is None or theirs is None:
-            parts.append(f"{words} **no run of {'ours' if ours is None else program} within {WITHIN:.1%}**")
+            parts.append(f"{words} **no run of {'pneutouch' if ours is None else program} within {WITHIN:.1%}**")
             continue
         share = ours[key] / theirs[key]
         mesh = f"{theirs['program']} {theirs['cells_along']} x {theirs['cells_across']}"
         parts.append(
-            f"{words} {share:.2f} of its time (**{'holds' if share <= target else 'no'}**; ours "
+            f"{words} {share:.2f} of its time (**{'met' if share <= target else 'not met'}**; pneutouch "
             f"{ours['cells_along']} x {ours['cells_across']} at {ours['limit_error']:+.2%}, {mesh} at {theirs['limit_error']:+.2%})"
         )
     return f"- Inflation sweep at {WITHIN:.1%} of the limit pressure, against {program} (target {target:.2f}): {'; '.join(parts)}."

@@ -41,7 +41,7 @@ def test_the_pages_sentences_hold(found, text):
     f = np.array(WHERE)
     ratio = law.modulus_at(f) / hashin_shtrikman_low(f, law.modulus[0], stiff[0])
     assert ratio.min() > 1.2
-    assert "FLX9985 would stand at 80 %, and FLX9995 nowhere" in text
+    assert "FLX9985 would be at 80 %, and FLX9995 would have no fraction" in text
     series = np.array([(0.5, 5.34 / 0.30), (1.0, 8.47 / 0.30)])
     at = np.interp(np.log(4.0 / 0.17), np.log(series[:, 1]), series[:, 0])
     assert at == pytest.approx(0.80, abs=0.005)
