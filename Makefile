@@ -48,11 +48,11 @@ clean:
 chart: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.chart
 
-# The print meshes beside other kernels; writes docs/meshing.md and its chart.
+# The print meshes compared with other kernels; writes docs/meshing.md and its chart.
 chart-meshes: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.mesh_page
 
-# What the scan model says of the paper's Figure 9, beside finite elements; writes docs/texture.md and its charts.
+# The scan model and finite elements on Figure 9 of the paper; writes docs/texture.md and its charts.
 texture-page: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.texture_page
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 
 import pytest
 
-from tests.vocabulary import VOCABULARY, covered, in_file, in_python, places, read_vocabulary
+from tests.vocabulary import PACKAGE, VOCABULARY, covered, in_file, in_python, places, read_vocabulary
 
 NOT_YET_CLEAN = {
     "bench",
@@ -48,6 +49,20 @@ def test_every_term_stands_once():
     terms = Counter(line.strip("|").split("|")[0].strip() for line in rows)
     assert {term for term, count in terms.items() if count > 1} == {"term", "---"}
     assert len(terms) > 100
+
+
+def test_every_name_in_code_is_in_the_package():
+    sources = {path.read_text() for path in PACKAGE.rglob("*.py")}
+    known = set(re.findall(r"\w+", " ".join(sources))) | {path.stem for path in PACKAGE.rglob("*.py")}
+    table = VOCABULARY.read_text().partition("## Words not used")[0]
+    names = {
+        name
+        for line in table.splitlines()
+        if line[:1] == "|"
+        for name in re.findall(r"`(\w+)`", line[1:].rsplit("|", 2)[1])
+    }
+    assert len(names) > 100
+    assert not names - known
 
 
 @pytest.mark.parametrize(
