@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -42,10 +42,15 @@ class Answer:
 def solid_answer(scene: Scene, arc: int | None, through: int | None, depth: float | None = None) -> Answer:
     """Study 1 to the driving pressure and study 2 in 14 steps, mesh and all; ``depth`` (mm) may stop it short."""
     s = scene.sensor
-    solid = SolidModel(dome(s.inner_radius, s.wall_thickness, arc=arc, through=through), s.material)
+    solid = SolidModel(dome(s.dome.inner_radius, s.dome.wall_thickness, arc=arc, through=through), s.wall.hyperelastic)
     free = state_at(solid, scene.pressure)
     press = PressSettings(
-        depth or s.depth, s.steps, 2 * s.plate_radius, s.ambient_pressure, s.dead_volume, s.gauge_limit
+        depth or s.protocol.depth,
+        s.protocol.steps,
+        2 * s.protocol.plate_radius,
+        s.gas.ambient_pressure,
+        s.gas.dead_volume,
+        s.gas.gauge_limit,
     )
     found = indent(solid, free, press)
     happened = _events(found)
@@ -61,7 +66,7 @@ def membrane_answer(scene: Scene, closure: str) -> Answer:
     ends = next((event.kind for event in state.events if event.ends_range), "depth")
 
     def curve(grid: Array) -> tuple[Array, Array]:
-        (fine,) = membrane_states(replace(scene.sensor, steps=_FINE_STEPS), pressures, closure)
+        (fine,) = membrane_states(scene.sensor.replace(steps=_FINE_STEPS), pressures, closure)
         return np.interp(grid, fine.indentation, fine.force), np.interp(grid, fine.indentation, fine.pressure_rise)
 
     return Answer(state.apex_inner, state.range_end, ends, curve)
@@ -71,6 +76,7 @@ def solid_limit(scene: Scene, arc: int | None, through: int | None) -> float:
     """Limit pressure, MPa; nan where there is none."""
     s = scene.sensor
     run = inflate(
-        SolidModel(dome(s.inner_radius, s.wall_thickness, arc=arc, through=through), s.material), past_limit=1.0
+        SolidModel(dome(s.dome.inner_radius, s.dome.wall_thickness, arc=arc, through=through), s.wall.hyperelastic),
+        past_limit=1.0,
     )
     return np.nan if run.limit is None else run.limit.pressure

@@ -20,8 +20,8 @@ _INCREMENTS = "0.2,1.,0.002,0.3"
 
 
 def _model(sensor: Sensor, arc: int, through: int) -> list[str]:
-    mesh = dome(sensor.inner_radius, sensor.wall_thickness, arc=arc, through=through, order=8)
-    nu, mu = sensor.poisson_ratio, sensor.shear_modulus
+    mesh = dome(sensor.dome.inner_radius, sensor.dome.wall_thickness, arc=arc, through=through, order=8)
+    nu, mu = sensor.wall.poisson_ratio, sensor.wall.shear_modulus
     bulk = 2 * mu * (1 + nu) / (3 * (1 - 2 * nu))
     other_way = [0, 3, 2, 1, 7, 6, 5, 4]  # CalculiX wants its axisymmetric cells counter-clockwise in (r, z)
     inside = range(1, len(mesh.cells) + 1, through)
@@ -47,7 +47,7 @@ def _seconds(folder: Path, deck: list[str]) -> float:
 
 def calculix_limit(sensor: Sensor, arc: int, through: int) -> tuple[float, int, float, float]:
     """Limit pressure (MPa), increments, and processor time of the whole process and without reading the deck (s)."""
-    full = RISING_BRANCH[-1, 0] * sensor.shear_modulus * sensor.wall_thickness / sensor.inner_radius
+    full = RISING_BRANCH[-1, 0] * sensor.wall.shear_modulus * sensor.dome.wall_thickness / sensor.dome.inner_radius
     step = ["*STEP,NLGEOM,INC=200", "*STATIC", _INCREMENTS, "*DLOAD", f"INNER,P4,{full:.12g}", "*END STEP"]
     model = _model(sensor, arc, through)
     with tempfile.TemporaryDirectory() as name:

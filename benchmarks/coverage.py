@@ -61,7 +61,7 @@ def cell(resin: str) -> Cell:
     """The truth of a resin's population."""
     sensor = material_sensor(Library.default().load("materials", resin))
     pressures = [p * KPA for p in PRESSURES]
-    wanted = 0.75 * sensor.inner_radius
+    wanted = 0.75 * sensor.dome.inner_radius
     depth = min(_safe(curve, wanted) for curve in press_curves(sensor, pressures, wanted, "atlas").curves)
     nominal = press_curves(sensor, pressures, depth, "atlas")
     return Cell(resin, sensor, depth, {p: _true(nominal, k) for k, p in enumerate(PRESSURES)})
@@ -94,7 +94,7 @@ def campaign(of: Cell, number: int) -> list[RunGroup]:
 def _runs(of: Cell, name: str, pressed: PressCurves, rng: np.random.Generator) -> Iterator[MeasuredCurve]:
     for pressure, curve in zip(PRESSURES, pressed.curves, strict=True):
         for kind, count in (("steps", RUNS), ("loop", 1), ("relaxation", 1)):
-            way = TRUTH.protocol(kind, of.sensor.inner_radius, curve.reach)
+            way = TRUTH.protocol(kind, of.sensor.dome.inner_radius, curve.reach)
             for number in range(1, count + 1):
                 rate = LOOP_RATE if kind == "loop" else RATE
                 record = simulate_run(curve, way, TRUTH.rig, rate, rng, wall=TRUTH.wall, scatter=TRUTH.scatter)

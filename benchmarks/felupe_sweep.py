@@ -32,7 +32,7 @@ def _bodies(sensor: Sensor, mesh: SolidMesh, mixed: bool) -> tuple[Any, Any, Any
     """Field, solid body, field on the inner wall and unit pressure on it; FElupe has the axis first, then the radius."""
     import felupe as fe
 
-    nu, mu = sensor.poisson_ratio, sensor.shear_modulus
+    nu, mu = sensor.wall.poisson_ratio, sensor.wall.shear_modulus
     bulk = 2 * mu * (1 + nu) / (3 * (1 - 2 * nu))
     grid = fe.Mesh(mesh.nodes[:, ::-1].copy(), mesh.cells, "quad9" if mixed else "quad")
     inner = np.zeros(len(mesh.nodes), bool)
@@ -103,7 +103,7 @@ class _Sweep:
 
 def _climb(sensor: Sensor, mesh: SolidMesh, mixed: bool, count: int) -> float:
     """Pressures at ``count`` apex heights, and the greatest on the spline through them, MPa."""
-    sweep, radius = _Sweep(sensor, mesh, mixed), sensor.inner_radius
+    sweep, radius = _Sweep(sensor, mesh, mixed), sensor.dome.inner_radius
     rises = radius * (_TOP - 1) * np.linspace(0, 1, count + 1) ** _FIRST_STEPS
     pressures, before = [0.0], sweep.values()
     for k, rise in enumerate(rises[1:], start=1):
@@ -121,7 +121,7 @@ def _climb(sensor: Sensor, mesh: SolidMesh, mixed: bool, count: int) -> float:
 
 def felupe_limit(sensor: Sensor, arc: int, through: int, mixed: bool, count: int | None = None) -> tuple[float, int]:
     """Limit pressure (MPa), and the number of heights it took: ``count``, or the least that Newton follows."""
-    mesh = dome(sensor.inner_radius, sensor.wall_thickness, arc=arc, through=through, order=2 if mixed else 1)
+    mesh = dome(sensor.dome.inner_radius, sensor.dome.wall_thickness, arc=arc, through=through, order=2 if mixed else 1)
     for n in (count,) if count else _COUNTS:
         try:
             with np.errstate(all="ignore"):

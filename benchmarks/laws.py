@@ -47,12 +47,14 @@ def curves() -> dict[str, Curve]:
     found = {}
     for name, law in LAWS.items():
         run: Inflation = inflate(
-            SolidModel(dome(PAPER.inner_radius, PAPER.wall_thickness), law), past_limit=1.5, largest=8.0
+            SolidModel(dome(PAPER.dome.inner_radius, PAPER.dome.wall_thickness), law), past_limit=1.5, largest=8.0
         )
-        scale = PAPER.inner_radius / (law.mu * PAPER.wall_thickness)
-        limit = None if run.limit is None else (run.limit.inner_apex / PAPER.inner_radius, run.limit.pressure * scale)
+        scale = PAPER.dome.inner_radius / (law.mu * PAPER.dome.wall_thickness)
+        limit = (
+            None if run.limit is None else (run.limit.inner_apex / PAPER.dome.inner_radius, run.limit.pressure * scale)
+        )
         volume = np.linspace(run.volume[0], run.volume[-1], 200)
-        height = PchipInterpolator(run.volume, [s.inner_apex for s in run.states])(volume) / PAPER.inner_radius
+        height = PchipInterpolator(run.volume, [s.inner_apex for s in run.states])(volume) / PAPER.dome.inner_radius
         pressure = CubicHermiteSpline(run.volume, run.pressure, [s.stiffness for s in run.states])(volume)
         found[name] = Curve(height, pressure * scale, limit)
     return found

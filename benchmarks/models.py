@@ -28,19 +28,19 @@ def atlas_answer(scene: Scene) -> Answer | None:
     if outside_atlas(scene.sensor) is not None:
         return None
     s, batch = scene.sensor, batch_of(scene.sensor, np.array([scene.pressure]))
-    found = respond(batch, s.steps)
+    found = respond(batch, s.protocol.steps)
     if int(found.ends[0]) in (OUTSIDE, EDGE) or np.isnan(found.range_end[0]):
         return None
     slices = shipped().slices(batch.wall_ratio, ("inner_apex",))
     press = AtlasPress(batch, slices, np.zeros(1, dtype=np.intp))
-    unit = s.shear_modulus * s.inner_radius**2
+    unit = s.wall.shear_modulus * s.dome.inner_radius**2
 
     def curve(grid: Array) -> tuple[Array, Array]:
-        point = press.march(grid[None, :] / s.inner_radius).point
-        return point.force[0] * unit, (point.pressure[0] - press.pressure[0]) * s.shear_modulus
+        point = press.march(grid[None, :] / s.dome.inner_radius).point
+        return point.force[0] * unit, (point.pressure[0] - press.pressure[0]) * s.wall.shear_modulus
 
     return Answer(
-        _inner_apex(slices, press) * s.inner_radius, float(found.range_end[0]), ENDS[int(found.ends[0])], curve
+        _inner_apex(slices, press) * s.dome.inner_radius, float(found.range_end[0]), ENDS[int(found.ends[0])], curve
     )
 
 
@@ -51,8 +51,8 @@ def _inner_apex(slices: AtlasSlices, press: AtlasPress) -> float:
 def atlas_limit(scene: Scene) -> float:
     """Limit pressure, MPa."""
     s = scene.sensor
-    ratio = np.array([s.wall_thickness / s.inner_radius])
-    return float(shipped().slices(ratio, ()).limit_pressure[0]) * s.shear_modulus
+    ratio = np.array([s.dome.wall_thickness / s.dome.inner_radius])
+    return float(shipped().slices(ratio, ()).limit_pressure[0]) * s.wall.shear_modulus
 
 
 def auto_answer(scene: Scene) -> tuple[Answer, str]:
@@ -65,16 +65,18 @@ def auto_answer(scene: Scene) -> tuple[Answer, str]:
 
 
 def _near_buckling(scene: Scene) -> bool:
-    return bool(respond(batch_of(scene.sensor, np.array([scene.pressure])), scene.sensor.steps).near_buckling[0])
+    return bool(
+        respond(batch_of(scene.sensor, np.array([scene.pressure])), scene.sensor.protocol.steps).near_buckling[0]
+    )
 
 
 def seconds_at_once(scene: Scene, count: int = AT_ONCE) -> float:
     """Processor time of the atlas for one of many sensors in one call, all with walls of their own."""
     s = scene.sensor
     batch = batch_of(s, np.full(count, scene.pressure))
-    batch = replace(batch, wall_thickness=s.wall_thickness * np.linspace(0.99, 1.01, count))
+    batch = replace(batch, wall_thickness=s.dome.wall_thickness * np.linspace(0.99, 1.01, count))
     start = time.process_time()
-    respond(batch, s.steps)
+    respond(batch, s.protocol.steps)
     return (time.process_time() - start) / count
 
 

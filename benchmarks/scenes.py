@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-from pneutouch.mechanics import Sensor
+from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
 from pneutouch.units import GAUGE_LIMIT, KPA, ML, STANDARD_ATMOSPHERE
 
 OGDEN_AGILUS30 = ("ogden", (1.423, -3.68))
@@ -28,16 +28,17 @@ class Scene:
     @property
     def wall_ratio(self) -> float:
         """t0/R0."""
-        return self.sensor.wall_thickness / self.sensor.inner_radius
+        return self.sensor.dome.wall_thickness / self.sensor.dome.inner_radius
 
 
 def sensor(radius: float, wall: float, mu: float, depth_ratio: float, dead_ml: float = 0.0, nu: float = 0.49) -> Sensor:
     """A sensor under a plate wider than itself, at sea level, pressed in 14 steps to a share of its radius."""
     return Sensor(
-        inner_radius=radius, wall_thickness=wall, shear_modulus=mu, poisson_ratio=nu,
-        ambient_pressure=STANDARD_ATMOSPHERE, dead_volume=dead_ml * ML, plate_radius=radius * 15 / 9.25,
-        depth=depth_ratio * radius, steps=14, break_stretch=None, gauge_limit=GAUGE_LIMIT,
-    )  # fmt: skip
+        Dome(radius, wall),
+        WallMaterial(mu, nu),
+        GasCircuit(ambient_pressure=STANDARD_ATMOSPHERE, dead_volume=dead_ml * ML, gauge_limit=GAUGE_LIMIT),
+        IndentationProtocol(plate_radius=radius * 15 / 9.25, depth=depth_ratio * radius, steps=14),
+    )
 
 
 def paper(mu: float, depth_ratio: float = 0.75, dead_ml: float = 0.0, nu: float = 0.49) -> Sensor:
@@ -62,7 +63,7 @@ SCENES = (
     Scene("wall 0.3, 40 kPa", sensor(6.0, 1.8, 0.55, 0.4), 40 * KPA),
     Scene("wall 0.4, 0 kPa, 0.1 mL", sensor(5.0, 2.0, 0.91, 0.5, 0.1), 0.0),
     Scene("Mooney-Rivlin, wall 0.083, 15 kPa, 1 mL",
-          replace(sensor(12.0, 1.0, 0.17, 0.65, 1.0), law=("mooney-rivlin", (0.07, 0.015))), 15 * KPA),
-    Scene("Ogden (Agilus30), 50 kPa", replace(paper(1.423, 0.5), law=OGDEN_AGILUS30), 50 * KPA),
+          sensor(12.0, 1.0, 0.17, 0.65, 1.0).replace(law=("mooney-rivlin", (0.07, 0.015))), 15 * KPA),
+    Scene("Ogden (Agilus30), 50 kPa", paper(1.423, 0.5).replace(law=OGDEN_AGILUS30), 50 * KPA),
 )  # fmt: skip
 """At least twelve, for every figure that is said to hold over scenes."""

@@ -126,13 +126,13 @@ def reference(scene: Scene) -> Reference:
 def compare(method: str, scene: Scene, answer: Answer, truth: Reference) -> dict[str, Any]:
     """Errors of one answer over the range that is free of events for it and for the reference alike."""
     common = min(answer.end, truth.end)
-    grid = np.linspace(0.0, common, scene.sensor.steps + 1)
+    grid = np.linspace(0.0, common, scene.sensor.protocol.steps + 1)
     force, _ = truth.force(grid)
     row: dict[str, Any] = {
         "method": method, "scene": scene.name, "range_end_mm": answer.end, "ends": answer.ends,
         "compared_to_mm": common, "range_share": common / truth.end,
         "sensitivity_kPa_per_N": answer.sensitivity(grid),
-        "own_sensitivity_kPa_per_N": answer.sensitivity(np.linspace(0.0, answer.end, scene.sensor.steps + 1)),
+        "own_sensitivity_kPa_per_N": answer.sensitivity(np.linspace(0.0, answer.end, scene.sensor.protocol.steps + 1)),
         "sensitivity_error": answer.sensitivity(grid) / truth.sensitivity(grid)[0] - 1,
         "force_error": float(np.max(np.abs(answer.curve(grid)[0] - force)) / np.max(force)),
         "apex_error": answer.apex / truth.apex()[0] - 1 if scene.pressure else None,
@@ -157,15 +157,15 @@ def model_note(method: str, scene: Scene) -> dict[str, str]:
 def describe(scene: Scene, truth: Reference) -> dict[str, Any]:
     """A scene, its reference and the reference's own errors."""
     s = scene.sensor
-    grid = np.linspace(0.0, truth.end, s.steps + 1)
+    grid = np.linspace(0.0, truth.end, s.protocol.steps + 1)
     (apex, apex_off), (top, top_off), (slope, slope_off) = truth.apex(), truth.limit(), truth.sensitivity(grid)
     force, force_off = truth.force(grid)
     known = not np.isnan(top)
     return {
-        "scene": scene.name, "inner_radius_mm": s.inner_radius, "wall_thickness_mm": s.wall_thickness,
-        "law": [s.law[0], list(s.law[1])] if s.law else ["neo-hookean", [s.shear_modulus]],
-        "poisson_ratio": s.poisson_ratio, "driving_pressure_kPa": scene.pressure / KPA,
-        "dead_volume_mL": s.dead_volume * 1e-3, "depth_mm": s.depth,
+        "scene": scene.name, "inner_radius_mm": s.dome.inner_radius, "wall_thickness_mm": s.dome.wall_thickness,
+        "law": [s.wall.law[0], list(s.wall.wall.law[1])] if s.wall.law else ["neo-hookean", [s.wall.shear_modulus]],
+        "poisson_ratio": s.wall.poisson_ratio, "driving_pressure_kPa": scene.pressure / KPA,
+        "dead_volume_mL": s.gas.dead_volume * 1e-3, "depth_mm": s.protocol.depth,
         "reference": {
             "range_end_mm": truth.end, "ends": truth.ends,
             "range_ends_mm": [a.end for a in truth.answers],

@@ -149,7 +149,7 @@ def sweeps(run: Any) -> dict[str, Any]:
 def advice(run: Any) -> list[dict[str, float]]:
     """The recommended driving pressure of a few patterns, up to 22 kPa."""
     found = []
-    limit = float(respond(batch_of(run.sensor, [0.0]), run.sensor.steps).limit_pressure[0])
+    limit = float(respond(batch_of(run.sensor, [0.0]), run.sensor.protocol.steps).limit_pressure[0])
     for pitch, depth in ((3.0, 0.0), (6.0, 0.0), (6.0, 2.0), (6.0, 4.0), (10.0, 2.0), (15.0, 4.0), (30.0, 2.0)):
         best = recommend(BarPattern(pitch, depth), run.sensor, run.matrix, min(22 * KPA, 0.8 * limit))
         found.append({"pitch": pitch, "depth": depth, "kPa": best.driving_pressure / KPA, "Pa": 1e3 * best.amplitude / KPA,

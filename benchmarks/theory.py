@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from pneutouch.catalogue import Library
 from pneutouch.evaluation.table_s1 import PRESSURES, SHIPPED, compute_errors, fingerprint, measured
@@ -47,7 +47,7 @@ def table_s1(library: Library, dead_volume_ml: float = 0.0, flange: tuple[float,
     for material in resins(library):
         truth = measured(material)
         assert truth is not None
-        sensor = replace(material_sensor(material), dead_volume=dead_volume_ml * ML, flange=flange)
+        sensor = material_sensor(material).replace(dead_volume=dead_volume_ml * ML, flange=flange)
         runs = {
             name: predict("", sensor, [p * KPA for p in PRESSURES], model=model, closure=closure).states
             for name, (model, closure) in METHODS.items()

@@ -6,7 +6,6 @@ contact to the depth against the solid on a refined mesh.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -65,7 +64,7 @@ def measure() -> list[dict[str, Any]]:
     """One row for every method, wall ratio, driving pressure and depth."""
     rows = []
     for ratio in WALL_RATIOS:
-        sensor = replace(PAPER, wall_thickness=ratio * PAPER.inner_radius)
+        sensor = PAPER.replace(wall_thickness=ratio * PAPER.dome.inner_radius)
         limit = solid_limit(Scene("", sensor, 0.0), None, None)
         for fraction in FRACTIONS:
             scene = Scene("", sensor, fraction * limit)
@@ -74,7 +73,7 @@ def measure() -> list[dict[str, Any]]:
             rows += [
                 {
                     "method": method, "wall_ratio": ratio, "limit_fraction": fraction, "depth_ratio": depth,
-                    "outcome": _outcome(method, answer, truth, depth * sensor.inner_radius),
+                    "outcome": _outcome(method, answer, truth, depth * sensor.dome.inner_radius),
                 }
                 for method, answer in answers.items()
                 for depth in DEPTHS

@@ -50,7 +50,7 @@ def test_stored_errors_are_what_the_methods_give_today(scene):
         answer = run(method, scene)
         assert answer.end == pytest.approx(row["range_end_mm"], rel=1e-6)
         assert answer.ends == row["ends"]
-        grid = np.linspace(0.0, row["compared_to_mm"], scene.sensor.steps + 1)
+        grid = np.linspace(0.0, row["compared_to_mm"], scene.sensor.protocol.steps + 1)
         assert answer.sensitivity(grid) == pytest.approx(row["sensitivity_kPa_per_N"], rel=1e-6)
         top = limit(method, scene) * 1e3 / truth["limit_pressure_kPa"] - 1
         assert top == pytest.approx(row["limit_error"], abs=1e-7)

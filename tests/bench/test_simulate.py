@@ -45,7 +45,7 @@ def pressed() -> PressCurves:
 
 
 def test_quiet_record_is_the_solids_curve_at_the_holds(sensor, pressed):
-    states = solid_result(replace(sensor, depth=0.75 * R0, steps=14), np.array([0.0, 22 * KPA])).states
+    states = solid_result(sensor.replace(depth=0.75 * R0, steps=14), np.array([0.0, 22 * KPA])).states
     for curve, state in zip(pressed.curves, states, strict=True):
         test = RunProtocol("steps", tuple(state.indentation[1:]), 4.0, 5.0, True)
         record = simulate_run(curve, test, RigModel.perfect(), 100.0, rng(), **QUIET)
@@ -179,7 +179,7 @@ def test_runs_of_one_specimen_scatter_by_the_gain(pressed):
 
 
 def test_curve_stops_where_the_range_ends_and_the_protocol_with_it(sensor):
-    found = press_curves(replace(sensor, dead_volume=4940.0), [0.0], 0.9 * R0, "solid").curves[0]
+    found = press_curves(sensor.replace(dead_volume=4940.0), [0.0], 0.9 * R0, "solid").curves[0]
     assert found.ends is not None and found.ends[0] == "inward buckling"
     assert found.reach == pytest.approx(found.ends[1], rel=1e-3) and found.reach < 0.75 * R0
     steps = within(protocol("steps", R0), found.reach)

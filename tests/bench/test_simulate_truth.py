@@ -92,7 +92,7 @@ def test_population_spreads_as_the_derivative_says(sensor, atlas):
     depths = np.append(0.0, protocol("steps", R0).depths)
 
     def slope(factor: float) -> float:
-        one = respond(batch_of(replace(stiffened(sensor, factor), gauge_limit=np.inf), [22 * KPA]), 56)
+        one = respond(batch_of(stiffened(sensor, factor).replace(gauge_limit=np.inf), [22 * KPA]), 56)
         force, rise = (np.interp(depths, one.indentation[0], x[0]) for x in (one.force, one.rise))
         return float(np.polyfit(force, rise / KPA, 1)[0])
 
@@ -128,6 +128,6 @@ def test_a_year_changes_every_modulus_and_no_exponent(sensor):
     assert [ageing_factor(scatter, days) for days in (0.0, 365.0, 3650.0)] == pytest.approx(
         [1.0, np.exp(0.1), np.exp(0.1)]
     )
-    ogden = replace(sensor, law=("ogden", (0.1, 2.5, 0.02, -3.0)))
-    assert stiffened(ogden, 2.0).law == ("ogden", (0.2, 2.5, 0.04, -3.0))
-    assert stiffened(ogden, 2.0).material.mu == pytest.approx(2 * ogden.material.mu)
+    ogden = sensor.replace(law=("ogden", (0.1, 2.5, 0.02, -3.0)))
+    assert stiffened(ogden, 2.0).wall.law == ("ogden", (0.2, 2.5, 0.04, -3.0))
+    assert stiffened(ogden, 2.0).wall.hyperelastic.mu == pytest.approx(2 * ogden.wall.hyperelastic.mu)

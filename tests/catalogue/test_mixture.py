@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -86,7 +84,7 @@ def test_a_constant_mix_equal_to_a_catalogue_resin_has_its_figures(name, fractio
     pressures = [0.0, 12 * KPA, 22 * KPA]
     # Without the break strain: that of a mix is read between resins, and the limits are no figure of the sensor.
     ours, theirs = (
-        predict("x", replace(material_sensor(m), break_stretch=None), pressures, model="atlas").document()
+        predict("x", material_sensor(m).replace(break_stretch=None), pressures, model="atlas").document()
         for m in (mixed(fraction), resin)
     )
     for one, other in zip(ours["states"], theirs["states"], strict=True):

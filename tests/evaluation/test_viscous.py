@@ -67,7 +67,7 @@ def test_for_the_papers_resins_nothing_is_predicted_and_no_other_is_put_in_their
 
 def test_the_membrane_and_a_sensor_outside_the_atlas_say_why(library, agilus):
     assert "membrane" in viscous(evaluate("agilus-dome", model="membrane", library=library))["unknown"]
-    odd = replace(agilus, sensor=replace(agilus.sensor, poisson_ratio=0.45))
+    odd = replace(agilus, sensor=agilus.sensor.replace(poisson_ratio=0.45))
     assert "outside the atlas: Poisson" in viscous(odd)["unknown"]
 
 
@@ -94,7 +94,7 @@ def test_an_aged_sensor_is_the_fresh_one_with_the_shifted_modulus(library):
     material = resin(library, "TangoPlus")
     ratio = ageing_ratio(material)
     fresh, old = (evaluate("paper-dome", model="atlas", library=library, aged=aged) for aged in (False, True))
-    assert old.sensor == replace(fresh.sensor, shear_modulus=ratio * fresh.sensor.shear_modulus)
+    assert old.sensor == fresh.sensor.replace(shear_modulus=ratio * fresh.sensor.wall.shear_modulus)
     # Everything of a neo-Hookean dome without gas scales with its modulus: so does the limit point.
     assert old.prediction.limits.limit_point == pytest.approx(ratio * fresh.prediction.limits.limit_point, rel=1e-9)
     new = set(old.prediction.assumptions) - set(fresh.prediction.assumptions)
@@ -147,7 +147,7 @@ def test_the_sheets_section_has_the_figures_of_the_prediction(agilus):
 
 
 def test_a_run_that_stops_is_told_in_the_section_and_not_drawn(agilus):
-    sensor = replace(agilus.sensor, gauge_limit=0.03)
+    sensor = agilus.sensor.replace(gauge_limit=0.03)
     runs = relaxation.runs_of(agilus.prediction, agilus.scene.membrane_material, sensor)
     section = relaxation.section(runs, "")
     assert any("gauge range" in note for note in section["notes"])

@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
+from dataclasses import asdict, fields
 
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
 from pneutouch.errors import BeyondLimitError
-from pneutouch.mechanics import Sensor, predict
+from pneutouch.mechanics import predict
 from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.atlas_states import atlas_result, outside_atlas
+from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
 from pneutouch.mechanics.solid_states import solid_result
 
 SENSOR = Sensor(
-    inner_radius=9.25, wall_thickness=1.5, shear_modulus=0.17, poisson_ratio=0.49, ambient_pressure=0.101325,
-    dead_volume=0.0, plate_radius=15.0, depth=5.0, steps=14, break_stretch=2.7, gauge_limit=0.1,
-)  # fmt: skip
+    Dome(9.25, 1.5),
+    WallMaterial(0.17, 0.49, break_stretch=2.7),
+    GasCircuit(ambient_pressure=0.101325, dead_volume=0.0, gauge_limit=0.1),
+    IndentationProtocol(plate_radius=15.0, depth=5.0, steps=14),
+)
 PRESSURES = np.array([0.0, 0.012, 0.022])
 
 
@@ -51,7 +54,7 @@ def test_figures_are_the_solids_within_the_stated_error(both):
 def test_what_is_shown_beside_the_curves_is_the_solids_too(both):
     """Contact edge, stretch and stress decide no figure; they are held less closely."""
     for ours, theirs in zip(both[0].states, both[1].states, strict=True):
-        assert np.abs(ours.contact_radius - theirs.contact_radius)[1:].max() < 0.02 * SENSOR.inner_radius
+        assert np.abs(ours.contact_radius - theirs.contact_radius)[1:].max() < 0.02 * SENSOR.dome.inner_radius
         assert ours.max_stretch == pytest.approx(theirs.max_stretch, rel=0.03)
         stress = theirs.max_von_mises.max()
         assert np.abs(ours.max_von_mises - theirs.max_von_mises).max() < 0.06 * stress
@@ -68,16 +71,16 @@ def test_the_inflation_curve_and_the_limits_are_the_solids(both):
     assert ours.limit_point.driving_pressure == pytest.approx(limit, rel=5e-4)
     assert ours.limit_point.apex_inner == pytest.approx(theirs.limit_point.apex_inner, rel=0.01)
     assert ours.limit_point.thickness_stretch == pytest.approx(theirs.limit_point.thickness_stretch, rel=0.02)
-    assert ours.limits.gauge == SENSOR.gauge_limit
+    assert ours.limits.gauge == SENSOR.gas.gauge_limit
     assert ours.inflation.pressure.max() == pytest.approx(limit, rel=1e-3)
 
 
 def test_the_pressure_at_the_break_strain_is_the_solids():
-    brittle = replace(SENSOR, break_stretch=1.35, gauge_limit=0.5)
+    brittle = SENSOR.replace(break_stretch=1.35, gauge_limit=0.5)
     ours, theirs = atlas_result(brittle, PRESSURES[:1])[0], solid_result(brittle, PRESSURES[:1])
     assert ours.limits.break_strain == pytest.approx(theirs.limits.break_strain, rel=0.02)
     assert ours.limits.break_strain < ours.limits.limit_point
-    assert atlas_result(replace(SENSOR, break_stretch=None), PRESSURES[:1])[0].limits.break_strain is None
+    assert atlas_result(SENSOR.replace(break_stretch=None), PRESSURES[:1])[0].limits.break_strain is None
 
 
 @pytest.mark.parametrize(("changes", "kind"), [
@@ -85,29 +88,29 @@ def test_the_pressure_at_the_break_strain_is_the_solids():
     ({"shear_modulus": 1.64, "break_stretch": None}, "inward buckling"),
 ])  # fmt: skip
 def test_the_event_that_ends_a_range_is_the_solids(changes, kind):
-    sensor = replace(SENSOR, **{"depth": 6.9375, **changes})
+    sensor = SENSOR.replace(**{"depth": 6.9375, **changes})
     pressure = np.array([0.0 if kind == "inward buckling" else 0.022])
     (ours,), (theirs,) = atlas_result(sensor, pressure)[0].states, solid_result(sensor, pressure).states
     mine = next(event for event in ours.events if event.ends_range)
     other = next(event for event in theirs.events if event.ends_range)
     assert mine.kind == other.kind == kind
-    assert mine.indentation == pytest.approx(other.indentation, abs=0.01 * sensor.inner_radius)
+    assert mine.indentation == pytest.approx(other.indentation, abs=0.01 * sensor.dome.inner_radius)
     assert ours.range_end == mine.indentation
     assert ours.figures.sensitivity == pytest.approx(theirs.figures.sensitivity, rel=5e-3)
 
 
 def test_warnings_on_the_way_are_the_solids():
-    deep = replace(SENSOR, depth=6.9)
+    deep = SENSOR.replace(depth=6.9)
     found = [{e.kind: e.indentation for e in f.states[0].events if not e.ends_range}
              for f in (atlas_result(deep, PRESSURES[:1])[0], solid_result(deep, PRESSURES[:1]))]  # fmt: skip
     assert set(found[0]) == set(found[1]) and found[1]
     for kind, where in found[1].items():
-        assert found[0][kind] == pytest.approx(where, abs=0.05 * deep.inner_radius)
+        assert found[0][kind] == pytest.approx(where, abs=0.05 * deep.dome.inner_radius)
 
 
 def test_one_response_one_prediction(both):
     """The vectorised figures and the prediction's are the same numbers."""
-    said = respond(batch_of(SENSOR, PRESSURES), SENSOR.steps)
+    said = respond(batch_of(SENSOR, PRESSURES), SENSOR.protocol.steps)
     for i, state in enumerate(both[0].states):
         for field in ("sensitivity", "intercept", "r_squared", "stiffness"):
             assert getattr(said.lines, field)[i] == pytest.approx(getattr(state.figures, field), rel=1e-5, abs=1e-6)
@@ -117,7 +120,8 @@ def test_a_batch_has_every_number_of_the_sensor():
     batch = batch_of(SENSOR, PRESSURES)
     assert len(batch) == 3 and batch.driving_pressure.tolist() == PRESSURES.tolist()
     shared = [f.name for f in fields(batch) if f.name != "driving_pressure"]
-    assert all((getattr(batch, name) == getattr(SENSOR, name)).all() for name in shared)
+    numbers = {name: value for part in asdict(SENSOR).values() for name, value in part.items()}
+    assert all((getattr(batch, name) == numbers[name]).all() for name in shared)
 
 
 def test_beyond_the_limit_point_the_limit_is_named():
@@ -127,17 +131,17 @@ def test_beyond_the_limit_point_the_limit_is_named():
 
 
 def test_the_box_has_edges_and_they_belong_to_it():
-    inside = replace(SENSOR, wall_thickness=0.06 * 9.25, depth=0.75 * 9.25)
+    inside = SENSOR.replace(wall_thickness=0.06 * 9.25, depth=0.75 * 9.25)
     assert outside_atlas(inside) is None
-    assert outside_atlas(replace(inside, wall_thickness=0.35 * 9.25)) is None
-    assert outside_atlas(replace(SENSOR, ambient_pressure=1.0 * 0.17)) is None
+    assert outside_atlas(inside.replace(wall_thickness=0.35 * 9.25)) is None
+    assert outside_atlas(SENSOR.replace(ambient_pressure=1.0 * 0.17)) is None
     for changes, word in (
         ({"wall_thickness": 0.0599 * 9.25}, "wall"), ({"wall_thickness": 0.3501 * 9.25}, "wall"),
         ({"depth": 0.7501 * 9.25}, "depth"), ({"ambient_pressure": 1.001 * 0.17}, "ambient"),
         ({"poisson_ratio": 0.4999}, "Poisson"), ({"flange": (2.0, 2.0)}, "flange"),
         ({"law": ("ogden", (1.4, -3.7))}, "law"),
     ):  # fmt: skip
-        assert word in str(outside_atlas(replace(SENSOR, **changes)))
+        assert word in str(outside_atlas(SENSOR.replace(**changes)))
 
 
 def test_the_document_is_complete():

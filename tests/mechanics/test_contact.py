@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -11,27 +10,31 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pneutouch.mechanics import Sensor
 from pneutouch.mechanics import predict as predict_with
 from pneutouch.mechanics.cap import pressed_cap
 from pneutouch.mechanics.contact import press
 from pneutouch.mechanics.gas import TrappedGas
 from pneutouch.mechanics.inflation import relative_height
 from pneutouch.mechanics.membrane_energy import energy
+from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
 
 predict = partial(predict_with, model="membrane")
 
 PAPER = Sensor(
-    inner_radius=9.25, wall_thickness=1.5, shear_modulus=0.17, poisson_ratio=0.49, ambient_pressure=0.101325,
-    dead_volume=0.0, plate_radius=15.0, depth=6.9375, steps=14, break_stretch=2.7, gauge_limit=0.1,
-)  # fmt: skip
+    Dome(9.25, 1.5),
+    WallMaterial(0.17, 0.49, break_stretch=2.7),
+    GasCircuit(ambient_pressure=0.101325, dead_volume=0.0, gauge_limit=0.1),
+    IndentationProtocol(plate_radius=15.0, depth=6.9375, steps=14),
+)
 
 
 def pressed(sensor, p, indentation, closure="variational"):
-    x = float(relative_height(np.array(p), sensor.inner_radius, sensor.wall_thickness, sensor.shear_modulus))
-    apex = x * sensor.inner_radius
-    volume = np.pi / 6 * apex * (3 * sensor.inner_radius**2 + apex**2)
-    gas = TrappedGas(p, volume, sensor.dead_volume, sensor.ambient_pressure)
+    x = float(
+        relative_height(np.array(p), sensor.dome.inner_radius, sensor.dome.wall_thickness, sensor.wall.shear_modulus)
+    )
+    apex = x * sensor.dome.inner_radius
+    volume = np.pi / 6 * apex * (3 * sensor.dome.inner_radius**2 + apex**2)
+    gas = TrappedGas(p, volume, sensor.gas.dead_volume, sensor.gas.ambient_pressure)
     return press(sensor, gas, np.array(apex), np.asarray(indentation, float), closure)
 
 
@@ -68,12 +71,12 @@ def test_force_is_the_work_of_the_plate(p):
     """Variational closure: the integral of F over the way equals the change of the potential."""
     way = np.linspace(0, 5.0, 2001)
     state = pressed(PAPER, p, way)
-    wall = 2 * np.pi * PAPER.inner_radius**2 * PAPER.wall_thickness
+    wall = 2 * np.pi * PAPER.dome.inner_radius**2 * PAPER.dome.wall_thickness
     volume0 = state.volume[0]
-    content = (p + PAPER.ambient_pressure) * volume0
+    content = (p + PAPER.gas.ambient_pressure) * volume0
     potential = (
-        wall * energy(PAPER.shear_modulus, state.thickness_stretch)
-        - content * np.log(state.volume) + PAPER.ambient_pressure * state.volume
+        wall * energy(PAPER.wall.shear_modulus, state.thickness_stretch)
+        - content * np.log(state.volume) + PAPER.gas.ambient_pressure * state.volume
     )  # fmt: skip
     work = np.trapezoid(state.force, way)
     assert work == pytest.approx(potential[-1] - potential[0], rel=1e-5)
@@ -88,10 +91,10 @@ def test_variational_contact_radius_is_a_minimum_over_all_radii(p):
     cap = pressed_cap(trial, np.array(x * 9.25 - depth), 9.25)
     start = pressed_cap(np.array(0.0), np.array(x * 9.25), 9.25)
     stretch = 2 * np.pi * 9.25**2 / cap.area
-    content = (p + sensor.ambient_pressure) * start.volume
+    content = (p + sensor.gas.ambient_pressure) * start.volume
     potential = (
         2 * np.pi * 9.25**2 * 1.5 * energy(0.17, stretch)
-        - content * np.log(cap.volume) + sensor.ambient_pressure * cap.volume
+        - content * np.log(cap.volume) + sensor.gas.ambient_pressure * cap.volume
     )  # fmt: skip
     assert trial[np.argmin(potential)] == pytest.approx(rho, abs=5e-3)
 
@@ -105,18 +108,17 @@ def test_first_contact_carries_no_force_and_pressing_raises_everything(closure):
 
 
 def test_boyle_holds_at_every_state():
-    sensor = replace(PAPER, dead_volume=500.0)
+    sensor = PAPER.replace(dead_volume=500.0)
     state = pressed(sensor, 0.012, np.linspace(0, 6, 30))
-    content = (state.pressure + sensor.ambient_pressure) * (state.volume + sensor.dead_volume)
+    content = (state.pressure + sensor.gas.ambient_pressure) * (state.volume + sensor.gas.dead_volume)
     assert np.ptp(content) < 1e-12 * content[0]
 
 
 @given(st.floats(0.5, 8), st.floats(0.1, 10), st.floats(0.0, 0.9))
 def test_scaling_with_size_and_modulus(size, stiff, fraction):
     """Lengths by s, moduli and pressures by k: forces scale with k s^2, pressures with k."""
-    big = replace(
-        PAPER, inner_radius=size * 9.25, wall_thickness=size * 1.5, shear_modulus=stiff * 0.17,
-        ambient_pressure=stiff * PAPER.ambient_pressure,
+    big = PAPER.replace(inner_radius=size * 9.25, wall_thickness=size * 1.5, shear_modulus=stiff * 0.17,
+        ambient_pressure=stiff * PAPER.gas.ambient_pressure,
     )  # fmt: skip
     p = fraction * 0.0419
     one, other = pressed(PAPER, p, 3.0), pressed(big, stiff * p, size * 3.0)
@@ -136,7 +138,7 @@ def test_membrane_sensitivity_at_no_driving_pressure_cannot_fall_below_its_bound
 
 def test_dead_volume_costs_sensitivity_monotonically():
     found = [
-        predict("x", replace(PAPER, dead_volume=v), [0.022]).states[0].figures.sensitivity for v in (0, 500, 2000, 5000)
+        predict("x", PAPER.replace(dead_volume=v), [0.022]).states[0].figures.sensitivity for v in (0, 500, 2000, 5000)
     ]
     assert all(a > b for a, b in itertools.pairwise(found))
 

@@ -11,14 +11,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pneutouch.errors import BeyondLimitError, InputError
-from pneutouch.mechanics import Sensor, predict
+from pneutouch.mechanics import predict
 from pneutouch.mechanics.models import MODELS, NUMERICAL, climb, parse_tolerance
+from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
 from pneutouch.units import KPA, ML
 
 PAPER = Sensor(
-    inner_radius=9.25, wall_thickness=1.5, shear_modulus=0.17, poisson_ratio=0.49, ambient_pressure=0.101325,
-    dead_volume=0.0, plate_radius=15.0, depth=4.5, steps=14, break_stretch=None, gauge_limit=0.1,
-)  # fmt: skip
+    Dome(9.25, 1.5),
+    WallMaterial(0.17, 0.49),
+    GasCircuit(ambient_pressure=0.101325, dead_volume=0.0, gauge_limit=0.1),
+    IndentationProtocol(plate_radius=15.0, depth=4.5, steps=14),
+)
 
 OUTSIDE = {
     "law": ({"law": ("mooney-rivlin", (0.07, 0.015))}, "law of its own"),
@@ -95,7 +98,7 @@ def test_a_tolerance_of_many_times_takes_the_membrane():
 @pytest.mark.parametrize("case", OUTSIDE)
 def test_outside_its_box_the_atlas_is_passed_over_and_the_reason_told(case):
     changes, reason = OUTSIDE[case]
-    sensor = replace(PAPER, **changes)
+    sensor = PAPER.replace(**changes)
     way = climb(sensor, 0.02)
     (line,) = [text for text in way.passed if text.startswith("atlas")]
     assert way.models == ("solid",) and re.search(reason, line)
@@ -106,12 +109,12 @@ def test_outside_its_box_the_atlas_is_passed_over_and_the_reason_told(case):
 @pytest.mark.parametrize("case", ["law", "flange", "depth", "soft resin in air"])
 def test_auto_falls_through_to_the_solid(case):
     changes, _ = OUTSIDE[case]
-    found = predict("x", replace(PAPER, steps=4, **changes), [0.0], model="auto", tolerance=0.02)
+    found = predict("x", PAPER.replace(steps=4, **changes), [0.0], model="auto", tolerance=0.02)
     assert found.model == "solid" and "passed over atlas" in said(found)
 
 
 def test_a_contact_that_reaches_the_plates_edge_goes_to_the_solid():
-    small = replace(PAPER, plate_radius=3.0)
+    small = PAPER.replace(plate_radius=3.0)
     found = predict("x", small, [0.022], model="auto", tolerance=0.02)
     assert found.model == "solid" and "the contact reaches the plate's edge" in said(found)
     with pytest.raises(InputError, match=r"edge.*`model` auto or solid"):
@@ -124,7 +127,7 @@ def test_a_contact_that_reaches_the_plates_edge_goes_to_the_solid():
 def test_a_range_that_ends_by_buckling_or_tearing_is_left_to_the_solid_unless_the_atlas_is_asked(
     changes, pressure, word
 ):
-    sensor = replace(PAPER, **changes)
+    sensor = PAPER.replace(**changes)
     auto, asked = (predict("x", sensor, [pressure], model=model) for model in ("auto", "atlas"))
     assert auto.model == "solid" and word in said(auto)
     assert asked.model == "atlas" and asked.states[0].figures is not None
@@ -165,7 +168,7 @@ def test_beyond_the_limit_point_every_model_says_so_with_nearly_the_same_limit()
 
 
 def test_gas_of_a_dead_volume_in_millilitres_is_stated():
-    found = predict("x", replace(PAPER, dead_volume=2 * ML), [0.0], model="auto")
+    found = predict("x", PAPER.replace(dead_volume=2 * ML), [0.0], model="auto")
     assert "dead volume 2 mL" in found.assumptions[-1]
 
 
@@ -188,7 +191,7 @@ def test_bad_tolerances_exit_2_in_one_line(command, root, words):
 
 def test_the_atlas_asked_by_name_says_what_its_answer_lacks():
     """A wall that buckles lies at the edge of the table; asked for it, the atlas answers and says so."""
-    hard = replace(PAPER, shear_modulus=0.91, depth=0.75 * 9.25)
+    hard = PAPER.replace(shear_modulus=0.91, depth=0.75 * 9.25)
     found = predict("", hard, [0.0], model="atlas")
     assert [e.kind for e in found.states[0].events if e.ends_range] == ["inward buckling"]
     assert "buckles" in said(found)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -18,9 +17,9 @@ predict = partial(predict_with, model="membrane")
 
 
 def test_limit_point_is_the_same_stretch_for_every_resin_and_linear_in_the_radius():
-    stretches = {limit_point(replace(PAPER, shear_modulus=mu)).thickness_stretch for mu in MODULI.values()}
+    stretches = {limit_point(PAPER.replace(shear_modulus=mu)).thickness_stretch for mu in MODULI.values()}
     assert len(stretches) == 1
-    heights = [limit_point(replace(PAPER, inner_radius=r)).apex_inner / r for r in np.linspace(2, 50, 49)]
+    heights = [limit_point(PAPER.replace(inner_radius=r)).apex_inner / r for r in np.linspace(2, 50, 49)]
     assert np.ptp(heights) < 1e-9
 
 
@@ -28,32 +27,32 @@ def test_limit_point_is_the_same_stretch_for_every_resin_and_linear_in_the_radiu
     ("name", "p_max"), list(zip(MODULI, (41.9, 66.5, 135.6, 224.3, 404.2, 985.9, 1313.7), strict=True))
 )
 def test_limit_pressures_of_the_seven_resins(name, p_max):
-    point = limit_point(replace(PAPER, shear_modulus=MODULI[name]))
+    point = limit_point(PAPER.replace(shear_modulus=MODULI[name]))
     assert 1e3 * point.driving_pressure == pytest.approx(p_max, abs=0.06)
 
 
 def test_the_limit_that_is_met_first_binds():
     assert limits(PAPER).binding == "limit point"
-    stiff = replace(PAPER, shear_modulus=5.33, break_stretch=1.35)
+    stiff = PAPER.replace(shear_modulus=5.33, break_stretch=1.35)
     found = limits(stiff)
     assert found.binding == "gauge range"
     assert found.break_strain is not None
     assert found.gauge < found.break_strain < found.limit_point
-    brittle = replace(PAPER, break_stretch=1.1)
+    brittle = PAPER.replace(break_stretch=1.1)
     assert limits(brittle).binding == "break strain"
-    assert limits(replace(PAPER, break_stretch=3.0)).break_strain is None
+    assert limits(PAPER.replace(break_stretch=3.0)).break_strain is None
 
 
 def test_break_strain_is_met_at_its_own_stretch():
     from pneutouch.mechanics.inflation import membrane_stretch, relative_height
 
-    brittle = replace(PAPER, break_stretch=1.2)
+    brittle = PAPER.replace(break_stretch=1.2)
     p = limits(brittle).break_strain
     assert float(membrane_stretch(relative_height(np.array(p), 9.25, 1.5, 0.17))) == pytest.approx(1.2, rel=1e-9)
 
 
 def test_range_ends_at_the_gauge_and_figures_stop_there():
-    sensor = replace(PAPER, gauge_limit=0.040)
+    sensor = PAPER.replace(gauge_limit=0.040)
     state = predict("x", sensor, [0.022]).states[0]
     event = next(event for event in state.events if event.kind == "gauge range")
     assert event.ends_range
@@ -65,7 +64,7 @@ def test_range_ends_at_the_gauge_and_figures_stop_there():
 
 
 def test_plate_edge_is_detected():
-    state = predict("x", replace(PAPER, plate_radius=3.0), [0.022]).states[0]
+    state = predict("x", PAPER.replace(plate_radius=3.0), [0.022]).states[0]
     assert "plate edge" in [event.kind for event in state.events if event.ends_range]
 
 
@@ -77,7 +76,7 @@ def test_figures_do_not_jump_when_an_event_passes_a_step():
 
 
 def test_more_steps_change_the_sensitivity_little():
-    few, many = (predict("x", replace(PAPER, steps=n), [0.022]).states[0].figures.sensitivity for n in (14, 112))
+    few, many = (predict("x", PAPER.replace(steps=n), [0.022]).states[0].figures.sensitivity for n in (14, 112))
     assert few == pytest.approx(many, rel=0.01)
 
 

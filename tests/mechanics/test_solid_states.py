@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import statistics
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -63,7 +62,7 @@ def test_an_error_is_stated_only_near_the_sensor_that_was_measured(library):
     stated = sensitivity_error(tango, PAPER, "solid", "variational")["sensitivity_relative"]
     assert stated == pytest.approx(0.08, abs=0.01)
     for far in ({"wall_thickness": 4.0}, {"dead_volume": 4900.0}, {"flange": (2.0, 2.0)}):
-        found = sensitivity_error(tango, replace(PAPER, **far), "solid", "variational")
+        found = sensitivity_error(tango, PAPER.replace(**far), "solid", "variational")
         assert found["sensitivity_relative"] is None
         assert "unknown" in found["summary"][0]
     assert (
@@ -82,7 +81,7 @@ def test_a_labs_own_resin_is_computed_not_looked_up(library):
 
 
 def test_printed_flange_is_a_little_softer_than_the_clamped_base(paper):
-    printed = predict("x", replace(PAPER, flange=(2.25, 2.25)), [0.0, 0.012, 0.022])
+    printed = predict("x", PAPER.replace(flange=(2.25, 2.25)), [0.0, 0.012, 0.022])
     assert 0.98 < printed.limit_point.driving_pressure / paper.limit_point.driving_pressure < 1.0
     for one, other in zip(printed.states, paper.states, strict=True):
         assert one.figures.stiffness < other.figures.stiffness
@@ -90,7 +89,7 @@ def test_printed_flange_is_a_little_softer_than_the_clamped_base(paper):
 
 
 def test_range_ends_at_the_gauge_where_the_pressure_says_so():
-    state = predict("x", replace(PAPER, gauge_limit=0.05), [0.022]).states[0]
+    state = predict("x", PAPER.replace(gauge_limit=0.05), [0.022]).states[0]
     event = next(event for event in state.events if event.kind == "gauge range")
     assert state.range_end == event.indentation
     at = np.interp(event.indentation, state.indentation, state.pressure_rise + 0.022)
@@ -98,7 +97,7 @@ def test_range_ends_at_the_gauge_where_the_pressure_says_so():
 
 
 def test_stiff_resin_buckles_inwards_and_the_fit_stops_there():
-    state = predict("x", replace(PAPER, shear_modulus=1.64, break_stretch=None), [0.0]).states[0]
+    state = predict("x", PAPER.replace(shear_modulus=1.64, break_stretch=None), [0.0]).states[0]
     event = next(event for event in state.events if event.kind == "inward buckling")
     assert 5.5 < event.indentation < 6.6
     assert state.range_end <= event.indentation
@@ -106,7 +105,7 @@ def test_stiff_resin_buckles_inwards_and_the_fit_stops_there():
 
 
 def test_figures_do_not_depend_on_the_number_of_steps():
-    few, many = (predict("x", replace(PAPER, steps=n), [0.022]).states[0].figures.sensitivity for n in (14, 56))
+    few, many = (predict("x", PAPER.replace(steps=n), [0.022]).states[0].figures.sensitivity for n in (14, 56))
     assert few == pytest.approx(many, rel=0.01)
 
 
@@ -138,4 +137,4 @@ def test_shapes_lie_above_the_base_and_under_the_plate(paper):
 
 def test_poisson_ratio_of_a_half_is_refused():
     with pytest.raises(InputError, match=r"poisson_ratio = 0\.5"):
-        predict("x", replace(PAPER, poisson_ratio=0.5), [0.0])
+        predict("x", PAPER.replace(poisson_ratio=0.5), [0.0])

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from pneutouch.mechanics import predict
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.printability import Finding, PrintSubject, SensorContext, check
@@ -18,7 +16,7 @@ def working(
     pressures: list[float], wall: float = 1.488, radius: float = 9.3, resin: str = "TangoPlus"
 ) -> list[Finding]:
     """Findings of the rules on working for the paper's dome (kPa, mm); 1.488 mm are 93 layers of 16 um."""
-    sensor = replace(material_sensor(material(resin)), wall_thickness=wall, inner_radius=radius)
+    sensor = material_sensor(material(resin)).replace(wall_thickness=wall, inner_radius=radius)
     prediction = predict("dome", sensor, [p * KPA for p in pressures], model="membrane")
     dome = item(cup(radius + wall, wall), "membrane", resin)
     found = check(PrintSubject((dome,)), SensorContext(prediction, sensor))

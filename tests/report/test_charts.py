@@ -91,7 +91,7 @@ def test_the_band_at_the_working_pressure_is_the_choice_s_own(selection, library
 def test_tuning_curves_are_respond_s(selection, library):
     found, best = selected_tuning(selection, library), selection.answer.designs[0]
     sensor = selection.sensor_of(best)
-    own = respond(batch_of(sensor, (found.chosen.pressure * KPA).tolist()), sensor.steps).lines.sensitivity
+    own = respond(batch_of(sensor, (found.chosen.pressure * KPA).tolist()), sensor.protocol.steps).lines.sensitivity
     np.testing.assert_allclose(found.chosen.sensitivity, own, rtol=1e-3)
     assert {other.label for other in found.others} == {"TangoPlus", "FLX9960-DM"} - {found.chosen.label}
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-from dataclasses import replace
 
 import numpy as np
 import pypdfium2
@@ -165,7 +164,7 @@ def test_a_resin_that_cannot_be_solved_does_not_stop_the_sheet(evaluated, librar
 
     monkeypatch.setattr(variants, "predict", fail)
     materials = library.all("materials", Material)
-    outside = replace(evaluated("paper-dome").sensor, flange=(3.0, 1.5))
+    outside = evaluated("paper-dome").sensor.replace(flange=(3.0, 1.5))
     assert variants.resin_curves(outside, materials, 0.02, "solid", None) == {}
 
 
@@ -185,7 +184,7 @@ def test_resins_are_compared_by_the_atlas_as_respond_has_them(evaluated, library
         assert model == "atlas"
         assert pressure[0] == 0
         assert pressure[-1] == pytest.approx(22)
-        own = respond(batch_of(in_resin(sensor, material), (1e-3 * pressure).tolist()), sensor.steps)
+        own = respond(batch_of(in_resin(sensor, material), (1e-3 * pressure).tolist()), sensor.protocol.steps)
         np.testing.assert_allclose(sensitivity, own.lines.sensitivity, rtol=1e-3)
 
 

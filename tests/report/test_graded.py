@@ -43,6 +43,6 @@ def test_constants_beyond_their_own_limit_are_drawn_as_far_as_they_go(graded):
 
 def test_other_resins_in_the_same_geometry_are_not_graded(graded, library):
     other = in_resin(graded.sensor, library.load("materials", "FLX9950"))
-    assert other.grade is None
-    assert graded.sensor.grade is not None
-    assert np.ptp(graded.sensor.grade[1]) > 1
+    assert other.wall.grade is None
+    assert graded.sensor.wall.grade is not None
+    assert np.ptp(graded.sensor.wall.grade[1]) > 1

@@ -127,6 +127,6 @@ def test_mixes_keep_every_wish_and_limit_that_resins_keep():
         assert min(choice.room.values()) >= 0
         assert choice.room["sensitivity"] > 0.98
         sensor = found.sensor_of(choice)
-        assert sensor.shear_modulus == choice.resin.shear_modulus
-        assert 2 * (sensor.inner_radius + sensor.wall_thickness) <= 25.0
+        assert sensor.wall.shear_modulus == choice.resin.shear_modulus
+        assert 2 * (sensor.dome.inner_radius + sensor.dome.wall_thickness) <= 25.0
         assert float(choice.pool.pressure[0]) == pytest.approx(12 * KPA)

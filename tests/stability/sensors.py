@@ -32,15 +32,15 @@ def random_sensors(
     for number in range(count):
         name, resin = resins[number % len(resins)]
         sensor = material_sensor(resin)
-        assert sensor.break_stretch is not None
+        assert sensor.wall.break_stretch is not None
         radius, ratio, share = rng.uniform(4.0, 30.0), rng.uniform(*walls), rng.uniform(0.0, 0.8)
-        solid = SolidModel(dome(radius, ratio * radius), sensor.material)
+        solid = SolidModel(dome(radius, ratio * radius), sensor.wall.hyperelastic)
         run = inflate(solid, past_limit=1.0)
         assert run.limit is not None
         free = state_at(solid, share * run.limit.pressure, run)
         press = PressSettings(
-            depth * radius, int(rng.integers(1, 20)), PLATE * radius, sensor.ambient_pressure,
-            rng.uniform(0.0, 5.0) * ML, sensor.gauge_limit, sensor.break_stretch - 1.0,
+            depth * radius, int(rng.integers(1, 20)), PLATE * radius, sensor.gas.ambient_pressure,
+            rng.uniform(0.0, 5.0) * ML, sensor.gas.gauge_limit, sensor.wall.break_stretch - 1.0,
         )  # fmt: skip
         label = f"{number}: {name}, R0 {radius:.3f} mm, t0/R0 {ratio:.3f}, {share:.0%} of the limit, {press}"
         yield label, Study.of(solid, free, press)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -11,14 +9,19 @@ from hypothesis import strategies as st
 
 from pneutouch.errors import InputError
 from pneutouch.mechanics.atlas.batches import batch_of
-from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
 from pneutouch.texture.contact import touch, touches
 from pneutouch.texture.scan import Recorder, ScanPath, gain, pressure_amplitude, record, scan
 from pneutouch.texture.separate import BarPattern, amplitudes, noise_amplitude, recommend, separate
 from pneutouch.texture.substrate import BarRow, MatrixLayer, Substrate
 from pneutouch.units import GAUGE_LIMIT, KPA, STANDARD_ATMOSPHERE
 
-SENSOR = Sensor(9.25, 1.5, 0.17, 0.49, STANDARD_ATMOSPHERE, 0.0, 15.0, 0.75 * 9.25, 14, 2.7, GAUGE_LIMIT)
+SENSOR = Sensor(
+    Dome(9.25, 1.5),
+    WallMaterial(0.17, 0.49, break_stretch=2.7),
+    GasCircuit(ambient_pressure=STANDARD_ATMOSPHERE, dead_volume=0.0, gauge_limit=GAUGE_LIMIT),
+    IndentationProtocol(plate_radius=15.0, depth=0.75 * 9.25, steps=14),
+)
 MATRIX = MatrixLayer(8.0, 0.206, 0.49)
 QUIET = Recorder(rate=500.0, noise=0.0, step=0.0)
 
@@ -42,7 +45,7 @@ def test_touch_reaches_its_preload_on_a_rising_curve(pressure, preload):
     assert np.diff(found.force_at(near))[0] / (2 * step) == pytest.approx(found.stiffness, rel=0.01)
     assert np.diff(found.pressure_at(near))[0] / (2 * step) == pytest.approx(found.pressure_slope, rel=0.02)
     assert found.pressure == pytest.approx(found.pressure_at(np.array([found.indentation]))[0])
-    assert 0 < found.contact_radius < SENSOR.inner_radius + SENSOR.wall_thickness
+    assert 0 < found.contact_radius < SENSOR.dome.inner_radius + SENSOR.dome.wall_thickness
 
 
 def test_many_at_once_are_the_same_as_one_by_one():
@@ -57,16 +60,16 @@ def test_many_at_once_are_the_same_as_one_by_one():
 
 
 def test_gas_is_boyles_and_dead_volume_costs_pressure():
-    rises = [touch(replace(SENSOR, dead_volume=v), 10 * KPA, 0.5).pressure for v in (0.0, 2e3, 2e4, 1e7)]
+    rises = [touch(SENSOR.replace(dead_volume=v), 10 * KPA, 0.5).pressure for v in (0.0, 2e3, 2e4, 1e7)]
     assert rises == sorted(rises, reverse=True)
     assert rises[-1] == pytest.approx(10 * KPA, rel=1e-4)
     # Without any change of pressure there is nothing to read.
-    assert touch(replace(SENSOR, dead_volume=1e7), 10 * KPA, 0.5).pressure_slope < 1e-3 * KPA
+    assert touch(SENSOR.replace(dead_volume=1e7), 10 * KPA, 0.5).pressure_slope < 1e-3 * KPA
 
 
 def test_atlas_and_solid_tell_the_same_touch():
     one = touch(SENSOR, 12 * KPA, 0.5)
-    other = touch(replace(SENSOR, poisson_ratio=0.4901), 12 * KPA, 0.5)
+    other = touch(SENSOR.replace(poisson_ratio=0.4901), 12 * KPA, 0.5)
     assert (one.model, other.model) == ("atlas", "solid")
     assert other.stiffness == pytest.approx(one.stiffness, rel=0.03)
     assert other.contact_radius == pytest.approx(one.contact_radius, rel=0.08)

@@ -34,7 +34,7 @@ def scene(library):
 
 @pytest.fixture(scope="module")
 def observations(scene):
-    truth = replace(sensor_of(assemble(scene)), break_stretch=None, **TRUTH)
+    truth = sensor_of(assemble(scene)).replace(break_stretch=None, **TRUTH)
     rng = np.random.default_rng(21)
     pushed = injections(truth, np.linspace(100, 1500, 10), 1, rng)
     return Observations(curves(truth, (0.0, 12.0, 22.0), 3, rng, 0.004), pushed)
@@ -80,7 +80,7 @@ def test_the_same_data_give_the_same_bytes(found, observations, scene):
 
 def test_no_interval_reaches_below_no_dead_volume(observations, scene):
     """Few runs of a sensor that has next to none: the interval ends at zero."""
-    truth = replace(sensor_of(assemble(scene)), break_stretch=None, shear_modulus=0.2, dead_volume=5.0)
+    truth = sensor_of(assemble(scene)).replace(break_stretch=None, shear_modulus=0.2, dead_volume=5.0)
     seen = Observations(curves(truth, (0.0, 12.0), 2, np.random.default_rng(5), 0.02))
     (_, dead) = calibrate(seen, scene, ("modulus", "dead-volume"), priors=False).estimates
     assert dead["on_bound"] or dead["interval_95"][0] == 0.0
@@ -134,7 +134,7 @@ def test_its_own_files_are_written_anew(found, library, tmp_path):
 
 def test_an_estimate_without_interval_is_no_resin(scene, library, tmp_path):
     """Forces as of air alone: the modulus ends on its bound, and nothing is saved."""
-    truth = replace(sensor_of(assemble(scene)), break_stretch=None)
+    truth = sensor_of(assemble(scene)).replace(break_stretch=None)
     soft = tuple(
         MeasuredCurve(c.run, c.indentation, 0.3 * c.force, 0.3 * c.rise, c.driving)
         for c in curves(truth, (0.0,), 3, np.random.default_rng(1), 0.002)

@@ -108,8 +108,8 @@ def test_the_new_profiles_change_clearance_and_modulus(lab, tmp_path):
     after = load_scene("paper-dome", [], Library((tmp_path, ROOT)))
     assert before.fit_clearance == pytest.approx(0.1 + 0.2)
     assert after.fit_clearance == pytest.approx(0.06 + 0.31)
-    assert material_sensor(before.membrane_material).shear_modulus == pytest.approx(0.17)
-    assert material_sensor(after.membrane_material).shear_modulus == pytest.approx(MU)
+    assert material_sensor(before.membrane_material).wall.shear_modulus == pytest.approx(0.17)
+    assert material_sensor(after.membrane_material).wall.shear_modulus == pytest.approx(MU)
 
 
 def test_leak_and_dead_volume_are_told(lab):

@@ -134,7 +134,7 @@ def test_warning_of_the_travel_counts_the_clearance():
 def test_dead_volume_follows_from_the_pressure_expected_of_the_line(found, subject):
     said = injection(found, Rig())
     dead = 101.325 * said["line_volume_mL"] / said["line_pressure_kPa"]
-    assert dead == pytest.approx(subject.sensor.dead_volume / ML, rel=1e-9)
+    assert dead == pytest.approx(subject.sensor.gas.dead_volume / ML, rel=1e-9)
     assert said["line_pressure_kPa"] <= 80 < 2.5 * said["line_pressure_kPa"]
     for row in said["sensor"]:
         assert row["with_more_dead_volume_kPa"] < row["pressure_kPa"] < row["without_dead_volume_kPa"]

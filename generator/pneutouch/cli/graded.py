@@ -53,7 +53,7 @@ def graded_text(selection: GradedSelectionRun) -> str:
     head = ["", *(f"S {p}" for p in pressures), *(["apart"] if len(pressures) > 1 else []), *(f"range {p}" for p in pressures), "ends with", "rated kPa", "meets"]  # fmt: skip
     rows = [["graded: " + selection.grade.label, *_row(selection, best)]]
     rows += [[constant.name, *_row(selection, constant.trial)] for constant in selection.constants]
-    size = f"R0 {sensor.inner_radius:g} mm, t0 {sensor.wall_thickness:g} mm, on {selection.base.where}"
+    size = f"R0 {sensor.dome.inner_radius:g} mm, t0 {sensor.dome.wall_thickness:g} mm, on {selection.base.where}"
     met = "a grade meets the target" if selection.search.met else "no grade of this size meets the target; the nearest"
     lines = [f"{met}: {size}", "", columns(head, rows), ""]
     if not selection.search.met:

@@ -65,10 +65,10 @@ def _problem(evaluation: Evaluation, pressure: float) -> SelectionProblem:
     return SelectionProblem(
         resins=_resins(evaluation), sensitivity=None, tolerance=1.0, driving_pressure=pressure, force_range=None,
         stiffness=(None, None), max_diameter=None, inner_radius=None, wall_thickness=None,
-        least_wall=wall.least or wall.recommended, ambient_pressure=sensor.ambient_pressure,
-        dead_volume=lambda radius: np.full_like(radius, sensor.dead_volume), plate_radius=sensor.plate_radius,
-        gauge_limit=sensor.gauge_limit, depth_share=min(sensor.depth / sensor.inner_radius, recipe.deepest),
-        steps=sensor.steps, recipe=recipe,
+        least_wall=wall.least or wall.recommended, ambient_pressure=sensor.gas.ambient_pressure,
+        dead_volume=lambda radius: np.full_like(radius, sensor.gas.dead_volume), plate_radius=sensor.protocol.plate_radius,
+        gauge_limit=sensor.gas.gauge_limit, depth_share=min(sensor.protocol.depth / sensor.dome.inner_radius, recipe.deepest),
+        steps=sensor.protocol.steps, recipe=recipe,
     )  # fmt: skip
 
 
@@ -78,5 +78,5 @@ def _resins(evaluation: Evaluation) -> tuple[CandidateResin, ...]:
         runs = evaluation.scene.printer.mode_for(material) is not None
         if runs and outside_atlas(in_resin(evaluation.sensor, material)) is None:
             own = material_sensor(material)
-            found.append(CandidateResin(name, material, own.shear_modulus, own.break_stretch or np.inf))
+            found.append(CandidateResin(name, material, own.wall.shear_modulus, own.wall.break_stretch or np.inf))
     return tuple(found)

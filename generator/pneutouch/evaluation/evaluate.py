@@ -145,8 +145,7 @@ def sensor_of(assembly: Assembly, clamp: str = "base") -> Sensor:
     """The mechanics' view of an assembly: mm and MPa."""
     layout = assembly.layout
     design = assembly.scene.design
-    return replace(
-        _material_sensor(assembly.scene),
+    return _material_sensor(assembly.scene).replace(
         inner_radius=layout.inner_radius,
         wall_thickness=layout.wall,
         ambient_pressure=design.pneumatics.ambient_pressure_kPa * KPA,
@@ -175,7 +174,7 @@ def _aged(scene: ResolvedDesign, sensor: Sensor) -> tuple[Sensor, str]:
         raise InputError(f"{scene.where}: membrane.material = {scene.design.membrane.material!r}: {error}") from None
     assert material.shore_a is not None and material.shore_a_one_year is not None
     said = f"Shore A {material.shore_a.nominal:g} to {material.shore_a_one_year.nominal:g}"
-    shifted = replace(sensor, shear_modulus=ratio * sensor.shear_modulus)
+    shifted = sensor.replace(shear_modulus=ratio * sensor.wall.shear_modulus)
     return shifted, f"aged one year: {said}, modulus times {ratio:.3f}. {AGED}"
 
 

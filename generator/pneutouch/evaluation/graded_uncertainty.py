@@ -8,8 +8,6 @@ even wall of the same mean modulus, -0.47 too.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from pneutouch.mechanics import Sensor
 
 GAP, STEEP_GAP = 0.2, 0.45
@@ -26,9 +24,9 @@ _NOTE = (
 
 def even_wall(sensor: Sensor) -> Sensor:
     """The sensor with its mean modulus everywhere; one that is even already is given back as it is."""
-    return sensor if sensor.grade is None else replace(sensor, grade=None)
+    return sensor if sensor.wall.grade is None else sensor.replace(grade=None)
 
 
 def notes_on(sensor: Sensor) -> tuple[str, ...]:
     """What must be said of the uncertainty of this sensor."""
-    return () if sensor.grade is None else (_NOTE,)
+    return () if sensor.wall.grade is None else (_NOTE,)

@@ -52,16 +52,22 @@ def _errors(sensor: Sensor, truth: tuple[float, float], model: str, closure: str
 def fingerprint(material: Material) -> str:
     """What the solid's error on the paper's sensor follows from: the resin's mechanics and its measurements."""
     sensor = material_sensor(material)
-    facts = [sensor.shear_modulus, sensor.poisson_ratio, sensor.break_stretch, sensor.law, measured(material)]
+    facts = [
+        sensor.wall.shear_modulus,
+        sensor.wall.poisson_ratio,
+        sensor.wall.break_stretch,
+        sensor.wall.law,
+        measured(material),
+    ]
     return hashlib.sha256(json.dumps(facts).encode()).hexdigest()[:16]
 
 
 def is_near_paper(sensor: Sensor) -> bool:
     """Whether a sensor is near enough to the paper's for its error to say something."""
     low, high = NEAR_WALL
-    cavity = 2 / 3 * np.pi * sensor.inner_radius**3
-    close = low <= sensor.wall_thickness / sensor.inner_radius <= high
-    return bool(close and sensor.dead_volume <= NEAR_DEAD_VOLUME * cavity and sensor.flange is None)
+    cavity = 2 / 3 * np.pi * sensor.dome.inner_radius**3
+    close = low <= sensor.dome.wall_thickness / sensor.dome.inner_radius <= high
+    return bool(close and sensor.gas.dead_volume <= NEAR_DEAD_VOLUME * cavity and sensor.dome.flange is None)
 
 
 def sensitivity_error(material: Material, sensor: Sensor, model: str, closure: str) -> dict[str, Any]:

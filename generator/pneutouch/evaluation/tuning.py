@@ -31,9 +31,9 @@ def curve(sensor: Sensor, highest: float, label: str) -> TuningCurve | None:
 
     The sensor must lie in the atlas. Pressures at which it has no answer are left out; None where fewer than two are left.
     """
-    limit = float(respond(batch_of(sensor, [0.0]), sensor.steps).limit_pressure[0])
+    limit = float(respond(batch_of(sensor, [0.0]), sensor.protocol.steps).limit_pressure[0])
     pressures = np.linspace(0.0, min(highest, RATED_SHARE * limit), POINTS)
-    response = respond(batch_of(sensor, pressures.tolist()), sensor.steps)
+    response = respond(batch_of(sensor, pressures.tolist()), sensor.protocol.steps)
     kept = np.isfinite(response.lines.sensitivity) & (response.ends != OUTSIDE)
     if kept.sum() < 2:
         return None

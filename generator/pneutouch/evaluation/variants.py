@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -35,11 +34,7 @@ class ResinCurve(NamedTuple):
 
 def in_resin(sensor: Sensor, material: Material) -> Sensor:
     """The same sensor in another resin, with that resin's law and break strain."""
-    resin = material_sensor(material)
-    return replace(
-        sensor, shear_modulus=resin.shear_modulus, poisson_ratio=resin.poisson_ratio, law=resin.law,
-        break_stretch=resin.break_stretch, grade=resin.grade,
-    )  # fmt: skip
+    return sensor.replace(wall=material_sensor(material).wall)
 
 
 def resin_curves(
@@ -72,11 +67,11 @@ def _by_atlas(variants: dict[str, Sensor], highest: float) -> dict[str, ResinCur
     inside = {title: variant for title, variant in variants.items() if outside_atlas(variant) is None}
     if not inside:
         return {}
-    walls = np.array([variant.wall_thickness / variant.inner_radius for variant in inside.values()])
-    limits = shipped().slices(walls, ()).limit_pressure * np.array([v.shear_modulus for v in inside.values()])
+    walls = np.array([variant.dome.wall_thickness / variant.dome.inner_radius for variant in inside.values()])
+    limits = shipped().slices(walls, ()).limit_pressure * np.array([v.wall.shear_modulus for v in inside.values()])
     share = np.linspace(0.0, 1.0, _POINTS["atlas"])
     grids = [min(highest, _MARGIN * float(limit)) * share for limit in limits]
-    steps = next(iter(inside.values())).steps
+    steps = next(iter(inside.values())).protocol.steps
     response = respond(joined([batch_of(v, grid) for v, grid in zip(inside.values(), grids, strict=True)]), steps)
     known = np.isfinite(response.lines.sensitivity) & ~np.isin(response.ends, (OUTSIDE, EDGE))
     rows = zip(

@@ -30,13 +30,16 @@ _DETAIL = {
 def outside_atlas(sensor: Sensor, atlas: Atlas | None = None) -> str | None:
     """Why the atlas does not speak for a sensor, or None where it does. The box is in `atlas.recipe.Recipe`."""
     recipe = (atlas or shipped()).recipe
-    ratio, depth = sensor.wall_thickness / sensor.inner_radius, sensor.depth / sensor.inner_radius
-    gas = sensor.ambient_pressure / sensor.shear_modulus
+    ratio, depth = (
+        sensor.dome.wall_thickness / sensor.dome.inner_radius,
+        sensor.protocol.depth / sensor.dome.inner_radius,
+    )
+    gas = sensor.gas.ambient_pressure / sensor.wall.shear_modulus
     reasons = [
-        (sensor.grade is not None, "the wall is graded along its arc"),
-        (sensor.law is not None, "the resin has a law of its own, not the neo-Hookean one"),
-        (sensor.poisson_ratio != recipe.poisson_ratio, f"Poisson ratio {sensor.poisson_ratio:g}, not {recipe.poisson_ratio:g}"),
-        (sensor.flange is not None, "the flange is held as printed, not the base plane"),
+        (sensor.wall.grade is not None, "the wall is graded along its arc"),
+        (sensor.wall.law is not None, "the resin has a law of its own, not the neo-Hookean one"),
+        (sensor.wall.poisson_ratio != recipe.poisson_ratio, f"Poisson ratio {sensor.wall.poisson_ratio:g}, not {recipe.poisson_ratio:g}"),
+        (sensor.dome.flange is not None, "the flange is held as printed, not the base plane"),
         (not recipe.thinnest * (1 - 1e-9) <= ratio <= recipe.thickest * (1 + 1e-9),
          f"wall {ratio:.3g} R0, not {recipe.thinnest:g} to {recipe.thickest:g}"),
         (depth > recipe.deepest * (1 + 1e-9), f"depth {depth:.3g} R0, more than {recipe.deepest:g}"),
@@ -67,14 +70,16 @@ def atlas_result(sensor: Sensor, driving_pressures: Array) -> tuple[ModelResult,
     """
     batch = batch_of(sensor, driving_pressures)
     slices = shipped().slices(batch.wall_ratio[:1])
-    limit = float(slices.limit_pressure[0]) * sensor.shear_modulus
+    limit = float(slices.limit_pressure[0]) * sensor.wall.shear_modulus
     for pressure in driving_pressures:
         if pressure >= limit:
             raise BeyondLimitError(float(pressure), limit, "it lies beyond the limit point")
-    response = respond(batch, sensor.steps)
+    response = respond(batch, sensor.protocol.steps)
     press = AtlasPress(batch, slices, np.zeros(len(batch), dtype=np.intp))
     track = press.march(
-        np.linspace(0.0, 1.0, sensor.steps + 1) * (sensor.depth / sensor.inner_radius) * np.ones((len(batch), 1))
+        np.linspace(0.0, 1.0, sensor.protocol.steps + 1)
+        * (sensor.protocol.depth / sensor.dome.inner_radius)
+        * np.ones((len(batch), 1))
     )
     ends = [int(end) for end in response.ends]
     states = tuple(_state(sensor, press, track, i, ends[i], float(response.range_end[i])) for i in range(len(batch)))
@@ -84,11 +89,11 @@ def atlas_result(sensor: Sensor, driving_pressures: Array) -> tuple[ModelResult,
             f"the wall would buckle within {NEAR:g} R0 more of travel, where the table is less sure", False
         )
     curve, point, torn = _inflation(sensor, slices)
-    return ModelResult(point, Limits(limit, torn, sensor.gauge_limit), curve, states), lack
+    return ModelResult(point, Limits(limit, torn, sensor.gas.gauge_limit), curve, states), lack
 
 
 def _state(sensor: Sensor, press: AtlasPress, track: PressTrack, i: int, end: int, range_end: float) -> SensorState:
-    length, mu = sensor.inner_radius, sensor.shear_modulus
+    length, mu = sensor.dome.inner_radius, sensor.wall.shear_modulus
     known = int(np.argmin(track.ok[i])) if not track.ok[i].all() else track.ok.shape[1]
     one = track.each(lambda part: part[i : i + 1, :known])
     row = press.rows(np.array([i]))
@@ -96,7 +101,7 @@ def _state(sensor: Sensor, press: AtlasPress, track: PressTrack, i: int, end: in
     depth = (press.apex[i] - one.height[0]) * length
     range_end = range_end if np.isfinite(range_end) else 0.0
     force, rise = one.point.force[0] * mu * length**2, (one.point.pressure[0] - press.pressure[i]) * mu
-    shown = _curve(row, range_end / length, sensor.steps)
+    shown = _curve(row, range_end / length, sensor.protocol.steps)
     return SensorState(
         driving_pressure=float(press.batch.driving_pressure[i]), apex_inner=float(field["inner_apex"][0]) * length,
         apex_outer=float(press.apex[i]) * length, cavity_volume=float(row.volume(row.free)[0]) * length**3,
@@ -117,7 +122,7 @@ def _curve(row: AtlasPress, end: float, steps: int) -> tuple[Array, Array, Array
 def _events(sensor: Sensor, depth: Array, field: dict[str, Array], end: int, range_end: float) -> list[Event]:
     """What ends the range, and the warnings on the way."""
     found = [] if end == DEPTH else [Event(ENDS[end], range_end, True, _DETAIL.get(end, ENDS[end]))]
-    wall = sensor.wall_thickness / sensor.inner_radius
+    wall = sensor.dome.wall_thickness / sensor.dome.inner_radius
     for kind, name, level in (("creasing", "fold", CREASE), ("wall below the base plane", "overhang", OVERHANG * wall)):
         values = field[name]
         points = [PathPoint(float(x), float(y)) for x, y in zip(depth, values, strict=True)]
@@ -130,7 +135,7 @@ def _events(sensor: Sensor, depth: Array, field: dict[str, Array], end: int, ran
 
 def _inflation(sensor: Sensor, slices: AtlasSlices) -> tuple[InflationCurve, LimitPoint, float | None]:
     """Free inflation to a little past the limit point, that point, and the pressure at the break strain."""
-    length, mu = sensor.inner_radius, sensor.shear_modulus
+    length, mu = sensor.dome.inner_radius, sensor.wall.shear_modulus
     nu = np.concatenate([np.linspace(0.0, 1.0, 91), np.linspace(1.0, shipped().recipe.highest_volume, 7)[1:]])
     k = np.zeros(nu.size, dtype=np.intp)
     apex = slices.free_apex(k, nu)[:, 0]
@@ -140,12 +145,12 @@ def _inflation(sensor: Sensor, slices: AtlasSlices) -> tuple[InflationCurve, Lim
     top = 90
     point = LimitPoint(
         float(inner[top]) * length, float(apex[top]) * length, float(slices.limit_pressure[0]) * mu,
-        float(apex[top] - inner[top]) * length / sensor.wall_thickness,
+        float(apex[top] - inner[top]) * length / sensor.dome.wall_thickness,
     )  # fmt: skip
     torn = None
-    if sensor.break_stretch is not None:
-        over = np.flatnonzero(stretch[: top + 1] >= sensor.break_stretch)
+    if sensor.wall.break_stretch is not None:
+        over = np.flatnonzero(stretch[: top + 1] >= sensor.wall.break_stretch)
         if over.size:
             j = max(int(over[0]), 1)
-            torn = float(np.interp(sensor.break_stretch, stretch[j - 1 : j + 1], pressure[j - 1 : j + 1]))
+            torn = float(np.interp(sensor.wall.break_stretch, stretch[j - 1 : j + 1], pressure[j - 1 : j + 1]))
     return InflationCurve(inner * length, apex * length, volume, pressure), point, torn

@@ -48,9 +48,9 @@ def press(sensor: Sensor, gas: TrappedGas, apex: Array, indentation: Array, clos
     height = apex - indentation
     model = CLOSURES[closure](sensor, gas, apex, height)
     zero = np.zeros(np.broadcast_shapes(np.shape(gas.driving_pressure), np.shape(height)))
-    rho = bisect(model.residual, zero, zero + sensor.inner_radius)
-    cap = pressed_cap(rho, height, sensor.inner_radius)
-    reference = 2 * np.pi * sensor.inner_radius**2
+    rho = bisect(model.residual, zero, zero + sensor.dome.inner_radius)
+    cap = pressed_cap(rho, height, sensor.dome.inner_radius)
+    reference = 2 * np.pi * sensor.dome.inner_radius**2
     return PressedStates(rho, cap.volume, gas.pressure(cap.volume), model.force(rho), reference / cap.area)
 
 
@@ -65,15 +65,15 @@ class _Closure:
 
     @property
     def wall_volume(self) -> float:
-        return 2 * np.pi * self.sensor.inner_radius**2 * self.sensor.wall_thickness
+        return 2 * np.pi * self.sensor.dome.inner_radius**2 * self.sensor.dome.wall_thickness
 
     def cap(self, rho: Array) -> PressedCap:
-        return pressed_cap(rho, self.height, self.sensor.inner_radius)
+        return pressed_cap(rho, self.height, self.sensor.dome.inner_radius)
 
     def wall_slope(self, cap: PressedCap, reference_area: Array | float) -> Array:
         """Derivative of the wall's energy by the membrane's area, N/mm."""
         stretch = reference_area / cap.area
-        return -self.wall_volume * energy_slope(self.sensor.shear_modulus, stretch) * stretch / cap.area
+        return -self.wall_volume * energy_slope(self.sensor.wall.shear_modulus, stretch) * stretch / cap.area
 
 
 class VariationalClosure(_Closure):
@@ -82,13 +82,13 @@ class VariationalClosure(_Closure):
     def residual(self, rho: Array) -> Array:
         """Slope of the potential by the contact radius, N."""
         cap = self.cap(rho)
-        tension = self.wall_slope(cap, 2 * np.pi * self.sensor.inner_radius**2)
+        tension = self.wall_slope(cap, 2 * np.pi * self.sensor.dome.inner_radius**2)
         return tension * cap.area_rho - self.gas.pressure(cap.volume) * cap.volume_rho
 
     def force(self, rho: Array) -> Array:
         """Minus the slope of the potential by the plate height, N."""
         cap = self.cap(rho)
-        tension = self.wall_slope(cap, 2 * np.pi * self.sensor.inner_radius**2)
+        tension = self.wall_slope(cap, 2 * np.pi * self.sensor.dome.inner_radius**2)
         return self.gas.pressure(cap.volume) * cap.volume_h - tension * cap.area_h
 
 
@@ -98,7 +98,7 @@ class PrintedClosure(_Closure):
     def residual(self, rho: Array) -> Array:
         """Slope of E'_p by the plate height at fixed contact radius, N."""
         cap = self.cap(rho)
-        inflated = np.pi * (self.sensor.inner_radius**2 + self.apex**2)
+        inflated = np.pi * (self.sensor.dome.inner_radius**2 + self.apex**2)
         patch = np.pi * rho**2
         work = self.gas.pressure_slope(cap.volume) * cap.volume_h * (self.apex - self.height)
         return self.wall_slope(cap, inflated) * cap.area_h - patch * (work - self.gas.pressure(cap.volume))

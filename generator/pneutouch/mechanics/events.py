@@ -28,18 +28,18 @@ def events(sensor: Sensor, indentation: Array, pressed: PressedStates, closure: 
     """The events of one pressed curve, in the order of the plate's way."""
     stretch = pressed.thickness_stretch**-0.5
     margins: list[tuple[str, Array, bool, str]] = [
-        ("gauge range", pressed.pressure - sensor.gauge_limit, True,
-         f"the cavity pressure leaves the gauge's range of {1e3 * sensor.gauge_limit:g} kPa"),
-        ("plate edge", pressed.contact_radius - sensor.plate_radius, True,
+        ("gauge range", pressed.pressure - sensor.gas.gauge_limit, True,
+         f"the cavity pressure leaves the gauge's range of {1e3 * sensor.gas.gauge_limit:g} kPa"),
+        ("plate edge", pressed.contact_radius - sensor.protocol.plate_radius, True,
          "the contact reaches the edge of the plate"),
-        ("contact at base", pressed.contact_radius - _NEAR_BASE * sensor.inner_radius, True,
+        ("contact at base", pressed.contact_radius - _NEAR_BASE * sensor.dome.inner_radius, True,
          "the contact reaches the base circle, where a cap of constant curvature ends"),
         ("slack wall", 1 - 1e-9 - stretch, False,
          "the wall is shorter than unloaded: a real membrane wrinkles, this theory does not"),
     ]  # fmt: skip
-    if sensor.break_stretch is not None:
-        text = f"the stretch reaches the resin's least elongation at break, {sensor.break_stretch - 1:.0%}"
-        margins.append(("break strain", stretch - sensor.break_stretch, True, text))
+    if sensor.wall.break_stretch is not None:
+        text = f"the stretch reaches the resin's least elongation at break, {sensor.wall.break_stretch - 1:.0%}"
+        margins.append(("break strain", stretch - sensor.wall.break_stretch, True, text))
     if closure == "printed":
         falling = np.concatenate([[-1.0], -np.diff(pressed.contact_radius)])
         text = "the contact radius falls as the plate advances: the printed equations describe no contact"

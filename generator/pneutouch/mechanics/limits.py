@@ -55,9 +55,9 @@ class Limits:
 def limit_point(sensor: Sensor) -> LimitPoint:
     """The limit point of the paper's membrane: the same stretch for every resin and size."""
     stretch = float(thickness_stretch(np.array(LIMIT_HEIGHT)))
-    apex = LIMIT_HEIGHT * sensor.inner_radius
-    scale = sensor.shear_modulus * sensor.wall_thickness / sensor.inner_radius
-    return LimitPoint(apex, apex + stretch * sensor.wall_thickness, LIMIT_PRESSURE * scale, stretch)
+    apex = LIMIT_HEIGHT * sensor.dome.inner_radius
+    scale = sensor.wall.shear_modulus * sensor.dome.wall_thickness / sensor.dome.inner_radius
+    return LimitPoint(apex, apex + stretch * sensor.dome.wall_thickness, LIMIT_PRESSURE * scale, stretch)
 
 
 def limits(sensor: Sensor) -> Limits:
@@ -67,8 +67,10 @@ def limits(sensor: Sensor) -> Limits:
     assumption, stated with the figures.
     """
     broken = None
-    if sensor.break_stretch is not None:
-        height = np.sqrt(2 * sensor.break_stretch**2 - 1)
+    if sensor.wall.break_stretch is not None:
+        height = np.sqrt(2 * sensor.wall.break_stretch**2 - 1)
         if height < LIMIT_HEIGHT:
-            broken = float(pressure(height, sensor.inner_radius, sensor.wall_thickness, sensor.shear_modulus))
-    return Limits(limit_point(sensor).driving_pressure, broken, sensor.gauge_limit)
+            broken = float(
+                pressure(height, sensor.dome.inner_radius, sensor.dome.wall_thickness, sensor.wall.shear_modulus)
+            )
+    return Limits(limit_point(sensor).driving_pressure, broken, sensor.gas.gauge_limit)

@@ -22,7 +22,7 @@ from pneutouch.units import KPA
 def error_against_exact_membrane(sensor: Sensor, driving_pressures: Array) -> dict[str, Any]:
     """What the assumption of constant curvature costs in state I: relative errors, the greatest for the heights."""
     limit_pressure, limit_height = limit_point_errors()
-    scale = sensor.inner_radius / (sensor.shear_modulus * sensor.wall_thickness)
+    scale = sensor.dome.inner_radius / (sensor.wall.shear_modulus * sensor.dome.wall_thickness)
     heights = height_errors(driving_pressures * scale)
     greatest = float(heights[np.argmax(np.abs(heights))])
     return {
@@ -53,11 +53,11 @@ def membrane_result(sensor: Sensor, driving_pressures: Array, closure: str) -> M
 def inflation_curve(sensor: Sensor) -> InflationCurve:
     """Both branches of the closed form, to 1.8 times the height of the limit point."""
     x = np.concatenate([np.linspace(1.0, LIMIT_HEIGHT, 60), np.linspace(LIMIT_HEIGHT, 1.8 * LIMIT_HEIGHT, 60)[1:]])
-    apex = x * sensor.inner_radius
+    apex = x * sensor.dome.inner_radius
     return InflationCurve(
-        apex_inner=apex, apex_outer=apex + thickness_stretch(x) * sensor.wall_thickness,
-        volume=np.pi / 6 * apex * (3 * sensor.inner_radius**2 + apex**2),
-        pressure=pressure(x, sensor.inner_radius, sensor.wall_thickness, sensor.shear_modulus),
+        apex_inner=apex, apex_outer=apex + thickness_stretch(x) * sensor.dome.wall_thickness,
+        volume=np.pi / 6 * apex * (3 * sensor.dome.inner_radius**2 + apex**2),
+        pressure=pressure(x, sensor.dome.inner_radius, sensor.dome.wall_thickness, sensor.wall.shear_modulus),
     )  # fmt: skip
 
 
@@ -67,21 +67,23 @@ def membrane_states(sensor: Sensor, driving_pressures: Array, closure: str) -> t
     Figures are fitted on as many equal steps up to the first event that ends the range, so that they do not
     jump when an event passes a step.
     """
-    x = relative_height(driving_pressures, sensor.inner_radius, sensor.wall_thickness, sensor.shear_modulus)
-    apex = x * sensor.inner_radius
-    volume = np.pi / 6 * apex * (3 * sensor.inner_radius**2 + apex**2)
-    gas = TrappedGas(driving_pressures[:, None], volume[:, None], sensor.dead_volume, sensor.ambient_pressure)
+    x = relative_height(
+        driving_pressures, sensor.dome.inner_radius, sensor.dome.wall_thickness, sensor.wall.shear_modulus
+    )
+    apex = x * sensor.dome.inner_radius
+    volume = np.pi / 6 * apex * (3 * sensor.dome.inner_radius**2 + apex**2)
+    gas = TrappedGas(driving_pressures[:, None], volume[:, None], sensor.gas.dead_volume, sensor.gas.ambient_pressure)
 
     def pressed(indentation: Array) -> PressedStates:
         return press(sensor, gas, apex[:, None], indentation, closure)
 
-    fine = np.linspace(0.0, sensor.depth, _FINE * sensor.steps + 1)
+    fine = np.linspace(0.0, sensor.protocol.depth, _FINE * sensor.protocol.steps + 1)
     way = pressed(fine)
     happened = [events(sensor, fine, way.row(k), closure) for k in range(len(apex))]
-    ends = np.array([range_end(found, sensor.depth) for found in happened])
-    grid = np.linspace(0.0, 1.0, sensor.steps + 1) * ends[:, None]
+    ends = np.array([range_end(found, sensor.protocol.depth) for found in happened])
+    grid = np.linspace(0.0, 1.0, sensor.protocol.steps + 1) * ends[:, None]
     fitted = pressed(grid)
-    wall = thickness_stretch(x) * sensor.wall_thickness
+    wall = thickness_stretch(x) * sensor.dome.wall_thickness
     return tuple(
         SensorState(
             driving_pressure=float(p), apex_inner=float(apex[k]), apex_outer=float(apex[k] + wall[k]),

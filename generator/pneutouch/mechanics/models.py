@@ -69,7 +69,9 @@ def _outside(model: str, sensor: Sensor) -> str | None:
         from pneutouch.mechanics.atlas_states import outside_atlas
 
         return outside_atlas(sensor)
-    if model == "membrane" and not (sensor.law is None and sensor.flange is None and sensor.grade is None):
+    if model == "membrane" and not (
+        sensor.wall.law is None and sensor.dome.flange is None and sensor.wall.grade is None
+    ):
         return "it knows neither other laws, nor a held flange, nor a graded wall"
     return None
 

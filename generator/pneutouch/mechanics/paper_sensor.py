@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import dataclasses
 
-from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
 from pneutouch.spec.material import Material
 from pneutouch.units import GAUGE_LIMIT, STANDARD_ATMOSPHERE
 
@@ -19,15 +19,20 @@ def material_sensor(material: Material) -> Sensor:
     """
     assert material.shear_modulus_MPa is not None and material.poisson_ratio is not None
     elongation = material.elongation_at_break_percent
-    sensor = Sensor(
-        inner_radius=PAPER_RADIUS, wall_thickness=PAPER_WALL,
-        shear_modulus=material.shear_modulus_MPa.nominal, poisson_ratio=material.poisson_ratio.nominal,
-        ambient_pressure=STANDARD_ATMOSPHERE, dead_volume=0.0, plate_radius=0.5 * PAPER_PLATE,
-        depth=0.75 * PAPER_RADIUS, steps=14,
-        break_stretch=None if elongation is None else 1 + elongation.least / 100, gauge_limit=GAUGE_LIMIT,
-        law=None if material.law is None else (material.law.name, tuple(material.law.constants)), grade=_grade(material),
-    )  # fmt: skip
-    return replace(sensor, shear_modulus=sensor.material.mu)
+    law = None if material.law is None else (material.law.name, tuple(material.law.constants))
+    wall = WallMaterial(
+        material.shear_modulus_MPa.nominal,
+        material.poisson_ratio.nominal,
+        break_stretch=None if elongation is None else 1 + elongation.least / 100,
+        law=law,
+        grade=_grade(material),
+    )
+    return Sensor(
+        Dome(PAPER_RADIUS, PAPER_WALL),
+        dataclasses.replace(wall, shear_modulus=wall.hyperelastic.mu),
+        GasCircuit(STANDARD_ATMOSPHERE, dead_volume=0.0, gauge_limit=GAUGE_LIMIT),
+        IndentationProtocol(0.5 * PAPER_PLATE, depth=0.75 * PAPER_RADIUS, steps=14),
+    )
 
 
 def _grade(material: Material) -> tuple[tuple[float, ...], tuple[float, ...]] | None:

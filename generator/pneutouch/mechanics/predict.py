@@ -83,11 +83,13 @@ def predict(
         errors = _merged(errors, sensitivity_error(chosen))
     if why:
         errors = _merged({"model_choice": why, "summary": [f"Model {chosen}: {why}."]}, errors)
-    gas = f"dead volume {sensor.dead_volume / ML:.4g} mL, ambient pressure {sensor.ambient_pressure / KPA:g} kPa"
-    held = _CLAMPED_FLANGE if chosen == "solid" and sensor.flange is not None else _CLAMPED_BASE
+    gas = (
+        f"dead volume {sensor.gas.dead_volume / ML:.4g} mL, ambient pressure {sensor.gas.ambient_pressure / KPA:g} kPa"
+    )
+    held = _CLAMPED_FLANGE if chosen == "solid" and sensor.dome.flange is not None else _CLAMPED_BASE
     return SensorPrediction(
         design=design, model=chosen, closure=closure if chosen == "membrane" else None, error_estimate=errors,
-        limit_point=answer.limit_point, limits=answer.limits, dead_volume=sensor.dead_volume,
+        limit_point=answer.limit_point, limits=answer.limits, dead_volume=sensor.gas.dead_volume,
         inflation=answer.inflation, states=answer.states, assumptions=(*assumptions, held, *_COMMON_ASSUMPTIONS, gas),
     )  # fmt: skip
 
@@ -115,7 +117,7 @@ def _answer(
 def _asked(model: str, sensor: Sensor, pressures: Array, closure: str) -> tuple[ModelResult, MissingAnswer | None]:
     """One model's answer, and what it lacks."""
     if model == "membrane":
-        if sensor.grade is not None:
+        if sensor.wall.grade is not None:
             raise InputError("the wall is graded along its arc", key="model", value=model, remedy=_OTHER)
         return membrane_result(sensor, pressures, closure), None
     if model == "atlas":
@@ -134,7 +136,7 @@ def _stated(model: str, sensor: Sensor, pressures: Array) -> tuple[Error, tuple[
     """Numerical errors and assumptions of a model."""
     if model == "membrane":
         return error_against_exact_membrane(sensor, pressures), _MEMBRANE_ASSUMPTIONS
-    law = f"law {sensor.material.convention}, Poisson ratio {sensor.poisson_ratio:g}"
+    law = f"law {sensor.wall.hyperelastic.convention}, Poisson ratio {sensor.wall.poisson_ratio:g}"
     if model == "atlas":
         errors = {**DISCRETISATION, "sensitivity_tabulation_relative": TABULATION, "summary": [_TABULATION_SUMMARY]}
         return errors, (law, *_SOLID_ASSUMPTIONS)

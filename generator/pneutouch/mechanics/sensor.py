@@ -1,41 +1,82 @@
-"""What the mechanics needs to know of a sensor: numbers in mm and MPa, nothing of files or printers."""
+"""A sensor as the mechanics takes it: four records in mm, N and MPa, without files or printers."""
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
+from typing import Any
 
 from pneutouch.mechanics.laws import Hyperelastic, hyperelastic, neo_hookean
 
 
 @dataclass(frozen=True, slots=True)
-class Sensor:
-    """A dome with its gas and its plate. ``break_stretch`` is the stretch at which the resin may tear.
-
-    ``law`` is a hyperelastic law's name with its constants where the resin has one of its own; without it the
-    wall is neo-Hookean with ``shear_modulus``. ``flange`` is the width and thickness of the flange where the solid
-    shall be held as it is printed; without it the wall is clamped at the base plane, as in the paper. ``grade`` are arc
-    positions from the pole (0) to the rim (1) with the modulus there over ``shear_modulus``, straight between them; without it
-    the wall is even.
-    """
+class Dome:
+    """The unloaded membrane. ``flange`` is the width and thickness of the flange where the solid is clamped as printed;
+    without it the wall is clamped at the base plane, as in the paper."""
 
     inner_radius: float
     wall_thickness: float
+    flange: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class WallMaterial:
+    """The elastic wall. ``break_stretch`` is the stretch at which the resin may break.
+
+    ``law`` is the name of a hyperelastic law with its constants; without it the wall is neo-Hookean with
+    ``shear_modulus``. ``grade`` are arc positions from the pole (0) to the rim (1) with the modulus there relative to
+    ``shear_modulus``, linear between them; without it the wall is homogeneous.
+    """
+
     shear_modulus: float
     poisson_ratio: float
-    ambient_pressure: float
-    dead_volume: float
-    plate_radius: float
-    depth: float
-    steps: int
-    break_stretch: float | None
-    gauge_limit: float
+    break_stretch: float | None = None
     law: tuple[str, tuple[float, ...]] | None = None
-    flange: tuple[float, float] | None = None
     grade: tuple[tuple[float, ...], tuple[float, ...]] | None = None
 
     @property
-    def material(self) -> Hyperelastic:
-        """The wall's hyperelastic law. Raises InputError for constants that make no solid."""
+    def hyperelastic(self) -> Hyperelastic:
+        """The hyperelastic law. Raises InputError for constants that give no stable solid."""
         if self.law is None:
             return neo_hookean(self.shear_modulus, self.poisson_ratio)
         return hyperelastic(*self.law, self.poisson_ratio)
+
+
+@dataclass(frozen=True, slots=True)
+class GasCircuit:
+    """The gas behind the membrane: absolute ``ambient_pressure``, ``dead_volume`` and the range of the pressure gauge."""
+
+    ambient_pressure: float
+    dead_volume: float
+    gauge_limit: float
+
+
+@dataclass(frozen=True, slots=True)
+class IndentationProtocol:
+    """The test: a flat plate moved to ``depth`` after first contact in ``steps`` equal steps."""
+
+    plate_radius: float
+    depth: float
+    steps: int
+
+
+@dataclass(frozen=True, slots=True)
+class Sensor:
+    """A dome of a material with its gas, and the indentation that it is tested with."""
+
+    dome: Dome
+    wall: WallMaterial
+    gas: GasCircuit
+    protocol: IndentationProtocol
+
+    def replace(self, **changes: Any) -> Sensor:
+        """The sensor with other values of fields of its parts, for example ``replace(depth=5.0, steps=10)``.
+
+        Raises TypeError for a name that no part has.
+        """
+        parts = {}
+        for name in ("dome", "wall", "gas", "protocol"):
+            part = getattr(self, name)
+            new = {field: changes.pop(field) for field in part.__dataclass_fields__ if field in changes}
+            parts[name] = dataclasses.replace(part, **new)
+        return dataclasses.replace(self, **{**parts, **changes})

@@ -50,9 +50,9 @@ def solid_result(
     ``past_limit`` is the multiple of the limit volume to which inflation goes on: 1 where only the figures are wanted.
     Raises BeyondLimitError beyond the limit point, ComputationError where no equilibrium is found.
     """
-    size = (sensor.inner_radius, sensor.wall_thickness)
-    mesh = dome(*size, arc=cells) if sensor.flange is None else printed_dome(*size, *sensor.flange, arc=cells)
-    solid = SolidModel(mesh, sensor.material, grade=_grade(sensor))
+    size = (sensor.dome.inner_radius, sensor.dome.wall_thickness)
+    mesh = dome(*size, arc=cells) if sensor.dome.flange is None else printed_dome(*size, *sensor.dome.flange, arc=cells)
+    solid = SolidModel(mesh, sensor.wall.hyperelastic, grade=_grade(sensor))
     run = inflate(solid, past_limit=past_limit)
     probe = StrainProbe(solid)
     states = tuple(_state(sensor, probe, run, float(p)) for p in driving_pressures)
@@ -61,9 +61,9 @@ def solid_result(
 
 def _grade(sensor: Sensor) -> Callable[[Array, Array], Array] | None:
     """The modulus along the arc as the solid takes it."""
-    if sensor.grade is None:
+    if sensor.wall.grade is None:
         return None
-    arc, relative = np.array(sensor.grade[0]), np.array(sensor.grade[1])
+    arc, relative = np.array(sensor.wall.grade[0]), np.array(sensor.wall.grade[1])
     return lambda radius, height: np.interp(arc_share(radius, height), arc, relative)
 
 
@@ -71,7 +71,7 @@ def _limit_point(sensor: Sensor, run: Inflation) -> LimitPoint | None:
     if run.limit is None:
         return None
     inner, outer = run.limit.inner_apex, run.limit.outer_apex
-    return LimitPoint(inner, outer, run.limit.pressure, (outer - inner) / sensor.wall_thickness)
+    return LimitPoint(inner, outer, run.limit.pressure, (outer - inner) / sensor.dome.wall_thickness)
 
 
 def _inflation(solid: SolidModel, run: Inflation) -> InflationCurve:
@@ -95,26 +95,26 @@ def _inflation(solid: SolidModel, run: Inflation) -> InflationCurve:
 
 def _limits(sensor: Sensor, probe: StrainProbe, run: Inflation) -> Limits:
     """Driving pressures at which the limits are met on the rising branch, the one that can be driven to."""
-    torn = None if sensor.break_stretch is None else burst(probe, run, sensor.break_stretch - 1)
+    torn = None if sensor.wall.break_stretch is None else burst(probe, run, sensor.wall.break_stretch - 1)
     if torn is not None and run.limit is not None and torn[1] > run.limit.outer_apex:
         torn = None
     return Limits(
         limit_point=None if run.limit is None else run.limit.pressure,
         break_strain=None if torn is None else torn[0],
-        gauge=sensor.gauge_limit,
+        gauge=sensor.gas.gauge_limit,
     )
 
 
 def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) -> SensorState:
     free = state_at(probe.solid, pressure, run)
     press = PressSettings(
-        sensor.depth, sensor.steps, 2 * sensor.plate_radius, sensor.ambient_pressure, sensor.dead_volume,
-        sensor.gauge_limit, np.inf if sensor.break_stretch is None else sensor.break_stretch - 1,
+        sensor.protocol.depth, sensor.protocol.steps, 2 * sensor.protocol.plate_radius, sensor.gas.ambient_pressure, sensor.gas.dead_volume,
+        sensor.gas.gauge_limit, np.inf if sensor.wall.break_stretch is None else sensor.wall.break_stretch - 1,
     )  # fmt: skip
     found = indent(probe.solid, free, press, probe)
     happened = _events(found)
-    end = min(range_end(happened, sensor.depth), found.path[-1].indentation)
-    grid = np.linspace(0.0, end, sensor.steps + 1)
+    end = min(range_end(happened, sensor.protocol.depth), found.path[-1].indentation)
+    grid = np.linspace(0.0, end, sensor.protocol.steps + 1)
     force, rise = _curve(found.path, grid)
     return SensorState(
         driving_pressure=pressure, apex_inner=free.inner_apex, apex_outer=free.outer_apex,

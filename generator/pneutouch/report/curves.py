@@ -46,7 +46,7 @@ def inflation(sensor: Sensor, prediction: SensorPrediction) -> str:
 
 def _mark_limits(ax: Axes, sensor: Sensor, prediction: SensorPrediction) -> None:
     curve = prediction.inflation
-    p, gauge = curve.pressure / KPA, sensor.gauge_limit / KPA
+    p, gauge = curve.pressure / KPA, sensor.gas.gauge_limit / KPA
     if gauge < 1.2 * p.max():
         ax.axhline(gauge, color=MUTED, lw=0.8, ls=LINES[4])
         ax.text(

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from pneutouch.catalogue import ResolvedDesign
@@ -21,16 +19,14 @@ CAPTIONS = {
 
 def graded_figures(scene: ResolvedDesign, sensor: Sensor, prediction: SensorPrediction) -> dict[str, str]:
     """Figures ``grade`` and ``graded`` as SVG for a graded membrane; nothing for any other."""
-    if scene.membrane_material.along is None or sensor.grade is None:
+    if scene.membrane_material.along is None or sensor.wall.grade is None:
         return {}
     pressures = np.array([state.driving_pressure for state in prediction.states])
-    relative = sensor.grade[1]
+    relative = sensor.wall.grade[1]
     found = []
     for label, share in (("softest", min(relative)), ("mean", 1.0), ("stiffest", max(relative))):
-        modulus = share * sensor.shear_modulus
-        constant = _constant(
-            replace(sensor, shear_modulus=modulus, grade=None), pressures, f"{label} {modulus:.2f} MPa"
-        )
+        modulus = share * sensor.wall.shear_modulus
+        constant = _constant(sensor.replace(shear_modulus=modulus, grade=None), pressures, f"{label} {modulus:.2f} MPa")
         if constant is not None:
             found.append(constant)
     return {

@@ -96,10 +96,10 @@ def touch(sensor: Sensor, driving_pressure: float, preload: float) -> PreloadCon
         )
     at = float(_inverse(np.array([preload]), travel[None], force[None], force_slope[None])[0])
     pressure = driving_pressure + float(_along(np.array(at), travel, rise, rise_slope))
-    if pressure > sensor.gauge_limit:
+    if pressure > sensor.gas.gauge_limit:
         raise InputError(
             f"preload = {preload:g} N: the pressure there is {pressure / KPA:.4g} kPa, beyond the pressure sensor's "
-            f"{sensor.gauge_limit / KPA:g} kPa; give less"
+            f"{sensor.gas.gauge_limit / KPA:g} kPa; give less"
         )
     return PreloadContact(
         driving_pressure, preload, at, float(np.interp(at, travel, radius)), pressure,
@@ -132,13 +132,13 @@ def _check(sensor: Sensor, pressure: float, preload: float) -> None:
         raise InputError(f"preload = {preload:g} N: must be more than 0")
     if not 0.0 <= pressure < np.inf:
         raise InputError(f"driving pressure {pressure / KPA:g} kPa: must be a finite number, 0 or more")
-    if pressure >= sensor.gauge_limit:
+    if pressure >= sensor.gas.gauge_limit:
         raise InputError(
-            f"driving pressure {pressure / KPA:g} kPa: beyond the pressure sensor's range of {sensor.gauge_limit / KPA:g} kPa"
+            f"driving pressure {pressure / KPA:g} kPa: beyond the pressure sensor's range of {sensor.gas.gauge_limit / KPA:g} kPa"
         )
     if outside_atlas(sensor) is None:
-        ratio = np.array([sensor.wall_thickness / sensor.inner_radius])
-        limit = float(shipped().slices(ratio, ()).limit_pressure[0]) * sensor.shear_modulus
+        ratio = np.array([sensor.dome.wall_thickness / sensor.dome.inner_radius])
+        limit = float(shipped().slices(ratio, ()).limit_pressure[0]) * sensor.wall.shear_modulus
         if pressure >= limit:
             raise _beyond(pressure, limit)
 
@@ -158,7 +158,7 @@ def _atlas_curve(sensor: Sensor, pressure: float) -> LoadingCurve | None:
     """The curve as far as the atlas knows it; None where that is not even the first steps."""
     batch = batch_of(sensor, [pressure])
     press = AtlasPress(batch, shipped().slices(batch.wall_ratio, ("contact_radius",)), np.zeros(1, dtype=np.intp))
-    track = press.march(np.linspace(0.0, sensor.depth / sensor.inner_radius, _COLUMNS)[None, :])
+    track = press.march(np.linspace(0.0, sensor.protocol.depth / sensor.dome.inner_radius, _COLUMNS)[None, :])
     found = _dimensional(press, track)
     known = int(np.logical_and.accumulate(track.ok[0] & (found[4][0] > 0)).sum())
     if known < 4:
@@ -181,14 +181,13 @@ def _dimensional(press: AtlasPress, track: PressTrack) -> LoadingCurve:
 
 
 def _solid_curve(sensor: Sensor, pressure: float) -> LoadingCurve:
-    from dataclasses import replace
 
     from scipy.interpolate import CubicSpline
 
     from pneutouch.mechanics.solid_states import solid_result
 
     try:
-        state = solid_result(replace(sensor, steps=_SOLID_STEPS), np.array([pressure])).states[0]
+        state = solid_result(sensor.replace(steps=_SOLID_STEPS), np.array([pressure])).states[0]
     except BeyondLimitError as error:
         raise _beyond(error.pressure, error.limit) from None
     travel, force, rise = state.indentation, state.force, state.pressure_rise

@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from pneutouch.bench.calibrate import Injection, Observations, parameters
 from pneutouch.bench.calibrate.inject import injected
 from pneutouch.bench.record import MeasuredCurve
-from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.atlas.table import shipped
+from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
 from pneutouch.spec.campaign import CampaignRun
 from pneutouch.units import KPA
 
 DESIGNED = Sensor(
-    inner_radius=9.25, wall_thickness=1.5, shear_modulus=0.17, poisson_ratio=0.49, ambient_pressure=0.101325,
-    dead_volume=1000.0, plate_radius=15.0, depth=6.5, steps=13, break_stretch=None, gauge_limit=0.1,
-)  # fmt: skip
+    Dome(9.25, 1.5),
+    WallMaterial(0.17, 0.49),
+    GasCircuit(ambient_pressure=0.101325, dead_volume=1000.0, gauge_limit=0.1),
+    IndentationProtocol(plate_radius=15.0, depth=6.5, steps=13),
+)
 GAIN, FORCE_ZERO, RISE_ZERO = 0.01, 0.003, 0.02 * KPA
 FORCE_NOISE, RISE_NOISE = 0.005, 0.03 * KPA
 
@@ -41,7 +41,7 @@ def disturbed(at, force, rise, pressure, number, rng, gain=GAIN) -> MeasuredCurv
 
 def curves(truth: Sensor, pressures, runs: int, rng, gain=GAIN, offset=0.0) -> tuple[MeasuredCurve, ...]:
     """Runs of the atlas's sensor at pressures in kPa; ``offset`` is travel that was not seen."""
-    found = respond(batch_of(truth, [p * KPA for p in pressures]), truth.steps)
+    found = respond(batch_of(truth, [p * KPA for p in pressures]), truth.protocol.steps)
     return tuple(
         disturbed(np.maximum(found.indentation[i] - offset, 0.0), found.force[i], found.rise[i], p, n + 1, rng, gain)
         for i, p in enumerate(pressures) for n in range(runs)
@@ -49,7 +49,7 @@ def curves(truth: Sensor, pressures, runs: int, rng, gain=GAIN, offset=0.0) -> t
 
 
 def exact(truth: Sensor, pressures) -> tuple[MeasuredCurve, ...]:
-    found = respond(batch_of(truth, [p * KPA for p in pressures]), truth.steps)
+    found = respond(batch_of(truth, [p * KPA for p in pressures]), truth.protocol.steps)
     return tuple(
         MeasuredCurve(run(p), found.indentation[i], found.force[i], found.rise[i], p * KPA)
         for i, p in enumerate(pressures)
@@ -58,10 +58,10 @@ def exact(truth: Sensor, pressures) -> tuple[MeasuredCurve, ...]:
 
 def injections(truth: Sensor, volumes, runs: int, rng, gain=0.002, noise=0.03 * KPA) -> tuple[Injection, ...]:
     """Air pushed into the atlas's sensor."""
-    slices = shipped().slices(np.array([truth.wall_thickness / truth.inner_radius]), ())
-    size, mu = truth.inner_radius**3, truth.shear_modulus
+    slices = shipped().slices(np.array([truth.dome.wall_thickness / truth.dome.inner_radius]), ())
+    size, mu = truth.dome.inner_radius**3, truth.wall.shear_modulus
     found, ok = injected(
-        slices, np.zeros(1, dtype=np.intp), np.array([truth.ambient_pressure / mu]), np.array([truth.dead_volume / size]),
+        slices, np.zeros(1, dtype=np.intp), np.array([truth.gas.ambient_pressure / mu]), np.array([truth.gas.dead_volume / size]),
         volumes / size,
     )  # fmt: skip
     assert ok.all()
@@ -86,4 +86,4 @@ def chosen(library, *names, priors=True, sensor=DESIGNED):
 
 
 def other(**changes) -> Sensor:
-    return replace(DESIGNED, **changes)
+    return DESIGNED.replace(**changes)

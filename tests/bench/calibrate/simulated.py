@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -34,7 +34,7 @@ class Trial:
 
 def designed(library, resin: str) -> Sensor:
     """The paper's dome in a resin, with 0.3 mL behind it."""
-    return replace(material_sensor(library.load("materials", resin)), dead_volume=DEAD_VOLUME)
+    return material_sensor(library.load("materials", resin)).replace(dead_volume=DEAD_VOLUME)
 
 
 def trial(
@@ -42,7 +42,7 @@ def trial(
 ) -> Trial:  # fmt: skip
     """A specimen drawn around ``nominal`` and its runs at driving pressures in kPa."""
     specimen = SimulatedSpecimens.draw(TRUTH.scatter, 1, rng).sensor(nominal, 0)
-    pressed = press_curves(specimen, [p * KPA for p in pressures], 0.75 * nominal.inner_radius, model)
+    pressed = press_curves(specimen, [p * KPA for p in pressures], 0.75 * nominal.dome.inner_radius, model)
     return Trial(
         specimen, Observations(tuple(_runs(pressed.curves, pressures, runs, nominal, rng)), rig=Rig(rate_Hz=RATE))
     )
@@ -50,7 +50,7 @@ def trial(
 
 def _runs(curves, pressures, runs: int, nominal: Sensor, rng: np.random.Generator) -> Iterator[MeasuredCurve]:
     for pressure, curve in zip(pressures, curves, strict=True):
-        way = TRUTH.protocol("steps", nominal.inner_radius, curve.reach)
+        way = TRUTH.protocol("steps", nominal.dome.inner_radius, curve.reach)
         for number in range(1, runs + 1):
             record = simulate_run(curve, way, TRUTH.rig, RATE, rng, wall=TRUTH.wall, scatter=TRUTH.scatter)
             run = CampaignRun(
@@ -64,7 +64,7 @@ def held(
 ) -> tuple[CalibrationFit, list[bool], list[float]]:
     """The fit to a trial, whether the intervals of modulus and dead volume hold the truth, and their half widths."""
     found = fit(one.seen, nominal, parameters)
-    true = {MODULUS: float(np.log(one.truth.shear_modulus)), DEAD: one.truth.dead_volume}
+    true = {MODULUS: float(np.log(one.truth.wall.shear_modulus)), DEAD: one.truth.gas.dead_volume}
     places = [parameters.fitted.index(k) for k in true]
     off = [abs(float(found.solution.at[place]) - value) for place, value in zip(places, true.values(), strict=True)]
     half = [float(found.half_width[place]) for place in places]

@@ -18,7 +18,9 @@ TRUTH = {"shear_modulus": 0.21, "wall_thickness": 1.56, "dead_volume": 1400.0}
 
 
 def coordinates(truth, offset=0.0):
-    return np.array([np.log(truth.shear_modulus), np.log(truth.wall_thickness), truth.dead_volume, offset])
+    return np.array(
+        [np.log(truth.wall.shear_modulus), np.log(truth.dome.wall_thickness), truth.gas.dead_volume, offset]
+    )
 
 
 def test_clean_curves_give_all_four_parameters_back(library):
@@ -63,12 +65,14 @@ def cover(library, trials, runs, pressures, priors, floor=FLOOR):
     parameters = chosen(library, "modulus", "dead-volume", priors=priors)
     hits = np.zeros(2)
     for _ in range(trials):
-        dead = DESIGNED.dead_volume + parameters.belief[DEAD] * rng.normal()
+        dead = DESIGNED.gas.dead_volume + parameters.belief[DEAD] * rng.normal()
         # What is believed of wall and contact counts with priors, and so it is drawn.
         wall = np.sqrt(3.0) * parameters.belief[WALL] * rng.uniform(-1, 1) if priors else 0.0
         offset = abs(parameters.belief[OFFSET] * rng.normal()) if priors else 0.0
         modulus = 0.2 * np.exp(0.2 * rng.normal())
-        truth = other(shear_modulus=modulus, dead_volume=dead, wall_thickness=DESIGNED.wall_thickness * np.exp(wall))
+        truth = other(
+            shear_modulus=modulus, dead_volume=dead, wall_thickness=DESIGNED.dome.wall_thickness * np.exp(wall)
+        )
         seen = Observations(curves(truth, pressures, runs, rng, offset=offset))
         found = fit(seen, DESIGNED, parameters, floor)
         at = coordinates(truth)[[MODULUS, DEAD]]

@@ -42,20 +42,20 @@ def test_more_parameters_than_values_need_priors(library):
 
 
 def test_a_sensor_outside_the_atlas_is_refused(library):
-    thick = replace(DESIGNED, wall_thickness=4.0)
+    thick = DESIGNED.replace(wall_thickness=4.0)
     with pytest.raises(InputError, match=r"the atlas does not speak for this sensor: wall 0\.432 R0"):
         fit(Observations(exact(DESIGNED, (0.0,))), thick, chosen(library, "modulus"))
 
 
 def test_all_at_one_pressure_can_be_fitted(library):
-    seen = curves(replace(DESIGNED, shear_modulus=0.2), (12.0,), 4, np.random.default_rng(3))
+    seen = curves(DESIGNED.replace(shear_modulus=0.2), (12.0,), 4, np.random.default_rng(3))
     found = fit(Observations(seen), DESIGNED, chosen(library, "modulus", priors=False))
     assert abs(found.full[0] - np.log(0.2)) < found.half_width[0] < 0.1
 
 
 def test_a_dome_that_stood_its_pressure_is_stiffer_than_the_limit_says(library):
     """Driven at 60 kPa, beyond the limit point of the design's modulus: the search begins above it."""
-    truth = replace(DESIGNED, shear_modulus=0.35)
+    truth = DESIGNED.replace(shear_modulus=0.35)
     found = fit(Observations(exact(truth, (0.0, 60.0))), DESIGNED, chosen(library, "modulus", priors=False))
     assert found.full[0] == pytest.approx(np.log(0.35), abs=1e-4)
 
@@ -89,7 +89,7 @@ def test_a_first_contact_that_is_not_sure_moves_force_and_rise_of_its_run_togeth
 
 def test_forces_at_the_end_of_the_sensors_range_are_not_fitted(library):
     """A force sensor that stops at 5 N would make the dome soft; the points before that give the modulus."""
-    truth = replace(DESIGNED, shear_modulus=0.2)
+    truth = DESIGNED.replace(shear_modulus=0.2)
     seen = exact(truth, (0.0, 22.0))
     cut = tuple(replace(curve, force=np.minimum(curve.force, 5.0)) for curve in seen)
     observations = Observations(cut, rig=Rig(force_range_N=5.0))

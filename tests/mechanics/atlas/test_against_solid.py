@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.atlas.respond import ENDS, respond
 from pneutouch.mechanics.atlas.table import shipped
@@ -16,6 +15,7 @@ from pneutouch.mechanics.events import range_end
 from pneutouch.mechanics.exact_membrane import RISING_BRANCH
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.prediction import ModelResult
+from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
 from pneutouch.mechanics.solid.inflate import at_volume, inflate
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
@@ -44,10 +44,11 @@ def sensor(name: str) -> Sensor:
     """One of the sensors under a plate that is wide enough for any contact."""
     radius, wall, mu, dead, depth, _, gauge, tear = SENSORS[name]
     return Sensor(
-        inner_radius=radius, wall_thickness=wall * radius, shear_modulus=mu, poisson_ratio=0.49,
-        ambient_pressure=STANDARD_ATMOSPHERE, dead_volume=dead * radius**3, plate_radius=3.0 * radius,
-        depth=depth * radius, steps=14, break_stretch=tear, gauge_limit=gauge,
-    )  # fmt: skip
+        Dome(radius, wall * radius),
+        WallMaterial(mu, 0.49, break_stretch=tear),
+        GasCircuit(ambient_pressure=STANDARD_ATMOSPHERE, dead_volume=dead * radius**3, gauge_limit=gauge),
+        IndentationProtocol(plate_radius=3.0 * radius, depth=depth * radius, steps=14),
+    )
 
 
 @cache
@@ -63,13 +64,13 @@ def test_curve_sensitivity_end_and_limit_are_the_solids(name):
     kind = next((event.kind for event in state.events if event.ends_range), "depth")
     assert ENDS[int(said.ends[0])] == kind
     # The solid itself locates a jump to 5e-4 R0; near one the curves are steep.
-    assert said.range_end[0] == pytest.approx(state.range_end, abs=0.01 * one.inner_radius)
+    assert said.range_end[0] == pytest.approx(state.range_end, abs=0.01 * one.dome.inner_radius)
     assert state.figures is not None and found.limit_point is not None
     assert said.lines.sensitivity[0] == pytest.approx(state.figures.sensitivity, rel=5e-3)
     assert said.limit_pressure[0] == pytest.approx(found.limit_point.driving_pressure, rel=5e-4)
-    assert said.apex_outer[0] == pytest.approx(state.apex_outer, abs=1e-3 * one.inner_radius)
+    assert said.apex_outer[0] == pytest.approx(state.apex_outer, abs=1e-3 * one.dome.inner_radius)
     assert said.cavity_volume[0] == pytest.approx(state.cavity_volume, rel=1e-3)
-    common = state.indentation <= min(said.range_end[0], range_end(list(state.events), one.depth)) + 1e-9
+    common = state.indentation <= min(said.range_end[0], range_end(list(state.events), one.protocol.depth)) + 1e-9
     for ours, theirs in ((said.force, state.force), (said.rise, state.pressure_rise)):
         on = CubicSpline(said.indentation[0], ours[0])(state.indentation[common])
         assert np.abs(on - theirs[common]).max() < 5e-3 * theirs[common].max()

@@ -43,8 +43,8 @@ def sensor(*fractions: float) -> Sensor:
 
 def moduli(one: Sensor) -> np.ndarray:
     """Moduli at `PLACES`, MPa."""
-    assert one.grade is not None
-    return one.shear_modulus * np.array(one.grade[1])
+    assert one.wall.grade is not None
+    return one.wall.shear_modulus * np.array(one.wall.grade[1])
 
 
 def solid_of(modulus: np.ndarray) -> SolidModel:
@@ -61,7 +61,7 @@ def smooth(r, z):
 
 def test_an_even_grade_is_the_plain_solid():
     plain = sensor(0.1)
-    even = replace(plain, grade=((0.0, 0.4, 1.0), (1.0, 1.0, 1.0)))
+    even = plain.replace(grade=((0.0, 0.4, 1.0), (1.0, 1.0, 1.0)))
     one, other = (solid_result(s, np.array([0.0, 0.012]), past_limit=1.0) for s in (plain, even))
     assert other.limits.limit_point == pytest.approx(one.limits.limit_point, rel=1e-12)
     for a, b in zip(one.states, other.states, strict=True):
@@ -71,8 +71,9 @@ def test_an_even_grade_is_the_plain_solid():
 
 def test_only_the_product_of_modulus_and_grade_counts():
     stiff = sensor(0.0, 0.25)
-    other = replace(
-        stiff, shear_modulus=0.4 * stiff.shear_modulus, grade=(stiff.grade[0], tuple(2.5 * g for g in stiff.grade[1]))
+    other = stiff.replace(
+        shear_modulus=0.4 * stiff.wall.shear_modulus,
+        grade=(stiff.wall.grade[0], tuple(2.5 * g for g in stiff.wall.wall.grade[1])),
     )
     one, two = (solid_result(s, np.array([0.012]), past_limit=1.0) for s in (stiff, other))
     assert two.limits.limit_point == pytest.approx(one.limits.limit_point, rel=1e-9)
@@ -151,14 +152,16 @@ def test_a_smooth_grade_converges_as_fast_as_an_even_wall():
 def test_the_default_mesh_is_within_its_stated_error(fractions):
     one, pressures = sensor(*fractions), np.array([0.0, 0.022])
     fine = SolidModel(
-        dome(9.25, 1.5, arc=96, through=4), one.material, grade=lambda r, z: np.interp(arc_share(r, z), *one.grade)
+        dome(9.25, 1.5, arc=96, through=4),
+        one.wall.hyperelastic,
+        grade=lambda r, z: np.interp(arc_share(r, z), *one.wall.grade),
     )
     run, found = inflate(fine, past_limit=1.0), solid_result(one, pressures, past_limit=1.0)
     assert found.limits.limit_point == pytest.approx(run.limit.pressure, rel=2e-3)
     for pressure, state in zip(pressures, found.states, strict=True):
         end = min(state.range_end, 5.0)
         steps = PressSettings(end, 14)
-        coarse = SolidModel(dome(9.25, 1.5), one.material, grade=fine.grade)
+        coarse = SolidModel(dome(9.25, 1.5), one.wall.hyperelastic, grade=fine.grade)
         here = indent(coarse, state_at(coarse, pressure), steps).figures()
         there = indent(fine, state_at(fine, pressure, run), steps).figures()
         assert here.sensitivity == pytest.approx(there.sensitivity, rel=0.01)
@@ -217,7 +220,7 @@ def test_the_first_slope_is_concave_in_the_modulus():
 def test_a_grade_of_two_knots_bears_a_pressure_between_its_ends():
     for pole, rim in ((0.0, 0.229), (0.229, 0.0), (0.05, 0.4)):
         low, here, high = (
-            figures_of(np.full(PLACES.size, one.shear_modulus) if one.grade is None else moduli(one), 0.012)
+            figures_of(np.full(PLACES.size, one.wall.shear_modulus) if one.wall.grade is None else moduli(one), 0.012)
             for one in (sensor(min(pole, rim)), sensor(pole, rim), sensor(max(pole, rim)))
         )
         for name in here:
@@ -244,7 +247,7 @@ def assert_solved(seed: int, count: int) -> None:
         fractions = rng.uniform(0.0, TOP, int(rng.integers(2, 7)))
         if k % 3 == 0:
             fractions = np.where(rng.random(fractions.size) < 0.5, 0.0, TOP)
-        one = replace(sensor(*fractions), wall_thickness=9.25 * rng.uniform(0.06, 0.3), depth=4.0, steps=8)
+        one = sensor(*fractions).replace(wall_thickness=9.25 * rng.uniform(0.06, 0.3), depth=4.0, steps=8)
         result = solid_result(one, np.array([0.0, 4 * KPA]), past_limit=1.0)
         assert result.limits.limit_point > 4 * KPA
         for state in result.states:

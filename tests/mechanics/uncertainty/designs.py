@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any, NamedTuple
 
 from pneutouch.catalogue import Library
@@ -41,7 +40,7 @@ def materials(library: Library) -> dict[str, Material]:
 
 
 def batch_for(library: Library, case: Case) -> SensorBatch:
-    sensor = replace(material_sensor(materials(library)[case.resin]), **case.sensor)
+    sensor = material_sensor(materials(library)[case.resin]).replace(**case.sensor)
     return batch_of(sensor, [case.driving_pressure])
 
 

@@ -39,8 +39,7 @@ def combined(sources, batch, elasticity):
 @given(st.floats(0.08, 0.3), st.floats(0.0, 0.8), st.floats(0.1, 1.0), st.floats(0.0, 3000.0))
 def test_stresses_scale_together(wall, share, mu, dead):
     """A factor on every stress changes forces by it and sensitivities, heights and ranges not at all."""
-    sensor = replace(
-        PAPER, wall_thickness=wall * PAPER.inner_radius, shear_modulus=mu, dead_volume=dead, depth=4.0,
+    sensor = PAPER.replace(wall_thickness=wall * PAPER.dome.inner_radius, shear_modulus=mu, dead_volume=dead, depth=4.0,
         gauge_limit=1e3, break_stretch=None,
     )  # fmt: skip
     limit = float(respond(batch_of(sensor, [0.0])).limit_pressure[0])
@@ -89,6 +88,6 @@ def test_a_sensor_near_its_limit_point_says_that_it_may_be_beyond(library):
 
 
 def test_outside_the_atlas_there_is_no_uncertainty(library):
-    sensor = replace(material_sensor(materials(library)["TangoPlus"]), wall_thickness=4.0)
+    sensor = material_sensor(materials(library)["TangoPlus"]).replace(wall_thickness=4.0)
     found = budget_for(library, batch_of(sensor, [0.0]), "TangoPlus", False)
     assert np.isnan(found.standard).all()

@@ -18,11 +18,11 @@ from tests.mechanics.test_contact import PAPER
 
 @pytest.mark.parametrize(("pressure", "dead"), [(0.005, 0.0), (0.012, 0.0), (0.022, 2000.0)])
 def test_heating_a_sealed_cavity_by_a_kelvin(pressure, dead):
-    sensor = replace(PAPER, dead_volume=dead)
+    sensor = PAPER.replace(dead_volume=dead)
 
     def amount(p, temperature):
         volume = float(respond(batch_of(sensor, [p])).cavity_volume[0]) + dead
-        return (p + sensor.ambient_pressure) * volume / temperature
+        return (p + sensor.gas.ambient_pressure) * volume / temperature
 
     sealed = amount(pressure, ROOM)
     hot, cold = (
@@ -34,8 +34,8 @@ def test_heating_a_sealed_cavity_by_a_kelvin(pressure, dead):
 
 
 def test_a_stiff_wall_shows_what_a_rigid_cavity_shows():
-    found = gas_notes(batch_of(replace(PAPER, shear_modulus=50.0, depth=0.3), [0.0]))
-    rigid = 1e3 * PAPER.ambient_pressure / ROOM
+    found = gas_notes(batch_of(PAPER.replace(shear_modulus=50.0, depth=0.3), [0.0]))
+    rigid = 1e3 * PAPER.gas.ambient_pressure / ROOM
     assert found.wall_give[0] > 0.99
     assert found.by_temperature[0] == pytest.approx(rigid * found.wall_give[0])
     assert found.fast_over_slow[0] == pytest.approx(ADIABATIC, rel=0.02)
@@ -44,7 +44,7 @@ def test_a_stiff_wall_shows_what_a_rigid_cavity_shows():
 @settings(max_examples=15)
 @given(st.floats(0.15, 4.0), st.floats(0.0, 0.02), st.floats(0.0, 3000.0))
 def test_fast_is_never_less_sensitive_and_small_presses_stay_below_1_4(mu, pressure, dead):
-    found = gas_notes(batch_of(replace(PAPER, shear_modulus=mu, dead_volume=dead, depth=1.0), [pressure]))
+    found = gas_notes(batch_of(PAPER.replace(shear_modulus=mu, dead_volume=dead, depth=1.0), [pressure]))
     assert 0.99 < found.fast_over_slow[0] < 1.02 * ADIABATIC
     assert 0.0 < found.wall_give[0] < 1.0
 

@@ -39,8 +39,7 @@ def test_the_limit_pressure_adds_up_by_hand(library):
     st.floats(1.0, 50.0), st.floats(0.06, 0.35), st.floats(0.0, 0.02), st.floats(0.0, 5000.0), st.booleans(),
 )  # fmt: skip
 def test_shares_sum_to_one_wherever_there_is_an_uncertainty(library, resin, radius, wall, pressure, dead, near):
-    sensor = replace(
-        material_sensor(materials(library)[resin]), inner_radius=radius, wall_thickness=wall * radius, dead_volume=dead,
+    sensor = material_sensor(materials(library)[resin]).replace(inner_radius=radius, wall_thickness=wall * radius, dead_volume=dead,
         depth=0.5 * radius, plate_radius=2 * radius,
     )  # fmt: skip
     found = budget_for(library, batch_of(sensor, [pressure]), resin, near)

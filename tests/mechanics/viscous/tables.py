@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from pneutouch.catalogue import Library
@@ -60,7 +58,7 @@ def agilus_table(library: Library) -> list[str]:
             *(f"hysteresis at {v:g} mm/s, width / area" for v in LOOP_SPEEDS)]  # fmt: skip
     rows = [_row(head), _row(["---"] * len(head))]
     for share in (0.25, 0.5, 0.75):
-        rows += [_row([f"{share:g} R0", *cells]) for cells in _runs(sensor, material, share * sensor.inner_radius)]
+        rows += [_row([f"{share:g} R0", *cells]) for cells in _runs(sensor, material, share * sensor.dome.inner_radius)]
     return rows
 
 
@@ -69,8 +67,8 @@ def wall_table(library: Library) -> list[str]:
     material = resin(library, "Agilus30")
     rows = [_row(["wall, mm", "pressure rise lost, A", "B", "hysteresis, A", "B"]), _row(["---"] * 5)]
     for wall in (0.75, 1.5, 2.25, 3.0):
-        sensor = replace(material_sensor(material), wall_thickness=wall)
-        cells = _runs(sensor, material, 0.5 * sensor.inner_radius)[:2]
+        sensor = material_sensor(material).replace(wall_thickness=wall)
+        cells = _runs(sensor, material, 0.5 * sensor.dome.inner_radius)[:2]
         rows.append(_row([f"{wall:g}", cells[0][3], cells[1][3], *(cell[-1].split(" /")[0] + " %" for cell in cells)]))
     return rows
 
@@ -88,8 +86,8 @@ def paper_table(library: Library) -> list[str]:
 def ageing_shift_as_measured(material: Material, ratio: float) -> tuple[float, float]:
     """Mean change of the sensitivity curve, and of its size, over the mean aged curve: as Supplement E normalises."""
     fresh = material_sensor(material)
-    old = replace(fresh, shear_modulus=ratio * fresh.shear_modulus)
-    before, after = (respond(batch_of(one, DRIVEN), one.steps).lines.sensitivity for one in (fresh, old))
+    old = fresh.replace(shear_modulus=ratio * fresh.wall.shear_modulus)
+    before, after = (respond(batch_of(one, DRIVEN), one.protocol.steps).lines.sensitivity for one in (fresh, old))
     return float((after - before).mean() / after.mean()), float(np.abs(after - before).mean() / after.mean())
 
 
@@ -97,8 +95,8 @@ def needed(material: Material, measured: float) -> str:
     """The moduli over the fresh one, nearest to it either way, that would change the sensitivity as measured."""
     fresh = material_sensor(material)
     ratios = np.append(np.geomspace(1 / 3, 3, 89), 1.0)
-    moved = [batch_of(replace(fresh, shear_modulus=r * fresh.shear_modulus), DRIVEN) for r in ratios]
-    curves = respond(joined(moved), fresh.steps).lines.sensitivity.reshape(len(ratios), -1)
+    moved = [batch_of(fresh.replace(shear_modulus=r * fresh.wall.shear_modulus), DRIVEN) for r in ratios]
+    curves = respond(joined(moved), fresh.protocol.steps).lines.sensitivity.reshape(len(ratios), -1)
     size = np.abs(curves - curves[-1]).mean(axis=1) / curves.mean(axis=1)
     known = np.isfinite(size)
     enough = ratios[known & (np.nan_to_num(size) >= measured)]

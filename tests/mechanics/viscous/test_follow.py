@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -13,16 +12,18 @@ from hypothesis import strategies as st
 from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.atlas.press import AtlasPress
 from pneutouch.mechanics.atlas.table import AtlasPoint, shipped
-from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
 from pneutouch.mechanics.viscous.follow import follow
 from pneutouch.mechanics.viscous.prony import Prony
 
 A = Prony((0.1450, 0.1534, 0.1084), (0.1139, 2.528, 51.19))
 B = Prony((0.45, 0.26, 0.10), (0.047, 0.97, 18.0))
 SENSOR = Sensor(
-    inner_radius=9.25, wall_thickness=1.5, shear_modulus=0.206, poisson_ratio=0.49, ambient_pressure=0.101325,
-    dead_volume=0.0, plate_radius=15.0, depth=4.625, steps=14, break_stretch=None, gauge_limit=np.inf,
-)  # fmt: skip
+    Dome(9.25, 1.5),
+    WallMaterial(0.206, 0.49),
+    GasCircuit(ambient_pressure=0.101325, dead_volume=0.0, gauge_limit=np.inf),
+    IndentationProtocol(plate_radius=15.0, depth=4.625, steps=14),
+)
 
 
 class Springs:
@@ -94,7 +95,7 @@ def test_gas_takes_its_part_of_the_load_and_gives_it_back():
 
 
 def dome(**changes) -> AtlasPress:
-    batch = batch_of(replace(SENSOR, **changes), [0.0])
+    batch = batch_of(SENSOR.replace(**changes), [0.0])
     return AtlasPress(batch, shipped().slices(batch.wall_ratio, ()), np.zeros(1, dtype=np.intp))
 
 

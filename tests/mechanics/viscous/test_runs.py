@@ -27,9 +27,8 @@ def effective(modulus: float, driving_pressure: float):
     It needs ``modulus`` times the driving pressure to stand there; the surroundings are lowered by the difference, so that the
     gas has its absolute pressure.
     """
-    return replace(
-        SENSOR, shear_modulus=modulus * SENSOR.shear_modulus,
-        ambient_pressure=SENSOR.ambient_pressure - (modulus - 1) * driving_pressure,
+    return SENSOR.replace(shear_modulus=modulus * SENSOR.wall.shear_modulus,
+        ambient_pressure=SENSOR.gas.ambient_pressure - (modulus - 1) * driving_pressure,
     ), modulus * driving_pressure  # fmt: skip
 
 
@@ -140,7 +139,7 @@ def test_series_and_states_do_not_disturb_one_another():
 
 @pytest.mark.parametrize(("prony", "limit", "why"), [(B, np.inf, "inward buckling"), (B, 0.02, "gauge range")])
 def test_a_run_that_cannot_go_on_says_where_and_gives_no_figures(prony, limit, why):
-    sensor = replace(SENSOR, gauge_limit=limit)
+    sensor = SENSOR.replace(gauge_limit=limit)
     held = relaxation(sensor, [prony], [0.0], 6.9, 50.0)[0][0]
     turn = loop(sensor, [prony], [0.0], 6.9, 50.0)[0][0]
     assert held.ended.startswith(why) and turn.ended.startswith(why)
@@ -154,7 +153,7 @@ def test_a_stiffer_wall_widens_the_loop_but_holds_the_pressure_better():
     """Where the wall carries the load the force relaxes under a volume that the plate sets; where the gas does, both yield."""
     wide, lost = [], []
     for wall in (0.75, 1.5, 3.0):
-        sensor = replace(SENSOR, wall_thickness=wall)
+        sensor = SENSOR.replace(wall_thickness=wall)
         wide.append(loop(sensor, [A], [0.0], DEPTH, 5.0)[0][0].hysteresis()[0])
         run = relaxation(sensor, [A], [0.0], DEPTH, 5.0)[0][0]
         lost.append(run.drop(run.rise)[0])

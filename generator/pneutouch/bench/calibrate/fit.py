@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -85,7 +85,7 @@ def fit(
     the residuals show, at least ``floor`` (see `discrepancy`). Raises InputError for too few points, ComputationError where no
     fit is found.
     """
-    sensor = replace(sensor, ambient_pressure=observations.ambient)
+    sensor = sensor.replace(ambient_pressure=observations.ambient)
     points = points_of(observations)
     fitted = len(parameters.fitted)
     if not parameters.priors and int(points.use.sum()) <= fitted:
@@ -150,7 +150,7 @@ def _start(sensor: Sensor, points: ObservationPoints, parameters: CalibrationPar
     """The design's values, the modulus raised where it would burst under the pressures that the sensor stood."""
     start = parameters.start[list(parameters.fitted)].copy()
     if MODULUS in parameters.fitted and points.driving.size:
-        slices = shipped().slices(np.array([sensor.wall_thickness / sensor.inner_radius]), ())
+        slices = shipped().slices(np.array([sensor.dome.wall_thickness / sensor.dome.inner_radius]), ())
         least = points.driving.max() / _START_SHARE / float(slices.limit_pressure[0])
         where = parameters.fitted.index(MODULUS)
         start[where] = max(start[where], np.log(max(least, 1e-9)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -79,10 +79,10 @@ def further_tests(fit: CalibrationFit) -> list[SuggestedTest]:
 
 def _candidates(fit: CalibrationFit) -> Iterator[tuple[str, Array]]:
     """Tests with what they would say of all four parameters, (4, 4)."""
-    full, size = fit.full, fit.sensor.inner_radius
+    full, size = fit.full, fit.sensor.dome.inner_radius
     slices = shipped().slices(np.array([np.exp(full[WALL]) / size]), ())
     limit = float(slices.limit_pressure[0]) * float(np.exp(full[MODULUS]))
-    highest = min(_LIMIT_SHARE * limit, 0.5 * fit.sensor.gauge_limit, _rated(fit))
+    highest = min(_LIMIT_SHARE * limit, 0.5 * fit.sensor.gas.gauge_limit, _rated(fit))
     measured = fit.points.driving
     depth = SHARE * size
     for pressure in (0.0, 0.5 * highest, highest):
@@ -94,7 +94,7 @@ def _candidates(fit: CalibrationFit) -> Iterator[tuple[str, Array]]:
     volume = _volume(fit, full, highest)
     yield f"air injected into the closed sensor up to {highest / KPA:.2g} kPa", _injected(fit, full, volume)
     if full[DEAD] > 0:
-        spread = np.hypot(full[DEAD] * np.hypot(READING / (0.5 * fit.sensor.gauge_limit), SYRINGE), CAP)
+        spread = np.hypot(full[DEAD] * np.hypot(READING / (0.5 * fit.sensor.gas.gauge_limit), SYRINGE), CAP)
         yield "air injected with a rigid cap in place of the dome (the dead volume alone)", _alone(DEAD, spread)
     yield "a tensile coupon of the same print (the modulus alone)", _alone(MODULUS, COUPON)
     yield "the wall measured with a caliper", _alone(WALL, CALIPER / float(np.exp(full[WALL])))
@@ -103,7 +103,7 @@ def _candidates(fit: CalibrationFit) -> Iterator[tuple[str, Array]]:
 def _rated(fit: CalibrationFit) -> float:
     """The pressure that the sensor is rated at, as designed and as estimated whichever is less."""
     full = fit.full
-    built = replace(fit.sensor, shear_modulus=float(np.exp(full[MODULUS])), wall_thickness=float(np.exp(full[WALL])))
+    built = fit.sensor.replace(shear_modulus=float(np.exp(full[MODULUS])), wall_thickness=float(np.exp(full[WALL])))
     return RATED_SHARE * min(limits(fit.sensor).lowest, limits(built).lowest)
 
 
@@ -140,14 +140,14 @@ def _indented(fit: CalibrationFit, full: Array, pressure: float, depth: float) -
 
 def _volume(fit: CalibrationFit, full: Array, pressure: float) -> float:
     """Volume to inject from ambient for a pressure, mm3."""
-    size, mu = fit.sensor.inner_radius, float(np.exp(full[MODULUS]))
+    size, mu = fit.sensor.dome.inner_radius, float(np.exp(full[MODULUS]))
     slices = shipped().slices(np.array([np.exp(full[WALL]) / size]), ())
     nodes = np.linspace(0.0, 1.0, 100)
     found, _ = free_pressure(slices, np.zeros(nodes.size, dtype=np.intp), nodes)
     nu = float(np.interp(pressure / mu, found, nodes))
     grown = nu * float(slices.reach(np.zeros(1, dtype=np.intp))[0]) * size**3
     room = REST_VOLUME * size**3 + full[DEAD]
-    return float((pressure + fit.sensor.ambient_pressure) * (room + grown) / fit.sensor.ambient_pressure - room)
+    return float((pressure + fit.sensor.gas.ambient_pressure) * (room + grown) / fit.sensor.gas.ambient_pressure - room)
 
 
 def _injected(fit: CalibrationFit, full: Array, volume: float) -> Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -63,7 +63,7 @@ def predict_held_out(
         raise InputError(problem, key="hold_out_kPa", value=pressure, remedy=remedy)
     fitted = fit(rest, sensor, parameters)
     points = points_of(observations.only(pressure))
-    model = AtlasModel(replace(sensor, ambient_pressure=observations.ambient), points)
+    model = AtlasModel(sensor.replace(ambient_pressure=observations.ambient), points)
     values, ok = model.values(fitted.full[None])
     shape = points.there.shape
     use = ok[0][: points.there.size].reshape(shape) & points.there

@@ -33,7 +33,7 @@ class AtlasModel:
             raise InputError(f"calibrate: the atlas does not speak for this sensor: {why}; no fit without it")
         self.sensor, self.points = sensor, points
         self._last: tuple[bytes, Array, Flags] | None = None
-        size, depth = sensor.inner_radius, points.travel / sensor.inner_radius
+        size, depth = sensor.dome.inner_radius, points.travel / sensor.dome.inner_radius
         deepest = float(depth.max(initial=0.0))
         gaps = np.diff(depth, prepend=0.0, axis=1)
         wide = depth.size > 0 and float(gaps.max()) > _GAP
@@ -47,7 +47,7 @@ class AtlasModel:
         return self._last[1], self._last[2]
 
     def _asked(self, sets: Array) -> tuple[Array, Flags]:
-        atlas, size = shipped(), self.sensor.inner_radius
+        atlas, size = shipped(), self.sensor.dome.inner_radius
         walls, k = np.unique(np.exp(sets[:, WALL]) / size, return_inverse=True)
         slices = atlas.slices(walls, ("contact_radius",))
         force, rise, ok = self._curves(sets, slices, k)
@@ -55,7 +55,7 @@ class AtlasModel:
         return np.hstack([force, rise, pressure]), np.hstack([ok, ok, fine])
 
     def _curves(self, sets: Array, slices: AtlasSlices, k: Index) -> tuple[Array, Array, Flags]:
-        (c, m), s, size = self.points.travel.shape, len(sets), self.sensor.inner_radius
+        (c, m), s, size = self.points.travel.shape, len(sets), self.sensor.dome.inner_radius
         if not c:
             return np.zeros((s, 0)), np.zeros((s, 0)), np.zeros((s, 0), dtype=bool)
         each = np.repeat(np.arange(s), c)
@@ -81,9 +81,9 @@ class AtlasModel:
             return np.full(len(sets), value)
 
         return SensorBatch(
-            all_of(self.sensor.inner_radius), np.exp(sets[:, WALL]), np.exp(sets[:, MODULUS]),
-            all_of(self.sensor.ambient_pressure), sets[:, DEAD], driving, all_of(self.sensor.depth),
-            all_of(self.sensor.plate_radius), all_of(np.inf), all_of(np.inf),
+            all_of(self.sensor.dome.inner_radius), np.exp(sets[:, WALL]), np.exp(sets[:, MODULUS]),
+            all_of(self.sensor.gas.ambient_pressure), sets[:, DEAD], driving, all_of(self.sensor.protocol.depth),
+            all_of(self.sensor.protocol.plate_radius), all_of(np.inf), all_of(np.inf),
         )  # fmt: skip
 
     def _injections(self, sets: Array, slices: AtlasSlices, k: Index) -> tuple[Array, Flags]:
@@ -91,7 +91,7 @@ class AtlasModel:
         volume, s = self.points.volume.ravel(), len(sets)
         if not volume.size:
             return np.zeros((s, 0)), np.zeros((s, 0), dtype=bool)
-        size, mu = self.sensor.inner_radius, np.exp(sets[:, MODULUS])
-        ambient = self.sensor.ambient_pressure / mu
+        size, mu = self.sensor.dome.inner_radius, np.exp(sets[:, MODULUS])
+        ambient = self.sensor.gas.ambient_pressure / mu
         pressure, ok = injected(slices, k, ambient, sets[:, DEAD] / size**3, volume / size**3)
         return pressure * mu[:, None], ok

@@ -108,15 +108,15 @@ def parameters(
     sensor: Sensor, material: Material, printer: Printer, names: Sequence[str] = NAMES, *, priors: bool = True
 ) -> CalibrationParameters:
     """Parameters of a sensor as designed. Raises InputError for unknown names."""
-    recipe, size = shipped().recipe, sensor.inner_radius
+    recipe, size = shipped().recipe, sensor.dome.inner_radius
     rest = REST_VOLUME * size**3
-    low = [np.log(sensor.ambient_pressure / recipe.stiffest), np.log(recipe.thinnest * size), 0.0, -OFFSET_BOUND]
+    low = [np.log(sensor.gas.ambient_pressure / recipe.stiffest), np.log(recipe.thinnest * size), 0.0, -OFFSET_BOUND]
     high = [np.log(_STIFFEST), np.log(recipe.thickest * size), _LARGEST, OFFSET_BOUND]
-    start = [np.log(sensor.shear_modulus), np.log(sensor.wall_thickness), sensor.dead_volume, 0.0]
+    start = [np.log(sensor.wall.shear_modulus), np.log(sensor.dome.wall_thickness), sensor.gas.dead_volume, 0.0]
     belief, even, origin = _beliefs(sensor, material, printer)
     return CalibrationParameters(
         parse_names(names), np.array(start), np.array(low), np.array(high), belief, even,
-        np.array([1e-3, 1e-3, 1e-3 * (rest + sensor.dead_volume), 1e-3 * size]), origin, priors,
+        np.array([1e-3, 1e-3, 1e-3 * (rest + sensor.gas.dead_volume), 1e-3 * size]), origin, priors,
     )  # fmt: skip
 
 

@@ -75,10 +75,10 @@ def press_curves(
 
     Raises what `predict` raises, and InputError where the range ends before the plate has moved.
     """
-    free = replace(sensor, depth=depth, steps=steps, gauge_limit=np.inf)
+    free = sensor.replace(depth=depth, steps=steps, gauge_limit=np.inf)
     prediction = predict("", free, list(pressures), model=model)
     curves = tuple(_curve(free, state, prediction.model) for state in prediction.states)
-    limits = replace(prediction.limits, gauge=sensor.gauge_limit)
+    limits = replace(prediction.limits, gauge=sensor.gas.gauge_limit)
     return PressCurves(sensor, prediction.model, curves, prediction.inflation, limits)
 
 
@@ -87,7 +87,7 @@ def _curve(sensor: Sensor, state: SensorState, model: str) -> PressCurve:
     ending = next((event for event in state.events if event.ends_range), None)
     ends = None if ending is None else (ending.kind, state.range_end)
     if ends is not None and state.range_end > 0:
-        shorter = replace(sensor, depth=state.range_end * (1 - _SHORT))
+        shorter = sensor.replace(depth=state.range_end * (1 - _SHORT))
         state = predict("", shorter, [state.driving_pressure], model=model).states[0]
     keep = (state.indentation <= state.range_end * (1 + _ROUNDING)) & np.isfinite(state.force)
     if keep.sum() < _LEAST_POINTS:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -72,8 +72,8 @@ class SimulatedSpecimens:
     def sensor(self, nominal: Sensor, k: int, factor: float = 1.0) -> Sensor:
         """The k-th specimen of a nominal sensor, its modulus times ``factor`` for its age."""
         stiffer = stiffened(nominal, float(self.modulus[k]) * factor)
-        wall = max(nominal.wall_thickness + float(self.wall[k]), _LEAST_WALL * nominal.wall_thickness)
-        return replace(stiffer, wall_thickness=wall, dead_volume=nominal.dead_volume + float(self.dead_volume[k]))
+        wall = max(nominal.dome.wall_thickness + float(self.wall[k]), _LEAST_WALL * nominal.dome.wall_thickness)
+        return stiffer.replace(wall_thickness=wall, dead_volume=nominal.gas.dead_volume + float(self.dead_volume[k]))
 
 
 def ageing_factor(scatter: ScatterModel, days: float) -> float:
@@ -86,8 +86,8 @@ def ageing_factor(scatter: ScatterModel, days: float) -> float:
 
 def stiffened(sensor: Sensor, factor: float) -> Sensor:
     """The sensor with every modulus of its wall times ``factor``."""
-    law = sensor.law
+    law = sensor.wall.law
     if law is not None:
         name, constants = law
         law = name, tuple(c if name == "ogden" and k % 2 else c * factor for k, c in enumerate(constants))
-    return replace(sensor, shear_modulus=sensor.shear_modulus * factor, law=law)
+    return sensor.replace(shear_modulus=sensor.wall.shear_modulus * factor, law=law)

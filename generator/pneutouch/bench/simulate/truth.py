@@ -161,8 +161,8 @@ def population(pressed: PressCurves, k: int, truth: SimulationTruth, rate: float
     figures are the nominal sensor's and there is no spread but the runs'.
     """
     sensor, curve = pressed.sensor, pressed.curves[k]
-    nominal = specimen_figures(curve, truth, sensor.inner_radius, rate)
-    steps = truth.protocol("steps", sensor.inner_radius, curve.reach)
+    nominal = specimen_figures(curve, truth, sensor.dome.inner_radius, rate)
+    steps = truth.protocol("steps", sensor.dome.inner_radius, curve.reach)
     drawn = _drawn(sensor, curve.driving, steps, truth, seed)
     if drawn is None:
         return Population(
@@ -190,13 +190,13 @@ def _drawn(
     from pneutouch.mechanics.atlas_states import outside_atlas
 
     depth = max(steps.depths)
-    nominal = replace(sensor, depth=depth, gauge_limit=np.inf)
+    nominal = sensor.replace(depth=depth, gauge_limit=np.inf)
     if outside_atlas(nominal) is not None:
         return None
     count = truth.specimens
     some = SimulatedSpecimens.draw(truth.scatter, count, np.random.default_rng([*seed, count]))
     batch = batch_of(nominal, np.full(count + 1, driving))
-    wall = np.maximum(batch.wall_thickness[1:] + some.wall, 0.05 * sensor.wall_thickness)
+    wall = np.maximum(batch.wall_thickness[1:] + some.wall, 0.05 * sensor.dome.wall_thickness)
     batch = replace(
         batch, shear_modulus=batch.shear_modulus * np.concatenate([[1.0], some.modulus]),
         wall_thickness=np.concatenate([batch.wall_thickness[:1], wall]),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -87,7 +87,7 @@ def describe(sensor: Sensor, material: Material, driving_pressures: Sequence[flo
 
 def chosen_depth(sensor: Sensor, range_ends: Sequence[float]) -> float:
     """Depth of the runs in mm: a share of R0, within the range of every state."""
-    return float(min(DEPTH_SHARE * sensor.inner_radius, sensor.depth, *range_ends))
+    return float(min(DEPTH_SHARE * sensor.dome.inner_radius, sensor.protocol.depth, *range_ends))
 
 
 def ageing_shift(sensor: Sensor, material: Material, driving_pressures: Sequence[float]) -> tuple[float, Array]:
@@ -96,8 +96,10 @@ def ageing_shift(sensor: Sensor, material: Material, driving_pressures: Sequence
     Raises InputError where the resin's hardness after a year is not known.
     """
     ratio = ageing_ratio(material)
-    old = replace(sensor, shear_modulus=ratio * sensor.shear_modulus)
-    before, after = (respond(batch_of(one, driving_pressures), one.steps).lines.sensitivity for one in (sensor, old))
+    old = sensor.replace(shear_modulus=ratio * sensor.wall.shear_modulus)
+    before, after = (
+        respond(batch_of(one, driving_pressures), one.protocol.steps).lines.sensitivity for one in (sensor, old)
+    )
     return ratio, after / before - 1.0
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -67,4 +67,4 @@ def prony_series(material: Material) -> tuple[Prony, ...]:
 def relaxed(sensor: Sensor, material: Material, series: Prony) -> Sensor:
     """A sensor with its relaxed modulus, where that of its resin's file is relaxed or instantaneous as the file says."""
     share = series.relaxed_share if material.shear_modulus_is == "instantaneous" else 1.0
-    return replace(sensor, shear_modulus=share * sensor.shear_modulus)
+    return sensor.replace(shear_modulus=share * sensor.wall.shear_modulus)

@@ -158,7 +158,7 @@ def _followed(
     shape = (len(batch), clock.size)
     path = follow(
         press, np.tile(excess, (many, 1)), np.tile(times, (many, 1)), np.broadcast_to(clock, shape),
-        np.broadcast_to(travel / sensor.inner_radius, shape),
+        np.broadcast_to(travel / sensor.dome.inner_radius, shape),
     )  # fmt: skip
     return press, path
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from pneutouch.mechanics import Sensor
@@ -22,7 +20,7 @@ def check(view: PrintView) -> list[Finding]:
     part = None if context is None else view.part(context.membrane)
     if context is None or part is None:
         return []
-    printer, wall = part.item.printer, context.sensor.wall_thickness
+    printer, wall = part.item.printer, context.sensor.dome.wall_thickness
     layer = UM * part.item.mode.layer_height_um
     pixel = UM * max(printer.resolution.x_um, printer.resolution.y_um)
     upright = abs(part.item.up[2]) / float(np.linalg.norm(part.item.up)) > 0.7
@@ -41,7 +39,7 @@ def _check(context: SensorContext, part: PrintPart, where: str, unit: str, step:
         f"the wall at the {where} is {count:.1f} {unit} of {step / UM:g} um: it prints as {low:.3f} or {high:.3f} mm"
         f"{_sensitivities(context.sensor, context.prediction.states[-1].driving_pressure, low, high)}"
     )
-    radius = context.sensor.inner_radius + 0.5 * wall
+    radius = context.sensor.dome.inner_radius + 0.5 * wall
     at = (0.0, 0.0, radius) if where == "pole" else (radius, 0.0, 0.0)
     fix = part.item.hints.get("layers", f"draw the wall {round(count) * step:.3f} mm thick")
     return Finding("layers", "note", part.name, text, fix, _SOURCE, at, Excess(off, _OFF, unit))
@@ -55,10 +53,10 @@ def _sensitivities(sensor: Sensor, pressure: float, low: float, high: float) -> 
 
     found = []
     for wall in (low, high):
-        other = replace(sensor, wall_thickness=wall)
+        other = sensor.replace(wall_thickness=wall)
         if outside_atlas(other) is not None:
             return ""
-        response = respond(batch_of(other, [pressure]), sensor.steps)
+        response = respond(batch_of(other, [pressure]), sensor.protocol.steps)
         value = float(response.lines.sensitivity[0])
         if response.ends[0] == OUTSIDE or not np.isfinite(value):
             return ""

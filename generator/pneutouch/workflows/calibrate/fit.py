@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -96,7 +96,9 @@ def calibrate(
     """
     built = sensor_of(assemble(scene))
     # The depth is the design's wish; what the atlas has of the measured travels is decided point by point.
-    built = replace(built, ambient_pressure=observations.ambient, depth=min(built.depth, 0.75 * built.inner_radius))
+    built = built.replace(
+        ambient_pressure=observations.ambient, depth=min(built.protocol.depth, 0.75 * built.dome.inner_radius)
+    )
     chosen = parameters(built, scene.membrane_material, scene.printer, names, priors=priors)
     found = fit(observations, built, chosen)
     held = tuple(predict_held_out(observations, built, chosen, pressure) for pressure in hold_out)

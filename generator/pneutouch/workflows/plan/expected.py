@@ -132,7 +132,7 @@ def travel_warnings(depths: tuple[float, ...], rig: Rig) -> list[PlanViolation]:
 
 def injection(pressed: PressCurves, rig: Rig) -> dict[str, Any]:
     """Pressures after round volumes of room air, into the closed line and into the unpressed sensor; kPa, null where unknown."""
-    sensor, ambient = pressed.sensor, pressed.sensor.ambient_pressure
+    sensor, ambient = pressed.sensor, pressed.sensor.gas.ambient_pressure
     volumes = np.array(ROUND)
     bare = sensor_pressure(volumes, pressed.inflation, 0.0, ambient)
     ceiling = min(_OF_RATED * RATED_SHARE * pressed.limits.lowest, _OF_RANGE * rig.pressure_range_kPa * KPA)
@@ -140,17 +140,17 @@ def injection(pressed: PressCurves, rig: Rig) -> dict[str, Any]:
     fits = np.flatnonzero(np.nan_to_num(bare, nan=np.inf) <= ceiling)
     into_sensor = None if not fits.size else float(volumes[fits[-1]])
     into_line = None
-    if sensor.dead_volume > 0:
-        line = line_pressure(volumes, sensor.dead_volume, ambient)
+    if sensor.gas.dead_volume > 0:
+        line = line_pressure(volumes, sensor.gas.dead_volume, ambient)
         fits = np.flatnonzero(line <= _OF_RANGE * rig.pressure_range_kPa * KPA)
         into_line = None if not fits.size else float(volumes[fits[-1]])
     rows = [] if into_sensor is None else _rows(pressed, into_sensor)
     return {
-        "dead_volume_mL": sensor.dead_volume / ML, "cavity_volume_mL": float(pressed.inflation.volume[0]) / ML,
+        "dead_volume_mL": sensor.gas.dead_volume / ML, "cavity_volume_mL": float(pressed.inflation.volume[0]) / ML,
         "sensor_volume_mL": None if into_sensor is None else into_sensor / ML, "sensor": rows,
         "more_dead_volume_mL": MORE / ML,
         "line_volume_mL": None if into_line is None else into_line / ML,
-        "line_pressure_kPa": None if into_line is None else float(line_pressure(np.array(into_line), sensor.dead_volume, ambient)) / KPA,
+        "line_pressure_kPa": None if into_line is None else float(line_pressure(np.array(into_line), sensor.gas.dead_volume, ambient)) / KPA,
     }  # fmt: skip
 
 
@@ -158,8 +158,8 @@ def _rows(pressed: PressCurves, most: float) -> list[dict[str, float]]:
     sensor = pressed.sensor
     volumes = np.linspace(0.2, 1.0, 5) * most
     stated, bare, more = (
-        sensor_pressure(volumes, pressed.inflation, dead, sensor.ambient_pressure) / KPA
-        for dead in (sensor.dead_volume, 0.0, sensor.dead_volume + MORE)
+        sensor_pressure(volumes, pressed.inflation, dead, sensor.gas.ambient_pressure) / KPA
+        for dead in (sensor.gas.dead_volume, 0.0, sensor.gas.dead_volume + MORE)
     )
     return [
         {

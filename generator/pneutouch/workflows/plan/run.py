@@ -80,7 +80,7 @@ def make_plan(
         "name": f"{scene.name}-plan", "design": scene.name, "title": scene.design.document.title,
         "inner_radius_mm": membrane.inner_radius_mm, "wall_thickness_mm": membrane.wall_thickness_mm,
         "ambient_pressure_kPa": pneumatics.ambient_pressure_kPa, "driving_pressures_kPa": pneumatics.driving_pressures_kPa,
-        "dead_volume_mL": subjects[0].sensor.dead_volume / ML, "clearance_mm": CLEARANCE,
+        "dead_volume_mL": subjects[0].sensor.gas.dead_volume / ML, "clearance_mm": CLEARANCE,
         "plate_diameter_mm": scene.design.indentation.plate_diameter_mm,
         "rig": {**rig.model_dump(mode="json"), "file": rig_name or None},
         "sensors": [{"sensor": f"{s.name}-{k + 1}", "resin": s.name} for s in subjects for k in range(specimens)],
@@ -126,7 +126,7 @@ def plated_tests(subject: SimulatedResin) -> Tests:
         "steps": driving, "loop": driving, "saturation": tuple(sorted({SATURATION[0], top})),
         "relaxation": tuple(sorted({0.0, driving[-1]})),
     }  # fmt: skip
-    return {kind: (protocol(kind, subject.sensor.inner_radius), at) for kind, at in pressures.items()}
+    return {kind: (protocol(kind, subject.sensor.dome.inner_radius), at) for kind, at in pressures.items()}
 
 
 def _times(kind: str) -> int:

@@ -52,7 +52,7 @@ def inputs(run: ScanRun) -> dict[str, Any]:
     asked = run.asked
     return {
         "specimen": specimen_inputs(run.specimen), "design": design.design.model_dump(mode="json"),
-        "membrane": design.membrane_material.model_dump(mode="json"), "dead_volume_mm3": rounded(run.sensor.dead_volume, _DIGITS),
+        "membrane": design.membrane_material.model_dump(mode="json"), "dead_volume_mm3": rounded(run.sensor.gas.dead_volume, _DIGITS),
         "pressures_kPa": [rounded(p / KPA, _DIGITS) for p in asked.pressures], "preload_N": asked.preload, "control": asked.control,
         "speed_mm_per_s": run.way.speed, "noise_kPa": asked.noise / KPA, "seed": asked.seed,
         "data": [path.name for path in asked.data],

@@ -94,27 +94,27 @@ def candidates(scene: ResolvedDesign, sensor: Sensor, library: Library) -> DomeC
     least = feature.least or feature.recommended
     resins = {
         name: own for name, material in sorted(elastomers(library).items())
-        if scene.printer.mode_for(material) is not None and (own := material_sensor(material)).law is None
-        and own.poisson_ratio == recipe.poisson_ratio and sensor.ambient_pressure <= recipe.stiffest * own.shear_modulus
+        if scene.printer.mode_for(material) is not None and (own := material_sensor(material)).wall.law is None
+        and own.wall.poisson_ratio == recipe.poisson_ratio and sensor.gas.ambient_pressure <= recipe.stiffest * own.wall.shear_modulus
     }  # fmt: skip
     if not resins:
         raise InputError(f"{scene.where}: print.profile: the {scene.printer.title} runs no resin that the atlas knows")
     ratios = np.geomspace(recipe.thinnest, recipe.thickest, _RATIOS)
-    mu = np.array([own.shear_modulus for own in resins.values()])
+    mu = np.array([own.wall.shear_modulus for own in resins.values()])
     resin, ratio, radius, share = _grid(
         np.arange(len(resins), dtype=float), ratios, np.geomspace(_SMALLEST, _LARGEST, _RADII),
         np.linspace(0.0, RATED_SHARE, _PRESSURES),
     )  # fmt: skip
     limit = np.interp(ratio, ratios, shipped().slices(ratios, ()).limit_pressure) * mu[resin.astype(int)]
-    pressure = share * np.minimum(limit, sensor.gauge_limit)
+    pressure = share * np.minimum(limit, sensor.gas.gauge_limit)
     keep = ratio * radius >= least
     dome = np.repeat(np.arange(resin.size // _PRESSURES, dtype=float), _PRESSURES)[keep]
     resin, ratio, radius, pressure = resin[keep], ratio[keep], radius[keep], pressure[keep]
     ones = np.ones(radius.size)
     batch = SensorBatch(
-        radius, ratio * radius, mu[resin.astype(int)], ones * sensor.ambient_pressure, ones * sensor.dead_volume, pressure,
-        radius * min(sensor.depth / sensor.inner_radius, recipe.deepest), ones * sensor.plate_radius,
-        ones * sensor.gauge_limit, ones * np.inf,
+        radius, ratio * radius, mu[resin.astype(int)], ones * sensor.gas.ambient_pressure, ones * sensor.gas.dead_volume, pressure,
+        radius * min(sensor.protocol.depth / sensor.dome.inner_radius, recipe.deepest), ones * sensor.protocol.plate_radius,
+        ones * sensor.gas.gauge_limit, ones * np.inf,
     )  # fmt: skip
     return DomeCandidates(tuple(resins), resin, radius, ratio * radius, dome, batch)
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from pneutouch.catalogue import Library, ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import sensor_of
+from pneutouch.evaluation.variants import in_resin
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
@@ -70,8 +71,8 @@ class GradedSelectionRun:
         setting = self.target.setting
         pressures = sorted({0.0, *(round(p / KPA, 6) for p in self.wish.pressures)})
         found = {
-            "membrane.material": grade_text(self.grade), "membrane.inner_radius_mm": f"{self.sensor.inner_radius:.6g}",
-            "membrane.wall_thickness_mm": f"{self.sensor.wall_thickness:.6g}",
+            "membrane.material": grade_text(self.grade), "membrane.inner_radius_mm": f"{self.sensor.dome.inner_radius:.6g}",
+            "membrane.wall_thickness_mm": f"{self.sensor.dome.wall_thickness:.6g}",
             "pneumatics.driving_pressures_kPa": pressures, "print.profile": setting.profile,
             "pneumatics.tube_length_mm": setting.tube_length_mm, "pneumatics.dead_volume_mL": setting.dead_volume_mL,
         }  # fmt: skip
@@ -92,10 +93,10 @@ def select_graded(
     assert pair is not None
     wish, base = _wish(target), sensor_of(assemble(scene))
     problem = problem_of(target, scene, base, (pair.resin(float(levels(pair.law, 3)[1])),))
-    sensor = replace(base, wall_thickness=_wall(target, where, wish, problem, base))
+    sensor = base.replace(wall_thickness=_wall(target, where, wish, problem, base))
 
     def solve(pole: float, rim: float) -> GradeTrial:
-        return trial_of(_in(sensor, pair.material(pair.grade(pole, rim))), wish.pressures, pole, rim)
+        return trial_of(in_resin(sensor, pair.material(pair.grade(pole, rim))), wish.pressures, pole, rim)
 
     found = grade_search(wish, levels(pair.law, _LEVELS), solve, progress, trials or _TRIALS)
     constants, left_out = _catalogue(scene, sensor, wish, shelves)
@@ -116,11 +117,11 @@ def _wish(target: Target) -> GradeTarget:
 
 def _wall(target: Target, where: str, wish: GradeTarget, problem: SelectionProblem, base: Sensor) -> float:
     """The wall given; else that with which the mix of middle modulus has the sensitivity, else the base's."""
-    radius, room = base.inner_radius, target.target.max_diameter_mm
+    radius, room = base.dome.inner_radius, target.target.max_diameter_mm
     thickest = np.inf if room is None else 0.5 * room - radius
     wall = target.given.wall_thickness_mm
     if wall is None:
-        wall = middle_wall(wish, problem, radius, thickest) or base.wall_thickness
+        wall = middle_wall(wish, problem, radius, thickest) or base.dome.wall_thickness
     if wall > thickest + 1e-9:
         raise InputError(
             f"{where}: target.max_diameter_mm = {room:g}: a dome of inner radius {radius:g} mm and wall {wall:g} mm is "
@@ -131,15 +132,6 @@ def _wall(target: Target, where: str, wish: GradeTarget, problem: SelectionProbl
             f"{where}: given.wall_thickness_mm = {wall:g}: the printer's least wall is {problem.least_wall:g} mm"
         )
     return wall
-
-
-def _in(sensor: Sensor, material: Material) -> Sensor:
-    """The sensor in another material."""
-    own = material_sensor(material)
-    return replace(
-        sensor, shear_modulus=own.shear_modulus, poisson_ratio=own.poisson_ratio, law=own.law, grade=own.grade,
-        break_stretch=own.break_stretch,
-    )  # fmt: skip
 
 
 def _catalogue(
@@ -153,9 +145,9 @@ def _catalogue(
         if scene.printer.mode_for(material) is None:
             out[name] = f"the {scene.printer.title} cannot run it"
         else:
-            found.append((material_sensor(material).shear_modulus, name, material))
+            found.append((material_sensor(material).wall.shear_modulus, name, material))
     order = sorted(found, key=lambda entry: entry[:2])
-    return [UniformMembrane(name, None, trial_of(_in(sensor, m), wish.pressures)) for _, name, m in order], out
+    return [UniformMembrane(name, None, trial_of(in_resin(sensor, m), wish.pressures)) for _, name, m in order], out
 
 
 def _nearest(
@@ -166,12 +158,14 @@ def _nearest(
     fraction = None
     soft = float(pair.law.modulus_at(np.array(0.0)))
     if (
-        material_sensor(middle).poisson_ratio == recipe.poisson_ratio
-        and sensor.ambient_pressure <= recipe.stiffest * soft
+        material_sensor(middle).wall.poisson_ratio == recipe.poisson_ratio
+        and sensor.gas.ambient_pressure <= recipe.stiffest * soft
     ):
-        fraction = nearest_fraction(wish, problem, pair.law, (sensor.inner_radius, sensor.wall_thickness))
+        fraction = nearest_fraction(wish, problem, pair.law, (sensor.dome.inner_radius, sensor.dome.wall_thickness))
     if fraction is None:
         even = [trial for trial in found.trials if trial.pole == trial.rim]
         fraction = min(even, key=lambda trial: max(shares(wish, trial).values())).pole
     grade = pair.grade(round(fraction, 4))
-    return UniformMembrane(grade.label, grade.fractions[0], trial_of(_in(sensor, pair.material(grade)), wish.pressures))
+    return UniformMembrane(
+        grade.label, grade.fractions[0], trial_of(in_resin(sensor, pair.material(grade)), wish.pressures)
+    )

@@ -22,9 +22,9 @@ def graded_document(selection: GradedSelectionRun) -> dict[str, Any]:
         "met": search.met,
         "design": {
             "material": selection.grade.model_dump(by_alias=True, exclude_none=True),
-            "inner_radius_mm": sensor.inner_radius,
-            "wall_thickness_mm": sensor.wall_thickness,
-            "dead_volume_mL": sensor.dead_volume / ML,
+            "inner_radius_mm": sensor.dome.inner_radius,
+            "wall_thickness_mm": sensor.dome.wall_thickness,
+            "dead_volume_mL": sensor.gas.dead_volume / ML,
             **_figures(selection, search.best),
             "share_used": shares(selection.wish, search.best),
             "set": selection.assignments(),

@@ -50,7 +50,7 @@ class ResinPair:
         grade = self.grade(fraction)
         material = self.material(grade)
         own = material_sensor(material)
-        return CandidateResin(grade.label, material, own.shear_modulus, own.break_stretch or np.inf, grade)
+        return CandidateResin(grade.label, material, own.wall.shear_modulus, own.wall.break_stretch or np.inf, grade)
 
 
 def pair_of(name: str, printer: Printer, library: Library, where: str, asked: bool = True) -> ResinPair:
@@ -77,9 +77,9 @@ def mix_resins(
     for fraction in levels(pair.law):
         resin = pair.resin(round(float(fraction), 4))
         own = material_sensor(resin.material)
-        if own.law is not None or own.poisson_ratio != recipe.poisson_ratio:
+        if own.wall.law is not None or own.wall.poisson_ratio != recipe.poisson_ratio:
             out[resin.name] = "the atlas knows neither its law nor its Poisson ratio"
-        elif ambient_pressure > recipe.stiffest * own.shear_modulus:
+        elif ambient_pressure > recipe.stiffest * own.wall.shear_modulus:
             out[resin.name] = "it is too soft for the atlas in so high an ambient pressure"
         else:
             resins.append(resin)

@@ -79,8 +79,7 @@ class SelectionRun:
         """A choice as a sensor, in everything else the base design's."""
         pool, resin = choice.pool, choice.resin
         batch = self.problem.batch(pool.resin, pool.radius, pool.wall, pool.pressure)
-        return replace(
-            _like(self.sensor, batch, 0), depth=float(batch.depth[0]), shear_modulus=resin.shear_modulus, law=None,
+        return _like(self.sensor, batch, 0).replace(depth=float(batch.depth[0]), shear_modulus=resin.shear_modulus, law=None,
             poisson_ratio=self.problem.recipe.poisson_ratio,
             break_stretch=None if np.isinf(resin.break_stretch) else resin.break_stretch,
         )  # fmt: skip
@@ -104,7 +103,7 @@ def select(target: Target, where: str, library: Library | None = None) -> Select
     if pair is None:
         resins, left_out = _resins(target, where, scene, sensor, shelves)
     else:
-        resins, left_out = mix_resins(pair, sensor.ambient_pressure, shipped().recipe)
+        resins, left_out = mix_resins(pair, sensor.gas.ambient_pressure, shipped().recipe)
     problem = problem_of(target, scene, sensor, resins)
     answer = choose(
         problem, (target.weights.robustness, target.weights.tunability), _uncertainty(scene, sensor, shelves),
@@ -187,12 +186,12 @@ def _resins(
         own = material_sensor(material)
         if scene.printer.mode_for(material) is None:
             out[name] = f"the {scene.printer.title} cannot run it"
-        elif own.law is not None or own.poisson_ratio != recipe.poisson_ratio:
+        elif own.wall.law is not None or own.wall.poisson_ratio != recipe.poisson_ratio:
             out[name] = "the atlas knows neither its law nor its Poisson ratio"
-        elif sensor.ambient_pressure > recipe.stiffest * own.shear_modulus:
+        elif sensor.gas.ambient_pressure > recipe.stiffest * own.wall.shear_modulus:
             out[name] = "it is too soft for the atlas in so high an ambient pressure"
         else:
-            resins.append(CandidateResin(name, material, own.shear_modulus, own.break_stretch or np.inf))
+            resins.append(CandidateResin(name, material, own.wall.shear_modulus, own.wall.break_stretch or np.inf))
     return tuple(resins), out
 
 
@@ -207,9 +206,9 @@ def problem_of(
         driving_pressure=None if wanted.driving_pressure_kPa is None else wanted.driving_pressure_kPa * KPA,
         force_range=wanted.force_range_N, stiffness=(wanted.stiffness_least_N_per_mm, wanted.stiffness_most_N_per_mm),
         max_diameter=wanted.max_diameter_mm, inner_radius=given.inner_radius_mm, wall_thickness=given.wall_thickness_mm,
-        least_wall=feature.least or feature.recommended, ambient_pressure=sensor.ambient_pressure,
-        dead_volume=_dead_volume(scene, sensor), plate_radius=sensor.plate_radius, gauge_limit=sensor.gauge_limit,
-        depth_share=min(sensor.depth / sensor.inner_radius, shipped().recipe.deepest), steps=sensor.steps,
+        least_wall=feature.least or feature.recommended, ambient_pressure=sensor.gas.ambient_pressure,
+        dead_volume=_dead_volume(scene, sensor), plate_radius=sensor.protocol.plate_radius, gauge_limit=sensor.gas.gauge_limit,
+        depth_share=min(sensor.protocol.depth / sensor.dome.inner_radius, shipped().recipe.deepest), steps=sensor.protocol.steps,
         recipe=shipped().recipe,
     )  # fmt: skip
 
@@ -217,11 +216,11 @@ def problem_of(
 def _dead_volume(scene: ResolvedDesign, sensor: Sensor) -> Callable[[Array], Array]:
     """Dead volume (mm3) over the inner radius: drawn at a few radii where the connector's channel follows it."""
     if scene.design.pneumatics.dead_volume_mL is not None:
-        return lambda radius: np.full_like(radius, sensor.dead_volume)
+        return lambda radius: np.full_like(radius, sensor.gas.dead_volume)
     radii = np.geomspace(2.0, 60.0, _DEAD_VOLUMES)
     known = [(radius, volume) for radius in radii if (volume := _drawn(scene, float(radius))) is not None]
     if not known:
-        return lambda radius: np.full_like(radius, sensor.dead_volume)
+        return lambda radius: np.full_like(radius, sensor.gas.dead_volume)
     at, volumes = np.array(known).T
     return lambda radius: np.interp(radius, at, volumes)
 
@@ -258,8 +257,7 @@ def _uncertainty(
 
 
 def _like(sensor: Sensor, batch: SensorBatch, i: int) -> Sensor:
-    return replace(
-        sensor, inner_radius=float(batch.inner_radius[i]), wall_thickness=float(batch.wall_thickness[i]),
+    return sensor.replace(inner_radius=float(batch.inner_radius[i]), wall_thickness=float(batch.wall_thickness[i]),
         dead_volume=float(batch.dead_volume[i]), flange=None,
     )  # fmt: skip
 

@@ -153,7 +153,7 @@ def _pressures(subject: SimulatedResin, asked: SimulationOptions) -> list[float]
 
 def _depth(subject: SimulatedResin, asked: SimulationOptions) -> float:
     """The deepest plate travel of the kinds asked for, mm."""
-    reach = subject.sensor.inner_radius
+    reach = subject.sensor.dome.inner_radius
     kinds = [kind for kind in asked.kinds if kind in PRESSED] or ["steps"]
     return max(max(subject.truth.protocol(kind, reach, np.inf).depths) for kind in kinds)
 
@@ -183,14 +183,14 @@ def _specimen(
     sensor = aged(drawn.sensor(subject.sensor, 0), subject.truth, age)
     found = _pressed(subject, sensor, asked, name)
     known: dict[str, Any] = {
-        "resin": subject.name, "age_days": age, "shear_modulus_MPa": sensor.material.mu, "pressures": {},
-        "wall_thickness_mm": sensor.wall_thickness, "dead_volume_mL": sensor.dead_volume / ML, "model": found.model,
+        "resin": subject.name, "age_days": age, "shear_modulus_MPa": sensor.wall.hyperelastic.mu, "pressures": {},
+        "wall_thickness_mm": sensor.dome.wall_thickness, "dead_volume_mL": sensor.gas.dead_volume / ML, "model": found.model,
     }  # fmt: skip
     truth["specimens"][_label(name, age, asked)] = known
     truth["done"] = truth.get("done", 0) + 1
     for place, (pressure, curve) in enumerate(zip(_pressures(subject, asked), found.curves, strict=True)):
         known["pressures"][f"{pressure:g}"] = {
-            **specimen_figures(curve, subject.truth, sensor.inner_radius, asked.rate),
+            **specimen_figures(curve, subject.truth, sensor.dome.inner_radius, asked.rate),
             "range_end_mm": curve.reach, "range_ends_by": None if curve.ends is None else curve.ends[0],
         }  # fmt: skip
         for kind in asked.kinds:
@@ -213,7 +213,7 @@ def _specimen(
 def _note_end(
     run: CampaignRun, subject: SimulatedResin, reach: float, ends: tuple[str, float] | None, truth: dict[str, Any]
 ) -> None:
-    wanted = max(subject.truth.protocol(run.kind, subject.sensor.inner_radius, np.inf).depths)
+    wanted = max(subject.truth.protocol(run.kind, subject.sensor.dome.inner_radius, np.inf).depths)
     if ends is not None and wanted > reach * (1 + 1e-9):
         truth["notes"].append(f"{run.label}: stops at {reach:.2f} mm instead of {wanted:.2f} mm, before {ends[0]}")
 
@@ -229,14 +229,14 @@ def _columns(
     """The columns of one run in the units of its file."""
     truth, curve, sensor = subject.truth, found.curves[place], found.sensor
     if kind == "injection":
-        pressure = sensor_pressure(PUSHED, found.inflation, sensor.dead_volume, sensor.ambient_pressure)
+        pressure = sensor_pressure(PUSHED, found.inflation, sensor.gas.dead_volume, sensor.gas.ambient_pressure)
         read = pressure + truth.rig.noise(asked.rate)[1] * rng.standard_normal(PUSHED.size)
         keep = np.isfinite(pressure)
         return {"volume_mL": PUSHED[keep] / ML, "pressure_kPa": truth.rig.stepped(read[keep]) / KPA}
     if kind == "leak":
         still = simulate_leak(curve.driving, LEAK_SECONDS, truth.rig, asked.rate, rng)
         return {"time_s": still.time, "pressure_kPa": still.pressure / KPA}
-    asked_for = truth.protocol(kind, sensor.inner_radius, curve.reach)
+    asked_for = truth.protocol(kind, sensor.dome.inner_radius, curve.reach)
     record: RecordSamples = simulate_run(
         curve, asked_for, truth.rig, asked.rate, rng, wall=truth.wall, scatter=truth.scatter
     )
