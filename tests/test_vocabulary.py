@@ -11,21 +11,16 @@ from tests.vocabulary import PACKAGE, VOCABULARY, covered, in_file, in_python, p
 
 NOT_YET_CLEAN = {
     "bench",
-    "body",
     "catalogue",
     "cli",
-    "errors",
     "evaluation",
     "export",
     "mechanics",
-    "meridian",
     "output",
     "parts",
-    "pipeline",
     "printability",
     "report",
     "selection",
-    "spec",
     "texture",
     "workflows",
 }

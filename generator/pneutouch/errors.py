@@ -43,7 +43,7 @@ class PneutouchError(Exception):
         self.others: tuple[PneutouchError, ...] = ()
 
     def message(self, option: Callable[[str], str | None] = lambda parameter: None) -> str:
-        """The whole message; ``option`` translates a parameter's name into what the reader knows it by, or None."""
+        """The whole message; ``option`` translates a parameter's name into the name that the reader uses, or None."""
         known = option(self.key) if self.key and not self.file else None
         if known:
             value = f"{self.value:g}" if isinstance(self.value, float) else self.value
@@ -52,14 +52,14 @@ class PneutouchError(Exception):
             place = self.key or "" if self.value is None else f"{self.key} = {_short(self.value)}"
         text = self.problem if not self.remedy else f"{self.problem}; {self.remedy}"
         text = re.sub(r"`(\w+)`", lambda name: option(name[1]) or name[0], text)
-        own = ": ".join(part for part in (self.file, place, text) if part)
-        return "\n".join((own, *(error.message(option) for error in self.others)))
+        first = ": ".join(part for part in (self.file, place, text) if part)
+        return "\n".join((first, *(error.message(option) for error in self.others)))
 
     def __str__(self) -> str:
         return self.message()
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Survive the way from one process to another, whatever a subclass asks for."""
+        """Let errors pass between processes, with any parameters of a subclass."""
         return _restored, (type(self), self.args), self.__dict__
 
 
@@ -76,13 +76,13 @@ class InputError(PneutouchError):
 
 
 class ComputationError(PneutouchError):
-    """A computation stopped: says where, why, and what to try."""
+    """A computation stopped; the message states where, why, and a remedy."""
 
     exit_code = 3
 
 
 class BeyondLimitError(ComputationError):
-    """A driving pressure beyond the limit point: ``pressure`` asked for and ``limit``, MPa."""
+    """A driving pressure beyond the limit point: the requested ``pressure`` and the ``limit``, MPa."""
 
     def __init__(self, pressure: float, limit: float, problem: str) -> None:
         super().__init__(problem)

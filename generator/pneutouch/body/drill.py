@@ -64,10 +64,10 @@ def _faces(rings: RevolvedRings, bores: tuple[Bore, ...]) -> dict[int, list[int]
     faces: dict[int, list[int]] = {}
     for index, bore in enumerate(bores):
         for height in ([bore.low] if bore.closed != "low" else []) + ([bore.high] if bore.closed != "high" else []):
-            found = [k for k in range(len(rings.pairs)) if _holds(rings, k, bore, height)]
-            if len(found) != 1:
+            hits = [k for k in range(len(rings.pairs)) if _holds(rings, k, bore, height)]
+            if len(hits) != 1:
                 return None
-            faces.setdefault(found[0], []).append(index)
+            faces.setdefault(hits[0], []).append(index)
     together = [(a, b) for inside in faces.values() for a in inside for b in inside if a < b]
     apart = all(
         math.hypot(bores[a].x - bores[b].x, bores[a].y - bores[b].y) > bores[a].radius + bores[b].radius + _CLEAR
@@ -94,7 +94,7 @@ def _circle(bore: Bore, count: int, height: float) -> Array:
 
 
 def _perforated(points: Array, rings: RevolvedRings, k: int, holes: list[_Hole]) -> Indices:
-    """A flat strip with holes, facing the way the strip did."""
+    """A flat strip with holes, facing as the strip did."""
     from manifold3d import triangulate
 
     first, second = rings.pairs[k]
@@ -109,9 +109,9 @@ def _perforated(points: Array, rings: RevolvedRings, k: int, holes: list[_Hole])
         loops.append(np.arange(start, start + hole.count)[::-1])
     index = np.concatenate(loops)
     flat = triangulate([np.ascontiguousarray(points[loop, :2]) for loop in loops])
-    found: Indices = index[np.asarray(flat)].astype(np.int64)
+    triangles: Indices = index[np.asarray(flat)].astype(np.int64)
     # A meridian runs counter-clockwise: it goes inwards over a face that looks up.
-    return found if inwards else found[:, ::-1]
+    return triangles if inwards else triangles[:, ::-1]
 
 
 def _wall(hole: _Hole) -> list[Indices]:

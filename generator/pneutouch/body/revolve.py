@@ -42,7 +42,7 @@ def widen(count: int) -> float:
 class RevolvedRings:
     """A revolved meridian before its strips are put together.
 
-    ``starts`` and ``counts`` say where a ring's vertices lie; ``pairs`` are the two rings of each strip, in the order
+    ``starts`` and ``counts`` locate the vertices of a ring; ``pairs`` are the two rings of each strip, in the order
     of the meridian, and ``strips`` their triangles.
     """
 
@@ -69,7 +69,7 @@ def revolve_rings(meridian: Meridian, tolerance: float) -> RevolvedRings:
         pairs.append((len(rings) - 1, 0))
     strips = []
     for a, b in pairs:
-        # Always zip from the smaller ring, so that a face comes out the same whichever way it is walked.
+        # Always zip from the smaller ring, so that a face is the same for both directions.
         swap = (rings[a].radius, rings[a].height) > (rings[b].radius, rings[b].height)
         one, other = (b, a) if swap else (a, b)
         strip = _zip(starts[one], counts[one], starts[other], counts[other])

@@ -31,13 +31,13 @@ class Window:
         return square
 
     def within(self, low: Array, high: Array) -> tuple[slice, slice]:
-        """Rows and columns inside a box of corners (at least 2,); x and y may run either way."""
+        """Rows and columns inside a box of corners (at least 2,); x and y may rise or fall."""
         return _span(self.y, low[1], high[1]), _span(self.x, low[0], high[0])
 
 
 @dataclass(frozen=True)
 class _Tool:
-    """A shape beside the base, with the box it lies in."""
+    """A shape that is added or cut, with its bounding box."""
 
     shape: Shape
     low: Array

@@ -42,7 +42,7 @@ class Frame:
 
 
 class Shape(Protocol):
-    """What a solid asks of its shapes; lengths in mm."""
+    """What a solid requires of its shapes; lengths in mm."""
 
     def volume(self) -> float:
         """Exact volume, mm3."""
@@ -104,11 +104,11 @@ class Prism:
         """Distances (n,) of points (n, 3) from the surface, mm."""
         local = self.frame.into(points)
         plane, height = local[:, :2], local[:, 2]
-        beside: Array = np.min([piece.distance(plane) for piece in self.outline], axis=0)
+        across: Array = np.min([piece.distance(plane) for piece in self.outline], axis=0)
         axial = np.maximum(np.maximum(self.low - height, height - self.high), 0.0)
         to_face = np.minimum(np.abs(height - self.low), np.abs(height - self.high))
         inside = _inside(plane, polygon(self.outline, 1e-4))
-        nearest: Array = np.minimum(np.hypot(beside, axial), np.where(inside, to_face, np.hypot(beside, to_face)))
+        nearest: Array = np.minimum(np.hypot(across, axial), np.where(inside, to_face, np.hypot(across, to_face)))
         return nearest
 
 

@@ -38,7 +38,7 @@ class RisingPiece:
         (r0, z0), (r1, z1) = piece.start, piece.end
         if r0 == r1:
             return np.full(np.shape(level), r0)
-        # From the lower end whichever way the piece runs: two bodies that share it get the same numbers.
+        # From the lower end for either direction of the piece: two bodies that share it get the same numbers.
         (r0, z0), (r1, z1) = sorted([(r0, z0), (r1, z1)], key=lambda point: point[1])
         return np.asarray(r0 + (level - z0) * ((r1 - r0) / (z1 - z0)))
 
@@ -48,19 +48,19 @@ def rises(outline: Sequence[Segment]) -> tuple[RisingPiece, ...]:
     if math.dist(outline[0].start, outline[-1].end) > _ON_AXIS:
         outline = [*outline, Line(outline[-1].end, outline[0].start, "axis")]
     starts = [piece.start[1] for piece in outline]
-    found: list[RisingPiece] = []
+    pieces: list[RisingPiece] = []
     for k, piece in enumerate(outline):
         # Levels where pieces meet are taken from one of them, so that rounding opens no gap between them.
         for first, last, side in _monotone(piece, starts[k], starts[(k + 1) % len(starts)]):
             if first != last:
-                found.append(RisingPiece(min(first, last), max(first, last), piece, side))
-    return tuple(found)
+                pieces.append(RisingPiece(min(first, last), max(first, last), piece, side))
+    return tuple(pieces)
 
 
 def crossings(parts: Sequence[RisingPiece], level: float) -> list[float]:
     """First coordinates, in order and even in number, at which a level crosses the outline: in, out, in, out."""
-    found = [float(part.at(np.asarray(level))) for part in parts if part.low <= level < part.high]
-    return sorted(0.0 if abs(r) < _ON_AXIS else r for r in found)
+    radii = [float(part.at(np.asarray(level))) for part in parts if part.low <= level < part.high]
+    return sorted(0.0 if abs(r) < _ON_AXIS else r for r in radii)
 
 
 def encloses(parts: Sequence[RisingPiece], along: Array, level: Array) -> Flags:

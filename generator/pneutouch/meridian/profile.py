@@ -50,7 +50,7 @@ class Meridian:
         return sum(piece.swept() for piece in self.pieces)
 
     def swept(self, tag: str) -> float:
-        """Volume between the axis and the faces with ``tag``, mm3, whichever way they run."""
+        """Volume between the axis and the faces with ``tag``, mm3, for either direction of the faces."""
         return abs(sum(piece.swept() for piece in self.tagged(tag)))
 
     def tagged(self, tag: str) -> list[Segment]:

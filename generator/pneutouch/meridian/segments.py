@@ -14,7 +14,7 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """A straight piece from ``start`` to ``end``; ``tag`` says which face it sweeps."""
+    """A straight piece from ``start`` to ``end``; ``tag`` names the face that it sweeps."""
 
     start: Point
     end: Point

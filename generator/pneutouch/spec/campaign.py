@@ -1,4 +1,4 @@
-"""A measurement campaign: which file holds which run of which sensor, on which rig. One TOML beside the runs."""
+"""A measurement campaign: which file holds which run of which sensor, on which rig. One TOML file in the folder of the runs."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Column(Table):
 
     name: str = Field(min_length=1, description="Name in the header of the file.")
     unit: str = Field(min_length=1, description="Unit of its numbers.")
-    sign: Literal[1, -1] = Field(default=1, description="-1 where the rig counts the other way.")
+    sign: Literal[1, -1] = Field(default=1, description="-1 where the rig counts in the opposite direction.")
 
 
 def _column(name: str, unit: str) -> Column:
@@ -105,7 +105,7 @@ class Campaign(Table):
     assignments: list[str] = Field(
         default=[], max_length=100, description="What changes the design, TABLE.KEY=VALUE each."
     )
-    simulated: bool = Field(default=False, description="Whether a program made the files: said on every sheet.")
+    simulated: bool = Field(default=False, description="Whether a program made the files; every sheet states it.")
     ambient_pressure_kPa: float | None = number(  # noqa: N815
         None, unit="kPa", low=20, high=1000, help="Absolute pressure in the laboratory; left out: the design's."
     )

@@ -1,6 +1,6 @@
 """The results file: what a lab read on its coupons, one TOML with one table a coupon and material, printer or design.
 
-An empty list means that it was not measured. A list with readings has at least two, so that a spread can be told.
+An empty list means that it was not measured. A list with readings has at least two, so that a spread can be computed.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def _readings(low: float, high: float, unit: str, least: int = LEAST_READINGS) -
                 raise ValueError(f"reading {place} = {value:g}: must be from {low:g} to {high:g} {unit}".rstrip())
         if values and len(values) < least:
             raise ValueError(
-                f"{values}: at least {least} readings, so that a spread can be told; or [] if not measured"
+                f"{values}: at least {least} readings, so that a spread can be computed; or [] if not measured"
             )
         return values
 
@@ -103,8 +103,8 @@ class MixedCoupons(Table):
 def _rising(points: list[MixedCoupons]) -> list[MixedCoupons]:
     for one, other in pairwise(points):
         if other.fraction <= one.fraction:
-            said = "there twice" if other.fraction == one.fraction else f"after {one.fraction:g}"
-            raise ValueError(f"fraction = {other.fraction:g}: {said}; the fractions must rise, one entry each")
+            place = "there twice" if other.fraction == one.fraction else f"after {one.fraction:g}"
+            raise ValueError(f"fraction = {other.fraction:g}: {place}; the fractions must rise, one entry each")
     return points
 
 
@@ -128,7 +128,7 @@ class GaugeSize(Table):
 
     @property
     def sound(self) -> bool | None:
-        """Whether it came out; None where nothing was said."""
+        """Whether it came out; None where nothing is stated."""
         return True if self.measured_mm else self.came_out
 
 
@@ -173,7 +173,7 @@ class VolumePlug(Table):
 class CouponResults(Table):
     """A whole results file."""
 
-    lab: Printable = Field(min_length=1, max_length=80, description='who measured, such as "Soft lab, room 2"')
+    lab: Printable = Field(min_length=1, max_length=80, description='who measured, such as "Soft lab, bench 2"')
     date: datetime.date = Field(description="a date such as 2026-11-21")
     puck: dict[str, Puck] = Field(default_factory=dict)
     dumbbell: dict[str, Dumbbell] = Field(default_factory=dict)
@@ -215,13 +215,13 @@ def _owner(path: list[str]) -> type[Table]:
     owner: type[Table] = CouponResults
     for step in path:
         field = next((name for name, info in owner.model_fields.items() if step in (name, info.alias)), None)
-        found = None if field is None else _inner(owner, field)
-        owner = found or owner
+        inner = None if field is None else _inner(owner, field)
+        owner = inner or owner
     return owner
 
 
 def _inner(owner: type[Table], field: str) -> type[Table] | None:
     if owner is CouponResults and field == "gauge":
         return Gauge
-    found = table_of(owner, field)
-    return found if found is not None and issubclass(found, Table) else None
+    table = table_of(owner, field)
+    return table if table is not None and issubclass(table, Table) else None

@@ -38,7 +38,7 @@ class DocumentHead(Table):
     title: Printable = Field(default="Pneumatic touch sensor", max_length=80, description="Title of the datasheet.")
     revision: Printable = Field(default="A", max_length=8, description="Revision letter of the design.")
     date: datetime.date | None = Field(
-        default=None, description="Date of the revision; left out, the datasheet says undated."
+        default=None, description="Date of the revision; left out, the datasheet is undated."
     )
 
 

@@ -22,7 +22,7 @@ class Table(BaseModel):
 
 @dataclass(frozen=True, slots=True)
 class Declaration:
-    """What a field's declaration says: ``key`` with ``unit``, bounds, ``default`` and ``help``."""
+    """The declaration of a field: ``key`` with ``unit``, bounds, ``default`` and ``help``."""
 
     key: str
     unit: str

@@ -100,9 +100,9 @@ class Relaxation(Table):
 
 
 class Material(Table):
-    """One cured material. A digital material is told apart by its code and its base resins together."""
+    """One cured material. A digital material is identified by its code together with its base resins."""
 
-    title: str = Field(description="Name as people say it.")
+    title: str = Field(description="Common name.")
     code: str = Field(description="Short form for part numbers.")
     kind: MaterialKind = Field(description="elastomer or rigid.")
     base_resins: list[str] = Field(min_length=1, max_length=3, description="Resins the machine jets.")

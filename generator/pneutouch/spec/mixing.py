@@ -12,7 +12,7 @@ from pneutouch.spec.fields import Table
 class MixingPoint(Table):
     """A point of the curve: the modulus of a catalogue material, or one measured.
 
-    ``fraction_low`` and ``fraction_high`` say how far the fraction may be off where it is not known.
+    ``fraction_low`` and ``fraction_high`` bound the fraction where it is not known.
     """
 
     fraction: float = Field(ge=0, le=1)

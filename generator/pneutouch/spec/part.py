@@ -187,4 +187,4 @@ SEATS: dict[str, type[Part]] = {"glued-flange": GluedFlange, "clamped-flange": C
 MOUNTS: dict[str, type[Part]] = {
     "plain": PlainPlate, "through": BoltCircle, "blind": BoltCircle, "robot-flange": RobotFlange, "sleeve": Sleeve,
 }  # fmt: skip
-"""Models by family: a file says its family, and so which keys it has."""
+"""Models by family: a file states its family, and with it its keys."""

@@ -50,14 +50,14 @@ class Resolution(Table):
 
     @property
     def dpi(self) -> tuple[int, int]:
-        """Dots an inch along x and y: the whole number next to what the rounded steps say."""
+        """Dots an inch along x and y: the integer nearest to the value of the rounded steps."""
         return round(_INCH_UM / self.x_um), round(_INCH_UM / self.y_um)
 
 
 class VoxelPrint(Table):
     """What the machine's voxel print utility takes: a stack of PNG slices on the raster of ``resolution``."""
 
-    colours: int = Field(ge=1, le=8, description="Most colours of a stack beside the background.")
+    colours: int = Field(ge=1, le=8, description="Most colours of a stack, the background not counted.")
     least_slices: int = Field(ge=1, description="Fewest slices of a stack.")
     source: str = Field(min_length=8)
 

@@ -17,7 +17,7 @@ class Quantity(Table):
     source: str = Field(min_length=8, description="Table, page or DOI; how far it was verified.")
 
     @model_validator(mode="after")
-    def _says_something(self) -> Quantity:
+    def _is_not_empty(self) -> Quantity:
         if self.value is None and (self.low is None or self.high is None):
             raise ValueError("give value, or low and high")
         if self.low is not None and self.high is not None and self.low > self.high:

@@ -1,4 +1,4 @@
-"""Read a TOML file into a model, or say which key is wrong and what would be right."""
+"""Read a TOML file into a model, or report which key is wrong and the correct form."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def override(content: dict[str, Any], assignments: list[str], model: type[BaseMo
 
 def _explain(model: type[BaseModel], detail: Any, where: str) -> InputError:
     """The error for one of pydantic's: the key, the value, and what would be right."""
-    # Names in angle brackets tell the kinds of a value apart that may be of several; they are no keys.
+    # Names in angle brackets distinguish the kinds of a value that may be of several; they are no keys.
     path = [str(step) for step in detail["loc"] if not isinstance(step, int) and not str(step).startswith("<")]
     index = next((step for step in detail["loc"] if isinstance(step, int)), None)
     owner: type[BaseModel] | None = model
@@ -82,7 +82,7 @@ def _explain(model: type[BaseModel], detail: Any, where: str) -> InputError:
     if detail["type"] == "literal_error":
         return InputError(f"must be {detail['ctx']['expected']}", file=where, key=key, value=detail["input"])
     label = f"{key}[{index}]" if index is not None else key
-    right = f"{_wanted(detail)}{_right(owner, path)}".strip()
+    right = f"{_expected(detail)}{_right(owner, path)}".strip()
     return InputError(f"must be {right}" if right else detail["msg"], file=where, key=label, value=detail["input"])
 
 
@@ -91,7 +91,7 @@ def _keys(owner: type[BaseModel]) -> list[str]:
     return [field.alias or key for key, field in owner.model_fields.items()]
 
 
-def _wanted(detail: Any) -> str:
+def _expected(detail: Any) -> str:
     """The kind of value a field takes, where the value is of the wrong kind altogether."""
     kinds = {
         "float_type": "a number ", "int_type": "a whole number ", "finite_number": "a finite number ",

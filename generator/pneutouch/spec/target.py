@@ -45,7 +45,7 @@ class TargetFigures(Table):
     )
 
     @model_validator(mode="after")
-    def _says_something(self) -> TargetFigures:
+    def _stiffness_is_ordered(self) -> TargetFigures:
         least, most = self.stiffness_least_N_per_mm, self.stiffness_most_N_per_mm
         if least is not None and most is not None and least > most:
             raise ValueError(
@@ -57,7 +57,7 @@ class TargetFigures(Table):
         return self
 
     @model_validator(mode="after")
-    def _sound_wish_of_a_grade(self) -> TargetFigures:
+    def _requirement_of_a_grade(self) -> TargetFigures:
         both = self.same_sensitivity_at_kPa
         if both is None:
             return self
@@ -78,7 +78,7 @@ class TargetFigures(Table):
 
     @property
     def is_for_a_grade(self) -> bool:
-        """Whether it asks for what only the search of graded membranes answers."""
+        """Whether it requires the search of graded membranes."""
         return self.widest_range or self.same_sensitivity_at_kPa is not None
 
 
@@ -141,24 +141,24 @@ class Target(Table):
 
     @model_validator(mode="after")
     def _fits(self) -> Target:
-        room, radius = self.target.max_diameter_mm, self.given.inner_radius_mm
+        largest, radius = self.target.max_diameter_mm, self.given.inner_radius_mm
         wall = self.given.wall_thickness_mm or 0.0
-        if room is not None and radius is not None and 2 * (radius + wall) > room:
+        if largest is not None and radius is not None and 2 * (radius + wall) > largest:
             raise ValueError(
-                f"target.max_diameter_mm = {room:g} and given.inner_radius_mm = {radius:g} contradict each other: "
+                f"target.max_diameter_mm = {largest:g} and given.inner_radius_mm = {radius:g} contradict each other: "
                 f"the dome alone is {2 * (radius + wall):g} mm wide"
             )
         return self
 
     @model_validator(mode="after")
-    def _grade_and_its_wish(self) -> Target:
-        wanted, graded = self.target, self.given.graded
-        if wanted.is_for_a_grade and not graded:
+    def _grade_and_its_requirement(self) -> Target:
+        target, graded = self.target, self.given.graded
+        if target.is_for_a_grade and not graded:
             raise ValueError("same_sensitivity_at_kPa and widest_range are met by grades; give given.graded = true too")
-        if graded and not wanted.is_for_a_grade:
+        if graded and not target.is_for_a_grade:
             raise ValueError("given.graded needs target.same_sensitivity_at_kPa or target.widest_range")
-        if graded and wanted.sensitivity_kPa_per_N is None:
+        if graded and target.sensitivity_kPa_per_N is None:
             raise ValueError("given.graded needs target.sensitivity_kPa_per_N")
-        if graded and (wanted.stiffness_least_N_per_mm, wanted.stiffness_most_N_per_mm) != (None, None):
+        if graded and (target.stiffness_least_N_per_mm, target.stiffness_most_N_per_mm) != (None, None):
             raise ValueError("the search for a grade takes no bounds on the stiffness; leave them out")
         return self

@@ -1,4 +1,4 @@
-"""A tray file: which designs are printed together, how many of each, and how they are told apart."""
+"""A tray file: which designs are printed together, how many of each, and how they are distinguished."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ LEAST_COPIES, MOST_COPIES = 1, 200
 
 
 def _setting(given: Any) -> Any:
-    """Said once, not once for each kind that it is not."""
+    """One error, not one for each kind that does not match."""
 
     def finite(value: Any) -> bool:
         return isinstance(value, float | int) and not isinstance(value, bool) and math.isfinite(value)
@@ -53,7 +53,7 @@ class Entry(Table):
     ``over`` has at most one key, ``table.key``, with its values; ``set`` holds for all of them.
     """
 
-    design: str = Field(min_length=1, description="name of a design, or a .toml beside the tray file")
+    design: str = Field(min_length=1, description="name of a design, or a .toml in the folder of the tray file")
     copies: int = Field(default=1, ge=LEAST_COPIES, le=MOST_COPIES, description=f"from {LEAST_COPIES} to {MOST_COPIES}")
     over: dict[str, Annotated[list[EntryValue], Field(min_length=1, max_length=50)]] = Field(
         default={}, description='one "table.key" with its values'
