@@ -129,7 +129,7 @@ def compare(case: Case) -> Gap | None:
     force, rise = _differences(lookup, travel, _curve(found.path, travel))
     return Gap(
         case, force.error, rise.error, rise.error * rise.scale / (free.pressure + rise.scale), force.every, rise.every,
-        ours.sensitivity / theirs.sensitivity - 1.0, KPA * float(said.lines.sensitivity[0]) / full.sensitivity - 1.0,
+        ours.sensitivity_kPa_per_N / theirs.sensitivity_kPa_per_N - 1.0, KPA * float(said.lines.sensitivity_kPa_per_N[0]) / full.sensitivity_kPa_per_N - 1.0,
         names, (end, mine), limit, bool(said.near_buckling[0]),
     )  # fmt: skip
 

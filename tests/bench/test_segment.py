@@ -58,7 +58,7 @@ def test_the_sensitivity_is_that_put_in():
     sensor = Sensor(0.3, 1.4, 1.9 * KPA)
     found = curve(record(sensor=sensor), sensor=sensor)
     told = figures(found.indentation, found.force, found.rise / KPA)
-    assert told is not None and told.sensitivity == pytest.approx(1.9, rel=2e-3) and told.r_squared > 0.9999
+    assert told is not None and told.sensitivity_kPa_per_N == pytest.approx(1.9, rel=2e-3) and told.r_squared > 0.9999
 
 
 def test_a_filter_moves_the_onset_by_at_most_the_way_made_in_its_delay():

@@ -34,7 +34,7 @@ def test_widths_are_the_budgets_and_values_the_models(evaluated, library, name, 
     batch, found = own_budget(evaluation, library, near)
     for row, (state, said) in enumerate(zip(evaluation.prediction.states, evaluation.uncertainty, strict=True)):
         values = dict(zip(FIGURES, (
-            state.figures.sensitivity, 1e3 * evaluation.prediction.limits.limit_point, state.figures.stiffness,
+            state.figures.sensitivity_kPa_per_N, 1e3 * evaluation.prediction.limits.limit_point, state.figures.stiffness,
             state.figures.force_range[1], state.range_end, state.apex_outer,
         ), strict=True))  # fmt: skip
         assert said["figures"].keys() == values.keys()

@@ -46,7 +46,7 @@ def test_the_states_are_the_solids(both):
 
 def test_figures_are_the_solids_within_the_stated_error(both):
     for ours, theirs in zip(both[0].states, both[1].states, strict=True):
-        assert ours.figures.sensitivity == pytest.approx(theirs.figures.sensitivity, rel=5e-3)
+        assert ours.figures.sensitivity_kPa_per_N == pytest.approx(theirs.figures.sensitivity_kPa_per_N, rel=5e-3)
         assert ours.figures.stiffness == pytest.approx(theirs.figures.stiffness, rel=5e-3)
         assert ours.figures.r_squared == pytest.approx(theirs.figures.r_squared, abs=1e-3)
 
@@ -96,7 +96,7 @@ def test_the_event_that_ends_a_range_is_the_solids(changes, kind):
     assert mine.kind == other.kind == kind
     assert mine.indentation == pytest.approx(other.indentation, abs=0.01 * sensor.dome.inner_radius)
     assert ours.range_end == mine.indentation
-    assert ours.figures.sensitivity == pytest.approx(theirs.figures.sensitivity, rel=5e-3)
+    assert ours.figures.sensitivity_kPa_per_N == pytest.approx(theirs.figures.sensitivity_kPa_per_N, rel=5e-3)
 
 
 def test_warnings_on_the_way_are_the_solids():
@@ -112,7 +112,7 @@ def test_one_response_one_prediction(both):
     """The vectorised figures and the prediction's are the same numbers."""
     said = respond(batch_of(SENSOR, PRESSURES), SENSOR.protocol.steps)
     for i, state in enumerate(both[0].states):
-        for field in ("sensitivity", "intercept", "r_squared", "stiffness"):
+        for field in ("sensitivity_kPa_per_N", "intercept_kPa", "r_squared", "stiffness"):
             assert getattr(said.lines, field)[i] == pytest.approx(getattr(state.figures, field), rel=1e-5, abs=1e-6)
 
 

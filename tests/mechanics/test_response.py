@@ -16,8 +16,8 @@ def test_a_straight_line_gives_itself_back(slope, intercept, stiffness):
     force = stiffness * depth
     found = figures(depth, force, intercept + slope * force)
     assert found is not None
-    assert found.sensitivity == pytest.approx(slope, rel=1e-9)
-    assert found.intercept == pytest.approx(intercept, abs=1e-8)
+    assert found.sensitivity_kPa_per_N == pytest.approx(slope, rel=1e-9)
+    assert found.intercept_kPa == pytest.approx(intercept, abs=1e-8)
     assert found.stiffness == pytest.approx(stiffness, rel=1e-12)
     assert found.r_squared == pytest.approx(1.0, abs=1e-9)
     assert found.nonlinearity == pytest.approx(0.0, abs=1e-9)
@@ -30,8 +30,8 @@ def test_least_squares_against_the_normal_equations():
     rise = np.array([0.0, 3.0, 5.0, 8.0])
     found = figures(np.array([0.0, 1, 2, 3]), force, rise)
     assert found is not None
-    assert found.sensitivity == pytest.approx(17 / 8.75, rel=1e-12)
-    assert found.sensitivity_through_origin == pytest.approx(45 / 21, rel=1e-12)
+    assert found.sensitivity_kPa_per_N == pytest.approx(17 / 8.75, rel=1e-12)
+    assert found.sensitivity_through_origin_kPa_per_N == pytest.approx(45 / 21, rel=1e-12)
     assert found.r_squared == pytest.approx((17 / 8.75) ** 2 * 8.75 / 34, rel=1e-12)
 
 

@@ -23,8 +23,8 @@ def paper():
 
 def test_apex_at_22_kpa_and_both_sensitivities_of_tango(paper):
     assert paper.states[2].apex_inner == pytest.approx(10.94, abs=0.02)
-    assert paper.states[0].figures.sensitivity == pytest.approx(2.547, rel=0.10)
-    assert paper.states[2].figures.sensitivity == pytest.approx(1.923, rel=0.10)
+    assert paper.states[0].figures.sensitivity_kPa_per_N == pytest.approx(2.547, rel=0.10)
+    assert paper.states[2].figures.sensitivity_kPa_per_N == pytest.approx(1.923, rel=0.10)
 
 
 def test_limit_point_of_the_thick_wall(paper):
@@ -105,7 +105,9 @@ def test_stiff_resin_buckles_inwards_and_the_fit_stops_there():
 
 
 def test_figures_do_not_depend_on_the_number_of_steps():
-    few, many = (predict("x", PAPER.replace(steps=n), [0.022]).states[0].figures.sensitivity for n in (14, 56))
+    few, many = (
+        predict("x", PAPER.replace(steps=n), [0.022]).states[0].figures.sensitivity_kPa_per_N for n in (14, 56)
+    )
     assert few == pytest.approx(many, rel=0.01)
 
 

@@ -61,38 +61,44 @@ def test_the_window_stands_where_the_target_says(selection, axes):
 
 def test_fronts_are_respond_s_and_the_designs_lie_on_or_below_them(selection):
     found = selected_tradeoff(selection)
-    assert found.pressure == pytest.approx(20)
+    assert found.driving_pressure_kPa == pytest.approx(20)
     assert [front.resin.name for front in found.known] == ["TangoPlus", "FLX9960"]
     for number, front in enumerate(found.known):
         # A batch closes in on the ends of its ranges together, so that a sensor's range depends on it a little.
         ones = np.ones_like(front.radius)
         batch = selection.problem.batch(number * ones, front.radius, front.wall, 0.02 * ones)
         own = respond(batch, selection.problem.steps).lines
-        np.testing.assert_allclose(own.sensitivity, front.sensitivity, rtol=1e-3)
+        np.testing.assert_allclose(own.sensitivity_kPa_per_N, front.sensitivity_kPa_per_N, rtol=1e-3)
         np.testing.assert_allclose(np.fmin(own.force_high, own.saturation_force), front.force, rtol=1e-3)
     by_title = {front.resin.material.title: front for front in found.known}
     for spot in found.spots:
         front = by_title[spot.resin]
-        assert spot.force <= 1.03 * np.interp(spot.sensitivity, front.sensitivity, front.force)
-        assert spot.sensitivity == pytest.approx(1.5, rel=0.05)
+        assert spot.force <= 1.03 * np.interp(spot.sensitivity_kPa_per_N, front.sensitivity_kPa_per_N, front.force)
+        assert spot.sensitivity_kPa_per_N == pytest.approx(1.5, rel=0.05)
 
 
 def test_the_band_at_the_working_pressure_is_the_choice_s_own(selection, library):
     found, best = selected_tuning(selection, library), selection.answer.designs[0]
-    (pressure, value), *rest = found.working.items()
+    (pressure, value), *rest = found.working_kPa_per_N.items()
     assert not rest
     assert pressure == pytest.approx(20)
-    assert np.interp(pressure, found.chosen.pressure, found.chosen.sensitivity) == pytest.approx(value, rel=1e-3)
-    width = np.interp(pressure, found.chosen.pressure, np.log(found.high / found.low)) / 2
+    assert np.interp(pressure, found.chosen.driving_pressure_kPa, found.chosen.sensitivity_kPa_per_N) == pytest.approx(
+        value, rel=1e-3
+    )
+    width = (
+        np.interp(pressure, found.chosen.driving_pressure_kPa, np.log(found.high_kPa_per_N / found.low_kPa_per_N)) / 2
+    )
     assert width == pytest.approx(best.expanded, rel=0.03)
-    assert found.chosen.pressure[-1] == pytest.approx(best.rated / KPA, rel=1e-3)
+    assert found.chosen.driving_pressure_kPa[-1] == pytest.approx(best.rated / KPA, rel=1e-3)
 
 
 def test_tuning_curves_are_respond_s(selection, library):
     found, best = selected_tuning(selection, library), selection.answer.designs[0]
     sensor = selection.sensor_of(best)
-    own = respond(batch_of(sensor, (found.chosen.pressure * KPA).tolist()), sensor.protocol.steps).lines.sensitivity
-    np.testing.assert_allclose(found.chosen.sensitivity, own, rtol=1e-3)
+    own = respond(
+        batch_of(sensor, (found.chosen.driving_pressure_kPa * KPA).tolist()), sensor.protocol.steps
+    ).lines.sensitivity_kPa_per_N
+    np.testing.assert_allclose(found.chosen.sensitivity_kPa_per_N, own, rtol=1e-3)
     assert {other.label for other in found.others} == {"TangoPlus", "FLX9960-DM"} - {found.chosen.label}
 
 
@@ -120,22 +126,30 @@ def test_a_design_s_charts_mark_the_design_at_its_own_figures(evaluated):
     evaluation = evaluated("paper-dome", model="atlas")
     last = evaluation.prediction.states[-1]
     (spot,) = tradeoff(evaluation).spots
-    assert (spot.sensitivity, spot.force) == pytest.approx((last.figures.sensitivity, last.figures.force_range[1]))
+    assert (spot.sensitivity_kPa_per_N, spot.force) == pytest.approx(
+        (last.figures.sensitivity_kPa_per_N, last.figures.force_range[1])
+    )
     runs = {front.resin.name for front in tradeoff(evaluation).fronts}
     assert "Agilus30" not in runs
     assert {"TangoPlus", "FLX9995"} <= runs
     found = tuning(evaluation, 0.0356)
-    assert list(found.working) == pytest.approx([0, 5, 12, 22])
-    for (pressure, value), said in zip(found.working.items(), evaluation.uncertainty, strict=True):
-        assert np.interp(pressure, found.chosen.pressure, found.chosen.sensitivity) == pytest.approx(value, rel=1e-3)
+    assert list(found.working_kPa_per_N) == pytest.approx([0, 5, 12, 22])
+    for (pressure, value), said in zip(found.working_kPa_per_N.items(), evaluation.uncertainty, strict=True):
+        assert np.interp(
+            pressure, found.chosen.driving_pressure_kPa, found.chosen.sensitivity_kPa_per_N
+        ) == pytest.approx(value, rel=1e-3)
         own = said["figures"][SENSITIVITY]
-        assert np.interp(pressure, found.chosen.pressure, found.low) == pytest.approx(own["low"], rel=0.01)
-        assert np.interp(pressure, found.chosen.pressure, found.high) == pytest.approx(own["high"], rel=0.01)
+        assert np.interp(pressure, found.chosen.driving_pressure_kPa, found.low_kPa_per_N) == pytest.approx(
+            own["low"], rel=0.01
+        )
+        assert np.interp(pressure, found.chosen.driving_pressure_kPa, found.high_kPa_per_N) == pytest.approx(
+            own["high"], rel=0.01
+        )
 
 
 def test_axes_of_the_charts_carry_quantities_and_units(evaluated, axes):
     evaluation = evaluated("paper-dome", model="atlas")
-    tuning_chart(replace(tuning(evaluation, 0.03), published=((0.0, 2.547),)), SIZE)
+    tuning_chart(replace(tuning(evaluation, 0.03), published_kPa_per_N=((0.0, 2.547),)), SIZE)
     tradeoff_chart(tradeoff(evaluation), SIZE)
     assert len(axes) == 2
     for ax in axes:

@@ -91,7 +91,7 @@ def test_the_air_on_the_sheet_is_computed_and_no_longer_a_fixed_factor(evaluated
     evaluation = evaluated("paper-dome")
     gas = gas_notes(batch_of(evaluation.sensor, [s.driving_pressure for s in evaluation.prediction.states]))
     for numbers, unit in (
-        (gas.by_temperature, "kPa/K"), (gas.force_by_temperature, "N/K"), (gas.fast_over_slow, "times")
+        (gas.by_temperature_kPa_per_K, "kPa/K"), (gas.force_by_temperature, "N/K"), (gas.fast_over_slow, "times")
     ):  # fmt: skip
         assert f"{numbers[0]:.2f} and {numbers[-1]:.2f} {unit}" in html
     assert "1.4 times" not in html
@@ -133,7 +133,7 @@ def test_a_sensor_outside_the_atlas_says_so_on_its_sheet(tmp_path):
 
 def test_zero_drift_is_that_of_the_gas_in_a_dome_that_yields(evaluated):
     """By brute force: the volume at which the warmed gas and the dome's own curve balance."""
-    from pneutouch.report.environment import zero_drift
+    from pneutouch.report.environment import zero_drift_kPa_per_K
 
     evaluation = evaluated("paper-dome")
     state, curve = evaluation.prediction.states[3], evaluation.prediction.inflation
@@ -143,7 +143,7 @@ def test_zero_drift_is_that_of_the_gas_in_a_dome_that_yields(evaluated):
     warmed = volume[np.argmin(np.abs(dome - content * (1 + 2 / 293.15) / volume))]
     before = volume[np.argmin(np.abs(dome - content / volume))]
     rise = np.interp(warmed, volume, dome) - np.interp(before, volume, dome)
-    drift = zero_drift(evaluation.scene, evaluation.prediction, state)
+    drift = zero_drift_kPa_per_K(evaluation.scene, evaluation.prediction, state)
     assert drift == pytest.approx(1e3 * rise / 2, rel=0.1)
     assert drift < 0.5 * 123.3 / 293.15
 
@@ -185,7 +185,7 @@ def test_resins_are_compared_by_the_atlas_as_respond_has_them(evaluated, library
         assert pressure[0] == 0
         assert pressure[-1] == pytest.approx(22)
         own = respond(batch_of(in_resin(sensor, material), (1e-3 * pressure).tolist()), sensor.protocol.steps)
-        np.testing.assert_allclose(sensitivity, own.lines.sensitivity, rtol=1e-3)
+        np.testing.assert_allclose(sensitivity, own.lines.sensitivity_kPa_per_N, rtol=1e-3)
 
 
 def test_a_resin_outside_the_atlas_is_drawn_by_the_solid_and_the_caption_says_so(evaluated, library):
@@ -200,8 +200,8 @@ def test_a_resin_outside_the_atlas_is_drawn_by_the_solid_and_the_caption_says_so
     assert [curve.model for curve in found.values()] == ["atlas", "solid"]
     assert drawn_by(found) == "drawn by the atlas, FLX9960-DM by the solid"
     same = resin_curves(sensor, {"b": hard}, 0.02, "solid", None)["FLX9960-DM"]
-    near = np.interp(found["FLX9960-DM"].pressure, same.pressure, same.sensitivity)
-    np.testing.assert_allclose(found["FLX9960-DM"].sensitivity, near, rtol=0.02)
+    near = np.interp(found["FLX9960-DM"].driving_pressure_kPa, same.driving_pressure_kPa, same.sensitivity_kPa_per_N)
+    np.testing.assert_allclose(found["FLX9960-DM"].sensitivity_kPa_per_N, near, rtol=0.02)
 
 
 def test_pdf_is_a_few_a4_pages_with_text_on_each(built):

@@ -43,7 +43,7 @@ def observations(scene):
 @pytest.fixture(scope="module")
 def found(observations, scene):
     names = ("modulus", "wall", "dead-volume", "offset")
-    return calibrate(observations, scene, names, hold_out=(22.0,), sensor="A1", title="Spring campaign")
+    return calibrate(observations, scene, names, hold_out_kPa=(22.0,), sensor="A1", title="Spring campaign")
 
 
 def test_the_document_holds_the_truth_and_is_json(found):
@@ -71,7 +71,7 @@ def test_the_same_data_give_the_same_bytes(found, observations, scene):
         observations,
         scene,
         ("modulus", "wall", "dead-volume", "offset"),
-        hold_out=(22.0,),
+        hold_out_kPa=(22.0,),
         sensor="A1",
         title="Spring campaign",
     )

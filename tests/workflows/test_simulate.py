@@ -20,7 +20,7 @@ from pneutouch.workflows.simulate.run import KINDS, SimulationOptions, simulate
 
 R0 = 9.25
 ASKED = SimulationOptions(
-    specimens=2, pressures=(0.0, 22.0), runs=2, kinds=("steps", "loop", "leak", "injection"), rate=50.0, model="atlas",
+    specimens=2, driving_pressures_kPa=(0.0, 22.0), runs=2, kinds=("steps", "loop", "leak", "injection"), rate=50.0, model="atlas",
     truth=SimulationTruth(rest=2.0, specimens=400),
 )  # fmt: skip
 
@@ -109,7 +109,7 @@ def test_truth_of_populations_covers_its_specimens(truth):
 
 
 def test_age_stiffens_the_same_specimen_as_its_hardness_says(library, tmp_path):
-    asked = replace(ASKED, specimens=1, pressures=(0.0,), kinds=("loop",), ages=(0.0, 365.0))
+    asked = replace(ASKED, specimens=1, driving_pressures_kPa=(0.0,), kinds=("loop",), ages_days=(0.0, 365.0))
     found = json.loads((simulate("paper-dome", tmp_path, None, asked, library) / "truth.json").read_text())
     new, old = (found["specimens"][f"TangoPlus-1-{age}d"] for age in (0, 365))
     ageing = found["parameters"]["TangoPlus"]["scatter"]["ageing"]["value"]
@@ -130,7 +130,7 @@ def test_parquet_holds_the_same_numbers_and_the_label(folder, library, tmp_path)
 @pytest.mark.slow
 def test_what_stops_short_is_said(library, tmp_path):
     asked = replace(
-        ASKED, specimens=1, pressures=(0.0,), runs=1, kinds=("steps", "relaxation"), model="auto", rate=20.0
+        ASKED, specimens=1, driving_pressures_kPa=(0.0,), runs=1, kinds=("steps", "relaxation"), model="auto", rate=20.0
     )
     found = json.loads((simulate("long-tube", tmp_path, None, asked, library) / "truth.json").read_text())
     assert len(found["notes"]) == 2 and all("stops at 6." in note and "buckling" in note for note in found["notes"])
@@ -140,8 +140,8 @@ def test_what_stops_short_is_said(library, tmp_path):
     ("change", "words"),
     [
         ({"kinds": ("stps",)}, "kinds = 'stps': unknown. Did you mean steps"),
-        ({"pressures": (22.0, 22.0)}, "each once"),
-        ({"pressures": (45.0,)}, "beyond the limit point"),
+        ({"driving_pressures_kPa": (22.0, 22.0)}, "each once"),
+        ({"driving_pressures_kPa": (45.0,)}, "beyond the limit point"),
         ({"rate": 1.0}, "rate_Hz = 1.0: must be from 10"),
         ({"specimens": 0}, "specimens = 0: must be from 1"),
         ({"resins": ("TangoPlus", "TangoPlus")}, "named twice"),

@@ -103,7 +103,7 @@ def _line(curve: MeasuredCurve, *, saturating: bool) -> dict[str, float]:
         saturated = {} if got.saturation_force is None else {"saturation_force_N": got.saturation_force}
         return {**saturated, "sensing_range_N": end}
     return {
-        "sensitivity_kPa_per_N": got.sensitivity, "sensitivity_through_origin_kPa_per_N": got.sensitivity_through_origin,
+        "sensitivity_kPa_per_N": got.sensitivity_kPa_per_N, "sensitivity_through_origin_kPa_per_N": got.sensitivity_through_origin_kPa_per_N,
         "r_squared": got.r_squared, "nonlinearity_percent": 100 * got.nonlinearity, "stiffness_N_per_mm": got.stiffness,
         "force_range_N": got.force_range[1],
     }  # fmt: skip
@@ -165,14 +165,14 @@ def _binned(place: Array, values: Array, grid: Array) -> Array:
     return np.interp(grid, grid[known], total[known] / count[known])
 
 
-def _still(curve: MeasuredCurve, sensitivity: float | None) -> dict[str, float]:
+def _still(curve: MeasuredCurve, sensitivity_kPa_per_N: float | None) -> dict[str, float]:
     """What the channels do without contact; the resolution follows where the run has a sensitivity."""
     if curve.run.kind == "loop":
         # Its rests are too short for noise and drift: the wall still recovers.
         return {}
     found = {"drift_pressure_kPa_per_min": 60 * curve.drift[0] / KPA}
-    noise_force, noise_pressure = curve.noise[0], curve.noise[1] / KPA
-    found |= {"noise_force_N": noise_force, "noise_pressure_kPa": noise_pressure}
-    if sensitivity:
-        found["resolution_N"] = RESOLVED * noise_pressure / abs(sensitivity)
+    noise_force, noise_kPa = curve.noise[0], curve.noise[1] / KPA
+    found |= {"noise_force_N": noise_force, "noise_pressure_kPa": noise_kPa}
+    if sensitivity_kPa_per_N:
+        found["resolution_N"] = RESOLVED * noise_kPa / abs(sensitivity_kPa_per_N)
     return found

@@ -8,6 +8,7 @@ import numpy as np
 
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.mechanics.response import figures
+from pneutouch.units import KPA
 
 APART = 0.15
 """Share by which runs of one sensor may differ: our choice. The paper's three runs differ by 1 % in sensitivity, its three
@@ -39,9 +40,9 @@ def _apart(group: list[MeasuredCurve]) -> list[tuple[MeasuredCurve, str]]:
         return []
     depth = min(float(curve.indentation[-1]) for curve in group)
     forces = np.array([float(np.interp(depth, curve.indentation, curve.force)) for curve in group])
-    slopes = np.array([_slope(curve) for curve in group])
+    slopes_kPa_per_N = np.array([_sensitivity_kPa_per_N(curve) for curve in group])
     told: dict[int, str] = {}
-    for name, values in ((f"force at {depth:.3g} mm", forces), ("slope of pressure over force", slopes)):
+    for name, values in ((f"force at {depth:.3g} mm", forces), ("slope of pressure over force", slopes_kPa_per_N)):
         if not (values > 0).all():
             continue
         for k in range(len(group)):
@@ -58,6 +59,6 @@ def _apart(group: list[MeasuredCurve]) -> list[tuple[MeasuredCurve, str]]:
     ]
 
 
-def _slope(curve: MeasuredCurve) -> float:
-    found = figures(curve.indentation, curve.force, curve.rise)
-    return float("nan") if found is None else found.sensitivity
+def _sensitivity_kPa_per_N(curve: MeasuredCurve) -> float:
+    found = figures(curve.indentation, curve.force, curve.rise / KPA)
+    return float("nan") if found is None else found.sensitivity_kPa_per_N

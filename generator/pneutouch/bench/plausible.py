@@ -100,13 +100,11 @@ def check_leak(blocks: Blocks, run: CampaignRun, rig: Rig) -> tuple[str, ...]:
     if lost:
         told.append(f"{blocks.file}: {at:.2g} s of {length:.3g} s are clipped ({lost[0].why}); is the leak greater?")
     count = int(np.searchsorted(blocks.time, blocks.time[0] + _START))
-    read, stated = float(np.median(blocks.pressure[: max(count, 1)])) / KPA, run.driving_pressure_kPa
-    if abs(read - stated) <= max(RESET_KPA, RESET_SHARE * stated):
+    read_kPa, stated_kPa = float(np.median(blocks.pressure[: max(count, 1)])) / KPA, run.driving_pressure_kPa
+    if abs(read_kPa - stated_kPa) <= max(RESET_KPA, RESET_SHARE * stated_kPa):
         return tuple(told)
-    said = (
-        f"{blocks.file}: a leak run that begins at {read:.3g} kPa; the campaign says driving_pressure_kPa = {stated:g}"
-    )
-    if stated > 0 and not stated / FAR <= read <= stated * FAR:
+    said = f"{blocks.file}: a leak run that begins at {read_kPa:.3g} kPa; the campaign says driving_pressure_kPa = {stated_kPa:g}"
+    if stated_kPa > 0 and not stated_kPa / FAR <= read_kPa <= stated_kPa * FAR:
         raise InputError(f"{said}; the unit of the pressure (columns.pressure.unit), or another run's file?")
     return (*told, f"{said}; was it left out, is the gauge not zeroed, or does the line lose it at once?")
 
@@ -224,10 +222,10 @@ def _check_time(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> str | N
 
 
 def _driving(curve: MeasuredCurve, file: Path, columns: ColumnMap) -> str | None:
-    stated, read = curve.run.driving_pressure_kPa, curve.driving / KPA
-    if abs(read - stated) <= max(RESET_KPA, RESET_SHARE * stated):
+    stated_kPa, read_kPa = curve.run.driving_pressure_kPa, curve.driving / KPA
+    if abs(read_kPa - stated_kPa) <= max(RESET_KPA, RESET_SHARE * stated_kPa):
         return None
     return (
-        f"{file}: column {columns.pressure.name}: {read:.3g} kPa before contact; the campaign says driving_pressure_kPa = {stated:g}; "
+        f"{file}: column {columns.pressure.name}: {read_kPa:.3g} kPa before contact; the campaign says driving_pressure_kPa = {stated_kPa:g}; "
         "another run's file, a gauge not zeroed, or absolute pressure?"
     )

@@ -59,18 +59,18 @@ def shear_from_young(modulus: float, poisson_ratio: float) -> float:
     return modulus / (2 * (1 + poisson_ratio))
 
 
-def dead_volume(cavity: Mean, over_cap: Mean, over_plug: Mean, gauge: float = 0.0) -> Mean:
+def dead_volume(cavity: Mean, over_cap_kPa: Mean, over_plug_kPa: Mean, gauge_kPa: float = 0.0) -> Mean:
     """Dead volume from the pressures that the same push of air makes over a cap and over a plug with a cavity.
 
     Boyle: p_a V_d = p_b (V_d + V_c), so V_d = V_c p_b / (p_a - p_b); syringe and ambient pressure cancel. Volumes in one
-    unit, gauge pressures in one unit, ``gauge`` the gauge's own standard uncertainty. ``spread`` is the standard
+    unit, gauge pressures in one unit, ``gauge_kPa`` the gauge's own standard uncertainty. ``spread`` is the standard
     uncertainty of the result, by the derivatives (JCGM 100, 5.1.2). Raises ValueError where the plug's is not the lower.
     """
-    a, b, volume = over_cap.value, over_plug.value, cavity.value
+    a, b, volume = over_cap_kPa.value, over_plug_kPa.value, cavity.value
     if b >= a:
         raise ValueError("the pressure over the plug must be lower than over the cap")
     gap = a - b
     by_volume = b / gap * cavity.error
-    by_cap = volume * b / gap**2 * math.hypot(over_cap.error, gauge)
-    by_plug = volume * a / gap**2 * math.hypot(over_plug.error, gauge)
+    by_cap = volume * b / gap**2 * math.hypot(over_cap_kPa.error, gauge_kPa)
+    by_plug = volume * a / gap**2 * math.hypot(over_plug_kPa.error, gauge_kPa)
     return Mean(volume * b / gap, math.hypot(by_volume, by_cap, by_plug), 1)

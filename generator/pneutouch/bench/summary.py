@@ -32,7 +32,7 @@ class GroupKey:
 
     resin: str
     age_days: float
-    driving_pressure_kPa: float  # noqa: N815
+    driving_pressure_kPa: float
 
     @property
     def age(self) -> str:

@@ -20,19 +20,19 @@ _ROUNDING = 1e-9
 """Differences of pressures may miss a limit by this, kPa."""
 
 
-def leak(name: str, cap: LeakCap, accuracy: float, said: ReadingSource, found: CouponFindings) -> None:
-    """Leak rate, kPa a minute. Raises InputError where pressure rises by more than the gauge's ``accuracy``, kPa."""
+def leak(name: str, cap: LeakCap, accuracy_kPa: float, said: ReadingSource, found: CouponFindings) -> None:
+    """Leak rate, kPa a minute. Raises InputError where pressure rises by more than the gauge's ``accuracy_kPa``, kPa."""
     for run, (start, end) in enumerate(zip(cap.start_kPa, cap.end_kPa, strict=True), start=1):
         rise = end - start
-        if rise > accuracy + _ROUNDING:
+        if rise > accuracy_kPa + _ROUNDING:
             raise InputError(
                 f"{said.where}: leak-cap.{name}.end_kPa: run {run}: {end:g} kPa is above start_kPa = {start:g}; must be at most "
                 f"that, for a cap gains no pressure; swapped, or is the gauge less accurate than gauge_accuracy_kPa = "
-                f"{accuracy:g} of volume-plug.{name}?"
+                f"{accuracy_kPa:g} of volume-plug.{name}?"
             )
         if rise > 0:
             found.notes.append(
-                f"{name}: leak-cap, run {run}: pressure rose by {rise:.2g} kPa, within the gauge's accuracy of {accuracy:g} kPa"
+                f"{name}: leak-cap, run {run}: pressure rose by {rise:.2g} kPa, within the gauge's accuracy of {accuracy_kPa:g} kPa"
             )
     if cap.start_kPa:
         rate = mean((60 * (np.array(cap.start_kPa) - np.array(cap.end_kPa)) / cap.seconds).tolist())
@@ -51,20 +51,20 @@ def volume(
         raise InputError(
             f"{said.where}: leak-cap.{name}.pressure_kPa: empty; the plug's pressures need the cap's beside them"
         )
-    over_cap, over_plug = mean(cap.pressure_kPa), mean(plug.pressure_kPa)
+    over_cap_kPa, over_plug_kPa = mean(cap.pressure_kPa), mean(plug.pressure_kPa)
     try:
-        dead = dead_volume(cavity, over_cap, over_plug, plug.gauge_accuracy_kPa)
+        dead = dead_volume(cavity, over_cap_kPa, over_plug_kPa, plug.gauge_accuracy_kPa)
     except ValueError:
         raise InputError(
-            f"{said.where}: volume-plug.{name}.pressure_kPa: mean {over_plug.value:g} kPa; the same push must raise the pressure "
-            f"less over the plug than over the cap, {over_cap.value:g} kPa"
+            f"{said.where}: volume-plug.{name}.pressure_kPa: mean {over_plug_kPa.value:g} kPa; the same push must raise the pressure "
+            f"less over the plug than over the cap, {over_cap_kPa.value:g} kPa"
         ) from None
     assembly = assemble(scene)
-    drawn = (assembly.internal_volume + assembly.tube_volume) / ML
+    drawn_mL = (assembly.internal_volume + assembly.tube_volume) / ML
     found.figures.append(MeasuredFigure(name, "dead volume, mL", dead.value, dead.spread, None))
-    found.figures.append(MeasuredFigure(name, "dead volume as drawn, mL", drawn))
+    found.figures.append(MeasuredFigure(name, "dead volume as drawn, mL", drawn_mL))
     found.figures.append(
-        MeasuredFigure(name, "air in the syringe, mL", dead.value * over_cap.value / cap.ambient_pressure_kPa)
+        MeasuredFigure(name, "air in the syringe, mL", dead.value * over_cap_kPa.value / cap.ambient_pressure_kPa)
     )
     found.notes.append(
         f"put dead_volume_mL = {dead.value:.3f} under [pneumatics] of {name}; it is {dead.value:.3f} ± {dead.spread:.3f}"
@@ -78,6 +78,6 @@ def cavity_measured(context: CouponContext, plug: VolumePlug) -> Mean:
         return Mean(water.value / WATER, water.spread / WATER, water.count)
     scene = context.design()
     (radius, height), accuracy = cavity_size(context), scene.connector_printer.accuracy_mm.nominal
-    drawn = cavity_volume(scene.design.membrane.inner_radius_mm) / ML
+    drawn_mL = cavity_volume(scene.design.membrane.inner_radius_mm) / ML
     # Diameter and height each lie evenly within the accuracy (JCGM 100, 4.3.7).
-    return Mean(drawn, drawn * math.hypot(accuracy / radius, accuracy / height) / math.sqrt(3), 1)
+    return Mean(drawn_mL, drawn_mL * math.hypot(accuracy / radius, accuracy / height) / math.sqrt(3), 1)

@@ -68,9 +68,9 @@ def graded_text(selection: GradedSelectionRun) -> str:
 
 
 def _row(selection: GradedSelectionRun, trial: GradeTrial) -> list[str]:
-    apart = [f"{100 * trial.difference:+.1f} %"] if len(trial.sensitivity) > 1 else []
+    apart = [f"{100 * trial.difference:+.1f} %"] if len(trial.sensitivity_kPa_per_N) > 1 else []
     rated = "-" if trial.note else f"{trial.rated / KPA:.1f}"
     return [
-        *(f"{value:.3f}" for value in trial.sensitivity), *apart, *(f"{value:.1f} N" for value in trial.force),
+        *(f"{value:.3f}" for value in trial.sensitivity_kPa_per_N), *apart, *(f"{value:.1f} N" for value in trial.force),
         ", ".join(dict.fromkeys(trial.ends)) or "-", rated, "yes" if selection.meets(trial) else "no",
     ]  # fmt: skip

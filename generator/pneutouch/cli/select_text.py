@@ -34,7 +34,7 @@ def selection_text(selection: SelectionRun) -> str:
         seen: set[str] = set()
         rows = []
         for rank, choice in enumerate(answer.designs):
-            solid = f"{selection.confirmed[rank].sensitivity:.3f}" if rank < len(selection.confirmed) else "-"
+            solid = f"{selection.confirmed[rank].sensitivity_kPa_per_N:.3f}" if rank < len(selection.confirmed) else "-"
             label = f"{rank + 1}" + (" runner-up" if choice.resin.name in seen else "")
             seen.add(choice.resin.name)
             rows.append([label, *_row(choice), solid])
@@ -74,7 +74,7 @@ def _row(choice: Candidate) -> list[str]:
     end = int(pool.response.ends[0])
     return [
         choice.resin.name, f"{pool.radius[0]:.2f}", f"{pool.wall[0]:.2f}", f"{pool.pressure[0] / KPA:.2f}",
-        f"{pool.response.lines.sensitivity[0]:.3f}", f"{100 * choice.expanded:.0f} %", f"0-{pool.force[0]:.2f}",
+        f"{pool.response.lines.sensitivity_kPa_per_N[0]:.3f}", f"{100 * choice.expanded:.0f} %", f"0-{pool.force[0]:.2f}",
         f"{'depth' if end == DEPTH else ENDS[end]}", f"{choice.span[0]:.2f}..{choice.span[1]:.2f}", f"{choice.rated / KPA:.1f}",
         f"{choice.binding} ({100 * choice.room[choice.binding]:+.0f} %)",
     ]  # fmt: skip

@@ -42,7 +42,7 @@ def simulate(
 
         asked = SimulationOptions(
             resins=words(resins), specimens=specimens, runs=runs, kinds=words(kinds), rate=rate, seed=seed, model=model,
-            pressures=None if pressures is None else numbers("--pressures", pressures), ages=numbers("--ages", ages),
+            driving_pressures_kPa=None if pressures is None else numbers("--pressures", pressures), ages_days=numbers("--ages", ages),
             parquet=parquet, truth=SimulationTruth(rest=rest),
         )  # fmt: skip
         with bar("specimens") as progress:

@@ -13,8 +13,8 @@ class TuningCurve(NamedTuple):
     """Sensitivity (kPa/N) over driving pressure (kPa), (n,) each."""
 
     label: str
-    pressure: Array
-    sensitivity: Array
+    driving_pressure_kPa: Array
+    sensitivity_kPa_per_N: Array
 
 
 @dataclass(frozen=True)
@@ -23,19 +23,19 @@ class TuningChart:
 
     Attributes:
         chosen: The curve.
-        low: Lower end of its k = 2 interval, kPa/N, (n,).
-        high: Upper end, (n,).
-        working: Driving pressures it is meant for and the sensitivities there, kPa to kPa/N.
+        low_kPa_per_N: Lower end of its k = 2 interval, kPa/N, (n,).
+        high_kPa_per_N: Upper end, (n,).
+        working_kPa_per_N: Driving pressures it is meant for and the sensitivities there, kPa to kPa/N.
         others: Designs to compare with.
-        published: Measured sensitivities of this very sensor, kPa to kPa/N.
+        published_kPa_per_N: Measured sensitivities of this very sensor, kPa to kPa/N.
     """
 
     chosen: TuningCurve
-    low: Array
-    high: Array
-    working: dict[float, float]
+    low_kPa_per_N: Array
+    high_kPa_per_N: Array
+    working_kPa_per_N: dict[float, float]
     others: tuple[TuningCurve, ...] = ()
-    published: tuple[tuple[float, float], ...] = ()
+    published_kPa_per_N: tuple[tuple[float, float], ...] = ()
 
 
 class ChartPoint(NamedTuple):
@@ -43,7 +43,7 @@ class ChartPoint(NamedTuple):
 
     resin: str
     label: str
-    sensitivity: float
+    sensitivity_kPa_per_N: float
     force: float
 
 
@@ -53,21 +53,21 @@ class TradeOff:
 
     Attributes:
         fronts: One a resin; empty ones are left out.
-        pressure: Driving pressure, kPa.
-        gauge: Pressure rise that the pressure sensor has left, kPa.
-        window: Least and greatest sensitivity wanted (kPa/N), None where free.
+        driving_pressure_kPa: Driving pressure, kPa.
+        gauge_kPa: Pressure rise that the pressure sensor has left, kPa.
+        window_kPa_per_N: Least and greatest sensitivity wanted (kPa/N), None where free.
         force: Least force range wanted, N; None where free.
         spots: Designs, the first picked out.
     """
 
     fronts: tuple[TradeOffFront, ...]
-    pressure: float
-    gauge: float
+    driving_pressure_kPa: float
+    gauge_kPa: float
     spots: tuple[ChartPoint, ...]
-    window: tuple[float, float] | None = None
+    window_kPa_per_N: tuple[float, float] | None = None
     force: float | None = None
 
     @property
     def known(self) -> tuple[TradeOffFront, ...]:
         """The fronts with a line to draw."""
-        return tuple(front for front in self.fronts if front.sensitivity.size > 1)
+        return tuple(front for front in self.fronts if front.sensitivity_kPa_per_N.size > 1)

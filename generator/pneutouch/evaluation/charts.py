@@ -37,7 +37,7 @@ def tuning(evaluation: Evaluation, highest: float) -> TuningChart | None:
         return None
     materials = list(evaluation.resins.values())
     low, high = interval(sensor, drawn, scene.membrane_material, materials, scene.printer, prediction.model)
-    working = {s.driving_pressure / KPA: s.figures.sensitivity for s in prediction.states if s.figures}
+    working = {s.driving_pressure / KPA: s.figures.sensitivity_kPa_per_N for s in prediction.states if s.figures}
     return TuningChart(drawn, low, high, working)
 
 
@@ -54,7 +54,7 @@ def tradeoff(evaluation: Evaluation) -> TradeOff | None:
     force = end if saturation is None else min(end, saturation)
     return TradeOff(
         tuple(front(problem)), state.driving_pressure / KPA, (problem.gauge_limit - state.driving_pressure) / KPA,
-        (ChartPoint(evaluation.scene.membrane_material.title, f"this design, {force:.3g} N", state.figures.sensitivity, force),),
+        (ChartPoint(evaluation.scene.membrane_material.title, f"this design, {force:.3g} N", state.figures.sensitivity_kPa_per_N, force),),
     )  # fmt: skip
 
 
@@ -63,7 +63,7 @@ def _problem(evaluation: Evaluation, pressure: float) -> SelectionProblem:
     sensor, printer, recipe = evaluation.sensor, evaluation.scene.printer, shipped().recipe
     wall = printer.smallest.wall("elastomer")
     return SelectionProblem(
-        resins=_resins(evaluation), sensitivity=None, tolerance=1.0, driving_pressure=pressure, force_range=None,
+        resins=_resins(evaluation), sensitivity_kPa_per_N=None, tolerance=1.0, driving_pressure=pressure, force_range=None,
         stiffness=(None, None), max_diameter=None, inner_radius=None, wall_thickness=None,
         least_wall=wall.least or wall.recommended, ambient_pressure=sensor.gas.ambient_pressure,
         dead_volume=lambda radius: np.full_like(radius, sensor.gas.dead_volume), plate_radius=sensor.protocol.plate_radius,

@@ -180,10 +180,10 @@ def _aged(scene: ResolvedDesign, sensor: Sensor) -> tuple[Sensor, str]:
 
 def _beyond_limit(scene: ResolvedDesign, error: BeyondLimitError) -> InputError:
     """The limit point in terms of the design file."""
-    pressures = scene.design.pneumatics.driving_pressures_kPa
-    k = int(np.argmin([abs(p - error.pressure / KPA) for p in pressures]))
+    pressures_kPa = scene.design.pneumatics.driving_pressures_kPa
+    k = int(np.argmin([abs(p - error.pressure / KPA) for p in pressures_kPa]))
     return InputError(
-        f"{scene.where}: pneumatics.driving_pressures_kPa[{k}] = {pressures[k]:g}: beyond the limit point, where "
+        f"{scene.where}: pneumatics.driving_pressures_kPa[{k}] = {pressures_kPa[k]:g}: beyond the limit point, where "
         f"the dome snaps; with this resin, wall and radius it must be at most {error.limit / KPA:.2f} kPa"
     )
 

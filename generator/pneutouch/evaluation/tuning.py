@@ -34,10 +34,10 @@ def curve(sensor: Sensor, highest: float, label: str) -> TuningCurve | None:
     limit = float(respond(batch_of(sensor, [0.0]), sensor.protocol.steps).limit_pressure[0])
     pressures = np.linspace(0.0, min(highest, RATED_SHARE * limit), POINTS)
     response = respond(batch_of(sensor, pressures.tolist()), sensor.protocol.steps)
-    kept = np.isfinite(response.lines.sensitivity) & (response.ends != OUTSIDE)
+    kept = np.isfinite(response.lines.sensitivity_kPa_per_N) & (response.ends != OUTSIDE)
     if kept.sum() < 2:
         return None
-    return TuningCurve(label, pressures[kept] / KPA, response.lines.sensitivity[kept])
+    return TuningCurve(label, pressures[kept] / KPA, response.lines.sensitivity_kPa_per_N[kept])
 
 
 def interval(
@@ -47,9 +47,9 @@ def interval(
 
     ``materials`` are all that there are; ``model`` gives the numerical error.
     """
-    at = np.linspace(drawn.pressure[0], drawn.pressure[-1], _BUDGETS)
+    at = np.linspace(drawn.driving_pressure_kPa[0], drawn.driving_pressure_kPa[-1], _BUDGETS)
     found = known(sensor, (at * KPA).tolist(), material, materials, printer, model)
     widths = found.budget.expanded[_SENSITIVITY]
     good = np.isfinite(widths)
-    width = np.interp(drawn.pressure, at[good], widths[good])
-    return drawn.sensitivity * np.exp(-width), drawn.sensitivity * np.exp(width)
+    width = np.interp(drawn.driving_pressure_kPa, at[good], widths[good])
+    return drawn.sensitivity_kPa_per_N * np.exp(-width), drawn.sensitivity_kPa_per_N * np.exp(width)

@@ -115,7 +115,7 @@ def _values(prediction: SensorPrediction, state: SensorState) -> dict[str, float
     return {
         **({} if peak is None else {"limit_pressure_kPa": peak / KPA}),
         **({} if figures is None else {
-            "sensitivity_kPa_per_N": figures.sensitivity, "stiffness_N_per_mm": figures.stiffness,
+            "sensitivity_kPa_per_N": figures.sensitivity_kPa_per_N, "stiffness_N_per_mm": figures.stiffness,
             "force_at_range_end_N": figures.force_range[1],
         }),
         "range_end_mm": state.range_end,

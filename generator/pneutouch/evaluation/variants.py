@@ -27,8 +27,8 @@ _LIMIT_SHARE = {"membrane": 1.0, "solid": 0.8}
 class ResinCurve(NamedTuple):
     """Sensitivity (kPa/N) over driving pressure (kPa), (n,) each, and the model that drew it."""
 
-    pressure: Array
-    sensitivity: Array
+    driving_pressure_kPa: Array
+    sensitivity_kPa_per_N: Array
     model: str
 
 
@@ -73,9 +73,13 @@ def _by_atlas(variants: dict[str, Sensor], highest: float) -> dict[str, ResinCur
     grids = [min(highest, _MARGIN * float(limit)) * share for limit in limits]
     steps = next(iter(inside.values())).protocol.steps
     response = respond(joined([batch_of(v, grid) for v, grid in zip(inside.values(), grids, strict=True)]), steps)
-    known = np.isfinite(response.lines.sensitivity) & ~np.isin(response.ends, (OUTSIDE, EDGE))
+    known = np.isfinite(response.lines.sensitivity_kPa_per_N) & ~np.isin(response.ends, (OUTSIDE, EDGE))
     rows = zip(
-        inside, grids, response.lines.sensitivity.reshape(-1, share.size), known.reshape(-1, share.size), strict=True
+        inside,
+        grids,
+        response.lines.sensitivity_kPa_per_N.reshape(-1, share.size),
+        known.reshape(-1, share.size),
+        strict=True,
     )
     return {
         title: ResinCurve(grid[kept] / KPA, values[kept], "atlas") for title, grid, values, kept in rows if kept.sum() > 1
@@ -91,7 +95,7 @@ def _by_model(variant: Sensor, highest: float, model: str, closure: str | None) 
         states = predict("", variant, pressures.tolist(), model=model, closure=closure or "variational").states
     except ComputationError:
         return None
-    values = [(p / KPA, s.figures.sensitivity) for p, s in zip(pressures, states, strict=True) if s.figures]
+    values = [(p / KPA, s.figures.sensitivity_kPa_per_N) for p, s in zip(pressures, states, strict=True) if s.figures]
     if not values:
         return None
     x, y = zip(*values, strict=True)

@@ -23,9 +23,9 @@ _SATURATED = 0.5
 class Figures:
     """Key figures of one loading curve. Sensitivities in kPa/N, stiffness in N/mm, forces in N."""
 
-    sensitivity: float
-    intercept: float
-    sensitivity_through_origin: float
+    sensitivity_kPa_per_N: float
+    intercept_kPa: float
+    sensitivity_through_origin_kPa_per_N: float
     r_squared: float
     nonlinearity: float
     stiffness: float
@@ -37,9 +37,9 @@ class FigureArrays(NamedTuple):
     """Key figures of many curves, arrays of one shape; NaN for no saturation. Units as in `Figures`, nonlinearity and
     r_squared as fractions."""
 
-    sensitivity: Array
-    intercept: Array
-    sensitivity_through_origin: Array
+    sensitivity_kPa_per_N: Array
+    intercept_kPa: Array
+    sensitivity_through_origin_kPa_per_N: Array
     r_squared: Array
     nonlinearity: Array
     stiffness: Array
@@ -48,31 +48,31 @@ class FigureArrays(NamedTuple):
     saturation_force: Array
 
 
-def lines(indentation: Array, force: Array, rise: Array) -> FigureArrays:
+def lines(indentation: Array, force: Array, rise_kPa: Array) -> FigureArrays:
     """Key figures of curves along the last axis, (..., n) each; definitions in `figures`.
 
     A curve whose force does not vary has NaN for what it does not determine.
     """
-    mean_force, mean_rise = force.mean(axis=-1, keepdims=True), rise.mean(axis=-1, keepdims=True)
-    df, dr = force - mean_force, rise - mean_rise
+    mean_force, mean_rise_kPa = force.mean(axis=-1, keepdims=True), rise_kPa.mean(axis=-1, keepdims=True)
+    df, dr = force - mean_force, rise_kPa - mean_rise_kPa
     with np.errstate(invalid="ignore", divide="ignore"):
         slope = (df * dr).sum(axis=-1) / (df * df).sum(axis=-1)
         residual = dr - slope[..., None] * df
-        spread, span = (dr * dr).sum(axis=-1), np.ptp(rise, axis=-1)
+        spread, span = (dr * dr).sum(axis=-1), np.ptp(rise_kPa, axis=-1)
         return FigureArrays(
-            sensitivity=slope,
-            intercept=mean_rise[..., 0] - slope * mean_force[..., 0],
-            sensitivity_through_origin=(force * rise).sum(axis=-1) / (force * force).sum(axis=-1),
+            sensitivity_kPa_per_N=slope,
+            intercept_kPa=mean_rise_kPa[..., 0] - slope * mean_force[..., 0],
+            sensitivity_through_origin_kPa_per_N=(force * rise_kPa).sum(axis=-1) / (force * force).sum(axis=-1),
             r_squared=1.0 - np.where(spread == 0, 0.0, (residual * residual).sum(axis=-1) / spread),
             nonlinearity=np.where(span == 0, 0.0, np.abs(residual).max(axis=-1) / span),
             stiffness=(force[..., -1] - force[..., 0]) / (indentation[..., -1] - indentation[..., 0]),
             force_low=force.min(axis=-1),
             force_high=force.max(axis=-1),
-            saturation_force=saturation_force(force, rise, slope),
+            saturation_force=saturation_force(force, rise_kPa, slope),
         )
 
 
-def figures(indentation: Array, force: Array, rise: Array) -> Figures | None:
+def figures(indentation: Array, force: Array, rise_kPa: Array) -> Figures | None:
     """Key figures over all the points given, or None where they do not determine a straight line.
 
     ``sensitivity`` is the slope of the least-squares line of pressure rise over force with intercept;
@@ -81,24 +81,24 @@ def figures(indentation: Array, force: Array, rise: Array) -> Figures | None:
     """
     if len(force) < _LEAST_POINTS or np.ptp(force) <= 0 or np.ptp(indentation) <= 0:
         return None
-    found = lines(indentation, force, rise)
+    found = lines(indentation, force, rise_kPa)
     saturated = float(found.saturation_force)
     return Figures(
-        sensitivity=float(found.sensitivity), intercept=float(found.intercept),
-        sensitivity_through_origin=float(found.sensitivity_through_origin), r_squared=float(found.r_squared),
+        sensitivity_kPa_per_N=float(found.sensitivity_kPa_per_N), intercept_kPa=float(found.intercept_kPa),
+        sensitivity_through_origin_kPa_per_N=float(found.sensitivity_through_origin_kPa_per_N), r_squared=float(found.r_squared),
         nonlinearity=float(found.nonlinearity), stiffness=float(found.stiffness),
         force_range=(float(found.force_low), float(found.force_high)),
         saturation_force=None if np.isnan(saturated) else saturated,
     )  # fmt: skip
 
 
-def saturation_force(force: Array, rise: Array, slope: Array | float) -> Array:
+def saturation_force(force: Array, rise_kPa: Array, slope: Array | float) -> Array:
     """Force at which the local slope of pressure over force falls below half the fitted one, NaN where it does not.
 
     A curve that begins flat has not saturated: the slope must have been above before. Curves along the last axis; the
     local slope is the second-order difference, one-sided at the ends.
     """
-    step, climb = np.diff(force), np.diff(rise)
+    step, climb = np.diff(force), np.diff(rise_kPa)
     with np.errstate(invalid="ignore", divide="ignore"):
         side = climb / step
         before, after = step[..., :-1], step[..., 1:]

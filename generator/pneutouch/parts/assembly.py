@@ -101,8 +101,8 @@ class Assembly:
     @property
     def dead_volume(self) -> float:
         """Gas behind the cavity in mm3: as the design states it, else connector and tube."""
-        stated = self.scene.design.pneumatics.dead_volume_mL
-        return self.internal_volume + self.tube_volume if stated is None else stated * ML
+        stated_mL = self.scene.design.pneumatics.dead_volume_mL
+        return self.internal_volume + self.tube_volume if stated_mL is None else stated_mL * ML
 
 
 def assemble(scene: ResolvedDesign) -> Assembly:

@@ -46,13 +46,13 @@ def inflation(sensor: Sensor, prediction: SensorPrediction) -> str:
 
 def _mark_limits(ax: Axes, sensor: Sensor, prediction: SensorPrediction) -> None:
     curve = prediction.inflation
-    p, gauge = curve.pressure / KPA, sensor.gas.gauge_limit / KPA
-    if gauge < 1.2 * p.max():
-        ax.axhline(gauge, color=MUTED, lw=0.8, ls=LINES[4])
+    p, gauge_kPa = curve.pressure / KPA, sensor.gas.gauge_limit / KPA
+    if gauge_kPa < 1.2 * p.max():
+        ax.axhline(gauge_kPa, color=MUTED, lw=0.8, ls=LINES[4])
         ax.text(
             curve.apex_inner[-1],
-            gauge,
-            f"gauge range {gauge:g} kPa",
+            gauge_kPa,
+            f"gauge range {gauge_kPa:g} kPa",
             ha="right",
             va="bottom",
             color=MUTED,
@@ -107,7 +107,11 @@ def response(prediction: SensorPrediction) -> str:
             if state.figures is not None:
                 force = np.array(state.figures.force_range)
                 ax.plot(
-                    force, state.figures.intercept + state.figures.sensitivity * force, color=FAINT, lw=0.8, zorder=1
+                    force,
+                    state.figures.intercept_kPa + state.figures.sensitivity_kPa_per_N * force,
+                    color=FAINT,
+                    lw=0.8,
+                    zorder=1,
                 )
         ax.set(xlabel="contact force  (N)", ylabel="pressure rise  (kPa)", xlim=(0, None), ylim=(0, None))
         return svg(drawn)
@@ -134,10 +138,10 @@ def _plot_states(ax: Axes, prediction: SensorPrediction, curve: Callable[[Sensor
     ax.legend(title="driving pressure", title_fontsize=7, loc="upper left", handlelength=3)
 
 
-def sensitivities(curves: dict[str, ResinCurve], chosen: str, published: dict[float, float]) -> str:
+def sensitivities(curves: dict[str, ResinCurve], chosen: str, published_kPa_per_N: dict[float, float]) -> str:
     """Sensitivity over driving pressure for every resin, the chosen one picked out.
 
-    ``curves`` are by label; ``published`` maps driving pressures (kPa) to measured sensitivities (kPa/N) of this very
+    ``curves`` are by label; ``published_kPa_per_N`` maps driving pressures (kPa) to measured sensitivities (kPa/N) of this very
     sensor, where there are any.
     """
     with figure(*SIZE) as drawn:
@@ -153,12 +157,12 @@ def sensitivities(curves: dict[str, ResinCurve], chosen: str, published: dict[fl
             ax.plot(pressures, values, zorder=3 if mine else 2, **look)
             style = {"fontsize": 6.5, "color": INK, **BOLD} if mine else {"fontsize": 6.5, "color": MUTED}
             ends.append((float(pressures[-1]), float(values[-1]), label, style))
-        if published:
-            ax.plot(list(published), list(published.values()), "D", color=INK, mfc="white", ms=4.5, zorder=5,
+        if published_kPa_per_N:
+            ax.plot(list(published_kPa_per_N), list(published_kPa_per_N.values()), "D", color=INK, mfc="white", ms=4.5, zorder=5,
                     label="published measurement")  # fmt: skip
             ax.legend(loc="lower left")
         right = max(float(pressures[-1]) for pressures, *_ in curves.values())
-        highest = max([float(np.max(values)) for _, values, _ in curves.values()] + list(published.values()))
+        highest = max([float(np.max(values)) for _, values, _ in curves.values()] + list(published_kPa_per_N.values()))
         ax.set(
             xlabel="driving pressure  (kPa)",
             ylabel="sensitivity  (kPa/N)",

@@ -39,7 +39,7 @@ def _air(prediction: SensorPrediction, gas: GasNotes) -> list[list[str]]:
         return " and ".join(texts) + f" {unit}"
 
     return [
-        ["Zero drift of the sealed gas", values(gas.by_temperature, ".2f", "kPa/K"),
+        ["Zero drift of the sealed gas", values(gas.by_temperature_kPa_per_K, ".2f", "kPa/K"),
          f"ideal gas in the yielding dome at {at}, 20 °C; a rigid cavity would show {values(1 / gas.wall_give, '.1f', 'times')} as much"],
         ["the same as force", values(gas.force_by_temperature, ".2f", "N/K"), "drift over the predicted sensitivity"],
         ["Fast contact", values(gas.fast_over_slow, ".2f", "times"),
@@ -50,16 +50,16 @@ def _air(prediction: SensorPrediction, gas: GasNotes) -> list[list[str]]:
 def _drift_alone(scene: ResolvedDesign, prediction: SensorPrediction) -> list[list[str]]:
     """Without the atlas: the drift, from the predicted inflation curve; nothing is known of fast contact."""
     state = prediction.states[0]
-    drift = zero_drift(scene, prediction, state)
+    drift_kPa_per_K = zero_drift_kPa_per_K(scene, prediction, state)
     at = f"at {state.driving_pressure / KPA:g} kPa, 20 °C"
-    rows = [["Zero drift of the sealed gas", f"{drift:.2f} kPa/K", f"ideal gas in the yielding dome {at}"]]
+    rows = [["Zero drift of the sealed gas", f"{drift_kPa_per_K:.2f} kPa/K", f"ideal gas in the yielding dome {at}"]]
     if state.figures is not None:
-        force = f"{drift / state.figures.sensitivity:.2f} N/K"
+        force = f"{drift_kPa_per_K / state.figures.sensitivity_kPa_per_N:.2f} N/K"
         rows.append(["the same as force", force, "drift over the predicted sensitivity"])
     return [*rows, ["Fast contact", "not known", "computed for sensors inside the atlas alone"]]
 
 
-def zero_drift(scene: ResolvedDesign, prediction: SensorPrediction, state: SensorState) -> float:
+def zero_drift_kPa_per_K(scene: ResolvedDesign, prediction: SensorPrediction, state: SensorState) -> float:
     """Pressure change of the shut-in gas by temperature without contact, kPa/K.
 
     The dome yields as the gas warms: dp/dT = (p_abs/T) k/(k + p_abs/V), k = dp/dV of the dome and V the gas.

@@ -109,7 +109,9 @@ def _looks(
 def _sensitivities(ax: Axes, graded: ComparedMembrane, constants: Sequence[ComparedMembrane]) -> None:
     ends: list[Label] = []
     for one, line, look in _looks(graded, constants):
-        points = [(s.driving_pressure / KPA, s.figures.sensitivity) for s in one.states if s.figures is not None]
+        points = [
+            (s.driving_pressure / KPA, s.figures.sensitivity_kPa_per_N) for s in one.states if s.figures is not None
+        ]
         if not points:
             continue
         x, y = np.array(points).T
@@ -124,9 +126,9 @@ def _rises(ax: Axes, graded: ComparedMembrane, constants: Sequence[ComparedMembr
     for one, line, look in _looks(graded, constants):
         state = one.states[-1]
         keep = state.indentation <= state.range_end * (1 + 1e-9)
-        force, rise = state.force[keep], state.pressure_rise[keep] / KPA
-        ax.plot(force, rise, **line)  # type: ignore[arg-type]
-        ends.append((float(force[-1]), float(rise[-1]), one.label, dict(look)))
+        force, rise_kPa = state.force[keep], state.pressure_rise[keep] / KPA
+        ax.plot(force, rise_kPa, **line)  # type: ignore[arg-type]
+        ends.append((float(force[-1]), float(rise_kPa[-1]), one.label, dict(look)))
     at = graded.states[-1].driving_pressure / KPA
     ax.set(xlabel=f"contact force at {at:g} kPa  (N)", ylabel="pressure rise  (kPa)", ylim=(0, None), xlim=(0, None))
     label_ends(ax, ends)

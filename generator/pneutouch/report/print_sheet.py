@@ -47,10 +47,10 @@ def _takes(sheet: Datasheet) -> list[str]:
             f"| {job.name} | {job.mode} | {resins} | {job.support / ML:.2f} mL | {job.layers}{swaths} | {_time(job.seconds)} |"
         )
         notes += [f"- {job.name}: {note}." for note in job.assumptions]
-    glue = sheet.assembly.glue_volume / ML
+    glue_mL = sheet.assembly.glue_volume / ML
     return [
         "| job | mode | resin | support | layers | time, rough |", "|---|---|---|---|---|---|", *rows, "",
-        *([f"Glue: about {glue:.2f} mL fills the gaps.", ""] if glue else []), *dict.fromkeys(notes),
+        *([f"Glue: about {glue_mL:.2f} mL fills the gaps.", ""] if glue_mL else []), *dict.fromkeys(notes),
     ]  # fmt: skip
 
 

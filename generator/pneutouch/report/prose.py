@@ -46,11 +46,11 @@ SHAPES = "Half sections of the deformed wall, shaded by the greatest principal s
 NO_SHAPES = "Half sections of the deformed wall are drawn by the solid alone: build with model solid."
 
 
-def tradeoff(pressure: float, dead_volume: float) -> str:
+def tradeoff(driving_pressure_kPa: float, dead_volume_mL: float) -> str:
     """Caption of the trade-off chart; kPa and mL."""
     return (
-        f"Trade-off at {pressure:g} kPa: the greatest force range that goes with each sensitivity, one line a resin of this "
-        f"printer with the sensitivities it reaches, wall and radius free to 60 mm, {dead_volume:.3g} mL dead volume, by the atlas; no line crosses a limit."
+        f"Trade-off at {driving_pressure_kPa:g} kPa: the greatest force range that goes with each sensitivity, one line a resin of this "
+        f"printer with the sensitivities it reaches, wall and radius free to 60 mm, {dead_volume_mL:.3g} mL dead volume, by the atlas; no line crosses a limit."
     )
 
 

@@ -37,16 +37,16 @@ def residual_chart(runs: Sequence[RunResiduals], size: tuple[float, float]) -> s
 
 
 def _curves(top: Axes, bottom: Axes, curves: Sequence[RunResiduals]) -> None:
-    pressures = sorted({run.pressure for run in curves})
-    for k, pressure in enumerate(pressures):
-        group = [run for run in curves if run.pressure == pressure]
+    pressures_kPa = sorted({run.driving_pressure_kPa for run in curves})
+    for k, pressure_kPa in enumerate(pressures_kPa):
+        group = [run for run in curves if run.driving_pressure_kPa == pressure_kPa]
         for ax, rows, label in (
-            (top, [run.force for run in group], f"{pressure:g} kPa"), (bottom, [run.rise / KPA for run in group], None),
+            (top, [run.force for run in group], f"{pressure_kPa:g} kPa"), (bottom, [run.rise / KPA for run in group], None),
         ):  # fmt: skip
             _group(ax, k, [run.at for run in group], rows, label)
     top.set(ylabel="force, model less\nmeasured  (N)")
     bottom.set(ylabel="pressure, model less\nmeasured  (kPa)", xlabel="indentation  (mm)")
-    top.legend(loc="best", ncols=min(len(pressures), 4), title="driving pressure", title_fontsize=7)
+    top.legend(loc="best", ncols=min(len(pressures_kPa), 4), title="driving pressure", title_fontsize=7)
 
 
 def _injections(ax: Axes, runs: Sequence[RunResiduals]) -> None:

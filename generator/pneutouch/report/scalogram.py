@@ -91,9 +91,9 @@ def _draw_scalogram(ax: Axes, found: Scalogram, top: float) -> QuadMesh:
     """Amplitudes in kPa over time and frequency, the cone of influence hatched."""
     kept = np.unique(np.linspace(0, len(found.time) - 1, _COLUMNS).round().astype(int))
     time, frequency = found.time[kept], found.frequency
-    amplitude = found.amplitude[:, kept] / KPA
+    amplitude_kPa = found.amplitude[:, kept] / KPA
     mesh = ax.pcolormesh(
-        time, frequency, amplitude, cmap=_colours(), vmin=0, vmax=top, shading="gouraud", rasterized=True
+        time, frequency, amplitude_kPa, cmap=_colours(), vmin=0, vmax=top, shading="gouraud", rasterized=True
     )
     # The e-folding time is inverse to the frequency: at one time, voices below its inverse are reached.
     room = np.minimum(time - time[0], time[-1] - time)

@@ -105,7 +105,7 @@ class Datasheet:
             ["Force range", _range(last), "N", f"at {last.driving_pressure / KPA:g} kPa"],
             [
                 "Max. driving pressure",
-                f"{self.rated_pressure():.1f}",
+                f"{self.rated_pressure_kPa():.1f}",
                 "kPa",
                 f"{RATED_SHARE:.0%} of the {limits.binding}",
             ],
@@ -125,7 +125,9 @@ class Datasheet:
         absent = f"Trade-off and tuning charts are not drawn: {why}."
         chart = self.tradeoff
         return {
-            "tradeoff": absent if chart is None else prose.tradeoff(chart.pressure, self.prediction.dead_volume / ML),
+            "tradeoff": absent
+            if chart is None
+            else prose.tradeoff(chart.driving_pressure_kPa, self.prediction.dead_volume / ML),
             "tuning": "" if self.tuning is None else prose.TUNING,
             "shapes": prose.SHAPES if self.prediction.states[0].shapes else prose.NO_SHAPES,
         }
@@ -137,14 +139,14 @@ class Datasheet:
             f"{RATED_SHARE:.0%} of the {limits.binding} ({limits.lowest / KPA:.2f} kPa, model {self.prediction.model})"
         )
         return [
-            ["Driving pressure", f"{self.rated_pressure():.1f}", "kPa gauge", basis],
+            ["Driving pressure", f"{self.rated_pressure_kPa():.1f}", "kPa gauge", basis],
             ["Cavity pressure while pressed", DASH, "kPa gauge", f"{NOT_TESTED}; the pressure sensor (SMC PSE543-R06) reads to 100 kPa"],
             ["Overload force", DASH, "N", NOT_TESTED],
             ["Burst pressure", DASH, "kPa", NOT_TESTED],
             ["Temperature", DASH, "°C", NOT_TESTED + "; the paper's tests ran at 18 to 26 °C"],
         ]  # fmt: skip
 
-    def rated_pressure(self) -> float:
+    def rated_pressure_kPa(self) -> float:
         """Greatest driving pressure to be used, kPa, rounded down: a share of the limit that binds."""
         return math.floor(10 * RATED_SHARE * self.prediction.limits.lowest / KPA) / 10
 
@@ -189,7 +191,7 @@ class Datasheet:
         press = design.indentation.depth_mm is None and design.pneumatics.ambient_pressure_kPa == 101.325
         return same and press and self.prediction.dead_volume == 0 and self.scene.membrane_material.measured is not None
 
-    def published(self) -> dict[float, float]:
+    def published_kPa_per_N(self) -> dict[float, float]:
         """Published sensitivities of this sensor: driving pressure in kPa to kPa/N."""
         measured = self.scene.membrane_material.measured
         if measured is None or not self.is_paper_sensor():
@@ -197,7 +199,7 @@ class Datasheet:
         return {0.0: measured.sensitivity_0kPa_kPa_per_N.nominal, 22.0: measured.sensitivity_22kPa_kPa_per_N.nominal}
 
     def _published(self, pressure: float) -> str:
-        value = self.published().get(round(pressure, 9))
+        value = self.published_kPa_per_N().get(round(pressure, 9))
         return DASH if value is None else f"{value:.3f}"
 
     def model_error(self) -> list[str]:
@@ -253,7 +255,7 @@ class Datasheet:
 
 
 def _sensitivity(state: SensorState) -> str:
-    return f"{state.figures.sensitivity:.2f}" if state.figures else DASH
+    return f"{state.figures.sensitivity_kPa_per_N:.2f}" if state.figures else DASH
 
 
 def _range(state: SensorState) -> str:

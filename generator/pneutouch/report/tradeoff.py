@@ -17,14 +17,14 @@ def tradeoff_chart(tradeoff: TradeOff, size: tuple[float, float]) -> str:
     with figure(*size) as drawn:
         ax = drawn.add_subplot()
         ax.set(
-            xscale="log", yscale="log", xlabel=f"sensitivity at {tradeoff.pressure:g} kPa  (kPa/N)",
+            xscale="log", yscale="log", xlabel=f"sensitivity at {tradeoff.driving_pressure_kPa:g} kPa  (kPa/N)",
             ylabel="greatest force range  (N)", **_limits(tradeoff),
         )  # fmt: skip
         _window(ax, tradeoff)
         _gauge(ax, tradeoff)
         starts: list[Label] = []
         for k, front in enumerate(tradeoff.known):
-            s, force, title = front.sensitivity, front.force, front.resin.material.title
+            s, force, title = front.sensitivity_kPa_per_N, front.force, front.resin.material.title
             mine = title == chosen
             ax.plot(
                 s, force, color=ACCENT if mine else INK, lw=2.0 if mine else 0.8, zorder=4 if mine else 3,
@@ -51,9 +51,9 @@ def _spots(ax: Axes, spots: tuple[ChartPoint, ...]) -> None:
 
 def _limits(tradeoff: TradeOff) -> dict[str, tuple[float, float]]:
     """Limits that hold the fronts, the designs and the window, with a margin; the labels need it at the top."""
-    x = [float(value) for front in tradeoff.known for value in front.sensitivity]
+    x = [float(value) for front in tradeoff.known for value in front.sensitivity_kPa_per_N]
     y = [float(value) for front in tradeoff.known for value in front.force]
-    x += [spot.sensitivity for spot in tradeoff.spots] + list(tradeoff.window or ())
+    x += [spot.sensitivity_kPa_per_N for spot in tradeoff.spots] + list(tradeoff.window_kPa_per_N or ())
     y += [spot.force for spot in tradeoff.spots] + ([] if tradeoff.force is None else [tradeoff.force])
     return {"xlim": (min(x, default=0.1) / 1.3, max(x, default=10.0) * 1.3),
             "ylim": (min(y, default=0.1) / 1.4, max(y, default=10.0) * 2.0)}  # fmt: skip
@@ -61,11 +61,11 @@ def _limits(tradeoff: TradeOff) -> dict[str, tuple[float, float]]:
 
 def _window(ax: Axes, tradeoff: TradeOff) -> None:
     """The target's window: from its least to its greatest sensitivity, upwards of its force range."""
-    if tradeoff.window is None and tradeoff.force is None:
+    if tradeoff.window_kPa_per_N is None and tradeoff.force is None:
         return
     from matplotlib.patches import Rectangle
 
-    low, high = tradeoff.window or ax.get_xlim()
+    low, high = tradeoff.window_kPa_per_N or ax.get_xlim()
     least, top = tradeoff.force or ax.get_ylim()[0], ax.get_ylim()[1]
     ax.add_patch(
         Rectangle(
@@ -79,8 +79,8 @@ def _window(ax: Axes, tradeoff: TradeOff) -> None:
 def _gauge(ax: Axes, tradeoff: TradeOff) -> None:
     """Where the cavity pressure reaches the end of the pressure sensor's range: no design is beyond."""
     low, high = ax.get_xlim()
-    ax.plot([low, high], [tradeoff.gauge / low, tradeoff.gauge / high], color=FAINT, lw=5, zorder=2)
+    ax.plot([low, high], [tradeoff.gauge_kPa / low, tradeoff.gauge_kPa / high], color=FAINT, lw=5, zorder=2)
     ax.text(
-        0.02, 0.03, f"grey band: end of the gauge's range,\nforce × sensitivity = {tradeoff.gauge:g} kPa",
+        0.02, 0.03, f"grey band: end of the gauge's range,\nforce × sensitivity = {tradeoff.gauge_kPa:g} kPa",
         transform=ax.transAxes, fontsize=6.5, color=MUTED, va="bottom",
     )  # fmt: skip

@@ -18,25 +18,45 @@ def tuning_chart(tuning: TuningChart, size: tuple[float, float]) -> str:
     chosen = tuning.chosen
     with figure(*size) as drawn:
         ax = drawn.add_subplot()
-        ax.fill_between(chosen.pressure, tuning.low, tuning.high, fc=FAINT, alpha=0.55, ec="none", zorder=1)
-        for edge in (tuning.low, tuning.high):
-            ax.plot(chosen.pressure, edge, color=MUTED, lw=0.6, zorder=2)
+        ax.fill_between(
+            chosen.driving_pressure_kPa,
+            tuning.low_kPa_per_N,
+            tuning.high_kPa_per_N,
+            fc=FAINT,
+            alpha=0.55,
+            ec="none",
+            zorder=1,
+        )
+        for edge in (tuning.low_kPa_per_N, tuning.high_kPa_per_N):
+            ax.plot(chosen.driving_pressure_kPa, edge, color=MUTED, lw=0.6, zorder=2)
         ends: list[Label] = [(
-            float(chosen.pressure[-1]), float(chosen.sensitivity[-1]), chosen.label,
+            float(chosen.driving_pressure_kPa[-1]), float(chosen.sensitivity_kPa_per_N[-1]), chosen.label,
             {"fontsize": 6.5, "color": INK, **BOLD},
         )]  # fmt: skip
         for k, other in enumerate(tuning.others):
-            ax.plot(other.pressure, other.sensitivity, color=INK, lw=0.7, ls=LINES[1 + k % 4], zorder=3)
-            at = float(other.pressure[-1]), float(other.sensitivity[-1])
+            ax.plot(
+                other.driving_pressure_kPa,
+                other.sensitivity_kPa_per_N,
+                color=INK,
+                lw=0.7,
+                ls=LINES[1 + k % 4],
+                zorder=3,
+            )
+            at = float(other.driving_pressure_kPa[-1]), float(other.sensitivity_kPa_per_N[-1])
             ends.append((*at, other.label, {"fontsize": 6.5, "color": MUTED}))
-        ax.plot(chosen.pressure, chosen.sensitivity, color=ACCENT, lw=2.0, zorder=4)
-        if tuning.published:
-            ax.plot(*np.array(tuning.published).T, "D", color=INK, mfc="white", ms=4.5, zorder=6, clip_on=False)
-        most = [float(tuning.high.max()), *(float(other.sensitivity.max()) for other in tuning.others)]
-        top = 1.12 * max(most + [value for _, value in tuning.published])
+        ax.plot(chosen.driving_pressure_kPa, chosen.sensitivity_kPa_per_N, color=ACCENT, lw=2.0, zorder=4)
+        if tuning.published_kPa_per_N:
+            ax.plot(
+                *np.array(tuning.published_kPa_per_N).T, "D", color=INK, mfc="white", ms=4.5, zorder=6, clip_on=False
+            )
+        most = [
+            float(tuning.high_kPa_per_N.max()),
+            *(float(other.sensitivity_kPa_per_N.max()) for other in tuning.others),
+        ]
+        top = 1.12 * max(most + [value for _, value in tuning.published_kPa_per_N])
         ax.set(
             xlabel="driving pressure  (kPa)", ylabel="sensitivity  (kPa/N)", ylim=(0, top),
-            xlim=(0, float(max(chosen.pressure[-1], *tuning.working))),
+            xlim=(0, float(max(chosen.driving_pressure_kPa[-1], *tuning.working_kPa_per_N))),
         )  # fmt: skip
         _mark(ax, tuning)
         if tuning.others:
@@ -46,23 +66,23 @@ def tuning_chart(tuning: TuningChart, size: tuple[float, float]) -> str:
 
 def _mark(ax: Axes, tuning: TuningChart) -> None:
     """The working pressures on the curve, and words for the band and the diamonds where they stand."""
-    for pressure, value in tuning.working.items():
+    for pressure, value in tuning.working_kPa_per_N.items():
         ax.plot([pressure, pressure], [0, value], color=INK, lw=0.6, ls=LINES[4], zorder=2)
         ax.plot(pressure, value, "o", color=INK, mfc="white", ms=4.5, zorder=5, clip_on=False)
-    last, value = list(tuning.working.items())[-1]
+    last, value = list(tuning.working_kPa_per_N.items())[-1]
     side = -1 if last > 0.5 * ax.get_xlim()[1] else 1
     ax.annotate(
         f"{value:.2f} kPa/N\nat {last:g} kPa", (last, 0.0), xytext=(4 * side, 5), textcoords="offset points", va="bottom",
         ha="right" if side < 0 else "left", fontsize=6.5,
     )  # fmt: skip
     ax.annotate(
-        "k = 2", (tuning.chosen.pressure[-1], tuning.high[-1]), xytext=(-4, -3), textcoords="offset points", va="top",
+        "k = 2", (tuning.chosen.driving_pressure_kPa[-1], tuning.high_kPa_per_N[-1]), xytext=(-4, -3), textcoords="offset points", va="top",
         ha="right", fontsize=6.5, color=INK,
     )  # fmt: skip
-    if tuning.published:
+    if tuning.published_kPa_per_N:
         ax.annotate(
             "published measurement",
-            tuning.published[0],
+            tuning.published_kPa_per_N[0],
             xytext=(7, 2),
             textcoords="offset points",
             va="bottom",

@@ -171,7 +171,7 @@ def _span(problem: SelectionProblem, pool: CandidatePool) -> tuple[Array, tuple[
         respond(problem.batch(pool.resin, pool.radius, pool.wall, pressure), problem.steps)
         for pressure in (np.zeros_like(rated), rated)
     ]
-    return rated, (both[0].lines.sensitivity, both[1].lines.sensitivity)
+    return rated, (both[0].lines.sensitivity_kPa_per_N, both[1].lines.sensitivity_kPa_per_N)
 
 
 def _ranked(choices: list[Candidate]) -> list[Candidate]:

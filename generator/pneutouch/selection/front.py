@@ -21,7 +21,7 @@ class TradeOffFront(NamedTuple):
     """One resin's trade-off in order of sensitivity: kPa/N, N, and the dome it takes, mm; (n,) each, maybe none."""
 
     resin: CandidateResin
-    sensitivity: Array
+    sensitivity_kPa_per_N: Array
     force: Array
     radius: Array
     wall: Array
@@ -75,8 +75,8 @@ def _best(problem: SelectionProblem, pool: CandidatePool) -> Index:
     good = np.flatnonzero(_room(problem, pool) >= 0.0)
     if good.size == 0:
         return good
-    good = good[np.argsort(-pool.response.lines.sensitivity[good], kind="stable")]
-    logs, force = np.log(pool.response.lines.sensitivity[good]), pool.force[good]
+    good = good[np.argsort(-pool.response.lines.sensitivity_kPa_per_N[good], kind="stable")]
+    logs, force = np.log(pool.response.lines.sensitivity_kPa_per_N[good]), pool.force[good]
     last = np.searchsorted(-logs, -np.linspace(logs[0], logs[-1], _LEVELS), side="right") - 1
     leader = np.maximum.accumulate(force)
     return np.unique(good[np.searchsorted(leader, leader)[last]])
@@ -85,10 +85,10 @@ def _best(problem: SelectionProblem, pool: CandidatePool) -> Index:
 def _hull(problem: SelectionProblem, number: int, pool: CandidatePool) -> TradeOffFront:
     """Candidates that meet every limit, without those that another beats in both."""
     rows = np.flatnonzero(_room(problem, pool) >= 0.0)
-    rows = rows[np.argsort(-pool.response.lines.sensitivity[rows], kind="stable")]
+    rows = rows[np.argsort(-pool.response.lines.sensitivity_kPa_per_N[rows], kind="stable")]
     force = pool.force[rows]
     rows = rows[force > np.maximum.accumulate(np.concatenate([[-np.inf], force[:-1]]))][::-1] if rows.size else rows
     lines = pool.response.lines
     return TradeOffFront(
-        problem.resins[number], lines.sensitivity[rows], pool.force[rows], pool.radius[rows], pool.wall[rows]
+        problem.resins[number], lines.sensitivity_kPa_per_N[rows], pool.force[rows], pool.radius[rows], pool.wall[rows]
     )

@@ -36,7 +36,7 @@ class GradeTarget:
     force: what the range must reach (N); None where it need not. widest: whether it shall reach as far as it can.
     """
 
-    sensitivity: float
+    sensitivity_kPa_per_N: float
     tolerance: float
     pressures: tuple[float, ...]
     same_within: float | None
@@ -51,7 +51,7 @@ class GradeTrial:
 
     pole: float
     rim: float
-    sensitivity: tuple[float, ...]
+    sensitivity_kPa_per_N: tuple[float, ...]
     force: tuple[float, ...]
     rated: float
     ends: tuple[str, ...] = ()
@@ -60,7 +60,7 @@ class GradeTrial:
     @property
     def difference(self) -> float:
         """Sensitivity at the last pressure over that at the first, less one."""
-        return self.sensitivity[-1] / self.sensitivity[0] - 1.0
+        return self.sensitivity_kPa_per_N[-1] / self.sensitivity_kPa_per_N[0] - 1.0
 
     @property
     def reach(self) -> float:
@@ -83,10 +83,10 @@ Progress = Callable[[GradeTrial, int, int], None]
 
 def shares(wish: GradeTarget, trial: GradeTrial) -> dict[str, float]:
     """What of each tolerance or limit a trial uses up: at most 1 where it is kept."""
-    values = np.array(trial.sensitivity)
+    values = np.array(trial.sensitivity_kPa_per_N)
     if not np.isfinite(values).all() or values.min() <= 0.0:
         return {"no figures": _MISSED}
-    found = {"sensitivity": float(np.abs(values / wish.sensitivity - 1.0).max()) / wish.tolerance}
+    found = {"sensitivity": float(np.abs(values / wish.sensitivity_kPa_per_N - 1.0).max()) / wish.tolerance}
     if wish.same_within is not None:
         found["same sensitivity"] = abs(trial.difference) / wish.same_within
     found["rated pressure"] = max(wish.pressures) / trial.rated
@@ -143,7 +143,7 @@ def _done(wish: GradeTarget, trials: list[GradeTrial]) -> bool:
 
 def _promising(wish: GradeTarget, top: float, trials: list[GradeTrial], surface: str) -> tuple[float, float] | None:
     """The place of least cost on the surface through the trials, none tried yet; None where it promises no gain."""
-    known = [trial for trial in trials if np.isfinite(trial.sensitivity).all()]
+    known = [trial for trial in trials if np.isfinite(trial.sensitivity_kPa_per_N).all()]
     if len(known) < _FEWEST:
         return None
     centre, width, best = np.array([0.5 * top, 0.5 * top]), 0.5 * top, np.inf
@@ -164,9 +164,9 @@ def _expected(wish: GradeTarget, top: float, trials: list[GradeTrial], places: A
     """
     from scipy.interpolate import RBFInterpolator
 
-    known = [trial for trial in trials if np.isfinite(trial.sensitivity).all()]
+    known = [trial for trial in trials if np.isfinite(trial.sensitivity_kPa_per_N).all()]
     at = np.array([(t.pole, t.rim) for t in known]) / top
-    table = np.log([[*t.sensitivity, *np.maximum(t.force, 1e-9), t.rated] for t in known])
+    table = np.log([[*t.sensitivity_kPa_per_N, *np.maximum(t.force, 1e-9), t.rated] for t in known])
     values = np.exp(RBFInterpolator(at, table, kernel=surface, degree=1)(places / top))
     n = len(wish.pressures)
     costs = np.array([
@@ -174,5 +174,5 @@ def _expected(wish: GradeTarget, top: float, trials: list[GradeTrial], places: A
     ])  # fmt: skip
     every = np.array([(t.pole, t.rim) for t in trials])
     away = np.hypot(*np.moveaxis(places[:, None, :] - every[None, :, :], -1, 0)) / top
-    unknown = np.array([not np.isfinite(t.sensitivity).all() for t in trials])
+    unknown = np.array([not np.isfinite(t.sensitivity_kPa_per_N).all() for t in trials])
     return np.where((away.min(axis=1) < _APART) | unknown[away.argmin(axis=1)], np.inf, costs)

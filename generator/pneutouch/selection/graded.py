@@ -38,15 +38,17 @@ def trial_of(sensor: Sensor, pressures: tuple[float, ...], pole: float = np.nan,
         found = solid_result(sensor, np.array(pressures), past_limit=1.0)
     except ComputationError as error:
         return GradeTrial(pole, rim, unknown, unknown, 1e-12, note=str(error))
-    sensitivities, forces, ends = [], [], []
+    sensitivities_kPa_per_N, forces, ends = [], [], []
     for state in found.states:
         figures = state.figures
-        sensitivities.append(np.nan if figures is None else figures.sensitivity)
+        sensitivities_kPa_per_N.append(np.nan if figures is None else figures.sensitivity_kPa_per_N)
         reach = np.nan if figures is None else figures.force_range[1]
         saturated = None if figures is None else figures.saturation_force
         forces.append(reach if saturated is None else min(reach, saturated))
         ends.append(next((event.kind for event in state.events if event.ends_range), "depth"))
-    return GradeTrial(pole, rim, tuple(sensitivities), tuple(forces), RATED_SHARE * found.limits.lowest, tuple(ends))
+    return GradeTrial(
+        pole, rim, tuple(sensitivities_kPa_per_N), tuple(forces), RATED_SHARE * found.limits.lowest, tuple(ends)
+    )
 
 
 def nearest_fraction(
@@ -67,13 +69,13 @@ def nearest_fraction(
     lines = [answer.lines for answer in answers]
     costs = np.array([
         cost(wish, GradeTrial(
-            at[k], at[k], tuple(float(line.sensitivity[k]) for line in lines),
+            at[k], at[k], tuple(float(line.sensitivity_kPa_per_N[k]) for line in lines),
             tuple(float(np.fmin(line.force_high[k], line.saturation_force[k])) for line in lines),
             RATED_SHARE * float(np.fmin(answers[0].limit_pressure[k], problem.gauge_limit)),
         ))
         for k in range(at.size)
     ])  # fmt: skip
-    known = np.all([np.isfinite(line.sensitivity) for line in lines], axis=0)
+    known = np.all([np.isfinite(line.sensitivity_kPa_per_N) for line in lines], axis=0)
     return float(at[np.argmin(np.where(known, costs, np.inf))]) if known.any() else None
 
 
@@ -90,5 +92,5 @@ def middle_wall(wish: GradeTarget, problem: SelectionProblem, radius: float, thi
     ones = np.ones(_WALLS)
     found = respond(problem.batch(0 * ones, radius * ones, walls, wish.pressures[0] * ones), problem.steps)
     with np.errstate(invalid="ignore", divide="ignore"):
-        off = np.abs(np.log(found.lines.sensitivity / wish.sensitivity))
+        off = np.abs(np.log(found.lines.sensitivity_kPa_per_N / wish.sensitivity_kPa_per_N))
     return None if not np.isfinite(off).any() else round(float(walls[np.nanargmin(off)]), 2)

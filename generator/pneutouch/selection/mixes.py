@@ -41,7 +41,7 @@ def met_by_fraction(
     """
     pool = pool.take(_best(problem, pool))
     at = np.array([_fraction(problem.resins[int(number)]) for number in pool.resin])
-    if problem.sensitivity is not None:
+    if problem.sensitivity_kPa_per_N is not None:
         at = _bisected(problem, pool, law, at)
     places = np.stack([np.round(at, _DIGITS), pool.radius, pool.wall, pool.pressure])
     once = np.sort(np.unique(places, axis=1, return_index=True)[1])
@@ -66,12 +66,12 @@ def _best(problem: SelectionProblem, pool: CandidatePool) -> Index:
 
 def _bisected(problem: SelectionProblem, pool: CandidatePool, law: ResolvedMixingCurve, at: Array) -> Array:
     """Fractions (n,) between the neighbouring levels at which the sensitivity is the one wanted."""
-    assert problem.sensitivity is not None
+    assert problem.sensitivity_kPa_per_N is not None
     known = levels(law)
     index = np.clip(np.searchsorted(known, at - 1e-9), 0, known.size - 1)
     low, high = known[np.maximum(index - 1, 0)], known[np.minimum(index + 1, known.size - 1)]
 
-    wanted = problem.sensitivity
+    wanted_kPa_per_N = problem.sensitivity_kPa_per_N
 
     def off(fraction: Array) -> Array:
         resins = tuple(
@@ -81,7 +81,7 @@ def _bisected(problem: SelectionProblem, pool: CandidatePool, law: ResolvedMixin
         numbers = np.arange(len(resins), dtype=float)
         found = evaluated(replace(problem, resins=resins), numbers, pool.radius, pool.wall, pool.pressure)
         with np.errstate(invalid="ignore", divide="ignore"):
-            return np.asarray(np.log(found.response.lines.sensitivity / wanted))
+            return np.asarray(np.log(found.response.lines.sensitivity_kPa_per_N / wanted_kPa_per_N))
 
     a, b = off(low), off(high)
     bracketed = a * b <= 0.0

@@ -58,8 +58,10 @@ def margins(problem: SelectionProblem, pool: CandidatePool) -> dict[str, Array]:
     (to RATED_SHARE of it), break strain, gauge range (at the force wanted), printable wall.
     """
     lines, found = pool.response.lines, {}
-    if problem.sensitivity is not None:
-        found["sensitivity"] = 1.0 - np.abs(lines.sensitivity / problem.sensitivity - 1.0) / problem.tolerance
+    if problem.sensitivity_kPa_per_N is not None:
+        found["sensitivity"] = (
+            1.0 - np.abs(lines.sensitivity_kPa_per_N / problem.sensitivity_kPa_per_N - 1.0) / problem.tolerance
+        )
     if problem.force_range is not None:
         found["force range"] = pool.force / problem.force_range - 1.0
     least, most = problem.stiffness
@@ -72,7 +74,7 @@ def margins(problem: SelectionProblem, pool: CandidatePool) -> dict[str, Array]:
     if problem.max_diameter is not None:
         found["outer diameter"] = problem.max_diameter / (2.0 * (pool.radius + pool.wall)) - 1.0
     found |= _limits(problem, pool)
-    known = np.isfinite(lines.sensitivity) & (pool.response.ends != OUTSIDE)
+    known = np.isfinite(lines.sensitivity_kPa_per_N) & (pool.response.ends != OUTSIDE)
     return {
         name: np.where(known & np.isfinite(margin) | (known & (margin > 0)), margin, -np.inf)
         for name, margin in found.items()

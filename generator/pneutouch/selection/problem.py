@@ -33,7 +33,7 @@ class SelectionProblem:
     """What is wanted of a sensor and what is settled; None where free. depth_share: plate travel over R0."""
 
     resins: tuple[CandidateResin, ...]
-    sensitivity: float | None
+    sensitivity_kPa_per_N: float | None
     tolerance: float
     driving_pressure: float | None
     force_range: float | None

@@ -32,7 +32,7 @@ def search(problem: SelectionProblem) -> CandidatePool:
     """Every candidate looked at: the scan, and the points on it where the sensitivity is the one wanted."""
     grid = scan(problem)
     coarse = evaluated(problem, *(part.ravel() for part in (grid.resin, grid.radius, grid.wall, grid.pressure)))
-    if problem.sensitivity is None or grid.radius.shape[-1] < 2:
+    if problem.sensitivity_kPa_per_N is None or grid.radius.shape[-1] < 2:
         return coarse
     exact = _met(problem, grid, coarse)
     return coarse if exact is None else joined([exact, coarse])
@@ -96,8 +96,8 @@ def _pressures(problem: SelectionProblem, resins: Array, ratio: Array) -> Array:
 
 def _met(problem: SelectionProblem, grid: CandidateGrid, coarse: CandidatePool) -> CandidatePool | None:
     """Points between neighbours of the scan where the sensitivity passes the one wanted; None where it never does."""
-    assert problem.sensitivity is not None
-    off = _off(problem.sensitivity, coarse).reshape(grid.radius.shape)
+    assert problem.sensitivity_kPa_per_N is not None
+    off = _off(problem.sensitivity_kPa_per_N, coarse).reshape(grid.radius.shape)
     with np.errstate(invalid="ignore"):
         passes = off[..., :-1] * off[..., 1:] <= 0.0
     where = np.nonzero(passes)
@@ -112,17 +112,17 @@ def _met(problem: SelectionProblem, grid: CandidateGrid, coarse: CandidatePool) 
         share = left + (right - left) * np.clip(low / np.where(low == high, 1.0, low - high), 0.02, 0.98)
         radius, wall, pressure = (_between(a, b, share) for a, b in ends)
         pool = evaluated(problem, resin, radius, wall, pressure)
-        here = np.nan_to_num(_off(problem.sensitivity, pool))
+        here = np.nan_to_num(_off(problem.sensitivity_kPa_per_N, pool))
         same = here * low > 0.0
         left, right = np.where(same, share, left), np.where(same, right, share)
         low, high = np.where(same, here, 0.5 * low), np.where(same, 0.5 * high, here)
     return pool
 
 
-def _off(wanted: float, pool: CandidatePool) -> Array:
+def _off(wanted_kPa_per_N: float, pool: CandidatePool) -> Array:
     """Logarithm of the sensitivity over the one wanted; NaN where there is none."""
     with np.errstate(invalid="ignore", divide="ignore"):
-        return np.asarray(np.log(pool.response.lines.sensitivity / wanted))
+        return np.asarray(np.log(pool.response.lines.sensitivity_kPa_per_N / wanted_kPa_per_N))
 
 
 def _between(a: Array, b: Array, share: Array) -> Array:

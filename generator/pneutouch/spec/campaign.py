@@ -69,13 +69,13 @@ class Rig(Table):
     """[rig]: what the instruments can do. Defaults are the paper's (Supplement C)."""
 
     name: Printable = Field(default="the paper's rig: ATI SI-40-2, SMC PSE543-R06", max_length=120, description="Name.")
-    force_range_N: float = number(40.0, unit="N", low=1e-3, high=1e5, help="Greatest force of the force sensor.")  # noqa: N815
-    force_resolution_N: float = number(0.02, unit="N", low=0, high=100, help="Resolution of the force sensor.")  # noqa: N815
-    pressure_range_kPa: float = number(100.0, unit="kPa", low=1e-2, high=1e5, help="Greatest gauge pressure read.")  # noqa: N815
+    force_range_N: float = number(40.0, unit="N", low=1e-3, high=1e5, help="Greatest force of the force sensor.")
+    force_resolution_N: float = number(0.02, unit="N", low=0, high=100, help="Resolution of the force sensor.")
+    pressure_range_kPa: float = number(100.0, unit="kPa", low=1e-2, high=1e5, help="Greatest gauge pressure read.")
     travel_mm: float = number(
         100.0, unit="mm", low=0.1, high=1e4, help="Travel of the stage (Actuonix L16-100: 100 mm)."
     )
-    rate_Hz: float = number(10_000.0, unit="Hz", low=1, high=1e6, help="Sampling rate.")  # noqa: N815
+    rate_Hz: float = number(10_000.0, unit="Hz", low=1, high=1e6, help="Sampling rate.")
 
 
 class CampaignRun(Table):
@@ -85,7 +85,7 @@ class CampaignRun(Table):
     kind: RunKind = Field(default="steps", description="Kind of run: " + ", ".join(RunKind.__args__) + ".")  # type: ignore[attr-defined]
     sensor: Printable = Field(min_length=1, max_length=60, description="Name of the specimen.")
     resin: str = Field(min_length=1, description=f"Name of its material, or {AS_DESIGNED!r}.")
-    driving_pressure_kPa: float = number(0.0, unit="kPa", low=0, high=1000, help="Gauge pressure before contact.")  # noqa: N815
+    driving_pressure_kPa: float = number(0.0, unit="kPa", low=0, high=1000, help="Gauge pressure before contact.")
     run: int = Field(default=1, ge=1, le=10_000, description="Number of the repetition.")
     date: datetime.date | None = Field(default=None, description="Day of the run.")
     age_days: float = number(0.0, unit="d", low=0, high=36_500, help="Age of the print on that day.")
@@ -106,7 +106,7 @@ class Campaign(Table):
         default=[], max_length=100, description="What changes the design, TABLE.KEY=VALUE each."
     )
     simulated: bool = Field(default=False, description="Whether a program made the files; every sheet states it.")
-    ambient_pressure_kPa: float | None = number(  # noqa: N815
+    ambient_pressure_kPa: float | None = number(
         None, unit="kPa", low=20, high=1000, help="Absolute pressure in the laboratory; left out: the design's."
     )
     rig: Rig = Rig()

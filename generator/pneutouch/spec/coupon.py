@@ -70,7 +70,7 @@ class DumbbellSpecimen(Table):
     thickness_mm: Lengths = Field(default_factory=list)
     gauge_length_mm: float = Field(default=25.0, gt=0, le=1000, description="Distance of the bench marks.")
     extension_mm: CurveReadings = Field(default_factory=list)
-    force_N: CurveReadings = Field(default_factory=list)  # noqa: N815
+    force_N: CurveReadings = Field(default_factory=list)
 
     @model_validator(mode="after")
     def _complete(self) -> DumbbellSpecimen:
@@ -148,10 +148,10 @@ class LeakCap(Table):
     """[leak-cap.DESIGN]: pressure at the start and end of each run, and the pressure after each push of the syringe."""
 
     seconds: float = Field(default=600.0, gt=0, le=1e6, description="How long a run lasted.")
-    start_kPa: Pressures = Field(default_factory=list)  # noqa: N815
-    end_kPa: Pressures = Field(default_factory=list)  # noqa: N815
-    pressure_kPa: Pressures = Field(default_factory=list)  # noqa: N815
-    ambient_pressure_kPa: float = Field(default=101.325, ge=20, le=1000)  # noqa: N815
+    start_kPa: Pressures = Field(default_factory=list)
+    end_kPa: Pressures = Field(default_factory=list)
+    pressure_kPa: Pressures = Field(default_factory=list)
+    ambient_pressure_kPa: float = Field(default=101.325, ge=20, le=1000)
 
     @model_validator(mode="after")
     def _runs(self) -> LeakCap:
@@ -165,9 +165,9 @@ class LeakCap(Table):
 class VolumePlug(Table):
     """[volume-plug.DESIGN]: pressure after each push, and the mass of water that the cavity holds."""
 
-    pressure_kPa: Pressures = Field(default_factory=list)  # noqa: N815
+    pressure_kPa: Pressures = Field(default_factory=list)
     water_g: Masses = Field(default_factory=list)
-    gauge_accuracy_kPa: float = Field(default=0.0, ge=0, le=100, description="Standard uncertainty of the gauge.")  # noqa: N815
+    gauge_accuracy_kPa: float = Field(default=0.0, ge=0, le=100, description="Standard uncertainty of the gauge.")
 
 
 class CouponResults(Table):

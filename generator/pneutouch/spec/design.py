@@ -74,11 +74,11 @@ class Connector(Table):
 class Pneumatics(Table):
     """[pneumatics]: the air."""
 
-    driving_pressures_kPa: Annotated[list[float], _within(0, 1000, "kPa")] = numbers(  # noqa: N815
+    driving_pressures_kPa: Annotated[list[float], _within(0, 1000, "kPa")] = numbers(
         [0.0, 5.0, 12.0, 22.0], unit="kPa", low=0, high=1000,
         help="Gauge pressures before contact at which the sensor is used: the online stiffness.",
     )  # fmt: skip
-    ambient_pressure_kPa: float = number(  # noqa: N815
+    ambient_pressure_kPa: float = number(
         101.325, unit="kPa", low=20, high=1000, help="Absolute pressure around the sensor."
     )
     tube: str | None = Field(
@@ -88,7 +88,7 @@ class Pneumatics(Table):
     tube_length_mm: float = number(
         300.0, unit="mm", low=0, high=20000, help="Tube between the port and the pressure sensor."
     )
-    dead_volume_mL: float | None = number(  # noqa: N815
+    dead_volume_mL: float | None = number(
         None, unit="mL", low=0, high=1000,
         help="Total gas volume behind the cavity; left out: computed from connector and tube.",
     )  # fmt: skip

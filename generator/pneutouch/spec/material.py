@@ -15,10 +15,10 @@ from pneutouch.spec.quantity import Quantity
 class PaperMeasurements(Table):
     """What the paper measured on its own sensor (R0 9.25 mm, t0 1.5 mm) in this material, Table S1."""
 
-    sensitivity_0kPa_kPa_per_N: Quantity  # noqa: N815
-    sensitivity_22kPa_kPa_per_N: Quantity  # noqa: N815
+    sensitivity_0kPa_kPa_per_N: Quantity
+    sensitivity_22kPa_kPa_per_N: Quantity
     hysteresis_percent: Quantity
-    repeatability_kPa_per_N: Quantity  # noqa: N815
+    repeatability_kPa_per_N: Quantity
     sensitivity_change_one_year_percent: Quantity | None = None
 
 
@@ -60,7 +60,7 @@ class ArcGrading(Table):
 
     arc: list[float] = Field(min_length=2)
     stiff_fraction: list[float] = Field(min_length=2, description="Volume fraction of the second base resin.")
-    shear_modulus_MPa: list[float] = Field(min_length=2)  # noqa: N815
+    shear_modulus_MPa: list[float] = Field(min_length=2)
 
     @model_validator(mode="after")
     def _of_one_length(self) -> ArcGrading:
@@ -84,7 +84,7 @@ class Relaxation(Table):
     """How a resin's modulus falls after a step of strain: 1 - sum of share (1 - exp(-t/time_s)), over its first value."""
 
     terms: list[RelaxationTerm] = Field(min_length=1, max_length=20, description="In ascending order of time_s.")
-    temperature_C: float | None = Field(default=None, description="Of the test, where it is known.")  # noqa: N815
+    temperature_C: float | None = Field(default=None, description="Of the test, where it is known.")
     source: str = Field(min_length=8, description="Table, page, DOI or measurement; how far it was verified.")
 
     @model_validator(mode="after")
@@ -109,12 +109,12 @@ class Material(Table):
     colour: str = Field(pattern=r"^#[0-9A-F]{6}$", description="Display colour; carries no meaning.")
     density_g_per_cm3: Quantity
     poisson_ratio: Quantity | None = None
-    shear_modulus_MPa: Quantity | None = None  # noqa: N815
-    young_modulus_MPa: Quantity | None = None  # noqa: N815
+    shear_modulus_MPa: Quantity | None = None
+    young_modulus_MPa: Quantity | None = None
     shore_a: Quantity | None = None
     shore_a_one_year: Quantity | None = None
     shore_d: Quantity | None = None
-    tensile_strength_MPa: Quantity | None = None  # noqa: N815
+    tensile_strength_MPa: Quantity | None = None
     elongation_at_break_percent: Quantity | None = None
     law: HyperelasticLaw | None = None
     measured: PaperMeasurements | None = None

@@ -19,8 +19,8 @@ class MixingPoint(Table):
     fraction_low: float | None = Field(default=None, ge=0, le=1)
     fraction_high: float | None = Field(default=None, ge=0, le=1)
     material: str | None = Field(default=None, min_length=1, description="Catalogue material of this modulus.")
-    shear_modulus_MPa: float | None = Field(default=None, gt=0, description="Where it was measured.")  # noqa: N815
-    shear_modulus_spread_MPa: float | None = Field(default=None, ge=0, description="One standard deviation.")  # noqa: N815
+    shear_modulus_MPa: float | None = Field(default=None, gt=0, description="Where it was measured.")
+    shear_modulus_spread_MPa: float | None = Field(default=None, ge=0, description="One standard deviation.")
     elongation_at_break_percent: float | None = Field(default=None, gt=0)
     source: str = Field(min_length=8)
 

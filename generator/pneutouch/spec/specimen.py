@@ -52,7 +52,7 @@ class Layer(Table):
     end_mm: float | None = number(
         None, unit="mm", low=0, high=1000, help="Where it ends along the path; left out: at the end of the block."
     )
-    target_frequency_Hz: float | None = number(  # noqa: N815
+    target_frequency_Hz: float | None = number(
         None, unit="Hz", low=1e-4, high=1e5, help="Frequency at the speed of the scan, instead of the pitch."
     )
 
@@ -117,7 +117,7 @@ class RandomPhase(Layer):
     pitches_mm: list[Annotated[float, Field(ge=0.001, le=1000)]] | None = Field(
         default=None, min_length=1, max_length=50, description="pitches along the path, each from 0.001 to 1000 mm",
     )  # fmt: skip
-    target_frequencies_Hz: list[Annotated[float, Field(ge=1e-4, le=1e5)]] | None = Field(  # noqa: N815
+    target_frequencies_Hz: list[Annotated[float, Field(ge=1e-4, le=1e5)]] | None = Field(
         default=None, min_length=1, max_length=50, description="frequencies at the speed of the scan, Hz",
     )  # fmt: skip
     amplitude_mm: float = number(0.3, unit="mm", low=0.001, high=500, help="Amplitude of each sine.")

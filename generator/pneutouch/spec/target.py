@@ -14,26 +14,26 @@ Names = Annotated[list[str], Field(min_length=1, max_length=50)]
 class TargetFigures(Table):
     """[target]: what the sensor shall do. Whatever is left out is free."""
 
-    sensitivity_kPa_per_N: float | None = number(  # noqa: N815
+    sensitivity_kPa_per_N: float | None = number(
         None, unit="kPa/N", low=1e-4, high=1e4, help="Slope of pressure rise over contact force."
     )
     tolerance_percent: float = number(5.0, unit="%", low=0.01, high=100, help="How far the sensitivity may be off.")
-    driving_pressure_kPa: float | None = number(  # noqa: N815
+    driving_pressure_kPa: float | None = number(
         None, unit="kPa", low=0, high=1000, help="Gauge pressure before contact at which that holds; left out: free."
     )
-    force_range_N: float | None = number(  # noqa: N815
+    force_range_N: float | None = number(
         None, unit="N", low=1e-4, high=1e5, help="Contact force that the range must reach."
     )
-    stiffness_least_N_per_mm: float | None = number(  # noqa: N815
+    stiffness_least_N_per_mm: float | None = number(
         None, unit="N/mm", low=1e-6, high=1e5, help="Least mean stiffness over the range."
     )
-    stiffness_most_N_per_mm: float | None = number(  # noqa: N815
+    stiffness_most_N_per_mm: float | None = number(
         None, unit="N/mm", low=1e-6, high=1e5, help="Greatest mean stiffness over the range."
     )
     max_diameter_mm: float | None = number(
         None, unit="mm", low=2, high=300, help="Greatest outer diameter of the unloaded dome, 2 (R0 + t0)."
     )
-    same_sensitivity_at_kPa: list[float] | None = Field(  # noqa: N815
+    same_sensitivity_at_kPa: list[float] | None = Field(
         default=None, min_length=2, max_length=2,
         description="Two driving pressures, kPa, at both of which the sensitivity holds; for a grade.",
     )  # fmt: skip
@@ -58,12 +58,12 @@ class TargetFigures(Table):
 
     @model_validator(mode="after")
     def _requirement_of_a_grade(self) -> TargetFigures:
-        both = self.same_sensitivity_at_kPa
-        if both is None:
+        both_kPa = self.same_sensitivity_at_kPa
+        if both_kPa is None:
             return self
-        if not 0 <= both[0] < both[1] <= 1000:
+        if not 0 <= both_kPa[0] < both_kPa[1] <= 1000:
             raise ValueError(
-                f"same_sensitivity_at_kPa = {both}: must be two rising driving pressures from 0 to 1000 kPa"
+                f"same_sensitivity_at_kPa = {both_kPa}: must be two rising driving pressures from 0 to 1000 kPa"
             )
         if self.sensitivity_kPa_per_N is None:
             raise ValueError(
@@ -71,7 +71,7 @@ class TargetFigures(Table):
             )
         if self.driving_pressure_kPa is not None:
             raise ValueError(
-                f"driving_pressure_kPa = {self.driving_pressure_kPa:g} and same_sensitivity_at_kPa = {both} contradict "
+                f"driving_pressure_kPa = {self.driving_pressure_kPa:g} and same_sensitivity_at_kPa = {both_kPa} contradict "
                 f"each other; give one of them"
             )
         return self
@@ -117,7 +117,7 @@ class Setting(Table):
     )
     profile: str | None = Field(default=None, min_length=1, description="Printer of the membrane.")
     tube_length_mm: float | None = number(None, unit="mm", low=0, high=20000, help="Tube to the pressure sensor.")
-    dead_volume_mL: float | None = number(  # noqa: N815
+    dead_volume_mL: float | None = number(
         None, unit="mL", low=0, high=1000, help="Total gas volume behind the cavity; left out: computed."
     )
 

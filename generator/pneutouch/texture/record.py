@@ -16,7 +16,7 @@ class RecordColumns:
     """Column names in the file's header; the units are s and kPa gauge whatever the names are."""
 
     time_s: str = "time_s"
-    pressure_kPa: str = "pressure_kPa"  # noqa: N815
+    pressure_kPa: str = "pressure_kPa"
 
 
 def read_signal(path: Path, columns: RecordColumns = RecordColumns()) -> Signal:
@@ -29,5 +29,5 @@ def read_signal(path: Path, columns: RecordColumns = RecordColumns()) -> Signal:
     if names[0] == names[1]:
         problem = "declared for both time and pressure"
         raise InputError(problem, file=path, key=f"column {names[0]}", remedy="must be two columns")
-    rows, (time, pressure) = whole(path, names)
-    return signal(time, pressure * KPA, str(path), [int(row) for row in rows])
+    rows, (time, pressure_kPa) = whole(path, names)
+    return signal(time, pressure_kPa * KPA, str(path), [int(row) for row in rows])

@@ -185,7 +185,7 @@ def test_a_model_that_misses_is_told_where(library):
     assert misses(fit(Observations(clean), DESIGNED, parameters)) == []
     found = misses(fit(Observations(bent), DESIGNED, parameters))
     worst = max(found, key=lambda miss: abs(miss.share))
-    assert (worst.pressure, worst.channel) == (12.0, "force")
+    assert (worst.driving_pressure_kPa, worst.channel) == (12.0, "force")
     assert worst.share > 0.03
     assert worst.start > 3.9
 

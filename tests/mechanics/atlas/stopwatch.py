@@ -55,7 +55,7 @@ def sensitivities(points: np.ndarray) -> np.ndarray:
         wall_thickness=wall, ambient_pressure=gas, driving_pressure=points[:, 1] * limit, depth=points[:, 4],
         dead_volume=points[:, 3] / (1 - points[:, 3]),
     )  # fmt: skip
-    return respond(sensors).lines.sensitivity
+    return respond(sensors).lines.sensitivity_kPa_per_N
 
 
 def plain_table() -> dict[str, float]:

@@ -30,14 +30,14 @@ def test_heating_a_sealed_cavity_by_a_kelvin(pressure, dead):
         for t in (ROOM + 0.5, ROOM - 0.5)
     )
     found = gas_notes(batch_of(sensor, [pressure]))
-    assert found.by_temperature[0] == pytest.approx(1e3 * (hot - cold), rel=1e-3)
+    assert found.by_temperature_kPa_per_K[0] == pytest.approx(1e3 * (hot - cold), rel=1e-3)
 
 
 def test_a_stiff_wall_shows_what_a_rigid_cavity_shows():
     found = gas_notes(batch_of(PAPER.replace(shear_modulus=50.0, depth=0.3), [0.0]))
     rigid = 1e3 * PAPER.gas.ambient_pressure / ROOM
     assert found.wall_give[0] > 0.99
-    assert found.by_temperature[0] == pytest.approx(rigid * found.wall_give[0])
+    assert found.by_temperature_kPa_per_K[0] == pytest.approx(rigid * found.wall_give[0])
     assert found.fast_over_slow[0] == pytest.approx(ADIABATIC, rel=0.02)
 
 

@@ -18,7 +18,7 @@ from pneutouch.workflows.characterize.run import characterize
 from pneutouch.workflows.simulate.run import SimulationOptions, simulate
 
 ASKED = SimulationOptions(
-    specimens=2, pressures=(0.0, 22.0), runs=1, kinds=("steps", "injection", "leak"), model="atlas", truth=SimulationTruth(rest=5.0)
+    specimens=2, driving_pressures_kPa=(0.0, 22.0), runs=1, kinds=("steps", "injection", "leak"), model="atlas", truth=SimulationTruth(rest=5.0)
 )  # fmt: skip
 FIRST = "runs/TangoPlus-1-0kPa-steps-1.csv"
 

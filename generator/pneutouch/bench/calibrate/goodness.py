@@ -22,14 +22,14 @@ class RunResiduals:
 
     Attributes:
         label: Of the run.
-        pressure: Driving pressure as the campaign names it, kPa; of an injection NaN.
+        driving_pressure_kPa: Driving pressure as the campaign names it, kPa; of an injection NaN.
         at: Indentation, mm; of an injection the volume, mm3.
         force, rise: Residuals, N and MPa.
         force_scale, rise_scale: Greatest measured force and rise: full scale.
     """
 
     label: str
-    pressure: float
+    driving_pressure_kPa: float
     at: Array
     force: Array
     rise: Array
@@ -52,7 +52,7 @@ class SystematicDeviation:
     """A stretch where the runs at a driving pressure (kPa) all deviate alike: ``channel`` force or pressure, travels mm, the
     greatest mean residual over full scale with its sign."""
 
-    pressure: float
+    driving_pressure_kPa: float
     channel: str
     start: float
     end: float
@@ -93,11 +93,12 @@ def misses(fit: CalibrationFit) -> list[SystematicDeviation]:
     found = []
     for channel in ("force", "pressure"):
         groups = {
-            p: _on_one_grid([run for run in runs if run.pressure == p], channel) for p in fit.observations.pressures
+            p: _on_one_grid([run for run in runs if run.driving_pressure_kPa == p], channel)
+            for p in fit.observations.driving_pressures_kPa
         }
         spread, freedom = _pooled([rows for _, rows in groups.values()])
-        for pressure, (at, rows) in groups.items():
-            found += _missed(pressure, channel, at, rows, spread, freedom)
+        for driving_pressure_kPa, (at, rows) in groups.items():
+            found += _missed(driving_pressure_kPa, channel, at, rows, spread, freedom)
     return found
 
 
@@ -121,7 +122,7 @@ def _pooled(groups: list[Array]) -> tuple[float, int]:
 
 
 def _missed(
-    pressure: float, channel: str, at: Array, rows: Array, spread: float, freedom: int
+    driving_pressure_kPa: float, channel: str, at: Array, rows: Array, spread: float, freedom: int
 ) -> list[SystematicDeviation]:
     from scipy.stats import t
 
@@ -136,7 +137,7 @@ def _missed(
         first -= 1
     while last < len(at) - 1 and over[last + 1] and mean[last + 1] * mean[worst] > 0:
         last += 1
-    return [SystematicDeviation(pressure, channel, float(at[first]), float(at[last]), float(mean[worst]))]
+    return [SystematicDeviation(driving_pressure_kPa, channel, float(at[first]), float(at[last]), float(mean[worst]))]
 
 
 def _rms(values: Array) -> float:

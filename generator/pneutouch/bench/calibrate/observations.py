@@ -50,18 +50,18 @@ class Observations:
     rig: Rig = field(default_factory=Rig)
 
     @property
-    def pressures(self) -> tuple[float, ...]:
+    def driving_pressures_kPa(self) -> tuple[float, ...]:
         """Driving pressures of the curves as the campaign names them, kPa, ascending, each once."""
         return tuple(sorted({curve.run.driving_pressure_kPa for curve in self.curves}))
 
-    def without(self, pressure: float) -> Observations:
+    def without(self, driving_pressure_kPa: float) -> Observations:
         """The same without the curves of a driving pressure, kPa."""
-        kept = tuple(curve for curve in self.curves if curve.run.driving_pressure_kPa != pressure)
+        kept = tuple(curve for curve in self.curves if curve.run.driving_pressure_kPa != driving_pressure_kPa)
         return replace(self, curves=kept)
 
-    def only(self, pressure: float) -> Observations:
+    def only(self, driving_pressure_kPa: float) -> Observations:
         """The curves of a driving pressure, kPa, alone."""
-        kept = tuple(curve for curve in self.curves if curve.run.driving_pressure_kPa == pressure)
+        kept = tuple(curve for curve in self.curves if curve.run.driving_pressure_kPa == driving_pressure_kPa)
         return replace(self, curves=kept, injections=())
 
 
@@ -154,7 +154,9 @@ def points_of(observations: Observations) -> ObservationPoints:
     volume, pressure, pressure_error, known = _padded(injections, 3)
     # What a gauge reads a little below zero before contact is zero: the dome is not sucked in.
     driving = np.array([max(curve.driving, 0.0) for curve in observations.curves])
-    group = np.array([observations.pressures.index(curve.run.driving_pressure_kPa) for curve in observations.curves])
+    group = np.array(
+        [observations.driving_pressures_kPa.index(curve.run.driving_pressure_kPa) for curve in observations.curves]
+    )
     found = ObservationPoints(
         travel, force, rise, force_error, rise_error, there.astype(bool), driving, volume, pressure, pressure_error,
         known.astype(bool), _travel_errors(observations.curves), group,

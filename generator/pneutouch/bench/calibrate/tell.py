@@ -164,10 +164,10 @@ def _times(gain: float) -> str:
 def _fitness(fit: CalibrationFit, missed: Sequence[SystematicDeviation]) -> list[str]:
     """Where the model misses, one clause a pressure: its greatest miss."""
     found = []
-    for pressure in sorted({miss.pressure for miss in missed}):
-        miss = max((m for m in missed if m.pressure == pressure), key=lambda m: abs(m.share))
+    for pressure_kPa in sorted({miss.driving_pressure_kPa for miss in missed}):
+        miss = max((m for m in missed if m.driving_pressure_kPa == pressure_kPa), key=lambda m: abs(m.share))
         found.append(
-            f"{pressure:g} kPa: {miss.channel} {abs(miss.share):.1%} of full scale too {'high' if miss.share > 0 else 'low'} "
+            f"{pressure_kPa:g} kPa: {miss.channel} {abs(miss.share):.1%} of full scale too {'high' if miss.share > 0 else 'low'} "
             f"from {miss.start:.2f} to {miss.end:.2f} mm"
         )
     return [f"the model misses in all runs alike, {'; '.join(found)}"] if found else []
@@ -191,7 +191,7 @@ def _few(labels: Sequence[str]) -> str:
 
 def _held(one: HeldOutPrediction) -> str:
     return (
-        f"held out {one.pressure:g} kPa: sensitivity {one.predicted:.4g} kPa/N predicted, {one.measured:.4g} measured "
+        f"held out {one.driving_pressure_kPa:g} kPa: sensitivity {one.predicted_kPa_per_N:.4g} kPa/N predicted, {one.measured_kPa_per_N:.4g} measured "
         f"({one.error:+.1%}); force within {one.force_worst:.1%} and pressure within {one.rise_worst:.1%} of full scale"
     )
 

@@ -35,7 +35,7 @@ _FIRST = 1.0
 
 _INSTANTS = 200
 _KEYS = (
-    ("sensitivity_kPa_per_N", "sensitivity", 1.0), ("sensitivity_through_origin_kPa_per_N", "sensitivity_through_origin", 1.0),
+    ("sensitivity_kPa_per_N", "sensitivity_kPa_per_N", 1.0), ("sensitivity_through_origin_kPa_per_N", "sensitivity_through_origin_kPa_per_N", 1.0),
     ("r_squared", "r_squared", 1.0), ("nonlinearity_percent", "nonlinearity", 100.0), ("stiffness_N_per_mm", "stiffness", 1.0),
     ("force_range_N", "force_high", 1.0),
 )  # fmt: skip

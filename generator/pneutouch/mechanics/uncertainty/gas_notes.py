@@ -28,13 +28,13 @@ _NEWTON, _LONGEST, _CLOSE = 20, 0.05, 1.0e-10
 class GasNotes(NamedTuple):
     """Of n sensors, (n,) each; NaN where the atlas has no state.
 
-    by_temperature: Pressure rise of the sealed, untouched sensor, kPa/K.
+    by_temperature_kPa_per_K: Pressure rise of the sealed, untouched sensor, kPa/K.
     force_by_temperature: The contact force that would read the same, N/K.
     wall_give: Share of the rise in a rigid cavity that the wall leaves: k_wall / (k_wall + k_gas).
     fast_over_slow: Sensitivity with adiabatic gas over that with isothermal gas, over one and the same travel.
     """
 
-    by_temperature: Array
+    by_temperature_kPa_per_K: Array
     force_by_temperature: Array
     wall_give: Array
     fast_over_slow: Array
@@ -55,10 +55,10 @@ def gas_notes(batch: SensorBatch, temperature: float = ROOM) -> GasNotes:
     absolute = press.pressure + press.ambient
     room = press.volume(press.free) + press.dead
     give = np.where(good, stiffness / (stiffness + absolute / room), np.nan)
-    rise = absolute * batch.shear_modulus / temperature * give / KPA
+    rise_kPa_per_K = absolute * batch.shear_modulus / temperature * give / KPA
     travel = _TRAVEL * response.indentation
-    fast = _sensitivity(press, travel, ADIABATIC) / _sensitivity(press, travel, 1.0)
-    return GasNotes(rise, rise / response.lines.sensitivity, give, fast)
+    fast = _sensitivity_kPa_per_N(press, travel, ADIABATIC) / _sensitivity_kPa_per_N(press, travel, 1.0)
+    return GasNotes(rise_kPa_per_K, rise_kPa_per_K / response.lines.sensitivity_kPa_per_N, give, fast)
 
 
 def _wall_stiffness(press: AtlasPress, k: Index) -> Array:
@@ -70,13 +70,13 @@ def _wall_stiffness(press: AtlasPress, k: Index) -> Array:
     return np.asarray(point.by_volume + point.by_height * apex[:, 1] / slices.reach(k))
 
 
-def _sensitivity(press: AtlasPress, indentation: Array, exponent: float) -> Array:
+def _sensitivity_kPa_per_N(press: AtlasPress, indentation: Array, exponent: float) -> Array:
     """Slope of pressure over force, kPa/N, at plate travels (n, m) in mm; NaN where no state is found at one of them."""
     mu, radius = press.batch.shear_modulus[:, None], press.batch.inner_radius[:, None]
     pressure, force, found = _pressed(press, np.nan_to_num(indentation) / radius, exponent)
-    rise = (pressure - press.pressure[:, None]) * mu / KPA
+    rise_kPa = (pressure - press.pressure[:, None]) * mu / KPA
     lost = ~found | np.isnan(indentation).any(axis=1)
-    return np.where(lost, np.nan, lines(indentation, force * mu * radius**2, rise).sensitivity)
+    return np.where(lost, np.nan, lines(indentation, force * mu * radius**2, rise_kPa).sensitivity_kPa_per_N)
 
 
 def _pressed(press: AtlasPress, indentation: Array, exponent: float) -> tuple[Array, Array, Flags]:

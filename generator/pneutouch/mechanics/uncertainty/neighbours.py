@@ -71,7 +71,7 @@ def log_figures(batch: SensorBatch) -> Array:
     found = respond(batch.take(order), atlas=neighbourhood())
     figures = np.empty((len(FIGURES), len(batch)))
     figures[:, order] = [
-        found.lines.sensitivity, found.limit_pressure / KPA, found.lines.stiffness, found.lines.force_high,
+        found.lines.sensitivity_kPa_per_N, found.limit_pressure / KPA, found.lines.stiffness, found.lines.force_high,
         found.range_end, found.apex_outer,
     ]  # fmt: skip
     with np.errstate(invalid="ignore", divide="ignore"):

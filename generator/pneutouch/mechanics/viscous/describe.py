@@ -97,10 +97,11 @@ def ageing_shift(sensor: Sensor, material: Material, driving_pressures: Sequence
     """
     ratio = ageing_ratio(material)
     old = sensor.replace(shear_modulus=ratio * sensor.wall.shear_modulus)
-    before, after = (
-        respond(batch_of(one, driving_pressures), one.protocol.steps).lines.sensitivity for one in (sensor, old)
+    before_kPa_per_N, after_kPa_per_N = (
+        respond(batch_of(one, driving_pressures), one.protocol.steps).lines.sensitivity_kPa_per_N
+        for one in (sensor, old)
     )
-    return ratio, after / before - 1.0
+    return ratio, after_kPa_per_N / before_kPa_per_N - 1.0
 
 
 def _held(run: RelaxationRun) -> dict[str, Any]:

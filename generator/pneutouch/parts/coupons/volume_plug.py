@@ -57,10 +57,10 @@ def draw(context: CouponContext) -> tuple[Solid, ...]:
 
 def nominals(context: CouponContext) -> tuple[Nominal, ...]:
     """The pressure after the same push of air as over the cap, and the cavity's volume by weighed water."""
-    volume = cavity_volume(context.design().design.membrane.inner_radius_mm) / ML
+    volume_mL = cavity_volume(context.design().design.membrane.inner_radius_mm) / ML
     return (
         Nominal("pressure_kPa", None, "kPa", PRESSURE),
-        Nominal("water_g", WATER * volume, "g", BALANCE),
+        Nominal("water_g", WATER * volume_mL, "g", BALANCE),
     )
 
 

@@ -24,12 +24,12 @@ def check(view: PrintView) -> list[Finding]:
     if highest <= RATED_SHARE * limits.lowest:
         return []
     apex = (0.0, 0.0, prediction.states[-1].apex_outer)
-    rated = RATED_SHARE * limits.lowest / KPA
+    rated_kPa = RATED_SHARE * limits.lowest / KPA
     text = f"{highest / KPA:g} kPa against the {limits.binding} at {limits.lowest / KPA:.1f} kPa"
     return [
         Finding(
             "driving", "error" if highest > limits.lowest else "warning", view.sensor.membrane, text,
-            f"lower pneumatics.driving_pressures_kPa below {rated:.1f}", _SOURCES[limits.binding], apex,
-            Excess(highest / KPA, rated, "kPa"),
+            f"lower pneumatics.driving_pressures_kPa below {rated_kPa:.1f}", _SOURCES[limits.binding], apex,
+            Excess(highest / KPA, rated_kPa, "kPa"),
         )
     ]  # fmt: skip

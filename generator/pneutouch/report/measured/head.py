@@ -167,8 +167,8 @@ def conditions(measured: CampaignReport) -> list[list[str]]:
     """Rig, air, runs and model: quantity and value."""
     campaign, rig, scene = measured.campaign, measured.campaign.rig, measured.scene
     kinds = Counter(run.kind for run in campaign.runs)
-    ambient = campaign.ambient_pressure_kPa
-    air = f"{ambient:g} kPa absolute, as measured" if ambient is not None else (
+    ambient_kPa = campaign.ambient_pressure_kPa
+    air = f"{ambient_kPa:g} kPa absolute, as measured" if ambient_kPa is not None else (
         f"{scene.design.pneumatics.ambient_pressure_kPa:g} kPa absolute, as the design states"
     )  # fmt: skip
     design = scene.design.membrane
@@ -194,12 +194,12 @@ def _age(beside: GroupComparison) -> float:
 
 def _as_read(measured: CampaignReport) -> str:
     """Greatest distance of a run's driving pressure from its nominal one."""
-    off = [
+    off_kPa = [
         curve.driving / KPA - curve.run.driving_pressure_kPa
         for curve in measured.curves
         if math.isfinite(curve.driving)
     ]
-    if not off:
+    if not off_kPa:
         return "not read"
-    worst = max(off, key=abs)
-    return f"within {number(abs(worst), 2)} kPa of the nominal one in every run"
+    worst_kPa = max(off_kPa, key=abs)
+    return f"within {number(abs(worst_kPa), 2)} kPa of the nominal one in every run"

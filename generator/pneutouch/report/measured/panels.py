@@ -49,12 +49,12 @@ class Plot(NamedTuple):
 class Panel:
     """The groups of one resin in the order of age and pressure.
 
-    ``campaign_pressures`` are the driving pressures of every resin, kPa; ``alone`` says that there is no other resin.
+    ``campaign_pressures_kPa`` are the driving pressures of every resin, kPa; ``alone`` says that there is no other resin.
     """
 
     label: str
     besides: tuple[GroupComparison, ...]
-    campaign_pressures: tuple[float, ...]
+    campaign_pressures_kPa: tuple[float, ...]
     alone: bool
 
     @cached_property
@@ -63,18 +63,18 @@ class Panel:
         return sorted({name for beside in self.besides for name in beside.group.sensors})
 
     @cached_property
-    def pressures(self) -> list[float]:
+    def driving_pressures_kPa(self) -> list[float]:
         """Driving pressures, kPa, ascending."""
         return sorted({beside.group.key.driving_pressure_kPa for beside in self.besides})
 
     @cached_property
     def ages(self) -> list[float]:
-        """Ages in months, ascending."""
+        """Ages in days, ascending."""
         return sorted({beside.group.key.age_days for beside in self.besides})
 
     def tone(self, beside: GroupComparison) -> tuple[str, Any]:
         """Colour and line style of a group's driving pressure: the same in every panel."""
-        return _tone(self.campaign_pressures.index(beside.group.key.driving_pressure_kPa))
+        return _tone(self.campaign_pressures_kPa.index(beside.group.key.driving_pressure_kPa))
 
     def spots(self, beside: GroupComparison, curve: MeasuredCurve) -> dict[str, Any]:
         """How the points of a run are drawn."""
@@ -94,9 +94,9 @@ def _tone(k: int) -> tuple[str, Any]:
 
 def panels_of(besides: Sequence[GroupComparison]) -> list[Panel]:
     """Groups by resin, in their order."""
-    every = tuple(sorted({beside.group.key.driving_pressure_kPa for beside in besides}))
+    every_kPa = tuple(sorted({beside.group.key.driving_pressure_kPa for beside in besides}))
     by_resin = [tuple(some) for _, some in groupby(besides, key=lambda beside: beside.group.key.resin)]
-    return [Panel(members[0].label, members, every, len(by_resin) == 1) for members in by_resin]
+    return [Panel(members[0].label, members, every_kPa, len(by_resin) == 1) for members in by_resin]
 
 
 def some(curves: Sequence[MeasuredCurve]) -> list[MeasuredCurve]:
@@ -163,14 +163,14 @@ def key(panels: Sequence[Panel]) -> dict[str, Any]:
     return found
 
 
-def lines_of(panels: Sequence[Panel], pressures: Sequence[float]) -> dict[str, Any]:
+def lines_of(panels: Sequence[Panel], driving_pressures_kPa: Sequence[float]) -> dict[str, Any]:
     """Legend of the driving pressures, kPa, that are drawn."""
     from matplotlib.lines import Line2D
 
     found = {}
-    for pressure in pressures:
-        color, style = _tone(panels[0].campaign_pressures.index(pressure))
-        found[f"{pressure:g} kPa"] = Line2D([], [], color=color, ls=style, lw=1.1)
+    for pressure_kPa in driving_pressures_kPa:
+        color, style = _tone(panels[0].campaign_pressures_kPa.index(pressure_kPa))
+        found[f"{pressure_kPa:g} kPa"] = Line2D([], [], color=color, ls=style, lw=1.1)
     return found
 
 
@@ -181,6 +181,6 @@ def band_of() -> dict[str, Any]:
     return {"predicted, 95 %": Patch(fc=FAINT, ec=MUTED, lw=0.5, alpha=0.7)}
 
 
-def ends_of(pressures: Sequence[float], most: int = 2) -> list[float]:
+def ends_of(values: Sequence[float], most: int = 2) -> list[float]:
     """All of them where they are few, else the lowest and the highest."""
-    return list(pressures) if len(pressures) <= most else [pressures[0], pressures[-1]]
+    return list(values) if len(values) <= most else [values[0], values[-1]]

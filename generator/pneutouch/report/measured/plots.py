@@ -43,10 +43,10 @@ def sensitivities(panels: Sequence[Panel]) -> Plot | None:
     legend = {"predicted": Line2D([], [], color=INK, lw=1.0), **band_of()} if known else {}
     for k, age in enumerate(_ages(panels)):
         legend[f"measured, {age}"] = Line2D([], [], ls="", **_spot(k))
-    pressures = panels[0].campaign_pressures
-    span = pressures[-1] - pressures[0]
-    slack = 0.08 * max(span, _LEAST_SPAN)
-    apart = min(np.diff(pressures), default=span) > 0.15 * span
+    pressures_kPa = panels[0].campaign_pressures_kPa
+    span_kPa = pressures_kPa[-1] - pressures_kPa[0]
+    slack = 0.08 * max(span_kPa, _LEAST_SPAN)
+    apart = min(np.diff(pressures_kPa), default=span_kPa) > 0.15 * span_kPa
     top = 1.12 * max(_greatest(beside) for panel in panels for beside in panel.besides)
     bottom = min(
         0.0, *(b.group.figures[SENSITIVITY].value for p in panels for b in p.besides if SENSITIVITY in b.group.figures)
@@ -55,9 +55,9 @@ def sensitivities(panels: Sequence[Panel]) -> Plot | None:
     def draw(ax: Axes, panel: Panel) -> None:
         _predicted_sensitivity(ax, panel, 0.5 * slack)
         _measured_sensitivity(ax, panel, _ages(panels), 0.18 * slack)
-        ax.set(xlim=(pressures[0] - slack, pressures[-1] + slack), ylim=(1.12 * bottom, top or 1.0))
-        if span == 0 or (apart and len(pressures) <= _MOST_TICKS):
-            ax.set_xticks(pressures)
+        ax.set(xlim=(pressures_kPa[0] - slack, pressures_kPa[-1] + slack), ylim=(1.12 * bottom, top or 1.0))
+        if span_kPa == 0 or (apart and len(pressures_kPa) <= _MOST_TICKS):
+            ax.set_xticks(pressures_kPa)
 
     labels = "driving pressure  (kPa)", "sensitivity  (kPa/N)"
     return multiples(panels, draw, labels, legend, shared=True)
@@ -113,11 +113,11 @@ def _measured_sensitivity(ax: Axes, panel: Panel, ages: list[str], aside: float)
         if found is None:
             continue
         k = ages.index(beside.group.key.age)
-        place = beside.group.key.driving_pressure_kPa + aside * (k - 0.5 * (len(ages) - 1))
+        place_kPa = beside.group.key.driving_pressure_kPa + aside * (k - 0.5 * (len(ages) - 1))
         low, high = (found.value if end is None else end for end in (found.low, found.high))
         # Drawn by hand: caps of an error bar that is a point would hide the marker.
-        ax.plot([place, place], [low, high], color=INK, lw=0.9, marker="_", ms=4 if high > low else 0, zorder=4)
-        ax.plot(place, found.value, ls="", zorder=5, **_spot(k))
+        ax.plot([place_kPa, place_kPa], [low, high], color=INK, lw=0.9, marker="_", ms=4 if high > low else 0, zorder=4)
+        ax.plot(place_kPa, found.value, ls="", zorder=5, **_spot(k))
 
 
 def responses(panels: Sequence[Panel]) -> Plot | None:
@@ -143,8 +143,8 @@ def _curves(panels: Sequence[Panel], over: _Axes, labels: tuple[str, str]) -> Pl
     if not panels:
         return None
     drawn = [b for p in panels for b in p.besides if b.group.of_kind("steps")]
-    pressures = sorted({b.group.key.driving_pressure_kPa for b in drawn})
-    legend = {**key(panels), **lines_of(panels, pressures)}
+    pressures_kPa = sorted({b.group.key.driving_pressure_kPa for b in drawn})
+    legend = {**key(panels), **lines_of(panels, pressures_kPa)}
     if any(b.state is not None and _ends(b, over.figure) for b in drawn):
         legend |= band_of()
     return multiples(panels, lambda ax, panel: _draw(ax, panel, over), labels, legend)
@@ -152,17 +152,17 @@ def _curves(panels: Sequence[Panel], over: _Axes, labels: tuple[str, str]) -> Pl
 
 def _draw(ax: Axes, panel: Panel, over: _Axes) -> None:
     """Bands of two driving pressures at most: more cover one another. Of several ages the youngest's prediction."""
-    shaded = ends_of(panel.pressures)
+    shaded_kPa = ends_of(panel.driving_pressures_kPa)
     done: set[float] = set()
     for beside in panel.besides:
-        runs, pressure = some(beside.group.of_kind("steps")), beside.group.key.driving_pressure_kPa
+        runs, pressure_kPa = some(beside.group.of_kind("steps")), beside.group.key.driving_pressure_kPa
         color, line = panel.tone(beside)
         for curve in runs:
             joined = {"ls": line, "lw": 0.5, "color": color} if beside.state is None else {}
             ax.plot(*over.measured(curve), zorder=4, **{**panel.spots(beside, curve), **joined})
-        if runs and beside.state is not None and pressure not in done:
-            done.add(pressure)
-            _predicted(ax, panel, beside, beside.state, over, shade=pressure in shaded)
+        if runs and beside.state is not None and pressure_kPa not in done:
+            done.add(pressure_kPa)
+            _predicted(ax, panel, beside, beside.state, over, shade=pressure_kPa in shaded_kPa)
     ax.set(xlim=(0, None), ylim=(0, None))
 
 

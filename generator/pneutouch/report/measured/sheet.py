@@ -59,7 +59,7 @@ def _figures(measured: CampaignReport, panels: Sequence[Panel]) -> DrawnPlots:
     """Title, caption and plot by name; plots without data are left out, wide ones stand first."""
     thinned = any(len(b.group.of_kind(kind)) > MOST_RUNS for b in measured.besides for kind in _RUNS_ONLY)
     some = f" At most {MOST_RUNS} runs a group are drawn." if thinned else ""
-    many = panels and len(panels[0].campaign_pressures) > 2
+    many = panels and len(panels[0].campaign_pressures_kPa) > 2
     ends = " at the lowest and the highest driving pressure" if many else ""
     joined = (
         " Thin lines join the points of runs without a prediction."

@@ -31,33 +31,40 @@ def loops(panels: Sequence[Panel]) -> Plot | None:
     """
     from matplotlib.lines import Line2D
 
-    panels = [panel for panel in panels if any(_loop_of(panel, pressure) for pressure in panel.pressures)]
+    panels = [
+        panel for panel in panels if any(_loop_of(panel, pressure_kPa) for pressure_kPa in panel.driving_pressures_kPa)
+    ]
     if not panels:
         return None
-    pressures = sorted(
-        {pressure for panel in panels for pressure in ends_of(panel.pressures) if _loop_of(panel, pressure)}
+    pressures_kPa = sorted(
+        {
+            pressure_kPa
+            for panel in panels
+            for pressure_kPa in ends_of(panel.driving_pressures_kPa)
+            if _loop_of(panel, pressure_kPa)
+        }
     )
-    tones = {pressure: TONES[k % len(TONES)] for k, pressure in enumerate(pressures)}
+    tones = {pressure_kPa: TONES[k % len(TONES)] for k, pressure_kPa in enumerate(pressures_kPa)}
     legend: dict[str, Any] = {
         **{f"{p:g} kPa": Line2D([], [], ls="", marker="s", ms=5, color=tone) for p, tone in tones.items()},
         "loading": Line2D([], [], color=INK, lw=0.9), "unloading": Line2D([], [], color=INK, lw=0.9, ls=LINES[1]),
     }  # fmt: skip
 
     def draw(ax: Axes, panel: Panel) -> None:
-        for pressure in ends_of(panel.pressures):
-            curve = _loop_of(panel, pressure)
+        for pressure_kPa in ends_of(panel.driving_pressures_kPa):
+            curve = _loop_of(panel, pressure_kPa)
             for force_up, rise_up, force_down, rise_down in curve.loop if curve else ():
-                ax.plot(*_thin(force_up, rise_up / KPA), color=tones[pressure], lw=0.9)
-                ax.plot(*_thin(force_down, rise_down / KPA), color=tones[pressure], lw=0.9, ls=LINES[1])
+                ax.plot(*_thin(force_up, rise_up / KPA), color=tones[pressure_kPa], lw=0.9)
+                ax.plot(*_thin(force_down, rise_down / KPA), color=tones[pressure_kPa], lw=0.9, ls=LINES[1])
         ax.set(xlim=(0, None), ylim=(0, None))
 
     return multiples(panels, draw, ("contact force  (N)", "pressure rise  (kPa)"), legend)
 
 
-def _loop_of(panel: Panel, pressure: float) -> MeasuredCurve | None:
+def _loop_of(panel: Panel, driving_pressure_kPa: float) -> MeasuredCurve | None:
     """The first loop run at a driving pressure."""
     runs = (
-        curve for beside in panel.besides if beside.group.key.driving_pressure_kPa == pressure
+        curve for beside in panel.besides if beside.group.key.driving_pressure_kPa == driving_pressure_kPa
         for curve in beside.group.of_kind("loop") if curve.loop
     )  # fmt: skip
     return next(runs, None)

@@ -80,9 +80,9 @@ def _sheet(evaluation: Evaluation) -> Datasheet:
     # Through the atlas these load scipy, which a prediction by the membrane must not pay for.
     from pneutouch.evaluation.charts import air, tradeoff, tuning
 
-    tuned = tuning(evaluation, sheet.rated_pressure() * KPA)
+    tuned = tuning(evaluation, sheet.rated_pressure_kPa() * KPA)
     if tuned is not None:
-        tuned = replace(tuned, published=tuple(sheet.published().items()))
+        tuned = replace(tuned, published_kPa_per_N=tuple(sheet.published_kPa_per_N().items()))
     return replace(sheet, gas=air(evaluation), tradeoff=tradeoff(evaluation), tuning=tuned)
 
 

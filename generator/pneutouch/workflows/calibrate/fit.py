@@ -71,12 +71,12 @@ class Calibration:
         return {
             "design": self.scene.name, "sensor": self.sensor, "campaign": self.title,
             "runs": len(self.fit.observations.curves), "injections": len(self.fit.observations.injections),
-            "driving_pressures_kPa": list(self.fit.observations.pressures),
+            "driving_pressures_kPa": list(self.fit.observations.driving_pressures_kPa),
             "ambient_pressure_kPa": self.fit.observations.ambient / KPA,
             "estimates": self.estimates, "correlation": _correlation(self.fit), "fit": _goodness(self.fit),
             "residuals": [_residual(run) for run in self.residuals],
             "misses": [
-                {"driving_pressure_kPa": m.pressure, "channel": m.channel, "from_mm": m.start, "to_mm": m.end, "share": m.share}
+                {"driving_pressure_kPa": m.driving_pressure_kPa, "channel": m.channel, "from_mm": m.start, "to_mm": m.end, "share": m.share}
                 for m in self.misses
             ],
             "strongly_correlated": [_ambiguity(group) for group in self.identified.ambiguities],
@@ -88,9 +88,9 @@ class Calibration:
 
 def calibrate(
     observations: Observations, scene: ResolvedDesign, names: Sequence[str] = NAMES, *, priors: bool = True,
-    hold_out: Sequence[float] = (), sensor: str = "", title: str = "", notes: Sequence[str] = (),
+    hold_out_kPa: Sequence[float] = (), sensor: str = "", title: str = "", notes: Sequence[str] = (),
 ) -> Calibration:  # fmt: skip
-    """Fit the parameters ``names`` of a design to observations, and predict the pressures ``hold_out`` (kPa) by the others.
+    """Fit the parameters ``names`` of a design to observations, and predict the pressures ``hold_out_kPa`` (kPa) by the others.
 
     Raises InputError for what cannot be fitted, ComputationError where no fit is found.
     """
@@ -101,7 +101,7 @@ def calibrate(
     )
     chosen = parameters(built, scene.membrane_material, scene.printer, names, priors=priors)
     found = fit(observations, built, chosen)
-    held = tuple(predict_held_out(observations, built, chosen, pressure) for pressure in hold_out)
+    held = tuple(predict_held_out(observations, built, chosen, pressure_kPa) for pressure_kPa in hold_out_kPa)
     return Calibration(
         scene,
         sensor,
@@ -146,8 +146,8 @@ def observations_of(
             value=chosen,
             remedy="there must be at least one",
         )
-    given = campaign.ambient_pressure_kPa
-    ambient = (scene.design.pneumatics.ambient_pressure_kPa if given is None else given) * KPA
+    given_kPa = campaign.ambient_pressure_kPa
+    ambient = (scene.design.pneumatics.ambient_pressure_kPa if given_kPa is None else given_kPa) * KPA
     blown = tuple(Injection(run.label, volume, pressure) for run, volume, pressure in pushed)
     return chosen, Observations(steps, blown, ambient, campaign.rig), _remarks(campaign, scene, chosen)
 
@@ -209,7 +209,7 @@ def _goodness(found: CalibrationFit) -> dict[str, Any]:
 
 def _residual(run: RunResiduals) -> dict[str, Any]:
     return {
-        "run": run.label, "driving_pressure_kPa": _number(run.pressure),
+        "run": run.label, "driving_pressure_kPa": _number(run.driving_pressure_kPa),
         "force_share_of_full_scale": _number(run.force_error), "pressure_share_of_full_scale": _number(run.rise_error),
     }  # fmt: skip
 
@@ -233,8 +233,8 @@ def _further(found: CalibrationFit, test: SuggestedTest) -> dict[str, Any]:
 
 def _held_out(one: HeldOutPrediction) -> dict[str, Any]:
     return {
-        "driving_pressure_kPa": one.pressure, "sensitivity_measured_kPa_per_N": one.measured,
-        "sensitivity_predicted_kPa_per_N": one.predicted, "sensitivity_error": one.error,
+        "driving_pressure_kPa": one.driving_pressure_kPa, "sensitivity_measured_kPa_per_N": one.measured_kPa_per_N,
+        "sensitivity_predicted_kPa_per_N": one.predicted_kPa_per_N, "sensitivity_error": one.error,
         "force_rms_share": one.force_error, "force_greatest_share": one.force_worst,
         "pressure_rms_share": one.rise_error, "pressure_greatest_share": one.rise_worst,
         "points": one.points, "points_left_out": one.left_out,

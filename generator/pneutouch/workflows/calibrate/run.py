@@ -50,7 +50,7 @@ def run_calibration(
     own = {curve.run.file for curve in observations.curves}
     notes = [*notes, *(f"{file}: {text}" for file, text in questions if file in own)]
     found = calibrate(
-        observations, scene, asked.names, priors=asked.priors, hold_out=asked.hold_out, sensor=sensor,
+        observations, scene, asked.names, priors=asked.priors, hold_out_kPa=asked.hold_out, sensor=sensor,
         title=loaded.campaign.title, notes=notes,
     )  # fmt: skip
     saved = None if asked.save is None else prepare(found, asked.save, Path(), library, shadow=asked.shadow)

@@ -24,10 +24,10 @@ def document(measured: CampaignReport) -> dict[str, Any]:
         ],
         "ageing": [
             {
-                "resin": resin, "driving_pressure_kPa": pressure, "age": age, "sensitivity_change_percent": value, "low": low, "high": high,
+                "resin": resin, "driving_pressure_kPa": pressure_kPa, "age": age, "sensitivity_change_percent": value, "low": low, "high": high,
                 "published_change_one_year_percent": published,
             }
-            for resin, pressure, age, value, low, high, published in measured.ageing
+            for resin, pressure_kPa, age, value, low, high, published in measured.ageing
         ],
         "target": [
             {"what": v.what, "required": v.wanted, "measured": v.measured, "passed": v.passed} for v in measured.verdicts

@@ -161,8 +161,8 @@ def _single(data: Path, scene: ResolvedDesign | None) -> Campaign:
 
 def _at_its_pressure(curve: MeasuredCurve, scene: ResolvedDesign) -> MeasuredCurve:
     """A single file's curve under that of the design's pressures that it was read at, else the read one."""
-    read = curve.driving / KPA
-    nearest = min(scene.design.pneumatics.driving_pressures_kPa, key=lambda p: abs(p - read))
-    near = abs(nearest - read) <= max(_NEAR_KPA, _NEAR_SHARE * nearest)
-    found = nearest if near else round(max(read, 0.0), 1)
-    return replace(curve, run=curve.run.model_copy(update={"driving_pressure_kPa": found}))
+    read_kPa = curve.driving / KPA
+    nearest_kPa = min(scene.design.pneumatics.driving_pressures_kPa, key=lambda p: abs(p - read_kPa))
+    near = abs(nearest_kPa - read_kPa) <= max(_NEAR_KPA, _NEAR_SHARE * nearest_kPa)
+    found_kPa = nearest_kPa if near else round(max(read_kPa, 0.0), 1)
+    return replace(curve, run=curve.run.model_copy(update={"driving_pressure_kPa": found_kPa}))

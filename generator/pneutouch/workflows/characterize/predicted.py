@@ -48,7 +48,7 @@ class StatePrediction:
         own, kept = state.figures, state.indentation <= state.range_end * (1 + 1e-12)
         return ExpectedRun(
             depth=float(state.indentation[kept][-1]), force=own.force_range[1],
-            rise=float(state.pressure_rise[kept][-1]), sensitivity=own.sensitivity * KPA,
+            rise=float(state.pressure_rise[kept][-1]), sensitivity=own.sensitivity_kPa_per_N * KPA,
             curve=(state.indentation[kept], state.force[kept], state.pressure_rise[kept]),
         )  # fmt: skip
 
@@ -130,7 +130,7 @@ def _figures(
     if got is None or own is None:
         return {}
     plain = {
-        "sensitivity_kPa_per_N": got.sensitivity, "sensitivity_through_origin_kPa_per_N": got.sensitivity_through_origin,
+        "sensitivity_kPa_per_N": got.sensitivity_kPa_per_N, "sensitivity_through_origin_kPa_per_N": got.sensitivity_through_origin_kPa_per_N,
         "r_squared": got.r_squared, "nonlinearity_percent": 100 * got.nonlinearity, "stiffness_N_per_mm": got.stiffness,
         "force_range_N": got.force_range[1],
     }  # fmt: skip

@@ -113,8 +113,10 @@ def _check_resins(data: Path, loaded: CampaignData, shelves: Library) -> None:
             shelves.load("materials", run.resin, file=str(data), key=f"runs[{place}].resin")
 
 
-def _answer(found: Mapping[tuple[str, float], StatePrediction], resin: str, pressure: float) -> StatePrediction:
-    return found.get((resin, pressure), StatePrediction(None, 0, "not predicted"))
+def _answer(
+    found: Mapping[tuple[str, float], StatePrediction], resin: str, driving_pressure_kPa: float
+) -> StatePrediction:
+    return found.get((resin, driving_pressure_kPa), StatePrediction(None, 0, "not predicted"))
 
 
 def sound(

@@ -91,10 +91,10 @@ def injections(loaded: CampaignData, scene: ResolvedDesign) -> tuple[tuple[Injec
         (run.sensor, f"leak, {_when(run)}", 60 * rate / KPA, 60 * error / KPA, "kPa/min")
         for run, rate, error in loaded.leaks
     ]
-    ambient = scene.design.pneumatics.ambient_pressure_kPa
+    ambient_kPa = scene.design.pneumatics.ambient_pressure_kPa
     for run, volume, pressure in loaded.injections:
         try:
-            total = dead_volume_of_cap(volume, pressure, ambient * KPA)
+            total = dead_volume_of_cap(volume, pressure, ambient_kPa * KPA)
         except ValueError as error:
             failures.append((run.file, f"{loaded.folder / run.file}: {error}"))
             continue

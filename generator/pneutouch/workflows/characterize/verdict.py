@@ -31,17 +31,17 @@ def verdicts(target: Target, groups: Sequence[RunGroup]) -> tuple[Verdict, ...]:
     wanted = target.target
     found = []
     for what, key, low, high, text in _wishes(wanted):
-        only = wanted.driving_pressure_kPa
+        only_kPa = wanted.driving_pressure_kPa
         answers = [
             group for group in groups
-            if key in group.figures and (only is None or np.isclose(only, group.key.driving_pressure_kPa, atol=_SAME_KPA))
+            if key in group.figures and (only_kPa is None or np.isclose(only_kPa, group.key.driving_pressure_kPa, atol=_SAME_KPA))
         ]  # fmt: skip
         for group in answers:
             where = f"{group.key.resin}, {group.key.age}, {group.key.driving_pressure_kPa:g} kPa"
             estimate = group.figures[key]
             found.append(Verdict(f"{what}, {where}", text, _said(estimate), _passed(estimate, low, high)))
         if not answers:
-            where = "" if only is None else f", {only:g} kPa"
+            where = "" if only_kPa is None else f", {only_kPa:g} kPa"
             found.append(Verdict(f"{what}{where}", text, "not measured", None))
     return tuple(found)
 

@@ -39,7 +39,7 @@ class PlanViolation:
     rule: str
     message: str
     resin: str = ""
-    driving_pressure_kPa: float | None = None  # noqa: N815
+    driving_pressure_kPa: float | None = None
     depth_mm: float | None = None
 
     def document(self) -> dict[str, Any]:
@@ -52,12 +52,12 @@ def points(curve: PressCurve, depths: tuple[float, ...]) -> list[dict[str, float
     known = [depth for depth in depths if curve.knows(depth)]
     force, rise = curve.at(np.minimum(known, curve.reach)) if known else (np.zeros(0), np.zeros(0))
     found = {d: (float(f), float(r) / KPA) for d, f, r in zip(known, force, rise, strict=True)}
-    driving = curve.driving / KPA
+    driving_kPa = curve.driving / KPA
     return [
         {
             "depth_mm": depth, "force_N": found[depth][0] if depth in found else None,
             "pressure_rise_kPa": found[depth][1] if depth in found else None,
-            "cavity_pressure_kPa": driving + found[depth][1] if depth in found else None,
+            "cavity_pressure_kPa": driving_kPa + found[depth][1] if depth in found else None,
         }
         for depth in depths
     ]  # fmt: skip
@@ -67,7 +67,7 @@ def curve_warnings(
     resin: str, pressed: PressCurves, curve: PressCurve, tests: Mapping[str, RunProtocol], rig: Rig
 ) -> list[PlanViolation]:
     """What the kinds of run at one driving pressure would pass; ``tests`` are their protocols by kind."""
-    driving = curve.driving / KPA
+    driving_kPa = curve.driving / KPA
     depths = tuple(sorted({depth for test in tests.values() for depth in test.depths}))
     expected = points(curve, depths)
     found = []
@@ -83,7 +83,7 @@ def curve_warnings(
     def say(rule: str, depth: float | None, text: str) -> None:
         kinds = "" if depth is None else f" ({', '.join(k for k, t in tests.items() if max(t.depths) >= depth)})"
         at = "" if depth is None else f", from {depth:.2f} mm on{kinds}"
-        found.append(PlanViolation(rule, f"{resin}, {driving:g} kPa{at}: {text}", resin, driving, depth))
+        found.append(PlanViolation(rule, f"{resin}, {driving_kPa:g} kPa{at}: {text}", resin, driving_kPa, depth))
 
     over(
         "force range",
@@ -157,7 +157,7 @@ def injection(pressed: PressCurves, rig: Rig) -> dict[str, Any]:
 def _rows(pressed: PressCurves, most: float) -> list[dict[str, float]]:
     sensor = pressed.sensor
     volumes = np.linspace(0.2, 1.0, 5) * most
-    stated, bare, more = (
+    stated_kPa, bare_kPa, more_kPa = (
         sensor_pressure(volumes, pressed.inflation, dead, sensor.gas.ambient_pressure) / KPA
         for dead in (sensor.gas.dead_volume, 0.0, sensor.gas.dead_volume + MORE)
     )
@@ -165,7 +165,7 @@ def _rows(pressed: PressCurves, most: float) -> list[dict[str, float]]:
         {
             "volume_mL": float(v) / ML, "pressure_kPa": float(p), "without_dead_volume_kPa": float(q),
             "with_more_dead_volume_kPa": float(r),
-        } for v, p, q, r in zip(volumes, stated, bare, more, strict=True)
+        } for v, p, q, r in zip(volumes, stated_kPa, bare_kPa, more_kPa, strict=True)
     ]  # fmt: skip
 
 

@@ -120,13 +120,13 @@ Tests = Mapping[RunKind, tuple[RunProtocol, tuple[float, ...]]]
 
 def plated_tests(subject: SimulatedResin) -> Tests:
     """Protocol and driving pressures (kPa) of each kind of run with a plate, in the order in which they are run."""
-    driving = tuple(subject.scene.design.pneumatics.driving_pressures_kPa)
-    top = min(SATURATION[-1], driving[-1])
-    pressures: dict[RunKind, tuple[float, ...]] = {
-        "steps": driving, "loop": driving, "saturation": tuple(sorted({SATURATION[0], top})),
-        "relaxation": tuple(sorted({0.0, driving[-1]})),
+    driving_kPa = tuple(subject.scene.design.pneumatics.driving_pressures_kPa)
+    top_kPa = min(SATURATION[-1], driving_kPa[-1])
+    pressures_kPa: dict[RunKind, tuple[float, ...]] = {
+        "steps": driving_kPa, "loop": driving_kPa, "saturation": tuple(sorted({SATURATION[0], top_kPa})),
+        "relaxation": tuple(sorted({0.0, driving_kPa[-1]})),
     }  # fmt: skip
-    return {kind: (protocol(kind, subject.sensor.dome.inner_radius), at) for kind, at in pressures.items()}
+    return {kind: (protocol(kind, subject.sensor.dome.inner_radius), at) for kind, at in pressures_kPa.items()}
 
 
 def _times(kind: str) -> int:
@@ -134,9 +134,9 @@ def _times(kind: str) -> int:
 
 
 def _pressed(subject: SimulatedResin, tests: Tests) -> PressCurves:
-    pressures = sorted({p for _, at in tests.values() for p in at})
+    pressures_kPa = sorted({p for _, at in tests.values() for p in at})
     depth = max(depth for test, _ in tests.values() for depth in test.depths)
-    return pressed(subject.name, subject.sensor, [p * KPA for p in pressures], depth, "auto")
+    return pressed(subject.name, subject.sensor, [p * KPA for p in pressures_kPa], depth, "auto")
 
 
 def _warnings(subject: SimulatedResin, found: PressCurves, tests: Tests, rig: Rig) -> Iterator[Any]:
@@ -170,22 +170,26 @@ def _runs(
     subject: SimulatedResin, sensor: str, tests: Tests, found: PressCurves, rig: Rig, before: int
 ) -> list[dict[str, Any]]:
     """Every run of one specimen in order: leak and dead volume first, relaxation last, for it strains the wall longest."""
-    top = max(subject.scene.design.pneumatics.driving_pressures_kPa)
+    top_kPa = max(subject.scene.design.pneumatics.driving_pressures_kPa)
     volume = injection(found, rig)["sensor_volume_mL"]
-    planned: list[tuple[str, float, int, list[dict[str, Any]], list[Any]]] = [("leak", top, 1, _leak(top, rig), [])]
+    planned: list[tuple[str, float, int, list[dict[str, Any]], list[Any]]] = [
+        ("leak", top_kPa, 1, _leak(top_kPa, rig), [])
+    ]
     if volume is not None:
         planned.append(("injection", 0.0, 1, _inject(volume), []))
     curves = {round(curve.driving / KPA, 9): curve for curve in found.curves}
-    for kind, (test, pressures) in tests.items():
-        for pressure in pressures:
-            said = points(curves[round(pressure, 9)], tuple(dict.fromkeys(test.depths)))
-            planned += [(kind, pressure, n + 1, steps_of(test, pressure, rig), said) for n in range(_times(kind))]
+    for kind, (test, pressures_kPa) in tests.items():
+        for pressure_kPa in pressures_kPa:
+            said = points(curves[round(pressure_kPa, 9)], tuple(dict.fromkeys(test.depths)))
+            planned += [
+                (kind, pressure_kPa, n + 1, steps_of(test, pressure_kPa, rig), said) for n in range(_times(kind))
+            ]
     return [
         {
-            "number": before + place, "kind": kind, "sensor": sensor, "resin": subject.name, "driving_pressure_kPa": pressure, "run": n,
-            "file": f"runs/{sensor}-{pressure:g}kPa-{kind}-{n}.csv", "steps": steps, "expected": said,
+            "number": before + place, "kind": kind, "sensor": sensor, "resin": subject.name, "driving_pressure_kPa": pressure_kPa, "run": n,
+            "file": f"runs/{sensor}-{pressure_kPa:g}kPa-{kind}-{n}.csv", "steps": steps, "expected": said,
             "duration_s": sum(step["seconds"] for step in steps),
-        } for place, (kind, pressure, n, steps, said) in enumerate(planned, start=1)
+        } for place, (kind, pressure_kPa, n, steps, said) in enumerate(planned, start=1)
     ]  # fmt: skip
 
 
@@ -193,16 +197,16 @@ def _step(action: str, value: float | None, unit: str, seconds: float) -> dict[s
     return {"action": action, "value": value, "unit": unit, "seconds": seconds}
 
 
-def steps_of(test: RunProtocol, pressure: float, rig: Rig) -> list[dict[str, Any]]:
+def steps_of(test: RunProtocol, pressure_kPa: float, rig: Rig) -> list[dict[str, Any]]:
     """What rig and hand do in one run with a plate; travels count from first contact, below zero the plate is clear."""
     steps = [_step("record", rig.rate_Hz, "Hz", 0.0)]
     for k, depth in enumerate(test.depths):
         if test.reset:
-            values = {"wait": (None, ""), "vent": (0.0, "kPa"), "set_pressure": (pressure, "kPa")}
+            values = {"wait": (None, ""), "vent": (0.0, "kPa"), "set_pressure": (pressure_kPa, "kPa")}
             steps += [_step(action, *values[action], share * test.rest) for action, share in _REST]
         else:
             steps.append(
-                _step("set_pressure", pressure, "kPa", test.rest) if k == 0 else _step("wait", None, "", test.rest)
+                _step("set_pressure", pressure_kPa, "kPa", test.rest) if k == 0 else _step("wait", None, "", test.rest)
             )
         seconds = (depth + CLEARANCE) / test.speed
         steps.append(_step("move", depth, "mm", seconds))
@@ -212,9 +216,9 @@ def steps_of(test: RunProtocol, pressure: float, rig: Rig) -> list[dict[str, Any
     return steps
 
 
-def _leak(pressure: float, rig: Rig) -> list[dict[str, Any]]:
+def _leak(pressure_kPa: float, rig: Rig) -> list[dict[str, Any]]:
     return [
-        _step("set_pressure", pressure, "kPa", FILL), _step("record", rig.rate_Hz, "Hz", 0.0),
+        _step("set_pressure", pressure_kPa, "kPa", FILL), _step("record", rig.rate_Hz, "Hz", 0.0),
         _step("wait", None, "", LEAK_SECONDS),
     ]  # fmt: skip
 

@@ -48,14 +48,14 @@ def tradeoff(selection: SelectionRun) -> TradeOff:
     pressure = problem.driving_pressure
     if pressure is None:
         pressure = float(designs[0].pool.pressure[0]) if designs else 0.0
-    wanted = problem.sensitivity
+    wanted_kPa_per_N = problem.sensitivity_kPa_per_N
     # Of a mix the fronts of the designs' own fractions: those of all that were tried lie side by side.
     mixed = any(resin.grade is not None for resin in problem.resins)
     resins = tuple(choice.resin for choice in designs) if mixed and designs else problem.resins
     return TradeOff(
         tuple(front(replace(problem, driving_pressure=pressure, resins=resins))), pressure / KPA, (problem.gauge_limit - pressure) / KPA,
         tuple(_spot(rank, choice) for rank, choice in enumerate(designs, start=1)),
-        None if wanted is None else (wanted * (1 - problem.tolerance), wanted * (1 + problem.tolerance)),
+        None if wanted_kPa_per_N is None else (wanted_kPa_per_N * (1 - problem.tolerance), wanted_kPa_per_N * (1 + problem.tolerance)),
         problem.force_range,
     )  # fmt: skip
 
@@ -79,7 +79,7 @@ def tuning(selection: SelectionRun, library: Library, chosen: Candidate | None =
         for choice in designs
         if choice.resin.name != chosen.resin.name
     )
-    working = {float(chosen.pool.pressure[0]) / KPA: float(chosen.pool.response.lines.sensitivity[0])}
+    working = {float(chosen.pool.pressure[0]) / KPA: float(chosen.pool.response.lines.sensitivity_kPa_per_N[0])}
     return TuningChart(drawn, low, high, working, tuple(other for other in others if other is not None))
 
 
@@ -93,7 +93,9 @@ def _best(selection: SelectionRun) -> list[Candidate]:
 
 def _spot(rank: int, choice: Candidate) -> ChartPoint:
     title, force = choice.resin.material.title, float(choice.pool.force[0])
-    return ChartPoint(title, f"{rank}  {title}, {force:.3g} N", float(choice.pool.response.lines.sensitivity[0]), force)
+    return ChartPoint(
+        title, f"{rank}  {title}, {force:.3g} N", float(choice.pool.response.lines.sensitivity_kPa_per_N[0]), force
+    )
 
 
 def _write(path: Path, text: str) -> Path:

@@ -46,7 +46,7 @@ def _is_runner_up(designs: list[Candidate], index: int) -> bool:
 
 def _choice(selection: SelectionRun, choice: Candidate, solid: Confirmation | None) -> dict[str, Any]:
     pool, lines = choice.pool, choice.pool.response.lines
-    sensitivity = float(lines.sensitivity[0])
+    sensitivity_kPa_per_N = float(lines.sensitivity_kPa_per_N[0])
     batch = selection.problem.batch(pool.resin, pool.radius, pool.wall, pool.pressure)
     return {
         "material": choice.resin.name,
@@ -56,8 +56,8 @@ def _choice(selection: SelectionRun, choice: Candidate, solid: Confirmation | No
         "driving_pressure_kPa": float(pool.pressure[0]) / KPA,
         "outer_diameter_mm": 2 * float(pool.radius[0] + pool.wall[0]),
         "dead_volume_mL": float(batch.dead_volume[0]) / ML,
-        "sensitivity_kPa_per_N": sensitivity,
-        "expanded_uncertainty_kPa_per_N": sensitivity * choice.expanded,
+        "sensitivity_kPa_per_N": sensitivity_kPa_per_N,
+        "expanded_uncertainty_kPa_per_N": sensitivity_kPa_per_N * choice.expanded,
         "expanded_uncertainty_relative": choice.expanded,
         "coverage_factor": 2,
         "r_squared": float(lines.r_squared[0]),
@@ -72,7 +72,7 @@ def _choice(selection: SelectionRun, choice: Candidate, solid: Confirmation | No
         "binding": choice.binding,
         "model": "atlas",
         "solid": None if solid is None else {
-            "sensitivity_kPa_per_N": solid.sensitivity, "within_expanded_uncertainty": solid.within,
+            "sensitivity_kPa_per_N": solid.sensitivity_kPa_per_N, "within_expanded_uncertainty": solid.within,
         },
         "set": selection.assignments(choice),
     }  # fmt: skip
@@ -82,7 +82,9 @@ def would_need(selection: SelectionRun, way: DroppedWish) -> str:
     """What a wish would have to be for the best design without it."""
     pool, lines = way.best.pool, way.best.pool.response.lines
     if way.wish == "sensitivity":
-        return f"{float(lines.sensitivity[0]):.3g} kPa/N instead of {selection.problem.sensitivity:g}"
+        return (
+            f"{float(lines.sensitivity_kPa_per_N[0]):.3g} kPa/N instead of {selection.problem.sensitivity_kPa_per_N:g}"
+        )
     if way.wish == "force range":
         return f"{float(pool.force[0]):.3g} N instead of {selection.problem.force_range:g}"
     if way.wish == "stiffness":

@@ -69,11 +69,11 @@ class GradedSelectionRun:
     def assignments(self) -> list[str]:
         """What turns the base design into the graded one, as ``table.key=value``."""
         setting = self.target.setting
-        pressures = sorted({0.0, *(round(p / KPA, 6) for p in self.wish.pressures)})
+        pressures_kPa = sorted({0.0, *(round(p / KPA, 6) for p in self.wish.pressures)})
         found = {
             "membrane.material": grade_text(self.grade), "membrane.inner_radius_mm": f"{self.sensor.dome.inner_radius:.6g}",
             "membrane.wall_thickness_mm": f"{self.sensor.dome.wall_thickness:.6g}",
-            "pneumatics.driving_pressures_kPa": pressures, "print.profile": setting.profile,
+            "pneumatics.driving_pressures_kPa": pressures_kPa, "print.profile": setting.profile,
             "pneumatics.tube_length_mm": setting.tube_length_mm, "pneumatics.dead_volume_mL": setting.dead_volume_mL,
         }  # fmt: skip
         return [f"{key}={value}" for key, value in found.items() if value is not None]
@@ -107,11 +107,11 @@ def select_graded(
 def _wish(target: Target) -> GradeTarget:
     wanted = target.target
     assert wanted.sensitivity_kPa_per_N is not None
-    both = wanted.same_sensitivity_at_kPa
-    pressures = both if both is not None else [wanted.driving_pressure_kPa or 0.0]
+    both_kPa = wanted.same_sensitivity_at_kPa
+    pressures_kPa = both_kPa if both_kPa is not None else [wanted.driving_pressure_kPa or 0.0]
     return GradeTarget(
-        wanted.sensitivity_kPa_per_N, wanted.tolerance_percent / 100, tuple(p * KPA for p in pressures),
-        None if both is None else wanted.same_within_percent / 100, wanted.force_range_N, wanted.widest_range,
+        wanted.sensitivity_kPa_per_N, wanted.tolerance_percent / 100, tuple(p * KPA for p in pressures_kPa),
+        None if both_kPa is None else wanted.same_within_percent / 100, wanted.force_range_N, wanted.widest_range,
     )  # fmt: skip
 
 

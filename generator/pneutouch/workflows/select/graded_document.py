@@ -43,7 +43,7 @@ def graded_document(selection: GradedSelectionRun) -> dict[str, Any]:
 def _figures(selection: GradedSelectionRun, trial: GradeTrial) -> dict[str, Any]:
     return {
         "driving_pressures_kPa": [p / KPA for p in selection.wish.pressures],
-        "sensitivity_kPa_per_N": _known(trial.sensitivity),
+        "sensitivity_kPa_per_N": _known(trial.sensitivity_kPa_per_N),
         "difference_percent": _known((100 * trial.difference,))[0],
         "force_range_end_N": _known(trial.force),
         "range_ends_with": list(trial.ends),
@@ -60,19 +60,25 @@ def _known(values: tuple[float, ...]) -> list[float | None]:
 def missed(selection: GradedSelectionRun) -> list[str]:
     """What the best grade misses, and how far it can be moved at this size, in words."""
     wish, best = selection.wish, selection.search.best
-    values = ", ".join(f"{value:.3f}" for value in best.sensitivity)
+    values = ", ".join(f"{value:.3f}" for value in best.sensitivity_kPa_per_N)
     said = {
-        "sensitivity": f"{values} kPa/N instead of {wish.sensitivity:g} within {100 * wish.tolerance:g} %",
+        "sensitivity": f"{values} kPa/N instead of {wish.sensitivity_kPa_per_N:g} within {100 * wish.tolerance:g} %",
         "same sensitivity": f"{100 * best.difference:+.1f} % apart instead of {100 * (wish.same_within or 0):g} %",
         "rated pressure": f"{best.rated / KPA:.1f} kPa, less than {max(wish.pressures) / KPA:g} kPa",
         "force range": f"{best.reach:.3g} N instead of {wish.force or 0:g}",
         "no figures": best.note or "no straight part to fit",
     }
     lines = [f"{name}: {said[name]}" for name, used in shares(wish, best).items() if used > 1.0]
-    known = np.array([trial.sensitivity for trial in selection.search.trials if np.isfinite(trial.sensitivity).all()])
-    if known.size:
+    known_kPa_per_N = np.array(
+        [
+            trial.sensitivity_kPa_per_N
+            for trial in selection.search.trials
+            if np.isfinite(trial.sensitivity_kPa_per_N).all()
+        ]
+    )
+    if known_kPa_per_N.size:
         lines.append(
-            f"all grades tried of this size have {known[:, 0].min():.2f} to {known[:, 0].max():.2f} kPa/N at "
+            f"all grades tried of this size have {known_kPa_per_N[:, 0].min():.2f} to {known_kPa_per_N[:, 0].max():.2f} kPa/N at "
             f"{wish.pressures[0] / KPA:g} kPa"
         )
     return lines

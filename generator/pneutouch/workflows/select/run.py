@@ -44,7 +44,7 @@ _DEAD_VOLUMES = 8
 class Confirmation:
     """What the solid says of a design: sensitivity (kPa/N) and whether it lies within the stated uncertainty."""
 
-    sensitivity: float
+    sensitivity_kPa_per_N: float
     within: bool
 
 
@@ -62,8 +62,8 @@ class SelectionRun:
 
     def assignments(self, choice: Candidate) -> list[str]:
         """What turns the base design into a choice, as ``table.key=value``."""
-        pressure = float(choice.pool.pressure[0]) / KPA
-        pressures = sorted({0.0, round(pressure, 6)})
+        pressure_kPa = float(choice.pool.pressure[0]) / KPA
+        pressures = sorted({0.0, round(pressure_kPa, 6)})
         found = [
             f"membrane.material={_written(choice.resin)}",
             f"membrane.inner_radius_mm={float(choice.pool.radius[0]):.6g}",
@@ -202,7 +202,7 @@ def problem_of(
     wanted, given = target.target, target.given
     feature = scene.printer.smallest.wall("elastomer")
     return SelectionProblem(
-        resins=resins, sensitivity=wanted.sensitivity_kPa_per_N, tolerance=wanted.tolerance_percent / 100,
+        resins=resins, sensitivity_kPa_per_N=wanted.sensitivity_kPa_per_N, tolerance=wanted.tolerance_percent / 100,
         driving_pressure=None if wanted.driving_pressure_kPa is None else wanted.driving_pressure_kPa * KPA,
         force_range=wanted.force_range_N, stiffness=(wanted.stiffness_least_N_per_mm, wanted.stiffness_most_N_per_mm),
         max_diameter=wanted.max_diameter_mm, inner_radius=given.inner_radius_mm, wall_thickness=given.wall_thickness_mm,
@@ -269,5 +269,8 @@ def _confirm(selection: SelectionRun, choice: Candidate) -> Confirmation:
     figures = solid_result(selection.sensor_of(choice), choice.pool.pressure).states[0].figures
     if figures is None:
         return Confirmation(float("nan"), False)
-    stated = float(choice.pool.response.lines.sensitivity[0])
-    return Confirmation(figures.sensitivity, bool(abs(np.log(figures.sensitivity / stated)) <= choice.expanded))
+    stated_kPa_per_N = float(choice.pool.response.lines.sensitivity_kPa_per_N[0])
+    return Confirmation(
+        figures.sensitivity_kPa_per_N,
+        bool(abs(np.log(figures.sensitivity_kPa_per_N / stated_kPa_per_N)) <= choice.expanded),
+    )

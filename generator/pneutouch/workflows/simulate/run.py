@@ -54,13 +54,13 @@ class SimulationOptions:
 
     resins: tuple[str, ...] = ()
     specimens: int = 3
-    pressures: tuple[float, ...] | None = None
+    driving_pressures_kPa: tuple[float, ...] | None = None
     runs: int = 3
     kinds: tuple[str, ...] = ("steps", "loop", "relaxation")
     rate: float = 100.0
     seed: int = 0
     model: str = "solid"
-    ages: tuple[float, ...] = (0.0,)
+    ages_days: tuple[float, ...] = (0.0,)
     parquet: bool = False
     truth: SimulationTruth = field(default_factory=SimulationTruth)
 
@@ -112,9 +112,9 @@ def _write_all(
 ) -> None:
     runs: list[CampaignRun] = []
     truth: dict[str, Any] = {"specimens": {}, "populations": [], "notes": []}
-    total = len(subjects) * asked.specimens * len(asked.ages)
+    total = len(subjects) * asked.specimens * len(asked.ages_days)
     for subject in subjects:
-        for age in asked.ages:
+        for age in asked.ages_days:
             truth["populations"] += _populations(subject, age, asked)
             for k in range(asked.specimens):
                 for run, content in _specimen(subject, age, k, asked, truth):
@@ -145,10 +145,14 @@ def campaign_toml(campaign: Campaign, comment: str) -> bytes:
     return f"{comment}\n{toml_text(content)}".encode()
 
 
-def _pressures(subject: SimulatedResin, asked: SimulationOptions) -> list[float]:
+def _driving_pressures_kPa(subject: SimulatedResin, asked: SimulationOptions) -> list[float]:
     """Driving pressures in kPa."""
-    given = subject.scene.design.pneumatics.driving_pressures_kPa if asked.pressures is None else asked.pressures
-    return sorted(given)
+    given_kPa = (
+        subject.scene.design.pneumatics.driving_pressures_kPa
+        if asked.driving_pressures_kPa is None
+        else asked.driving_pressures_kPa
+    )
+    return sorted(given_kPa)
 
 
 def _depth(subject: SimulatedResin, asked: SimulationOptions) -> float:
@@ -159,15 +163,17 @@ def _depth(subject: SimulatedResin, asked: SimulationOptions) -> float:
 
 
 def _pressed(subject: SimulatedResin, sensor: Sensor, asked: SimulationOptions, who: str) -> PressCurves:
-    return pressed(who, sensor, [p * KPA for p in _pressures(subject, asked)], _depth(subject, asked), asked.model)
+    return pressed(
+        who, sensor, [p * KPA for p in _driving_pressures_kPa(subject, asked)], _depth(subject, asked), asked.model
+    )
 
 
 def _populations(subject: SimulatedResin, age: float, asked: SimulationOptions) -> Iterator[dict[str, Any]]:
     nominal = _pressed(subject, aged(subject.sensor, subject.truth, age), asked, subject.name)
-    for k, pressure in enumerate(_pressures(subject, asked)):
+    for k, pressure_kPa in enumerate(_driving_pressures_kPa(subject, asked)):
         found: Population = population(nominal, k, subject.truth, asked.rate, (asked.seed, _number(subject.name)))
         yield {
-            "resin": subject.name, "age_days": age, "driving_pressure_kPa": pressure, "figures": found.figures,
+            "resin": subject.name, "age_days": age, "driving_pressure_kPa": pressure_kPa, "figures": found.figures,
             "spread": found.spread, "count": found.count, "basis": found.basis,
         }  # fmt: skip
 
@@ -188,7 +194,7 @@ def _specimen(
     }  # fmt: skip
     truth["specimens"][_label(name, age, asked)] = known
     truth["done"] = truth.get("done", 0) + 1
-    for place, (pressure, curve) in enumerate(zip(_pressures(subject, asked), found.curves, strict=True)):
+    for place, (pressure, curve) in enumerate(zip(_driving_pressures_kPa(subject, asked), found.curves, strict=True)):
         known["pressures"][f"{pressure:g}"] = {
             **specimen_figures(curve, subject.truth, sensor.dome.inner_radius, asked.rate),
             "range_end_mm": curve.reach, "range_ends_by": None if curve.ends is None else curve.ends[0],
@@ -246,7 +252,7 @@ def _columns(
 
 
 def _label(name: str, age: float, asked: SimulationOptions) -> str:
-    return name if asked.ages == (0.0,) else f"{name}-{age:g}d"
+    return name if asked.ages_days == (0.0,) else f"{name}-{age:g}d"
 
 
 def _number(name: str) -> int:
@@ -260,8 +266,10 @@ def _inputs(subjects: list[SimulatedResin], asked: SimulationOptions) -> dict[st
         "design": first.scene.design.model_dump(mode="json"),
         "resins": {subject.name: subject.scene.membrane_material.model_dump(mode="json") for subject in subjects},
         "options": {
-            key: value for key in ("specimens", "pressures", "runs", "kinds", "rate", "seed", "model", "ages", "parquet")
-            if (value := getattr(asked, key)) is not None
+            key: value for key, value in {
+                "specimens": asked.specimens, "driving_pressures_kPa": asked.driving_pressures_kPa, "runs": asked.runs, "kinds": asked.kinds,
+                "rate": asked.rate, "seed": asked.seed, "model": asked.model, "ages_days": asked.ages_days, "parquet": asked.parquet,
+            }.items() if value is not None
         },
         "parameters": {part: parameters(getattr(first.truth, part)) for part in ("scatter", "rig", "wall")},
         "rest": first.truth.rest,
@@ -272,13 +280,17 @@ def _check(asked: SimulationOptions) -> None:
     """Raise InputError for what cannot be simulated."""
     bounds = (
         ("specimens", asked.specimens, 1, 1000), ("runs", asked.runs, 1, 1000), ("rate_Hz", asked.rate, 10.0, 1e5),
-        *(("driving_pressures_kPa", p, 0.0, 1000.0) for p in asked.pressures or ()), *(("ages", a, 0.0, 36_500.0) for a in asked.ages),
+        *(("driving_pressures_kPa", p, 0.0, 1000.0) for p in asked.driving_pressures_kPa or ()), *(("ages", a, 0.0, 36_500.0) for a in asked.ages_days),
         *((("rest", asked.truth.rest, 0.2, 3600.0),) if asked.truth.rest is not None else ()),
     )  # fmt: skip
     for key, value, low, high in bounds:
         if not low <= value <= high:
             raise InputError(f"must be from {low:g} to {high:g}", key=key, value=value)
-    for key, values in (("driving_pressures_kPa", asked.pressures), ("ages", asked.ages), ("kinds", asked.kinds)):
+    for key, values in (
+        ("driving_pressures_kPa", asked.driving_pressures_kPa),
+        ("ages", asked.ages_days),
+        ("kinds", asked.kinds),
+    ):
         if values is not None and (not values or len(set(values)) != len(values)):
             raise InputError("must name at least one, and each once", key=key, value=",".join(map(str, values)))
     for kind in asked.kinds:

@@ -37,19 +37,19 @@ def dataset(study: SweepStudy, records: dict[int, Record]) -> xarray.Dataset:
     import xarray
 
     plan = study.plan
-    asked = [study.point(i).pressures for i in range(plan.count)]
-    pressures = sorted({p for each in asked for p in each})
-    rows = _by_pressure(asked, pressures, records)
+    asked_kPa = [study.point(i).driving_pressures_kPa for i in range(plan.count)]
+    pressures_kPa = sorted({p for each_kPa in asked_kPa for p in each_kPa})
+    rows = _by_pressure(asked_kPa, pressures_kPa, records)
     shape, dims = plan.shape, plan.dimensions
     content: dict[str, Any] = {}
     for variable in STATE:
         values = [[row.get(variable.name) for row in each] for each in rows]
-        content[variable.name] = _variable(variable, values, (*shape, len(pressures)), (*dims, PRESSURE))
+        content[variable.name] = _variable(variable, values, (*shape, len(pressures_kPa)), (*dims, PRESSURE))
     for variable in POINT:
         values = [records[i]["values"].get(variable.name) for i in range(plan.count)]
         content[variable.name] = _variable(variable, values, shape, dims)
     coordinates = {
-        PRESSURE: (PRESSURE, np.array(pressures), {"units": "kPa", "long_name": "gauge pressure before contact", "key": PRESSURES}),
+        PRESSURE: (PRESSURE, np.array(pressures_kPa), {"units": "kPa", "long_name": "gauge pressure before contact", "key": PRESSURES}),
         **_coordinates(study),
     }  # fmt: skip
     return xarray.Dataset(content, coordinates, _attributes(study, rows, content))
@@ -86,13 +86,13 @@ def stored_states(path: Path) -> list[str]:
 
 
 def _by_pressure(
-    asked: list[tuple[float, ...]], pressures: list[float], records: dict[int, Record]
+    asked_kPa: list[tuple[float, ...]], pressures_kPa: list[float], records: dict[int, Record]
 ) -> list[list[dict[str, Any]]]:  # fmt: skip
     """States of every point, one for each pressure of the dimension; empty where a point did not ask for it."""
     rows = []
-    for index, own in enumerate(asked):
+    for index, own in enumerate(asked_kPa):
         found = dict(zip(own, records[index]["states"], strict=True))
-        rows.append([found.get(p, {}) for p in pressures])
+        rows.append([found.get(p, {}) for p in pressures_kPa])
     return rows
 
 

@@ -24,7 +24,7 @@ class SweepPoint:
 
     index: int
     assignments: tuple[str, ...]
-    pressures: tuple[float, ...]
+    driving_pressures_kPa: tuple[float, ...]
 
 
 @dataclass(frozen=True)

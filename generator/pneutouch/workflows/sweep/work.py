@@ -69,7 +69,7 @@ def _record(chunk: SweepChunk, point: SweepPoint, library: Library) -> Record:
     states: list[dict[str, Any]] = []
     refused: list[dict[str, Any]] = []
     values: dict[str, Any] = {}
-    while left.pressures:
+    while left.driving_pressures_kPa:
         try:
             states, values = _predicted(chunk, left, library)
             break
@@ -77,30 +77,30 @@ def _record(chunk: SweepChunk, point: SweepPoint, library: Library) -> Record:
             # evaluate says the limit in words; the numbers are in the error that it was made from.
             beyond = error.__context__
             if not isinstance(beyond, BeyondLimitError):
-                states = _stopped("refused", str(error), len(left.pressures), library)
+                states = _stopped("refused", str(error), len(left.driving_pressures_kPa), library)
                 break
-            kept = [p for p in left.pressures[:-1] if p * KPA < min(beyond.limit, beyond.pressure)]
+            kept_kPa = [p for p in left.driving_pressures_kPa[:-1] if p * KPA < min(beyond.limit, beyond.pressure)]
             text = (
                 f"driving pressure beyond the limit point, where the dome snaps: at most {beyond.limit / KPA:.2f} kPa"
             )
-            refused += _stopped("refused", text, len(left.pressures) - len(kept), library)
+            refused += _stopped("refused", text, len(left.driving_pressures_kPa) - len(kept_kPa), library)
             values = {"limit_point_kPa": float(f"{beyond.limit / KPA:.12g}")}
-            left = replace(left, pressures=tuple(kept))
+            left = replace(left, driving_pressures_kPa=tuple(kept_kPa))
         except PneutouchError as error:
-            states = _stopped("failed", str(error), len(left.pressures), library)
+            states = _stopped("failed", str(error), len(left.driving_pressures_kPa), library)
             break
         except (MemoryError, OSError):
             raise
         except Exception as error:
             # One point that meets a fault of ours must not cost the others, which may be hours of work.
             text = f"internal fault ({type(error).__name__}: {error}); please report it with the design"
-            states = _stopped("failed", text, len(left.pressures), library)
+            states = _stopped("failed", text, len(left.driving_pressures_kPa), library)
             break
     return {"point": point.index, "states": states + refused, "values": values}
 
 
 def _predicted(chunk: SweepChunk, point: SweepPoint, library: Library) -> tuple[list[dict[str, Any]], dict[str, Any]]:
-    pressures = assignments({PRESSURES: list(point.pressures)})
+    pressures = assignments({PRESSURES: list(point.driving_pressures_kPa)})
     prediction = evaluate(
         chunk.design, [*point.assignments, *pressures], model=chunk.model, closure=chunk.closure, clamp=chunk.clamp,
         library=library,

@@ -45,7 +45,7 @@ def table_s1_errors(materials: list[Material]) -> list[tuple[float, ...]]:
     known = [(m.measured, batch_of(material_sensor(m), [0.0, 22.0 * KPA])) for m in materials if m.measured is not None]
     if not known:
         return [() for _ in materials]
-    found = iter(respond(joined([batch for _, batch in known])).lines.sensitivity.reshape(-1, 2))
+    found = iter(respond(joined([batch for _, batch in known])).lines.sensitivity_kPa_per_N.reshape(-1, 2))
     return [() if m.measured is None else _against(m.measured, next(found)) for m in materials]
 
 
