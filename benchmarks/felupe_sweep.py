@@ -60,7 +60,7 @@ class _Sweep:
         free = np.ones(self.size, bool)
         free[2 * mesh.clamped] = free[2 * mesh.clamped + 1] = free[2 * mesh.axis + 1] = False
         self.act = np.flatnonzero(free)
-        self.apex = 2 * int(mesh.inner[-1, 1])
+        self.apex = 2 * int(mesh.inner_apex)
         self.pick = csr_matrix((self.act == self.apex).astype(float)[None, :])
         self.pressure = 0.0
 

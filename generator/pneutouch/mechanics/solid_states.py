@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from pneutouch.arrays import Array, Index
+from pneutouch.arrays import Array
 from pneutouch.mechanics.events import Event, range_end
 from pneutouch.mechanics.hermite import hermite
 from pneutouch.mechanics.limits import LimitPoint, Limits
@@ -82,13 +82,13 @@ def _inflation(solid: SolidModel, run: Inflation) -> InflationCurve:
     def along(values: list[float], slopes: list[float]) -> Array:
         return hermite(grid, volume, np.array(values), np.array(slopes))
 
-    def apex(line: Index) -> list[float]:
+    def apex(node: int) -> list[float]:
         # Positions by volume are nondimensional: R0 over R0 cubed.
-        return [float(s.by_volume[line[-1, 1], 1]) / solid.length**2 for s in run.states]
+        return [float(s.by_volume[node, 1]) / solid.length**2 for s in run.states]
 
     return InflationCurve(
-        along([s.inner_apex for s in run.states], apex(solid.mesh.inner)),
-        along([s.outer_apex for s in run.states], apex(solid.mesh.outer)), grid,
+        along([s.inner_apex for s in run.states], apex(solid.mesh.inner_apex)),
+        along([s.outer_apex for s in run.states], apex(solid.mesh.outer_apex)), grid,
         along([s.pressure for s in run.states], [s.stiffness for s in run.states]),
     )  # fmt: skip
 

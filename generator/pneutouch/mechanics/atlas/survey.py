@@ -121,7 +121,7 @@ def _turned(surveyor: Surveyor, found: Equilibrium, deeper: Equilibrium | None) 
 
 def _gathered(surveyor: Surveyor, found: list[Equilibrium], fold_from: float, fold_volume: Array) -> Survey:
     solid = surveyor.solid
-    inner = solid.mesh.inner[-1, 1]
+    inner = solid.mesh.inner_apex
 
     def fields(node: Equilibrium) -> list[float]:
         """One state's `STORED` fields, in their order."""

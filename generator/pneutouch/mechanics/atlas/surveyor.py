@@ -84,7 +84,7 @@ class Surveyor:
             raise ComputationError(f"t0/R0 = {wall_ratio:g}: no limit point: {run.why_no_limit}")
         self.rest, self.limit = run.states[0], run.limit
         self.free = [self._free(run, nu) for nu in recipe.survey_volumes if nu >= 0.0]
-        apex = self.solid.mesh.outer[-1, 1]
+        apex = self.solid.mesh.outer_apex
         self.first_slope = float(self.rest.by_volume[apex, 1])
 
     def _free(self, run: Inflation, nu: float) -> FreeState:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from pneutouch.errors import InputError
-from pneutouch.mechanics.laws.strain import Jet, Strain
+from pneutouch.mechanics.laws.strain import BY_A, Jet, Strain
 
 Energy = Callable[[Strain], Jet]
 
@@ -31,7 +31,7 @@ class Hyperelastic:
             raise InputError(f"poisson_ratio = {self.poisson_ratio:g}: must lie between 0 and 0.5, both excluded")
         one = np.ones(1)
         # In pure shear j = h = 1 and a = l^2 + l^-2, whose second derivative is 8: W'' = 8 W_a = 4 mu.
-        mu = 2.0 * float(self.energy(Strain(2.0 * one, one, one)).data[1, 0])
+        mu = 2.0 * float(self.energy(Strain(2.0 * one, one, one)).data[BY_A, 0])
         if not mu > 0.0:
             raise InputError(
                 f"law {self.convention}: its small-strain shear modulus is {mu:g} MPa; it must be positive"

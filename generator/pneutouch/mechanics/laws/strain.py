@@ -14,14 +14,27 @@ import numpy as np
 
 from pneutouch.arrays import Array
 
-_PAIRS = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
+VALUE, BY_A, BY_J, BY_H, BY_AA, BY_AJ, BY_AH, BY_JJ, BY_JH, BY_HH = range(10)
+"""Rows of a `Jet`: the value, its first and its second derivatives."""
+
+GRADIENT = slice(BY_A, BY_H + 1)
+
+HESSIAN = ((BY_AA, BY_AJ, BY_AH), (BY_AJ, BY_JJ, BY_JH), (BY_AH, BY_JH, BY_HH))
+"""Rows of the second derivatives as a symmetric matrix."""
+
+_PRODUCTS = (
+    (BY_AA, BY_A, BY_A),
+    (BY_AJ, BY_A, BY_J),
+    (BY_AH, BY_A, BY_H),
+    (BY_JJ, BY_J, BY_J),
+    (BY_JH, BY_J, BY_H),
+    (BY_HH, BY_H, BY_H),
+)
+"""Each second derivative with the two first derivatives whose product it contains by the chain rule."""
 
 
 class Jet:
-    """Value, gradient and Hessian by (a, j, h) of a scalar at n points: rows of `data`, shape (10, n).
-
-    Row 0 is the value, rows 1..3 the gradient, rows 4..9 the Hessian entries aa, aj, ah, jj, jh, hh.
-    """
+    """Value, gradient and Hessian by (a, j, h) of a scalar at n points: rows of `data`, shape (10, n)."""
 
     __slots__ = ("data",)
     __array_priority__ = 1.0
@@ -33,7 +46,7 @@ class Jet:
         if isinstance(other, Jet):
             return Jet(self.data + other.data)
         out = self.data.copy()
-        out[0] += other
+        out[VALUE] += other
         return Jet(out)
 
     def __sub__(self, other: Jet | float) -> Jet:
@@ -43,10 +56,10 @@ class Jet:
         if not isinstance(other, Jet):
             return Jet(self.data * other)
         x, y = self.data, other.data
-        out = x[0] * y + y[0] * x
-        out[0] = x[0] * y[0]
-        for row, (i, k) in enumerate(_PAIRS, start=4):
-            out[row] += x[1 + i] * y[1 + k] + x[1 + k] * y[1 + i]
+        out = x[VALUE] * y + y[VALUE] * x
+        out[VALUE] = x[VALUE] * y[VALUE]
+        for row, i, k in _PRODUCTS:
+            out[row] += x[i] * y[k] + x[k] * y[i]
         return Jet(out)
 
     __radd__ = __add__
@@ -55,14 +68,14 @@ class Jet:
     def chain(self, value: Array, first: Array, second: Array) -> Jet:
         """f(self), given f, f' and f'' at the value of self; each of shape (n,)."""
         out = first * self.data
-        out[0] = value
-        for row, (i, k) in enumerate(_PAIRS, start=4):
-            out[row] += second * self.data[1 + i] * self.data[1 + k]
+        out[VALUE] = value
+        for row, i, k in _PRODUCTS:
+            out[row] += second * self.data[i] * self.data[k]
         return Jet(out)
 
     def power(self, exponent: float) -> Jet:
         """Self ** exponent, for a positive value."""
-        base = self.data[0]
+        base = self.data[VALUE]
         value = base**exponent
         return self.chain(value, exponent * value / base, exponent * (exponent - 1.0) * value / base**2)
 
@@ -72,12 +85,12 @@ def _monomial(a: Array, j: Array, h: Array, powers: tuple[int, float, float]) ->
     n, p, q = powers
     out = np.zeros((10, a.size))
     plain = j**p * h**q
-    out[0] = plain * a if n else plain
+    out[VALUE] = plain * a if n else plain
     by_j, by_h = p / j, q / h
-    out[2], out[3] = out[0] * by_j, out[0] * by_h
-    out[7], out[8], out[9] = out[2] * ((p - 1.0) / j), out[2] * by_h, out[3] * ((q - 1.0) / h)
+    out[BY_J], out[BY_H] = out[VALUE] * by_j, out[VALUE] * by_h
+    out[BY_JJ], out[BY_JH], out[BY_HH] = out[BY_J] * ((p - 1.0) / j), out[BY_J] * by_h, out[BY_H] * ((q - 1.0) / h)
     if n:
-        out[1], out[5], out[6] = plain, plain * by_j, plain * by_h
+        out[BY_A], out[BY_AJ], out[BY_AH] = plain, plain * by_j, plain * by_h
     return Jet(out)
 
 
@@ -136,12 +149,12 @@ class Strain:
         """J^(-alpha/3) (l1^alpha + l2^alpha + l3^alpha), smooth where in-plane stretches coincide."""
         n = self.a.size
         total, ratio = np.zeros((10, n)), np.zeros((10, n))
-        total[0], total[1], total[2] = self.a + 2.0 * self.j, 1.0, 2.0
-        ratio[0], ratio[1], ratio[2] = self.a - 2.0 * self.j, 1.0, -2.0
+        total[VALUE], total[BY_A], total[BY_J] = self.a + 2.0 * self.j, 1.0, 2.0
+        ratio[VALUE], ratio[BY_A], ratio[BY_J] = self.a - 2.0 * self.j, 1.0, -2.0
         square = Jet(total)
         spread = Jet(ratio) * square.power(-1.0)
         in_plane: Jet = (2.0 ** (1.0 - alpha)) * (
-            square.power(alpha / 2.0) * spread.chain(*_even_power(spread.data[0], alpha))
+            square.power(alpha / 2.0) * spread.chain(*_even_power(spread.data[VALUE], alpha))
         )
         return in_plane * self._monomial((0, -alpha / 3, -alpha / 3)) + self._monomial((0, -alpha / 3, 2 * alpha / 3))
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from pneutouch.arrays import Array, Index
 from pneutouch.mechanics.solid.elements import line_shapes
+from pneutouch.mechanics.solid.kinematics import AXIAL, RADIAL
 
 
 class Cavity:
@@ -38,8 +39,8 @@ class Cavity:
         """Volume and its derivative by edge positions, (n_edges, 2 n), interleaved r, z."""
         r, _, _, half = self._parts(nodes)
         out = np.empty((r.shape[0], 2 * self._n))
-        out[:, 0::2] = 2.0 * half
-        out[:, 1::2] = (r[:, :, None] * r[:, None, :]).reshape(r.shape[0], -1) @ self._form
+        out[:, RADIAL] = 2.0 * half
+        out[:, AXIAL] = (r[:, :, None] * r[:, None, :]).reshape(r.shape[0], -1) @ self._form
         return float(np.vdot(r, half)), out
 
     def hessian(self, nodes: Array) -> Array:
@@ -47,7 +48,7 @@ class Cavity:
         r, _, by_z, _ = self._parts(nodes)
         out = np.zeros((r.shape[0], 2 * self._n, 2 * self._n))
         mixed = 2.0 * (r @ self._form.reshape(self._n, -1)).reshape(-1, self._n, self._n)
-        out[:, 0::2, 0::2] = 2.0 * by_z
-        out[:, 0::2, 1::2] = mixed
-        out[:, 1::2, 0::2] = np.swapaxes(mixed, 1, 2)
+        out[:, RADIAL, RADIAL] = 2.0 * by_z
+        out[:, RADIAL, AXIAL] = mixed
+        out[:, AXIAL, RADIAL] = np.swapaxes(mixed, 1, 2)
         return out

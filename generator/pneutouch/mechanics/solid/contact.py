@@ -8,7 +8,8 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.mechanics.solid.elements import line_shapes
-from pneutouch.mechanics.solid.mesh import SolidMesh
+from pneutouch.mechanics.solid.kinematics import AXIAL, RADIAL
+from pneutouch.mechanics.solid.mesh import END, START, SolidMesh
 
 #: Curvature radius of the plate's rim over the plate's radius (0.5 mm at 30 mm diameter, assumed: the paper has none).
 #: A mesh whose outer edges are longer rounds it to their length.
@@ -73,7 +74,7 @@ class Contact:
         self.weight = 2.0 * np.pi * radius * np.hypot(line[..., 0] @ slope.T, line[..., 1] @ slope.T) * w
         # Force that rounding of the gap leaves; no residual can be asked to fall below it.
         self.noise = float(np.finfo(np.float64).eps * stiffness * np.linalg.norm(self.weight))
-        self.longest = float(np.hypot(*(line[:, 1] - line[:, 0]).T).max())
+        self.longest = float(np.hypot(*(line[:, END] - line[:, START]).T).max())
         n = 2 * mesh.outer.shape[1]
         self._n = n
         pairs = self.shape[:, :, None] * self.shape[:, None, :]
@@ -102,8 +103,8 @@ class Contact:
         """Derivative of the energy by edge positions under given tractions, (n_edges, 2 n)."""
         load = self.weight * traction
         out = np.empty((load.shape[0], self._n))
-        out[:, 1::2] = load @ self.shape
-        out[:, 0::2] = -(load * slope) @ self.shape
+        out[:, AXIAL] = load @ self.shape
+        out[:, RADIAL] = -(load * slope) @ self.shape
         return out
 
     def hessian(self, touch: ContactEvaluation, active: Flags) -> Array:
@@ -111,12 +112,12 @@ class Contact:
         stiff = np.where(active, self.stiffness, 0.0) * self.weight
         n = self._n // 2
         out = np.zeros((stiff.shape[0], self._n, self._n))
-        out[:, 1::2, 1::2] = (stiff @ self._pairs).reshape(-1, n, n)
+        out[:, AXIAL, AXIAL] = (stiff @ self._pairs).reshape(-1, n, n)
         if touch.slope.any():
             across = -((stiff * touch.slope) @ self._pairs).reshape(-1, n, n)
-            out[:, 0::2, 1::2], out[:, 1::2, 0::2] = across, across
+            out[:, RADIAL, AXIAL], out[:, AXIAL, RADIAL] = across, across
             along = stiff * touch.slope**2 - self.weight * touch.traction * touch.curve
-            out[:, 0::2, 0::2] = (along @ self._pairs).reshape(-1, n, n)
+            out[:, RADIAL, RADIAL] = (along @ self._pairs).reshape(-1, n, n)
         return out
 
     def footprint(self, nodes: Array, touch: ContactEvaluation) -> Footprint:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array, Index
+from pneutouch.mechanics.solid.kinematics import AXIAL, F_RR, F_RZ, F_ZR, F_ZZ, HOOP, RADIAL
 
 _CORNERS = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)], dtype=float)
 _MIDDLES = np.array([(0, -1), (1, 0), (0, 1), (-1, 0)], dtype=float)
@@ -61,7 +62,7 @@ def positions(nodes: Array, cells: Index, points: Array) -> Array:
 def strain_operator(nodes: Array, cells: Index, points: Array) -> tuple[Array, Array, Array]:
     """Constant map from nodal positions to strain at local points of every cell.
 
-    Returns B (n_cells, n_points, 5, 2 n_nodes) so that B x = (F_rR, F_rZ, F_zR, F_zZ, r/R); the reference measure
+    Returns B (n_cells, n_points, 5, 2 n_nodes) so that B x are the five strains; the reference measure
     2 pi R |dA/dxi| (n_cells, n_points) still to be weighted; and reference positions (n_cells, n_points, 2).
     """
     value, local = cell_shapes(points, cells.shape[1])
@@ -73,9 +74,9 @@ def strain_operator(nodes: Array, cells: Index, points: Array) -> tuple[Array, A
     gradient = np.einsum("qak,eqki->eqai", local, np.linalg.inv(jacobian))
     position = positions(nodes, cells, points)
     b = np.zeros((*determinant.shape, 5, 2 * cells.shape[1]))
-    b[..., 0, 0::2], b[..., 1, 0::2] = gradient[..., 0], gradient[..., 1]
-    b[..., 2, 1::2], b[..., 3, 1::2] = gradient[..., 0], gradient[..., 1]
-    b[..., 4, 0::2] = value / np.maximum(position[..., 0:1], 1e-300)
+    b[..., F_RR, RADIAL], b[..., F_RZ, RADIAL] = gradient[..., 0], gradient[..., 1]
+    b[..., F_ZR, AXIAL], b[..., F_ZZ, AXIAL] = gradient[..., 0], gradient[..., 1]
+    b[..., HOOP, RADIAL] = value / np.maximum(position[..., 0:1], 1e-300)
     return b, 2.0 * np.pi * position[..., 0] * np.abs(determinant), position
 
 

@@ -193,7 +193,7 @@ class _Recorder:
             von_mises=peak.von_mises,
             fold=peak.fold,
             penetration=max(0.0, -float(touch.gap.min())) * length,
-            inner_apex=float(x[solid.mesh.inner[-1, 1], 1]) * length,
+            inner_apex=float(x[solid.mesh.inner_apex, 1]) * length,
             overhang=max(0.0, float((solid.rest[:, 1].min() - x[:, 1]).max()) * length),
             positions=x * length,
         )

@@ -70,8 +70,8 @@ def free_state(solid: SolidModel, scene: SolidScene, outcome: NewtonResult) -> F
         volume=state.volume * solid.length**3,
         stiffness=solid.mu / solid.length**3 / compliance,
         stable=way.wall_stable,
-        inner_apex=float(x[solid.mesh.inner[-1, 1], 1]),
-        outer_apex=float(x[solid.mesh.outer[-1, 1], 1]),
+        inner_apex=float(x[solid.mesh.inner_apex, 1]),
+        outer_apex=float(x[solid.mesh.outer_apex, 1]),
         unit=state,
         by_volume=solid.expand(way.soft) / compliance,
     )

@@ -15,6 +15,10 @@ _TO_BENDING_LENGTH = 3.0
 _ARC_CELLS = (24, 48)
 
 
+START, END, MIDDLE = range(3)
+"""Nodes of an edge, in their order; a linear edge has no middle."""
+
+
 @dataclass(frozen=True)
 class SolidMesh:
     """A meridian cut of the wall, in mm; quadratic (8 or 9 nodes) or linear (4 nodes) quadrilaterals.
@@ -41,6 +45,16 @@ class SolidMesh:
     length: float
     wall: float
 
+    @property
+    def inner_apex(self) -> int:
+        """Node of the wetted wall on the axis."""
+        return int(self.inner[-1, END])
+
+    @property
+    def outer_apex(self) -> int:
+        """Node of the outer wall on the axis."""
+        return int(self.outer[-1, END])
+
     def __post_init__(self) -> None:
         if self.cells.shape[1] not in (4, 8, 9):
             raise ValueError(f"cells have {self.cells.shape[1]} nodes; 4, 8 or 9 are known")
@@ -49,7 +63,7 @@ class SolidMesh:
         if not (self.length > 0.0 and self.wall > 0.0):
             raise ValueError("length and wall must be positive")
         for name, line in (("inner", self.inner), ("outer", self.outer)):
-            if (line[1:, 0] != line[:-1, 1]).any() or line[-1, 1] not in self.axis:
+            if (line[1:, START] != line[:-1, END]).any() or line[-1, END] not in self.axis:
                 raise ValueError(f"the {name} edges must form one line from the base to the axis")
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from pneutouch.arrays import Array, Index
 from pneutouch.mechanics.laws.hyperelastic import Hyperelastic
-from pneutouch.mechanics.laws.strain import Strain
+from pneutouch.mechanics.laws.strain import BY_A, BY_H, BY_J, BY_JH, GRADIENT, HESSIAN, VALUE, Strain
 from pneutouch.mechanics.solid.banded import AssemblyPattern
 from pneutouch.mechanics.solid.cavity import Cavity
 from pneutouch.mechanics.solid.contact import Contact
@@ -20,9 +20,13 @@ from pneutouch.mechanics.solid.elements import (
     pressure_modes,
     strain_operator,
 )
+from pneutouch.mechanics.solid.kinematics import F_RR, F_RZ, F_ZR, F_ZZ, HOOP, IN_PLANE, area_ratio
 from pneutouch.mechanics.solid.mesh import SolidMesh
 
 ModulusField = Callable[[Array, Array], Array]
+
+#: Invariants (a, j, h) in the basis of the strains.
+_A, _J, _H = range(3)
 
 #: Contact stiffness in mu/t0: a traction of mu leaves a penetration of 3e-5 of the wall.
 CONTACT_STIFFNESS = 3.0e4
@@ -33,13 +37,13 @@ class PointFields:
     """Everything the integration points know at one set of positions.
 
     energy:   stored energy / (mu R0^3); inf where a point is inverted.
-    gradient: (n_points, 5) strains (F_rR, F_rZ, F_zR, F_zZ, r/R).
+    strains:  (n_points, 5), see `kinematics`.
     jets:     (10, n_points) weighted energy derivatives, see `Jet`; the averaged pressure is included.
     basis:    (n_points, 3, 5) derivatives of (a, j, h) by the strains.
     """
 
     energy: float
-    gradient: Array
+    strains: Array
     jets: Array
     basis: Array
 
@@ -115,28 +119,28 @@ class SolidModel:
         n_cells, n_points = self._weight.shape
         gathered = x[self.mesh.cells].reshape(n_cells, -1, 1)
         f = np.matmul(self._tall, gathered).reshape(-1, 5)
-        f11, f12, f21, f22, h = np.ascontiguousarray(f.T)
-        j = f11 * f22 - f12 * f21
+        rr, rz, zr, zz, h = np.ascontiguousarray(f.T)
+        j = rr * zz - rz * zr
         if not (j.min() > 0.0 and h.min() > 0.0):
             return PointFields(np.inf, f, f, f)
-        a = f11 * f11 + f12 * f12 + f21 * f21 + f22 * f22
+        a = rr * rr + rz * rz + zr * zr + zz * zz
         jets = self.material.energy(Strain(a, j, h)).data * (self._stiff_weight / self.mu)
         change = (j * h - 1.0).reshape(n_cells, n_points)
         content = np.matmul(self._tested, change[..., None])
         pressure = (self._kappa * np.matmul(np.swapaxes(self._tested, 1, 2), content)).ravel()
-        energy = float(jets[0].sum()) + 0.5 * float(np.vdot(self._kappa * content, content))
-        jets[2] += pressure * h
-        jets[3] += pressure * j
-        jets[8] += pressure
+        energy = float(jets[VALUE].sum()) + 0.5 * float(np.vdot(self._kappa * content, content))
+        jets[BY_J] += pressure * h
+        jets[BY_H] += pressure * j
+        jets[BY_JH] += pressure
         basis = np.zeros((j.size, 3, 5))
-        basis[:, 0, :4] = 2.0 * f[:, :4]
-        basis[:, 1, 0], basis[:, 1, 1], basis[:, 1, 2], basis[:, 1, 3] = f22, -f21, -f12, f11
-        basis[:, 2, 4] = 1.0
+        basis[:, _A, IN_PLANE] = 2.0 * f[:, IN_PLANE]
+        basis[:, _J, F_RR], basis[:, _J, F_RZ], basis[:, _J, F_ZR], basis[:, _J, F_ZZ] = zz, -zr, -rz, rr
+        basis[:, _H, HOOP] = 1.0
         return PointFields(energy, f, jets, basis)
 
     def forces(self, local: PointFields) -> Array:
         """Derivative of the stored energy by cell positions, (n_cells, 2 n_nodes)."""
-        stress = np.matmul(local.jets[1:4].T[:, None, :], local.basis)
+        stress = np.matmul(local.jets[GRADIENT].T[:, None, :], local.basis)
         blocks = np.matmul(self._wide, stress.reshape(self._weight.shape[0], -1, 1))
         return np.asarray(blocks[..., 0])
 
@@ -145,14 +149,14 @@ class SolidModel:
         n_cells, n_points = self._weight.shape
         jets, basis = local.jets, local.basis
         # Small products are twice as fast where their factors lie in one piece.
-        hessian = np.ascontiguousarray(jets[[4, 5, 6, 5, 7, 8, 6, 8, 9]].T).reshape(-1, 3, 3)
+        hessian = np.ascontiguousarray(jets[np.ravel(HESSIAN)].T).reshape(-1, 3, 3)
         d = np.matmul(np.ascontiguousarray(np.swapaxes(basis, 1, 2)), np.matmul(hessian, basis))
-        twice = 2.0 * jets[1]
-        for k in range(4):
+        twice = 2.0 * jets[BY_A]
+        for k in (F_RR, F_RZ, F_ZR, F_ZZ):
             d[:, k, k] += twice
-        for i, k, sign in ((0, 3, 1.0), (1, 2, -1.0)):
-            d[:, i, k] += sign * jets[2]
-            d[:, k, i] += sign * jets[2]
+        for i, k, sign in ((F_RR, F_ZZ, 1.0), (F_RZ, F_ZR, -1.0)):
+            d[:, i, k] += sign * jets[BY_J]
+            d[:, k, i] += sign * jets[BY_J]
         db = np.matmul(d.reshape(n_cells, n_points, 5, 5), self._b)
         k_cells = np.matmul(self._wide, db.reshape(n_cells, n_points * 5, -1))
         swelling = self._swelling(local)
@@ -162,10 +166,8 @@ class SolidModel:
     def _swelling(self, local: PointFields) -> Array:
         """Derivative of the averaged volume modes by cell positions, (n_cells, n_modes, 2 n_nodes)."""
         n_cells, n_points = self._weight.shape
-        h = local.gradient[:, 4:]
-        by_strain = local.basis[:, 1] * h
-        f = local.gradient
-        by_strain[:, 4] = f[:, 0] * f[:, 3] - f[:, 1] * f[:, 2]
+        by_strain = local.basis[:, _J] * local.strains[:, HOOP:]
+        by_strain[:, HOOP] = area_ratio(local.strains)
         tested = self._tested[..., None] * by_strain.reshape(n_cells, 1, n_points, 5)
         return np.asarray(np.matmul(tested.reshape(n_cells, -1, n_points * 5), self._tall))
 

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.laws.strain import Strain
+from pneutouch.mechanics.laws.strain import BY_A, BY_H, BY_J, Strain
 from pneutouch.mechanics.solid.elements import positions, strain_operator
 from pneutouch.mechanics.solid.inflate import Inflation, between, pressure_between
+from pneutouch.mechanics.solid.kinematics import HOOP, IN_PLANE, area_ratio
 from pneutouch.mechanics.solid.model import SolidModel
 
 #: Within this many wall thicknesses of a clamped node the elastic stress is singular and says nothing; left out.
@@ -82,14 +83,14 @@ class StrainProbe:
         f = np.matmul(self._b, nodes).reshape(-1, 5)[self._far]
         f = np.concatenate([f, np.matmul(self._edge_b, nodes[self._edge_cells])[..., 0]])
         # At the tip of a crease a face can turn over between sound integration points: shown as an immense fold.
-        j = np.maximum(f[:, 0] * f[:, 3] - f[:, 1] * f[:, 2], _TURNED_OVER)
-        a, h = np.maximum((f[:, :4] ** 2).sum(axis=1), 2.0 * j), np.maximum(f[:, 4], _TURNED_OVER)
+        j = np.maximum(area_ratio(f), _TURNED_OVER)
+        a, h = np.maximum((f[:, IN_PLANE] ** 2).sum(axis=1), 2.0 * j), np.maximum(f[:, HOOP], _TURNED_OVER)
         plus, minus = np.sqrt(a + 2.0 * j), np.sqrt(np.maximum(a - 2.0 * j, 0.0))
         stretch = np.stack([0.5 * (plus + minus), 0.5 * (plus - minus), h])
         jet = self.solid.material.energy(Strain(a, j, h)).data
-        common = jet[2] * j
+        common = jet[BY_J] * j
         stress = np.stack(
-            [2.0 * jet[1] * stretch[0] ** 2 + common, 2.0 * jet[1] * stretch[1] ** 2 + common, h * jet[3]]
+            [2.0 * jet[BY_A] * stretch[0] ** 2 + common, 2.0 * jet[BY_A] * stretch[1] ** 2 + common, h * jet[BY_H]]
         )
         return stretch, self._relative * stress / (j * h)
 
@@ -102,15 +103,16 @@ class StrainProbe:
         """Greatest principal stretch at the centre of every cell (n_cells,) for nondimensional positions x."""
         cells = self.solid.mesh.cells
         f = np.matmul(self._centre, x[cells].reshape(cells.shape[0], -1, 1))[..., 0]
-        j = f[:, 0] * f[:, 3] - f[:, 1] * f[:, 2]
-        a = (f[:, :4] ** 2).sum(axis=1)
+        j = area_ratio(f)
+        a = (f[:, IN_PLANE] ** 2).sum(axis=1)
         in_plane = 0.5 * (np.sqrt(a + 2.0 * j) + np.sqrt(np.maximum(a - 2.0 * j, 0.0)))
-        return np.asarray(np.maximum(in_plane, f[:, 4]))
+        return np.asarray(np.maximum(in_plane, f[:, HOOP]))
 
     def outlines(self, positions: Array) -> Array:
         """Outlines of the cells (n_cells, 4 or 8, 2), in the unit of the positions (n_nodes, 2)."""
         cells = self.solid.mesh.cells
-        around = [0, 4, 1, 5, 2, 6, 3, 7] if cells.shape[1] > 4 else [0, 1, 2, 3]
+        # Each corner and the middle of the side after it.
+        around = np.arange(8).reshape(2, 4).T.ravel() if cells.shape[1] > 4 else np.arange(4)
         return np.asarray(positions[cells[:, around]])
 
     def peak(self, x: Array) -> WallExtremes:
@@ -138,5 +140,5 @@ def burst(probe: StrainProbe, inflation: Inflation, break_strain: float) -> tupl
             low, high = (low, middle) if over else (middle, high)
         x = between(a, b, high)
         share = (high - a.unit.volume) / (b.unit.volume - a.unit.volume)
-        return pressure_between(a, b, share), float(x[solid.mesh.outer[-1, 1], 1]) * solid.length
+        return pressure_between(a, b, share), float(x[solid.mesh.outer_apex, 1]) * solid.length
     return None
