@@ -8,6 +8,7 @@ from pneutouch.catalogue import Library, load_scene
 from pneutouch.parts import Assembly, assemble
 from pneutouch.report.section import draw_section
 from pneutouch.report.style import figure, svg
+from pneutouch.spec.read import parse_changes
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -21,7 +22,7 @@ SHOWN = (
 def assembly(seat: str, port: str, mount: str) -> Assembly:
     """The paper's dome on a connector that the same machine prints."""
     chosen = [f"connector.seat={seat}", f"connector.port={port}", f"connector.mount={mount}"]
-    return assemble(load_scene("stiff-dome", chosen, Library((ROOT,))))
+    return assemble(load_scene("stiff-dome", parse_changes(chosen), Library((ROOT,))))
 
 
 def main() -> None:

@@ -10,6 +10,7 @@ from benchmarks.meshing import MANIFOLD, OURS, TOLERANCES, Row, measure, same_er
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.parts import assemble
 from pneutouch.report.style import ACCENT, INK, LINES, MARKERS, MUTED, figure, svg
+from pneutouch.spec.read import parse_changes
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"
@@ -25,7 +26,7 @@ def main() -> None:
     library = Library((ROOT,))
     found: dict[str, list[Row]] = {}
     for label, (design, chosen) in BODIES.items():
-        assembly = assemble(load_scene(design, chosen, library))
+        assembly = assemble(load_scene(design, parse_changes(chosen), library))
         found[label] = measure(assembly.solid(label.split(",")[0]))
     (DOCS / "meshing.svg").write_text(chart(found), encoding="utf-8")
     content = {label: [asdict(row) for row in rows] for label, rows in found.items()}

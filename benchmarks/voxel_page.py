@@ -30,7 +30,7 @@ SHOWN = 0.25
 
 def main() -> None:
     library = Library((ROOT,))
-    assembly = assemble(load_scene("graded-dome", [], library))
+    assembly = assemble(load_scene("graded-dome", None, library))
     found: dict[str, Any] = {"stacks": [stack(assembly, library, mode) for mode in ("High Mix", "High Quality")]}
     found["dithers"] = [asdict(row) for row in dither.compare()]
     found["rasters"] = [asdict(row) for row in rasters.measure(assembly.solids[0])]

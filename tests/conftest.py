@@ -12,6 +12,7 @@ from hypothesis import settings
 
 from pneutouch.catalogue import Library
 from pneutouch.evaluation import Evaluation, evaluate
+from pneutouch.spec.read import parse_changes
 from pneutouch.workflows.build import build as build_design
 from tests.running import Shared, in_new_process, in_process
 
@@ -42,7 +43,7 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Shared:
 def evaluated(library: Library) -> Callable[..., Evaluation]:
     @cache
     def run(name: str, *assignments: str, model: str = "solid", closure: str = "variational") -> Evaluation:
-        return evaluate(name, list(assignments), model=model, closure=closure, library=library)
+        return evaluate(name, parse_changes(assignments), model=model, closure=closure, library=library)
 
     return run
 

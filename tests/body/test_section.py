@@ -12,6 +12,7 @@ from pneutouch.catalogue import load_scene
 from pneutouch.meridian import Arc, Line
 from pneutouch.meridian.crossings import crossings, encloses, rises
 from pneutouch.parts import assemble
+from pneutouch.spec.read import parse_changes
 
 CASES = {
     "paper-dome": [], "graded-dome": [], "fingertip-dome": [],
@@ -29,7 +30,7 @@ def winding(points, triangles):
 
 
 def solids(name, library):
-    return assemble(load_scene(name, CASES[name], library)).solids
+    return assemble(load_scene(name, parse_changes(CASES[name]), library)).solids
 
 
 @pytest.mark.parametrize("name", CASES)

@@ -10,6 +10,7 @@ from typing import Any
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.evaluation import evaluate
 from pneutouch.parts import Assembly, assemble
+from pneutouch.spec.read import parse_changes
 
 ROOT = Path(__file__).resolve().parents[2]
 STORED = Path(__file__).with_name("stored.json")
@@ -29,7 +30,7 @@ def combinations(library: Library) -> list[tuple[str, str, str]]:
 def assembled(library: Library, parts: tuple[str, str, str], *more: str) -> Assembly:
     """The base design with a combination of parts and further overrides."""
     chosen = [f"connector.{key}={value}" for key, value in zip(KINDS, parts, strict=True)]
-    return assemble(load_scene(BASE, [*chosen, *more], library))
+    return assemble(load_scene(BASE, parse_changes([*chosen, *more]), library))
 
 
 def shape_figures(assembly: Assembly) -> dict[str, Any]:

@@ -77,10 +77,10 @@ def test_printers_run_digital_materials_only_with_both_resins_loaded_and_in_a_mi
 
 
 def test_mesh_tolerance_is_the_finest_step_and_clearance_the_accuracies_added(library):
-    scene = load_scene("paper-dome", [], library)
+    scene = load_scene("paper-dome", None, library)
     assert scene.mesh_tolerance == pytest.approx(0.016)
     assert scene.fit_clearance == pytest.approx(0.10 + 0.20)
-    mixed = load_scene("paper-dome", ["membrane.material=FLX9960"], library)
+    mixed = load_scene("paper-dome", {"membrane.material": "FLX9960"}, library)
     assert mixed.mesh_tolerance == pytest.approx(0.030)
 
 
@@ -100,11 +100,11 @@ def test_a_broken_file_in_the_catalogue_names_itself(tmp_path, root):
     broken = folder / "TangoPlus.toml"
     broken.write_text((root / "printprofiles/materials/TangoPlus.toml").read_text().replace("source = ", "sauce = "))
     with pytest.raises(InputError, match=r"TangoPlus\.toml: .*sauce: unknown key. Did you mean source"):
-        load_scene("paper-dome", [], Library((tmp_path, root)))
+        load_scene("paper-dome", None, Library((tmp_path, root)))
 
 
 def test_a_specimen_asked_for_as_a_design_is_called_by_its_name(library):
     with pytest.raises(
         InputError, match="texture-specimen: is a texture specimen; it can be built, checked and scanned"
     ):
-        load_scene("texture-specimen", [], library)
+        load_scene("texture-specimen", None, library)

@@ -72,7 +72,7 @@ def test_document_keeps_its_keys_and_gains_one_a_state(evaluated):
 
 
 def test_outside_the_atlas_every_state_says_why(evaluated):
-    flange = evaluate("paper-dome", ["pneumatics.driving_pressures_kPa=[0,5]"], clamp="flange")
+    flange = evaluate("paper-dome", {"pneumatics.driving_pressures_kPa": [0, 5]}, clamp="flange")
     assert [list(said) for said in flange.uncertainty] == [["unknown"], ["unknown"]]
     assert "flange" in flange.uncertainty[0]["unknown"]
     membrane = evaluated("paper-dome", model="membrane").uncertainty

@@ -56,7 +56,7 @@ def test_for_the_papers_resins_nothing_is_predicted_and_no_other_is_put_in_their
     found = viscous(
         evaluate(
             "paper-dome",
-            [f"membrane.material={name}", "pneumatics.driving_pressures_kPa=[0]"],
+            {"membrane.material": name, "pneumatics.driving_pressures_kPa": [0]},
             model="atlas",
             library=library,
         )

@@ -20,6 +20,7 @@ from pneutouch.output.manifest import input_hash as hash_of
 from pneutouch.output.recipe import BuildRecipe, evaluate_recipe, scene_shelves
 from pneutouch.output.recipe_read import read_recipe
 from pneutouch.parts import assemble
+from pneutouch.spec.read import parse_changes
 from pneutouch.workflows.build import build
 from pneutouch.workflows.build.run import input_hash
 from tests.conftest import ROOT
@@ -50,7 +51,7 @@ def test_every_field_of_a_scene_has_its_shelf():
 
 @pytest.mark.parametrize("name", DESIGNS)
 def test_the_recipe_of_every_design_comes_back_as_it_went(name, library):
-    scene = load_scene(name, [], library)
+    scene = load_scene(name, None, library)
     recipe = BuildRecipe(scene, elastomers(library), PredictionOptions("auto", "printed", "flange", 0.031))
     back = read_recipe(package_of(recipe))
     assert back == dataclasses.replace(recipe, scene=renamed(scene))
@@ -60,7 +61,7 @@ def test_the_recipe_of_every_design_comes_back_as_it_went(name, library):
 @pytest.mark.parametrize("kind", ["ports", "seats", "mounts"])
 def test_every_part_comes_back(kind, library):
     key = {"ports": "port", "seats": "seat", "mounts": "mount"}[kind]
-    scene = load_scene("paper-dome", [], library)
+    scene = load_scene("paper-dome", None, library)
     for name in library.shelf(kind):
         changed = dataclasses.replace(scene, **{key: library.load(kind, name)})
         if changed.seat.family == "one-piece":
@@ -78,13 +79,13 @@ def test_numbers_and_text_come_back_exactly(library, radius, share, tolerance, p
         f"membrane.inner_radius_mm={radius!r}", f"membrane.wall_thickness_mm={min(radius * share, 50)!r}",
         f"pneumatics.driving_pressures_kPa={pressures!r}", f"document.title={json.dumps(title, ensure_ascii=False)}",
     ]  # fmt: skip
-    scene = load_scene("paper-dome", changes, library)
+    scene = load_scene("paper-dome", parse_changes(changes), library)
     recipe = BuildRecipe(scene, {}, PredictionOptions("auto", tolerance=tolerance))
     assert read_recipe(package_of(recipe)) == dataclasses.replace(recipe, scene=renamed(scene))
 
 
 def test_settings_that_the_model_does_not_use_do_not_change_the_inputs(library):
-    scene = load_scene("paper-dome", [], library)
+    scene = load_scene("paper-dome", None, library)
     plain = BuildRecipe(scene, {}, PredictionOptions("solid")).inputs()
     assert BuildRecipe(scene, {}, PredictionOptions("solid", closure="printed", tolerance=0.5)).inputs() == plain
     assert BuildRecipe(scene, {}, PredictionOptions("membrane", closure="printed")).inputs()["closure"] == "printed"
@@ -104,7 +105,7 @@ def test_a_recipe_with_a_hundred_resins_comes_back(tmp_path, library):
     """Too long for one entry of metadata."""
     resin = library.load("materials", "TangoPlus")
     recipe = BuildRecipe(
-        load_scene("paper-dome", [], library), {f"{k:03}": resin for k in range(100)}, PredictionOptions()
+        load_scene("paper-dome", None, library), {f"{k:03}": resin for k in range(100)}, PredictionOptions()
     )
     path, metadata = (
         tmp_path / "x.3mf",
@@ -136,7 +137,7 @@ def test_a_3mf_builds_again_to_the_same_bytes_without_any_library(built, tmp_pat
 
 def test_what_was_asked_of_auto_is_asked_again(library, tmp_path):
     changes = ["pneumatics.driving_pressures_kPa=[0, 5]", "document.date=2026-11-21"]
-    evaluation = evaluate("paper-dome", changes, model="auto", tolerance=0.03, library=library)
+    evaluation = evaluate("paper-dome", parse_changes(changes), model="auto", tolerance=0.03, library=library)
     assert evaluation.prediction.model == "atlas"
     folder = build(evaluation, tmp_path / "one")
     again = rebuilt(folder / "paper-dome.3mf", tmp_path / "two")
@@ -153,10 +154,10 @@ def test_a_changed_library_does_not_change_a_rebuild_but_does_change_a_build(tmp
     (folder / "FLX9940.toml").write_text(text + mix)
     shelves = Library((tmp_path, ROOT))
     changes = ["membrane.material=FLX9940", "pneumatics.driving_pressures_kPa=[0]"]
-    before = build(evaluate("paper-dome", changes, model="atlas", library=shelves), tmp_path / "before")
+    before = build(evaluate("paper-dome", parse_changes(changes), model="atlas", library=shelves), tmp_path / "before")
     assert sorted(read_threemf(before / "paper-dome.3mf").bodies[0].mix.values()) == [0.25, 0.75]
     (folder / "FLX9940.toml").write_text(text)
-    after = build(evaluate("paper-dome", changes, model="atlas", library=shelves), tmp_path / "after")
+    after = build(evaluate("paper-dome", parse_changes(changes), model="atlas", library=shelves), tmp_path / "after")
     assert (after / "paper-dome.3mf").read_bytes() != (before / "paper-dome.3mf").read_bytes()
     assert rebuilt(before / "paper-dome.3mf", tmp_path / "again") == content(before)
 

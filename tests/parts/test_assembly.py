@@ -15,6 +15,7 @@ from pneutouch.errors import InputError
 from pneutouch.parts import assemble
 from pneutouch.parts.membrane import HELD
 from pneutouch.printability.rules.contact_faces import overlap_volume, shared_area
+from pneutouch.spec.read import parse_changes
 from tests.catalogue.store import BASE, SMALL, assembled, combinations
 from tests.conftest import ROOT
 
@@ -39,7 +40,7 @@ def check_bodies(assembly):
 
 @pytest.mark.parametrize("name", DESIGNS)
 def test_every_design_has_sound_bodies(name):
-    check_bodies(assemble(load_scene(name, [], LIBRARY)))
+    check_bodies(assemble(load_scene(name, None, LIBRARY)))
 
 
 @pytest.mark.parametrize("parts", PARTS, ids=" ".join)
@@ -71,7 +72,7 @@ def test_any_size_gives_sound_bodies_or_says_what_there_is_no_room_for(radius, s
 
 
 def test_the_rim_is_held_up_to_the_base_plane_and_no_further():
-    assembly = assemble(load_scene("paper-dome", [], LIBRARY))
+    assembly = assemble(load_scene("paper-dome", None, LIBRARY))
     held = assembly.solids[0].meridian.tagged(HELD)
     assert max(piece.bounds()[3] for piece in held) == 0.0
     layout = assembly.layout
@@ -80,12 +81,12 @@ def test_the_rim_is_held_up_to_the_base_plane_and_no_further():
 
 
 def test_fit_clearance_follows_the_print_profiles():
-    ours = assemble(load_scene("fingertip-dome", [], LIBRARY)).layout
+    ours = assemble(load_scene("fingertip-dome", None, LIBRARY)).layout
     assert ours.clearance == pytest.approx(0.2)
 
 
 def test_cavity_and_internal_volume_are_exact():
-    assembly = assemble(load_scene("long-tube", [], LIBRARY))
+    assembly = assemble(load_scene("long-tube", None, LIBRARY))
     assert assembly.cavity_volume == pytest.approx(2 / 3 * math.pi * 9.25**3, rel=1e-12)
     layout, port = assembly.layout, assembly.scene.port
     channel = math.pi * layout.channel_radius**2 * -layout.plate_low
@@ -94,12 +95,12 @@ def test_cavity_and_internal_volume_are_exact():
 
 
 def test_a_stated_dead_volume_is_taken_as_the_total():
-    assert assemble(load_scene("long-tube", ["pneumatics.dead_volume_mL=1.5"], LIBRARY)).dead_volume == 1500.0
+    assert assemble(load_scene("long-tube", {"pneumatics.dead_volume_mL": 1.5}, LIBRARY)).dead_volume == 1500.0
 
 
 def test_channel_is_open_from_the_cavity_to_the_port():
     """Points along the axis lie outside the connector: winding number zero."""
-    connector = assemble(load_scene("paper-dome", [], LIBRARY)).bodies[1]
+    connector = assemble(load_scene("paper-dome", None, LIBRARY)).bodies[1]
     corners = connector.corners
     for z in np.linspace(connector.bounds[0][2] - 1, 0.5, 30):
         a, b, c = np.moveaxis(corners - np.array([0.0, 0.0, z]), 1, 0)
@@ -127,7 +128,7 @@ def test_mounting_holes_lie_on_a_whole_millimetre_circle_and_clear_the_seat():
 
 def test_holes_are_drawn_wider_by_what_the_printer_makes_them_smaller():
     bores = {
-        profile: assemble(load_scene("paper-dome", ["connector.material=" + material, f"print.connector_profile={profile}"], LIBRARY))
+        profile: assemble(load_scene("paper-dome", {"connector.material": material, "print.connector_profile": profile}, LIBRARY))
         .solid("connector").bores[0].radius
         for profile, material in (("abs-filament", "ABS"), ("objet260-connex", "VeroClear"))
     }  # fmt: skip
@@ -164,14 +165,16 @@ def test_a_clamping_ring_rests_on_the_flange_and_closes_by_the_squeeze():
 ])  # fmt: skip
 def test_parts_that_do_not_go_together_are_refused(setting, words):
     with pytest.raises(InputError) as error:
-        assemble(load_scene("paper-dome", [setting], LIBRARY))
+        assemble(load_scene("paper-dome", parse_changes([setting]), LIBRARY))
     assert all(word in str(error.value) for word in words), str(error.value)
 
 
 def test_a_port_larger_than_the_body_is_refused():
     small = ["membrane.inner_radius_mm=4", "membrane.wall_thickness_mm=0.6", "connector.mount=plain"]
     with pytest.raises(InputError, match=r"inner_radius_mm = 4: too small for the port on the plug: radius"):
-        assemble(load_scene(BASE, [*small, "connector.seat=one-piece", "connector.port=thread-M5"], LIBRARY))
+        assemble(
+            load_scene(BASE, parse_changes([*small, "connector.seat=one-piece", "connector.port=thread-M5"]), LIBRARY)
+        )
 
 
 FITTED = [parts for parts in PARTS if parts[0] in ("barb-4x2.5", "thread-M5", "push-in-6")]

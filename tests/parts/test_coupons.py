@@ -17,6 +17,7 @@ from pneutouch.parts.coupons.leak_cap import cap
 from pneutouch.parts.coupons.volume_plug import cavity_size, cavity_volume
 from pneutouch.parts.layout import lay_out
 from pneutouch.parts.membrane import membrane_meridian
+from pneutouch.spec.read import parse_changes
 from tests.conftest import ROOT
 
 LIBRARY = Library((ROOT,))
@@ -28,7 +29,7 @@ def context(material="TangoPlus", seat="glued-flange", *more):
     chosen = [f"connector.seat={seat}", *more]
     if seat == "one-piece":
         chosen += ["connector.material=VeroClear", "print.connector_profile=objet260-connex"]
-    return CouponContext(LIBRARY.load("materials", material), load_scene("paper-dome", chosen, LIBRARY))
+    return CouponContext(LIBRARY.load("materials", material), load_scene("paper-dome", parse_changes(chosen), LIBRARY))
 
 
 def drawn():

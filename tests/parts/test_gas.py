@@ -13,6 +13,7 @@ from scipy.integrate import quad
 from pneutouch.body import crossing
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.parts import assemble
+from pneutouch.spec.read import parse_changes
 from tests.conftest import ROOT
 from tests.parts.space import measured_volume
 
@@ -26,7 +27,7 @@ CASES = list(
 
 def assembly(port, seat, mount, *more):
     chosen = [f"connector.port={port}", f"connector.seat={seat}", f"connector.mount={mount}", *more]
-    return assemble(load_scene("stiff-dome", chosen, LIBRARY))
+    return assemble(load_scene("stiff-dome", parse_changes(chosen), LIBRARY))
 
 
 @given(st.floats(0.3, 20), st.floats(0.05, 0.95))
@@ -65,9 +66,9 @@ def test_dead_volume_counts_connector_and_tube_and_the_tube_named(library):
     other = assembly("push-in-6", "glued-flange", "plain", "pneumatics.tube_length_mm=1000")
     assert made.tube_volume == pytest.approx(math.pi / 4 * 2.5**2 * 1000, rel=1e-12)
     assert other.tube_volume == pytest.approx(math.pi / 4 * 4.0**2 * 1000, rel=1e-12)
-    stiff = load_scene("stiff-dome", [], library)
+    stiff = load_scene("stiff-dome", None, library)
     assert stiff.design.pneumatics.dead_volume_mL == 0
-    free = load_scene("long-tube", [], library)
+    free = load_scene("long-tube", None, library)
     made = assemble(free)
     assert made.dead_volume == pytest.approx(made.internal_volume + made.tube_volume)
 

@@ -18,7 +18,7 @@ TEXT = (ROOT / "docs/printing.md").read_text(encoding="utf-8")
 def test_the_design_of_the_page_can_be_drawn(library, tmp_path):
     path = tmp_path / "page.toml"
     path.write_text(re.search(r"```toml\n(.*?)```", TEXT, re.DOTALL)[1])
-    assembly = assemble(load_scene(str(path), [], library))
+    assembly = assemble(load_scene(str(path), None, library))
     assert [solid.name for solid in assembly.solids] == ["membrane", "connector", "ring"]
 
 

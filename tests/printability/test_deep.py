@@ -30,14 +30,14 @@ def lab(request):
 
 
 def test_a_sensor_s_meshes_pass():
-    assembly = assemble(load_scene("paper-dome", [], LIBRARY))
+    assembly = assemble(load_scene("paper-dome", None, LIBRARY))
     for body, solid in zip(assembly.bodies, assembly.solids, strict=True):
         found = inspect(body, solid, assembly.scene.mesh_tolerance)
         assert [finding for finding in found if finding.severity != "note"] == []
 
 
 def test_a_coarse_mesh_is_measured_both_ways():
-    assembly = assemble(load_scene("paper-dome", [], LIBRARY))
+    assembly = assemble(load_scene("paper-dome", None, LIBRARY))
     solid = assembly.solids[0]
     (finding,) = [found for found in inspect(solid.mesh(0.1), solid, 0.016) if found.severity == "warning"]
     assert 0.02 < finding.excess.measured <= 0.1 * 1.02

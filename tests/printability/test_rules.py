@@ -19,6 +19,7 @@ from pneutouch.printability import PrintItem, PrintSubject, check
 from pneutouch.printability.check import RULES
 from pneutouch.printability.rules.contact_faces import overlap_volume, shared_area
 from pneutouch.printability.view import PrintPart, PrintView
+from pneutouch.spec.read import parse_changes
 from tests.conftest import ROOT
 from tests.printability.gallery import BAD, ball, box, item, one
 
@@ -28,7 +29,7 @@ PARTS = [(kind, name) for kind in ("port", "seat", "mount") for name in sorted(L
 
 
 def subject(name, *assignments):
-    return subject_of(assemble(load_scene(name, list(assignments), LIBRARY)))
+    return subject_of(assemble(load_scene(name, parse_changes(assignments), LIBRARY)))
 
 
 def told(found):

@@ -123,7 +123,7 @@ def test_a_sensor_outside_the_atlas_says_so_on_its_sheet(tmp_path):
     from pneutouch.evaluation import evaluate
     from pneutouch.workflows.build import build
 
-    evaluation = evaluate("fingertip-dome", ["pneumatics.driving_pressures_kPa=[10]"], clamp="flange")
+    evaluation = evaluate("fingertip-dome", {"pneumatics.driving_pressures_kPa": [10]}, clamp="flange")
     page = (build(evaluation, tmp_path) / "datasheet.html").read_text(encoding="utf-8")
     assert "No interval is given: the sensor is outside the atlas: the flange is held as printed" in page
     assert "Trade-off and tuning charts are not drawn: the sensor is outside the atlas" in page

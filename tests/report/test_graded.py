@@ -10,13 +10,14 @@ import pytest
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.evaluation.variants import in_resin
 from pneutouch.report.graded_sheet import graded_figures
+from pneutouch.spec.read import parse_changes
 
 SHALLOW = ["indentation.depth_mm=3", "indentation.steps=6", "pneumatics.driving_pressures_kPa=[0, 12]"]
 
 
 @pytest.fixture(scope="module")
 def graded():
-    return evaluate("graded-dome", SHALLOW)
+    return evaluate("graded-dome", parse_changes(SHALLOW))
 
 
 def test_a_graded_membrane_has_two_figures_in_the_same_bytes(graded):
@@ -28,7 +29,7 @@ def test_a_graded_membrane_has_two_figures_in_the_same_bytes(graded):
 
 
 def test_a_constant_membrane_has_none():
-    found = evaluate("paper-dome", SHALLOW)
+    found = evaluate("paper-dome", parse_changes(SHALLOW))
     assert graded_figures(found.scene, found.sensor, found.prediction) == {}
 
 

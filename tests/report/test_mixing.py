@@ -59,7 +59,7 @@ def test_the_designs_of_the_page_are_mixes(text, tmp_path, library):
         assert "membrane" in tomllib.loads(block)
         path = tmp_path / "mix.toml"
         path.write_text(block)
-        assert load_scene(str(path), [], library).membrane_material.mix.fractions[STIFF] == 0.1
+        assert load_scene(str(path), None, library).membrane_material.mix.fractions[STIFF] == 0.1
 
 
 def test_the_curves_are_listed(command, root):

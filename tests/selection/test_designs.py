@@ -8,6 +8,7 @@ import pytest
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.mechanics import predict
 from pneutouch.selection import Candidate
+from pneutouch.spec.read import parse_changes
 from pneutouch.units import KPA
 from pneutouch.workflows.select.document import document
 from pneutouch.workflows.select.run import SelectionRun
@@ -23,7 +24,7 @@ def solid(selection: SelectionRun, choice: Candidate, tmp_path):
     """The design as `build` would take it, predicted by the solid at its driving pressure."""
     path = tmp_path / "empty.toml"
     path.write_text("")
-    found = evaluate(str(path), selection.assignments(choice), model="solid")
+    found = evaluate(str(path), parse_changes(selection.assignments(choice)), model="solid")
     pressure = float(choice.pool.pressure[0])
     state = next(s for s in found.prediction.states if s.driving_pressure == pytest.approx(pressure, abs=1e-12))
     return found, state
@@ -98,7 +99,7 @@ def test_all_but_one_given_solves_for_that_one(given, free):
         wanted["driving_pressure_kPa"] = 12.0
     selection = answer(wanted, given=given, setting={"base": "paper-dome"})
     choice = selection.answer.designs[0]
-    changes = selection.assignments(choice)
+    changes = parse_changes(selection.assignments(choice))
     state = evaluate("paper-dome", changes, model="solid").prediction.states[-1]
     assert state.driving_pressure == pytest.approx(float(choice.pool.pressure[0]), rel=1e-6, abs=1e-9)
     assert state.figures.sensitivity_kPa_per_N == pytest.approx(2.0, rel=0.01)
@@ -154,7 +155,7 @@ def test_a_depth_stated_in_the_base_follows_the_size_into_the_design(tmp_path):
         FINGERTIP | {"force_range_N": 5.0}, setting={"base": str(base)}, given={"materials": ["FLX9940"]}
     )
     choice = selection.answer.designs[0]
-    state = evaluate(str(base), selection.assignments(choice), model="atlas").prediction.states[-1]
+    state = evaluate(str(base), parse_changes(selection.assignments(choice)), model="atlas").prediction.states[-1]
     assert state.indentation[-1] == pytest.approx(0.5 * float(choice.pool.radius[0]), rel=1e-6)
     assert state.figures.sensitivity_kPa_per_N == pytest.approx(
         float(choice.pool.response.lines.sensitivity_kPa_per_N[0]), rel=2e-3

@@ -13,7 +13,7 @@ from pneutouch.catalogue import Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.evaluation import evaluate
 from pneutouch.spec.design import DesignFile
-from pneutouch.spec.read import validate
+from pneutouch.spec.read import parse_changes, validate
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -80,14 +80,14 @@ def test_a_wrong_design_says_what_is_wrong_and_what_would_be_right(text, words, 
 )
 def test_a_wrong_override_says_so(assignment, words):
     with pytest.raises(InputError) as caught:
-        load_scene("paper-dome", [assignment], Library((ROOT,)))
+        load_scene("paper-dome", parse_changes([assignment]), Library((ROOT,)))
     assert all(word in str(caught.value) for word in words)
 
 
 def test_overrides_take_words_numbers_and_lists():
     scene = load_scene(
         "paper-dome",
-        ["membrane.material=FLX9960", "membrane.inner_radius_mm=8.5", "pneumatics.driving_pressures_kPa=[1, 3]"],
+        {"membrane.material": "FLX9960", "membrane.inner_radius_mm": 8.5, "pneumatics.driving_pressures_kPa": [1, 3]},
         Library((ROOT,)),
     )
     assert scene.membrane_material.title == "FLX9960-DM"
@@ -111,7 +111,7 @@ def test_a_folder_a_missing_file_and_a_binary_file_are_named(tmp_path):
 def test_a_byte_order_mark_and_a_file_without_ending_are_read(tmp_path):
     path = tmp_path / "mine"
     path.write_bytes(b"\xef\xbb\xbf[membrane]\ninner_radius_mm = 8\n")
-    assert load_scene(str(path), [], Library((ROOT,))).design.membrane.inner_radius_mm == 8
+    assert load_scene(str(path), None, Library((ROOT,))).design.membrane.inner_radius_mm == 8
 
 
 anything = st.one_of(

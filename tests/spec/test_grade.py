@@ -54,7 +54,7 @@ def design(tmp_path, grade, rest=""):
 def test_a_wrong_grade_says_what_is_wrong_and_what_would_be_right(tmp_path, grade, words):
     path = design(tmp_path, grade)
     with pytest.raises(InputError) as error:
-        load_scene(path, [], LIBRARY)
+        load_scene(path, None, LIBRARY)
     for word in (path, *words):
         assert word in str(error.value)
 
@@ -63,7 +63,7 @@ def test_a_wrong_grade_says_what_is_wrong_and_what_would_be_right(tmp_path, grad
 def test_a_printer_that_does_not_hold_both_resins_is_refused(tmp_path, fraction):
     path = design(tmp_path, f"{PAIR}, fraction = {fraction}", '[print]\nprofile = "abs-filament"')
     with pytest.raises(InputError, match=r"print\.profile = 'abs-filament'.*cannot run TangoPlus \+ .* VeroClear"):
-        load_scene(path, [], LIBRARY)
+        load_scene(path, None, LIBRARY)
 
 
 def test_a_printer_of_one_resin_at_once_mixes_none(tmp_path):
@@ -75,7 +75,7 @@ def test_a_printer_of_one_resin_at_once_mixes_none(tmp_path):
     (folder / "single.toml").write_text("\n".join(lines))
     path = design(tmp_path, f"{PAIR}, fraction = 0.1", '[print]\nprofile = "single"')
     with pytest.raises(InputError, match=r"cannot run .*1 at once"):
-        load_scene(path, [], Library((tmp_path, ROOT)))
+        load_scene(path, None, Library((tmp_path, ROOT)))
 
 
 def test_even_knots_and_labels():
@@ -90,6 +90,6 @@ def test_even_knots_and_labels():
 
 def test_the_grade_of_a_design_is_its_fractions_at_the_knots(tmp_path):
     path = design(tmp_path, f"{PAIR}, fraction = [0, 0.08, 0.25], at = [0, 0.25, 1]")
-    along = load_scene(path, [], LIBRARY).membrane_material.along
+    along = load_scene(path, None, LIBRARY).membrane_material.along
     found = np.interp([0, 0.25, 1], along.arc, along.stiff_fraction)
     assert found == pytest.approx([0, 0.08, 0.25], abs=1e-12)

@@ -54,5 +54,7 @@ def test_designs_draw_or_say_why_not_at_the_bounds(tmp_path, text):
         # An InputError says why not; anything else is our fault.
         with contextlib.suppress(InputError):
             assemble(
-                load_scene(design.stem, ["print.connector_profile=abs-filament", "connector.material=ABS"], library)
+                load_scene(
+                    design.stem, {"print.connector_profile": "abs-filament", "connector.material": "ABS"}, library
+                )
             )

@@ -14,6 +14,7 @@ from pneutouch.export.threemf import threemf
 from pneutouch.parts import Assembly, assemble
 from pneutouch.printability import Finding, check
 from pneutouch.printability.rules.contact_faces import overlap_volume
+from pneutouch.spec.read import parse_changes
 from tests.conftest import ROOT
 
 LIBRARY = Library((ROOT,))
@@ -23,7 +24,7 @@ RESINS = [name for name in LIBRARY.shelf("materials") if LIBRARY.load("materials
 def outcome(base: str, chosen: list[str]) -> tuple[str, list[Finding] | str]:
     """``refused`` with the reason, ``broken`` or ``built`` with what the rules found."""
     try:
-        assembly = assemble(load_scene(base, chosen, LIBRARY))
+        assembly = assemble(load_scene(base, parse_changes(chosen), LIBRARY))
     except InputError as error:
         return "refused", str(error)
     sound(assembly)

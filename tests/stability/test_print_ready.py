@@ -7,6 +7,7 @@ import pytest
 
 from pneutouch.catalogue import load_scene
 from pneutouch.parts import assemble
+from pneutouch.spec.read import parse_changes
 from tests.catalogue.store import combinations
 from tests.stability.prints import LIBRARY, RESINS, outcome, strict_warnings
 
@@ -78,7 +79,7 @@ def test_every_combination_of_parts_is_ready_to_print_or_names_the_reason(radius
             continue
         if fate == "broken":
             reasons |= {f"{f.rule}: {f.message}" for f in why if f.severity == "error"}
-        assembly = assemble(load_scene("stiff-dome", chosen, LIBRARY))
+        assembly = assemble(load_scene("stiff-dome", parse_changes(chosen), LIBRARY))
         assert strict_warnings("x", tuple(b.moved(assembly.print_offset) for b in assembly.bodies)) == 0
     with capsys.disabled():
         print(f"\nR0 {radius:g} mm, {len(PARTS)} combinations: {counts}", *sorted(reasons), sep="\n  ")  # noqa: T201

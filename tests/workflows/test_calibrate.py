@@ -29,7 +29,7 @@ TRUTH = {"shear_modulus": 0.21, "dead_volume": 400.0}
 
 @pytest.fixture(scope="module")
 def scene(library):
-    return load_scene("paper-dome", ["pneumatics.dead_volume_mL=0.3"], library)
+    return load_scene("paper-dome", {"pneumatics.dead_volume_mL": 0.3}, library)
 
 
 @pytest.fixture(scope="module")
@@ -100,7 +100,9 @@ def test_saved_files_predict_what_was_measured(found, observations, library, tmp
     assert "measured" not in resin
     assert resin["shore_a"]["value"] == 27.6
     states = evaluate("dome-A1", model="atlas", library=shelves).prediction.states
-    before = evaluate("paper-dome", ["pneumatics.dead_volume_mL=0.3"], model="atlas", library=library).prediction.states
+    before = evaluate(
+        "paper-dome", {"pneumatics.dead_volume_mL": 0.3}, model="atlas", library=library
+    ).prediction.states
     for pressure, state, old in ((12.0, states[2], before[2]), (22.0, states[3], before[3])):
         curve = next(c for c in observations.curves if c.run.driving_pressure_kPa == pressure)
         ours, theirs = (np.interp(curve.indentation, s.indentation, s.force) - curve.force for s in (state, old))

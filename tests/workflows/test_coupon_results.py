@@ -103,9 +103,9 @@ def test_measured_quantities_replace_the_shipped_ones_with_their_source(lab, tmp
 
 
 def test_the_new_profiles_change_clearance_and_modulus(lab, tmp_path):
-    before = load_scene("paper-dome", [], LIBRARY)
+    before = load_scene("paper-dome", None, LIBRARY)
     lab(measured())
-    after = load_scene("paper-dome", [], Library((tmp_path, ROOT)))
+    after = load_scene("paper-dome", None, Library((tmp_path, ROOT)))
     assert before.fit_clearance == pytest.approx(0.1 + 0.2)
     assert after.fit_clearance == pytest.approx(0.06 + 0.31)
     assert material_sensor(before.membrane_material).wall.shear_modulus == pytest.approx(0.17)

@@ -176,7 +176,7 @@ def test_sheet_shows_every_run_warning_and_expected_value(plan):
 
 
 def test_soft_sensor_is_saturated_at_no_more_than_its_driving_pressures(library):
-    soft = resins_of("long-tube", ["pneumatics.driving_pressures_kPa=[0, 4]"], (), library=library)[0]
+    soft = resins_of("long-tube", {"pneumatics.driving_pressures_kPa": [0, 4]}, (), library=library)[0]
     assert plated_tests(soft)["saturation"][1] == (0.0, 4.0) and plated_tests(soft)["relaxation"][1] == (0.0, 4.0)
 
 
@@ -194,6 +194,6 @@ def test_rig_file_is_read_and_refused_with_its_name(tmp_path):
 
 def test_pressure_beyond_the_limit_point_is_the_inputs_fault(library):
     with pytest.raises(InputError, match=r"TangoPlus: driving pressure 45 kPa is beyond .* less than 39\.\d+ kPa"):
-        make_plan("paper-dome", ["pneumatics.driving_pressures_kPa=[45]"], specimens=1, library=library)
+        make_plan("paper-dome", {"pneumatics.driving_pressures_kPa": [45]}, specimens=1, library=library)
     with pytest.raises(InputError, match="no such elastomer"):
         make_plan("paper-dome", resins=("TangoPlu",), library=library)

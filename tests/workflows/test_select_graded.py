@@ -54,7 +54,7 @@ def test_a_grade_is_set_beside_every_resin_and_the_nearest_mix_of_its_size(short
     assert short.nearest.fraction is not None
     assert short.left_out == {"Agilus30": "the Stratasys Objet260 Connex cannot run it"}
     assert short.solves == len(short.search.trials) + 8
-    plain = evaluate(shallow, ["membrane.material=FLX9960", "membrane.wall_thickness_mm=1.2"]).prediction.states
+    plain = evaluate(shallow, {"membrane.material": "FLX9960", "membrane.wall_thickness_mm": 1.2}).prediction.states
     listed = next(constant.trial for constant in short.constants if constant.name == "FLX9960")
     assert listed.sensitivity_kPa_per_N[0] == pytest.approx(plain[0].figures.sensitivity_kPa_per_N, rel=1e-9)
     assert listed.sensitivity_kPa_per_N[1] == pytest.approx(plain[-1].figures.sensitivity_kPa_per_N, rel=1e-6)

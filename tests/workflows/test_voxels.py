@@ -18,6 +18,7 @@ from pneutouch.export.voxels.manifest import MANIFEST
 from pneutouch.export.voxels.read import read_stack
 from pneutouch.output.files import digest
 from pneutouch.parts import assemble
+from pneutouch.spec.read import parse_changes
 from pneutouch.workflows.build.voxels import plan_voxels, write_voxels
 from tests.export.voxels.small import SETS, small_assembly
 
@@ -122,7 +123,7 @@ def test_somebody_elses_files_are_left_alone(written, stack):
 
 
 def test_a_printer_without_voxels_is_refused_before_anything_is_written(library, tmp_path):
-    scene = load_scene("paper-dome", [], library)
+    scene = load_scene("paper-dome", None, library)
     plan = plan_voxels(assemble(scene), library=library)
     with pytest.raises(
         InputError, match=r"print\.profile = 'objet260-connex': the .* takes no voxel stacks .* such as j735"
@@ -166,7 +167,7 @@ def test_a_catalogue_mix_takes_its_assumed_fraction_and_says_so(library):
 
 
 def test_a_mix_on_no_curve_is_refused(library):
-    scene = load_scene("graded-dome", [*SETS, "membrane.material=FLX9960"], library)
+    scene = load_scene("graded-dome", parse_changes([*SETS, "membrane.material=FLX9960"]), library)
     other = scene.membrane_material.model_copy(update={"base_resins": ["Agilus30", "VeroClear"]})
     assembly = assemble(replace(scene, membrane_material=other))
     with pytest.raises(
@@ -243,7 +244,7 @@ def test_the_full_graded_dome_keeps_time_memory_and_volume(library, tmp_path):
     import resource
     import time
 
-    plan = plan_voxels(assemble(load_scene("graded-dome", [], library)), mode="High Mix", library=library)
+    plan = plan_voxels(assemble(load_scene("graded-dome", None, library)), mode="High Mix", library=library)
     before, start = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, time.process_time()
     folder, notes = write_voxels(plan, tmp_path, "abc")
     assert time.process_time() - start < 30

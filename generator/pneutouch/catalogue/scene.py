@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,7 +15,7 @@ from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
 from pneutouch.spec.part import AnyMount, AnySeat, OnePiece, Port, Tube
 from pneutouch.spec.printer import Mode, Printer
-from pneutouch.spec.read import override, read_toml, validate
+from pneutouch.spec.read import Changes, override, read_toml, validate
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,19 +72,38 @@ class ResolvedDesign:
         return self.printer.accuracy_mm.nominal + self.connector_printer.accuracy_mm.nominal
 
 
-def load_scene(name: str, assignments: list[str] | None = None, library: Library | None = None) -> ResolvedDesign:
-    """Load a design by name or path, apply ``table.key=value`` overrides and resolve its names."""
+@dataclass(frozen=True, slots=True)
+class DesignSource:
+    """A design before its names are resolved: its name, its tables as a file has them, and where they were written."""
+
+    name: str
+    content: Mapping[str, Any]
+    where: str
+
+    @staticmethod
+    def of(design: str | DesignSource, library: Library) -> DesignSource:
+        """A design given by name or path; one that is a source already is returned."""
+        if isinstance(design, DesignSource):
+            return design
+        path = library.design_file(design)
+        return DesignSource(path.stem, read_toml(path), str(path))
+
+    def changed(self, changes: Changes) -> DesignFile:
+        """The design file with fields changed. Raises InputError that names file, key and value."""
+        return validate(DesignFile, override(self.content, changes, DesignFile), self.where)
+
+
+DEFAULT = DesignSource("default", {}, "the default design")
+"""The design of all defaults."""
+
+
+def load_scene(
+    design: str | DesignSource, changes: Changes | None = None, library: Library | None = None
+) -> ResolvedDesign:
+    """Load a design, given by name, by path or as a source, change fields and resolve its names."""
     shelves = library or Library.default()
-    path = shelves.design_file(name)
-    content = override(read_toml(path), assignments or [], DesignFile)
-    return _resolved(path.stem, str(path), validate(DesignFile, content, str(path)), shelves)
-
-
-def default_scene(assignments: list[str] | None = None, library: Library | None = None) -> ResolvedDesign:
-    """The design of all defaults with overrides applied."""
-    where = "the default design"
-    design = validate(DesignFile, override({}, assignments or [], DesignFile), where)
-    return _resolved("default", where, design, library or Library.default())
+    source = DesignSource.of(design, shelves)
+    return _resolved(source.name, source.where, source.changed(changes or {}), shelves)
 
 
 def _resolved(name: str, where: str, design: DesignFile, shelves: Library) -> ResolvedDesign:

@@ -33,6 +33,8 @@ class Commands(TyperGroup):
 def option(command: Any, parameter: str) -> str | None:
     """What ``command`` calls a parameter of the library, such as --noise for noise_kPa; None where it has none."""
     known = {str(found.name).strip("_"): found for found in (command.params if command else ())}
+    if "." in parameter:
+        return f"--set {parameter}" if "set" in known else None
     names = sorted((name for name in known if f"_{name}_" in f"_{parameter}_"), key=len)
     if not names:
         return None
@@ -129,7 +131,9 @@ def predict(
         from pneutouch.evaluation.document import full_document
         from pneutouch.evaluation.evaluate import evaluate
 
-        evaluation = evaluate(design, set_, closure=closure, clamp=clamp, aged=aged, **model_options(model, tolerance))
+        evaluation = evaluate(
+            design, changes(set_), closure=closure, clamp=clamp, aged=aged, **model_options(model, tolerance)
+        )
         document = full_document(evaluation, monte_carlo)
         if json:
             print_json(document)
@@ -181,6 +185,13 @@ def model_options(model: str | None, tolerance: str | None) -> dict[str, Any]:
             f"--tolerance {tolerance} with --model {model}: a tolerance is for --model auto; give one of both"
         )
     return {"model": "auto", "tolerance": parse_tolerance(tolerance)}
+
+
+def changes(set_: list[str] | None) -> dict[str, Any]:
+    """The fields that --set changes, and their values."""
+    from pneutouch.spec.read import parse_changes
+
+    return parse_changes(set_ or [])
 
 
 def refuse_flags(context: typer.Context, flags: Mapping[str, str], what: str, file: str) -> None:

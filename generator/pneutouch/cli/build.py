@@ -19,6 +19,7 @@ from pneutouch.cli.app import (
     SetOption,
     ToleranceOption,
     app,
+    changes,
     model_options,
     print_json,
     refuse_flags,
@@ -59,11 +60,11 @@ def build(
             flags = {key: flag for key, flag in _FLAGS.items() if key != "set_"}
             refuse_flags(context, flags, "a specimen, which has no prediction", design)
             refuse_flags(context, _VOXEL_FLAGS, "a specimen, which has no membrane", design)
-            name, folder, findings = _build_specimen(design, out, set_)
+            name, folder, findings = _build_specimen(design, out, changes(set_))
         else:
             evaluation = (
                 _from_3mf(design, context) if design.lower().endswith(".3mf")
-                else _evaluated(design, set_, closure=closure, clamp=clamp, **model_options(model, tolerance))
+                else _evaluated(design, changes(set_), closure=closure, clamp=clamp, **model_options(model, tolerance))
             )  # fmt: skip
             plan = _planned(evaluation, out, voxel_mode) if voxels or voxel_mode else None
             name, folder, findings = _build_sensor(evaluation, out)
@@ -91,9 +92,9 @@ def check(
             from pneutouch.workflows.specimen.build import check_specimen
 
             refuse_flags(context, _VOXEL_FLAGS, "a specimen, which has no membrane", design)
-            findings = check_specimen(design, set_, deep=deep)
+            findings = check_specimen(design, changes(set_), deep=deep)
         else:
-            evaluation = _evaluated(design, set_)
+            evaluation = _evaluated(design, changes(set_))
             findings = [*evaluation.findings, *(evaluation.deep_findings() if deep else [])]
             if voxels:
                 from pneutouch.workflows.build.voxels import plan_voxels
@@ -110,10 +111,10 @@ def check(
             raise typer.Exit(1)
 
 
-def _evaluated(design: str, set_: list[str] | None, **asked: Any) -> Evaluation:
+def _evaluated(design: str, changed: dict[str, Any], **asked: Any) -> Evaluation:
     from pneutouch.evaluation.evaluate import evaluate
 
-    return evaluate(design, set_, **asked)
+    return evaluate(design, changed, **asked)
 
 
 def _is_specimen(design: str) -> bool:
@@ -123,11 +124,11 @@ def _is_specimen(design: str) -> bool:
     return not design.lower().endswith(".3mf") and specimen_file(design, Library.default()) is not None
 
 
-def _build_specimen(design: str, out: Path, set_: list[str] | None) -> tuple[str, Path, list[Finding]]:
+def _build_specimen(design: str, out: Path, changed: dict[str, Any]) -> tuple[str, Path, list[Finding]]:
     from pneutouch.workflows.specimen.build import STEPS, build_specimen
 
     with _progress(STEPS) as report:
-        folder, findings = build_specimen(design, out, set_, progress=report)
+        folder, findings = build_specimen(design, out, changed, progress=report)
     return folder.name, folder, findings
 
 

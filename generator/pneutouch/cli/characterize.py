@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from pneutouch.cli.app import JsonOption, OutOption, SetOption, app, print_json, reporting
+from pneutouch.cli.app import JsonOption, OutOption, SetOption, app, changes, print_json, reporting
 
 
 @app.command()
@@ -29,7 +29,7 @@ def characterize(
         if evidence not in EVIDENCE:
             raise InputError(f"--evidence {evidence}: unknown.{nearest(evidence, EVIDENCE)}")
         with bar("MB read") as progress:
-            found = run(data, design, set_, target=target, model=model, progress=progress)
+            found = run(data, design, changes(set_), target=target, model=model, progress=progress)
         folder = write(found, out, evidence)
         if json:
             print_json({**found.document, "folder": str(folder)})

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from pneutouch.cli.app import DesignArgument, JsonOption, OutOption, SetOption, app, print_json, reporting
+from pneutouch.cli.app import DesignArgument, JsonOption, OutOption, SetOption, app, changes, print_json, reporting
 from pneutouch.cli.simulate import ResinsOption, SpecimensOption, words
 
 
@@ -27,7 +27,7 @@ def plan(
 
         found = make_plan(
             design,
-            set_,
+            changes(set_),
             resins=words(resins),
             specimens=specimens,
             rig=rig_of(rig),

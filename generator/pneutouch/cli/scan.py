@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from pneutouch.cli.app import JsonOption, OutOption, SetOption, app, print_json, refuse_flags, reporting
+from pneutouch.cli.app import JsonOption, OutOption, SetOption, app, changes, print_json, refuse_flags, reporting
 
 if TYPE_CHECKING:
     from pneutouch.workflows.scan.run import ScanOptions
@@ -36,13 +36,13 @@ def scan(
         asked = _asked(pressures, preload, speed, control, noise, seed, data or [])
         if separate is not None:
             refuse_flags(context, _NOT_SEPARATING, "--separate, which scans nothing", specimen)
-            _separate(specimen, design, separate, asked, set_, json=json)
+            _separate(specimen, design, separate, asked, changes(set_), json=json)
             return
         from pneutouch.workflows.scan.document import document
         from pneutouch.workflows.scan.run import run_scan
         from pneutouch.workflows.scan.write import write_scan
 
-        run = run_scan(specimen, design, asked, set_)
+        run = run_scan(specimen, design, asked, changes(set_))
         folder = write_scan(run, out)
         if json:
             print_json({**document(run), "folder": str(folder)})
@@ -68,10 +68,12 @@ def _asked(
     return ScanOptions(listed, preload, speed, control, NOISE if noise is None else noise * KPA, seed, tuple(data))
 
 
-def _separate(specimen: str, design: str, text: str, asked: ScanOptions, set_: list[str] | None, *, json: bool) -> None:
+def _separate(
+    specimen: str, design: str, text: str, asked: ScanOptions, changed: dict[str, Any], *, json: bool
+) -> None:
     from pneutouch.workflows.scan.separate import separating
 
-    found = separating(specimen, design, text, asked, set_)
+    found = separating(specimen, design, text, asked, changed)
     if json:
         print_json(found)
     else:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from pneutouch.cli.app import DesignArgument, JsonOption, OutOption, SetOption, app, print_json, reporting
+from pneutouch.cli.app import DesignArgument, JsonOption, OutOption, SetOption, app, changes, print_json, reporting
 from pneutouch.cli.progress import bar
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ def simulate(
             parquet=parquet, truth=SimulationTruth(rest=rest),
         )  # fmt: skip
         with bar("specimens") as progress:
-            folder = simulate(design, out, set_, asked, progress=progress)
+            folder = simulate(design, out, changes(set_), asked, progress=progress)
         _tell(folder, asked, json=json)
 
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from pneutouch.cli.app import JsonOption, SetOption, app, print_json, reporting
+from pneutouch.cli.app import JsonOption, SetOption, app, changes, print_json, reporting
 from pneutouch.cli.progress import bar
 from pneutouch.errors import InputError
 
@@ -51,7 +51,7 @@ def sweep(
         from pneutouch.workflows.sweep import sweep as run
         from pneutouch.workflows.sweep.run import ComputeResources
 
-        plan = _plan(file, design, over or [], set_ or [], {"model": model, "closure": closure, "clamp": clamp})
+        plan = _plan(file, design, over or [], changes(set_), {"model": model, "closure": closure, "clamp": clamp})
         target = Path("outputs") / f"{plan.name}.nc" if out is None else out
         with bar("points") as progress:
             done = run(plan, target, ComputeResources(workers, scheduler), fresh=fresh, progress=progress)
@@ -59,17 +59,17 @@ def sweep(
 
 
 def _plan(
-    file: Path | None, design: str | None, over: list[str], set_: list[str], options: dict[str, str | None]
+    file: Path | None, design: str | None, over: list[str], changed: dict[str, Any], options: dict[str, str | None]
 ) -> SweepPlan:
     from pneutouch.workflows.sweep import plan_of_file, plan_of_flags
 
     if file is not None and (design is not None or over):
         raise InputError(f"{file}: a sweep file and {'--over' if over else '--design'}: give one or the other")
     if file is not None:
-        return plan_of_file(file, set_, **options)
+        return plan_of_file(file, changed, **options)
     if design is None or not over:
         raise InputError("give a sweep file, or --design NAME with --over TABLE.KEY=VALUES")
-    return plan_of_flags(design, over, set_, **options)
+    return plan_of_flags(design, over, changed, **options)
 
 
 def _tell(done: SweepResult, *, json: bool) -> None:

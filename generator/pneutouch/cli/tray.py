@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from pneutouch.cli.app import JsonOption, OutOption, SetOption, app, print_json, reporting
+from pneutouch.cli.app import JsonOption, OutOption, SetOption, app, changes, print_json, reporting
 from pneutouch.errors import InputError
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def tray(
         from pneutouch.workflows.tray.lay import lay
         from pneutouch.workflows.tray.write import document, write_tray
 
-        order = _order(what, over or [], copies, set_ or [], {"profile": profile, "marks": marks})
+        order = _order(what, over or [], copies, changes(set_), {"profile": profile, "marks": marks})
         folder = out / order.name
         check_writable(folder)
         laid = lay(order, progress=_tell)
@@ -50,7 +50,7 @@ def tray(
 
 
 def _order(
-    what: list[str], over: list[str], copies: int | None, set_: list[str], head: dict[str, str | None]
+    what: list[str], over: list[str], copies: int | None, changed: dict[str, Any], head: dict[str, str | None]
 ) -> TrayOrder:
     """From a tray file where the one word given is a file with an [[entry]], else from designs and flags."""
     from pneutouch.workflows.tray.order import is_tray_file, order_of_file, order_of_flags
@@ -58,8 +58,8 @@ def _order(
     if len(what) == 1 and is_tray_file(Path(what[0])):
         if over or copies is not None:
             raise InputError(f"{what[0]}: a tray file and {'--over' if over else '--copies'}: put it into an [[entry]]")
-        return order_of_file(Path(what[0]), set_, **head)
-    return order_of_flags(what, over, 1 if copies is None else copies, set_, **head)
+        return order_of_file(Path(what[0]), changed, **head)
+    return order_of_flags(what, over, 1 if copies is None else copies, changed, **head)
 
 
 def _tell(step: str) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pneutouch.catalogue import Library, ResolvedDesign, load_scene
+from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
 from pneutouch.errors import BeyondLimitError, InputError, nearest
 from pneutouch.evaluation.table_s1 import sensitivity_error
 from pneutouch.mechanics import Sensor, SensorPrediction, predict
@@ -18,6 +18,7 @@ from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.viscous.known import AGED, ageing_ratio
 from pneutouch.parts import Assembly, assemble
 from pneutouch.spec.material import Material
+from pneutouch.spec.read import Changes
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
@@ -96,11 +97,11 @@ class Evaluation:
 
 
 def evaluate(
-    name: str, assignments: list[str] | None = None, *,
+    design: str | DesignSource, changes: Changes | None = None, *,
     model: str = "solid", closure: str = "variational", clamp: str = "base", tolerance: float = DEFAULT_TOLERANCE,
     library: Library | None = None, aged: bool = False,
 ) -> Evaluation:  # fmt: skip
-    """Load, draw and predict a design given by name or path. Raises InputError where it cannot work.
+    """Load, draw and predict a design given by name, by path or as a source. Raises InputError where it cannot work.
 
     ``tolerance`` is what ``model="auto"`` must meet. ``clamp`` says where the solid is held: at the "base" plane, as in the paper, or at the "flange", as printed.
     ``aged`` shifts the resin's modulus by its hardness after a year (docs/ageing.md).
@@ -108,7 +109,7 @@ def evaluate(
     if clamp not in CLAMPS:
         raise InputError(f"unknown.{nearest(clamp, CLAMPS)}", key="clamp", value=clamp)
     shelves = library or Library.default()
-    scene = load_scene(name, assignments, shelves)
+    scene = load_scene(design, changes, shelves)
     return evaluate_scene(scene, lambda: elastomers(shelves), PredictionOptions(model, closure, clamp, tolerance, aged))
 
 

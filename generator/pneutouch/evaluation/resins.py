@@ -7,13 +7,14 @@ from dataclasses import dataclass, replace
 
 from pneutouch.bench.simulate import SimulationTruth, press_curves
 from pneutouch.bench.simulate.curve import PressCurves
-from pneutouch.catalogue import Library, ResolvedDesign, load_scene
+from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
 from pneutouch.errors import BeyondLimitError, InputError, nearest
 from pneutouch.evaluation.evaluate import elastomers, sensor_of
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.uncertainty.hardness import logarithmic_change
 from pneutouch.parts import assemble
 from pneutouch.spec.campaign import AS_DESIGNED
+from pneutouch.spec.read import Changes
 from pneutouch.units import KPA
 
 TRUTH = SimulationTruth()
@@ -33,11 +34,11 @@ class SimulatedResin:
 
 
 def resins_of(
-    design: str, assignments: list[str] | None, resins: Sequence[str], truth: SimulationTruth = TRUTH, library: Library | None = None
+    design: str | DesignSource, changes: Changes | None, resins: Sequence[str], truth: SimulationTruth = TRUTH, library: Library | None = None
 ) -> list[SimulatedResin]:  # fmt: skip
     """The design in each resin; none given: its own, "all": those of the paper's Table S1. Raises InputError."""
     shelves = library or Library.default()
-    own = load_scene(design, assignments, shelves)
+    own = load_scene(design, changes, shelves)
     known = elastomers(shelves)
     names = list(resins) or [resin_of(own)]
     if tuple(names) == ALL:
@@ -51,14 +52,19 @@ def resins_of(
             raise InputError(f"no such elastomer.{nearest(name, known)}", key="resins", value=name)
         if names.count(name) > 1:
             raise InputError("named twice", key="resins", value=name, remedy="must be there once")
-        change = [] if name == AS_DESIGNED else [f"membrane.material={name}"]
-        scene = load_scene(design, [*(assignments or []), *change], shelves)
+        own_resin = {} if name == AS_DESIGNED else {"membrane.material": name}
+        scene = load_scene(design, {**(changes or {}), **own_resin}, shelves)
         material = scene.membrane_material
         new, old = material.shore_a, material.shore_a_one_year
         ageing = 0.0 if new is None or old is None else logarithmic_change(new.nominal, old.nominal)
         scatter = replace(truth.scatter, wall=scene.printer.accuracy_mm.nominal, ageing=ageing)
         found.append(SimulatedResin(name, scene, sensor_of(assemble(scene)), replace(truth, scatter=scatter)))
     return found
+
+
+def name_of(design: str | DesignSource) -> str:
+    """How a campaign names its design: as it was given, or by its own name."""
+    return design.name if isinstance(design, DesignSource) else design
 
 
 def resin_of(scene: ResolvedDesign) -> str:

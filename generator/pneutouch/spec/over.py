@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from pneutouch.errors import InputError
-from pneutouch.spec.toml_text import toml_value, value_text
+from pneutouch.spec.toml_text import toml_value
 
 MAX_VALUES = 10_000
 
@@ -42,11 +42,6 @@ def spread(where: str, key: str, start: Any, stop: Any, count: Any) -> list[floa
     if isinstance(start, int) and isinstance(stop, int) and all(float(v).is_integer() for v in values):
         return [int(v) for v in values]
     return [float(v) for v in values]
-
-
-def assignments(settings: Mapping[str, Any]) -> list[str]:
-    """Settings as ``table.key=value``."""
-    return [f"{key}={value_text(value)}" for key, value in settings.items()]
 
 
 def _values(key: str, text: str, given: str) -> list[Any]:

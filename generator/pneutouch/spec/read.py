@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -10,7 +11,7 @@ from pydantic import BaseModel, ValidationError
 
 from pneutouch.errors import InputError, joined, nearest
 from pneutouch.spec.fields import declaration, table_of
-from pneutouch.spec.toml_text import toml_value
+from pneutouch.spec.toml_text import toml_value, value_text
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -39,26 +40,46 @@ def validate(model: type[Model], content: dict[str, Any], where: str) -> Model:
         raise joined([_explain(model, detail, where) for detail in error.errors()]) from None
 
 
-def override(content: dict[str, Any], assignments: list[str], model: type[BaseModel]) -> dict[str, Any]:
-    """Return ``content`` with ``table.key=value`` assignments applied; values are TOML, or bare words."""
+Changes = Mapping[str, Any]
+"""Fields of a file to be changed, each ``table.key``, and their values."""
+
+
+def override(content: Mapping[str, Any], changes: Changes, model: type[BaseModel]) -> dict[str, Any]:
+    """Return ``content`` with fields changed. Raises InputError for a table or a key that ``model`` has not."""
     result = {key: dict(value) if isinstance(value, dict) else value for key, value in content.items()}
-    for assignment in assignments:
-        key, equals, text = assignment.partition("=")
-        path = key.strip().split(".")
-        if not equals or len(path) != 2:
-            raise InputError("write table.key=value, such as membrane.material=FLX9960", key="set", value=assignment)
-        table = table_of(model, path[0])
+    for name, value in changes.items():
+        table_name, _, key = name.partition(".")
+        table = table_of(model, table_name)
         if table is None:
-            problem = f"unknown table {path[0]}.{nearest(path[0], model.model_fields)}"
-            raise InputError(problem, key="set", value=assignment)
-        if path[1] not in table.model_fields:
-            problem = f"unknown key {key}.{nearest(path[1], table.model_fields)}"
-            raise InputError(problem, key="set", value=assignment)
-        section = result.setdefault(path[0], {})
+            raise InputError(
+                f"unknown table {table_name}.{nearest(table_name, model.model_fields)}", key=name, value=value
+            )
+        if key not in table.model_fields:
+            raise InputError(f"unknown key {name}.{nearest(key, table.model_fields)}", key=name, value=value)
+        section = result.setdefault(table_name, {})
         if not isinstance(section, dict):
-            raise InputError("must be a table", key=path[0], value=section)
-        section[path[1]] = toml_value(text.strip())
+            raise InputError("must be a table", key=table_name, value=section)
+        section[key] = value
     return result
+
+
+def parse_changes(assignments: Iterable[str]) -> dict[str, Any]:
+    """Changes from texts ``table.key=value``, whose values are TOML or bare words. Raises InputError."""
+    found = {}
+    for text in assignments:
+        key, equals, value = (part.strip() for part in text.partition("="))
+        if not equals or key.count(".") != 1:
+            raise InputError("write table.key=value, such as membrane.material=FLX9960", key="set", value=text)
+        found[key] = toml_value(value)
+    return found
+
+
+def assignments(changes: Changes) -> list[str]:
+    """Changes as texts that `parse_changes` reads, words bare where they can be."""
+    return [
+        f"{key}={value if isinstance(value, str) and toml_value(value) == value else value_text(value)}"
+        for key, value in changes.items()
+    ]
 
 
 def _explain(model: type[BaseModel], detail: Any, where: str) -> InputError:

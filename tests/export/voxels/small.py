@@ -11,6 +11,7 @@ from pneutouch.export.voxels.job import VoxelBody, VoxelJob
 from pneutouch.export.voxels.raster import raster
 from pneutouch.meridian import Arc, Line, Meridian
 from pneutouch.parts import Assembly, assemble
+from pneutouch.spec.read import parse_changes
 from tests.conftest import ROOT
 
 SETS = (
@@ -22,7 +23,7 @@ RESINS = ("Agilus30", "TangoPlus", "VeroClear")
 
 @cache
 def small_assembly(*more: str) -> Assembly:
-    return assemble(load_scene("graded-dome", [*SETS, *more], Library((ROOT,))))
+    return assemble(load_scene("graded-dome", parse_changes([*SETS, *more]), Library((ROOT,))))
 
 
 def material(name: str):

@@ -45,7 +45,7 @@ def test_blue_noise_is_evener_than_the_others(stored):
 
 
 def test_stored_rasters_are_today_and_ours_is_nearest(stored, library):
-    solid = assemble(load_scene("graded-dome", [], library)).solids[0]
+    solid = assemble(load_scene("graded-dome", None, library)).solids[0]
     rows = {(row["method"], row["layer_um"], row["coarser"]): row for row in stored["rasters"]}
     row = rows[OURS, 27.0, 4.0]
     grid = raster([SolidSection(solid)], (600, 300), 27.0, coarser=4.0)

@@ -13,6 +13,7 @@ import pytest
 from pneutouch.bench.simulate import SimulationTruth
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import Campaign
+from pneutouch.spec.read import parse_changes
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.workflows.characterize.run import characterize
 from pneutouch.workflows.simulate.run import SimulationOptions, simulate
@@ -25,7 +26,7 @@ FIRST = "runs/TangoPlus-1-0kPa-steps-1.csv"
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory, library):
-    return simulate("paper-dome", tmp_path_factory.mktemp("made"), [], ASKED, library)
+    return simulate("paper-dome", tmp_path_factory.mktemp("made"), None, ASKED, library)
 
 
 @pytest.fixture
@@ -34,7 +35,7 @@ def folder(made, tmp_path):
 
 
 def run(folder, library, *assignments, **more):
-    return characterize(folder, None, list(assignments), model="atlas", library=library, **more)
+    return characterize(folder, None, parse_changes(assignments), model="atlas", library=library, **more)
 
 
 def rewritten(folder, change):
@@ -82,7 +83,7 @@ def test_a_shallower_test_is_set_beside_the_prediction_over_its_own_range(folder
 
 def test_what_changes_the_design_is_kept_in_the_campaign(tmp_path, library):
     made = simulate(
-        "paper-dome", tmp_path, ["membrane.wall_thickness_mm=2.2"], replace(ASKED, kinds=("steps",)), library
+        "paper-dome", tmp_path, {"membrane.wall_thickness_mm": 2.2}, replace(ASKED, kinds=("steps",)), library
     )
     content = tomllib.loads((made / "campaign.toml").read_text())
     assert Campaign.model_validate(content).assignments == ["membrane.wall_thickness_mm=2.2"]

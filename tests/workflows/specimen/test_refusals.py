@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from pneutouch.errors import InputError
+from pneutouch.spec.read import parse_changes
 from pneutouch.workflows.specimen.draw import draw
 from pneutouch.workflows.specimen.load import load_specimen
 from tests.workflows.specimen.test_build import LIBRARY, written
@@ -82,7 +83,7 @@ def test_far_too_many_cells(tmp_path):
 )
 def test_refused_settings(assignment, words):
     with pytest.raises(InputError) as caught:
-        draw(load_specimen("texture-specimen", [assignment], LIBRARY))
+        draw(load_specimen("texture-specimen", parse_changes([assignment]), LIBRARY))
     for word in words:
         assert word in str(caught.value)
 

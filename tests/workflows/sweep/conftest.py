@@ -14,6 +14,7 @@ import pytest
 import xarray
 
 from pneutouch.errors import ComputationError
+from pneutouch.spec.read import parse_changes
 from pneutouch.workflows.sweep import plan_of_flags, sweep, work
 from pneutouch.workflows.sweep.run import ComputeResources
 
@@ -38,7 +39,7 @@ def small(over=(), *, design="paper-dome", settings=(), **options):
     return plan_of_flags(
         design,
         list(over) or ["membrane.wall_thickness_mm=0.5,0.9,1.5"],
-        list(settings),
+        parse_changes(settings),
         **{"model": "membrane", **options},
     )
 

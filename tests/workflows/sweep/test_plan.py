@@ -87,7 +87,7 @@ def test_options_come_before_the_file_and_paths_lie_beside_it(tmp_path):
     (tmp_path / "s.toml").write_text(
         'design = "own.toml"\nmodel = "solid"\n[set]\nindentation.steps = 5\n[grid]\nmembrane.wall_thickness_mm = [1, 2]'
     )
-    plan = plan_of_file(tmp_path / "s.toml", ["indentation.steps=7"], model="membrane", clamp=None)
+    plan = plan_of_file(tmp_path / "s.toml", {"indentation.steps": 7}, model="membrane", clamp=None)
     assert (plan.model, plan.clamp, plan.design) == ("membrane", "base", str(tmp_path / "own.toml"))
     assert plan.settings == {"indentation.steps": 7}
 

@@ -12,6 +12,7 @@ from pneutouch.parts import assemble
 from pneutouch.parts.lettering.glyphs import is_clear, lettering, narrowest
 from pneutouch.parts.lettering.mark import Marker
 from pneutouch.parts.lettering.tally import read, tally
+from pneutouch.spec.read import parse_changes
 from pneutouch.workflows.tray.expand import letter
 
 SEATS = ("glued-flange", "clamped-flange-M2", "one-piece")
@@ -27,7 +28,7 @@ PROFILES = [
 @pytest.fixture(scope="module")
 def drawn(library):
     def run(*changes):
-        return assemble(load_scene("agilus-dome", [*PROFILES, *changes], library))
+        return assemble(load_scene("agilus-dome", parse_changes([*PROFILES, *changes]), library))
 
     return run
 

@@ -16,6 +16,7 @@ import trimesh
 
 from pneutouch.errors import InputError
 from pneutouch.parts.lettering.tally import read
+from pneutouch.spec.read import parse_changes
 from pneutouch.workflows.tray.lay import fill, lay
 from pneutouch.workflows.tray.order import TrayOrder, is_tray_file, order_of_file, order_of_flags
 from pneutouch.workflows.tray.subject import subject
@@ -33,7 +34,7 @@ def content(folder: Path) -> dict[str, bytes]:
 
 
 def flags(library, designs, over=(), copies=1, overrides=(), **head):
-    return lay(order_of_flags(designs, over, copies, overrides, **head), library)
+    return lay(order_of_flags(designs, over, copies, parse_changes(overrides), **head), library)
 
 
 def table(folder):

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from pneutouch.body import Body
 from pneutouch.parts.lettering.mark import Mark
+from pneutouch.spec.read import parse_changes
 from pneutouch.workflows.tray.lay import TrayPart, lay
 from pneutouch.workflows.tray.order import order_of_flags
 from pneutouch.workflows.tray.pack import PackedPosition, PackingArea, pack
@@ -58,7 +59,9 @@ def test_packed_bricks_lie_in_their_places_and_apart(library, sizes):
 
 def test_a_laid_tray_with_turned_parts_keeps_them_in_their_places_and_apart(library):
     changes = ["connector.mount=finger-16"]
-    laid = lay(order_of_flags(["paper-dome"], [], 6, changes, profile="abs-filament", marks="none"), library)
+    laid = lay(
+        order_of_flags(["paper-dome"], [], 6, parse_changes(changes), profile="abs-filament", marks="none"), library
+    )
     turned = [part for part in laid.parts if part.place.turned and abs(part.size[0] - part.size[1]) > 1]
     assert turned, "no part that is not square was turned"
     found = [boxes(part) for part in laid.parts]

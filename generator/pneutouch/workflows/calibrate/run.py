@@ -8,6 +8,7 @@ from typing import Any
 
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.errors import InputError
+from pneutouch.spec.read import parse_changes
 from pneutouch.workflows.calibrate.files import prepare, save, write_calibration
 from pneutouch.workflows.calibrate.fit import calibrate, observations_of
 from pneutouch.workflows.characterize import Progress, answers, load_curves, sound
@@ -42,9 +43,10 @@ def run_calibration(
     design = asked.design or loaded.campaign.design
     if design is None:
         raise InputError("names no design", file=asked.data, remedy="give `design`")
-    scene = load_scene(design, loaded.campaign.assignments, library)
+    changes = parse_changes(loaded.campaign.assignments)
+    scene = load_scene(design, changes, library)
     pairs = [(curve.run.resin, curve.run.driving_pressure_kPa) for curve in loaded.curves]
-    expected = answers(design, loaded.campaign.assignments, pairs, "atlas", library)
+    expected = answers(design, changes, pairs, "atlas", library)
     curves, refused, questions = sound(loaded, expected)
     sensor, observations, notes = observations_of(loaded.campaign, curves, loaded.injections, scene, asked.sensor)
     own = {curve.run.file for curve in observations.curves}

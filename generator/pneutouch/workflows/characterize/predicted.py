@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
@@ -12,13 +11,14 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.bench.plausible import ExpectedRun
 from pneutouch.bench.summary import RunGroup
-from pneutouch.catalogue import Library
+from pneutouch.catalogue import DesignSource, Library
 from pneutouch.errors import PneutouchError
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.mechanics.response import Figures, figures
 from pneutouch.report.measured import GroupComparison
 from pneutouch.spec.campaign import AS_DESIGNED
+from pneutouch.spec.read import Changes
 from pneutouch.units import KPA
 
 _ROUNDING, _LEAST_POINTS = 1e-9, 3
@@ -54,7 +54,7 @@ class StatePrediction:
 
 
 def answers(
-    design: str, assignments: list[str], wanted: Iterable[tuple[str, float]], model: str, library: Library
+    design: str | DesignSource, changes: Changes, wanted: Iterable[tuple[str, float]], model: str, library: Library
 ) -> dict[tuple[str, float], StatePrediction]:
     """Predict the design in every (resin, driving pressure in kPa) wanted, resin by resin.
 
@@ -66,28 +66,28 @@ def answers(
     for resin in dict.fromkeys(resin for resin, _ in pairs):
         pressures = [p for name, p in pairs if name == resin]
         try:
-            evaluation = _evaluated(design, assignments, resin, pressures, model, library)
+            evaluation = _evaluated(design, changes, resin, pressures, model, library)
             found |= {(resin, p): StatePrediction(evaluation, k) for k, p in enumerate(pressures)}
         except PneutouchError:
-            found |= {(resin, p): _alone(design, assignments, resin, p, model, library) for p in pressures}
+            found |= {(resin, p): _alone(design, changes, resin, p, model, library) for p in pressures}
     return found
 
 
 def _alone(
-    design: str, assignments: list[str], resin: str, pressure: float, model: str, library: Library
+    design: str | DesignSource, changes: Changes, resin: str, pressure: float, model: str, library: Library
 ) -> StatePrediction:
     try:
-        return StatePrediction(_evaluated(design, assignments, resin, [pressure], model, library), 0)
+        return StatePrediction(_evaluated(design, changes, resin, [pressure], model, library), 0)
     except PneutouchError as error:
         return StatePrediction(None, 0, str(error))
 
 
 def _evaluated(
-    design: str, assignments: list[str], resin: str, pressures: list[float], model: str, library: Library
+    design: str | DesignSource, changes: Changes, resin: str, pressures: list[float], model: str, library: Library
 ) -> Evaluation:  # fmt: skip
-    change = [] if resin == AS_DESIGNED else [f"membrane.material={json.dumps(resin)}"]
-    own = [*change, f"pneumatics.driving_pressures_kPa={json.dumps(pressures)}"]
-    return evaluate(design, [*assignments, *own], model=model, library=library)
+    own = {} if resin == AS_DESIGNED else {"membrane.material": resin}
+    pressed = {"pneumatics.driving_pressures_kPa": pressures}
+    return evaluate(design, {**changes, **own, **pressed}, model=model, library=library)
 
 
 def beside(group: RunGroup, answer: StatePrediction) -> GroupComparison:

@@ -12,13 +12,13 @@ from pneutouch.bench.plausible import check_plausible, mixed
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.bench.summary import summarize
 from pneutouch.bench.trace import Trace
-from pneutouch.catalogue import Library, load_scene
+from pneutouch.catalogue import DesignSource, Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.output.files import MANIFEST, check_writable, json_bytes, write_folder
 from pneutouch.output.manifest import entry, input_hash, manifest
 from pneutouch.report.measured import CampaignReport
 from pneutouch.spec.campaign import AS_DESIGNED
-from pneutouch.spec.read import read_toml, validate
+from pneutouch.spec.read import Changes, parse_changes, read_toml, validate
 from pneutouch.spec.target import Target
 from pneutouch.workflows.characterize.document import document
 from pneutouch.workflows.characterize.load import CampaignData, Progress, campaign_of, load_curves
@@ -55,21 +55,21 @@ class CharacterizationResult:
 
 
 def characterize(
-    data: Path, design: str | None = None, assignments: list[str] | None = None, *, target: Path | None = None,
+    data: Path, design: str | DesignSource | None = None, changes: Changes | None = None, *, target: Path | None = None,
     model: str = "solid", library: Library | None = None, progress: Progress = lambda done, total: None,
 ) -> CharacterizationResult:  # fmt: skip
     """Read a campaign's folder or one file, and set its figures beside the prediction of its design.
 
-    ``design`` comes before the one that the campaign names; ``assignments`` change it. Raises InputError where nothing can
+    ``design`` comes before the one that the campaign names; ``changes`` are laid over either. Raises InputError where nothing can
     be read; files that fail are listed in the outcome.
     """
     shelves = library or Library.default()
-    name, own = (design, []) if design is not None else _design_of(data)
+    name, own = (design, {}) if design is not None else _design_of(data)
     wanted = None if target is None else validate(Target, read_toml(target), str(target))
-    given = [*own, *(assignments or [])]
+    given = {**own, **(changes or {})}
     loaded = load_curves(data, load_scene(name, given, shelves), progress)
-    if loaded.campaign.ambient_pressure_kPa is not None and not any("ambient_pressure_kPa" in one for one in given):
-        given.append(f"pneumatics.ambient_pressure_kPa={loaded.campaign.ambient_pressure_kPa}")
+    if loaded.campaign.ambient_pressure_kPa is not None:
+        given.setdefault("pneumatics.ambient_pressure_kPa", loaded.campaign.ambient_pressure_kPa)
     _check_resins(data, loaded, shelves)
     pairs = [(curve.run.resin, curve.run.driving_pressure_kPa) for curve in loaded.curves]
     model_says = answers(name, given, pairs, model, shelves)
@@ -87,7 +87,7 @@ def characterize(
     return CharacterizationResult(measured, loaded.traces, f"{_stem(data)}-measured")
 
 
-def _design_of(data: Path) -> tuple[str, list[str]]:
+def _design_of(data: Path) -> tuple[str, dict[str, Any]]:
     """The design that a campaign names, and what changes it."""
     if not (data.is_dir() or data.suffix == ".toml"):
         if not data.exists():
@@ -99,7 +99,8 @@ def _design_of(data: Path) -> tuple[str, list[str]]:
             "the campaign names no design", file=folder, remedy='give `design`, or design = "..." in its file'
         )
     beside = folder / campaign.design
-    return (str(beside) if beside.suffix == ".toml" and beside.is_file() else campaign.design), campaign.assignments
+    name = str(beside) if beside.suffix == ".toml" and beside.is_file() else campaign.design
+    return name, parse_changes(campaign.assignments)
 
 
 def _stem(data: Path) -> str:

@@ -80,7 +80,7 @@ class CouponOrder:
 def order(asked: CouponOptions, library: Library | None = None) -> CouponOrder:
     """Resolve every name. Raises InputError for what is unknown, contradicts, or does not run on the machine."""
     shelves = library or Library.default()
-    scene = None if asked.design is None else load_scene(asked.design, [], shelves)
+    scene = None if asked.design is None else load_scene(asked.design, None, shelves)
     profile = asked.profile or (Print().profile if scene is None else scene.design.print.profile)
     printer: Printer = shelves.load("printers", profile, key="profile")
     families = _families(asked)

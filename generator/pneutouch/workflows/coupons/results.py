@@ -49,7 +49,7 @@ def evaluate_results(results: CouponResults, where: str, shelves: Library) -> Co
         _gauges(name, by_material, said, shelves, found)
     for name in dict.fromkeys((*results.leak_cap, *results.volume_plug)):
         cap, plug = results.leak_cap.get(name), results.volume_plug.get(name)
-        scene = load_scene(_design(name, where, shelves), [], shelves)
+        scene = load_scene(_design(name, where, shelves), None, shelves)
         if cap is not None:
             leak(name, cap, 0.0 if plug is None else plug.gauge_accuracy_kPa, said, found)
         if plug is not None and (plug.pressure_kPa or plug.water_g):

@@ -10,14 +10,14 @@ from typing import Any
 from pneutouch.bench.protocol import CLEARANCE, REPETITIONS, RunProtocol, protocol
 from pneutouch.bench.simulate.curve import PressCurves
 from pneutouch.bench.simulate.encode import LEAK_SECONDS
-from pneutouch.catalogue import Library
+from pneutouch.catalogue import DesignSource, Library
 from pneutouch.errors import InputError
-from pneutouch.evaluation.resins import SimulatedResin, pressed, resins_of
+from pneutouch.evaluation.resins import SimulatedResin, name_of, pressed, resins_of
 from pneutouch.output.files import check_writable, json_bytes, write_folder
 from pneutouch.output.manifest import with_manifest
 from pneutouch.report.plan_sheet import plan_sheet
 from pneutouch.spec.campaign import Campaign, CampaignRun, Rig, RunKind
-from pneutouch.spec.read import read_toml, validate
+from pneutouch.spec.read import Changes, assignments, read_toml, validate
 from pneutouch.units import KPA, ML
 from pneutouch.workflows.plan.expected import curve_warnings, injection, leak_limit, points, travel_warnings
 from pneutouch.workflows.simulate import campaign_toml
@@ -59,13 +59,13 @@ def rig_of(file: Path | None) -> Rig:
 
 
 def make_plan(
-    design: str, assignments: list[str] | None = None, *, resins: tuple[str, ...] = (), specimens: int = 3,
+    design: str | DesignSource, changes: Changes | None = None, *, resins: tuple[str, ...] = (), specimens: int = 3,
     rig: Rig = PAPER, rig_name: str = "", library: Library | None = None,
 ) -> CampaignPlan:  # fmt: skip
     """Plan a campaign of the paper's tests for a design in each resin. Raises InputError for what cannot be."""
     if not 1 <= specimens <= 1000:
         raise InputError("must be from 1 to 1000", key="specimens", value=specimens)
-    subjects = resins_of(design, assignments, resins, library=library)
+    subjects = resins_of(design, changes, resins, library=library)
     scene = subjects[0].scene
     tests = plated_tests(subjects[0])
     curves = {s.name: _pressed(s, tests) for s in subjects}
@@ -95,7 +95,7 @@ def make_plan(
         "warnings": [w.document() for w in travel_warnings(depths, rig)] + warnings,
     }  # fmt: skip
     campaign = Campaign(
-        title=f"Campaign of {scene.design.document.title}"[:120], design=design, assignments=list(assignments or []), ambient_pressure_kPa=pneumatics.ambient_pressure_kPa,
+        title=f"Campaign of {scene.design.document.title}"[:120], design=name_of(design), assignments=assignments(changes or {}), ambient_pressure_kPa=pneumatics.ambient_pressure_kPa,
         rig=rig, runs=[CampaignRun(**{key: run[key] for key in ("file", "kind", "sensor", "resin", "driving_pressure_kPa", "run")}) for run in listed],
     )  # fmt: skip
     return CampaignPlan(str(document["name"]), document, campaign)

@@ -9,12 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from pneutouch.catalogue import Library, ResolvedDesign, load_scene
+from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
 from pneutouch.errors import InputError, nearest
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.mechanics import Sensor
 from pneutouch.parts import assemble
 from pneutouch.parts.specimen.bars import places
+from pneutouch.spec.read import Changes
 from pneutouch.spec.specimen import Bars
 from pneutouch.texture.contact import PreloadContact, touch
 from pneutouch.texture.detect import Detection, detect, least_duration
@@ -89,15 +90,15 @@ class ScanRun:
 
 
 def run_scan(
-    specimen: str, design: str, asked: ScanOptions = ScanOptions(), assignments: list[str] | None = None, library: Library | None = None
+    specimen: str, design: str | DesignSource, asked: ScanOptions = ScanOptions(), changes: Changes | None = None, library: Library | None = None
 ) -> ScanRun:  # fmt: skip
-    """Scan a specimen with a sensor, both by name or path; ``assignments`` change the design.
+    """Scan a specimen with a sensor, both by name or path; ``changes`` are of the design.
 
     Raises InputError for what cannot be: see `texture.contact`, `texture.scan`, `texture.detect`.
     """
     shelves = library or Library.default()
     check_asked(asked)
-    context, scene, sensor = load_both(specimen, design, assignments, shelves)
+    context, scene, sensor = load_both(specimen, design, changes, shelves)
     if asked.speed is not None:
         context = replace(context, specimen=_at_speed(context, asked.speed))
     speed = context.specimen.scan.speed_mm_per_s
@@ -117,14 +118,14 @@ def run_scan(
 
 
 def load_both(
-    specimen: str, design: str, assignments: list[str] | None, library: Library, scanned: bool = True
+    specimen: str, design: str | DesignSource, changes: Changes | None, library: Library, scanned: bool = True
 ) -> tuple[ResolvedSpecimen, ResolvedDesign, Sensor]:
     """A specimen and a sensor; one that is ``scanned`` is checked as it is for printing.
 
     Raises InputError, also where one is the other.
     """
     context = load_specimen(specimen, None, library)
-    if specimen_file(design, library) is not None:
+    if isinstance(design, str) and specimen_file(design, library) is not None:
         raise InputError(
             "is a specimen", key="design", value=design, remedy="give the name or path of a sensor's design"
         )
@@ -132,7 +133,7 @@ def load_both(
     if scanned:
         bars_of(context)
         draw(context)
-    scene = load_scene(design, assignments, library)
+    scene = load_scene(design, changes, library)
     return context, scene, sensor_of(assemble(scene))
 
 

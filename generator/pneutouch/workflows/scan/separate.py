@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.catalogue import Library, ResolvedDesign
+from pneutouch.catalogue import DesignSource, Library, ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import elastomers
 from pneutouch.mechanics.atlas.press import SensorBatch
@@ -17,6 +17,7 @@ from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
+from pneutouch.spec.read import Changes
 from pneutouch.texture.separate import BarPattern, Separation, noise_amplitude, separate
 from pneutouch.units import KPA
 from pneutouch.workflows.scan.run import ScanOptions, check_asked, load_both, matrix_of
@@ -56,14 +57,14 @@ def parse_patterns(text: str) -> tuple[BarPattern, BarPattern]:
 
 
 def separating(
-    specimen: str, design: str, text: str, asked: ScanOptions, assignments: list[str] | None = None,
+    specimen: str, design: str | DesignSource, text: str, asked: ScanOptions, changes: Changes | None = None,
     library: Library | None = None,
 ) -> dict[str, Any]:  # fmt: skip
     """The domes that best tell two patterns apart, as a document; the specimen gives matrix and speed, the design the rest."""
     shelves = library or Library.default()
     check_asked(asked)
     patterns = parse_patterns(text)
-    context, scene, sensor = load_both(specimen, design, assignments, shelves, scanned=False)
+    context, scene, sensor = load_both(specimen, design, changes, shelves, scanned=False)
     speed = context.specimen.scan.speed_mm_per_s if asked.speed is None else asked.speed
     floor = tuple(noise_amplitude(speed / pattern.pitch, asked.noise) for pattern in patterns)
     domes = candidates(scene, sensor, shelves)

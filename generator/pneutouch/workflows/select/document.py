@@ -12,7 +12,7 @@ from pneutouch.mechanics.atlas.respond import ENDS
 from pneutouch.output.new import write_design
 from pneutouch.selection import Candidate, DroppedWish
 from pneutouch.spec.design import DesignFile
-from pneutouch.spec.read import override, validate
+from pneutouch.spec.read import override, parse_changes, validate
 from pneutouch.spec.template import design_template
 from pneutouch.units import KPA, ML
 from pneutouch.workflows.select.run import Confirmation, SelectionRun
@@ -100,7 +100,7 @@ def write_choice(selection: SelectionRun, choice: Candidate, name: str, folder: 
 def write_assigned(design: DesignFile, assignments: list[str], name: str, folder: Path) -> Path:
     """Save a design with ``table.key=value`` assignments as ``folder/name.toml``; never over a file."""
     base = design.model_dump(by_alias=True)
-    content = override(base, assignments, DesignFile)
+    content = override(base, parse_changes(assignments), DesignFile)
     content["document"] = {**base["document"], "title": name}
     content["pneumatics"]["driving_pressures_kPa"] = [float(p) for p in content["pneumatics"]["driving_pressures_kPa"]]
     chosen = validate(DesignFile, content, name)

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.catalogue import Library, ResolvedDesign, default_scene, load_scene
+from pneutouch.catalogue import DEFAULT, Library, ResolvedDesign, load_scene
 from pneutouch.errors import InputError, PneutouchError
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.evaluation.table_s1 import is_near_paper
@@ -143,10 +143,10 @@ def base_scene(target: Target, where: str, library: Library) -> ResolvedDesign:
         "pneumatics.dead_volume_mL": setting.dead_volume_mL, "membrane.inner_radius_mm": given.inner_radius_mm,
         "membrane.wall_thickness_mm": given.wall_thickness_mm,
     }  # fmt: skip
-    changes = [f"{key}={value}" for key, value in values.items() if value is not None]
-    changes.append(f"membrane.material={_some_resin(target, where, library)}")
+    changes = {key: value for key, value in values.items() if value is not None}
+    changes["membrane.material"] = _some_resin(target, where, library)
     try:
-        return load_scene(setting.base, changes, library) if setting.base else default_scene(changes, library)
+        return load_scene(setting.base or DEFAULT, changes, library)
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
 

@@ -26,14 +26,14 @@ from pneutouch.bench.simulate.encode import LEAK_SECONDS, MARK, encoded
 from pneutouch.bench.simulate.inject import sensor_pressure
 from pneutouch.bench.simulate.parameter import parameters
 from pneutouch.bench.simulate.truth import aged
-from pneutouch.catalogue import Library
+from pneutouch.catalogue import DesignSource, Library
 from pneutouch.errors import InputError, nearest
-from pneutouch.evaluation.resins import SimulatedResin, pressed, resins_of
+from pneutouch.evaluation.resins import SimulatedResin, name_of, pressed, resins_of
 from pneutouch.mechanics import Sensor
 from pneutouch.output.files import MANIFEST, json_bytes, replacing
 from pneutouch.output.manifest import entry, input_hash, manifest
 from pneutouch.spec.campaign import Campaign, CampaignRun, Rig, RunKind
-from pneutouch.spec.read import validate
+from pneutouch.spec.read import Changes, assignments, validate
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.units import KPA, ML
 
@@ -69,7 +69,7 @@ Progress = Callable[[int, int], None]
 
 
 def simulate(
-    design: str, out: Path, assignments: list[str] | None = None, asked: SimulationOptions = SimulationOptions(), library: Library | None = None,
+    design: str | DesignSource, out: Path, changes: Changes | None = None, asked: SimulationOptions = SimulationOptions(), library: Library | None = None,
     progress: Progress = lambda done, total: None,
 ) -> Path:  # fmt: skip
     """Write ``out/<design>-campaign/``: campaign.toml, runs, truth.json, manifest; the same input, the same bytes.
@@ -77,12 +77,12 @@ def simulate(
     Runs are written to a hidden folder beside as they are made. Raises InputError for what cannot be.
     """
     _check(asked)
-    subjects = resins_of(design, assignments, asked.resins, asked.truth, library)
+    subjects = resins_of(design, changes, asked.resins, asked.truth, library)
     name = f"{subjects[0].scene.name}-campaign"
     folder = out / name
     with replacing(folder) as fresh:
         writer = _Writer(fresh)
-        _write_all((design, list(assignments or [])), subjects, asked, writer, progress)
+        _write_all((name_of(design), assignments(changes or {})), subjects, asked, writer, progress)
         inputs = _inputs(subjects, asked)
         listed = dict(sorted(writer.files.items()))
         writer.put(MANIFEST, manifest(listed, name, inputs=inputs, input_hash=input_hash(inputs)))

@@ -17,6 +17,7 @@ from pneutouch.output.files import check_writable, json_bytes, write_folder
 from pneutouch.output.manifest import input_hash, versions, with_manifest
 from pneutouch.parts.specimen.plate import holes, outline
 from pneutouch.printability import Finding
+from pneutouch.spec.read import Changes
 from pneutouch.workflows.specimen.draw import SpecimenBodies, draw
 from pneutouch.workflows.specimen.drawing import drawing_svg
 from pneutouch.workflows.specimen.findings import findings, refuse
@@ -31,7 +32,7 @@ STEPS = ("bodies", "rules", "3MF", "STL", "GLB", "STEP", "drawing", "files")
 
 
 def build_specimen(
-    name: str, out: Path, assignments: list[str] | None = None, library: Library | None = None,
+    name: str, out: Path, changes: Changes | None = None, library: Library | None = None,
     progress: Progress = lambda step: None,
 ) -> tuple[Path, list[Finding]]:  # fmt: skip
     """Write everything a specimen, by name or path, gives into ``out/<name>/``; that folder and what the rules say.
@@ -39,7 +40,7 @@ def build_specimen(
     Raises InputError for what cannot be, RuleBrokenError, with nothing written, where a rule is broken. The same input
     gives the same bytes.
     """
-    scene = load_specimen(name, assignments, library)
+    scene = load_specimen(name, changes, library)
     folder = out / scene.name
     check_writable(folder)
     progress("bodies")
@@ -54,10 +55,10 @@ def build_specimen(
 
 
 def check_specimen(
-    name: str, assignments: list[str] | None = None, library: Library | None = None, *, deep: bool = False
+    name: str, changes: Changes | None = None, library: Library | None = None, *, deep: bool = False
 ) -> list[Finding]:
     """What the print rules say of a specimen, and pymeshlab too where it is asked. Raises InputError for what cannot be."""
-    drawn = draw(load_specimen(name, assignments, library))
+    drawn = draw(load_specimen(name, changes, library))
     found = findings(drawn)
     if deep:
         from pneutouch.printability.deep import inspect

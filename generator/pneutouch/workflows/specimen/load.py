@@ -12,7 +12,7 @@ from pneutouch.parts.specimen import Box, PatternContext
 from pneutouch.spec.fields import Table
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Mode, Printer
-from pneutouch.spec.read import override, read_toml
+from pneutouch.spec.read import Changes, override, read_toml
 from pneutouch.spec.specimen import Specimen, validate_specimen
 
 
@@ -65,16 +65,16 @@ def specimen_file(name: str, library: Library) -> Path | None:
 
 
 def load_specimen(
-    name: str, assignments: list[str] | None = None, library: Library | None = None
+    name: str, changes: Changes | None = None, library: Library | None = None
 ) -> ResolvedSpecimen:  # fmt: skip
-    """Load a specimen by name or path, apply ``table.key=value`` overrides and resolve its names.
+    """Load a specimen by name or path, change fields and resolve its names.
 
     Raises InputError that names file, key and value.
     """
     shelves = library or Library.default()
     shelf = shelves.shelf("specimens")
     path = shelf[name] if name in shelf else shelves.design_file(name)
-    content = override(read_toml(path), assignments or [], Specimen)
+    content = override(read_toml(path), changes or {}, Specimen)
     if not is_specimen(content):
         raise InputError(f"{path}: has no [block] table, so it is no specimen; a sensor is built by its own name")
     return _resolved(path.stem, str(path), validate_specimen(content, str(path)), shelves)

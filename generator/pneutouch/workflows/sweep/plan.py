@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from pneutouch.catalogue import DesignSource
 from pneutouch.errors import InputError, nearest
 from pneutouch.evaluation.evaluate import CLAMPS
 from pneutouch.mechanics import MODEL_CHOICES
@@ -38,12 +39,12 @@ class SweepAxis:
 class SweepPlan:
     """A base design, what is set for all points, and either the ``axes`` of a grid or a list of ``points``.
 
-    ``where`` names the sweep file or the flags, for messages; ``design`` is a name or a path.
+    ``where`` names the sweep file or the flags, for messages; ``design`` is a name, a path or a source.
     """
 
     name: str
     where: str
-    design: str
+    design: str | DesignSource
     settings: Settings
     axes: tuple[SweepAxis, ...] = ()
     points: tuple[Settings, ...] = ()

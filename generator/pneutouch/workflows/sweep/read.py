@@ -8,8 +8,7 @@ from typing import Any
 
 from pneutouch.errors import InputError, nearest
 from pneutouch.spec.over import MAX_VALUES, parse_over, spread
-from pneutouch.spec.read import read_toml
-from pneutouch.spec.toml_text import toml_value
+from pneutouch.spec.read import Changes, read_toml
 from pneutouch.workflows.sweep.plan import PRESSURES, Settings, SweepAxis, SweepPlan, Value
 
 KEYS = ("design", "model", "closure", "clamp", "set", "grid", "point")
@@ -18,8 +17,8 @@ KEYS = ("design", "model", "closure", "clamp", "set", "grid", "point")
 _RANGE = {"from", "to", "count"}
 
 
-def plan_of_file(path: Path, assignments: list[str] | None = None, **options: str | None) -> SweepPlan:
-    """Read a sweep file; ``assignments`` and ``options`` (model, closure, clamp) come before what it says.
+def plan_of_file(path: Path, changes: Changes | None = None, **options: str | None) -> SweepPlan:
+    """Read a sweep file; ``changes`` and ``options`` (model, closure, clamp) come before what it says.
 
     Raises InputError naming file, key and value.
     """
@@ -43,17 +42,17 @@ def plan_of_file(path: Path, assignments: list[str] | None = None, **options: st
         {key: _value(where, f"point[{k}]: {key}", v) for key, v in _flat(where, f"point[{k}]", entry).items()}
         for k, entry in enumerate(entries)
     )
-    fixed |= _assigned(assignments or [])
+    fixed |= _checked(changes)
     return _plan(path.stem, where, design, fixed, grid, points, words)
 
 
 def plan_of_flags(
-    design: str, over: list[str], assignments: list[str] | None = None, **options: str | None
+    design: str, over: list[str], changes: Changes | None = None, **options: str | None
 ) -> SweepPlan:  # fmt: skip
     """A grid from ``table.key=VALUES``: values with commas between, or ``from:to:count``."""
     grid = {key: _values("over", key, _unwrapped(values)) for key, values in parse_over(over).items()}
     words = {key: value for key, value in options.items() if value is not None}
-    return _plan(f"{Path(design).stem}-sweep", "over", design, _assigned(assignments or []), grid, (), words)
+    return _plan(f"{Path(design).stem}-sweep", "over", design, _checked(changes), grid, (), words)
 
 
 def _plan(
@@ -125,14 +124,8 @@ def _flat(where: str, table: str, given: Any) -> dict[str, Any]:
     return flat
 
 
-def _assigned(assignments: list[str]) -> Settings:
-    found: Settings = {}
-    for text in assignments:
-        key, equals, value = (part.strip() for part in text.partition("="))
-        if not equals:
-            raise InputError("write table.key=value, such as membrane.material=FLX9960", key="set", value=text)
-        found[key] = _value("set", key, toml_value(value))
-    return found
+def _checked(changes: Changes | None) -> Settings:
+    return {key: _value("set", key, value) for key, value in (changes or {}).items()}
 
 
 def _text(where: str, key: str, given: Any) -> str:

@@ -7,23 +7,22 @@ from dataclasses import dataclass
 from typing import Any
 
 from pneutouch import __version__
-from pneutouch.catalogue import KINDS, Library, load_scene
+from pneutouch.catalogue import KINDS, DesignSource, Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.output.files import digest, json_bytes
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import declaration, table_of
-from pneutouch.spec.over import assignments
-from pneutouch.spec.read import read_toml, validate
-from pneutouch.workflows.sweep.plan import PRESSURES, SweepPlan
+from pneutouch.spec.toml_text import toml_text
+from pneutouch.workflows.sweep.plan import PRESSURES, Settings, SweepPlan
 from pneutouch.workflows.sweep.shelves import CachedLibrary
 
 
 @dataclass(frozen=True, slots=True)
 class SweepPoint:
-    """One design of a sweep: its number, its ``table.key=value`` overrides, and its driving pressures in kPa."""
+    """One design of a sweep: its number, the fields that it changes, and its driving pressures in kPa."""
 
     index: int
-    assignments: tuple[str, ...]
+    settings: Settings
     driving_pressures_kPa: tuple[float, ...]
 
 
@@ -47,7 +46,7 @@ class SweepStudy:
         settings = self.plan.overrides(index)
         given = settings.pop(PRESSURES, self.base.pneumatics.driving_pressures_kPa)
         assert isinstance(given, list)
-        return SweepPoint(index, tuple(assignments(settings)), tuple(sorted(float(p) for p in given)))
+        return SweepPoint(index, settings, tuple(sorted(float(p) for p in given)))
 
 
 def study(plan: SweepPlan, library: Library) -> SweepStudy:
@@ -57,23 +56,23 @@ def study(plan: SweepPlan, library: Library) -> SweepStudy:
     small radius in one corner of a grid, is a result: the dataset records it as refused.
     """
     library = CachedLibrary(library.folders)
-    path = library.design_file(plan.design)
-    base = validate(DesignFile, read_toml(path), str(path))
+    source = DesignSource.of(plan.design, library)
+    base = source.changed({})
     _check(plan, library)
-    files, things = {f"designs/{path.stem}.toml": path.read_text(encoding="utf-8-sig")}, {}
+    files, things = {f"designs/{source.name}.toml": toml_text(source.content)}, {}
     names = _names(plan, base)
     # A design that names no tube takes one of its port's.
     names |= {("tubes", tube) for kind, name in names if kind == "ports" for tube in library.load(kind, name).tubes}
     for kind, name in sorted(names):
-        source = library.shelf(kind)[name]
-        files[f"{KINDS[kind].folder}/{name}.toml"] = source.read_text(encoding="utf-8-sig")
+        path = library.shelf(kind)[name]
+        files[f"{KINDS[kind].folder}/{name}.toml"] = path.read_text(encoding="utf-8-sig")
         things[f"{kind}/{name}"] = library.load(kind, name).model_dump(mode="json")
     facts = {
         "version": __version__, "model": plan.model, "closure": plan.closure, "clamp": plan.clamp,
-        "name": path.stem, "design": base.model_dump(mode="json"), "things": things, "settings": plan.settings,
+        "name": source.name, "design": base.model_dump(mode="json"), "things": things, "settings": plan.settings,
         "axes": [[axis.key, axis.values] for axis in plan.axes], "points": plan.points,
     }  # fmt: skip
-    return SweepStudy(plan, path.stem, base, files, digest(json_bytes(facts)))
+    return SweepStudy(plan, source.name, base, files, digest(json_bytes(facts)))
 
 
 def _names(plan: SweepPlan, base: DesignFile) -> set[tuple[str, str]]:
@@ -144,7 +143,7 @@ def _common_fault(plan: SweepPlan, indices: Iterable[int], library: Library) -> 
 def _fault(plan: SweepPlan, index: int, library: Library) -> str | None:
     """Why a point is not a design, or None."""
     try:
-        load_scene(plan.design, assignments(plan.overrides(index)), library)
+        load_scene(plan.design, plan.overrides(index), library)
     except InputError as error:
         return str(error)
     return None

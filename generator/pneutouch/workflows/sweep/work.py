@@ -12,7 +12,6 @@ from typing import Any
 from pneutouch.catalogue import Library
 from pneutouch.errors import BeyondLimitError, InputError, PneutouchError
 from pneutouch.evaluation.evaluate import evaluate
-from pneutouch.spec.over import assignments
 from pneutouch.units import KPA
 from pneutouch.workflows.sweep.plan import PRESSURES
 from pneutouch.workflows.sweep.shelves import CachedLibrary
@@ -100,10 +99,9 @@ def _record(chunk: SweepChunk, point: SweepPoint, library: Library) -> Record:
 
 
 def _predicted(chunk: SweepChunk, point: SweepPoint, library: Library) -> tuple[list[dict[str, Any]], dict[str, Any]]:
-    pressures = assignments({PRESSURES: list(point.driving_pressures_kPa)})
+    changes = {**point.settings, PRESSURES: list(point.driving_pressures_kPa)}
     prediction = evaluate(
-        chunk.design, [*point.assignments, *pressures], model=chunk.model, closure=chunk.closure, clamp=chunk.clamp,
-        library=library,
+        chunk.design, changes, model=chunk.model, closure=chunk.closure, clamp=chunk.clamp, library=library,
     ).prediction.document()  # fmt: skip
     return [state_values(state) for state in prediction["states"]], point_values(prediction)
 

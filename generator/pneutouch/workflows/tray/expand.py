@@ -10,7 +10,6 @@ from pneutouch.catalogue import Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.parts import Assembly, assemble
 from pneutouch.spec.material import Material
-from pneutouch.spec.over import assignments
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.tray import Entry, EntryValue
 from pneutouch.workflows.tray.order import TrayOrder
@@ -105,7 +104,7 @@ def _values(order: TrayOrder, entry: Entry, library: Library) -> list[TrayVarian
 
 def _assembly(order: TrayOrder, entry: Entry, settings: dict[str, Any], library: Library) -> Assembly:
     try:
-        return assemble(load_scene(order.design(entry.design), [*assignments(settings), *order.overrides], library))
+        return assemble(load_scene(order.design(entry.design), {**settings, **order.overrides}, library))
     except InputError as error:
         raise InputError(f"entry {entry.design!r}: {error}", file=order.where) from None
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from pneutouch.errors import InputError
 from pneutouch.spec.over import parse_over
-from pneutouch.spec.read import read_toml, validate
+from pneutouch.spec.read import Changes, read_toml, validate
 from pneutouch.spec.tray import LEAST_COPIES, MOST_COPIES, Tray
 
 
@@ -20,7 +20,7 @@ class TrayOrder:
     name: str
     where: str
     tray: Tray
-    overrides: tuple[str, ...] = ()
+    overrides: Changes = field(default_factory=dict)
     folder: Path = field(default=Path())
 
     def design(self, name: str) -> str:
@@ -33,7 +33,7 @@ def is_tray_file(path: Path) -> bool:
     return path.suffix == ".toml" and path.is_file() and not {"tray", "entry"}.isdisjoint(read_toml(path))
 
 
-def order_of_file(path: Path, overrides: Sequence[str] = (), **head: Any) -> TrayOrder:
+def order_of_file(path: Path, overrides: Changes | None = None, **head: Any) -> TrayOrder:
     """Read a tray file; ``head`` (profile, marks) comes before its [tray]. Raises InputError naming file and key."""
     content = read_toml(path)
     given = {key: value for key, value in head.items() if value is not None}
@@ -41,11 +41,11 @@ def order_of_file(path: Path, overrides: Sequence[str] = (), **head: Any) -> Tra
         table = content.setdefault("tray", {})
         if isinstance(table, dict):
             table.update(given)
-    return TrayOrder(path.stem, str(path), validate(Tray, content, str(path)), tuple(overrides), path.parent)
+    return TrayOrder(path.stem, str(path), validate(Tray, content, str(path)), overrides or {}, path.parent)
 
 
 def order_of_flags(
-    designs: Sequence[str], over: Sequence[str] = (), copies: int = 1, overrides: Sequence[str] = (), **head: Any
+    designs: Sequence[str], over: Sequence[str] = (), copies: int = 1, overrides: Changes | None = None, **head: Any
 ) -> TrayOrder:  # fmt: skip
     """One entry a design, each over the values of ``table.key=VALUES`` (see `spec.over`), ``copies`` of each.
 
@@ -58,4 +58,4 @@ def order_of_flags(
     stem = Path(designs[0]).stem
     title = f"{stem}, {copies} of each" if len(designs) == 1 else f"{len(designs)} designs, {copies} of each"
     content = {"tray": {"title": title, **{k: v for k, v in head.items() if v is not None}}, "entry": entries}
-    return TrayOrder(f"{stem}-tray", "the command line", validate(Tray, content, "the command line"), tuple(overrides))
+    return TrayOrder(f"{stem}-tray", "the command line", validate(Tray, content, "the command line"), overrides or {})
