@@ -18,10 +18,8 @@ NOT_YET_CLEAN = {
     "mechanics",
     "output",
     "parts",
-    "printability",
     "report",
     "selection",
-    "texture",
     "workflows",
 }
 """Parts with words still to replace. It only shrinks: a part that is clean must be taken off."""

@@ -182,7 +182,7 @@ def test_the_stiff_state_shows_both_patterns_whatever_the_noise(seed, library):
         "texture-specimen", "paper-dome", ScanOptions(pressures=(0.022,), seed=seed), library=library
     ).seen
     for found, true in zip(seen.detections, (4 / 3, 2 / 3, 2 / 3), strict=True):
-        assert found.found
+        assert found.detected
         assert found.frequency == pytest.approx(true, rel=0.03)
 
 

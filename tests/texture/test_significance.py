@@ -32,7 +32,7 @@ def test_a_pattern_stands_out_of_noise(colour):
     rng = np.random.default_rng(4)
     t = np.arange(int(RATE * SECONDS)) / RATE
     found = detect(record(noise(rng, colour) + 1.5 * np.cos(2 * np.pi * 0.67 * t)), [0.667, 1.333])
-    assert found[0].found
+    assert found[0].detected
     assert found[0].is_ridge
     assert found[0].p_value <= 0.005
     assert found[0].frequency == pytest.approx(0.67, rel=0.02)
@@ -44,7 +44,7 @@ def rate_of_alarms(colour, count, surrogates):
     found = 0
     for seed in range(count):
         rng = np.random.default_rng(9000 + seed)
-        found += detect(record(noise(rng, colour)), [0.667], surrogates=surrogates, seed=seed)[0].found
+        found += detect(record(noise(rng, colour)), [0.667], surrogates=surrogates, seed=seed)[0].detected
     return found
 
 
@@ -79,7 +79,7 @@ def test_a_short_record_is_told_how_long_it_must_be():
 
 
 @pytest.mark.parametrize(
-    ("asked", "words"), [([], "no pattern frequency"), ([-1.0], "above 0"), ([9.0], "it can be asked for up to")]
+    ("asked", "words"), [([], "no pattern frequency"), ([-1.0], "above 0"), ([9.0], "it can be tested up to")]
 )
 def test_frequencies_that_cannot_be_asked(asked, words):
     with pytest.raises(InputError, match=words):
@@ -102,7 +102,7 @@ def test_patterns_an_octave_apart_are_found_whatever_the_noise(colour):
     for seed in range(10):
         given = record(noise(np.random.default_rng(seed), colour) + lines)
         found = detect(given, [0.667, 1.333], surrogates=199, seed=seed)
-        assert all(one.found for one in found), (seed, found)
+        assert all(one.detected for one in found), (seed, found)
 
 
 def test_the_floor_of_white_noise_is_what_the_wavelet_passes_of_it():

@@ -50,7 +50,7 @@ def check(subject: PrintSubject, sensor_context: SensorContext | None = None) ->
     """All findings, errors first.
 
     Bodies whose mesh bounds no solid get the findings that need none: mesh, envelope and resins. Rules on the sensor's
-    working (driving, layers) say nothing without ``sensor_context``.
+    working (driving, layers) report nothing without ``sensor_context``.
     """
     view = PrintView(subject, sensor_context)
     findings = [finding for rule in RULES.values() for finding in rule(view)]

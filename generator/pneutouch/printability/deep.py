@@ -32,7 +32,7 @@ class Meshable(Protocol):
 
 
 def inspect(body: Body, solid: ExactShape | None = None, tolerance: float = 0.016) -> list[Finding]:
-    """Self-intersections, topology, sliver triangles, and the distance both ways from a ten times finer mesh.
+    """Self-intersections, topology, sliver triangles, and the distance in both directions from a ten times finer mesh.
 
     ``tolerance`` (mm) is what the body was meshed to. The distance needs a solid with ``mesh(tolerance)``. Takes seconds.
     Raises InputError where pymeshlab is not installed.
@@ -43,10 +43,10 @@ def inspect(body: Body, solid: ExactShape | None = None, tolerance: float = 0.01
         raise InputError(
             "the deep inspection needs pymeshlab, which is GPL: pip install 'pneutouch[inspect]'"
         ) from None
-    found = [*_topology(lab, body), *_intersections(lab, body), *_slivers(body)]
+    findings = [*_topology(lab, body), *_intersections(lab, body), *_slivers(body)]
     if isinstance(solid, Meshable):
-        found += _deviation(lab, body, solid.mesh(tolerance / _FINER), tolerance)
-    return found
+        findings += _deviation(lab, body, solid.mesh(tolerance / _FINER), tolerance)
+    return findings
 
 
 def _loaded(lab: Any, *bodies: Body) -> Any:
@@ -109,18 +109,18 @@ def least_angles(body: Body) -> Array:
 
 
 def _deviation(lab: Any, body: Body, fine: Body, tolerance: float) -> list[Finding]:
-    """Hausdorff distance, both ways: each mesh sampled on vertices, edges and faces against the other."""
+    """Hausdorff distance in both directions: each mesh sampled on vertices, edges and faces against the other."""
     meshes = _loaded(lab, body, fine)
     number = max(20_000, 4 * len(fine.triangles))
-    ways = [
+    directions = [
         meshes.get_hausdorff_distance(
             sampledmesh=one, targetmesh=1 - one, sampleedge=True, sampleface=True, samplenum=number
         )
         for one in (0, 1)
     ]
-    worst = max(float(way["max"]) for way in ways)
+    worst = max(float(direction["max"]) for direction in directions)
     allowed = tolerance * (1 + 1 / _FINER)
     if worst <= allowed:
         return []
-    text = f"{worst / UM:.0f} um from a mesh {_FINER:g} times finer; {tolerance / UM:g} um were asked for"
+    text = f"{worst / UM:.0f} um from a mesh {_FINER:g} times finer; {tolerance / UM:g} um were required"
     return [_finding("warning", body, text, f"mesh it within {tolerance:g} mm", Excess(worst, allowed))]

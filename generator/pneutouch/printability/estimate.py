@@ -1,6 +1,6 @@
 """What a print takes: resin, support, layers and time, each with the assumption it rests on.
 
-Estimates for planning, from the same cubes that the rules look at; a slicer knows better.
+Estimates for planning, from the same cubes that the rules look at; a slicer is more exact.
 """
 
 from __future__ import annotations
@@ -42,9 +42,9 @@ class ItemEstimate:
 
 @dataclass(frozen=True)
 class JobEstimate:
-    """One job: size as it stands in mm, support in mm3, time in s; None where the profile does not say enough.
+    """One job: size as it stands in mm, support in mm3, time in s; None where the profile does not state enough.
 
-    ``assumptions`` say what each figure rests on.
+    ``assumptions`` state what each figure is based on.
     """
 
     name: str

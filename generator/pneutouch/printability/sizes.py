@@ -11,7 +11,7 @@ from pneutouch.printability.view import PrintPart, PrintView
 from pneutouch.spec.printer import FeatureSize
 
 _ALIKE = 0.02
-"""Places whose sizes differ by less (mm) and that break the same limit are told once."""
+"""Places whose sizes differ by less (mm) and that break the same limit are reported once."""
 
 
 def compare(view: PrintView, rule: str, kinds: dict[FeatureKind, str], limit: str, fix: str) -> list[Finding]:
@@ -19,7 +19,7 @@ def compare(view: PrintView, rule: str, kinds: dict[FeatureKind, str], limit: st
 
     ``fix`` holds where the item gives no hint of its own.
     """
-    found = []
+    findings = []
     for part in view.sound:
         feature = part.limit(limit)
         broken = [
@@ -30,8 +30,8 @@ def compare(view: PrintView, rule: str, kinds: dict[FeatureKind, str], limit: st
             for severity in [severity_of(place.size, feature, part.slack(place.size, place.turn))]
         ]
         for severity, least, places in _alike(broken):
-            found.append(_finding(part, rule, kinds[places[0].kind], severity, least, places, feature.source, fix))
-    return found
+            findings.append(_finding(part, rule, kinds[places[0].kind], severity, least, places, feature.source, fix))
+    return findings
 
 
 def lower(size: float, feature: FeatureSize, slack: float) -> float | None:

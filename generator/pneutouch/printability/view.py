@@ -1,4 +1,4 @@
-"""A subject measured: each part and each job once, when a rule asks for it."""
+"""A subject measured: each part and each job once, when a rule requires it."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class SensorContext:
 
 
 NARROW = 3.0
-"""Holes up to this width (mm) are measured for their length where support has to come out of them (own, unverified)."""
+"""Holes up to this width (mm) are measured for their length where support has to come out of them (this project's estimate, unverified)."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ class PrintPart:
 
     @cached_property
     def surface(self) -> SurfaceMesh:
-        """The manifold's own mesh, whose faces rays name."""
+        """The mesh of the manifold, whose faces rays name."""
         mesh = self.manifold.to_mesh64()
         return SurfaceMesh(np.array(mesh.vert_properties[:, :3]), np.array(mesh.tri_verts).astype(np.int64))
 
@@ -84,7 +84,7 @@ class PrintPart:
 
     @property
     def _limits(self) -> dict[Side, float]:
-        """The longest chords that any rule asks for, mm."""
+        """The longest chords that any rule requires, mm."""
         least, kind = self.item.printer.smallest, self.item.body.material.kind
         emboss = 1.5 * least.emboss_mm.recommended
         inside = max(least.wall(kind).recommended, least.pin(kind).recommended, emboss)
@@ -102,7 +102,7 @@ class PrintPart:
     def places(self) -> list[ThinPlace]:
         """Thin places, narrowest first."""
         solid = self.item.solid
-        exact = None if solid is None else lambda found: refined(found, solid.distance)
+        exact = None if solid is None else lambda chords: refined(chords, solid.distance)
         return thin_places(self.manifold, self.surface, self.chords, self._limits, exact)
 
     def slack(self, size: float, turn: float) -> float:
@@ -176,11 +176,11 @@ class PrintJob:
     @cached_property
     def hollows(self) -> list[Hollow]:
         """Closed hollows of each part, and those that the parts close together."""
-        own = [shell for part in self.parts for shell in voids(part.manifold, part.name)]
+        parts_shells = [shell for part in self.parts for shell in voids(part.manifold, part.name)]
         if len(self.parts) == 1:
-            return own
-        joined = [shell for shell in voids(self.union, "") if not any(shell.alike(other) for other in own)]
-        return own + [replace(shell, body=self.nearest(shell.where).name) for shell in joined]
+            return parts_shells
+        joined = [shell for shell in voids(self.union, "") if not any(shell.alike(other) for other in parts_shells)]
+        return parts_shells + [replace(shell, body=self.nearest(shell.where).name) for shell in joined]
 
     def in_hollow(self, where: Point) -> bool:
         """Whether a point lies in the box of a closed hollow."""
@@ -217,11 +217,11 @@ class PrintView:
 
     @cached_property
     def jobs(self) -> tuple[PrintJob, ...]:
-        """In order of their first part; a part without a job's name is a job of its own."""
-        found: dict[tuple[str, int], list[PrintPart]] = {}
+        """In order of their first part; a part without a job's name is a job by itself."""
+        jobs: dict[tuple[str, int], list[PrintPart]] = {}
         for number, part in enumerate(self.parts):
-            found.setdefault((part.item.job, -1 if part.item.job else number), []).append(part)
-        return tuple(PrintJob(name or parts[0].name, tuple(parts)) for (name, _), parts in found.items())
+            jobs.setdefault((part.item.job, -1 if part.item.job else number), []).append(part)
+        return tuple(PrintJob(name or parts[0].name, tuple(parts)) for (name, _), parts in jobs.items())
 
     def part(self, name: str) -> PrintPart | None:
         """A part by its name."""

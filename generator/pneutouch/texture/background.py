@@ -2,9 +2,9 @@
 
 Shuffled samples make white noise, under which every peak of a red spectrum passes for a find; a record with its phases
 randomised (Theiler et al. 1992, doi 10.1016/0167-2789(92)90102-S) keeps its lines, so that no line ever stands out; and
-shuffled blocks whiten whatever is slower than a block, the asked pattern among it, or keep the pattern. So surrogates
+shuffled blocks whiten whatever is slower than a block, the tested pattern among it, or keep the pattern. So surrogates
 are typical realisations (Schreiber & Schmitz 2000, doi 10.1016/S0167-2789(00)00043-9, sec. 4): Gaussian noise, phases
-and magnitudes random, with a smooth spectrum fitted beside the lines.
+and magnitudes random, with a smooth spectrum fitted between the lines.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class BackgroundFitter:
     high: float
 
     def design(self, frequency: Array) -> Array:
-        """Powers of ln f, (m, DEGREE + 1), held at the ends of the fitted range, where the polynomial says nothing."""
+        """Powers of ln f, (m, DEGREE + 1), held at the ends of the fitted range, where the polynomial does not hold."""
         centre, half = np.log(self.low * self.high) / 2, np.log(self.high / self.low) / 2
         place = (np.log(np.clip(frequency, self.low, self.high)) - centre) / half
         return np.stack([place**k for k in range(DEGREE + 1)], axis=-1)
@@ -48,12 +48,12 @@ class BackgroundFitter:
         count = len(self.taper)
         power = np.abs(np.fft.rfft(detrended(values) * self.taper)) ** 2 / (self.rate * (self.taper @ self.taper))
         frequency = np.asarray(np.fft.rfftfreq(count, 1 / self.rate)[self.bins], float)
-        found, design = np.maximum(power[..., self.bins], np.finfo(float).tiny), self.design(frequency)
+        observed, design = np.maximum(power[..., self.bins], np.finfo(float).tiny), self.design(frequency)
         solver = np.linalg.pinv(design).T
         # ln of an exponential variable lies 0.577 below ln of its mean, Euler's constant.
-        coefficients = (np.log(found) + np.euler_gamma) @ solver
+        coefficients = (np.log(observed) + np.euler_gamma) @ solver
         for _ in range(12):
-            excess = found * np.exp(-coefficients @ design.T) - 1
+            excess = observed * np.exp(-coefficients @ design.T) - 1
             coefficients = coefficients + np.minimum(excess, _CLIP) @ solver
         return coefficients
 
@@ -85,17 +85,17 @@ class BackgroundFitter:
 def fitter(
     count: int, rate: float, low: float, high: float, lines: Array, overtones: Array, band: float
 ) -> BackgroundFitter:  # fmt: skip
-    """A fitter for records of ``count`` samples at ``rate`` Hz over ``low`` to ``high`` Hz, beside ``lines`` (m,) Hz.
+    """A fitter for records of ``count`` samples at ``rate`` Hz over ``low`` to ``high`` Hz, without ``lines`` (m,) Hz.
 
-    Left out beside each line are the share ``band`` and the two bins that the Hann taper spreads a tone over; beside
+    Left out around each line are the share ``band`` and the two bins that the Hann taper spreads a tone over; clear
     ``overtones`` (k,) Hz those two bins alone.
     """
     frequency = np.fft.rfftfreq(count, 1 / rate)
     spread = 2 * rate / count
-    beside = (np.abs(frequency[:, None] - lines) > band * lines + spread).all(axis=1)
-    beside &= (np.abs(frequency[:, None] - overtones) > spread).all(axis=1)
+    clear = (np.abs(frequency[:, None] - lines) > band * lines + spread).all(axis=1)
+    clear &= (np.abs(frequency[:, None] - overtones) > spread).all(axis=1)
     taper = np.sin(np.pi * (np.arange(count) + 0.5) / count) ** 2
-    return BackgroundFitter(rate, taper, beside & (frequency >= low) & (frequency <= high), low, high)
+    return BackgroundFitter(rate, taper, clear & (frequency >= low) & (frequency <= high), low, high)
 
 
 def detrended(values: Array) -> Array:

@@ -32,7 +32,7 @@ class PreloadContact:
     """One driving pressure at one preload; mm, N, MPa.
 
     Attributes:
-        driving_pressure, preload: As asked.
+        driving_pressure, preload: As given.
         indentation, contact_radius, pressure: At the preload; pressure is gauge.
         stiffness: dF/d(indentation), N/mm, gas included.
         pressure_slope: dp/d(indentation), MPa/mm, gas included.
@@ -84,11 +84,11 @@ def touch(sensor: Sensor, driving_pressure: float, preload: float) -> PreloadCon
     for pressures that are negative, beyond the limit point or beyond the pressure sensor's range.
     """
     _check(sensor, driving_pressure, preload)
-    found = None if outside_atlas(sensor) else _atlas_curve(sensor, driving_pressure)
+    curve = None if outside_atlas(sensor) else _atlas_curve(sensor, driving_pressure)
     model = "atlas"
-    if found is None or found[1][-1] < preload:
-        model, found = "solid", _solid_curve(sensor, driving_pressure)
-    travel, force, rise, radius, force_slope, rise_slope = found
+    if curve is None or curve[1][-1] < preload:
+        model, curve = "solid", _solid_curve(sensor, driving_pressure)
+    travel, force, rise, radius, force_slope, rise_slope = curve
     if force[-1] < preload:
         raise InputError(
             f"preload = {preload:g} N: at {driving_pressure / KPA:g} kPa the sensor reaches {force[-1]:.3g} N within its "
@@ -155,15 +155,15 @@ LoadingCurve = tuple[Array, Array, Array, Array, Array, Array]
 
 
 def _atlas_curve(sensor: Sensor, pressure: float) -> LoadingCurve | None:
-    """The curve as far as the atlas knows it; None where that is not even the first steps."""
+    """The curve as far as the atlas covers it; None where that is not even the first steps."""
     batch = batch_of(sensor, [pressure])
     press = AtlasPress(batch, shipped().slices(batch.wall_ratio, ("contact_radius",)), np.zeros(1, dtype=np.intp))
     track = press.march(np.linspace(0.0, sensor.protocol.depth / sensor.dome.inner_radius, _COLUMNS)[None, :])
-    found = _dimensional(press, track)
-    known = int(np.logical_and.accumulate(track.ok[0] & (found[4][0] > 0)).sum())
+    curve = _dimensional(press, track)
+    known = int(np.logical_and.accumulate(track.ok[0] & (curve[4][0] > 0)).sum())
     if known < 4:
         return None
-    return tuple(column[0, :known] for column in found)  # type: ignore[return-value]
+    return tuple(column[0, :known] for column in curve)  # type: ignore[return-value]
 
 
 def _dimensional(press: AtlasPress, track: PressTrack) -> LoadingCurve:

@@ -1,4 +1,4 @@
-"""Is there a pattern at an asked frequency: its amplitude over the noise floor, and how often noise alone would show that."""
+"""Is there a pattern at a target frequency: its amplitude over the noise floor, and how often noise alone would show that."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from pneutouch.texture.scalogram import Ridge, ridge
 from pneutouch.texture.signal import OVERSAMPLING, Signal, decimated
 
 BAND = 0.15
-"""A pattern may lie this share off the asked frequency: a pitch and a speed as the paper states them are 11 % off."""
+"""A pattern may lie this share off the target frequency: a pitch and a speed as the paper states them are 11 % off."""
 
 CYCLES = 3.0
-"""Cycles of the asked frequency that must lie outside the cone of influence."""
+"""Cycles of the target frequency that must lie outside the cone of influence."""
 
 SURROGATES = 999
 LEVEL = 0.05
 
 _OVERTONES = (2.0, 3.0)
-"""Of an asked frequency, where a pattern with edges has lines too: the bins that its taper spreads them over are no noise.
+"""Of a target frequency, where a pattern with edges has lines too: the bins that its taper spreads them over are no noise.
 
 No more than these: patterns whose frequencies are multiples of one another would leave no noise between them.
 """
@@ -34,7 +34,7 @@ _APART = 0.25
 """ln f from a line within which the wavelet spectrum is not taken for noise: a tone leaks 15 % of itself that far."""
 
 _BELOW, _ABOVE = 4.0, 8.0
-"""Noise is read from a quarter of an asked frequency, as far as the record allows, to eight times it."""
+"""Noise is read from a quarter of a target frequency, as far as the record allows, to eight times it."""
 
 _LEAST_QUIET = 3
 """Voices without lines that a median needs."""
@@ -42,13 +42,13 @@ _LEAST_QUIET = 3
 
 @dataclass(frozen=True, slots=True)
 class Detection:
-    """One asked frequency; frequencies in Hz, amplitudes in MPa.
+    """One target frequency; frequencies in Hz, amplitudes in MPa.
 
     Attributes:
-        asked: The frequency asked.
+        target: The target frequency.
         frequency: Of the highest point of the time-averaged amplitude within the band.
         amplitude: There.
-        floor: Noise at the asked frequency: what the time-averaged amplitude would be without a line.
+        floor: Noise at the target frequency: what the time-averaged amplitude would be without a line.
         threshold: Amplitude over floor that noise alone passes in the share ``level`` of records.
         p_value: Share of noise records with the same amplitude over floor or more (Phipson & Smyth 2010,
             doi 10.2202/1544-6115.1585: counted with the record itself, so never 0). Of this frequency alone.
@@ -57,7 +57,7 @@ class Detection:
         is_ridge: Whether the highest point is a maximum inside the band, not the slope of another line.
     """
 
-    asked: float
+    target: float
     frequency: float
     amplitude: float
     floor: float
@@ -73,103 +73,103 @@ class Detection:
         return self.amplitude / self.floor
 
     @property
-    def found(self) -> bool:
+    def detected(self) -> bool:
         """Whether noise alone would show as much in no more than ``level`` of records."""
         return self.p_value <= self.level
 
 
 @dataclass(frozen=True, slots=True)
 class _Reader:
-    """Reads amplitude and floor at one asked frequency off records, the measured one and noise alike."""
+    """Reads amplitude and floor at one target frequency from records, the measured one and noise alike."""
 
     fitter: BackgroundFitter
-    asked: float
+    target: float
     voices: Array
     quiet: Flags
 
     def read(self, values: Array) -> tuple[Ridge, Array]:
         """Highest point in the band and floor, (...) each, of records (..., n)."""
         amplitude = time_average(values, self.fitter.rate, self.voices)
-        own = ridge(amplitude, self.voices, self.asked / (1 + BAND), self.asked * (1 + BAND))
+        peak = ridge(amplitude, self.voices, self.target / (1 + BAND), self.target * (1 + BAND))
         coefficients = self.fitter.fit(values)
         # The median is taken of the spectrum over its expected course: even white noise reads as the square root of f.
-        expected = self.fitter.spectrum(coefficients, np.append(self.voices, self.asked), MORSE)
+        expected = self.fitter.spectrum(coefficients, np.append(self.voices, self.target), MORSE)
         level = np.median((amplitude / expected[..., :-1])[..., self.quiet], axis=-1)
-        return own, level * expected[..., -1]
+        return peak, level * expected[..., -1]
 
 
 def detect(
-    given: Signal, asked: Sequence[float], surrogates: int = SURROGATES, level: float = LEVEL, seed: int = 0,
+    given: Signal, target: Sequence[float], surrogates: int = SURROGATES, level: float = LEVEL, seed: int = 0,
     where: str = "signal",
 ) -> tuple[Detection, ...]:  # fmt: skip
-    """Detection of each asked frequency in Hz, in the order asked.
+    """Detection of each target frequency in Hz, in the order given.
 
-    The statistic is the highest time-averaged |W| within ``BAND`` of the asked frequency, outside the cone of influence,
-    over the floor: the median of the time-averaged spectrum over its expected course (``background``) away from all asked
+    The statistic is the highest time-averaged |W| within ``BAND`` of the target frequency, outside the cone of influence,
+    over the floor: the median of the time-averaged spectrum over its expected course (``background``) away from all target
     frequencies. Noise records are read in the same way, fit and all. A pattern that
     fills a part of the record counts with that part. Each frequency is judged alone: of twenty, one passes by chance.
     Raises InputError for frequencies the sampling or the length of the record cannot read, and for a constant signal.
     """
-    _check(given, asked, surrogates, level, where)
-    lines = np.asarray(asked, float)
-    return tuple(_detect(given, float(frequency), lines, surrogates, level, seed, where) for frequency in asked)
+    _check(given, target, surrogates, level, where)
+    lines = np.asarray(target, float)
+    return tuple(_detect(given, float(frequency), lines, surrogates, level, seed, where) for frequency in target)
 
 
 def _detect(
-    given: Signal, asked: float, lines: Array, surrogates: int, level: float, seed: int, where: str
+    given: Signal, target: float, lines: Array, surrogates: int, level: float, seed: int, where: str
 ) -> Detection:  # fmt: skip
-    reader, values = _reader(given, asked, lines, where)
-    own, floor = reader.read(values)
-    # The same seed for each frequency: what is found at one does not depend on which others were asked before it.
+    reader, values = _reader(given, target, lines, where)
+    peak, floor = reader.read(values)
+    # The same seed for each frequency: the result at one does not depend on which others were tested before it.
     noise = reader.fitter.draw(reader.fitter.fit(values), surrogates, np.random.default_rng(seed))
     noise_own, noise_floor = reader.read(detrended(noise))
     ratios = np.sort(noise_own.amplitude / noise_floor)
-    as_much = int(np.count_nonzero(ratios >= float(own.amplitude) / float(floor)))
+    as_much = int(np.count_nonzero(ratios >= float(peak.amplitude) / float(floor)))
     threshold = float(ratios[surrogates - math.floor(level * (surrogates + 1) + 1e-9)])
     return Detection(
-        asked, float(own.frequency), float(own.amplitude), float(floor), threshold, (1 + as_much) / (1 + surrogates),
-        surrogates, level, bool(own.inner),
+        target, float(peak.frequency), float(peak.amplitude), float(floor), threshold, (1 + as_much) / (1 + surrogates),
+        surrogates, level, bool(peak.inner),
     )  # fmt: skip
 
 
 def least_duration(frequency: float) -> float:
-    """How long a record must be to be asked for a frequency in Hz, s: ``CYCLES`` cycles between two e-folding times."""
+    """How long a record must be to test a frequency in Hz, s: ``CYCLES`` cycles between two e-folding times."""
     return 2 * float(MORSE.e_folding(np.float64(frequency))) + CYCLES / frequency
 
 
-def _reader(given: Signal, asked: float, lines: Array, where: str) -> tuple[_Reader, Array]:
+def _reader(given: Signal, target: float, lines: Array, where: str) -> tuple[_Reader, Array]:
     """The reader of a signal at one frequency and its values, decimated and less their straight line."""
-    top = min(_ABOVE * asked, HIGHEST_SHARE * given.rate)
+    top = min(_ABOVE * target, HIGHEST_SHARE * given.rate)
     kept = decimated(given, top)
     # One cycle outside the cone is the least that a voice of the background must show.
-    bottom = max(asked / _BELOW, (2 * float(MORSE.e_folding(np.float64(1.0))) + 1) / kept.duration)
+    bottom = max(target / _BELOW, (2 * float(MORSE.e_folding(np.float64(1.0))) + 1) / kept.duration)
     voices = bottom * 2.0 ** (np.arange(math.floor(VOICES * math.log2(top / bottom) + 1e-9) + 1) / VOICES)
     quiet = np.asarray((np.abs(np.log(voices[:, None] / lines)) > _APART).all(axis=1), bool)
     overtones = np.outer(lines, _OVERTONES).ravel()
     used = fitter(len(kept.pressure), kept.rate, bottom, top, lines, overtones, BAND)
     if np.count_nonzero(quiet) < _LEAST_QUIET or np.count_nonzero(used.bins) < 2 * (DEGREE + 1):
         raise InputError(
-            f"{where}: pattern frequency {asked:g} Hz: the asked frequencies leave no noise to compare "
-            f"with between {bottom:.3g} and {top:.3g} Hz; ask for fewer, or give a longer record"
+            f"{where}: pattern frequency {target:g} Hz: the target frequencies leave no noise to compare "
+            f"with between {bottom:.3g} and {top:.3g} Hz; test fewer frequencies, or give a longer record"
         )
-    return _Reader(used, asked, voices, quiet), detrended(kept.pressure)
+    return _Reader(used, target, voices, quiet), detrended(kept.pressure)
 
 
-def _check(given: Signal, asked: Sequence[float], surrogates: int, level: float, where: str) -> None:
-    if not asked:
-        raise InputError(f"{where}: no pattern frequency asked; give at least one in Hz")
+def _check(given: Signal, target: Sequence[float], surrogates: int, level: float, where: str) -> None:
+    if not target:
+        raise InputError(f"{where}: no pattern frequency given; give at least one in Hz")
     if not 0 < level < 1 or math.floor(level * (surrogates + 1) + 1e-9) < 1:
         raise InputError(
             f"{where}: {surrogates} surrogates for a level of {level:g}; the level must lie between 0 and 1, and there "
             f"must be at least {math.ceil(1 / level) - 1 if 0 < level < 1 else SURROGATES}"
         )
     most = given.rate / (OVERSAMPLING * (1 + BAND))
-    for frequency in asked:
+    for frequency in target:
         if not 0 < frequency < math.inf:
             raise InputError(f"{where}: pattern frequency {frequency:g} Hz: must be a number above 0")
         if frequency > most:
             raise InputError(
-                f"{where}: pattern frequency {frequency:g} Hz: sampled at {given.rate:g} Hz, it can be asked for up to "
+                f"{where}: pattern frequency {frequency:g} Hz: sampled at {given.rate:g} Hz, it can be tested up to "
                 f"{most:.4g} Hz"
             )
         if given.duration < least_duration(frequency) * (1 - 1e-9):

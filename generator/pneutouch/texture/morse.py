@@ -2,7 +2,7 @@
 
 Psi(w) = U(w) a w^beta exp(-w^gamma), P^2 = beta gamma (Lilly & Olhede 2012, doi 10.1109/TSP.2012.2210890), with a such
 that Psi is 2 at its peak w = (beta/gamma)^(1/gamma): L1 normalisation, where equal amplitudes read the same at every
-frequency. gamma = 3 and P^2 = 60 are MATLAB's ``cwt`` defaults, which the paper's figure 9 says it used.
+frequency. gamma = 3 and P^2 = 60 are MATLAB's ``cwt`` defaults, which the paper's figure 9 states.
 """
 
 from __future__ import annotations
@@ -77,17 +77,17 @@ def transform(
 ) -> Complex:
     """Wavelet transform of ``values`` (..., n), sampled at ``rate`` Hz, at voices ``frequency`` (k,) Hz: (..., k, n).
 
-    ``boundary`` says what stands beyond the ends: ``reflect`` the record mirrored at its first and last sample, ``zero``
+    ``boundary`` selects what stands beyond the ends: ``reflect`` the record mirrored at its first and last sample, ``zero``
     its mean. Neither is data: see ``e_folding``. Raises ValueError for voices above ``HIGHEST_SHARE`` of the rate.
     """
     import scipy.fft
 
     spectrum, pad, total = _spectrum(values, rate, frequency, wavelet, boundary)
     count = values.shape[-1]
-    found = np.empty((*values.shape[:-1], len(frequency), count), complex)
+    magnitudes = np.empty((*values.shape[:-1], len(frequency), count), complex)
     for k, (filtered, _) in enumerate(_filtered(spectrum, rate / total, frequency, wavelet, 0.0)):
-        found[..., k, :] = scipy.fft.ifft(filtered, total)[..., pad : pad + count]
-    return found
+        magnitudes[..., k, :] = scipy.fft.ifft(filtered, total)[..., pad : pad + count]
+    return magnitudes
 
 
 def time_average(values: Array, rate: float, frequency: Array, wavelet: Morse = MORSE) -> Array:
@@ -100,7 +100,7 @@ def time_average(values: Array, rate: float, frequency: Array, wavelet: Morse = 
 
     spectrum, pad, total = _spectrum(values, rate, frequency, wavelet, "reflect")
     last = (values.shape[-1] - 1) / rate
-    found = np.empty((*values.shape[:-1], len(frequency)))
+    magnitudes = np.empty((*values.shape[:-1], len(frequency)))
     for k, (filtered, edge) in enumerate(_filtered(spectrum, rate / total, frequency, wavelet, _CUT)):
         coarse = scipy.fft.next_fast_len(2 * filtered.shape[-1])
         time = np.arange(coarse) * (total / rate / coarse) - pad / rate
@@ -108,8 +108,8 @@ def time_average(values: Array, rate: float, frequency: Array, wavelet: Morse = 
         if not inside.any():
             raise ValueError(f"the cone of influence at {frequency[k]:g} Hz covers a record of {last:g} s")
         magnitude = np.abs(scipy.fft.ifft(filtered, coarse)[..., inside])
-        found[..., k] = magnitude.mean(axis=-1) * (coarse / total)
-    return found
+        magnitudes[..., k] = magnitude.mean(axis=-1) * (coarse / total)
+    return magnitudes
 
 
 def _spectrum(

@@ -66,7 +66,7 @@ class Recorder:
 
 @dataclass(frozen=True, slots=True)
 class TextureScan:
-    """A scan: what was recorded, the same without noise, and beside it the place (mm), (n,) each.
+    """A scan: what was recorded, the same without noise, and the place (mm), (n,) each.
 
     ``height``: of the sensor above that at the preload, mm; not zero where the force is held.
     """
@@ -92,19 +92,21 @@ def pressure_amplitude(
     """Amplitude of the pressure at a pattern's frequency, MPa, to first order; never negative, 0 at a held force."""
     if control == "force":
         return 0.0
-    found = gain(touch, float(substrate.compliance(_NODES).mean())) * substrate.amplitude(bars, order)
-    return abs(found)
+    response = gain(touch, float(substrate.compliance(_NODES).mean())) * substrate.amplitude(bars, order)
+    return abs(response)
 
 
-def scan(touch: PreloadContact, substrate: Substrate, way: ScanPath, recorder: Recorder = Recorder()) -> TextureScan:
+def scan(touch: PreloadContact, substrate: Substrate, path: ScanPath, recorder: Recorder = Recorder()) -> TextureScan:
     """Slide a dome over a specimen. Raises InputError for a path that is none, or that the curve of the dome leaves."""
-    _check(touch, substrate, way, recorder)
-    time = np.arange(int(np.floor((way.end - way.start) / way.speed * recorder.rate * (1 + 1e-12))) + 1) / recorder.rate
-    place = way.start + way.speed * time
+    _check(touch, substrate, path, recorder)
+    time = (
+        np.arange(int(np.floor((path.end - path.start) / path.speed * recorder.rate * (1 + 1e-12))) + 1) / recorder.rate
+    )
+    place = path.start + path.speed * time
     nodes = substrate.length * np.arange(_NODES + 1) / _NODES
     compliance = substrate.compliance(_NODES)
     mean = float(compliance.mean())
-    if way.control == "height":
+    if path.control == "height":
         indentation = _held(touch, compliance, touch.indentation + mean * touch.preload)
         pressure, height = touch.pressure_at(indentation), np.zeros_like(compliance)
     else:
@@ -136,12 +138,12 @@ def _held(touch: PreloadContact, compliance: Array, approach: float) -> Array:
     return at
 
 
-def _check(touch: PreloadContact, substrate: Substrate, way: ScanPath, recorder: Recorder) -> None:
-    if not 0 < way.speed < np.inf:
-        raise InputError(f"speed = {way.speed:g} mm/s: must be more than 0")
-    if not way.end > way.start:
+def _check(touch: PreloadContact, substrate: Substrate, path: ScanPath, recorder: Recorder) -> None:
+    if not 0 < path.speed < np.inf:
+        raise InputError(f"speed = {path.speed:g} mm/s: must be more than 0")
+    if not path.end > path.start:
         raise InputError(
-            f"the path from {way.start:g} to {way.end:g} mm is none; the specimen is shorter than the patch"
+            f"the scan path from {path.start:g} to {path.end:g} mm is empty; the specimen is shorter than the patch"
         )
     if not 0 <= recorder.noise < np.inf:
         raise InputError(f"noise = {recorder.noise / KPA:g} kPa: must not be below 0")

@@ -1,4 +1,4 @@
-"""Which driving pressure shows a pattern, and which dome tells two patterns apart: many domes at once, by the atlas."""
+"""Which driving pressure shows a pattern, and which dome separates two patterns: many domes at once, by the atlas."""
 
 from __future__ import annotations
 
@@ -79,9 +79,9 @@ def amplitudes(batch: SensorBatch, preload: float, matrix: MatrixLayer, patterns
 
     NaN where a dome does not reach the preload, or reaches it within `LEAST_TRAVEL`.
     """
-    found = touches(batch, preload)
-    radius = np.where(found.indentation >= LEAST_TRAVEL * batch.inner_radius, found.contact_radius, np.nan)
-    gain = found.pressure_slope * preload / (1.0 + found.stiffness * matrix.compliance(radius))
+    contact = touches(batch, preload)
+    radius = np.where(contact.indentation >= LEAST_TRAVEL * batch.inner_radius, contact.contact_radius, np.nan)
+    gain = contact.pressure_slope * preload / (1.0 + contact.stiffness * matrix.compliance(radius))
     radii = radius[:, None] * np.array(BLUR)
     return np.stack([
         gain * np.sqrt((amplitude(matrix, pattern.bars, radii) ** 2).mean(axis=1)) for pattern in patterns
@@ -97,13 +97,13 @@ def recommend(
     """
     check(pattern, matrix)
     pressures = np.linspace(0.0, highest, POINTS)
-    found = amplitudes(batch_of(sensor, pressures), preload, matrix, [pattern])[:, 0]
-    if not np.isfinite(found).any():
+    levels = amplitudes(batch_of(sensor, pressures), preload, matrix, [pattern])[:, 0]
+    if not np.isfinite(levels).any():
         raise InputError(
             f"preload = {preload:g} N: the sensor reaches it at no driving pressure up to {highest / KPA:g} kPa"
         )
-    best = int(np.nanargmax(found))
-    return PressureAdvice(float(pressures[best]), float(found[best]), float(found[0]), pressures, found)
+    best = int(np.nanargmax(levels))
+    return PressureAdvice(float(pressures[best]), float(levels[best]), float(levels[0]), pressures, levels)
 
 
 def separate(
@@ -117,15 +117,15 @@ def separate(
     """
     for pattern in patterns:
         check(pattern, matrix)
-    found = amplitudes(batch, preload, matrix, list(patterns))
-    level = np.log(np.maximum(found, floor))
+    levels = amplitudes(batch, preload, matrix, list(patterns))
+    level = np.log(np.maximum(levels, floor))
     # NaN, a dome that cannot be judged, is not above anything.
-    seen = found >= LEAST_RATIO * np.array(floor)
+    seen = levels >= LEAST_RATIO * np.array(floor)
     lean = level[:, 0] - level[:, 1]
     rows = []
     for number in np.unique(dome):
-        mine = np.flatnonzero(dome == number)
-        first, second = mine[seen[mine, 0]], mine[seen[mine, 1]]
+        rows_of_dome = np.flatnonzero(dome == number)
+        first, second = rows_of_dome[seen[rows_of_dome, 0]], rows_of_dome[seen[rows_of_dome, 1]]
         if first.size and second.size:
             a, b = first[np.argmax(lean[first])], second[np.argmin(lean[second])]
             rows.append((float(np.exp(lean[a] - lean[b])), int(a), int(b)))
@@ -133,7 +133,7 @@ def separate(
     one, two = (np.array([row[k] for row in rows], dtype=np.intp) for k in (1, 2))
     return Separation(
         dome[one], np.stack([batch.driving_pressure[one], batch.driving_pressure[two]], axis=1),
-        np.stack([found[one], found[two]], axis=1), np.array([row[0] for row in rows]),
+        np.stack([levels[one], levels[two]], axis=1), np.array([row[0] for row in rows]),
     )  # fmt: skip
 
 

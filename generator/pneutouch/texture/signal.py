@@ -13,10 +13,10 @@ from pneutouch.errors import InputError
 from pneutouch.units import KPA
 
 OVERSAMPLING = 5.0
-"""Sampling rate kept over the highest frequency asked."""
+"""Sampling rate kept over the highest target frequency."""
 
 _PASSED = 1.6
-"""Highest frequency let through over the highest asked: the Morse response (3, 60) is at 2e-5 of its peak there."""
+"""Highest frequency let through over the highest target frequency: the Morse response (3, 60) is at 2e-5 of its peak there."""
 
 _STOP_DB = 100.0
 """What folds back, and the ripple of what passes, in dB below it: 1e-5 of the amplitude."""

@@ -7,7 +7,7 @@ spreads the patch's load along its length (`BarRow.bending_length`) and hardly s
     over a bar      only the cover sinks, a layer as thin as the bar is deep, bonded to it;
     over a gap      the whole layer sinks;
     in between      the share of bars that the patch feels: the true profile, harmonic by harmonic, through the filter of
-                    the patch and that of the cover, which says how much of a load on top still reaches the bars' depth;
+                    the patch and that of the cover, which gives how much of a load on top still reaches the bars' depth;
     field           all of it in the field of the specimen with its bars: times mean compliance over bare compliance.
 
 Both filters and both compliances are exact for their layers (Airy's function; Johnson, Contact Mechanics, 1985, ch. 13);
@@ -50,7 +50,7 @@ def bonded_layer(k: Array, height: float, shear: float, poisson: float) -> Array
     """Sinking over pressure, mm/MPa, of a layer bonded to a rigid floor, at wavenumbers k above 0.
 
     (1-nu)/(mu k) (c sinh 2q - 2q)/(c cosh 2q + 2q^2 + (1+c^2)/2), q = k h, c = 3 - 4 nu: at nu = 1/2 the formula of
-    physics.md 4.2, for q to 0 the oedometer's h (1 - 2 nu)/(2 mu (1 - nu)). A test solves the layer anew.
+    physics.md 4.2, for q to 0 the oedometer's h (1 - 2 nu)/(2 mu (1 - nu)). A test solves the layer independently.
     """
     q, c = k * height, 3.0 - 4.0 * poisson
     e = np.exp(-2.0 * q)
@@ -185,20 +185,20 @@ class Substrate:
 
     def amplitude(self, row: BarRow, order: int = 1) -> float:
         """Amplitude of the compliance at a harmonic of a row's pitch, mm/N, among the other rows; sign as `amplitude`."""
-        own = self.shares[self.bars.index(row)]
-        return float(amplitude(self.matrix, row, np.array(self.radius), order)) * self.field(row) / own
+        share = self.shares[self.bars.index(row)]
+        return float(amplitude(self.matrix, row, np.array(self.radius), order)) * self.field(row) / share
 
     def compliance(self, count: int) -> Array:
         """Compliance at ``count`` even places of the path, mm/N, from each row's Fourier series."""
         orders = min(count // 2 - 1, int(_HIGHEST / self.radius * self.length / (2.0 * np.pi)))
         k = np.asarray(2.0 * np.pi * np.arange(orders + 1) / self.length, float)
-        found = np.zeros(count // 2 + 1, complex)
+        spectrum = np.zeros(count // 2 + 1, complex)
         for row in self.bars:
             felt = patch_filter(k, self.radius) * reaching(k, row.depth, self.matrix.poisson_ratio)
             taken = float(contrast(self.matrix, row.depth, np.array(self.radius))) * self.field(row)
-            found[: orders + 1] -= taken * felt * row.series(self.length, orders)
-        found[0] = self._mean()
-        return np.asarray(np.fft.irfft(found, count) * count)
+            spectrum[: orders + 1] -= taken * felt * row.series(self.length, orders)
+        spectrum[0] = self._mean()
+        return np.asarray(np.fft.irfft(spectrum, count) * count)
 
     def _mean(self) -> float:
         """Mean along the path: shares of rows multiply, each to the part of the path that its row fills."""

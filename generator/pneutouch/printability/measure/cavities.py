@@ -24,7 +24,7 @@ _BIAS = 0.25
 """From the middle of the nearest full cube to the surface, in cubes: half a one at a flat wall, less at a round one."""
 
 _TILTS = (-1.0, -0.5, 0.0, 0.5, 1.0)
-"""Slopes of the lines of sight against the axis they mostly follow, both ways across it: 98 directions in all."""
+"""Slopes of the lines of sight against the axis they mostly follow, in both directions across it: 98 directions in all."""
 
 
 @dataclass(frozen=True)
@@ -52,17 +52,17 @@ def pockets(voxels: PartVoxels, radius: Array, most: float = NARROW) -> list[Poc
     lies behind an opening narrower than that. ``radius`` is that of `balls`, good to half a cube.
     """
     outside = _outside(voxels.label == 0)
-    found: list[Pocket] = []
+    pockets: list[Pocket] = []
     taken = np.zeros(radius.shape, bool)
-    # Closed altogether, as far as the cubes tell: an opening narrower than one of them.
+    # Closed altogether, as far as the cubes resolve: an opening narrower than one of them.
     closed = (voxels.label == 0) & ~outside
     if closed.any():
         for piece in _pieces(closed):
-            found.append(_pocket(voxels, radius, piece, 0.5 * voxels.pitch))
+            pockets.append(_pocket(voxels, radius, piece, 0.5 * voxels.pitch))
             taken |= piece
     enclosed = _capped(radius, most)
     if enclosed <= voxels.pitch:
-        return found
+        return pockets
     levels = np.geomspace(voxels.pitch, enclosed, _STEPS)
     below = 0.5 * voxels.pitch
     for level in levels:
@@ -71,10 +71,10 @@ def pockets(voxels: PartVoxels, radius: Array, most: float = NARROW) -> list[Poc
             low = _narrowed(radius, piece, below, float(level))
             pocket = _pocket(voxels, radius, _grown(voxels, piece, float(level)), 2 * low)
             if pocket.ratio <= most:
-                found.append(pocket)
+                pockets.append(pocket)
             taken |= piece
         below = float(level)
-    return found
+    return pockets
 
 
 def balls(voxels: PartVoxels) -> Array:
@@ -146,9 +146,9 @@ def seen(voxels: PartVoxels) -> Flags:
     """Empty cubes that a straight jet reaches from outside, along one of 98 directions spread over the sphere."""
     empty = voxels.label == 0
     reached = np.zeros(empty.shape, bool)
-    ways = list(product(range(3), (1, -1), product(_TILTS, _TILTS)))
+    sights = list(product(range(3), (1, -1), product(_TILTS, _TILTS)))
     # Straight along the axes first: mostly they reach everything.
-    for axis, step, tilt in sorted(ways, key=lambda way: abs(way[2][0]) + abs(way[2][1])):
+    for axis, step, tilt in sorted(sights, key=lambda sight: abs(sight[2][0]) + abs(sight[2][1])):
         _sweep(np.moveaxis(empty, axis, 0)[::step], np.moveaxis(reached, axis, 0)[::step], tilt)
         if np.array_equal(reached, empty):
             break
@@ -179,7 +179,7 @@ def _shifted(lit: Flags, by: Any) -> Flags:
 
 
 def unseen(voxels: PartVoxels, radius: Array, reached: Flags) -> Flags:
-    """Empty cubes out of sight in hollows at least two cubes wide: what is narrower the cubes do not tell."""
+    """Empty cubes out of sight in hollows at least two cubes wide: the cubes do not resolve anything narrower."""
     from scipy.ndimage import binary_dilation
 
     hidden = (voxels.label == 0) & ~reached
@@ -198,7 +198,7 @@ def supported(voxels: PartVoxels) -> Flags:
 
 
 def overhangs(voxels: PartVoxels) -> Flags:
-    """Full cubes that a filament printer cannot lay on anything: nothing below them or beside below, one cube aside.
+    """Full cubes that a filament printer cannot lay on anything: nothing below them, nor one cube aside below.
 
     That is an overhang beyond 45 degrees, or a bridge.
     """

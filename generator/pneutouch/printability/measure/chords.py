@@ -2,7 +2,7 @@
 
 From points all over the surface a line is cast along the normal, into the body and out of it. Where it ends on a face
 that looks back, within 40 degrees, its length is a thickness of the body or a width of the air. Lines across the middle
-then tell whether the place is thin one way (a wall, a gap) or two (a pin, a hole), and lines along the flank how high
+then show whether the place is thin in one direction (a wall, a gap) or in two (a pin, a hole), and lines along the flank how high
 the flank is (a ridge or a groove on a face).
 """
 
@@ -25,7 +25,7 @@ _OPPOSING = -np.cos(np.radians(30.0))
 _ACROSS = -0.6
 """Cosine between the normals at both ends of a line that counts as across: faces of a corner do not."""
 _LINES = 6
-"""Lines across the middle, 30 degrees apart: one is within 15 of the narrow way, which it overstates by 3.5 %."""
+"""Lines across the middle, 30 degrees apart: one is within 15 of the narrow direction, which it overstates by 3.5 %."""
 FLANK = 1.0
 """A flank lower than this (mm) belongs to a ridge or groove on a face (own, unverified)."""
 _SQUARE = 0.8
@@ -37,7 +37,7 @@ class Chords:
     """Lines of one side from ``start`` (n, 3) along unit ``direction`` (n, 3) over ``length`` (n,), mm.
 
     ``near`` and ``far`` are the faces at both ends, ``area`` the surface each start stands for, mm2. After `described`,
-    ``second`` is the narrowest way across the middle (inf where the place is wide) between the faces ``sides`` (n, 2),
+    ``second`` is the narrowest width across the middle (inf where the place is wide) between the faces ``sides`` (n, 2),
     ``axis`` the direction along the place,
     ``flank`` the height of the flank (inf where it is no flank).
     """
@@ -75,10 +75,10 @@ def chords(manifold: Any, surface: SurfaceMesh, samples: SurfaceSamples, reach: 
     """Chords of both sides no longer than ``reach`` mm. ``surface`` is the manifold's own mesh."""
     # The smooth surface's normals: those of flat faces miss the axis of a round pin or hole.
     normals = surface.smooth_normals(samples.faces, samples.points)
-    found = neighbours(manifold, samples.points, -normals, reach)
+    chords = neighbours(manifold, samples.points, -normals, reach)
     sides: dict[Side, Chords] = {}
     for side, column, sign in (("outside", 0, 1.0), ("inside", 1, -1.0)):
-        length, far = found.distances[:, column], found.faces[:, column]
+        length, far = chords.distances[:, column], chords.faces[:, column]
         facing = np.einsum("ij,ij->i", normals, surface.normals[far])
         rows = np.flatnonzero(np.isfinite(length) & (length <= reach) & (facing < _OPPOSING))
         wide = np.full(len(rows), np.inf)
@@ -89,27 +89,27 @@ def chords(manifold: Any, surface: SurfaceMesh, samples: SurfaceSamples, reach: 
     return sides
 
 
-def described(manifold: Any, surface: SurfaceMesh, found: Chords) -> Chords:
+def described(manifold: Any, surface: SurfaceMesh, chords: Chords) -> Chords:
     """The chords with ``second``, ``axis`` and ``flank`` measured."""
-    if not len(found):
-        return found
-    second, sides, axis, flank = found.second, found.sides, found.axis, found.flank
-    u, v = _tangents(found.direction)
+    if not len(chords):
+        return chords
+    second, sides, axis, flank = chords.second, chords.sides, chords.axis, chords.flank
+    u, v = _tangents(chords.direction)
     for k in range(_LINES):
         angle = np.pi * k / _LINES
         line = np.cos(angle) * u + np.sin(angle) * v
-        middle = _lines(manifold, surface, found.middle, line, found.length)
+        middle = _lines(manifold, surface, chords.middle, line, chords.length)
         across = middle.across
         narrower = across < second
         second = np.where(narrower, across, second)
         sides = np.where(narrower[:, None], middle.faces, sides)
-        axis = np.where(narrower[:, None], np.cross(line, found.direction), axis)
-        shift = np.minimum(0.02, 0.1 * found.length)
-        # Just behind the face that the chord starts on: air beside a wall, body beside a gap.
-        beside = _lines(manifold, surface, found.start - shift[:, None] * found.direction, line, found.length)
+        axis = np.where(narrower[:, None], np.cross(line, chords.direction), axis)
+        shift = np.minimum(0.02, 0.1 * chords.length)
+        # Just behind the face that the chord starts on: air behind a wall, body behind a gap.
+        behind = _lines(manifold, surface, chords.start - shift[:, None] * chords.direction, line, chords.length)
         for one, other in ((0, 1), (1, 0)):
-            flank = np.minimum(flank, beside.square[:, one] + middle.square[:, other])
-    return replace(found, second=second, sides=sides, axis=axis, flank=flank)
+            flank = np.minimum(flank, behind.square[:, one] + middle.square[:, other])
+    return replace(chords, second=second, sides=sides, axis=axis, flank=flank)
 
 
 @dataclass(frozen=True)
@@ -136,23 +136,25 @@ def _lines(manifold: Any, surface: SurfaceMesh, middles: Array, directions: Arra
     )
 
 
-def continues(manifold: Any, surface: SurfaceMesh, found: Chords) -> Flags:
+def continues(manifold: Any, surface: SurfaceMesh, chords: Chords) -> Flags:
     """Whether the place goes on along its axis, (n,): at both ends as narrow a width further on, or
     ended before that.
 
     A pin does, to its tip; a web between two holes widens at both ends.
     """
-    if not len(found):
+    if not len(chords):
         return np.zeros(0, bool)
-    step = found.length
+    step = chords.length
     reach = 2.1 * float(step.max())
-    free = neighbours(manifold, found.middle, found.axis, reach).distances
-    cross = np.cross(found.axis, found.direction)
-    result = np.ones(len(found), bool)
+    free = neighbours(manifold, chords.middle, chords.axis, reach).distances
+    cross = np.cross(chords.axis, chords.direction)
+    result = np.ones(len(chords), bool)
     for column, sign in ((0, -1.0), (1, 1.0)):
-        ahead = found.middle + (sign * step)[:, None] * found.axis
-        widths = [neighbours(manifold, ahead, way, reach).distances.sum(axis=1) for way in (found.direction, cross)]
-        narrow = (widths[0] <= 1.5 * step) & (widths[1] <= 1.5 * np.minimum(found.second, reach))
+        ahead = chords.middle + (sign * step)[:, None] * chords.axis
+        widths = [
+            neighbours(manifold, ahead, across, reach).distances.sum(axis=1) for across in (chords.direction, cross)
+        ]
+        narrow = (widths[0] <= 1.5 * step) & (widths[1] <= 1.5 * np.minimum(chords.second, reach))
         result &= (free[:, column] <= step) | narrow
     return result
 
@@ -165,17 +167,17 @@ def _tangents(directions: Array) -> tuple[Array, Array]:
     return u, np.cross(directions, u)
 
 
-def refined(found: Chords, distance: Any) -> Array:
+def refined(chords: Chords, distance: Any) -> Array:
     """Lengths (n,) from exact surface to exact surface, ``distance`` being the solid's.
 
-    An end moves along the chord, either way or not at all, to where it is nearest to the exact surface. The mesh leaves a
-    circle by its tolerance both ways, so that a bore measured from flat to flat is that much too narrow.
+    An end moves along the chord, outwards, inwards or not at all, to where it is nearest to the exact surface. The mesh leaves a
+    circle by its tolerance on both sides, so that a bore measured from flat to flat is that much too narrow.
     """
-    length = found.length.copy()
-    for points, outwards in ((found.start, -found.direction), (found.end, found.direction)):
+    length = chords.length.copy()
+    for points, outwards in ((chords.start, -chords.direction), (chords.end, chords.direction)):
         off = distance(points)
-        ways = np.array([0.0, 1.0, -1.0])[:, None] * off
-        left = np.array([distance(points + way[:, None] * outwards) for way in ways])
+        shifts = np.array([0.0, 1.0, -1.0])[:, None] * off
+        left = np.array([distance(points + shift[:, None] * outwards) for shift in shifts])
         # What is left, where another face is nearer than the one meant, counts for the part.
-        length = length + np.take_along_axis(ways, left.argmin(axis=0)[None], axis=0)[0] + left.min(axis=0)
+        length = length + np.take_along_axis(shifts, left.argmin(axis=0)[None], axis=0)[0] + left.min(axis=0)
     return np.asarray(length)

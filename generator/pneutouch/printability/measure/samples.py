@@ -17,7 +17,7 @@ MOST = 9000
 """Points of a part; a larger one gets a wider spacing, and still one point on every face group."""
 
 _INSET = 0.02
-"""Distance of a point beside an edge from it, mm."""
+"""Distance of a point near an edge from it, mm."""
 
 _GOLDEN = (0.7548776662466927, 0.5698402909980532)
 """Steps of the R2 sequence, which fills a square evenly (Roberts 2018): powers of 1/1.3247, the plastic number."""
@@ -27,7 +27,7 @@ _GOLDEN = (0.7548776662466927, 0.5698402909980532)
 class SurfaceSamples:
     """Points (n, 3) in mm, the face each lies on (n,), and the area each stands for (n,), mm2.
 
-    Points right beside drawn edges stand for no area: they are there because a taper is thinnest at its edge.
+    Points right near drawn edges stand for no area: they are there because a taper is thinnest at its edge.
     """
 
     points: Array
@@ -52,15 +52,15 @@ def sample(surface: SurfaceMesh, spacing: float = SPACING, most: int = MOST) -> 
     u, v = (np.where(counts[faces] == 1, 1 / 3, w) for w in (u, v))
     weights = 0.98 * np.column_stack([1 - u - v, u, v]) + 0.02 / 3
     points = np.einsum("nk,nkd->nd", weights, surface.corners[faces])
-    beside, their = _beside_edges(surface, spacing)
+    near, near_faces = _near_edges(surface, spacing)
     return SurfaceSamples(
-        np.concatenate([points, beside]), np.concatenate([faces, their]),
-        np.concatenate([areas[faces] / counts[faces], np.zeros(len(their))]),
+        np.concatenate([points, near]), np.concatenate([faces, near_faces]),
+        np.concatenate([areas[faces] / counts[faces], np.zeros(len(near_faces))]),
     )  # fmt: skip
 
 
-def _beside_edges(surface: SurfaceMesh, spacing: float) -> tuple[Array, Indices]:
-    """Points on both faces beside each drawn edge, in its middle and, where it is long, near its ends."""
+def _near_edges(surface: SurfaceMesh, spacing: float) -> tuple[Array, Indices]:
+    """Points on both faces near each drawn edge, in its middle and, where it is long, near its ends."""
     edges = surface.edges
     drawn = np.flatnonzero(surface.creases)
     ends = surface.vertices[edges.ends[drawn]]

@@ -16,7 +16,7 @@ _NOTHING = 1e-6
 
 @dataclass(frozen=True)
 class Hollow:
-    """A hollow without a way out: ``volume`` in mm3, ``bounds`` (2, 3) in mm, the ``body`` it lies in."""
+    """A hollow without an opening: ``volume`` in mm3, ``bounds`` (2, 3) in mm, the ``body`` it lies in."""
 
     body: str
     volume: float
@@ -35,9 +35,9 @@ class Hollow:
 
 def voids(manifold: Any, body: str) -> list[Hollow]:
     """Hollows of a manifold3d solid, smallest first."""
-    found = []
+    hollows = []
     for shell in manifold.decompose():
         volume = float(shell.volume())
         if volume < -_NOTHING:
-            found.append(Hollow(body, -volume, np.array(shell.bounding_box()).reshape(2, 3)))
-    return sorted(found, key=lambda hollow: hollow.volume)
+            hollows.append(Hollow(body, -volume, np.array(shell.bounding_box()).reshape(2, 3)))
+    return sorted(hollows, key=lambda hollow: hollow.volume)

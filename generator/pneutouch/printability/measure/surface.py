@@ -138,7 +138,7 @@ class SurfaceMesh:
     @cached_property
     def chord_error(self) -> tuple[float, int]:
         """What the mesh leaves of its curves, mm, and the edge where: the sagitta that a tenth of the length of a face
-        group's curved edges exceeds, in the worst group. Single edges between faces of two curves say nothing."""
+        group's curved edges exceeds, in the worst group. Single edges between faces of two curves do not count."""
         edges, sagittas = self.edges, self.sagittas
         curved = np.flatnonzero(sagittas > 1e-9)
         if not len(curved):

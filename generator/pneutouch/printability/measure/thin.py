@@ -1,6 +1,6 @@
 """Thin places of a part by kind: walls, pins, holes, channels, gaps, ridges and grooves, each as one place.
 
-A place is what chords join of smooth face groups. Where fillets make one face of several features they are one place, told
+A place is what chords join of smooth face groups. Where fillets make one face of several features they are one place, described
 by its narrowest.
 """
 
@@ -20,10 +20,10 @@ from pneutouch.printability.subject import Point
 FeatureKind = Literal["wall", "pin", "hole", "channel", "gap", "raised", "engraved"]
 
 ROUND = 2.0
-"""An opening at most this many times as wide one way as the other is a hole, else a gap."""
+"""An opening at most this many times as wide in one direction as in the other is a hole, else a gap."""
 
 STOUT = 1.4
-"""A bar at most this many times as thick one way as the other is a pin, else a wall."""
+"""A bar at most this many times as thick in one direction as in the other is a pin, else a wall."""
 
 LONG = 3.0
 """A hole longer than this many widths is a channel."""
@@ -39,7 +39,7 @@ _BENT = 1.25
 """By its area a straight hole is as long as by its extent, up to a quarter for one that is not round."""
 
 _ALONG = np.radians(2.0)
-"""Faces that part by less run along each other, as far as interpolated normals tell."""
+"""Faces that part by less run along each other, within the accuracy of interpolated normals."""
 
 _PER_GROUP = 48
 """Chords of a face group that are looked at closely, from the shortest on and then evenly."""
@@ -64,8 +64,8 @@ def thin_places(
 ) -> list[ThinPlace]:
     """Places with a chord up to a side's limit, mm, narrowest first. ``exact`` turns chords into exact lengths."""
     places = []
-    for side, found in sides.items():
-        short = found.take(found.length <= limits[side])
+    for side, chords in sides.items():
+        short = chords.take(chords.length <= limits[side])
         short = short.take(np.logical_not(_in_wedge(surface, short, side)))
         short = described(manifold, surface, _thinned(short, surface.groups))
         if not len(short):
@@ -92,7 +92,7 @@ def _is_round(manifold: Any, surface: SurfaceMesh, short: Chords, side: Side) ->
 
 
 def _slope(surface: SurfaceMesh, some: Chords) -> Array:
-    """How fast each chord's faces part, mm per mm, (n,); nothing where they run along each other as far as can be told."""
+    """How fast each chord's faces part, mm per mm, (n,); nothing where they run along each other within the accuracy of the normals."""
     near = surface.smooth_normals(some.near, some.start)
     far = surface.smooth_normals(some.far, some.start + some.length[:, None] * some.direction)
     angle = np.arccos(np.clip(-np.einsum("ij,ij->i", near, far), -1, 1))
@@ -144,10 +144,10 @@ def _spot(some: _Sized, row: int) -> Point:
     return x, y, z
 
 
-def _thinned(found: Chords, groups: Indices) -> Chords:
+def _thinned(chords: Chords, groups: Indices) -> Chords:
     """At most `_PER_GROUP` chords of each face group; those kept stand for the area of all."""
-    group = groups[found.near]
-    order = np.lexsort((found.length, group))
+    group = groups[chords.near]
+    order = np.lexsort((chords.length, group))
     group = group[order]
     first = np.concatenate([[0], np.flatnonzero(np.diff(group)) + 1, [len(group)]])
     kept, scale = [], []
@@ -158,11 +158,11 @@ def _thinned(found: Chords, groups: Indices) -> Chords:
         share = max(1.0, count / _PER_GROUP)
         rows = order[low + np.unique((np.arange(0, count, share)).astype(np.int64))]
         kept.append(rows)
-        scale.append(np.full(len(rows), found.area[order[low:high]].sum() / max(found.area[rows].sum(), 1e-12)))
+        scale.append(np.full(len(rows), chords.area[order[low:high]].sum() / max(chords.area[rows].sum(), 1e-12)))
     if not kept:
-        return found
+        return chords
     rows = np.concatenate(kept)
-    some = found.take(rows)
+    some = chords.take(rows)
     return replace(some, area=some.area * np.concatenate(scale))
 
 
@@ -180,13 +180,13 @@ def _connected(some: Chords, groups: Indices, round_: Flags) -> list[Indices]:
     return [np.flatnonzero(label == number) for number in np.unique(label)]
 
 
-def _in_wedge(surface: SurfaceMesh, found: Chords, side: Side) -> Flags:
+def _in_wedge(surface: SurfaceMesh, chords: Chords, side: Side) -> Flags:
     """Chords in the corner between two faces that meet at less than 50 degrees, (n,) bool."""
     edges = surface.edges
     turn = edges.turn if side == "inside" else -edges.turn
     sharp = turn > np.pi - _KNIFE
-    facing = np.einsum("ij,ij->i", surface.normals[found.near], surface.normals[found.far])
-    slack = np.zeros(len(found), bool)
+    facing = np.einsum("ij,ij->i", surface.normals[chords.near], surface.normals[chords.far])
+    slack = np.zeros(len(chords), bool)
     if not sharp.any():
         return slack
     ends = surface.vertices[edges.ends[sharp]]
@@ -194,8 +194,8 @@ def _in_wedge(surface: SurfaceMesh, found: Chords, side: Side) -> Flags:
     slanted = np.flatnonzero(angle > np.radians(1.0))
     if not len(slanted):
         return slack
-    away = distance_to_segments(found.middle[slanted], ends[:, 0], ends[:, 1])
-    slack[slanted] = away < 1.2 * found.length[slanted] / angle[slanted]
+    away = distance_to_segments(chords.middle[slanted], ends[:, 0], ends[:, 1])
+    slack[slanted] = away < 1.2 * chords.length[slanted] / angle[slanted]
     return slack
 
 

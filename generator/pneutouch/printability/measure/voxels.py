@@ -1,4 +1,4 @@
-"""Parts in cubes: what rays alone do not tell, such as what lies behind a neck or under an overhang."""
+"""Parts in cubes: what rays alone do not show, such as what lies behind a neck or under an overhang."""
 
 from __future__ import annotations
 
@@ -88,6 +88,6 @@ def _filled(corners: Array, shape: tuple[int, ...]) -> Flags:
     height = a[face, 2] + s * (b - a)[face, 2] + t * (c - a)[face, 2]
     layer = np.clip(np.ceil(height).astype(np.int64), 0, shape[2] - 1)
     cell = np.ravel_multi_index((column[:, 0], column[:, 1], layer), shape)
-    # Going up, a face that looks down is the way in.
+    # Going up, a face that looks down is the entry.
     steps = np.bincount(cell, weights=-np.sign(twice[face]), minlength=int(np.prod(shape)))
     return np.cumsum(steps.reshape(shape), axis=2) > 0.5

@@ -26,25 +26,25 @@ SLENDER = 10.0
 """Length of a channel over its width from which water alone does not clear it."""
 _HIDDEN = 2.0
 """Volume out of sight (mm3) that is worth a word, and at least 30 cubes of the model."""
-_ASKED, _DIRECTIONS = 40, 300
-"""Cubes out of sight that are asked again, and directions spread evenly over the sphere (Fibonacci's spiral)."""
+_SAMPLED, _DIRECTIONS = 40, 300
+"""Cubes out of sight that are checked again, and directions spread evenly over the sphere (Fibonacci's spiral)."""
 _BRIDGED = 50.0
-"""Ceiling in mm2 that a filament printer bridges without support: about 7 mm each way."""
+"""Ceiling in mm2 that a filament printer bridges without support: about 7 mm in each direction."""
 
 
 def check(view: PrintView) -> list[Finding]:
     """Look into each job as it is printed; filament needs support only under ceilings."""
-    found = []
+    findings = []
     for job in view.jobs:
         if job.sound:
-            found += [*_necks(job), *_hidden(job)]
+            findings += [*_necks(job), *_hidden(job)]
             if job.printer.process == "polyjet":
-                found += _slender(job)
-    return found
+                findings += _slender(job)
+    return findings
 
 
 def _necks(job: PrintJob) -> list[Finding]:
-    found = []
+    findings = []
     for pocket in job.pockets:
         if (
             pocket.width < 2.5 * job.voxels.pitch
@@ -58,8 +58,8 @@ def _necks(job: PrintJob) -> list[Finding]:
             severity, source = "warning", _FILAMENT
         fix = "widen the opening, or split the part there"
         excess = Excess(pocket.ratio, CONFINED if severity == "error" else NARROW, "")
-        found.append(_finding(job, severity, _words(pocket), fix, source, pocket.where, excess))
-    return found
+        findings.append(_finding(job, severity, _words(pocket), fix, source, pocket.where, excess))
+    return findings
 
 
 def _words(pocket: Pocket) -> str:
@@ -78,10 +78,10 @@ def _hidden(job: PrintJob) -> list[Finding]:
     volume, least = len(cells) * voxels.cube, max(_HIDDEN, 30 * voxels.cube)
     if volume <= least or not _needs_support(job, hidden):
         return []
-    # The cubes know few directions: ask some of them again with rays on the mesh.
-    asked = cells[np.linspace(0, len(cells) - 1, min(len(cells), _ASKED)).astype(np.int64)]
-    dark = asked[~_escapes(job, asked)]
-    volume *= len(dark) / len(asked)
+    # The cubes have few directions: check some of them again with rays on the mesh.
+    sampled = cells[np.linspace(0, len(cells) - 1, min(len(cells), _SAMPLED)).astype(np.int64)]
+    dark = sampled[~_escapes(job, sampled)]
+    volume *= len(dark) / len(sampled)
     if volume <= least:
         return []
     middle = dark[int(np.linalg.norm(dark - dark.mean(axis=0), axis=1).argmin())]
@@ -113,7 +113,7 @@ def _needs_support(job: PrintJob, region: Flags) -> bool:
 
 
 def _slender(job: PrintJob) -> list[Finding]:
-    found = []
+    findings = []
     for part in job.parts:
         for place in part.places:
             if place.kind == "channel" and place.length > SLENDER * place.size:
@@ -121,8 +121,8 @@ def _slender(job: PrintJob) -> list[Finding]:
                 text = f"a channel {place.size:.2f} mm wide is {slender:.0f} times as long"
                 fix = part.item.hints.get("cleaning", "push a wire through and flush from both sides")
                 where, excess = place.where, Excess(slender, SLENDER, "")
-                found.append(Finding("cleaning", "warning", part.name, text, fix, _LONG, where, excess))
-    return found
+                findings.append(Finding("cleaning", "warning", part.name, text, fix, _LONG, where, excess))
+    return findings
 
 
 def _finding(

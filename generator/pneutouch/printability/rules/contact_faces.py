@@ -68,11 +68,11 @@ def overlap_volume(one: Body, other: Body) -> float:
 
 
 def shared_area(one: Body, other: Body) -> float:
-    """Area in mm2 of the triangles that both bodies have, facing opposite ways."""
-    mine, theirs = _rows(one), _rows(other)
-    both = np.concatenate([mine, theirs])
+    """Area in mm2 of the triangles that both bodies have, facing in opposite directions."""
+    first, second = _rows(one), _rows(other)
+    both = np.concatenate([first, second])
     _, number = np.unique(both, axis=0, return_inverse=True)
-    common = np.isin(number.reshape(-1)[len(mine) :], number.reshape(-1)[: len(mine)])
+    common = np.isin(number.reshape(-1)[len(first) :], number.reshape(-1)[: len(first)])
     a, b, c = np.moveaxis(other.corners[common], 1, 0)
     return float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
 

@@ -7,18 +7,22 @@ from pneutouch.printability.view import PrintJob, PrintView
 
 
 def check(view: PrintView) -> list[Finding]:
-    """Compare the bounds along the build direction and across it, either way round on the tray."""
+    """Compare the bounds along the build direction and across it, in either orientation on the tray."""
     return [finding for job in view.jobs if (finding := _check(job)) is not None]
 
 
 def _check(job: PrintJob) -> Finding | None:
-    room = job.printer.envelope_mm
+    envelope = job.printer.envelope_mm
     x, y, z = (float(length) for length in job.bounds[1] - job.bounds[0])
-    if z <= room.z and ((x <= room.x and y <= room.y) or (x <= room.y and y <= room.x)):
+    if z <= envelope.z and ((x <= envelope.x and y <= envelope.y) or (x <= envelope.y and y <= envelope.x)):
         return None
-    excesses = [Excess(z, room.z), Excess(max(x, y), max(room.x, room.y)), Excess(min(x, y), min(room.x, room.y))]
+    excesses = [
+        Excess(z, envelope.z),
+        Excess(max(x, y), max(envelope.x, envelope.y)),
+        Excess(min(x, y), min(envelope.x, envelope.y)),
+    ]
     worst = max(excesses, key=lambda excess: excess.measured / excess.limit)
     part = job.parts[0]
-    text = f"{x:.1f} x {y:.1f} x {z:.1f} mm as it stands; the machine builds {room.x:g} x {room.y:g} x {room.z:g} mm"
+    text = f"{x:.1f} x {y:.1f} x {z:.1f} mm as it stands; the machine builds {envelope.x:g} x {envelope.y:g} x {envelope.z:g} mm"
     fix = part.item.hints.get("envelope", "make it smaller, lay it down, or take a larger printer")
-    return Finding("envelope", "error", part.name, text, fix, room.source, None, worst)
+    return Finding("envelope", "error", part.name, text, fix, envelope.source, None, worst)

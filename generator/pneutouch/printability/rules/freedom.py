@@ -9,7 +9,7 @@ from pneutouch.printability.finding import Excess, Finding
 from pneutouch.printability.view import PrintPart, PrintView
 from pneutouch.units import KPA
 
-_SOURCE = "own prediction: the mechanics knows of no body beside the dome, so where they meet its figures do not hold"
+_SOURCE = "this project's prediction: the model contains no body next to the dome, so its figures do not hold where they touch"
 _TOUCH = 0.05
 """Depth in mm below which a meeting is the mesh's and the prediction's own error."""
 
@@ -19,7 +19,7 @@ def check(view: PrintView) -> list[Finding]:
     if view.sensor is None:
         return []
     others = [part for part in view.parts if part.name != view.sensor.membrane and part.sound]
-    found = []
+    findings = []
     for part in others:
         worst: tuple[float, str, tuple[float, float, float]] | None = None
         for state in view.sensor.prediction.states:
@@ -31,10 +31,10 @@ def check(view: PrintView) -> list[Finding]:
         if worst is not None:
             text = f"the dome meets the {part.name} {worst[1]}: they would overlap by {worst[0]:.2f} mm"
             fix = "lower pneumatics.driving_pressures_kPa or indentation.depth_mm, or take another connector.seat"
-            found.append(
+            findings.append(
                 Finding("freedom", "warning", view.sensor.membrane, text, fix, _SOURCE, worst[2], Excess(worst[0], 0.0))
             )
-    return found
+    return findings
 
 
 def _deepest(part: PrintPart, plane: Array) -> tuple[float, tuple[float, float, float]]:

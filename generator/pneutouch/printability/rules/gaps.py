@@ -22,11 +22,11 @@ _FIX = "widen the gap, close it, or print the bodies apart"
 
 def check(view: PrintView) -> list[Finding]:
     """Compare every gap."""
-    found = compare(view, "gaps", {"gap": "a gap"}, "gap", _FIX)
+    findings = compare(view, "gaps", {"gap": "a gap"}, "gap", _FIX)
     for job in view.jobs:
         for one, other in combinations([part for part in job.parts if part.sound], 2):
-            found += _between(one, other)
-    return found
+            findings += _between(one, other)
+    return findings
 
 
 def _between(one: PrintPart, other: PrintPart) -> list[Finding]:
@@ -37,7 +37,7 @@ def _between(one: PrintPart, other: PrintPart) -> list[Finding]:
     if not len(rows):
         return []
     normals = one.surface.normals[samples.faces[rows]]
-    # Starting just inside, so that a touching face is met and told from a gap.
+    # Starting just inside, so that a touching face is hit and distinguished from a gap.
     starts = samples.points[rows] - 0.5 * _TOUCHING * normals
     hits = first_hits(other.manifold, starts, normals, reach + _TOUCHING)
     width = hits.distances[:, 1] - 0.5 * _TOUCHING

@@ -1,4 +1,4 @@
-"""Closed hollows: no support comes out of them, and nobody sees them."""
+"""Closed hollows: support cannot be removed from them, and they cannot be inspected."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _FILAMENT = "own, unverified: what is closed cannot be inspected, and loose supp
 
 def check(view: PrintView) -> list[Finding]:
     """Look for shells that face inwards, in each body and in what a job joins to one."""
-    found = []
+    findings = []
     for job in view.jobs:
         source = _SOURCE if job.printer.process == "polyjet" else _FILAMENT
         for hollow in job.hollows if job.sound else []:
@@ -19,5 +19,5 @@ def check(view: PrintView) -> list[Finding]:
             part = job.nearest(hollow.where)
             fix = part.item.hints.get("hollows", "open it with a hole to clean through, or fill it")
             excess = Excess(hollow.volume, 0.0, "mm3")
-            found.append(Finding("hollows", "error", hollow.body, text, fix, source, hollow.where, excess))
-    return found
+            findings.append(Finding("hollows", "error", hollow.body, text, fix, source, hollow.where, excess))
+    return findings

@@ -25,8 +25,8 @@ def check(view: PrintView) -> list[Finding]:
     pixel = UM * max(printer.resolution.x_um, printer.resolution.y_um)
     upright = abs(part.item.up[2]) / float(np.linalg.norm(part.item.up)) > 0.7
     steps = {"layers": ("pole" if upright else "rim", layer), "pixels": ("rim" if upright else "pole", pixel)}
-    found = [_check(context, part, where, unit, step, wall) for unit, (where, step) in steps.items()]
-    return [finding for finding in found if finding is not None]
+    findings = [_check(context, part, where, unit, step, wall) for unit, (where, step) in steps.items()]
+    return [finding for finding in findings if finding is not None]
 
 
 def _check(context: SensorContext, part: PrintPart, where: str, unit: str, step: float, wall: float) -> Finding | None:
@@ -46,12 +46,12 @@ def _check(context: SensorContext, part: PrintPart, where: str, unit: str, step:
 
 
 def _sensitivities(sensor: Sensor, pressure: float, low: float, high: float) -> str:
-    """What the atlas says of both walls; nothing where it does not know the sensor."""
+    """The atlas's sensitivities for both walls; nothing where it does not cover the sensor."""
     from pneutouch.mechanics.atlas.batches import batch_of
     from pneutouch.mechanics.atlas.respond import OUTSIDE, respond
     from pneutouch.mechanics.atlas_states import outside_atlas
 
-    found = []
+    sensitivities = []
     for wall in (low, high):
         other = sensor.replace(wall_thickness=wall)
         if outside_atlas(other) is not None:
@@ -60,5 +60,5 @@ def _sensitivities(sensor: Sensor, pressure: float, low: float, high: float) -> 
         value = float(response.lines.sensitivity_kPa_per_N[0])
         if response.ends[0] == OUTSIDE or not np.isfinite(value):
             return ""
-        found.append(value)
-    return f", and reads {found[0]:.3f} or {found[1]:.3f} kPa/N at {pressure / KPA:g} kPa"
+        sensitivities.append(value)
+    return f", and reads {sensitivities[0]:.3f} or {sensitivities[1]:.3f} kPa/N at {pressure / KPA:g} kPa"

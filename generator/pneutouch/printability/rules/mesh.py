@@ -23,10 +23,10 @@ _FINER = 4.0
 
 def check(view: PrintView) -> list[Finding]:
     """Measure closedness, the deviation from the exact solid and the width of chords."""
-    found = []
+    findings = []
     for part in view.parts:
-        found += _open(part) or [*_coarse(part), *_fine(part)]
-    return found
+        findings += _open(part) or [*_coarse(part), *_fine(part)]
+    return findings
 
 
 def _open(part: PrintPart) -> list[Finding]:

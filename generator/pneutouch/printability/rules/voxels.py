@@ -22,27 +22,27 @@ def check_stack(
         text = f"the {printer.title} takes no voxel stacks (its profile has no voxel_print)"
         fix = "set print.profile to a printer that does, such as j735"
         return [Finding(RULE, "error", body, text, fix, "printer profile")]
-    found = []
+    findings = []
     missing = sorted(set(resins) - set(printer.resins))
     if missing:
         text = f"{printer.title} does not run {', '.join(missing)}; it runs {', '.join(printer.resins)}"
-        found.append(Finding(RULE, "error", body, text, "take resins that it runs", rules.source))
+        findings.append(Finding(RULE, "error", body, text, "take resins that it runs", rules.source))
     most = min(rules.colours, printer.resins_at_once, mode.resins_at_once or rules.colours)
     if len(resins) > most:
         text = f"{len(resins)} resins ({', '.join(resins)}); a stack in the mode {mode.name} has {most} colours at most"
-        found.append(
+        findings.append(
             Finding(RULE, "error", body, text, "take fewer resins", rules.source, excess=Excess(len(resins), most, "colours"))
         )  # fmt: skip
     if layers < rules.least_slices:
         text = f"{layers} slices of {mode.layer_height_um:g} um; the utility takes no fewer than {rules.least_slices}"
         fix = "take a mode of thinner layers, or make the part taller"
-        found.append(
+        findings.append(
             Finding(RULE, "error", body, text, fix, rules.source, excess=Excess(layers, rules.least_slices, "slices"))
         )
-    room = (printer.envelope_mm.x, printer.envelope_mm.y, printer.envelope_mm.z)
-    worst = max(zip(size, room, strict=True), key=lambda pair: pair[0] / pair[1])
+    envelope = (printer.envelope_mm.x, printer.envelope_mm.y, printer.envelope_mm.z)
+    worst = max(zip(size, envelope, strict=True), key=lambda pair: pair[0] / pair[1])
     if worst[0] > worst[1]:
-        text = f"the stack is {size[0]:.1f} x {size[1]:.1f} x {size[2]:.1f} mm; the machine builds {room[0]:g} x {room[1]:g} x {room[2]:g} mm"
+        text = f"the stack is {size[0]:.1f} x {size[1]:.1f} x {size[2]:.1f} mm; the machine builds {envelope[0]:g} x {envelope[1]:g} x {envelope[2]:g} mm"
         fix = "make it smaller, or take a larger printer"
-        found.append(Finding(RULE, "error", body, text, fix, printer.envelope_mm.source, excess=Excess(*worst)))
-    return found
+        findings.append(Finding(RULE, "error", body, text, fix, printer.envelope_mm.source, excess=Excess(*worst)))
+    return findings

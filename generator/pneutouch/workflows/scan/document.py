@@ -129,10 +129,10 @@ def _found(run: ScanRun, seen: AnalysedSignal, row: BarRow, found: Detection | N
     if found is None:
         return text | {"detected": False}
     return text | {
-        "detected": found.found, "detected_frequency_Hz": found.frequency, "amplitude_kPa": found.amplitude / KPA,
+        "detected": found.detected, "detected_frequency_Hz": found.frequency, "amplitude_kPa": found.amplitude / KPA,
         "noise_floor_kPa": found.floor / KPA, "detection_figure": found.ratio, "threshold": found.threshold,
         "p_value": found.p_value, "level": found.level,
-        "frequency_error_relative": found.frequency / found.asked - 1.0,
+        "frequency_error_relative": found.frequency / found.target - 1.0,
     }  # fmt: skip
 
 
