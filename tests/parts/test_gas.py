@@ -18,11 +18,13 @@ from tests.conftest import ROOT
 from tests.parts.space import measured_volume
 
 LIBRARY = Library((ROOT,))
-CASES = list(
-    itertools.product(
-        sorted(LIBRARY.shelf("ports")), sorted(LIBRARY.shelf("seats")), ("bolt-circle-4xM3", "robot-50-4-M6")
-    )
-)
+MOUNTS = ("bolt-circle-4xM3", "robot-50-4-M6")
+CASES = [
+    # Every port on every seat; the second of the two mounts is left to the slow run.
+    pytest.param(port, seat, MOUNTS[(k + other) % 2], marks=pytest.mark.slow if other else ())
+    for k, (port, seat) in enumerate(itertools.product(sorted(LIBRARY.shelf("ports")), sorted(LIBRARY.shelf("seats"))))
+    for other in range(2)
+]
 
 
 def assembly(port, seat, mount, *more):

@@ -18,8 +18,10 @@ J735 = LIBRARY.load("printers", "j735")
 STEP = 0.014
 
 
-def context(length: float = 20.0, width: float = 10.0, height: float = 8.0, speed: float = 4.0) -> PatternContext:
-    return PatternContext(Box((0.0, 0.0, 0.0), (length, width, height)), J735, AGILUS, VERO, speed, STEP, "test.toml")
+def context(
+    length: float = 20.0, width: float = 10.0, height: float = 8.0, speed: float = 4.0, step: float = STEP
+) -> PatternContext:
+    return PatternContext(Box((0.0, 0.0, 0.0), (length, width, height)), J735, AGILUS, VERO, speed, step, "test.toml")
 
 
 def drawn(at: PatternContext, kind: str, **keys) -> PatternGeometry:

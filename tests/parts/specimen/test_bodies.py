@@ -12,7 +12,7 @@ from pneutouch.parts.specimen.mesh import joined
 from pneutouch.parts.specimen.struts import STRUTS
 from pneutouch.parts.specimen.surfaces import SURFACES
 from pneutouch.printability.rules.contact_faces import overlap_volume, shared_area
-from tests.parts.specimen.shapes import body, context, drawn
+from tests.parts.specimen.shapes import STEP, body, context, drawn
 
 FRACTIONS = {
     "schwarz-p network": (0.25, 0.4, 0.6),
@@ -20,6 +20,15 @@ FRACTIONS = {
     "octet": (0.15, 0.25, 0.4),
     "simple-cubic": (0.05, 0.2, 0.5),
 }
+
+# Surfaces in coarse chords every day, and in those of the printer in the slow run: seven times the triangles.
+STEPS = pytest.mark.parametrize(
+    "step", [pytest.param(0.1, id="coarse"), pytest.param(STEP, id="printed", marks=pytest.mark.slow)]
+)
+# The ends of the range of fractions are left to the slow run.
+SHARES = pytest.mark.parametrize(
+    "share", [pytest.param(0, marks=pytest.mark.slow), 1, pytest.param(2, marks=pytest.mark.slow)]
+)
 
 
 def area_of(mesh, box):
@@ -45,37 +54,41 @@ def check(at, pattern):
     assert overlap_volume(inclusion, matrix) < 1e-6 * at.block.volume
 
 
-@pytest.mark.parametrize("share", range(3))
+@STEPS
+@SHARES
 @pytest.mark.parametrize("kind", STRUTS)
 @pytest.mark.parametrize("cell", [5.0, 5.3], ids=["whole cells", "cut cells"])
-def test_struts_at_three_fractions(kind, share, cell):
-    at, fraction = context(15, 10, 8), FRACTIONS.get(kind, (0.1, 0.2, 0.4))[share]
+def test_struts_at_three_fractions(kind, share, cell, step):
+    at, fraction = context(15, 10, 8, step=step), FRACTIONS.get(kind, (0.1, 0.2, 0.4))[share]
     pattern = drawn(at, kind, cell_mm=cell, volume_fraction=fraction, depth_mm=1.0, height_mm=5.0)
     assert pattern.mesh.volume / pattern.box.volume == pytest.approx(fraction, rel=0.01)
     check(at, pattern)
 
 
-@pytest.mark.parametrize("share", [pytest.param(0, marks=pytest.mark.slow), 1, pytest.param(2, marks=pytest.mark.slow)])
+@STEPS
+@SHARES
 @pytest.mark.parametrize("form", ["sheet", "network"])
 @pytest.mark.parametrize("kind", SURFACES)
-def test_surfaces_at_three_fractions(kind, form, share):
-    at, fraction = context(12, 10, 8), FRACTIONS.get(f"{kind} {form}", (0.4, 0.5, 0.7))[share]
+def test_surfaces_at_three_fractions(kind, form, share, step):
+    at, fraction = context(12, 10, 8, step=step), FRACTIONS.get(f"{kind} {form}", (0.4, 0.5, 0.7))[share]
     pattern = drawn(at, kind, cell_mm=6.0, form=form, volume_fraction=fraction, depth_mm=0.0, height_mm=6.0)
     assert pattern.mesh.volume / pattern.box.volume == pytest.approx(fraction, rel=0.01)
     check(at, pattern)
 
 
+@STEPS
 @pytest.mark.parametrize("kind", [*STRUTS, "gyroid"])
-def test_a_lattice_through_the_whole_block_is_flush_with_every_side(kind):
-    at = context(10, 10, 10)
+def test_a_lattice_through_the_whole_block_is_flush_with_every_side(kind, step):
+    at = context(10, 10, 10, step=step)
     pattern = drawn(at, kind, cell_mm=5.0, volume_fraction=0.4)
     assert pattern.box == at.block
     check(at, pattern)
 
 
+@STEPS
 @pytest.mark.parametrize("kind", ["gyroid", "schwarz-p", "diamond"])
-def test_a_sheet_of_a_thickness_has_it_times_its_middle_surface(kind):
-    pattern = drawn(context(12, 12, 12), kind, cell_mm=6.0, thickness_mm=0.8)
+def test_a_sheet_of_a_thickness_has_it_times_its_middle_surface(kind, step):
+    pattern = drawn(context(12, 12, 12, step=step), kind, cell_mm=6.0, thickness_mm=0.8)
     # Area of the minimal surface in a unit cell: 3.09144 (gyroid) and 2.34510 (P); of D, 3.83778 in its own cubic cell,
     # which is half of the wave's (Schroeder-Turk et al. 2006). The waves are approximations of the surfaces.
     area = {"gyroid": 3.0914, "schwarz-p": 2.3451, "diamond": 3.8378}[kind]
@@ -120,8 +133,9 @@ def test_waves_meet_their_integral():
     check(at, mixed)
 
 
-def test_several_patterns_together():
-    at = context(30, 20, 12)
+@STEPS
+def test_several_patterns_together(step):
+    at = context(30, 20, 12, step=step)
     parts = [
         drawn(at, "bars", pitch_mm=3.0, height_mm=1.0),
         drawn(at, "octet", cell_mm=5.0, volume_fraction=0.25, depth_mm=2.0, height_mm=5.0),
