@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 from collections.abc import Callable
 from functools import cache
@@ -13,7 +14,6 @@ from hypothesis import settings
 from pneutouch.catalogue import Library
 from pneutouch.evaluation import Evaluation, evaluate
 from pneutouch.spec.read import parse_changes
-from pneutouch.workflows.build import build as build_design
 from tests.running import Shared, in_new_process, in_process
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -49,12 +49,31 @@ def evaluated(library: Library) -> Callable[..., Evaluation]:
 
 
 @pytest.fixture(scope="session")
-def built(evaluated: Callable[..., Evaluation], shared: Shared) -> Callable[[str], Path]:
-    """The output folder of a design, built once for all tests: to be read, not written."""
+def built_as_a_user(shared: Shared) -> Callable[[str], tuple[subprocess.CompletedProcess[str], Path]]:
+    """What ``pneutouch build NAME --json`` prints in a process and folder of its own, and that folder; run once for all tests."""
 
     @cache
+    def run(name: str) -> tuple[subprocess.CompletedProcess[str], Path]:
+        words = ("build", name, "--json")
+
+        def fill(folder: Path) -> None:
+            done = in_new_process(words, folder, {"PYTHONHASHSEED": "1"})
+            (folder / "done.json").write_text(json.dumps([done.returncode, done.stdout, done.stderr]))
+
+        folder = shared.folder(f"build-{name}", fill)
+        return subprocess.CompletedProcess(words, *json.loads((folder / "done.json").read_text())), folder
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def built(built_as_a_user: Callable[[str], tuple[subprocess.CompletedProcess[str], Path]]) -> Callable[[str], Path]:
+    """The output folder of a design, built once for all tests: to be read, not written."""
+
     def run(name: str) -> Path:
-        return shared.folder(f"build-{name}", lambda fresh: build_design(evaluated(name), fresh)) / name
+        done, folder = built_as_a_user(name)
+        assert done.returncode == 0, done.stderr
+        return folder / "outputs" / name
 
     return run
 

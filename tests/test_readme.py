@@ -6,8 +6,6 @@ import contextlib
 import io
 import re
 import shlex
-import subprocess
-import sys
 
 import pytest
 
@@ -26,11 +24,9 @@ COMMANDS = [line for block in blocks("sh") for line in block.splitlines() if lin
 
 
 @pytest.mark.parametrize("line", COMMANDS)
-def test_command_runs(line, tmp_path):
+def test_command_runs(line, command, tmp_path):
     words = shlex.split(line.replace("/tmp/sensors", str(tmp_path / "sensors")), comments=True)[1:]
-    result = subprocess.run(
-        [sys.executable, "-m", "pneutouch", *words], cwd=tmp_path, capture_output=True, text=True, check=False
-    )
+    result = command(*words)
     assert result.returncode == 0, result.stderr
 
 

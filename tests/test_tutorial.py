@@ -12,6 +12,7 @@ import pytest
 from pneutouch.spec.campaign import Campaign
 from pneutouch.spec.read import validate
 from tests.conftest import ROOT
+from tests.running import in_process
 
 TEXT = (ROOT / "docs" / "measuring.md").read_text(encoding="utf-8")
 
@@ -19,9 +20,6 @@ TEXT = (ROOT / "docs" / "measuring.md").read_text(encoding="utf-8")
 @pytest.fixture(scope="module")
 def walked(tmp_path_factory):
     """The folder after all of the tutorial's commands, and what each of them said."""
-    import subprocess
-    import sys
-
     folder = tmp_path_factory.mktemp("tutorial")
     block = re.search(r"```sh\n(.*?)```", TEXT, re.DOTALL)
     assert block is not None
@@ -29,9 +27,7 @@ def walked(tmp_path_factory):
     for line in block.group(1).splitlines():
         words = shlex.split(line, comments=True)
         assert words[0] == "pneutouch"
-        result = subprocess.run(
-            [sys.executable, "-m", *words], cwd=folder, capture_output=True, text=True, check=False, timeout=300
-        )
+        result = in_process(words[1:], folder)
         assert result.returncode == 0, f"{line}\n{result.stderr}"
         said[words[1]] = result.stdout
     return folder, said

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-import time
 
 import pytest
 
@@ -81,22 +80,25 @@ def test_new_writes_a_design_that_predicts_and_never_overwrites(command, tmp_pat
         assert command("new", "--", name).returncode == 2
 
 
-def test_build_prints_the_folder_and_nothing_else_on_stdout(command, tmp_path):
-    result = command("build", "paper-dome", "--out", str(tmp_path / "o"), "--json")
+def test_build_prints_the_folder_and_nothing_else_on_stdout(built_as_a_user):
+    result, folder = built_as_a_user("paper-dome")
     assert result.returncode == 0, result.stderr
     document = json.loads(result.stdout)
-    assert document["folder"].endswith("o/paper-dome")
+    assert document["folder"] == "outputs/paper-dome"
+    assert (folder / document["folder"] / "manifest.json").is_file()
     assert "warning" in result.stderr
 
 
-def test_an_output_that_is_a_file_is_refused_before_any_work(command, tmp_path):
+def test_an_output_that_is_a_file_is_refused_before_any_work(command, tmp_path, monkeypatch):
+    def work(*_, **__):
+        raise AssertionError("the rules are checked")
+
+    monkeypatch.setattr("pneutouch.workflows.build.run.refuse", work)
     (tmp_path / "file").write_text("x")
-    start = time.perf_counter()
     result = command("build", "paper-dome", "--out", str(tmp_path / "file"))
     assert result.returncode == 2
     assert "--out" in result.stderr
     assert "Traceback" not in result.stderr
-    assert time.perf_counter() - start < 5
 
 
 def modules_after(*words):
@@ -118,15 +120,3 @@ def modules_after(*words):
 )
 def test_light_commands_load_no_heavy_package(words):
     assert modules_after(*words) & HEAVY == set()
-
-
-def test_help_costs_little_more_than_typer_and_pydantic():
-    """Ratio of the best of several runs, taken in turn so that the machine's mood cancels."""
-
-    def seconds(*words):
-        start = time.perf_counter()
-        subprocess.run([sys.executable, *words], check=True, capture_output=True)
-        return time.perf_counter() - start
-
-    pairs = [(seconds("-c", "import typer, pydantic"), seconds("-m", "pneutouch", "--help")) for _ in range(7)]
-    assert min(ours for _, ours in pairs) <= 2.5 * min(base for base, _ in pairs)

@@ -5,8 +5,6 @@ from __future__ import annotations
 import re
 import shlex
 import shutil
-import subprocess
-import sys
 import tomllib
 
 import pytest
@@ -19,11 +17,9 @@ COMMANDS = [line for block in re.findall(r"```sh\n(.*?)```", TEXT, re.DOTALL) fo
 
 
 @pytest.mark.parametrize("line", COMMANDS)
-def test_command_runs(line, tmp_path):
+def test_command_runs(line, command, tmp_path):
     shutil.copytree(ROOT / "docs" / "examples", tmp_path / "docs" / "examples")
-    done = subprocess.run(
-        [sys.executable, "-m", "pneutouch", *shlex.split(line)[1:]], cwd=tmp_path, capture_output=True, text=True
-    )
+    done = command(*shlex.split(line)[1:])
     assert done.returncode == 0, done.stderr
 
 
