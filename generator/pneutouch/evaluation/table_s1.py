@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from pneutouch.mechanics import Sensor, predict
-from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.paper_sensor import is_paper_sensor, material_sensor
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
 
@@ -34,6 +34,12 @@ def measured(material: Material) -> tuple[float, float] | None:
     if found is None:
         return None
     return found.sensitivity_0kPa_kPa_per_N.nominal, found.sensitivity_22kPa_kPa_per_N.nominal
+
+
+def published_sensitivities(sensor: Sensor, material: Material) -> dict[float, float]:
+    """Table S1 for a sensor that is the paper's: driving pressure in kPa to kPa/N; empty for any other."""
+    values = measured(material)
+    return dict(zip(PRESSURES, values, strict=True)) if values and is_paper_sensor(sensor) else {}
 
 
 def compute_errors(material: Material, model: str, closure: str) -> list[float | None]:

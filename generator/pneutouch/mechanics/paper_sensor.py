@@ -3,13 +3,32 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
 from pneutouch.spec.material import Material
 from pneutouch.units import GAUGE_LIMIT, STANDARD_ATMOSPHERE
 
-PAPER_RADIUS, PAPER_WALL, PAPER_PLATE = 9.25, 1.5, 30.0
+PAPER_RADIUS, PAPER_WALL, PAPER_PLATE, PAPER_DEPTH = 9.25, 1.5, 30.0, 0.75 * 9.25
 """The paper's sensor in mm: section 2-B and Supplement B."""
+
+
+_SAME = 1e-6
+"""Relative tolerance within which a length, a pressure or a volume is the paper's: below any that can be printed."""
+
+
+def is_paper_sensor(sensor: Sensor) -> bool:
+    """Whether dome, gas, plate and depth are the paper's, in any resin and clamp, so that its Table S1 applies."""
+    dome, gas, protocol = sensor.dome, sensor.gas, sensor.protocol
+    pairs = [
+        (dome.inner_radius, PAPER_RADIUS),
+        (dome.wall_thickness, PAPER_WALL),
+        (2 * protocol.plate_radius, PAPER_PLATE),
+        (protocol.depth, PAPER_DEPTH),
+        (gas.ambient_pressure, STANDARD_ATMOSPHERE),
+    ]
+    same = all(math.isclose(value, paper, rel_tol=_SAME) for value, paper in pairs)
+    return same and gas.dead_volume <= _SAME * dome.inner_radius**3
 
 
 def material_sensor(material: Material) -> Sensor:
@@ -31,7 +50,7 @@ def material_sensor(material: Material) -> Sensor:
         Dome(PAPER_RADIUS, PAPER_WALL),
         dataclasses.replace(wall, shear_modulus=wall.hyperelastic.mu),
         GasCircuit(STANDARD_ATMOSPHERE, dead_volume=0.0, gauge_limit=GAUGE_LIMIT),
-        IndentationProtocol(0.5 * PAPER_PLATE, depth=0.75 * PAPER_RADIUS, steps=14),
+        IndentationProtocol(0.5 * PAPER_PLATE, depth=PAPER_DEPTH, steps=14),
     )
 
 

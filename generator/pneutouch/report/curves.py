@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -138,7 +138,7 @@ def _plot_states(ax: Axes, prediction: SensorPrediction, curve: Callable[[Sensor
     ax.legend(title="driving pressure", title_fontsize=7, loc="upper left", handlelength=3)
 
 
-def sensitivities(curves: dict[str, ResinCurve], chosen: str, published_kPa_per_N: dict[float, float]) -> str:
+def sensitivities(curves: dict[str, ResinCurve], chosen: str, published_kPa_per_N: Mapping[float, float]) -> str:
     """Sensitivity over driving pressure for every resin, the chosen one picked out.
 
     ``curves`` are by label; ``published_kPa_per_N`` maps driving pressures (kPa) to measured sensitivities (kPa/N) of this very

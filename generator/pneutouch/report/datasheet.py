@@ -51,7 +51,7 @@ def _figures(sheet: Datasheet, resins: dict[str, ResinCurve], sensor: Sensor) ->
     found = {
         "drawing": section_drawing(sheet.assembly),
         "inflation": curves.inflation(sensor, prediction),
-        "sensitivity": curves.sensitivities(resins, chosen, sheet.published_kPa_per_N()),
+        "sensitivity": curves.sensitivities(resins, chosen, sheet.published_kPa_per_N),
         "response": curves.response(prediction),
         "indentation": curves.indentation(prediction),
     }

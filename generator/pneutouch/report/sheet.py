@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from pneutouch import __version__
@@ -43,6 +44,7 @@ class Datasheet:
         gas: What the air does, one entry a state; None where the atlas does not know.
         tradeoff: What the design is set in; None where the atlas does not know.
         tuning: Its sensitivity over the driving pressure; None where the atlas does not know.
+        published_kPa_per_N: Published sensitivities of this sensor by driving pressure, kPa.
     """
 
     scene: ResolvedDesign
@@ -56,6 +58,7 @@ class Datasheet:
     gas: GasNotes | None = None
     tradeoff: TradeOff | None = None
     tuning: TuningChart | None = None
+    published_kPa_per_N: Mapping[float, float] = field(default_factory=dict)
 
     def content(self) -> dict[str, Any]:
         """The sections of the sheet; every leaf is text, ready to be printed."""
@@ -184,22 +187,8 @@ class Datasheet:
             for s, sure in zip(self.prediction.states, self.uncertainty, strict=True)
         ]  # fmt: skip
 
-    def is_paper_sensor(self) -> bool:
-        """Whether this is the paper's sensor under the paper's conditions, so that its Table S1 applies."""
-        layout, design = self.assembly.layout, self.scene.design
-        same = (layout.inner_radius, layout.wall, design.indentation.plate_diameter_mm) == (9.25, 1.5, 30.0)
-        press = design.indentation.depth_mm is None and design.pneumatics.ambient_pressure_kPa == 101.325
-        return same and press and self.prediction.dead_volume == 0 and self.scene.membrane_material.measured is not None
-
-    def published_kPa_per_N(self) -> dict[float, float]:
-        """Published sensitivities of this sensor: driving pressure in kPa to kPa/N."""
-        measured = self.scene.membrane_material.measured
-        if measured is None or not self.is_paper_sensor():
-            return {}
-        return {0.0: measured.sensitivity_0kPa_kPa_per_N.nominal, 22.0: measured.sensitivity_22kPa_kPa_per_N.nominal}
-
     def _published(self, pressure: float) -> str:
-        value = self.published_kPa_per_N().get(round(pressure, 9))
+        value = self.published_kPa_per_N.get(round(pressure, 9))
         return DASH if value is None else f"{value:.3f}"
 
     def model_error(self) -> list[str]:

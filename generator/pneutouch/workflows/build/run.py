@@ -12,6 +12,7 @@ from pneutouch.body import Body
 from pneutouch.errors import InputError, RuleBrokenError
 from pneutouch.evaluation.document import full_document
 from pneutouch.evaluation.evaluate import Evaluation
+from pneutouch.evaluation.table_s1 import published_sensitivities
 from pneutouch.evaluation.uncertainty import unknown
 from pneutouch.export.scene import cut_open, glb, stl, viewer_html
 from pneutouch.export.step import step
@@ -74,6 +75,7 @@ def _sheet(evaluation: Evaluation) -> Datasheet:
     sheet = Datasheet(
         evaluation.scene, evaluation.assembly, prediction, evaluation.findings, input_hash(evaluation),
         evaluation.resins, evaluation.uncertainty, evaluation.estimates,
+        published_kPa_per_N=published_sensitivities(sensor, evaluation.scene.membrane_material),
     )  # fmt: skip
     if unknown(sensor, prediction.model) is not None:
         return sheet
@@ -82,7 +84,7 @@ def _sheet(evaluation: Evaluation) -> Datasheet:
 
     tuned = tuning(evaluation, sheet.rated_pressure_kPa() * KPA)
     if tuned is not None:
-        tuned = replace(tuned, published_kPa_per_N=tuple(sheet.published_kPa_per_N().items()))
+        tuned = replace(tuned, published_kPa_per_N=tuple(sheet.published_kPa_per_N.items()))
     return replace(sheet, gas=air(evaluation), tradeoff=tradeoff(evaluation), tuning=tuned)
 
 
