@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 from pneutouch.catalogue import load_scene
 from pneutouch.cli.app import app
-from pneutouch.errors import InputError
+from pneutouch.errors import InputError, RuleBrokenError
 from pneutouch.export.voxels.manifest import MANIFEST
 from pneutouch.export.voxels.read import read_stack
 from pneutouch.output.files import digest
@@ -126,7 +126,7 @@ def test_a_printer_without_voxels_is_refused_before_anything_is_written(library,
     scene = load_scene("paper-dome", None, library)
     plan = plan_voxels(assemble(scene), library=library)
     with pytest.raises(
-        InputError, match=r"print\.profile = 'objet260-connex': the .* takes no voxel stacks .* such as j735"
+        RuleBrokenError, match=r"print\.profile = 'objet260-connex': .* takes no voxel stacks .* such as j735"
     ):
         write_voxels(plan, tmp_path, "abc")
     assert list(tmp_path.iterdir()) == []
@@ -148,7 +148,7 @@ def test_too_large_too_low_and_too_many_colours_are_found(library, tmp_path):
     few = plan.mode.model_copy(update={"resins_at_once": 1})
     assert "has 1 colours at most" in said(mode=few)[0]
     large = replace(plan, findings=tuple(check_stack(printer, plan.mode, ("VeroClear",), 100, (400.0, 1.0, 1.0), "x")))
-    with pytest.raises(InputError, match=r"400\.0 x 1\.0 x 1\.0 mm; the machine builds 350 x 350 x 200 mm"):
+    with pytest.raises(RuleBrokenError, match=r"400\.0 x 1\.0 x 1\.0 mm; the machine builds 350 x 350 x 200 mm"):
         write_voxels(large, tmp_path, "abc")
     assert list(tmp_path.iterdir()) == []
 
@@ -231,7 +231,7 @@ def test_a_whole_build_and_its_stack_are_of_one_input(tmp_path):
 def test_check_and_build_refuse_a_printer_without_voxels(tmp_path):
     runner = CliRunner()
     result = runner.invoke(app, ["build", "paper-dome", "--model", "membrane", "--voxels", "--out", str(tmp_path)])
-    assert result.exit_code == 2
+    assert result.exit_code == 1
     assert "print.profile = 'objet260-connex'" in result.stderr
     assert list(tmp_path.iterdir()) == []
     result = runner.invoke(app, ["check", "paper-dome", "--voxels"])

@@ -17,8 +17,13 @@ _DIGITS = 12
 
 
 def input_hash(inputs: Mapping[str, Any], version: str = __version__) -> str:
-    """First twelve digits of the SHA-256 of the inputs and the version."""
-    return digest(json_bytes({"inputs": inputs, "version": version}))[:_DIGITS]
+    """Short digest of the inputs and the version."""
+    return short_digest({"inputs": inputs, "version": version})
+
+
+def short_digest(document: Mapping[str, Any]) -> str:
+    """First twelve digits of the SHA-256 of a JSON document."""
+    return digest(json_bytes(document))[:_DIGITS]
 
 
 def versions() -> dict[str, str]:

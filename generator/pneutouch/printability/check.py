@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from pneutouch.printability.finding import Finding, by_severity
+from pneutouch.printability.finding import Finding
 from pneutouch.printability.rules import (
     cleaning,
     contact_faces,
@@ -53,5 +53,4 @@ def check(subject: PrintSubject, sensor_context: SensorContext | None = None) ->
     working (driving, layers) report nothing without ``sensor_context``.
     """
     view = PrintView(subject, sensor_context)
-    findings = [finding for rule in RULES.values() for finding in rule(view)]
-    return by_severity(findings)
+    return sorted((finding for rule in RULES.values() for finding in rule(view)), key=lambda finding: finding.rank)

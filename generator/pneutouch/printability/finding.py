@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from os import PathLike
 from typing import Any, Literal, get_args
+
+from pneutouch.errors import RuleBrokenError, joined
 
 Severity = Literal["error", "warning", "note"]
 
@@ -35,6 +38,11 @@ class Finding:
     where: tuple[float, float, float] | None = None
     excess: Excess | None = None
 
+    @property
+    def rank(self) -> int:
+        """Place of the severity in a list of findings: errors come first."""
+        return get_args(Severity).index(self.severity)
+
     def document(self) -> dict[str, Any]:
         """The finding as ``check`` prints it."""
         return {
@@ -49,6 +57,12 @@ class Finding:
         }
 
 
-def by_severity(findings: Iterable[Finding]) -> list[Finding]:
-    """Errors first, then warnings, then notes; the order within each is kept."""
-    return sorted(findings, key=lambda finding: get_args(Severity).index(finding.severity))
+def refuse(findings: Iterable[Finding], file: str | PathLike[str], key: str | None = None, value: Any = None) -> None:
+    """Raise RuleBrokenError with all findings that are errors, where there are any; ``key`` is the key that decides."""
+    broken = [
+        RuleBrokenError(f"{f.rule}: {f.body}: {f.message}", file=file, key=key, value=value, remedy=f.fix)
+        for f in findings
+        if f.severity == "error"
+    ]
+    if broken:
+        raise joined(broken)

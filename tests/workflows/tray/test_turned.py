@@ -10,11 +10,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pneutouch.body import Body
+from pneutouch.packing import PackedPosition, PackingArea, pack
 from pneutouch.parts.lettering.mark import Mark
 from pneutouch.spec.read import parse_changes
 from pneutouch.workflows.tray.lay import TrayPart, lay
 from pneutouch.workflows.tray.order import order_of_flags
-from pneutouch.workflows.tray.pack import PackedPosition, PackingArea, pack
 
 SIDES = st.floats(2.0, 40.0).map(lambda x: round(x, 3))
 

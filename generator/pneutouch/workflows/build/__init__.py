@@ -1,5 +1,5 @@
 """A design to its output folder."""
 
-from pneutouch.workflows.build.run import STEPS, build, input_hash, inputs, refuse
+from pneutouch.workflows.build.run import STEPS, build, input_hash, inputs
 
-__all__ = ["STEPS", "build", "input_hash", "inputs", "refuse"]
+__all__ = ["STEPS", "build", "input_hash", "inputs"]

@@ -9,7 +9,7 @@ from typing import Any
 
 from pneutouch import __version__
 from pneutouch.body import Body
-from pneutouch.errors import InputError, RuleBrokenError
+from pneutouch.errors import InputError
 from pneutouch.evaluation.document import full_document
 from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.evaluation.table_s1 import published_sensitivities
@@ -22,6 +22,7 @@ from pneutouch.output.files import check_writable, json_bytes, write_folder
 from pneutouch.output.manifest import input_hash as hash_of
 from pneutouch.output.manifest import versions, with_manifest
 from pneutouch.output.recipe import BuildRecipe
+from pneutouch.printability import refuse
 from pneutouch.report import Datasheet, datasheet, print_sheet
 from pneutouch.report.picture import picture
 from pneutouch.units import KPA, ML
@@ -46,7 +47,7 @@ def build(evaluation: Evaluation, out: Path, progress: Progress = lambda step: N
     folder = out / scene.name
     check_writable(folder)
     progress("rules")
-    refuse(evaluation)
+    refuse(evaluation.findings, scene.where)
     progress("meshes")
     bodies = tuple(body.moved(assembly.print_offset) for body in assembly.bodies)
     files: dict[str, bytes] = {"prediction.json": json_bytes(full_document(evaluation))}
@@ -86,14 +87,6 @@ def _sheet(evaluation: Evaluation) -> Datasheet:
     if tuned is not None:
         tuned = replace(tuned, published_kPa_per_N=tuple(sheet.published_kPa_per_N.items()))
     return replace(sheet, gas=air(evaluation), tradeoff=tradeoff(evaluation), tuning=tuned)
-
-
-def refuse(evaluation: Evaluation) -> None:
-    """Raise RuleBrokenError where a finding is an error."""
-    errors = [finding for finding in evaluation.findings if finding.severity == "error"]
-    if errors:
-        lines = [f"{evaluation.scene.where}: {f.rule}: {f.message}; {f.fix}" for f in errors]
-        raise RuleBrokenError("\n".join(lines))
 
 
 def inputs(evaluation: Evaluation) -> dict[str, Any]:

@@ -22,7 +22,7 @@ from pneutouch.export.voxels.raster import raster
 from pneutouch.export.voxels.slices import VoxelSlicer
 from pneutouch.output.files import check_writable, digest, exchange, json_bytes
 from pneutouch.parts import Assembly
-from pneutouch.printability import Finding
+from pneutouch.printability import Finding, refuse
 from pneutouch.printability.rules.voxels import check_stack
 from pneutouch.spec.printer import Mode
 
@@ -44,12 +44,9 @@ class VoxelPlan:
     findings: tuple[Finding, ...]
 
     def refuse(self) -> None:
-        """Raise InputError where a rule is broken; it names the design file and the key."""
+        """Raise RuleBrokenError where a rule is broken; it names the design file and the key."""
         scene = self.assembly.scene
-        for finding in self.findings:
-            if finding.severity == "error":
-                head = f"{scene.where}: print.profile = {scene.design.print.profile!r}"
-                raise InputError(f"{head}: {finding.message}; {finding.fix}")
+        refuse(self.findings, scene.where, "print.profile", scene.design.print.profile)
 
 
 def plan_voxels(
@@ -89,8 +86,8 @@ def write_voxels(
 ) -> tuple[Path, list[str]]:
     """Write the stack into ``out/<name>-voxels/``; returns the folder, and a line for each fraction that is not met.
 
-    The folder appears whole or not at all. Raises InputError where a rule is broken, with nothing written, and where
-    the folder cannot be written.
+    The folder appears whole or not at all. Raises RuleBrokenError, with nothing written, where a rule is broken, and InputError
+    where the folder cannot be written.
     """
     plan.refuse()
     scene = plan.assembly.scene

@@ -8,6 +8,7 @@ import numpy as np
 
 from pneutouch.body import Body, Solid
 from pneutouch.errors import InputError
+from pneutouch.packing import PackingArea, in_rows
 from pneutouch.spec.printer import Mode, Printer
 from pneutouch.workflows.coupons.order import CouponItem
 
@@ -44,26 +45,24 @@ def lay(printer_name: str, items: tuple[CouponItem, ...]) -> tuple[CouponPiece, 
     printer = items[0].printer
     mode = job_mode(printer_name, items)
     pieces = [_piece(item, solid, printer, mode) for item in items for solid in item.coupon.draw(item.context)]
-    room = printer.envelope_mm
-    x = y = MARGIN
-    depth = 0.0
-    placed: dict[int, list[tuple[float, float]]] = {k: [] for k in range(len(pieces))}
+    envelope = printer.envelope_mm
     # The deepest first, so that a row wastes little; equal ones stay in the order of the sheet.
-    for k in sorted(range(len(pieces)), key=lambda k: -pieces[k].size[1]):
+    order = [
+        k for k in sorted(range(len(pieces)), key=lambda k: -pieces[k].size[1]) for _ in range(pieces[k].item.copies)
+    ]
+    positions = in_rows([pieces[k].size[:2] for k in order], PackingArea(envelope.x, envelope.y, MARGIN, SPACING))
+    places: dict[int, list[tuple[float, float]]] = {k: [] for k in order}
+    for k, position in zip(order, positions, strict=True):
         wide, deep, high = pieces[k].size
-        for _ in range(pieces[k].item.copies):
-            if x > MARGIN and x + wide + MARGIN > room.x:
-                x, y, depth = MARGIN, y + depth + SPACING, 0.0
-            if x + wide + MARGIN > room.x or y + deep + MARGIN > room.y or high > room.z:
-                problem = (
-                    f"{pieces[k].body.name} is {wide:.1f} x {deep:.1f} x {high:.1f} mm and no longer fits the tray of "
-                    f"{room.x:g} x {room.y:g} x {room.z:g} mm beside the others"
-                )
-                remedy = "take fewer `copies`, `only` some, or fewer `material`"
-                raise InputError(problem, file=printer_name, remedy=remedy)
-            placed[k].append((round(x, 3), round(y, 3)))
-            x, depth = x + wide + SPACING, max(depth, deep)
-    return tuple(replace(piece, places=tuple(placed[k])) for k, piece in enumerate(pieces))
+        if position is None or high > envelope.z:
+            problem = (
+                f"{pieces[k].body.name} is {wide:.1f} x {deep:.1f} x {high:.1f} mm and no longer fits the tray of "
+                f"{envelope.x:g} x {envelope.y:g} x {envelope.z:g} mm next to the others"
+            )
+            remedy = "take fewer `copies`, `only` some, or fewer `material`"
+            raise InputError(problem, file=printer_name, remedy=remedy)
+        places[k].append((round(position.x, 3), round(position.y, 3)))
+    return tuple(replace(piece, places=tuple(places[k])) for k, piece in enumerate(pieces))
 
 
 def job_mode(printer_name: str, items: tuple[CouponItem, ...]) -> Mode:

@@ -16,11 +16,11 @@ from pneutouch.meridian import Line
 from pneutouch.output.files import check_writable, json_bytes, write_folder
 from pneutouch.output.manifest import input_hash, versions, with_manifest
 from pneutouch.parts.specimen.plate import holes, outline
-from pneutouch.printability import Finding
+from pneutouch.printability import Finding, refuse
 from pneutouch.spec.read import Changes
 from pneutouch.workflows.specimen.draw import SpecimenBodies, draw
 from pneutouch.workflows.specimen.drawing import drawing_svg
-from pneutouch.workflows.specimen.findings import findings, refuse
+from pneutouch.workflows.specimen.findings import findings
 from pneutouch.workflows.specimen.load import ResolvedSpecimen, load_specimen
 from pneutouch.workflows.specimen.sheet import sheet
 from pneutouch.workflows.specimen.truth import truth
@@ -47,7 +47,7 @@ def build_specimen(
     drawn = draw(scene)
     progress("rules")
     found = findings(drawn)
-    refuse(drawn, found)
+    refuse(found, scene.where)
     files = _files(drawn, found, progress)
     progress("files")
     write_folder(folder, with_manifest(files, scene.name, inputs(scene), **_measured(drawn, found)))

@@ -8,10 +8,8 @@ import numpy as np
 
 from pneutouch.arrays import Array, Indices
 from pneutouch.body import Body
-from pneutouch.errors import RuleBrokenError
 from pneutouch.parts.specimen import Box
 from pneutouch.printability import Finding, check
-from pneutouch.printability.finding import by_severity
 from pneutouch.printability.subject import Joint, PrintItem, PrintSubject
 from pneutouch.workflows.specimen.draw import SpecimenBodies
 
@@ -35,15 +33,7 @@ def findings(drawn: SpecimenBodies) -> list[Finding]:
         if finding.rule not in OPEN and not _rounding(drawn, finding)
     ]
     whole = [finding for finding in check(block_of(drawn)) if finding.rule in OPEN]
-    return by_severity([*own, *whole, *_unmeasured(drawn)])
-
-
-def refuse(drawn: SpecimenBodies, found: list[Finding]) -> None:
-    """Raise RuleBrokenError where a finding is an error."""
-    errors = [finding for finding in found if finding.severity == "error"]
-    if errors:
-        where = drawn.scene.where
-        raise RuleBrokenError("\n".join(f"{where}: {f.rule}: {f.body}: {f.message}; {f.fix}" for f in errors))
+    return sorted([*own, *whole, *_unmeasured(drawn)], key=lambda finding: finding.rank)
 
 
 def bodies_of(drawn: SpecimenBodies) -> PrintSubject:

@@ -8,7 +8,7 @@ from pneutouch.parts.specimen import PatternGeometry
 from pneutouch.spec.specimen import Layer
 from pneutouch.workflows.specimen.draw import SpecimenBodies
 
-_DIGITS = 6
+_DECIMALS = 6
 
 
 def truth(drawn: SpecimenBodies) -> dict[str, Any]:
@@ -63,4 +63,4 @@ def _layer(drawn: SpecimenBodies, layer: Layer, pattern: PatternGeometry) -> dic
 
 
 def _rounded(value: float) -> float:
-    return round(float(value), _DIGITS) + 0.0
+    return round(float(value), _DECIMALS) + 0.0

@@ -13,12 +13,12 @@ from pneutouch.arrays import Array
 from pneutouch.body import Body, Solid
 from pneutouch.catalogue import Library
 from pneutouch.errors import ComputationError, InputError
+from pneutouch.packing import PackedPosition, PackingArea, pack
 from pneutouch.parts.lettering.mark import Mark, Marker, shape_of
 from pneutouch.spec.printer import Mode, Printer
 from pneutouch.units import UM
 from pneutouch.workflows.tray.expand import ExpandedTray, TrayPiece, TrayVariant, expand
 from pneutouch.workflows.tray.order import TrayOrder
-from pneutouch.workflows.tray.pack import PackedPosition, PackingArea, pack
 from pneutouch.workflows.tray.resins import changes, jobs
 
 Progress = Callable[[str], None]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from pneutouch.errors import RuleBrokenError
 from pneutouch.parts.lettering.mark import shape_of
 from pneutouch.printability import Finding, check
 from pneutouch.workflows.tray.lay import TrayLayout
@@ -19,11 +18,15 @@ class TrayFinding:
     finding: Finding
 
     @property
+    def parts(self) -> str:
+        """The labels in short."""
+        return self.labels[0] if len(self.labels) == 1 else f"{self.labels[0]} and {len(self.labels) - 1} more"
+
+    @property
     def text(self) -> str:
         """One line: where it holds, what it is and what would fix it."""
-        found = self.finding
-        parts = self.labels[0] if len(self.labels) == 1 else f"{self.labels[0]} and {len(self.labels) - 1} more"
-        return f"{found.severity}: {parts}: {found.rule}: {found.message}; {found.fix}"
+        finding = self.finding
+        return f"{finding.severity}: {self.parts}: {finding.rule}: {finding.message}; {finding.fix}"
 
 
 def findings(laid: TrayLayout) -> tuple[TrayFinding, ...]:
@@ -38,12 +41,4 @@ def findings(laid: TrayLayout) -> tuple[TrayFinding, ...]:
             labels = tuple(job.parts[k].label for k in places)
             judged = check(subject(job.parts[places[0]], laid.printer, job.mode))
             found += [TrayFinding(labels, finding) for finding in judged]
-    order = ("error", "warning", "note")
-    return tuple(sorted(found, key=lambda one: order.index(one.finding.severity)))
-
-
-def refuse(laid: TrayLayout, found: tuple[TrayFinding, ...]) -> None:
-    """Raise RuleBrokenError where a finding is an error."""
-    broken = [f"{laid.order.where}: {one.text}" for one in found if one.finding.severity == "error"]
-    if broken:
-        raise RuleBrokenError("\n".join(broken))
+    return tuple(sorted(found, key=lambda one: one.finding.rank))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,15 +11,14 @@ from pneutouch import __version__
 from pneutouch.body import Body
 from pneutouch.export.scene import stl
 from pneutouch.export.threemf_tray import TRAY_RECIPE, TrayItem, threemf_tray
-from pneutouch.output.files import check_writable, digest, json_bytes, write_folder
-from pneutouch.output.manifest import with_manifest
+from pneutouch.output.files import check_writable, write_folder
+from pneutouch.output.manifest import short_digest, with_manifest
 from pneutouch.output.recipe import scene_shelves
+from pneutouch.printability import refuse
 from pneutouch.workflows.tray.labels import labels_csv, labels_md, rows
 from pneutouch.workflows.tray.lay import Progress, TrayJob, TrayLayout, TrayPart, counted, fill
-from pneutouch.workflows.tray.rules import TrayFinding, findings, refuse
+from pneutouch.workflows.tray.rules import TrayFinding, findings
 from pneutouch.workflows.tray.view import tray_svg
-
-"""Name of the metadata entry that holds what a tray follows from."""
 
 
 def write_tray(laid: TrayLayout, folder: Path, progress: Progress = lambda step: None) -> Path:
@@ -29,7 +29,7 @@ def write_tray(laid: TrayLayout, folder: Path, progress: Progress = lambda step:
     check_writable(folder)
     progress("rules")
     found = findings(laid)
-    refuse(laid, found)
+    refuse((replace(one.finding, body=one.parts) for one in found), laid.order.where)
     files: dict[str, bytes] = {}
     recipe = json.dumps(inputs(laid), sort_keys=True, allow_nan=False, separators=(",", ":"))
     for job in laid.jobs:
@@ -43,8 +43,8 @@ def write_tray(laid: TrayLayout, folder: Path, progress: Progress = lambda step:
     files["labels.csv"], files["labels.md"] = labels_csv(laid), labels_md(laid, found)
     progress("files")
     content = inputs(laid)
-    # A tray's hash is of its inputs alone, without the version.
-    short = digest(json_bytes(content))[:12]
+    # The version is among the inputs of a tray.
+    short = short_digest(content)
     write_folder(folder, with_manifest(files, laid.order.name, content, input_hash=short, **_jobs(laid, found)))
     return folder
 
@@ -70,7 +70,7 @@ def inputs(laid: TrayLayout) -> dict[str, Any]:
         if model is None:
             return None
         content = model.model_dump(mode="json")
-        name = digest(json_bytes(content))[:12]
+        name = short_digest(content)
         things[name] = content
         return name
 

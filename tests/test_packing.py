@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pneutouch.errors import InputError
-from pneutouch.workflows.tray.pack import PackingArea, pack
+from pneutouch.packing import PackingArea, pack
 
 SIDES = st.floats(2.0, 60.0, allow_nan=False).map(lambda x: round(x, 3))
 SIZES = st.lists(st.tuples(SIDES, SIDES), min_size=1, max_size=40)
