@@ -65,13 +65,13 @@ def override(content: Mapping[str, Any], changes: Changes, model: type[BaseModel
 
 def parse_changes(assignments: Iterable[str]) -> dict[str, Any]:
     """Changes from texts ``table.key=value``, whose values are TOML or bare words. Raises InputError."""
-    found = {}
+    changes = {}
     for text in assignments:
         key, equals, value = (part.strip() for part in text.partition("="))
         if not equals or key.count(".") != 1:
             raise InputError("write table.key=value, such as membrane.material=FLX9960", key="set", value=text)
-        found[key] = toml_value(value)
-    return found
+        changes[key] = toml_value(value)
+    return changes
 
 
 def assignments(changes: Changes) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
@@ -42,10 +43,12 @@ class Springs:
 def springs(gas: float) -> SimpleNamespace:
     """One quadratic dome with gas at absolute pressure ``gas`` in a room of 2, at rest; 0 is none."""
     one = np.ones(1)
-    return SimpleNamespace(
+    press = SimpleNamespace(
         slices=Springs(), k=np.zeros(1, dtype=np.intp), ambient=gas * one, dead=0 * one, reach=one, free=0 * one,
         apex=one, content=2.0 * gas * one, volume=lambda nu: 2.0 + nu,
     )  # fmt: skip
+    press.solve = partial(AtlasPress.solve, press)
+    return press
 
 
 def run(press, prony, clock, travel):

@@ -70,12 +70,17 @@ class PressTrack(NamedTuple):
 
 
 class AtlasSolution(NamedTuple):
-    """States found, (n,) each; see `PressTrack`."""
+    """Solutions, (n,) each; see `PressTrack`. ``converged`` without regard to whether the state is supported and unfolded."""
 
     nu: Array
     point: AtlasPoint
     margin: Array
-    ok: Flags
+    converged: Flags
+
+    @property
+    def ok(self) -> Flags:
+        """Where the solution is a state of the sensor."""
+        return self.converged & self.point.supported & ~self.point.folded
 
 
 class AtlasPress:
@@ -105,18 +110,26 @@ class AtlasPress:
             setattr(part, name, getattr(self, name)[rows])
         return part
 
-    def solve(self, nu: Array, height: Array) -> AtlasSolution:
-        """States in which wall and gas have one pressure, from guesses of their volume; (n,).
+    def solve(
+        self,
+        nu: Array,
+        height: Array,
+        stiffening: Array | float = 1.0,
+        memory: Array | float = 0.0,
+        iterations: int = _NEWTON,
+    ) -> AtlasSolution:
+        """States in which wall and gas have one pressure, from guesses of their volume, by Newton's method; (n,).
 
-        The last step is so small that the values follow it along their tangents, to its square.
+        The wall's pressure is that of the atlas times ``stiffening``, plus ``memory``. The last step is so small that the values follow it along their tangents, to its square.
         """
         reached = np.zeros(nu.size, dtype=bool)
-        for _ in range(_NEWTON):
+        for _ in range(iterations):
             point = self.slices.point(self.k, nu, height)
             room = self.volume(nu) + self.dead
             gas = self.content / room
-            margin = point.by_volume + gas / room
-            step = (gas - self.ambient - point.pressure) / np.where(margin > 0, margin, 1.0) / self.reach
+            margin = stiffening * point.by_volume + gas / room
+            excess = gas - self.ambient - stiffening * point.pressure - memory
+            step = excess / np.where(margin > 0, margin, 1.0) / self.reach
             reached = np.abs(step) < _LAST_STEP
             if np.all(reached | (margin <= 0)):
                 break
@@ -126,8 +139,7 @@ class AtlasPress:
         point = point._replace(
             pressure=point.pressure + point.by_volume * swell, force=point.force - point.by_height * swell
         )
-        ok = reached & (margin > 0) & point.supported & ~point.folded
-        return AtlasSolution(nu + step, point, margin, ok)
+        return AtlasSolution(nu + step, point, margin, reached & (margin > 0))
 
     def march(self, indentation: Array) -> PressTrack:
         """Equilibria at plate travels (n, m) in R0, ascending along the last axis from zero."""

@@ -18,11 +18,10 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.mechanics.atlas.press import AtlasPress
-from pneutouch.mechanics.atlas.table import AtlasPoint
 
 _NEWTON = 10
-_LONGEST, _LAST_STEP = 0.05, 1.0e-4
-"""Longest step of a solution in nu, and the step after which none is needed; as in `atlas.press`."""
+"""Iterations of a solution: two more than for the elastic dome."""
+
 _NO_TRAVEL = 1.0e-9
 
 
@@ -82,34 +81,12 @@ def follow(press: AtlasPress, excess: Array, times: Array, clock: Array, travel:
         past = memory.left(decay) - stiffer * before
         height = press.apex - travel[:, j]
         guess = nu + rate * (travel[:, j] - at)
-        found, point, margin, sound = _solve(press, guess, height, 1.0 + stiffer, past[0])
+        solved = press.solve(guess, height, 1.0 + stiffer, past[0], _NEWTON)
+        point, margin = solved.point, solved.margin
         now = np.stack([point.pressure, np.where(travel[:, j] > _NO_TRAVEL, point.force, 0.0)])
-        known, lost = known & sound & point.supported & ~point.folded, point.folded | ~sound
+        known, lost = known & solved.ok, point.folded | ~solved.converged
         rate = np.where(known, (1.0 + stiffer) * point.by_height / np.where(margin > 0, margin, 1.0) / press.reach, 0.0)
         memory.add(decay, weight, now - before)
-        nu, before, at = np.where(known, found, nu), now, travel[:, j]
+        nu, before, at = np.where(known, solved.nu, nu), now, travel[:, j]
         columns.append((nu, *((1.0 + stiffer) * now + past), *now, known, lost))
     return ViscousPath(*(np.stack(part, axis=1) for part in zip(*columns, strict=True)))
-
-
-def _solve(
-    press: AtlasPress, nu: Array, height: Array, stiffer: Array, past: Array
-) -> tuple[Array, AtlasPoint, Array, Flags]:
-    """Volumes at which ``stiffer`` P + ``past`` is the gas's pressure; with states, dp/dV of wall less gas, and whether found."""
-    for _ in range(_NEWTON):
-        point = press.slices.point(press.k, nu, height)
-        room = press.volume(nu) + press.dead
-        gas = press.content / room
-        margin = stiffer * point.by_volume + gas / room
-        step = (gas - press.ambient - stiffer * point.pressure - past) / np.where(margin > 0, margin, 1.0) / press.reach
-        reached = np.abs(step) < _LAST_STEP
-        if np.all(reached | (margin <= 0)):
-            break
-        nu = nu + np.where(margin > 0, np.clip(step, -_LONGEST, _LONGEST), 0.0)
-    # The last step is so small that the values follow it along their tangents, to its square.
-    step = np.where(reached, step, 0.0)
-    swell = step * press.reach
-    point = point._replace(
-        pressure=point.pressure + point.by_volume * swell, force=point.force - point.by_height * swell
-    )
-    return nu + step, point, margin, reached & (margin > 0)
