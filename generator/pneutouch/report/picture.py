@@ -10,11 +10,15 @@ import math
 
 import numpy as np
 
-from pneutouch.arrays import Array
+from pneutouch.arrays import Array, Index
 from pneutouch.body import Body
 
 _LIGHT = np.array([-0.35, -0.55, 0.76])
 _OVERSAMPLING = 2
+_PIXELS_AT_ONCE = 50_000
+"""Pixels of triangles that are worked on together: what fits the processor's cache."""
+_LEVEL_EDGE = 1e-6
+"""Height in pixels below which an edge lies along a line of pixels."""
 
 
 def picture(bodies: tuple[Body, ...], width: int = 900, height: int = 640) -> bytes:
@@ -28,12 +32,9 @@ def picture(bodies: tuple[Body, ...], width: int = 900, height: int = 640) -> by
     low, high = points.min(axis=0), points.max(axis=0)
     scale = 0.94 * min(size[1] / (high[0] - low[0]), size[0] / (high[1] - low[1]))
     shift = 0.5 * np.array([size[1], size[0]]) - 0.5 * scale * (low + high)[:2]
-    for body in bodies:
-        colours = _shades(body)
-        corners = body.corners @ view.T
-        corners[..., :2] = corners[..., :2] * scale + shift
-        for corner, colour in zip(corners, colours, strict=True):
-            _fill(image, depth, corner, colour)
+    corners = np.concatenate([body.corners for body in bodies]) @ view.T
+    corners[..., :2] = corners[..., :2] * scale + shift
+    _paint(image, depth, corners, np.concatenate([_shades(body) for body in bodies]))
     small = image.reshape(height, _OVERSAMPLING, width, _OVERSAMPLING, 3).mean(axis=(1, 3))
     buffer = io.BytesIO()
     imsave(buffer, np.clip(small[::-1], 0, 1), format="png", metadata={"Software": "pneutouch"})
@@ -59,19 +60,57 @@ def _shades(body: Body) -> Array:
     return lit
 
 
-def _fill(image: Array, depth: Array, corner: Array, colour: Array) -> None:
-    """Paint one triangle where it lies in front; ``corner`` (3, 3) is in pixels and depth."""
-    (x0, y0), (x1, y1) = np.floor(corner[:, :2].min(axis=0)).astype(int), np.ceil(corner[:, :2].max(axis=0)).astype(int)
-    xs, ys = np.arange(x0, x1 + 1) + 0.5, np.arange(y0, y1 + 1) + 0.5
-    a, b, c = corner
-    whole = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])
-    if whole <= 0:
-        return
-    u = ((b[0] - xs[None, :]) * (c[1] - ys[:, None]) - (c[0] - xs[None, :]) * (b[1] - ys[:, None])) / whole
-    v = ((c[0] - xs[None, :]) * (a[1] - ys[:, None]) - (a[0] - xs[None, :]) * (c[1] - ys[:, None])) / whole
+def _paint(image: Array, depth: Array, corners: Array, colours: Array) -> None:
+    """Paint triangles (n, 3, 3), in pixels and depth, where they lie in front; of two equally near the first shows."""
+    a, b, c = np.moveaxis(corners, 1, 0)
+    whole = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (c[:, 0] - a[:, 0]) * (b[:, 1] - a[:, 1])
+    corners, colours, whole = corners[whole > 0], colours[whole > 0], whole[whole > 0]
+    low = np.floor(corners[..., :2].min(axis=1)).astype(int)
+    high = np.minimum(np.ceil(corners[..., :2].max(axis=1)).astype(int), np.array(depth.shape)[::-1] - 1)
+    which, y = _counted(low[:, 1], high[:, 1])
+    left, right = _span(corners[which], whole[which], y + 0.5, low[which, 0], high[which, 0])
+    ends = np.cumsum(np.maximum(right - left + 1, 0))
+    start = 0
+    while start < y.size:
+        stop = int(np.searchsorted(ends, (ends[start - 1] if start else 0) + _PIXELS_AT_ONCE, side="right"))
+        part = slice(start, max(stop, start + 1))
+        line, x = _counted(left[part], right[part])
+        rows = which[part][line]
+        _nearest(image, depth, x, y[part][line], corners[rows], whole[rows], colours[rows])
+        start = part.stop
+
+
+def _counted(low: Index, high: Index) -> tuple[Index, Index]:
+    """All whole numbers from low to high, (n,) each, and which pair each belongs to."""
+    count = np.maximum(high - low + 1, 0)
+    which = np.repeat(np.arange(low.size), count)
+    return which, np.arange(which.size) - np.repeat(np.cumsum(count) - count - low, count)
+
+
+def _span(corners: Array, whole: Array, y: Array, low: Index, high: Index) -> tuple[Index, Index]:
+    """First and last pixel of triangles (n, 3, 3) on lines at y, with one to spare, between low and high; (n,) each."""
+    left, right = low.astype(float), high.astype(float)
+    for k in range(3):
+        (px, py), (qx, qy) = corners[:, k, :2].T, corners[:, k - 2, :2].T
+        # Of edges nearly along the line the meeting point is not known to a pixel.
+        steep = np.abs(py - qy) > _LEVEL_EDGE
+        meets = (px * (qy - y) - qx * (py - y)) / np.where(steep, qy - py, 1.0)
+        left = np.where(steep & (py > qy), np.maximum(left, meets - 2.0), left)
+        right = np.where(steep & (py < qy), np.minimum(right, meets + 2.0), right)
+    return np.floor(left).astype(np.intp), np.ceil(right).astype(np.intp)
+
+
+def _nearest(image: Array, depth: Array, x: Index, y: Index, corners: Array, whole: Array, colours: Array) -> None:
+    """Paint pixels (n,) of triangles (n, 3, 3) that lie in the triangle and in front of what is there."""
+    (ax, ay, az), (bx, by, bz), (cx, cy, cz) = np.moveaxis(corners, 0, -1)
+    right, up = x + 0.5, y + 0.5
+    u = ((bx - right) * (cy - up) - (cx - right) * (by - up)) / whole
+    v = ((cx - right) * (ay - up) - (ax - right) * (cy - up)) / whole
     w = 1 - u - v
-    level = u * a[2] + v * b[2] + w * c[2]
-    block = depth[y0 : y1 + 1, x0 : x1 + 1]
-    seen = (np.minimum(np.minimum(u, v), w) >= -1e-9) & (level > block)
-    block[seen] = level[seen]
-    image[y0 : y1 + 1, x0 : x1 + 1][seen] = colour
+    level = u * az + v * bz + w * cz
+    place = y * depth.shape[1] + x
+    seen = np.flatnonzero((np.minimum(np.minimum(u, v), w) >= -1e-9) & (level > depth.ravel()[place]))
+    seen = seen[np.lexsort((seen, -level[seen], place[seen]))]
+    seen = seen[np.diff(place[seen], prepend=-1) != 0]
+    depth.reshape(-1)[place[seen]] = level[seen]
+    image.reshape(-1, 3)[place[seen]] = colours[seen]

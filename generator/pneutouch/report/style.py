@@ -37,6 +37,10 @@ _SETTINGS: dict[Any, Any] = {
 }  # fmt: skip
 
 
+_SVG_DPI = 72.0
+"""What matplotlib draws an SVG at."""
+
+
 @contextmanager
 def figure(width_mm: float, height_mm: float) -> Iterator[Figure]:
     """A figure of a size in mm under the house style; nothing global changes."""
@@ -52,7 +56,16 @@ def figure(width_mm: float, height_mm: float) -> Iterator[Figure]:
 
 def svg(drawn: Figure) -> str:
     """The figure as SVG without date, ready to stand inside HTML."""
-    buffer = io.StringIO()
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+
+    buffer, dpi, layout = io.StringIO(), drawn.dpi, drawn.get_layout_engine()
+    if layout is not None:
+        # Saving would draw everything once, unseen, to lay it out: the layout alone gives the same places.
+        FigureCanvasSVG(drawn)
+        drawn.dpi = _SVG_DPI
+        layout.execute(drawn)
+        drawn.dpi = dpi
+        drawn.set_layout_engine(None)
     drawn.savefig(buffer, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
     text = buffer.getvalue()
     return _named_by_content(text[text.index("<svg") :])
