@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: venv demo test lint check-slow chart chart-meshes texture-page coverage-page voxel-page mixing-page atlas atlas-page lock clean
+.PHONY: venv demo test pytest lint review check-slow chart chart-meshes texture-page coverage-page voxel-page mixing-page atlas atlas-page lock clean
 
 venv: $(VENV)/.dev
 
@@ -23,13 +23,20 @@ demo: $(VENV)/.run
 	$(BIN)/pneutouch build paper-dome
 	@ls outputs/paper-dome
 
-test: lint
-	$(BIN)/python -m pytest -n 2
+test: lint pytest
+
+pytest: $(VENV)/.dev
+	$(BIN)/python -m pytest -n 2 --dist worksteal
 
 lint: $(VENV)/.dev
 	$(BIN)/ruff check generator tests benchmarks
 	$(BIN)/ruff format --check generator tests benchmarks
 	$(BIN)/mypy
+
+# What CI asks for beside the tests; pre-commit needs a clone, and its hooks are programs of the virtual environment.
+review: $(VENV)/.dev
+	$(BIN)/sp-repo-review .
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pre-commit run --all-files
 
 check-slow: $(VENV)/.dev
 	$(BIN)/python -m pytest -m slow
@@ -39,7 +46,7 @@ lock:
 	uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url \
 	    pyproject.toml requirements-build.in --output-file requirements.lock
 	uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url \
-	    --extra dev --constraint requirements.lock pyproject.toml --output-file requirements-dev.lock
+	    --group dev --constraint requirements.lock pyproject.toml --output-file requirements-dev.lock
 
 clean:
 	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import importlib
-from typing import Any, Protocol, runtime_checkable
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -11,7 +11,6 @@ from pneutouch.arrays import Array
 from pneutouch.body import Body
 from pneutouch.errors import InputError
 from pneutouch.printability.finding import Excess, Finding, Severity
-from pneutouch.printability.subject import ExactShape
 from pneutouch.units import UM
 
 _SOURCE = "measured with pymeshlab (MeshLab's filters), independently of the meshes' maker"
@@ -23,7 +22,6 @@ _MANY = 0.1
 """Share of slivers that is worth a word (own, unverified)."""
 
 
-@runtime_checkable
 class Meshable(Protocol):
     """An exact solid that meshes itself."""
 
@@ -31,10 +29,10 @@ class Meshable(Protocol):
         """The body within ``tolerance`` mm."""
 
 
-def inspect(body: Body, solid: ExactShape | None = None, tolerance: float = 0.016) -> list[Finding]:
+def inspect(body: Body, solid: Meshable | None = None, tolerance: float = 0.016) -> list[Finding]:
     """Self-intersections, topology, sliver triangles, and the distance in both directions from a ten times finer mesh.
 
-    ``tolerance`` (mm) is what the body was meshed to. The distance needs a solid with ``mesh(tolerance)``. Takes seconds.
+    ``tolerance`` (mm) is what the body was meshed to. The distance needs the exact solid. Takes seconds.
     Raises InputError where pymeshlab is not installed.
     """
     try:
@@ -44,7 +42,7 @@ def inspect(body: Body, solid: ExactShape | None = None, tolerance: float = 0.01
             "the deep inspection needs pymeshlab, which is GPL: pip install 'pneutouch[inspect]'"
         ) from None
     findings = [*_topology(lab, body), *_intersections(lab, body), *_slivers(body)]
-    if isinstance(solid, Meshable):
+    if solid is not None:
         findings += _deviation(lab, body, solid.mesh(tolerance / _FINER), tolerance)
     return findings
 

@@ -21,7 +21,7 @@ LEAST_SLICES = 30
 MOST_COLOURS = 6
 """Of the utility (GrabCAD Voxel Print guide), whatever a manifest says."""
 
-_NEEDED = {
+_NEEDED: dict[str, type | tuple[type, ...]] = {
     "format": int, "prefix": str, "dpi": list, "pixels": list, "layers": int, "layer_um": (int, float), "pixel_um": list,
     "background_rgba": list, "resins": dict, "bodies": dict, "slices": list, "sha256": str,
 }  # fmt: skip
@@ -76,15 +76,16 @@ def read_stack(folder: Path) -> VoxelStack:
 def _manifest(folder: Path) -> dict[str, Any]:
     path = folder / MANIFEST
     try:
-        content: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+        document: Any = json.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
         raise InputError(f"{folder}: holds no {MANIFEST}: not a voxel stack that pneutouch wrote") from None
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from None
     except ValueError:
         raise InputError(f"{path}: not JSON; write the stack anew") from None
+    content: dict[str, Any] = document if isinstance(document, dict) else {}
     for key, kind in _NEEDED.items():
-        if not isinstance(content, dict) or not isinstance(content.get(key), kind):  # type: ignore[arg-type]
+        if not isinstance(content.get(key), kind):
             raise InputError(f"{path}: {key} is missing or of another type; write the stack anew")
     if content["format"] != FORMAT:
         raise InputError(f"{path}: format = {content['format']}; this version reads {FORMAT}")
