@@ -15,7 +15,7 @@ from pneutouch.mechanics.atlas.press import AtlasPress
 from pneutouch.mechanics.atlas.respond import BREAK, BUCKLING, EDGE, ENDS, OUTSIDE, respond
 from pneutouch.mechanics.atlas.table import AtlasSlices, shipped
 from pneutouch.mechanics.atlas_states import outside_atlas
-from pneutouch.mechanics.models import DEFAULT_TOLERANCE, climb
+from pneutouch.mechanics.models import DEFAULT_TOLERANCE, models_for
 
 ATLAS, AUTO = "atlas", f"auto at {DEFAULT_TOLERANCE:.0%}"
 MODEL_METHODS = (ATLAS, AUTO)
@@ -24,7 +24,7 @@ _LEFT_TO_THE_SOLID = (ENDS[BUCKLING], ENDS[BREAK])
 
 
 def atlas_answer(scene: Scene) -> Answer | None:
-    """The scene looked up as one sensor alone; None where the atlas does not speak for it."""
+    """The scene looked up as one sensor alone; None where the atlas does not cover it."""
     if outside_atlas(scene.sensor) is not None:
         return None
     s, batch = scene.sensor, batch_of(scene.sensor, np.array([scene.pressure]))
@@ -57,7 +57,7 @@ def atlas_limit(scene: Scene) -> float:
 
 def auto_answer(scene: Scene) -> tuple[Answer, str]:
     """The answer of the cheapest model that states the default tolerance, and which it was."""
-    if ATLAS in climb(scene.sensor, DEFAULT_TOLERANCE).models:
+    if ATLAS in models_for(scene.sensor, DEFAULT_TOLERANCE).models:
         answer = atlas_answer(scene)
         if answer is not None and answer.ends not in _LEFT_TO_THE_SOLID and not _near_buckling(scene):
             return answer, ATLAS

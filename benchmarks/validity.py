@@ -33,7 +33,7 @@ LOOKS: dict[str, dict[str, Any]] = {
     "outside its box": {"marker": "|", "color": INK, "ms": 6},
     "no such state": {"marker": "_", "color": MUTED, "ms": 6},
 }
-"""Outcomes: the method's own range ends before the depth; it raised an error; it does not speak for such sensors; the refined solid itself buckles,
+"""Outcomes: the method's own range ends before the depth; it raised an error; it does not cover such sensors; the refined solid itself buckles,
 tears or leaves the gauge's range before the depth, so there is nothing to compare with."""
 
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from pneutouch.errors import BeyondLimitError, InputError
 from pneutouch.mechanics import predict
-from pneutouch.mechanics.models import MODELS, NUMERICAL, climb, parse_tolerance
+from pneutouch.mechanics.models import MODELS, NUMERICAL, models_for, parse_tolerance
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
 from pneutouch.units import KPA, ML
 
@@ -63,7 +63,7 @@ def test_stated_errors_fall_as_the_models_get_dearer():
 
 @given(st.floats(min(NUMERICAL.values()), 50.0))
 def test_every_model_on_the_way_meets_the_tolerance_and_the_rest_say_why_not(tolerance):
-    way = climb(PAPER, tolerance)
+    way = models_for(PAPER, tolerance)
     assert way.models[-1] == "solid"
     assert all(NUMERICAL[model] <= tolerance for model in way.models)
     assert list(way.models) == [model for model in MODELS if model in way.models]
@@ -99,7 +99,7 @@ def test_a_tolerance_of_many_times_takes_the_membrane():
 def test_outside_its_box_the_atlas_is_passed_over_and_the_reason_told(case):
     changes, reason = OUTSIDE[case]
     sensor = PAPER.replace(**changes)
-    way = climb(sensor, 0.02)
+    way = models_for(sensor, 0.02)
     (line,) = [text for text in way.passed if text.startswith("atlas")]
     assert way.models == ("solid",) and re.search(reason, line)
     with pytest.raises(InputError, match=reason):
@@ -147,7 +147,7 @@ def test_a_press_that_leaves_the_known_states_goes_to_the_solid(monkeypatch):
 
     monkeypatch.setattr(Atlas, "slices", shallow)
     found = predict("x", PAPER, [0.022], model="auto", tolerance=0.02)
-    assert found.model == "solid" and "leaves the states that the atlas knows" in said(found)
+    assert found.model == "solid" and "leaves the states that the atlas covers" in said(found)
 
 
 def test_auto_is_the_model_it_names():

@@ -28,7 +28,7 @@ _DETAIL = {
 
 
 def outside_atlas(sensor: Sensor, atlas: Atlas | None = None) -> str | None:
-    """Why the atlas does not speak for a sensor, or None where it does. The box is in `atlas.recipe.Recipe`."""
+    """Why the atlas does not cover a sensor, or None where it does. Its box is in `atlas.recipe.Recipe`."""
     recipe = (atlas or shipped()).recipe
     ratio, depth = (
         sensor.dome.wall_thickness / sensor.dome.inner_radius,
@@ -48,23 +48,23 @@ def outside_atlas(sensor: Sensor, atlas: Atlas | None = None) -> str | None:
     return next((why for applies, why in reasons if applies), None)
 
 
-class MissingAnswer(NamedTuple):
-    """What an answer lacks: why, and whether it is no answer at all."""
+class AnswerLimitation(NamedTuple):
+    """Why a result is not to be used by `auto`, and whether it is no result at all (fatal)."""
 
     why: str
     fatal: bool
 
 
-_LACKS = {
-    OUTSIDE: MissingAnswer("the press leaves the states that the atlas knows", True),
-    EDGE: MissingAnswer("the contact reaches the plate's edge", True),
-    BUCKLING: MissingAnswer("the wall buckles in the press, which the solid places more exactly", False),
-    BREAK: MissingAnswer("the break strain is reached in the press, which the solid places more exactly", False),
+_LIMITATIONS = {
+    OUTSIDE: AnswerLimitation("the press leaves the states that the atlas covers", True),
+    EDGE: AnswerLimitation("the contact reaches the plate's edge", True),
+    BUCKLING: AnswerLimitation("the wall buckles in the press, which the solid places more exactly", False),
+    BREAK: AnswerLimitation("the break strain is reached in the press, which the solid places more exactly", False),
 }
 
 
-def atlas_result(sensor: Sensor, driving_pressures: Array) -> tuple[ModelResult, MissingAnswer | None]:
-    """What the atlas says at driving pressures (MPa, ascending), and what the answer lacks, or None.
+def atlas_result(sensor: Sensor, driving_pressures: Array) -> tuple[ModelResult, AnswerLimitation | None]:
+    """Results of the atlas at driving pressures (MPa, ascending), and their limitation, or None.
 
     The sensor must lie in the box (`outside_atlas`). Raises BeyondLimitError beyond the limit point.
     """
@@ -83,13 +83,13 @@ def atlas_result(sensor: Sensor, driving_pressures: Array) -> tuple[ModelResult,
     )
     ends = [int(end) for end in response.ends]
     states = tuple(_state(sensor, press, track, i, ends[i], float(response.range_end[i])) for i in range(len(batch)))
-    lack = next((reason for end, reason in _LACKS.items() if end in ends), None)
-    if lack is None and response.near_buckling.any():
-        lack = MissingAnswer(
-            f"the wall would buckle within {NEAR:g} R0 more of travel, where the table is less sure", False
+    limitation = next((reason for end, reason in _LIMITATIONS.items() if end in ends), None)
+    if limitation is None and response.near_buckling.any():
+        limitation = AnswerLimitation(
+            f"the wall would buckle within {NEAR:g} R0 more of travel, where the table is less accurate", False
         )
-    curve, point, torn = _inflation(sensor, slices)
-    return ModelResult(point, Limits(limit, torn, sensor.gas.gauge_limit), curve, states), lack
+    curve, point, rupture = _inflation(sensor, slices)
+    return ModelResult(point, Limits(limit, rupture, sensor.gas.gauge_limit), curve, states), limitation
 
 
 def _state(sensor: Sensor, press: AtlasPress, track: PressTrack, i: int, end: int, range_end: float) -> SensorState:
@@ -120,8 +120,8 @@ def _curve(row: AtlasPress, end: float, steps: int) -> tuple[Array, Array, Array
 
 
 def _events(sensor: Sensor, depth: Array, field: dict[str, Array], end: int, range_end: float) -> list[Event]:
-    """What ends the range, and the warnings on the way."""
-    found = [] if end == DEPTH else [Event(ENDS[end], range_end, True, _DETAIL.get(end, ENDS[end]))]
+    """What ends the range, and the warnings before it."""
+    happened = [] if end == DEPTH else [Event(ENDS[end], range_end, True, _DETAIL.get(end, ENDS[end]))]
     wall = sensor.dome.wall_thickness / sensor.dome.inner_radius
     for kind, name, level in (("creasing", "fold", CREASE), ("wall below the base plane", "overhang", OVERHANG * wall)):
         values = field[name]
@@ -129,8 +129,8 @@ def _events(sensor: Sensor, depth: Array, field: dict[str, Array], end: int, ran
         pairs = zip([points[0], *points], points, strict=False)
         where = next((at for a, b in pairs if (at := crossing(a, b, level)) is not None), None)
         if where is not None:
-            found.append(Event(kind, where, False, DETAIL["crease" if kind == "creasing" else "overhang"]))
-    return sorted(found, key=lambda event: event.indentation)
+            happened.append(Event(kind, where, False, DETAIL["crease" if kind == "creasing" else "overhang"]))
+    return sorted(happened, key=lambda event: event.indentation)
 
 
 def _inflation(sensor: Sensor, slices: AtlasSlices) -> tuple[InflationCurve, LimitPoint, float | None]:
@@ -147,10 +147,10 @@ def _inflation(sensor: Sensor, slices: AtlasSlices) -> tuple[InflationCurve, Lim
         float(inner[top]) * length, float(apex[top]) * length, float(slices.limit_pressure[0]) * mu,
         float(apex[top] - inner[top]) * length / sensor.dome.wall_thickness,
     )  # fmt: skip
-    torn = None
+    rupture = None
     if sensor.wall.break_stretch is not None:
         over = np.flatnonzero(stretch[: top + 1] >= sensor.wall.break_stretch)
         if over.size:
             j = max(int(over[0]), 1)
-            torn = float(np.interp(sensor.wall.break_stretch, stretch[j - 1 : j + 1], pressure[j - 1 : j + 1]))
-    return InflationCurve(inner * length, apex * length, volume, pressure), point, torn
+            rupture = float(np.interp(sensor.wall.break_stretch, stretch[j - 1 : j + 1], pressure[j - 1 : j + 1]))
+    return InflationCurve(inner * length, apex * length, volume, pressure), point, rupture

@@ -1,4 +1,4 @@
-"""What happens on the way of the plate: detected, located, never averaged over."""
+"""Events under the plate: detected and located, never averaged over."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pneutouch.mechanics.contact import PressedStates
 from pneutouch.mechanics.sensor import Sensor
 
 _NEAR_BASE = 0.98
-"""Share of R0 at which the contact counts as having reached the base; beyond it the free arc has no room."""
+"""Share of R0 at which the contact counts as having reached the base; beyond it the free arc has no space."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +25,7 @@ class Event:
 
 
 def events(sensor: Sensor, indentation: Array, pressed: PressedStates, closure: str) -> list[Event]:
-    """The events of one pressed curve, in the order of the plate's way."""
+    """The events of one pressed curve, in the order of the plate's travel."""
     stretch = pressed.thickness_stretch**-0.5
     margins: list[tuple[str, Array, bool, str]] = [
         ("gauge range", pressed.pressure - sensor.gas.gauge_limit, True,
@@ -44,17 +44,17 @@ def events(sensor: Sensor, indentation: Array, pressed: PressedStates, closure: 
         falling = np.concatenate([[-1.0], -np.diff(pressed.contact_radius)])
         text = "the contact radius falls as the plate advances: the printed equations describe no contact"
         margins.append(("contact radius falls", falling, True, text))
-    found = [
+    happened = [
         Event(kind, _crossing(indentation, margin), ends, text)
         for kind, margin, ends, text in margins
         if np.any(margin[1:] > 0)
     ]
-    return sorted(found, key=lambda event: event.indentation)
+    return sorted(happened, key=lambda event: event.indentation)
 
 
-def range_end(found: list[Event], depth: float) -> float:
+def range_end(happened: list[Event], depth: float) -> float:
     """Indentation (mm) up to which figures may be fitted: the first event that ends the range, else the depth."""
-    return min((event.indentation for event in found if event.ends_range), default=depth)
+    return min((event.indentation for event in happened if event.ends_range), default=depth)
 
 
 def _crossing(indentation: Array, margin: Array) -> float:

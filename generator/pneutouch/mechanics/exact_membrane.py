@@ -1,4 +1,4 @@
-"""What the exact neo-Hookean membrane does, tabulated: the yardstick of the cap's error in state I.
+"""The exact neo-Hookean membrane, tabulated: the reference for the error of the cap model in state I.
 
 The membrane equations solved by shooting, without assuming constant curvature or equibiaxial stretch. The
 tests solve them again with an independent program and compare every row.
@@ -31,5 +31,4 @@ def height_errors(relative_pressures: Array) -> Array:
     """
     known = RISING_BRANCH[RISING_BRANCH[:, 0] <= LIMIT_PRESSURE]
     errors = relative_height(known[:, 0], 1.0, 1.0, 1.0) / known[:, 1] - 1
-    found: Array = np.interp(relative_pressures, known[:, 0], errors)
-    return found
+    return np.asarray(np.interp(relative_pressures, known[:, 0], errors))

@@ -74,7 +74,7 @@ def relative_height(
         )
         raise BeyondLimitError(float(np.max(target)) * scale, LIMIT_PRESSURE * scale, text)
     if np.any(target < 0):
-        raise ComputationError("the membrane theory knows no suction; give driving pressures from 0")
+        raise ComputationError("the membrane theory does not cover suction; give driving pressures from 0")
     if falling:
         low, high = np.full(target.shape, math.log(LIMIT_HEIGHT)), np.full(target.shape, math.log(_HIGHEST))
         return np.exp(bisect(lambda s: target - relative_pressure(np.exp(s)), low, high))

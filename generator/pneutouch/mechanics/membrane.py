@@ -78,9 +78,9 @@ def membrane_states(sensor: Sensor, driving_pressures: Array, closure: str) -> t
         return press(sensor, gas, apex[:, None], indentation, closure)
 
     fine = np.linspace(0.0, sensor.protocol.depth, _FINE * sensor.protocol.steps + 1)
-    way = pressed(fine)
-    happened = [events(sensor, fine, way.row(k), closure) for k in range(len(apex))]
-    ends = np.array([range_end(found, sensor.protocol.depth) for found in happened])
+    curve = pressed(fine)
+    happened = [events(sensor, fine, curve.row(k), closure) for k in range(len(apex))]
+    ends = np.array([range_end(passed, sensor.protocol.depth) for passed in happened])
     grid = np.linspace(0.0, 1.0, sensor.protocol.steps + 1) * ends[:, None]
     fitted = pressed(grid)
     wall = thickness_stretch(x) * sensor.dome.wall_thickness
@@ -89,9 +89,9 @@ def membrane_states(sensor: Sensor, driving_pressures: Array, closure: str) -> t
             driving_pressure=float(p), apex_inner=float(apex[k]), apex_outer=float(apex[k] + wall[k]),
             cavity_volume=float(volume[k]), range_end=float(ends[k]),
             figures=figures(grid[k], fitted.force[k], (fitted.pressure[k] - p) / KPA),
-            indentation=fine[::_FINE], force=way.force[k, ::_FINE], pressure_rise=way.pressure[k, ::_FINE] - p,
-            contact_radius=way.contact_radius[k, ::_FINE],
-            max_stretch=way.thickness_stretch[k, ::_FINE] ** -0.5, events=tuple(happened[k]),
+            indentation=fine[::_FINE], force=curve.force[k, ::_FINE], pressure_rise=curve.pressure[k, ::_FINE] - p,
+            contact_radius=curve.contact_radius[k, ::_FINE],
+            max_stretch=curve.thickness_stretch[k, ::_FINE] ** -0.5, events=tuple(happened[k]),
         )
         for k, p in enumerate(driving_pressures)
     )  # fmt: skip

@@ -31,7 +31,7 @@ Physics, 1979), as Ouali, Cavaille and Perez took it (Plast. Rubber Compos. Proc
 
 LONG_TERM = ((0.0, 0.30), (0.165, 1.08), (0.333, 3.04), (0.5, 5.34), (1.0, 8.47))
 """Fraction of VeroWhite in Agilus30 Black and the mix's long-term modulus, MPa: the Abaqus/MATLAB mixture tool
-(HELPER_MaterialsFE.m). VeroWhite's own is that of its rubbery state, not of the glass that it is in a room."""
+(HELPER_MaterialsFE.m). VeroWhite's own is that of its rubbery state, not of the glass at room temperature."""
 
 _HALVINGS = 200
 
@@ -106,8 +106,8 @@ PLACING: dict[str, Law] = {
     f"droplets that touch beyond {100 * THRESHOLD:g} %": percolation,
     "islands, the softest isotropic mix": hashin_shtrikman_low,
 }
-"""The laws by which a catalogue modulus may be given its fraction: the first is the curve's own, the others say how far off
-it may be."""
+"""The laws that give a catalogue modulus its fraction: the first is that of the mixing curve, the others bound its
+error."""
 
 
 def placings(modulus: float, soft: float, stiff: float) -> dict[str, float]:
@@ -118,7 +118,7 @@ def placings(modulus: float, soft: float, stiff: float) -> dict[str, float]:
 def stiff_moduli(material: Material) -> tuple[float, float]:
     """Least and greatest shear modulus in MPa of a rigid resin taken as incompressible: a third of its Young's modulus.
 
-    A glassy resin's Poisson ratio is nearer 0.4; its modulus is then 7 % more, which is little beside the range of E.
+    A glassy resin's Poisson ratio is nearer 0.4; its modulus is then 7 % more, which is little compared with the range of E.
     Raises ValueError where the material has none.
     """
     young = material.young_modulus_MPa

@@ -35,13 +35,13 @@ equations, or for the membrane from the solid's. What the equations leave out co
 
 @dataclass(frozen=True)
 class ModelSequence:
-    """Models to try in order, and why those before them were passed over."""
+    """Models to try, cheapest first, and why others were passed over."""
 
     models: tuple[str, ...]
     passed: tuple[str, ...]
 
 
-def climb(sensor: Sensor, tolerance: float) -> ModelSequence:
+def models_for(sensor: Sensor, tolerance: float) -> ModelSequence:
     """The models whose stated error meets a tolerance (a fraction), cheapest first.
 
     Raises InputError for a tolerance that none can state.
@@ -72,7 +72,7 @@ def _outside(model: str, sensor: Sensor) -> str | None:
     if model == "membrane" and not (
         sensor.wall.law is None and sensor.dome.flange is None and sensor.wall.grade is None
     ):
-        return "it knows neither other laws, nor a held flange, nor a graded wall"
+        return "it covers neither other laws, nor a clamped flange, nor a graded wall"
     return None
 
 

@@ -11,13 +11,20 @@ from pneutouch.arrays import Array
 from pneutouch.errors import InputError, nearest
 from pneutouch.mechanics.contact import CLOSURES
 from pneutouch.mechanics.membrane import error_against_exact_membrane, membrane_result
-from pneutouch.mechanics.models import DEFAULT_TOLERANCE, DISCRETISATION, MODEL_CHOICES, NUMERICAL, TABULATION, climb
+from pneutouch.mechanics.models import (
+    DEFAULT_TOLERANCE,
+    DISCRETISATION,
+    MODEL_CHOICES,
+    NUMERICAL,
+    TABULATION,
+    models_for,
+)
 from pneutouch.mechanics.prediction import ModelResult, SensorPrediction
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.units import KPA, ML
 
 if TYPE_CHECKING:
-    from pneutouch.mechanics.atlas_states import MissingAnswer
+    from pneutouch.mechanics.atlas_states import AnswerLimitation
 
 Error = dict[str, Any]
 
@@ -67,10 +74,10 @@ def predict(
 ) -> SensorPrediction:  # fmt: skip
     """Predict a sensor at ascending driving pressures (MPa) with one model; ``closure`` is the membrane's.
 
-    ``auto`` takes the cheapest model whose stated error meets the tolerance (a fraction) and says why.
-    ``sensitivity_error`` tells what is known of a model's error in sensitivity for this resin. Raises InputError for
+    ``auto`` takes the cheapest model whose stated error meets the tolerance (a fraction) and gives the reason.
+    ``sensitivity_error`` gives the known error of a model in sensitivity for this resin. Raises InputError for
     an unknown model or closure and for a sensor outside the atlas's box, BeyondLimitError beyond the limit point,
-    ComputationError where no equilibrium is found.
+    ComputationError where no equilibrium is result.
     """
     if model not in MODEL_CHOICES:
         raise InputError(f"unknown model.{nearest(model, MODEL_CHOICES)}", key="model", value=model)
@@ -97,25 +104,25 @@ def predict(
 def _answer(
     sensor: Sensor, pressures: Array, model: str, closure: str, tolerance: float
 ) -> tuple[str, ModelResult, str | None]:
-    """The model that answered, its answer, and why it was taken where it was not asked for by name."""
+    """The model that answered, its answer, and why it was taken where it was not requested by name."""
     if model != "auto":
-        found, lacking = _asked(model, sensor, pressures, closure)
-        if lacking is not None and lacking.fatal:
-            raise InputError(lacking.why, key="model", value=model, remedy=_OTHER)
-        return model, found, None if lacking is None else f"asked for by name, although {lacking.why}"
-    way = climb(sensor, tolerance)
-    passed = list(way.passed)
-    for model in way.models:
-        found, lacking = _asked(model, sensor, pressures, closure)
-        if lacking is None:
+        result, limitation = _result(model, sensor, pressures, closure)
+        if limitation is not None and limitation.fatal:
+            raise InputError(limitation.why, key="model", value=model, remedy=_OTHER)
+        return model, result, None if limitation is None else f"requested by name, although {limitation.why}"
+    sequence = models_for(sensor, tolerance)
+    passed = list(sequence.passed)
+    for model in sequence.models:
+        result, limitation = _result(model, sensor, pressures, closure)
+        if limitation is None:
             break
-        passed.append(f"{model}: {lacking.why}")
+        passed.append(f"{model}: {limitation.why}")
     why = f"the cheapest whose stated error, {NUMERICAL[model]:.1%} in sensitivity, meets {tolerance:.1%}"
-    return model, found, "; ".join([why, *(f"passed over {text}" for text in passed)])
+    return model, result, "; ".join([why, *(f"passed over {text}" for text in passed)])
 
 
-def _asked(model: str, sensor: Sensor, pressures: Array, closure: str) -> tuple[ModelResult, MissingAnswer | None]:
-    """One model's answer, and what it lacks."""
+def _result(model: str, sensor: Sensor, pressures: Array, closure: str) -> tuple[ModelResult, AnswerLimitation | None]:
+    """The result of one model and its limitation."""
     if model == "membrane":
         if sensor.wall.grade is not None:
             raise InputError("the wall is graded along its arc", key="model", value=model, remedy=_OTHER)

@@ -1,4 +1,4 @@
-"""A prediction: what a model says of a sensor, in the units and names that leave the program."""
+"""A prediction: the results of a model for a sensor, and their document in boundary units."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ class ModelResult:
 
 @dataclass(frozen=True, slots=True)
 class SensorPrediction:
-    """All that one model says of one sensor."""
+    """All results of one model for one sensor."""
 
     design: str
     model: str

@@ -81,13 +81,13 @@ def figures(indentation: Array, force: Array, rise_kPa: Array) -> Figures | None
     """
     if len(force) < _LEAST_POINTS or np.ptp(force) <= 0 or np.ptp(indentation) <= 0:
         return None
-    found = lines(indentation, force, rise_kPa)
-    saturated = float(found.saturation_force)
+    line = lines(indentation, force, rise_kPa)
+    saturated = float(line.saturation_force)
     return Figures(
-        sensitivity_kPa_per_N=float(found.sensitivity_kPa_per_N), intercept_kPa=float(found.intercept_kPa),
-        sensitivity_through_origin_kPa_per_N=float(found.sensitivity_through_origin_kPa_per_N), r_squared=float(found.r_squared),
-        nonlinearity=float(found.nonlinearity), stiffness=float(found.stiffness),
-        force_range=(float(found.force_low), float(found.force_high)),
+        sensitivity_kPa_per_N=float(line.sensitivity_kPa_per_N), intercept_kPa=float(line.intercept_kPa),
+        sensitivity_through_origin_kPa_per_N=float(line.sensitivity_through_origin_kPa_per_N), r_squared=float(line.r_squared),
+        nonlinearity=float(line.nonlinearity), stiffness=float(line.stiffness),
+        force_range=(float(line.force_low), float(line.force_high)),
         saturation_force=None if np.isnan(saturated) else saturated,
     )  # fmt: skip
 

@@ -29,7 +29,7 @@ KINDS = {
     "unstable": ("loss of stability", True),
     "snap": ("inward buckling", True),
     "clamp_fold": ("fold at the clamp", True),
-    "lost": ("no equilibrium found", True),
+    "lost": ("no equilibrium pressed", True),
     "floor": ("apex at the base plane", True),
     "separation": ("contact separates at the centre", True),
     "break": ("break strain", True),
@@ -46,9 +46,9 @@ def solid_result(
 ) -> ModelResult:
     """Inflate through the limit point, then press at every driving pressure (MPa, ascending).
 
-    ``cells`` is the number of cells along the arc; left out, the wall ratio decides (docs/accuracy.md says why).
-    ``past_limit`` is the multiple of the limit volume to which inflation goes on: 1 where only the figures are wanted.
-    Raises BeyondLimitError beyond the limit point, ComputationError where no equilibrium is found.
+    ``cells`` is the number of cells along the arc; left out, the wall ratio decides (reasons in docs/accuracy.md).
+    ``past_limit`` is the multiple of the limit volume to which inflation goes on: 1 where only the figures are needed.
+    Raises BeyondLimitError beyond the limit point, ComputationError where no equilibrium is pressed.
     """
     size = (sensor.dome.inner_radius, sensor.dome.wall_thickness)
     mesh = dome(*size, arc=cells) if sensor.dome.flange is None else printed_dome(*size, *sensor.dome.flange, arc=cells)
@@ -95,12 +95,12 @@ def _inflation(solid: SolidModel, run: Inflation) -> InflationCurve:
 
 def _limits(sensor: Sensor, probe: StrainProbe, run: Inflation) -> Limits:
     """Driving pressures at which the limits are met on the rising branch, the one that can be driven to."""
-    torn = None if sensor.wall.break_stretch is None else burst(probe, run, sensor.wall.break_stretch - 1)
-    if torn is not None and run.limit is not None and torn[1] > run.limit.outer_apex:
-        torn = None
+    rupture = None if sensor.wall.break_stretch is None else burst(probe, run, sensor.wall.break_stretch - 1)
+    if rupture is not None and run.limit is not None and rupture[1] > run.limit.outer_apex:
+        rupture = None
     return Limits(
         limit_point=None if run.limit is None else run.limit.pressure,
-        break_strain=None if torn is None else torn[0],
+        break_strain=None if rupture is None else rupture[0],
         gauge=sensor.gas.gauge_limit,
     )
 
@@ -111,23 +111,23 @@ def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) 
         sensor.protocol.depth, sensor.protocol.steps, 2 * sensor.protocol.plate_radius, sensor.gas.ambient_pressure, sensor.gas.dead_volume,
         sensor.gas.gauge_limit, np.inf if sensor.wall.break_stretch is None else sensor.wall.break_stretch - 1,
     )  # fmt: skip
-    found = indent(probe.solid, free, press, probe)
-    happened = _events(found)
-    end = min(range_end(happened, sensor.protocol.depth), found.path[-1].indentation)
+    pressed = indent(probe.solid, free, press, probe)
+    happened = _events(pressed)
+    end = min(range_end(happened, sensor.protocol.depth), pressed.path[-1].indentation)
     grid = np.linspace(0.0, end, sensor.protocol.steps + 1)
-    force, rise = _curve(found.path, grid)
+    force, rise = _curve(pressed.path, grid)
     return SensorState(
         driving_pressure=pressure, apex_inner=free.inner_apex, apex_outer=free.outer_apex,
         cavity_volume=free.volume, range_end=end, figures=figures(grid, force, rise / KPA),
-        indentation=found.column("indentation"), force=found.column("force"),
-        pressure_rise=found.column("rise"), contact_radius=found.column("contact_radius"),
-        max_stretch=found.column("stretch"), max_von_mises=found.column("von_mises"),
-        events=tuple(happened), shapes=_shapes(probe, free, found, end),
+        indentation=pressed.column("indentation"), force=pressed.column("force"),
+        pressure_rise=pressed.column("rise"), contact_radius=pressed.column("contact_radius"),
+        max_stretch=pressed.column("stretch"), max_von_mises=pressed.column("von_mises"),
+        events=tuple(happened), shapes=_shapes(probe, free, pressed, end),
     )  # fmt: skip
 
 
-def _events(found: IndentationPath) -> list[Event]:
-    events = [Event(KINDS[e.kind][0], max(e.indentation, 0.0), KINDS[e.kind][1], e.detail) for e in found.events]
+def _events(pressed: IndentationPath) -> list[Event]:
+    events = [Event(KINDS[e.kind][0], max(e.indentation, 0.0), KINDS[e.kind][1], e.detail) for e in pressed.events]
     return sorted(events, key=lambda event: event.indentation)
 
 
@@ -142,9 +142,9 @@ def _curve(path: list[PressState], grid: Array) -> tuple[Array, Array]:
     return hermite(grid, x, force, stiffness), hermite(grid, x, rise, rate)
 
 
-def _shapes(probe: StrainProbe, free: FreeState, found: IndentationPath, end: float) -> tuple[DeformedShape, ...]:
+def _shapes(probe: StrainProbe, free: FreeState, pressed: IndentationPath, end: float) -> tuple[DeformedShape, ...]:
     """The wall at rest, inflated, and pressed to the end of the range."""
     solid = probe.solid
-    last = max((s for s in found.path if s.indentation <= end * (1 + 1e-9)), key=lambda s: s.indentation)
+    last = max((s for s in pressed.path if s.indentation <= end * (1 + 1e-9)), key=lambda s: s.indentation)
     positions = [(None, solid.rest * solid.length), (0.0, free.positions), (last.indentation, last.positions)]
     return tuple(DeformedShape(at, probe.outlines(x), probe.cell_stretch(x / solid.length)) for at, x in positions)

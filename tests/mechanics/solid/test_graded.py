@@ -13,7 +13,7 @@ from pneutouch.catalogue.mixture import mixed_material
 from pneutouch.errors import InputError
 from pneutouch.mechanics import predict
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.models import climb
+from pneutouch.mechanics.models import models_for
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.contact import Plate
@@ -281,6 +281,6 @@ def test_models_that_know_no_grade_refuse_it_by_name(model):
 
 
 def test_auto_climbs_to_the_solid_and_says_why():
-    way = climb(sensor(0.0, 0.2), 0.05)
+    way = models_for(sensor(0.0, 0.2), 0.05)
     assert way.models == ("solid",)
     assert "atlas: the wall is graded along its arc" in way.passed

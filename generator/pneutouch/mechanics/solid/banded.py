@@ -78,7 +78,7 @@ def solve(band: Array, b: Array) -> BandedSolution:
 
 
 def _general(band: Array) -> Array:
-    """Both triangles in the layout LAPACK's gb routines want, with room for fill."""
+    """Both triangles in the layout of LAPACK's gb routines, with space for fill-in."""
     width, n = band.shape[0] - 1, band.shape[1]
     full = np.zeros((3 * width + 1, n), order="F")
     full[2 * width :] = band

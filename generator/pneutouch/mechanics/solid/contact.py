@@ -72,7 +72,7 @@ class Contact:
         line = nodes[mesh.outer]
         radius = line[..., 0] @ self.shape.T
         self.weight = 2.0 * np.pi * radius * np.hypot(line[..., 0] @ slope.T, line[..., 1] @ slope.T) * w
-        # Force that rounding of the gap leaves; no residual can be asked to fall below it.
+        # Force that rounding of the gap leaves; no residual can fall below it.
         self.noise = float(np.finfo(np.float64).eps * stiffness * np.linalg.norm(self.weight))
         self.longest = float(np.hypot(*(line[:, END] - line[:, START]).T).max())
         n = 2 * mesh.outer.shape[1]

@@ -1,4 +1,4 @@
-"""The plate's way down on one branch, and how it ends where the branch does."""
+"""Bringing the plate down on one branch, and how the branch ends."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pneutouch.mechanics.solid.continuation import DISSIPATION, PathFollower, PlateState, lost_work
 from pneutouch.mechanics.solid.errors import NoConvergenceError
 from pneutouch.mechanics.solid.newton import NewtonFailure, minimise
-from pneutouch.mechanics.solid.walker import DISSIPATION, PathFollower, PlateState, lost_work
 
 #: Position of a jump, in R0.
 JUMP_WITHIN = 5.0e-4
@@ -28,19 +28,19 @@ class PathJump:
     why: str
 
 
-def descend(walker: PathFollower, height: float) -> PathJump | None:
-    """Take the walker down to `height`; None there, or the jump that ended the path, before which it then stands."""
-    if not walker.here.stable:
-        return PathJump("unstable", walker.here.height, "the state itself is unstable with its gas shut in")
-    while walker.here.height - height > 1.0e-12:
-        before = walker.here
+def descend(follower: PathFollower, height: float) -> PathJump | None:
+    """Continue the path down to `height`: None, or the jump that ended it; the path then ends before the jump."""
+    if not follower.here.stable:
+        return PathJump("unstable", follower.here.height, "the state itself is unstable with its gas shut in")
+    while follower.here.height - height > 1.0e-12:
+        before = follower.here
         try:
-            after = walker.step(height)
+            after = follower.step(height)
         except NoConvergenceError as failure:
             return PathJump("lost", before.height, failure.why)
-        if _sound(walker.path[:-1], after):
+        if _sound(follower.path[:-1], after):
             continue
-        jump = _close_in(walker, after.height)
+        jump = _close_in(follower, after.height)
         if jump is not None:
             return jump
     return None
@@ -50,45 +50,49 @@ def _sound(path: list[PlateState], after: PlateState) -> bool:
     return after.stable and lost_work(path, after) <= DISSIPATION
 
 
-def _close_in(walker: PathFollower, end: float) -> PathJump | None:
+def _close_in(follower: PathFollower, end: float) -> PathJump | None:
     """Bisect between the last sound state and a suspect one; None if the end is reached on one branch after all.
 
-    A suspect height may prove sound when approached in shorter steps, so the last bracket is walked before it counts.
+    A suspect height may prove sound when approached in shorter steps, so the last bracket is repeated in short steps before it counts.
     """
-    walker.path.pop()
+    follower.path.pop()
     beyond: PlateState | NewtonFailure = NewtonFailure("no equilibrium follows without a jump")
     bad, tried_from_here = end, False
     for _ in range(_MOST_TRIES):
-        here = walker.here
+        here = follower.here
         closed = here.height - bad <= JUMP_WITHIN
         if closed and tried_from_here:
             break
         height = bad if closed else 0.5 * (here.height + bad)
-        found = walker.solve(height)
-        if isinstance(found, NewtonFailure) or not _sound(walker.path, found):
-            beyond, bad, tried_from_here = found, height, True
+        other = follower.solve(height)
+        if isinstance(other, NewtonFailure) or not _sound(follower.path, other):
+            beyond, bad, tried_from_here = other, height, True
             continue
-        walker.path.append(found)
-        if found.height <= end + 1.0e-12:
+        follower.path.append(other)
+        if other.height <= end + 1.0e-12:
             return None
         bad, tried_from_here = end if closed else bad, False
     if isinstance(beyond, NewtonFailure):
-        return _past_a_stall(walker, beyond)
-    return PathJump(_kind(walker.here, beyond), walker.here.height, _describe(walker.path, beyond))
+        return _past_a_stall(follower, beyond)
+    return PathJump(_kind(follower.here, beyond), follower.here.height, _describe(follower.path, beyond))
 
 
-def _past_a_stall(walker: PathFollower, stalled: NewtonFailure) -> PathJump:
-    """A solver that found nothing is no evidence of another branch: look a little further before naming the end."""
+def _past_a_stall(follower: PathFollower, stalled: NewtonFailure) -> PathJump:
+    """A solver that failed is no evidence of another branch: search a little further before naming the end."""
     for further in (1, 2, 4, 8):
-        found = walker.solve(walker.here.height - further * _BEYOND_STALL)
-        if not isinstance(found, NewtonFailure) and not _sound(walker.path, found) and _stays_away(walker.here, found):
-            return PathJump(_kind(walker.here, found), walker.here.height, _describe(walker.path, found))
-    return PathJump("lost", walker.here.height, stalled.why)
+        other = follower.solve(follower.here.height - further * _BEYOND_STALL)
+        if (
+            not isinstance(other, NewtonFailure)
+            and not _sound(follower.path, other)
+            and _stays_away(follower.here, other)
+        ):
+            return PathJump(_kind(follower.here, other), follower.here.height, _describe(follower.path, other))
+    return PathJump("lost", follower.here.height, stalled.why)
 
 
-def _stays_away(here: PlateState, found: PlateState) -> bool:
-    """Whether the plate brought back leaves the wall in a second equilibrium of lower energy: the mark of a jump."""
-    back = minimise(here.scene, found.state.x)
+def _stays_away(here: PlateState, other: PlateState) -> bool:
+    """Whether the wall stays in another equilibrium of lower energy once the plate is moved back: a jump."""
+    back = minimise(here.scene, other.state.x)
     if isinstance(back, NewtonFailure):
         return False
     moved = float(np.abs(back.state.x - here.state.x).max())

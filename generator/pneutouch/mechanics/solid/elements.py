@@ -55,8 +55,7 @@ def gauss_square(n: int) -> tuple[Array, Array]:
 
 def positions(nodes: Array, cells: Index, points: Array) -> Array:
     """Positions (n_cells, n_points, 2) of local points of every cell."""
-    found: Array = np.einsum("qa,eai->eqi", cell_shapes(points, cells.shape[1])[0], nodes[cells])
-    return found
+    return np.asarray(np.einsum("qa,eai->eqi", cell_shapes(points, cells.shape[1])[0], nodes[cells]))
 
 
 def strain_operator(nodes: Array, cells: Index, points: Array) -> tuple[Array, Array, Array]:

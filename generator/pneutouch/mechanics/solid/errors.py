@@ -1,4 +1,4 @@
-"""How a solve can end without an equilibrium, for callers that act on it; users see a ComputationError."""
+"""Failures of a solve that callers handle; users see a ComputationError."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class NoConvergenceError(ComputationError):
 class UnreachableLoadError(BeyondLimitError):
     """A driving pressure beyond what the dome can carry.
 
-    pressure: what was asked for.  limit: the largest pressure that has an equilibrium; both gauge, MPa.
+    pressure: the requested one.  limit: the largest pressure that has an equilibrium; both gauge, MPa.
     """
 
     def __init__(self, pressure: float, limit: float, why: str) -> None:

@@ -1,6 +1,6 @@
-"""What happens on the way down that a curve must not be read across, or that a user should know.
+"""Events under the plate that end the use of a curve or that are reported to the user.
 
-Without the solver, which loads SciPy: the atlas finds the same events.
+This file does not load the solver, and so not SciPy: the atlas detects the same events.
 """
 
 from __future__ import annotations
@@ -29,18 +29,18 @@ DETAIL = {
     "separation": "the wall leaves the plate inside the contact",
     "plate_rim": "the contact reaches the plate's rim",
     "floor": "the inner wall reaches the base plane",
-    "overhang": "the wall hangs below its base plane, where nothing it would lie on is modelled",
+    "overhang": "the wall hangs below its base plane, where no support is modelled",
 }
 
 
 @dataclass(frozen=True)
 class SolidEvent:
-    """Something that happened at a plate travel (mm).
+    """An event at an indentation (mm).
 
     kind, of those that end the path: unstable (the inflated state itself), snap (a jump to another branch), clamp_fold
     (the same, at the clamped edge), lost (no equilibrium found), floor (the inner wall reaches the base plane).
     Of those that do not: separation (the wall leaves the plate inside the contact: buckling inward), crease, overhang
-    (the wall hangs below its base plane, where nothing it would lie on is modelled), plate_rim, break, gauge_range.
+    (the wall hangs below its base plane, where no support is modelled), plate_rim, break, gauge_range.
     """
 
     kind: str
@@ -59,7 +59,7 @@ class PathPoint(NamedTuple):
 def crossing(a: PathPoint, b: PathPoint, level: float) -> float | None:
     """Where y rises through a level between two points, on the Hermite cubic if slopes are known, else on a line.
 
-    A point compared with itself tells whether the level was passed from the start.
+    A point compared with itself: its x where the level is already passed, else None.
     """
     if a == b:
         return a.x if a.y >= level else None

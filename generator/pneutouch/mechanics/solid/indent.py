@@ -9,6 +9,7 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.mechanics.response import Figures, figures
 from pneutouch.mechanics.solid.contact import Plate, flat_radius, rim_radius
+from pneutouch.mechanics.solid.continuation import PathFollower, PlateState
 from pneutouch.mechanics.solid.descend import PathJump, descend
 from pneutouch.mechanics.solid.errors import UnreachableLoadError
 from pneutouch.mechanics.solid.events import (
@@ -25,7 +26,6 @@ from pneutouch.mechanics.solid.inflate import FreeState
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.stress import StrainProbe
 from pneutouch.mechanics.solid.supply import Gas
-from pneutouch.mechanics.solid.walker import PathFollower, PlateState
 from pneutouch.units import KPA
 
 #: A pressure this far below absolute vacuum, in mu, is rounding.
@@ -67,7 +67,7 @@ class PressState:
     contact_radius: outer edge of the contact.  contact_pressure: largest, per area at rest.  inside_gap: positive where
     the wall has left the plate within the contact.  penetration: what the plate's stiffness lets through.
     stiffness: dF/d(indentation), N/mm.  slope: dp/dF at shut-in gas, MPa/N.
-    stretch, von_mises: largest on the faces away from the clamp; fold: see `stress.Peak`.
+    stretch, von_mises: largest on the faces away from the clamp; fold: see `stress.WallExtremes`.
     inner_apex: height.  overhang: how far the wall hangs below its base plane.  positions: (n_nodes, 2).
     """
 
@@ -94,7 +94,7 @@ class PressState:
 class IndentationPath:
     """States at the plate steps (the first at first contact) up to the depth, or to the event that ended the path.
 
-    ``path`` has every state that was solved on the way, those between the steps and at located events too.
+    ``path`` has every solved state, also those between the steps and at located events.
     """
 
     states: list[PressState]
@@ -130,16 +130,16 @@ def indent(
     longest = np.array(solid.contact.longest)
     apex = float(free.positions[solid.mesh.outer, 1].max()) / length
     plate = Plate(apex, float(flat_radius(radius, longest)), float(rim_radius(radius, longest)))
-    walker = PathFollower(solid, gas, plate, free.unit.x)
+    follower = PathFollower(solid, gas, plate, free.unit.x)
     recorder = _Recorder(solid, free, plate, probe or StrainProbe(solid))
-    states = [recorder.state(walker.here)]
+    states = [recorder.state(follower.here)]
     events = recorder.events(states[0], states[0], press)
     for k in range(1, press.steps + 1):
-        begun = len(walker.path)
-        jump = descend(walker, plate.height - press.depth / length * k / press.steps)
-        for spot in walker.path[begun:]:
+        begun = len(follower.path)
+        jump = descend(follower, plate.height - press.depth / length * k / press.steps)
+        for plate_state in follower.path[begun:]:
             if not _floored(events):
-                states.append(recorder.state(spot))
+                states.append(recorder.state(plate_state))
                 events += recorder.events(states[-2], states[-1], press)
         if jump is not None or _floored(events):
             return _finish(states, events, jump, recorder, press)
@@ -153,12 +153,12 @@ def _floored(events: list[SolidEvent]) -> bool:
 def _finish(
     states: list[PressState], events: list[SolidEvent], jump: PathJump | None, recorder: _Recorder, press: PressSettings
 ) -> IndentationPath:
-    """Keep the states at the plate's own steps, and say what ended the path."""
+    """Keep the states at the steps of the protocol, and add the event that ended the path."""
     if jump is not None:
         events = [*events, SolidEvent(jump.kind, recorder.indentation(jump.height), jump.why)]
     step = press.depth / press.steps
-    asked = [s for s in states if abs(s.indentation / step - round(s.indentation / step)) < 1.0e-9]
-    return IndentationPath(asked, states, events, len(asked) == press.steps + 1)
+    at_steps = [s for s in states if abs(s.indentation / step - round(s.indentation / step)) < 1.0e-9]
+    return IndentationPath(at_steps, states, events, len(at_steps) == press.steps + 1)
 
 
 class _Recorder:
@@ -171,24 +171,24 @@ class _Recorder:
         """Plate travel in mm at a nondimensional height."""
         return (self._plate.height - height) * self._solid.length
 
-    def state(self, spot: PlateState) -> PressState:
+    def state(self, plate_state: PlateState) -> PressState:
         """Everything reported at one converged state."""
-        solid, x, touch = self._solid, spot.state.x, spot.state.touch
+        solid, x, touch = self._solid, plate_state.state.x, plate_state.state.touch
         assert touch is not None
         length, mu = solid.length, solid.mu
         foot, peak = solid.contact.footprint(x, touch), self._probe.peak(x)
-        pressure = spot.state.filling.pressure * mu
+        pressure = plate_state.state.filling.pressure * mu
         return PressState(
-            indentation=self.indentation(spot.height),
-            force=spot.force * mu * length**2,
+            indentation=self.indentation(plate_state.height),
+            force=plate_state.force * mu * length**2,
             pressure=pressure,
             rise=pressure - self._free.pressure,
-            volume=spot.state.volume * length**3,
+            volume=plate_state.state.volume * length**3,
             contact_radius=foot.radius * length,
             contact_pressure=foot.traction * mu,
             inside_gap=foot.inside_gap * length,
-            stiffness=-spot.stiffness * mu * length,
-            slope=spot.pressure_rate / spot.stiffness / length**2 if spot.stiffness else np.nan,
+            stiffness=-plate_state.stiffness * mu * length,
+            slope=plate_state.pressure_rate / plate_state.stiffness / length**2 if plate_state.stiffness else np.nan,
             stretch=peak.stretch,
             von_mises=peak.von_mises,
             fold=peak.fold,

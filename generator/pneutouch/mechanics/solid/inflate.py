@@ -61,19 +61,19 @@ class Inflation:
 def free_state(solid: SolidModel, scene: SolidScene, outcome: NewtonResult) -> FreeState:
     """Dimensional record of a converged state, with the slope dp/dV = 1/(g' K^-1 g) and the stability of K."""
     state = outcome.state
-    way = stability(scene, state)
-    compliance = float(state.by_volume @ way.soft)
+    tangent = stability(scene, state)
+    compliance = float(state.by_volume @ tangent.soft)
     x = state.x * solid.length
     return FreeState(
         positions=x,
         pressure=state.filling.pressure * solid.mu,
         volume=state.volume * solid.length**3,
         stiffness=solid.mu / solid.length**3 / compliance,
-        stable=way.wall_stable,
+        stable=tangent.wall_stable,
         inner_apex=float(x[solid.mesh.inner_apex, 1]),
         outer_apex=float(x[solid.mesh.outer_apex, 1]),
         unit=state,
-        by_volume=solid.expand(way.soft) / compliance,
+        by_volume=solid.expand(tangent.soft) / compliance,
     )
 
 
@@ -184,10 +184,10 @@ def find_limit(solid: SolidModel, before: FreeState, after: FreeState, tolerance
     for _ in range(30):
         a, b = before.unit.volume, after.unit.volume
         root = _slope_root(before, after)
-        found = at_volume(solid, [before], root, between(before, after, root))
-        if isinstance(found, NewtonFailure):
-            raise NoConvergenceError("the limit point", found.why, "a finer mesh")
-        middle = found
+        solved = at_volume(solid, [before], root, between(before, after, root))
+        if isinstance(solved, NewtonFailure):
+            raise NoConvergenceError("the limit point", solved.why, "a finer mesh")
+        middle = solved
         moved = abs(middle.stiffness) * abs(b - a) <= tolerance * (abs(before.stiffness) + abs(after.stiffness)) * a
         if moved or abs(b - a) < tolerance * a:
             return middle

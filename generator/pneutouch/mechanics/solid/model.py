@@ -34,7 +34,7 @@ CONTACT_STIFFNESS = 3.0e4
 
 @dataclass(frozen=True)
 class PointFields:
-    """Everything the integration points know at one set of positions.
+    """Fields at the integration points at one set of positions.
 
     energy:   stored energy / (mu R0^3); inf where a point is inverted.
     strains:  (n_points, 5), see `kinematics`.
@@ -78,7 +78,7 @@ class SolidModel:
         self._order = np.empty(self.size, dtype=np.intp)
         self._order[flat[flat >= 0]] = np.flatnonzero(flat >= 0)
         self.cavity = Cavity(mesh.inner)
-        # Rounding leaves this much force in the exact unloaded state; no residual can be asked to fall below it.
+        # Rounding leaves this much force in the exact unloaded state; no residual can fall below it.
         idle = self.forces(self.local(self.rest))
         self.noise = float(np.linalg.norm(self.pattern.vector([idle, np.zeros((len(mesh.inner), tables[1].shape[1]))])))
         self.contact = Contact(mesh, self.rest, float(self._relative.max()) * CONTACT_STIFFNESS / self.wall)

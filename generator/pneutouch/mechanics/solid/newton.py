@@ -135,16 +135,16 @@ def direction(scene: SolidScene, state: SolverState) -> NewtonDirection:
     seen = {active.tobytes()}
     for _ in range(_SETTLING):
         pull = state.inner + scene.solid.push(contact.force(np.where(active, linear, 0.0), touch.slope))
-        way = _downhill(state, _touching(scene, band, touch, active), pull)
-        if way.lift:
+        newton = _downhill(state, _touching(scene, band, touch, active), pull)
+        if newton.lift:
             # Keep what made this tangent definite for the rest of the settling: fewer failed factorisations.
             band = band.copy(order="F")
-            band[0] += way.lift
-        active = contact.linear(touch, scene.solid.expand(way.step)) > 0.0
+            band[0] += newton.lift
+        active = contact.linear(touch, scene.solid.expand(newton.step)) > 0.0
         if active.tobytes() in seen:
             break
         seen.add(active.tobytes())
-    return way
+    return newton
 
 
 def stability(scene: SolidScene, state: SolverState, load: Array | None = None) -> NewtonDirection:
@@ -154,10 +154,10 @@ def stability(scene: SolidScene, state: SolverState, load: Array | None = None) 
     negatives(K + c g g') = negatives(K) - [1 + c g'K^-1 g < 0], from the inertia of the bordered matrix.
     """
     band = full_tangent(scene, state)
-    way = _rank_one(state, band, state.residual if load is None else load)
-    if way.wall_stable or not way.stable:
-        return way
-    return replace(way, stable=negative_pivots(band) == 1)
+    newton = _rank_one(state, band, state.residual if load is None else load)
+    if newton.wall_stable or not newton.stable:
+        return newton
+    return replace(newton, stable=negative_pivots(band) == 1)
 
 
 def _rank_one(state: SolverState, band: Array, load: Array) -> NewtonDirection:
@@ -173,11 +173,11 @@ def _rank_one(state: SolverState, band: Array, load: Array) -> NewtonDirection:
 
 def _downhill(state: SolverState, band: Array, residual: Array) -> NewtonDirection:
     """The Newton step if the tangent is positive definite, else one of a lifted tangent."""
-    way = _rank_one(state, band, residual)
-    if way.stable and float(way.step @ residual) <= 0.0:
-        return way
+    newton = _rank_one(state, band, residual)
+    if newton.stable and float(newton.step @ residual) <= 0.0:
+        return newton
     step, lift = _safe_step(state, band, residual)
-    return replace(way, step=step, stable=False, lift=lift)
+    return replace(newton, step=step, stable=False, lift=lift)
 
 
 def _safe_step(state: SolverState, band: Array, residual: Array) -> tuple[Array, float]:
@@ -207,14 +207,14 @@ def minimise(scene: SolidScene, x: Array, max_iterations: int = MAX_ITERATIONS) 
         size = float(np.linalg.norm(state.residual))
         if size <= RESIDUAL * state.scale and left <= GAIN * _energy_scale(scene, state):
             return NewtonResult(state, iteration)
-        way = direction(scene, state)
-        slope = float(way.step @ state.residual)
+        newton = direction(scene, state)
+        slope = float(newton.step @ state.residual)
         if slope >= 0.0 and scene.plate is not None:
-            way = _downhill(state, full_tangent(scene, state), state.residual)
-            slope = float(way.step @ state.residual)
+            newton = _downhill(state, full_tangent(scene, state), state.residual)
+            slope = float(newton.step @ state.residual)
         if not np.isfinite(slope) or slope >= 0.0:
             return NewtonFailure(f"the Newton step does not go downhill (slope {slope:.2e})")
-        moved = _search(scene, state, way.step, slope)
+        moved = _search(scene, state, newton.step, slope)
         if moved is None:
             return NewtonFailure("no step along the Newton direction lowers the energy")
         # The gain of a Newton step goes with the square of the residual it starts from.
@@ -229,7 +229,7 @@ def _energy_scale(scene: SolidScene, state: SolverState) -> float:
 
 
 def _search(scene: SolidScene, state: SolverState, step: Array, slope: float) -> SolverState | None:
-    """Backtrack from the full step until the energy falls as Armijo asks; None when it never does.
+    """Backtrack from the full step until the energy falls by Armijo's condition; None where it never does.
 
     Near convergence the energy difference drowns in rounding: there a step is also taken when it lowers the slope.
     """

@@ -13,7 +13,7 @@ from pneutouch.mechanics.solid.inflate import Inflation, between, pressure_betwe
 from pneutouch.mechanics.solid.kinematics import HOOP, IN_PLANE, area_ratio
 from pneutouch.mechanics.solid.model import SolidModel
 
-#: Within this many wall thicknesses of a clamped node the elastic stress is singular and says nothing; left out.
+#: Within this many wall thicknesses of a clamped node the elastic stress is singular and means nothing; left out.
 CLAMP_REACH = 0.5
 _TURNED_OVER = 1.0e-4
 _SEARCH = 41
@@ -48,8 +48,8 @@ class StrainProbe:
         edges = self._edges()
         self._edge_cells = np.array([cell for cell, _ in edges], dtype=np.intp)
         extra = [strain_operator(rest, cells[[cell]], point[None, :]) for cell, point in edges]
-        self._edge_b = np.array([found[0][0, 0] for found in extra]).reshape(len(edges), 5, b.shape[-1])
-        places = np.concatenate([flat[self._far], *(found[2][0] for found in extra)])
+        self._edge_b = np.array([operator[0, 0] for operator, _, _ in extra]).reshape(len(edges), 5, b.shape[-1])
+        places = np.concatenate([flat[self._far], *(place[0] for _, _, place in extra)])
         outer = np.concatenate([np.tile(points[:, 1] > 0.0, b.shape[0])[self._far], [p[1] > 0.0 for _, p in edges]])
         self._relative = solid.grade(places[:, 0], places[:, 1])
         third = np.clip(np.arctan2(places[:, 1], places[:, 0]) / (np.pi / 6.0), 0, 2).astype(np.intp)
@@ -67,15 +67,15 @@ class StrainProbe:
         """Cells and local points on their faces where the distance from the clamp passes the reach."""
         along = np.linspace(-1.0, 1.0, _SEARCH)
         reach = CLAMP_REACH * self.solid.wall
-        found = []
+        edges = []
         for face in (-1.0, 1.0):
             local = np.stack([along, np.full_like(along, face)], axis=1)
             place = positions(self.solid.rest, self.solid.mesh.cells, local)
             beyond = self._distance(place.reshape(-1, 2)).reshape(place.shape[:2]) - reach
             for cell, k in zip(*np.nonzero(beyond[:, :-1] * beyond[:, 1:] < 0.0), strict=True):
                 share = beyond[cell, k] / (beyond[cell, k] - beyond[cell, k + 1])
-                found.append((int(cell), np.array([along[k] + share * (along[1] - along[0]), face])))
-        return found
+                edges.append((int(cell), np.array([along[k] + share * (along[1] - along[0]), face])))
+        return edges
 
     def principal(self, x: Array) -> tuple[Array, Array]:
         """Principal stretches and deviator-carrying stresses lambda dW/dlambda / J (MPa), (3, n_points) each."""

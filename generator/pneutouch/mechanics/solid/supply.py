@@ -41,7 +41,7 @@ class Regulator:
 class Liquid:
     """A nearly incompressible filling of rest volume `target`: volume control as an energy.
 
-    The pressure is what it takes, `stiffness` only says how far V may fall short of the target; every (p, V) it
+    The pressure is what it takes, `stiffness` only sets how far V may fall short of the target; every (p, V) it
     yields is an exact point of the pressure-volume curve.
     """
 
@@ -50,8 +50,8 @@ class Liquid:
 
     def at(self, volume: float) -> FillingState:
         """Potential stiffness/2 (V - target)^2."""
-        lack = self.target - volume
-        return FillingState(0.5 * self.stiffness * lack * lack, self.stiffness * lack, self.stiffness)
+        deficit = self.target - volume
+        return FillingState(0.5 * self.stiffness * deficit * deficit, self.stiffness * deficit, self.stiffness)
 
 
 @dataclass(frozen=True)
@@ -73,10 +73,10 @@ class Gas:
 
         Counted from the shut-in state: with a large dead volume the full potential would drown a step's work in rounding.
         """
-        room = volume + self.dead
-        if room <= 0.0:
+        total = volume + self.dead
+        if total <= 0.0:
             return None
         swell = volume - self.start
-        absolute = self.content / room
+        absolute = self.content / total
         energy = self.ambient * swell - self.content * log1p(swell / (self.start + self.dead))
-        return FillingState(energy, absolute - self.ambient, absolute / room)
+        return FillingState(energy, absolute - self.ambient, absolute / total)

@@ -1,4 +1,4 @@
-"""Follows one contact path as the plate comes down: prediction, solution, stability, cutback."""
+"""Follows one branch of equilibria as the plate comes down: predictor, solution, stability, cutback."""
 
 from __future__ import annotations
 
@@ -41,20 +41,20 @@ class PlateState:
     stable: bool
 
 
-def spot_of(scene: SolidScene, state: SolverState, height: float, iterations: int) -> PlateState:
+def plate_state(scene: SolidScene, state: SolverState, height: float, iterations: int) -> PlateState:
     """Force and the tangent of the path at a converged state."""
     solid, touch = scene.solid, state.touch
     if touch is None:
-        raise ValueError("a spot needs a plate")
+        raise ValueError("a state under the plate needs a plate")
     contact = solid.contact
     active = np.where(touch.traction > 0.0, -contact.stiffness, 0.0)
-    way = stability(scene, state, solid.push(contact.force(active, touch.slope)))
-    move = solid.expand(way.step)
+    tangent = stability(scene, state, solid.push(contact.force(active, touch.slope)))
+    move = solid.expand(tangent.step)
     r, z = contact.positions(move)
     stiffness = float(np.vdot(contact.weight * active, 1.0 + touch.slope * r - z))
-    rate = -state.filling.rate * float(way.step @ state.by_volume)
+    rate = -state.filling.rate * float(tangent.step @ state.by_volume)
     force = float(np.vdot(contact.weight, touch.traction))
-    return PlateState(height, state, scene, iterations, force, stiffness, move, rate, way.stable)
+    return PlateState(height, state, scene, iterations, force, stiffness, move, rate, tangent.stable)
 
 
 def lost_work(path: list[PlateState], after: PlateState) -> float:
@@ -89,10 +89,10 @@ class PathFollower:
     def __init__(self, solid: SolidModel, supply: Supply, plate: Plate, start: Array) -> None:
         self._solid = solid
         scene = SolidScene(solid, supply, plate)
-        found = minimise(scene, start)
-        if isinstance(found, NewtonFailure):
-            raise NoConvergenceError("first contact", found.why, "a finer mesh")
-        self.path = [spot_of(scene, found.state, plate.height, found.iterations)]
+        solved = minimise(scene, start)
+        if isinstance(solved, NewtonFailure):
+            raise NoConvergenceError("first contact", solved.why, "a finer mesh")
+        self.path = [plate_state(scene, solved.state, plate.height, solved.iterations)]
         self._plate = plate
 
     @property
@@ -106,11 +106,11 @@ class PathFollower:
         why = ""
         shortest = min(_SHORTEST, 0.5 * travel)
         while travel > shortest:
-            spot = self.solve(self.here.height - travel)
-            if not isinstance(spot, NewtonFailure):
-                self.path.append(spot)
-                return spot
-            why = spot.why
+            state = self.solve(self.here.height - travel)
+            if not isinstance(state, NewtonFailure):
+                self.path.append(state)
+                return state
+            why = state.why
             travel *= 0.35
         where = f"plate height {self.here.height * self._solid.length:.6g} mm"
         raise NoConvergenceError(where, why, "a finer mesh or a smaller depth")
@@ -118,12 +118,12 @@ class PathFollower:
     def solve(self, height: float) -> PlateState | NewtonFailure:
         """State at `height` from the extrapolated path; not kept."""
         scene = replace(self.here.scene, plate=self._plate.at(height))
-        found = minimise(scene, self._extrapolate(height))
-        if isinstance(found, NewtonFailure):
-            found = minimise(scene, self.here.state.x)
-        if isinstance(found, NewtonFailure):
-            return found
-        return spot_of(scene, found.state, height, found.iterations)
+        solved = minimise(scene, self._extrapolate(height))
+        if isinstance(solved, NewtonFailure):
+            solved = minimise(scene, self.here.state.x)
+        if isinstance(solved, NewtonFailure):
+            return solved
+        return plate_state(scene, solved.state, height, solved.iterations)
 
     def _extrapolate(self, height: float) -> Array:
         """Positions ahead along the tangent of the path; at first contact, a point, there is none."""
