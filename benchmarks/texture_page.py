@@ -120,7 +120,7 @@ def speed(run: Any) -> dict[str, float]:
         )
     ours = (time.process_time() - begin) / 10
     begin = time.perf_counter()
-    scanned = scan(state.touch, state.substrate, run.way)
+    scanned = scan(state.touch, state.substrate, run.path)
     scalogram(scanned.signal, 0.3, 3.0)
     return {"fe_over_reduced": fe / ours, "scan_with_spectrum_s": time.perf_counter() - begin}
 

@@ -17,7 +17,7 @@ from pneutouch.evaluation.evaluate import PredictionOptions, elastomers
 from pneutouch.export.threemf import threemf
 from pneutouch.export.threemf_read import Package, read_threemf
 from pneutouch.output.manifest import input_hash as hash_of
-from pneutouch.output.recipe import BuildRecipe, evaluate_recipe, scene_shelves
+from pneutouch.output.recipe import BuildRecipe, evaluate_recipe, scene_kinds
 from pneutouch.output.recipe_read import read_recipe
 from pneutouch.parts import assemble
 from pneutouch.spec.read import parse_changes
@@ -44,7 +44,7 @@ def renamed(scene: ResolvedDesign) -> ResolvedDesign:
 
 
 def test_every_field_of_a_scene_has_its_shelf():
-    shelves = scene_shelves()
+    shelves = scene_kinds()
     assert set(shelves.values()) <= set(KINDS)
     assert {*shelves, "name", "where"} == {field.name for field in dataclasses.fields(ResolvedDesign)}
 

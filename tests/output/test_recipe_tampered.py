@@ -158,4 +158,4 @@ def test_other_versions_are_named(cheap, tmp_path):
 
 
 def test_the_default_tolerance_is_left_where_none_was_asked_for(cheap):
-    assert read_recipe(read_threemf(cheap)).asked.tolerance == DEFAULT_TOLERANCE
+    assert read_recipe(read_threemf(cheap)).options.tolerance == DEFAULT_TOLERANCE

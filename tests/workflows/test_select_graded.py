@@ -61,8 +61,8 @@ def test_a_grade_is_set_beside_every_resin_and_the_nearest_mix_of_its_size(short
 
 
 def test_the_nearest_mix_is_nearer_than_the_resins(short):
-    least = min(cost(short.wish, constant.trial) for constant in short.constants[:-1])
-    assert cost(short.wish, short.nearest.trial) <= least + 0.03
+    least = min(cost(short.grade_target, constant.trial) for constant in short.constants[:-1])
+    assert cost(short.grade_target, short.nearest.trial) <= least + 0.03
 
 
 def test_the_written_grade_is_the_one_found(short, tmp_path):

@@ -48,8 +48,8 @@ def graded_text(selection: GradedSelectionRun) -> str:
     """The grade and the constant membranes of its size, or what is missed."""
     from pneutouch.workflows.select.graded_document import missed
 
-    best, sensor, wish = selection.search.best, selection.sensor, selection.wish
-    pressures = [f"{p / KPA:g} kPa" for p in wish.pressures]
+    best, sensor, grade_target = selection.search.best, selection.sensor, selection.grade_target
+    pressures = [f"{p / KPA:g} kPa" for p in grade_target.pressures]
     head = ["", *(f"S {p}" for p in pressures), *(["apart"] if len(pressures) > 1 else []), *(f"range {p}" for p in pressures), "ends with", "rated kPa", "meets"]  # fmt: skip
     rows = [["graded: " + selection.grade.label, *_row(selection, best)]]
     rows += [[constant.name, *_row(selection, constant.trial)] for constant in selection.constants]

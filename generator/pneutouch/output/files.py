@@ -114,11 +114,11 @@ def _our_files(folder: Path) -> set[str]:
 
 def _keep_foreign(folder: Path, fresh: Path) -> None:
     """Copy files, links and empty folders that the previous manifest does not list and that are not in the way."""
-    ours = _our_files(folder)
+    listed = _our_files(folder)
     for path in sorted(folder.rglob("*")):
         name = path.relative_to(folder).as_posix()
         target = fresh / name
-        if name in ours or target.exists() or target.is_symlink():
+        if name in listed or target.exists() or target.is_symlink():
             continue
         if path.is_symlink() or path.is_file():
             target.parent.mkdir(parents=True, exist_ok=True)

@@ -27,7 +27,7 @@ class BuildRecipe:
 
     scene: ResolvedDesign
     resins: Resins
-    asked: PredictionOptions
+    options: PredictionOptions
     version: str = __version__
 
     @staticmethod
@@ -37,13 +37,13 @@ class BuildRecipe:
 
     def inputs(self) -> dict[str, Any]:
         """Everything that the result follows from, as data; what the model asked for does not use is null."""
-        asked = self.asked
+        options = self.options
         return {
-            "model": asked.model,
-            "closure": asked.closure if asked.model in ("membrane", "auto") else None,
-            "clamp": asked.clamp,
-            "tolerance": asked.tolerance if asked.model == "auto" else None,
-            **{key: _data(getattr(self.scene, key)) for key in scene_shelves()},
+            "model": options.model,
+            "closure": options.closure if options.model in ("membrane", "auto") else None,
+            "clamp": options.clamp,
+            "tolerance": options.tolerance if options.model == "auto" else None,
+            **{key: _data(getattr(self.scene, key)) for key in scene_kinds()},
             "compared_resins": {name: _data(material) for name, material in self.resins.items()},
         }
 
@@ -60,14 +60,14 @@ def evaluate_recipe(recipe: BuildRecipe) -> Evaluation:
     """Draw and predict what a recipe says; no library is looked at. Raises InputError that names the recipe's file."""
     where = recipe.scene.where
     try:
-        return evaluate_scene(recipe.scene, lambda: recipe.resins, recipe.asked)
+        return evaluate_scene(recipe.scene, lambda: recipe.resins, recipe.options)
     except InputError as error:
         if error.file is None and not str(error).startswith(where):
             error.file = where
         raise
 
 
-def scene_shelves() -> dict[str, str]:
+def scene_kinds() -> dict[str, str]:
     """Fields of a scene with the catalogue's kind that each is of: ``membrane_material`` is one of the materials."""
     names = [field.name for field in fields(ResolvedDesign) if field.name not in ("name", "where")]
     return {name: f"{name.rpartition('_')[2]}s" for name in names}

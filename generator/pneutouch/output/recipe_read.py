@@ -17,7 +17,7 @@ from pneutouch.export.threemf_read import Package
 from pneutouch.mechanics.contact import CLOSURES
 from pneutouch.mechanics.models import MODEL_CHOICES
 from pneutouch.output.manifest import input_hash, versions
-from pneutouch.output.recipe import FORMAT, SETTINGS, BuildRecipe, scene_shelves
+from pneutouch.output.recipe import FORMAT, SETTINGS, BuildRecipe, scene_kinds
 from pneutouch.spec.fields import Table
 from pneutouch.spec.read import validate
 
@@ -33,12 +33,12 @@ def read_recipe(package: Package) -> BuildRecipe:
             f"{where}: holds no recipe, so it cannot be rebuilt; give a 3MF that pneutouch build wrote, or a design file"
         )
     head = _head(package.recipe, f"{where}: recipe")
-    inputs, shelves = head.inputs, scene_shelves()
-    _check_keys(inputs, {*shelves, *SETTINGS, "compared_resins"}, f"{where}: recipe: inputs")
-    parts = {key: _part(kind, inputs[key], f"{where}: recipe: {key}") for key, kind in shelves.items()}
+    inputs, kinds = head.inputs, scene_kinds()
+    _check_keys(inputs, {*kinds, *SETTINGS, "compared_resins"}, f"{where}: recipe: inputs")
+    parts = {key: _part(kind, inputs[key], f"{where}: recipe: {key}") for key, kind in kinds.items()}
     scene = ResolvedDesign(name=head.name, where=where, **parts)
     resins = _resins(inputs["compared_resins"], f"{where}: recipe: compared_resins")
-    asked = _asked(inputs, f"{where}: recipe")
+    options = _options(inputs, f"{where}: recipe")
     check_scene(replace(scene, where=f"{where}: recipe"))
     _check_steps(scene, f"{where}: recipe")
     if package.metadata.get("input-hash") != input_hash(inputs, head.version):
@@ -46,7 +46,7 @@ def read_recipe(package: Package) -> BuildRecipe:
             f"{where}: recipe: altered or damaged: it does not match the input hash that stands beside it; "
             "take the file as it was built, or build from a design file"
         )
-    return BuildRecipe(scene, resins, asked, head.version)
+    return BuildRecipe(scene, resins, options, head.version)
 
 
 class _Head(Table):
@@ -117,7 +117,7 @@ def _resins(content: Any, where: str) -> Resins:
     return resins
 
 
-def _asked(inputs: dict[str, Any], where: str) -> PredictionOptions:
+def _options(inputs: dict[str, Any], where: str) -> PredictionOptions:
     """How the prediction is asked for; what is null keeps its default, which the model does not use."""
     model = _one_of(inputs, "model", MODEL_CHOICES, where)
     needed = {"closure": model in ("membrane", "auto"), "tolerance": model == "auto"}

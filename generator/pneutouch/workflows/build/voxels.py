@@ -59,21 +59,21 @@ def plan_voxels(
     scene = assembly.scene
     printer, _ = assembly.machine("membrane")
     chosen = _mode(assembly, mode)
-    shelves = library or Library.default()
+    library = library or Library.default()
     solids = [solid for solid in assembly.solids if assembly.job(solid.name) == assembly.job("membrane")]
     names = {"membrane": scene.design.membrane.material, "connector": scene.design.connector.material}
     bodies = []
     for solid in solids:
         table_name = "membrane" if solid.name == "membrane" else "connector"
-        mixed = blend(solid.material, str(names[table_name]), shelves, f"{scene.where}: {table_name}.material")
+        mixed = blend(solid.material, str(names[table_name]), library, f"{scene.where}: {table_name}.material")
         bodies.append(VoxelBody(solid, mixed))
     grid = raster(
         [body.inside for body in bodies], printer.resolution.dpi, chosen.layer_height_um,
         upright=assembly.stands_up("membrane"), coarser=coarser,
     )  # fmt: skip
     job = VoxelJob(tuple(bodies), grid, tuple(printer.resins), SEED)
-    found = check_stack(printer, chosen, job.used, len(grid.z), grid.size, "membrane")
-    return VoxelPlan(assembly, job, chosen, tuple(found))
+    findings = check_stack(printer, chosen, job.used, len(grid.z), grid.size, "membrane")
+    return VoxelPlan(assembly, job, chosen, tuple(findings))
 
 
 def stack_folder(out: Path, name: str) -> Path:
@@ -160,10 +160,10 @@ def check_stack_folder(folder: Path) -> None:
 
 
 def _mode(assembly: Assembly, name: str | None) -> Mode:
-    printer, own = assembly.machine("membrane")
+    printer, default = assembly.machine("membrane")
     if name is None:
-        return own
-    found = next((mode for mode in printer.mode if mode.name.lower() == name.lower()), None)
-    if found is None:
+        return default
+    match = next((mode for mode in printer.mode if mode.name.lower() == name.lower()), None)
+    if match is None:
         raise InputError(f"unknown.{nearest(name, [mode.name for mode in printer.mode])}", key="voxel_mode", value=name)
-    return found
+    return match

@@ -37,16 +37,16 @@ def resins_of(pair: str, *, file: str | None = None, key: str) -> tuple[str, str
     return names[0], names[1]
 
 
-def blends(pair: str, shelves: Library) -> list[CouponMix]:
+def blends(pair: str, library: Library) -> list[CouponMix]:
     """What is printed of a pair, no farther than its mixing curve. Raises InputError where there is none."""
     soft, stiff = resins_of(pair, key="mixing")
     for name in (soft, stiff):
-        shelves.load("materials", name, key="mixing")
-    top = float(mixing(soft, stiff, shelves, key="mixing").fraction[-1])
+        library.load("materials", name, key="mixing")
+    top = float(mixing(soft, stiff, library, key="mixing").fraction[-1])
     grades = [
         Grade.model_validate({"from": soft, "to": stiff, "fraction": fraction})
         for fraction in FRACTIONS
         if fraction <= top
     ]
     pair = f"{soft}+{stiff}"
-    return [CouponMix(pair, g.fractions[0], mixed_material(g, shelves, file=None, key="mixing")) for g in grades]
+    return [CouponMix(pair, g.fractions[0], mixed_material(g, library, file=None, key="mixing")) for g in grades]

@@ -23,43 +23,43 @@ from pneutouch.workflows.coupons.template import results_template
 RESULTS = "results.toml"
 
 
-def build_coupons(asked: CouponOptions, out: Path, library: Library | None = None) -> tuple[Path, dict[str, Any]]:
+def build_coupons(options: CouponOptions, out: Path, library: Library | None = None) -> tuple[Path, dict[str, Any]]:
     """Write the coupons asked for into ``out/coupons-<printer>/``; the folder and what lies in it, as data.
 
     Raises InputError for what is unknown or does not fit the tray, and rather than lose readings in the folder. The same input gives the same bytes.
     """
-    found = order(asked, library)
-    folder = out / found.name
+    ordered = order(options, library)
+    folder = out / ordered.name
     check_writable(folder)
     _check_unfilled(folder)
-    trays = {name: lay(name, items) for name, items in found.machines().items()}
+    trays = {name: lay(name, items) for name, items in ordered.machines().items()}
     files: dict[str, bytes] = {}
     for name, pieces in trays.items():
         bodies = tuple(body for piece in pieces for body in piece.copies())
-        title = found.name if name == found.profile else name
-        files[f"{title}.3mf"] = threemf(title, bodies, _metadata(found, name, bodies))
-        files |= {f"stl/{stl_name(piece, found)}": stl(piece.body) for piece in pieces}
-    files["measure.md"] = sheet(found, trays).encode()
-    files[RESULTS] = results_template(found).encode()
+        title = ordered.name if name == ordered.profile else name
+        files[f"{title}.3mf"] = threemf(title, bodies, _metadata(ordered, name, bodies))
+        files |= {f"stl/{stl_name(piece, ordered)}": stl(piece.body) for piece in pieces}
+    files["measure.md"] = sheet(ordered, trays).encode()
+    files[RESULTS] = results_template(ordered).encode()
     coupons = _coupons(trays)
-    write_folder(folder, with_manifest(files, found.name, inputs(found), coupons=coupons))
-    return folder, {"name": found.name, "coupons": coupons}
+    write_folder(folder, with_manifest(files, ordered.name, inputs(ordered), coupons=coupons))
+    return folder, {"name": ordered.name, "coupons": coupons}
 
 
-def inputs(found: CouponOrder) -> dict[str, Any]:
+def inputs(ordered: CouponOrder) -> dict[str, Any]:
     """Everything that the coupons follow from, as data."""
-    scene = found.scene
+    scene = ordered.scene
     return {
-        "profile": found.profile,
+        "profile": ordered.profile,
         "design": None if scene is None else scene.design.model_dump(mode="json"),
         "items": [
             {
                 "coupon": item.coupon.name, "about": item.about, "copies": item.copies, "printer": item.printer_name,
                 "material": item.material.model_dump(mode="json"),
             }
-            for item in found.items
+            for item in ordered.items
         ],
-        "printers": {name: items[0].printer.model_dump(mode="json") for name, items in found.machines().items()},
+        "printers": {name: items[0].printer.model_dump(mode="json") for name, items in ordered.machines().items()},
     }  # fmt: skip
 
 
@@ -73,12 +73,12 @@ def _check_unfilled(folder: Path) -> None:
         raise InputError(f"{path} has been filled in", key="out", remedy="move it away first, or give another folder")
 
 
-def _metadata(found: CouponOrder, name: str, bodies: tuple[Body, ...]) -> dict[str, str]:
+def _metadata(ordered: CouponOrder, name: str, bodies: tuple[Body, ...]) -> dict[str, str]:
     return {
         "Title": f"Coupons for {name}",
         "Application": f"pneutouch {__version__}",
         "Description": f"{len(bodies)} coupons to print and measure; see measure.md",
-        "input-hash": input_hash(inputs(found)),
+        "input-hash": input_hash(inputs(ordered)),
     }
 
 

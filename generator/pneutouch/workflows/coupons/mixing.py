@@ -20,62 +20,67 @@ from pneutouch.workflows.coupons.profile import MeasuredProfile, check_ours, hea
 
 
 def local_curve(
-    pair: str, measured: Sequence[MixedCoupons], said: ReadingSource, shelves: Library, out: Path, found: CouponFindings
+    pair: str,
+    measured: Sequence[MixedCoupons],
+    source: ReadingSource,
+    library: Library,
+    out: Path,
+    results: CouponFindings,
 ) -> MeasuredProfile | None:
     """The lab's mixing curve of a pair, checked but not written; None where nothing was measured.
 
     Figures and remarks go to ``found``. Raises InputError for unknown resins, for moduli that do not rise with the fraction,
     and where a curve of that name was not written by the command.
     """
-    where = f"{said.where}: mixing"
-    soft_name, stiff_name = resins_of(pair, file=said.where, key="mixing")
+    where = f"{source.where}: mixing"
+    soft_name, stiff_name = resins_of(pair, file=source.where, key="mixing")
     pair = f"{soft_name}+{stiff_name}"
-    soft: Material = shelves.load("materials", soft_name, file=said.where, key="mixing")
-    stiff: Material = shelves.load("materials", stiff_name, file=said.where, key="mixing")
+    soft: Material = library.load("materials", soft_name, file=source.where, key="mixing")
+    stiff: Material = library.load("materials", stiff_name, file=source.where, key="mixing")
     if soft.kind != "elastomer":
         raise InputError(f"{where}.{pair}: {soft.label} is rigid; write the soft resin first, SOFT+STIFF")
-    known = stiffness(pair, soft, stiff, measured, said)
+    known = stiffness(pair, soft, stiff, measured, source)
     if not known:
         return None
     if known[-1].fraction == 0:
         raise InputError(
             f"{where}.{pair}: readings at fraction = 0 alone make no curve; enter them as {soft_name}'s own"
         )
-    content = _curve(pair, soft_name, stiff_name, known, said)
+    content = _curve(pair, soft_name, stiff_name, known, source)
     path = out / KINDS["mixing"].folder / f"{pair}.toml"
     check_ours(path, f"points of {', '.join(f'{point.fraction:g}' for point in known)}")
     KINDS["mixing"].validate(content, str(path))
-    found.figures += [
+    results.figures += [
         MeasuredFigure(f"{pair}, {100 * point.fraction:g} %", f"shear modulus, MPa ({point.by})", point.modulus, point.spread, point.count)
         for point in known
     ]  # fmt: skip
-    found.notes.append(
+    results.notes.append(
         f"{pair}: elongation at break was not measured; put elongation_at_break_percent beside the points, or no prediction "
         "knows when a mixed wall tears"
     )
-    text = head(replace(said, where=Path(said.where).name), "the mixing curve as measured") + toml_text(content)
-    return MeasuredProfile(path, text, _changes(path, content, pair, shelves))
+    text = head(replace(source, where=Path(source.where).name), "the mixing curve as measured") + toml_text(content)
+    return MeasuredProfile(path, text, _changes(path, content, pair, library))
 
 
-def _curve(pair: str, soft: str, stiff: str, known: Sequence[MixModulus], said: ReadingSource) -> dict[str, Any]:
-    points = [point.content(said) for point in known]
+def _curve(pair: str, soft: str, stiff: str, known: Sequence[MixModulus], source: ReadingSource) -> dict[str, Any]:
+    points = [point.content(source) for point in known]
     if known[0].fraction > 0:
         points.insert(0, {"fraction": 0.0, "material": soft, "source": "the soft resin as the catalogue has it"})
     return {
         "title": f"{soft} with {stiff}, measured",
         "soft": soft,
         "stiff": stiff,
-        "assumption": f"{MARK} of known fractions at {len(known)} points, {said.lab}, {said.date.isoformat()}; "
+        "assumption": f"{MARK} of known fractions at {len(known)} points, {source.lab}, {source.date.isoformat()}; "
         "a monotone curve between them",
         "points": points,
     }
 
 
-def _changes(path: Path, content: dict[str, Any], pair: str, shelves: Library) -> list[dict[str, Any]]:
+def _changes(path: Path, content: dict[str, Any], pair: str, library: Library) -> list[dict[str, Any]]:
     """Every point beside what the curve in force before says there."""
     before = None
-    if pair in shelves.shelf("mixing"):
-        before = mixing(content["soft"], content["stiff"], shelves)
+    if pair in library.shelf("mixing"):
+        before = mixing(content["soft"], content["stiff"], library)
     rows = []
     for point in content["points"]:
         if "shear_modulus_MPa" not in point:

@@ -57,8 +57,8 @@ class CouponItem:
     @property
     def nominals(self) -> tuple[Nominal, ...]:
         """What is measured on it; of a mixed puck the hardness alone, for a mixing curve has no density."""
-        found = self.coupon.nominals(self.context)
-        return found if self.blend is None or self.coupon.name != MIXED[0] else found[:1]
+        listed = self.coupon.nominals(self.context)
+        return listed if self.blend is None or self.coupon.name != MIXED[0] else listed[:1]
 
 
 @dataclass(frozen=True)
@@ -73,20 +73,20 @@ class CouponOrder:
     def machines(self) -> dict[str, tuple[CouponItem, ...]]:
         """Items by printer, the one asked for first."""
         names = dict.fromkeys((self.profile, *(item.printer_name for item in self.items)))
-        found = {name: tuple(item for item in self.items if item.printer_name == name) for name in names}
-        return {name: items for name, items in found.items() if items}
+        groups = {name: tuple(item for item in self.items if item.printer_name == name) for name in names}
+        return {name: items for name, items in groups.items() if items}
 
 
-def order(asked: CouponOptions, library: Library | None = None) -> CouponOrder:
+def order(options: CouponOptions, library: Library | None = None) -> CouponOrder:
     """Resolve every name. Raises InputError for what is unknown, contradicts, or does not run on the machine."""
-    shelves = library or Library.default()
-    scene = None if asked.design is None else load_scene(asked.design, None, shelves)
-    profile = asked.profile or (Print().profile if scene is None else scene.design.print.profile)
-    printer: Printer = shelves.load("printers", profile, key="profile")
-    families = _families(asked)
+    library = library or Library.default()
+    scene = None if options.design is None else load_scene(options.design, None, library)
+    profile = options.profile or (Print().profile if scene is None else scene.design.print.profile)
+    printer: Printer = library.load("printers", profile, key="profile")
+    families = _families(options)
     items: list[CouponItem] = []
-    for name in _materials(asked, scene, printer, profile, shelves):
-        material: Material = shelves.load("materials", name, key="material")
+    for name in _materials(options, scene, printer, profile, library):
+        material: Material = library.load("materials", name, key="material")
         if printer.mode_for(material) is None:
             raise InputError(
                 f"the {printer.title} cannot run {material.label}",
@@ -95,46 +95,46 @@ def order(asked: CouponOptions, library: Library | None = None) -> CouponOrder:
                 remedy=f"it runs {', '.join(printer.resins)}",
             )
         items += [
-            CouponItem(coupon, name, profile, printer, CouponContext(material, scene), _copies(asked, coupon))
+            CouponItem(coupon, name, profile, printer, CouponContext(material, scene), _copies(options, coupon))
             for coupon in families
             if coupon.belongs != "design" and material.kind in coupon.kinds
         ]
-    items += _of_mixing(asked, profile, printer, families, shelves)
+    items += _of_mixing(options, profile, printer, families, library)
     if scene is not None:
-        items += _of_design(asked, scene, profile, families)
-    _check_any(asked, families, items)
+        items += _of_design(options, scene, profile, families)
+    _check_any(options, families, items)
     pairs = dict.fromkeys(item.blend.pair for item in items if item.blend is not None)
     names = ["coupons", profile, *([scene.name] if scene else []), *pairs]
     return CouponOrder("-".join(names), profile, scene, tuple(items))
 
 
-def _families(asked: CouponOptions) -> list[Coupon]:
-    for word in (*asked.only, *asked.copies):
+def _families(options: CouponOptions) -> list[Coupon]:
+    for word in (*options.only, *options.copies):
         if word not in COUPONS:
-            key = "only" if word in asked.only else "copies"
+            key = "only" if word in options.only else "copies"
             raise InputError(f"no such coupon.{nearest(word, COUPONS)}", key=key, value=word)
-    for word, count in asked.copies.items():
+    for word, count in options.copies.items():
         if not 1 <= count <= MOST_COPIES:
             raise InputError(f"must be from 1 to {MOST_COPIES}", key="copies", value=f"{word}={count}")
-    chosen = [COUPONS[name] for name in COUPONS if not asked.only or name in asked.only]
+    chosen = [COUPONS[name] for name in COUPONS if not options.only or name in options.only]
     needs = [coupon.name for coupon in chosen if coupon.belongs == "design"]
-    if asked.only and needs and asked.design is None:
+    if options.only and needs and options.design is None:
         raise InputError(
             f"the {COUPONS[needs[0]].title} belongs to a design", key="only", value=needs[0], remedy="give `design`"
         )
-    return [coupon for coupon in chosen if coupon.belongs != "design" or asked.design is not None]
+    return [coupon for coupon in chosen if coupon.belongs != "design" or options.design is not None]
 
 
 def _materials(
-    asked: CouponOptions, scene: ResolvedDesign | None, printer: Printer, profile: str, shelves: Library
+    options: CouponOptions, scene: ResolvedDesign | None, printer: Printer, profile: str, library: Library
 ) -> list[str]:
     """As asked; else the design's membrane; else the default resin where the printer runs it, else its first."""
-    if asked.materials or asked.mixing:
-        return list(dict.fromkeys(asked.materials))
+    if options.materials or options.mixing:
+        return list(dict.fromkeys(options.materials))
     if scene is not None and scene.design.print.profile == profile:
         chosen = scene.design.membrane.material
         return [chosen] if isinstance(chosen, str) else [chosen.from_]
-    runs = [name for name, one in shelves.all("materials", Material).items() if printer.mode_for(one) is not None]
+    runs = [name for name, one in library.all("materials", Material).items() if printer.mode_for(one) is not None]
     if not runs:
         raise InputError(
             f"no known material runs on the {printer.title}", key="profile", value=profile, remedy="give `material`"
@@ -144,16 +144,16 @@ def _materials(
 
 
 def _of_mixing(
-    asked: CouponOptions, profile: str, printer: Printer, families: list[Coupon], shelves: Library
+    options: CouponOptions, profile: str, printer: Printer, families: list[Coupon], library: Library
 ) -> list[CouponItem]:
     """The mixing set: every fraction of each pair; pucks alone unless dumbbells are asked for, which take a large tray."""
     chosen = [
         coupon for coupon in families
-        if coupon.name in MIXED and (coupon.name in asked.only or (not asked.only and coupon.name == MIXED[0]))
+        if coupon.name in MIXED and (coupon.name in options.only or (not options.only and coupon.name == MIXED[0]))
     ]  # fmt: skip
-    found = []
-    for pair in dict.fromkeys(asked.mixing):
-        for blend in blends(pair, shelves):
+    items = []
+    for pair in dict.fromkeys(options.mixing):
+        for blend in blends(pair, library):
             if printer.mode_for(blend.material) is None:
                 raise InputError(
                     f"the {printer.title} cannot run {blend.material.label}",
@@ -161,37 +161,37 @@ def _of_mixing(
                     value=pair,
                     remedy=f"it runs {', '.join(printer.resins)}",
                 )
-            found += [
+            items += [
                 CouponItem(
                     coupon, blend.about, profile, printer, CouponContext(blend.material),
-                    asked.copies.get(coupon.name, MIXED_COPIES), blend,
+                    options.copies.get(coupon.name, MIXED_COPIES), blend,
                 )
                 for coupon in chosen
             ]  # fmt: skip
-    return found
+    return items
 
 
-def _of_design(asked: CouponOptions, scene: ResolvedDesign, profile: str, families: list[Coupon]) -> list[CouponItem]:
+def _of_design(options: CouponOptions, scene: ResolvedDesign, profile: str, families: list[Coupon]) -> list[CouponItem]:
     """Cap and plug, and the gauge of the connector's machine where that is another one."""
     machine, printer = scene.design.print.connector_profile, scene.connector_printer
     context, material = CouponContext(scene.connector_material, scene), scene.design.connector.material
-    found = []
+    items = []
     for coupon in families:
         if coupon.belongs == "design":
-            found.append(CouponItem(coupon, scene.name, machine, printer, context, _copies(asked, coupon)))
+            items.append(CouponItem(coupon, scene.name, machine, printer, context, _copies(options, coupon)))
         elif coupon.belongs == "printer" and machine != profile:
-            found.append(CouponItem(coupon, material, machine, printer, context, _copies(asked, coupon)))
-    return found
+            items.append(CouponItem(coupon, material, machine, printer, context, _copies(options, coupon)))
+    return items
 
 
-def _copies(asked: CouponOptions, coupon: Coupon) -> int:
-    return asked.copies.get(coupon.name, coupon.copies)
+def _copies(options: CouponOptions, coupon: Coupon) -> int:
+    return options.copies.get(coupon.name, coupon.copies)
 
 
-def _check_any(asked: CouponOptions, families: list[Coupon], items: list[CouponItem]) -> None:
+def _check_any(options: CouponOptions, families: list[Coupon], items: list[CouponItem]) -> None:
     made = {item.coupon.name for item in items}
     for coupon in families:
-        if asked.only and coupon.name not in made:
+        if options.only and coupon.name not in made:
             raise InputError(
                 f"the {coupon.title} is for {' or '.join(coupon.kinds)}",
                 key="only",

@@ -28,41 +28,41 @@ class MeasuredProfile:
     changes: list[dict[str, Any]]
 
 
-def base_file(shelf: str, name: str, shelves: Library) -> Path:
+def base_file(kind: str, name: str, library: Library) -> Path:
     """The first profile of a known name that the command did not write; its own where there is no other."""
-    found = [root / KINDS[shelf].folder / f"{name}.toml" for root in shelves.folders]
-    there = [path for path in found if path.is_file()]
+    candidates = [root / KINDS[kind].folder / f"{name}.toml" for root in library.folders]
+    there = [path for path in candidates if path.is_file()]
     return next((path for path in there if not _is_ours(path)), there[0])
 
 
 def local_profiles(
-    changes: Sequence[ProfileChange], said: ReadingSource, shelves: Library, out: Path
+    changes: Sequence[ProfileChange], source: ReadingSource, library: Library, out: Path
 ) -> list[MeasuredProfile]:
     """One profile for each material and printer that something was measured of, checked but not written.
 
     Quantities that an earlier run of the command measured and this one did not are kept. Raises InputError where a file
     of that name was not written by the command.
     """
-    found = []
-    for shelf, name in dict.fromkeys((change.shelf, change.name) for change in changes):
-        path = out / KINDS[shelf].folder / f"{name}.toml"
-        earlier = _earlier(path, [change for change in changes if (change.shelf, change.name) == (shelf, name)])
-        content = read_toml(base_file(shelf, name, shelves))
+    profiles = []
+    for kind, name in dict.fromkeys((change.shelf, change.name) for change in changes):
+        path = out / KINDS[kind].folder / f"{name}.toml"
+        earlier = _earlier(path, [change for change in changes if (change.shelf, change.name) == (kind, name)])
+        content = read_toml(base_file(kind, name, library))
         _carry(earlier, content)
-        said_of = [_put(content, change, path) for change in changes if (change.shelf, change.name) == (shelf, name)]
-        KINDS[shelf].validate(content, str(path))
-        found.append(
+        change_list = [_put(content, change, path) for change in changes if (change.shelf, change.name) == (kind, name)]
+        KINDS[kind].validate(content, str(path))
+        profiles.append(
             MeasuredProfile(
-                path, head(said, "the shipped profile with what was measured") + toml_text(content), said_of
+                path, head(source, "the shipped profile with what was measured") + toml_text(content), change_list
             )
         )
-    return found
+    return profiles
 
 
-def head(said: ReadingSource, what: str) -> str:
+def head(source: ReadingSource, what: str) -> str:
     """The first lines of a profile that the command writes."""
     return (
-        f"{HEAD} from {said.where} ({said.lab}, {said.date.isoformat()}): {what}.\n"
+        f"{HEAD} from {source.where} ({source.lab}, {source.date.isoformat()}): {what}.\n"
         "# Edit this line away and the command will no longer overwrite the file; delete the file to go back.\n"
     )
 
@@ -74,20 +74,20 @@ def write_profiles(profiles: Sequence[MeasuredProfile]) -> None:
         for profile in profiles:
             profile.path.parent.mkdir(parents=True, exist_ok=True)
             handle, name = tempfile.mkstemp(prefix=f".{profile.path.stem}.", dir=profile.path.parent)
-            beside = Path(name)
-            fresh.append((beside, profile.path))
+            temporary = Path(name)
+            fresh.append((temporary, profile.path))
             with os.fdopen(handle, "w", encoding="utf-8") as file:
                 file.write(profile.text)
-            beside.chmod(0o644)
-        for beside, path in fresh:
-            beside.replace(path)
+            temporary.chmod(0o644)
+        for temporary, path in fresh:
+            temporary.replace(path)
     except OSError as error:
         raise InputError(
             str(error.strerror), file=error.filename, remedy="give a folder you may write to with `out`"
         ) from None
     finally:
-        for beside, _ in fresh:
-            beside.unlink(missing_ok=True)
+        for temporary, _ in fresh:
+            temporary.unlink(missing_ok=True)
 
 
 def _is_ours(path: Path) -> bool:

@@ -25,73 +25,73 @@ def enter_results(path: Path, out: Path, library: Library | None = None) -> dict
 
     Raises InputError for a bad file, for one without readings, and rather than overwrite a profile that is not ours.
     """
-    shelves = library or Library.default()
+    library = library or Library.default()
     results = read_results(path)
-    found = evaluate_results(results, str(path), shelves)
+    findings = evaluate_results(results, str(path), library)
     here = ReadingSource(str(path), results.lab, results.date)
-    curves = [local_curve(pair, read, here, shelves, out, found) for pair, read in results.mixing.items()]
-    if not (found.changes or found.figures or found.notes):
+    curves = [local_curve(pair, read, here, library, out, findings) for pair, read in results.mixing.items()]
+    if not (findings.changes or findings.figures or findings.notes):
         raise InputError(f"{path}: nothing measured: every list is empty; fill in some readings")
-    said = ReadingSource(path.name, results.lab, results.date)
-    profiles = local_profiles(found.changes, said, shelves, out) + [curve for curve in curves if curve is not None]
+    source = ReadingSource(path.name, results.lab, results.date)
+    profiles = local_profiles(findings.changes, source, library, out) + [curve for curve in curves if curve is not None]
     write_profiles(profiles)
-    return _document(results, found, profiles)
+    return _document(results, findings, profiles)
 
 
-def evaluate_results(results: CouponResults, where: str, shelves: Library) -> CouponFindings:
+def evaluate_results(results: CouponResults, where: str, library: Library) -> CouponFindings:
     """Figures and changed quantities of a results file; ``where`` is the file, for messages."""
-    found, said = CouponFindings(), ReadingSource(where, results.lab, results.date)
+    findings, source = CouponFindings(), ReadingSource(where, results.lab, results.date)
     for name, read in results.puck.items():
-        puck(name, _material(name, where, "puck", shelves), read, said, found)
+        puck(name, _material(name, where, "puck", library), read, source, findings)
     for name, pulled in results.dumbbell.items():
-        dumbbell(name, _material(name, where, "dumbbell", shelves), pulled, said, found)
+        dumbbell(name, _material(name, where, "dumbbell", library), pulled, source, findings)
     for name, by_material in results.gauge.items():
-        _gauges(name, by_material, said, shelves, found)
+        _gauges(name, by_material, source, library, findings)
     for name in dict.fromkeys((*results.leak_cap, *results.volume_plug)):
         cap, plug = results.leak_cap.get(name), results.volume_plug.get(name)
-        scene = load_scene(_design(name, where, shelves), None, shelves)
+        scene = load_scene(_design(name, where, library), None, library)
         if cap is not None:
-            leak(name, cap, 0.0 if plug is None else plug.gauge_accuracy_kPa, said, found)
+            leak(name, cap, 0.0 if plug is None else plug.gauge_accuracy_kPa, source, findings)
         if plug is not None and (plug.pressure_kPa or plug.water_g):
-            volume(name, scene, cap, plug, said, found)
-    return found
+            volume(name, scene, cap, plug, source, findings)
+    return findings
 
 
 def _gauges(
-    name: str, by_material: Mapping[str, Gauge], said: ReadingSource, shelves: Library, found: CouponFindings
+    name: str, by_material: Mapping[str, Gauge], source: ReadingSource, library: Library, findings: CouponFindings
 ) -> None:
-    printer: Printer = _shipped("printers", name, said.where, "gauge", shelves)
+    printer: Printer = _shipped("printers", name, source.where, "gauge", library)
     measured = []
     for material_name, gauge in by_material.items():
-        material = _material(material_name, said.where, f"gauge.{name}", shelves)
+        material = _material(material_name, source.where, f"gauge.{name}", library)
         if printer.mode_for(material) is None:
             raise InputError(
-                f"{said.where}: gauge.{name}.{material_name}: the {printer.title} cannot run {material.label}; it runs "
+                f"{source.where}: gauge.{name}.{material_name}: the {printer.title} cannot run {material.label}; it runs "
                 f"{', '.join(printer.resins)}"
             )
         measured.append((material_name, material, gauge))
-    gauges(name, printer, measured, said, found)
+    gauges(name, printer, measured, source, findings)
 
 
-def _material(name: str, file: str, key: str, shelves: Library) -> Material:
-    found: Material = _shipped("materials", name, file, key, shelves)
-    return found
+def _material(name: str, file: str, key: str, library: Library) -> Material:
+    material: Material = _shipped("materials", name, file, key, library)
+    return material
 
 
-def _shipped(shelf: str, name: str, file: str, key: str, shelves: Library) -> Any:
+def _shipped(kind: str, name: str, file: str, key: str, library: Library) -> Any:
     """A profile as it was before the command wrote one. Raises InputError where the name is unknown."""
-    shelves.load(shelf, name, file=file, key=key)
-    path = base_file(shelf, name, shelves)
-    return KINDS[shelf].validate(read_toml(path), str(path))
+    library.load(kind, name, file=file, key=key)
+    path = base_file(kind, name, library)
+    return KINDS[kind].validate(read_toml(path), str(path))
 
 
-def _design(name: str, where: str, shelves: Library) -> str:
-    if name not in shelves.shelf("designs"):
-        shelves.load("designs", name, file=where, key="leak-cap or volume-plug")
+def _design(name: str, where: str, library: Library) -> str:
+    if name not in library.shelf("designs"):
+        library.load("designs", name, file=where, key="leak-cap or volume-plug")
     return name
 
 
-def _document(results: CouponResults, found: CouponFindings, profiles: list[MeasuredProfile]) -> dict[str, Any]:
+def _document(results: CouponResults, findings: CouponFindings, profiles: list[MeasuredProfile]) -> dict[str, Any]:
     return {
         "lab": results.lab,
         "date": results.date.isoformat(),
@@ -99,7 +99,7 @@ def _document(results: CouponResults, found: CouponFindings, profiles: list[Meas
         "changes": [change for profile in profiles for change in profile.changes],
         "figures": [
             {"about": f.about, "name": f.name, "value": f.value, "spread": f.spread, "count": f.count}
-            for f in found.figures
+            for f in findings.figures
         ],
-        "notes": found.notes,
+        "notes": findings.notes,
     }

@@ -104,14 +104,14 @@ def _table(item: CouponItem) -> list[str]:
 def _sizes(nominals: tuple[Nominal, ...]) -> list[str]:
     """The sizes of each feature, and what measures it."""
     instruments = {nominal.feature: nominal.instrument for nominal in nominals}
-    said = [f"- {feature}: {instrument}" for feature, instrument in instruments.items()]
+    instruments_of = [f"- {feature}: {instrument}" for feature, instrument in instruments.items()]
     most = max(nominal.readings for nominal in nominals)
     rows = [
         "| feature | nominal |" + "".join(f" {k} |" for k in range(1, most + 1)) + " came out |",
         "|" + "---|" * (most + 3),
     ]
     rows += [f"| {nominal.feature} | {_drawn(nominal)} |" + "     |" * (most + 1) for nominal in nominals]
-    return [*said, "", *rows]
+    return [*instruments_of, "", *rows]
 
 
 def _drawn(nominal: Nominal) -> str:

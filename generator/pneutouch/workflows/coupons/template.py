@@ -63,7 +63,7 @@ def _table(item: CouponItem, path: str) -> str:
     each = table_of(model, item.coupon.each)
     assert each is not None
     for _ in range(item.copies):
-        lines += ["", f"[[{path}.{item.coupon.each}]]", *(_own(each, nominal) for nominal in nominals)]
+        lines += ["", f"[[{path}.{item.coupon.each}]]", *(_reading(each, nominal) for nominal in nominals)]
     return "\n".join(lines)
 
 
@@ -79,7 +79,7 @@ def _settings(model: type[BaseModel]) -> list[str]:
     return lines
 
 
-def _own(model: type[BaseModel], nominal: Nominal) -> str:
+def _reading(model: type[BaseModel], nominal: Nominal) -> str:
     default: Any = model.model_fields[nominal.feature].default
     return f"{nominal.feature} = {value_text(default)}" if isinstance(default, float) else _empty(nominal, 1)
 

@@ -34,28 +34,28 @@ _DIGITS = 7
 
 def document(run: ScanRun) -> dict[str, Any]:
     """Everything said of a scan; names carry their units."""
-    found = {
-        "specimen": run.specimen.name, "design": run.design.name, "control": run.asked.control,
-        "preload_N": run.asked.preload, "speed_mm_per_s": run.way.speed, "path_mm": [run.way.start, run.way.end],
-        "sampling_Hz": RATE, "kept_Hz": 5 * run.kept, "noise_kPa": run.asked.noise / KPA, "seed": run.asked.seed,
+    content = {
+        "specimen": run.specimen.name, "design": run.design.name, "control": run.options.control,
+        "preload_N": run.options.preload, "speed_mm_per_s": run.path.speed, "path_mm": [run.path.start, run.path.end],
+        "sampling_Hz": RATE, "kept_Hz": 5 * run.kept, "noise_kPa": run.options.noise / KPA, "seed": run.options.seed,
         "range_kPa": GAUGE_LIMIT / KPA,
         "patterns": [_pattern(run, row) for row in run.bars],
         "states": [_state(run, number, seen) for number, seen in enumerate(run.seen)],
         "assumptions": list(ASSUMPTIONS),
     }  # fmt: skip
-    return rounded(found, _DIGITS)  # type: ignore[no-any-return]
+    return rounded(content, _DIGITS)  # type: ignore[no-any-return]
 
 
 def inputs(run: ScanRun) -> dict[str, Any]:
     """Everything that the result follows from, as data; measured signals by their file names."""
     design = run.design
-    asked = run.asked
+    options = run.options
     return {
         "specimen": specimen_inputs(run.specimen), "design": design.design.model_dump(mode="json"),
         "membrane": design.membrane_material.model_dump(mode="json"), "dead_volume_mm3": rounded(run.sensor.gas.dead_volume, _DIGITS),
-        "pressures_kPa": [rounded(p / KPA, _DIGITS) for p in asked.pressures], "preload_N": asked.preload, "control": asked.control,
-        "speed_mm_per_s": run.way.speed, "noise_kPa": asked.noise / KPA, "seed": asked.seed,
-        "data": [path.name for path in asked.data],
+        "pressures_kPa": [rounded(p / KPA, _DIGITS) for p in options.pressures], "preload_N": options.preload, "control": options.control,
+        "speed_mm_per_s": run.path.speed, "noise_kPa": options.noise / KPA, "seed": options.seed,
+        "data": [path.name for path in options.data],
     }  # fmt: skip
 
 
@@ -75,7 +75,7 @@ def spectra(run: ScanRun) -> str:
 
 
 def _names(run: ScanRun, frequency: float) -> str:
-    names = [name for name, own in run.frequencies.items() if own == frequency]
+    names = [name for name, known in run.frequencies.items() if known == frequency]
     return (
         names[0] if len(names) == 1 else " + ".join([names[0], *(name.removeprefix("pattern ") for name in names[1:])])
     )
@@ -88,19 +88,19 @@ def _pattern(run: ScanRun, row: BarRow) -> dict[str, Any]:
         "name": row.name, "pitch_mm": row.pitch, "width_mm": row.width, "height_mm": row.height, "depth_mm": row.depth,
         "from_mm": float(row.edges.min()), "to_mm": float(row.edges.max()), "frequency_Hz": frequency,
         "bending_length_mm": None if young is None else row.bending_length(young.nominal, run.matrix.shear_modulus),
-        "noise_amplitude_kPa": noise_amplitude(frequency, run.asked.noise) / KPA,
+        "noise_amplitude_kPa": noise_amplitude(frequency, run.options.noise) / KPA,
     }  # fmt: skip
 
 
 def _state(run: ScanRun, number: int, seen: AnalysedSignal) -> dict[str, Any]:
-    found: dict[str, Any] = {
+    content: dict[str, Any] = {
         "label": seen.label,
         "signal": f"signal-{number + 1}.csv",
         "duration_s": seen.signal.duration,
     }
     at = seen.touch
     if at is not None and seen.substrate is not None and seen.scan is not None:
-        found |= {
+        content |= {
             "driving_pressure_kPa": at.driving_pressure / KPA, "contact_radius_mm": at.contact_radius,
             "indentation_mm": at.indentation, "stiffness_N_per_mm": at.stiffness,
             "pressure_slope_kPa_per_mm": at.pressure_slope / KPA, "pressure_kPa": at.pressure / KPA, "model": at.model,
@@ -109,15 +109,15 @@ def _state(run: ScanRun, number: int, seen: AnalysedSignal) -> dict[str, Any]:
             "notes": _notes(run.bars, at.contact_radius),
         }  # fmt: skip
     detections: Sequence[Detection | None] = seen.detections or [None] * len(run.bars)
-    found["patterns"] = [_found(run, seen, row, one) for row, one in zip(run.bars, detections, strict=True)]
-    return found
+    content["patterns"] = [_detection(run, seen, row, one) for row, one in zip(run.bars, detections, strict=True)]
+    return content
 
 
-def _found(run: ScanRun, seen: AnalysedSignal, row: BarRow, found: Detection | None) -> dict[str, Any]:
+def _detection(run: ScanRun, seen: AnalysedSignal, row: BarRow, detection: Detection | None) -> dict[str, Any]:
     """One pattern in one signal. Patterns of one pitch share what is found: a spectrum does not tell them apart."""
     text: dict[str, Any] = {"name": row.name, "true_frequency_Hz": run.frequencies[row.name]}
     if seen.touch is not None and seen.substrate is not None:
-        swing = pressure_amplitude(seen.touch, seen.substrate, row, run.way.control)
+        swing = pressure_amplitude(seen.touch, seen.substrate, row, run.path.control)
         relief = abs(seen.substrate.amplitude(row)) * seen.touch.preload
         # Relief goes through the patch alone.
         felt = abs(float(patch_filter(np.asarray(2.0 * math.pi / row.pitch), seen.touch.contact_radius)))
@@ -126,13 +126,13 @@ def _found(run: ScanRun, seen: AnalysedSignal, row: BarRow, found: Detection | N
             "sinking_amplitude_um": relief * 1e3,
             "relief_equivalent_um": 1e3 * relief / felt,
         }
-    if found is None:
+    if detection is None:
         return text | {"detected": False}
     return text | {
-        "detected": found.detected, "detected_frequency_Hz": found.frequency, "amplitude_kPa": found.amplitude / KPA,
-        "noise_floor_kPa": found.floor / KPA, "detection_figure": found.ratio, "threshold": found.threshold,
-        "p_value": found.p_value, "level": found.level,
-        "frequency_error_relative": found.frequency / found.target - 1.0,
+        "detected": detection.detected, "detected_frequency_Hz": detection.frequency, "amplitude_kPa": detection.amplitude / KPA,
+        "noise_floor_kPa": detection.floor / KPA, "detection_figure": detection.ratio, "threshold": detection.threshold,
+        "p_value": detection.p_value, "level": detection.level,
+        "frequency_error_relative": detection.frequency / detection.target - 1.0,
     }  # fmt: skip
 
 

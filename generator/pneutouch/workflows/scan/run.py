@@ -73,8 +73,8 @@ class ScanRun:
     sensor: Sensor
     matrix: MatrixLayer
     bars: tuple[BarRow, ...]
-    asked: ScanOptions
-    way: ScanPath
+    options: ScanOptions
+    path: ScanPath
     frequencies: dict[str, float]
     seen: tuple[AnalysedSignal, ...]
 
@@ -90,31 +90,31 @@ class ScanRun:
 
 
 def run_scan(
-    specimen: str, design: str | DesignSource, asked: ScanOptions = ScanOptions(), changes: Changes | None = None, library: Library | None = None
+    specimen: str, design: str | DesignSource, options: ScanOptions = ScanOptions(), changes: Changes | None = None, library: Library | None = None
 ) -> ScanRun:  # fmt: skip
     """Scan a specimen with a sensor, both by name or path; ``changes`` are of the design.
 
     Raises InputError for what cannot be: see `texture.contact`, `texture.scan`, `texture.detect`.
     """
-    shelves = library or Library.default()
-    check_asked(asked)
-    context, scene, sensor = load_both(specimen, design, changes, shelves)
-    if asked.speed is not None:
-        context = replace(context, specimen=_at_speed(context, asked.speed))
+    library = library or Library.default()
+    check_options(options)
+    context, scene, sensor = load_both(specimen, design, changes, library)
+    if options.speed is not None:
+        context = replace(context, specimen=_at_speed(context, options.speed))
     speed = context.specimen.scan.speed_mm_per_s
     bars, matrix = bars_of(context), matrix_of(context)
-    states = [touch(sensor, pressure, asked.preload) for pressure in asked.pressures]
+    states = [touch(sensor, pressure, options.preload) for pressure in options.pressures]
     margin = max((state.contact_radius for state in states), default=0.0)
     length = context.specimen.block.length_mm
-    way = ScanPath(margin, length - margin, speed, asked.control)  # type: ignore[arg-type]
+    scan_path = ScanPath(margin, length - margin, speed, options.control)  # type: ignore[arg-type]
     frequencies = {row.name: speed / row.pitch for row in bars}
-    _check_length(context, way, frequencies)
+    _check_length(context, scan_path, frequencies)
     simulated = [
-        _simulated(state, Substrate(matrix, bars, length, state.contact_radius), way, asked, frequencies)
+        _simulated(state, Substrate(matrix, bars, length, state.contact_radius), scan_path, options, frequencies)
         for state in states
     ]
-    measured = [_measured(path, frequencies) for path in asked.data]
-    return ScanRun(context, scene, sensor, matrix, bars, asked, way, frequencies, (*simulated, *measured))
+    measured = [_measured(path, frequencies) for path in options.data]
+    return ScanRun(context, scene, sensor, matrix, bars, options, scan_path, frequencies, (*simulated, *measured))
 
 
 def load_both(
@@ -139,7 +139,7 @@ def load_both(
 
 def bars_of(context: ResolvedSpecimen) -> tuple[BarRow, ...]:
     """The specimen's rows of bars. Raises InputError for layers of another kind, which the scan model does not know."""
-    found = []
+    rows = []
     for number, layer in enumerate(context.specimen.layer):
         if not isinstance(layer, Bars):
             problem, remedy = (
@@ -153,11 +153,11 @@ def bars_of(context: ResolvedSpecimen) -> tuple[BarRow, ...]:
         edges = np.stack([left, left + layer.width_mm], axis=1)
         pitch = layer.pitch(context.specimen.scan.speed_mm_per_s)
         name = layer.name or f"layer {number + 1}"
-        found.append(BarRow(name, pitch, layer.width_mm, layer.height_mm, layer.depth_mm, edges))
-    names = [row.name for row in found]
+        rows.append(BarRow(name, pitch, layer.width_mm, layer.height_mm, layer.depth_mm, edges))
+    names = [row.name for row in rows]
     if len(set(names)) < len(names):
         raise InputError(f"{context.where}: layer: two patterns have one name; give each its own")
-    return tuple(found)
+    return tuple(rows)
 
 
 def matrix_of(context: ResolvedSpecimen) -> MatrixLayer:
@@ -173,57 +173,63 @@ def matrix_of(context: ResolvedSpecimen) -> MatrixLayer:
 
 def _at_speed(context: ResolvedSpecimen, speed: float) -> Any:
     """The specimen at another speed; the bars stay where the file's own speed put them."""
-    own = context.specimen.scan.speed_mm_per_s
+    given = context.specimen.scan.speed_mm_per_s
     layers = [
-        layer.model_copy(update={"pitch_mm": layer.pitch(own), "target_frequency_Hz": None})
+        layer.model_copy(update={"pitch_mm": layer.pitch(given), "target_frequency_Hz": None})
         if isinstance(layer, Bars) else layer for layer in context.specimen.layer
     ]  # fmt: skip
     update = {"scan": context.specimen.scan.model_copy(update={"speed_mm_per_s": speed}), "layer": layers}
     return context.specimen.model_copy(update=update)
 
 
-def check_asked(asked: ScanOptions) -> None:
+def check_options(options: ScanOptions) -> None:
     """Raise InputError for an option that no scan can have, in the words of the command line."""
-    if asked.control not in CONTROLS:
-        raise InputError(f"unknown.{nearest(asked.control, CONTROLS)}", key="control", value=asked.control)
-    if not math.isfinite(asked.preload) or asked.preload <= 0:
-        raise InputError("must be a force above 0 N", key="preload_N", value=asked.preload)
-    if asked.speed is not None and not SPEEDS[0] <= asked.speed <= SPEEDS[1]:
-        raise InputError(f"must be from {SPEEDS[0]:g} to {SPEEDS[1]:g} mm/s", key="speed_mm_per_s", value=asked.speed)
-    if not 0 <= asked.noise <= MOST_NOISE:
-        raise InputError(f"must be from 0 to {MOST_NOISE / KPA:g} kPa", key="noise_kPa", value=asked.noise / KPA)
-    if not asked.pressures and not asked.data:
+    if options.control not in CONTROLS:
+        raise InputError(f"unknown.{nearest(options.control, CONTROLS)}", key="control", value=options.control)
+    if not math.isfinite(options.preload) or options.preload <= 0:
+        raise InputError("must be a force above 0 N", key="preload_N", value=options.preload)
+    if options.speed is not None and not SPEEDS[0] <= options.speed <= SPEEDS[1]:
+        raise InputError(f"must be from {SPEEDS[0]:g} to {SPEEDS[1]:g} mm/s", key="speed_mm_per_s", value=options.speed)
+    if not 0 <= options.noise <= MOST_NOISE:
+        raise InputError(f"must be from 0 to {MOST_NOISE / KPA:g} kPa", key="noise_kPa", value=options.noise / KPA)
+    if not options.pressures and not options.data:
         raise InputError("none given, and no `data`", key="driving_pressures_kPa", remedy="nothing to scan")
 
 
-def _check_length(context: ResolvedSpecimen, way: ScanPath, frequencies: dict[str, float]) -> None:
+def _check_length(context: ResolvedSpecimen, scan_path: ScanPath, frequencies: dict[str, float]) -> None:
     """Refuse a path too short to tell a pattern's frequency, in terms of the specimen."""
-    lasts = (way.end - way.start) / way.speed
+    lasts = (scan_path.end - scan_path.start) / scan_path.speed
     for name, frequency in frequencies.items():
         needed = least_duration(frequency)
         if lasts < needed:
             raise InputError(
-                f"{context.where}: {name}: {frequency:.4g} Hz at {way.speed:g} mm/s: the path of {max(way.end - way.start, 0):.4g} mm "
+                f"{context.where}: {name}: {frequency:.4g} Hz at {scan_path.speed:g} mm/s: the path of {max(scan_path.end - scan_path.start, 0):.4g} mm "
                 f"between the block's ends lasts {max(lasts, 0):.4g} s and must last {needed:.4g} s; block.length_mm must be at least "
-                f"{needed * way.speed + 2 * way.start:.4g}"
+                f"{needed * scan_path.speed + 2 * scan_path.start:.4g}"
             )
 
 
 def _detected(signal: Signal, frequencies: dict[str, float], where: str) -> tuple[Detection, ...]:
     """One detection for each pattern; patterns of one pitch are one line in a spectrum."""
-    asked = sorted(set(frequencies.values()))
+    sought = sorted(set(frequencies.values()))
     if np.ptp(signal.pressure) == 0:
         return ()
-    by = dict(zip(asked, detect(signal, asked, where=where), strict=True))
+    by = dict(zip(sought, detect(signal, sought, where=where), strict=True))
     return tuple(by[frequency] for frequency in frequencies.values())
 
 
 def _simulated(
-    state: PreloadContact, substrate: Substrate, way: ScanPath, asked: ScanOptions, frequencies: dict[str, float]
+    state: PreloadContact,
+    substrate: Substrate,
+    scan_path: ScanPath,
+    options: ScanOptions,
+    frequencies: dict[str, float],
 ) -> AnalysedSignal:
-    found = scan(state, substrate, way, Recorder(noise=asked.noise, seed=asked.seed))
+    simulated = scan(state, substrate, scan_path, Recorder(noise=options.noise, seed=options.seed))
     label = f"{state.driving_pressure / KPA:g} kPa"
-    return AnalysedSignal(label, found.signal, _detected(found.signal, frequencies, label), state, substrate, found)
+    return AnalysedSignal(
+        label, simulated.signal, _detected(simulated.signal, frequencies, label), state, substrate, simulated
+    )
 
 
 def _measured(path: Path, frequencies: dict[str, float]) -> AnalysedSignal:

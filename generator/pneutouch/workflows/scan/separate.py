@@ -20,7 +20,7 @@ from pneutouch.mechanics.sensor import Sensor
 from pneutouch.spec.read import Changes
 from pneutouch.texture.separate import BarPattern, Separation, noise_amplitude, separate
 from pneutouch.units import KPA
-from pneutouch.workflows.scan.run import ScanOptions, check_asked, load_both, matrix_of
+from pneutouch.workflows.scan.run import ScanOptions, check_options, load_both, matrix_of
 
 _RADII, _RATIOS, _PRESSURES = 8, 8, 9
 _SMALLEST, _LARGEST = 4.0, 20.0
@@ -57,34 +57,34 @@ def parse_patterns(text: str) -> tuple[BarPattern, BarPattern]:
 
 
 def separating(
-    specimen: str, design: str | DesignSource, text: str, asked: ScanOptions, changes: Changes | None = None,
+    specimen: str, design: str | DesignSource, text: str, options: ScanOptions, changes: Changes | None = None,
     library: Library | None = None,
 ) -> dict[str, Any]:  # fmt: skip
     """The domes that best tell two patterns apart, as a document; the specimen gives matrix and speed, the design the rest."""
-    shelves = library or Library.default()
-    check_asked(asked)
+    library = library or Library.default()
+    check_options(options)
     patterns = parse_patterns(text)
-    context, scene, sensor = load_both(specimen, design, changes, shelves, scanned=False)
-    speed = context.specimen.scan.speed_mm_per_s if asked.speed is None else asked.speed
-    floor = tuple(noise_amplitude(speed / pattern.pitch, asked.noise) for pattern in patterns)
-    domes = candidates(scene, sensor, shelves)
-    found = separate(domes.batch, domes.dome, asked.preload, matrix_of(context), patterns, (floor[0], floor[1]))
+    context, scene, sensor = load_both(specimen, design, changes, library, scanned=False)
+    speed = context.specimen.scan.speed_mm_per_s if options.speed is None else options.speed
+    floor = tuple(noise_amplitude(speed / pattern.pitch, options.noise) for pattern in patterns)
+    domes = candidates(scene, sensor, library)
+    separation = separate(domes.batch, domes.dome, options.preload, matrix_of(context), patterns, (floor[0], floor[1]))
     return {
         "patterns": [{"pitch_mm": p.pitch, "depth_mm": p.depth, "frequency_Hz": speed / p.pitch,
                       "noise_amplitude_kPa": f / KPA} for p, f in zip(patterns, floor, strict=True)],
-        "candidates": len(domes.batch), "preload_N": asked.preload,
-        "domes": [_dome(domes, found, k) for k in range(min(_SHOWN, len(found.dome)))],
+        "candidates": len(domes.batch), "preload_N": options.preload,
+        "domes": [_dome(domes, separation, k) for k in range(min(_SHOWN, len(separation.dome)))],
     }  # fmt: skip
 
 
-def _dome(domes: DomeCandidates, found: Separation, k: int) -> dict[str, Any]:
-    row = int(np.flatnonzero(domes.dome == found.dome[k])[0])
+def _dome(domes: DomeCandidates, separation: Separation, k: int) -> dict[str, Any]:
+    row = int(np.flatnonzero(domes.dome == separation.dome[k])[0])
     return {
         "rank": k + 1, "resin": domes.names[int(domes.resin[row])], "inner_radius_mm": float(round(domes.radius[row], 2)),
-        "wall_thickness_mm": float(round(domes.wall[row], 2)), "contrast": float(f"{found.contrast[k]:.4g}"),
+        "wall_thickness_mm": float(round(domes.wall[row], 2)), "contrast": float(f"{separation.contrast[k]:.4g}"),
         "states": [
-            {"driving_pressure_kPa": float(f"{found.pressures[k, i] / KPA:.4g}"), "for_pattern": i + 1,
-             "amplitudes_kPa": [float(f"{a / KPA:.4g}") for a in found.amplitudes[k, i]]} for i in (0, 1)
+            {"driving_pressure_kPa": float(f"{separation.pressures[k, i] / KPA:.4g}"), "for_pattern": i + 1,
+             "amplitudes_kPa": [float(f"{a / KPA:.4g}") for a in separation.amplitudes[k, i]]} for i in (0, 1)
         ],
     }  # fmt: skip
 
@@ -94,14 +94,14 @@ def candidates(scene: ResolvedDesign, sensor: Sensor, library: Library) -> DomeC
     recipe, feature = shipped().recipe, scene.printer.smallest.wall("elastomer")
     least = feature.least or feature.recommended
     resins = {
-        name: own for name, material in sorted(elastomers(library).items())
-        if scene.printer.mode_for(material) is not None and (own := material_sensor(material)).wall.law is None
-        and own.wall.poisson_ratio == recipe.poisson_ratio and sensor.gas.ambient_pressure <= recipe.stiffest * own.wall.shear_modulus
+        name: alone for name, material in sorted(elastomers(library).items())
+        if scene.printer.mode_for(material) is not None and (alone := material_sensor(material)).wall.law is None
+        and alone.wall.poisson_ratio == recipe.poisson_ratio and sensor.gas.ambient_pressure <= recipe.stiffest * alone.wall.shear_modulus
     }  # fmt: skip
     if not resins:
         raise InputError(f"{scene.where}: print.profile: the {scene.printer.title} runs no resin that the atlas knows")
     ratios = np.geomspace(recipe.thinnest, recipe.thickest, _RATIOS)
-    mu = np.array([own.wall.shear_modulus for own in resins.values()])
+    mu = np.array([alone.wall.shear_modulus for alone in resins.values()])
     resin, ratio, radius, share = _grid(
         np.arange(len(resins), dtype=float), ratios, np.geomspace(_SMALLEST, _LARGEST, _RADII),
         np.linspace(0.0, RATED_SHARE, _PRESSURES),

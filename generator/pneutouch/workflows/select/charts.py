@@ -36,9 +36,9 @@ def write_charts(
     Raises InputError where the folder cannot be written.
     """
     charts = {"trade-off.svg": tradeoff_chart(tradeoff(selection), _SIZE)}
-    found = tuning(selection, library or Library.default(), chosen)
-    if found is not None:
-        charts["tuning.svg"] = tuning_chart(found, _SIZE)
+    chart = tuning(selection, library or Library.default(), chosen)
+    if chart is not None:
+        charts["tuning.svg"] = tuning_chart(chart, _SIZE)
     return [_write(folder / name, text) for name, text in charts.items()]
 
 
@@ -48,14 +48,14 @@ def tradeoff(selection: SelectionRun) -> TradeOff:
     pressure = problem.driving_pressure
     if pressure is None:
         pressure = float(designs[0].pool.pressure[0]) if designs else 0.0
-    wanted_kPa_per_N = problem.sensitivity_kPa_per_N
+    target_kPa_per_N = problem.sensitivity_kPa_per_N
     # Of a mix the fronts of the designs' own fractions: those of all that were tried lie side by side.
     mixed = any(resin.grade is not None for resin in problem.resins)
     resins = tuple(choice.resin for choice in designs) if mixed and designs else problem.resins
     return TradeOff(
         tuple(front(replace(problem, driving_pressure=pressure, resins=resins))), pressure / KPA, (problem.gauge_limit - pressure) / KPA,
         tuple(_spot(rank, choice) for rank, choice in enumerate(designs, start=1)),
-        None if wanted_kPa_per_N is None else (wanted_kPa_per_N * (1 - problem.tolerance), wanted_kPa_per_N * (1 + problem.tolerance)),
+        None if target_kPa_per_N is None else (target_kPa_per_N * (1 - problem.tolerance), target_kPa_per_N * (1 + problem.tolerance)),
         problem.force_range,
     )  # fmt: skip
 
@@ -102,14 +102,14 @@ def _write(path: Path, text: str) -> Path:
     """Write a file beside its place and rename it into it."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        handle, beside = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+        handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
         try:
             with os.fdopen(handle, "w", encoding="utf-8") as file:
                 file.write(text)
-            Path(beside).chmod(0o644)
-            Path(beside).replace(path)
+            Path(temporary).chmod(0o644)
+            Path(temporary).replace(path)
         finally:
-            Path(beside).unlink(missing_ok=True)
+            Path(temporary).unlink(missing_ok=True)
     except OSError as error:
         raise InputError(f"{path}: {error.strerror}", key="charts", remedy="give a folder you may write to") from None
     return path

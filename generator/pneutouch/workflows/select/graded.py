@@ -23,7 +23,7 @@ from pneutouch.spec.material import Material
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA
 from pneutouch.workflows.select.mix import ResinPair
-from pneutouch.workflows.select.run import base_scene, grade_text, pair_asked, problem_of
+from pneutouch.workflows.select.run import base_scene, grade_text, problem_of, requested_pair
 
 _LEVELS = 4
 """Fractions of the scan at pole and rim: moduli 3 times apart for TangoPlus and VeroClear, 16 trials."""
@@ -42,19 +42,19 @@ class GradedSelectionRun:
     base: ResolvedDesign
     sensor: Sensor
     pair: ResinPair
-    wish: GradeTarget
+    grade_target: GradeTarget
     search: GradeSearch
     constants: tuple[UniformMembrane, ...]
     left_out: dict[str, str]
 
     @property
     def solves(self) -> int:
-        """Solid solves in all, each inflated once and pressed at every pressure of the wish."""
+        """Solid solves in all, each inflated once and pressed at every pressure of the grade_target."""
         return len(self.search.trials) + len(self.constants)
 
     @property
     def nearest(self) -> UniformMembrane:
-        """The constant mix nearest to the wish."""
+        """The constant mix nearest to the grade_target."""
         return self.constants[-1]
 
     @property
@@ -64,19 +64,19 @@ class GradedSelectionRun:
 
     def meets(self, trial: GradeTrial) -> bool:
         """Whether a membrane keeps every tolerance and limit."""
-        return max(shares(self.wish, trial).values()) <= 1.0
+        return max(shares(self.grade_target, trial).values()) <= 1.0
 
     def assignments(self) -> list[str]:
         """What turns the base design into the graded one, as ``table.key=value``."""
         setting = self.target.setting
-        pressures_kPa = sorted({0.0, *(round(p / KPA, 6) for p in self.wish.pressures)})
-        found = {
+        pressures_kPa = sorted({0.0, *(round(p / KPA, 6) for p in self.grade_target.pressures)})
+        values = {
             "membrane.material": grade_text(self.grade), "membrane.inner_radius_mm": f"{self.sensor.dome.inner_radius:.6g}",
             "membrane.wall_thickness_mm": f"{self.sensor.dome.wall_thickness:.6g}",
             "pneumatics.driving_pressures_kPa": pressures_kPa, "print.profile": setting.profile,
             "pneumatics.tube_length_mm": setting.tube_length_mm, "pneumatics.dead_volume_mL": setting.dead_volume_mL,
         }  # fmt: skip
-        return [f"{key}={value}" for key, value in found.items() if value is not None]
+        return [f"{key}={value}" for key, value in values.items() if value is not None]
 
 
 def select_graded(
@@ -87,44 +87,44 @@ def select_graded(
 
     ``where`` names the file in messages; ``trials`` bounds the solid solves of the search.
     """
-    shelves = library or Library.default()
-    scene = base_scene(target, where, shelves)
-    pair = pair_asked(target, where, scene.printer, shelves)
+    library = library or Library.default()
+    scene = base_scene(target, where, library)
+    pair = requested_pair(target, where, scene.printer, library)
     assert pair is not None
-    wish, base = _wish(target), sensor_of(assemble(scene))
+    grade_target, base = _grade_target(target), sensor_of(assemble(scene))
     problem = problem_of(target, scene, base, (pair.resin(float(levels(pair.law, 3)[1])),))
-    sensor = base.replace(wall_thickness=_wall(target, where, wish, problem, base))
+    sensor = base.replace(wall_thickness=_wall(target, where, grade_target, problem, base))
 
     def solve(pole: float, rim: float) -> GradeTrial:
-        return trial_of(in_resin(sensor, pair.material(pair.grade(pole, rim))), wish.pressures, pole, rim)
+        return trial_of(in_resin(sensor, pair.material(pair.grade(pole, rim))), grade_target.pressures, pole, rim)
 
-    found = grade_search(wish, levels(pair.law, _LEVELS), solve, progress, trials or _TRIALS)
-    constants, left_out = _catalogue(scene, sensor, wish, shelves)
-    nearest = _nearest(wish, problem, pair, sensor, found)
-    return GradedSelectionRun(target, scene, sensor, pair, wish, found, (*constants, nearest), left_out)
+    search = grade_search(grade_target, levels(pair.law, _LEVELS), solve, progress, trials or _TRIALS)
+    constants, left_out = _catalogue(scene, sensor, grade_target, library)
+    nearest = _nearest(grade_target, problem, pair, sensor, search)
+    return GradedSelectionRun(target, scene, sensor, pair, grade_target, search, (*constants, nearest), left_out)
 
 
-def _wish(target: Target) -> GradeTarget:
-    wanted = target.target
-    assert wanted.sensitivity_kPa_per_N is not None
-    both_kPa = wanted.same_sensitivity_at_kPa
-    pressures_kPa = both_kPa if both_kPa is not None else [wanted.driving_pressure_kPa or 0.0]
+def _grade_target(target: Target) -> GradeTarget:
+    required = target.target
+    assert required.sensitivity_kPa_per_N is not None
+    both_kPa = required.same_sensitivity_at_kPa
+    pressures_kPa = both_kPa if both_kPa is not None else [required.driving_pressure_kPa or 0.0]
     return GradeTarget(
-        wanted.sensitivity_kPa_per_N, wanted.tolerance_percent / 100, tuple(p * KPA for p in pressures_kPa),
-        None if both_kPa is None else wanted.same_within_percent / 100, wanted.force_range_N, wanted.widest_range,
+        required.sensitivity_kPa_per_N, required.tolerance_percent / 100, tuple(p * KPA for p in pressures_kPa),
+        None if both_kPa is None else required.same_within_percent / 100, required.force_range_N, required.widest_range,
     )  # fmt: skip
 
 
-def _wall(target: Target, where: str, wish: GradeTarget, problem: SelectionProblem, base: Sensor) -> float:
+def _wall(target: Target, where: str, grade_target: GradeTarget, problem: SelectionProblem, base: Sensor) -> float:
     """The wall given; else that with which the mix of middle modulus has the sensitivity, else the base's."""
-    radius, room = base.dome.inner_radius, target.target.max_diameter_mm
-    thickest = np.inf if room is None else 0.5 * room - radius
+    radius, most = base.dome.inner_radius, target.target.max_diameter_mm
+    thickest = np.inf if most is None else 0.5 * most - radius
     wall = target.given.wall_thickness_mm
     if wall is None:
-        wall = middle_wall(wish, problem, radius, thickest) or base.dome.wall_thickness
+        wall = middle_wall(grade_target, problem, radius, thickest) or base.dome.wall_thickness
     if wall > thickest + 1e-9:
         raise InputError(
-            f"{where}: target.max_diameter_mm = {room:g}: a dome of inner radius {radius:g} mm and wall {wall:g} mm is "
+            f"{where}: target.max_diameter_mm = {most:g}: a dome of inner radius {radius:g} mm and wall {wall:g} mm is "
             f"{2 * (radius + wall):g} mm wide; give a smaller given.inner_radius_mm"
         )
     if wall < problem.least_wall:
@@ -135,23 +135,25 @@ def _wall(target: Target, where: str, wish: GradeTarget, problem: SelectionProbl
 
 
 def _catalogue(
-    scene: ResolvedDesign, sensor: Sensor, wish: GradeTarget, library: Library
+    scene: ResolvedDesign, sensor: Sensor, grade_target: GradeTarget, library: Library
 ) -> tuple[list[UniformMembrane], dict[str, str]]:
     """Every elastomer of the catalogue at this size, softest first, and why the others are left out."""
-    found, out = [], {}
+    resins, out = [], {}
     for name, material in library.all("materials", Material).items():
         if material.kind != "elastomer":
             continue
         if scene.printer.mode_for(material) is None:
             out[name] = f"the {scene.printer.title} cannot run it"
         else:
-            found.append((material_sensor(material).wall.shear_modulus, name, material))
-    order = sorted(found, key=lambda entry: entry[:2])
-    return [UniformMembrane(name, None, trial_of(in_resin(sensor, m), wish.pressures)) for _, name, m in order], out
+            resins.append((material_sensor(material).wall.shear_modulus, name, material))
+    order = sorted(resins, key=lambda entry: entry[:2])
+    return [
+        UniformMembrane(name, None, trial_of(in_resin(sensor, m), grade_target.pressures)) for _, name, m in order
+    ], out
 
 
 def _nearest(
-    wish: GradeTarget, problem: SelectionProblem, pair: ResinPair, sensor: Sensor, found: GradeSearch
+    grade_target: GradeTarget, problem: SelectionProblem, pair: ResinPair, sensor: Sensor, search: GradeSearch
 ) -> UniformMembrane:
     """The constant mix nearest to the wish: found by the atlas, else the nearest of those tried; solved by the solid."""
     middle, recipe = problem.resins[0].material, shipped().recipe
@@ -161,11 +163,13 @@ def _nearest(
         material_sensor(middle).wall.poisson_ratio == recipe.poisson_ratio
         and sensor.gas.ambient_pressure <= recipe.stiffest * soft
     ):
-        fraction = nearest_fraction(wish, problem, pair.law, (sensor.dome.inner_radius, sensor.dome.wall_thickness))
+        fraction = nearest_fraction(
+            grade_target, problem, pair.law, (sensor.dome.inner_radius, sensor.dome.wall_thickness)
+        )
     if fraction is None:
-        even = [trial for trial in found.trials if trial.pole == trial.rim]
-        fraction = min(even, key=lambda trial: max(shares(wish, trial).values())).pole
+        even = [trial for trial in search.trials if trial.pole == trial.rim]
+        fraction = min(even, key=lambda trial: max(shares(grade_target, trial).values())).pole
     grade = pair.grade(round(fraction, 4))
     return UniformMembrane(
-        grade.label, grade.fractions[0], trial_of(in_resin(sensor, pair.material(grade)), wish.pressures)
+        grade.label, grade.fractions[0], trial_of(in_resin(sensor, pair.material(grade)), grade_target.pressures)
     )

@@ -26,7 +26,7 @@ def graded_document(selection: GradedSelectionRun) -> dict[str, Any]:
             "wall_thickness_mm": sensor.dome.wall_thickness,
             "dead_volume_mL": sensor.gas.dead_volume / ML,
             **_figures(selection, search.best),
-            "share_used": shares(selection.wish, search.best),
+            "share_used": shares(selection.grade_target, search.best),
             "set": selection.assignments(),
         },
         "constant": [
@@ -42,7 +42,7 @@ def graded_document(selection: GradedSelectionRun) -> dict[str, Any]:
 
 def _figures(selection: GradedSelectionRun, trial: GradeTrial) -> dict[str, Any]:
     return {
-        "driving_pressures_kPa": [p / KPA for p in selection.wish.pressures],
+        "driving_pressures_kPa": [p / KPA for p in selection.grade_target.pressures],
         "sensitivity_kPa_per_N": _known(trial.sensitivity_kPa_per_N),
         "difference_percent": _known((100 * trial.difference,))[0],
         "force_range_end_N": _known(trial.force),
@@ -59,16 +59,16 @@ def _known(values: tuple[float, ...]) -> list[float | None]:
 
 def missed(selection: GradedSelectionRun) -> list[str]:
     """What the best grade misses, and how far it can be moved at this size, in words."""
-    wish, best = selection.wish, selection.search.best
+    grade_target, best = selection.grade_target, selection.search.best
     values = ", ".join(f"{value:.3f}" for value in best.sensitivity_kPa_per_N)
-    said = {
-        "sensitivity": f"{values} kPa/N instead of {wish.sensitivity_kPa_per_N:g} within {100 * wish.tolerance:g} %",
-        "same sensitivity": f"{100 * best.difference:+.1f} % apart instead of {100 * (wish.same_within or 0):g} %",
-        "rated pressure": f"{best.rated / KPA:.1f} kPa, less than {max(wish.pressures) / KPA:g} kPa",
-        "force range": f"{best.reach:.3g} N instead of {wish.force or 0:g}",
+    texts = {
+        "sensitivity": f"{values} kPa/N instead of {grade_target.sensitivity_kPa_per_N:g} within {100 * grade_target.tolerance:g} %",
+        "same sensitivity": f"{100 * best.difference:+.1f} % apart instead of {100 * (grade_target.same_within or 0):g} %",
+        "rated pressure": f"{best.rated / KPA:.1f} kPa, less than {max(grade_target.pressures) / KPA:g} kPa",
+        "force range": f"{best.reach:.3g} N instead of {grade_target.force or 0:g}",
         "no figures": best.note or "no straight part to fit",
     }
-    lines = [f"{name}: {said[name]}" for name, used in shares(wish, best).items() if used > 1.0]
+    lines = [f"{name}: {texts[name]}" for name, used in shares(grade_target, best).items() if used > 1.0]
     known_kPa_per_N = np.array(
         [
             trial.sensitivity_kPa_per_N
@@ -79,7 +79,7 @@ def missed(selection: GradedSelectionRun) -> list[str]:
     if known_kPa_per_N.size:
         lines.append(
             f"all grades tried of this size have {known_kPa_per_N[:, 0].min():.2f} to {known_kPa_per_N[:, 0].max():.2f} kPa/N at "
-            f"{wish.pressures[0] / KPA:g} kPa"
+            f"{grade_target.pressures[0] / KPA:g} kPa"
         )
     return lines
 

@@ -49,11 +49,13 @@ class ResinPair:
         """A constant mix as the search takes a resin."""
         grade = self.grade(fraction)
         material = self.material(grade)
-        own = material_sensor(material)
-        return CandidateResin(grade.label, material, own.wall.shear_modulus, own.wall.break_stretch or np.inf, grade)
+        sensor = material_sensor(material)
+        return CandidateResin(
+            grade.label, material, sensor.wall.shear_modulus, sensor.wall.break_stretch or np.inf, grade
+        )
 
 
-def pair_of(name: str, printer: Printer, library: Library, where: str, asked: bool = True) -> ResinPair:
+def pair_of(name: str, printer: Printer, library: Library, where: str, named: bool = True) -> ResinPair:
     """The pair of ``SOFT+STIFF``. Raises InputError where a name is unknown or the printer does not hold both.
 
     ``asked`` says whether the user named the pair.
@@ -61,10 +63,10 @@ def pair_of(name: str, printer: Printer, library: Library, where: str, asked: bo
     soft, stiff = (part.strip() for part in name.split("+"))
     pair = ResinPair(soft, stiff, mixing(soft, stiff, library, file=where, key="given.mix"), library, where)
     if printer.mode_for(pair.material(pair.grade(0.5 * float(pair.law.fraction[-1])))) is None:
-        way = "name a pair that it holds with `mix`, or another printer with `profile`"
+        remedy = "name a pair that it holds with `mix`, or another printer with `profile`"
         raise InputError(
-            f"{where}: given.mix = {name!r}{'' if asked else ' (none was named)'}: the {printer.title} cannot mix {soft} with "
-            f"{stiff}; it runs {', '.join(printer.resins)}, {printer.resins_at_once} at once; {way}"
+            f"{where}: given.mix = {name!r}{'' if named else ' (none was named)'}: the {printer.title} cannot mix {soft} with "
+            f"{stiff}; it runs {', '.join(printer.resins)}, {printer.resins_at_once} at once; {remedy}"
         )
     return pair
 
@@ -76,10 +78,10 @@ def mix_resins(
     resins, out = [], {}
     for fraction in levels(pair.law):
         resin = pair.resin(round(float(fraction), 4))
-        own = material_sensor(resin.material)
-        if own.wall.law is not None or own.wall.poisson_ratio != recipe.poisson_ratio:
+        sensor = material_sensor(resin.material)
+        if sensor.wall.law is not None or sensor.wall.poisson_ratio != recipe.poisson_ratio:
             out[resin.name] = "the atlas knows neither its law nor its Poisson ratio"
-        elif ambient_pressure > recipe.stiffest * own.wall.shear_modulus:
+        elif ambient_pressure > recipe.stiffest * sensor.wall.shear_modulus:
             out[resin.name] = "it is too soft for the atlas in so high an ambient pressure"
         else:
             resins.append(resin)

@@ -64,7 +64,7 @@ class SelectionRun:
         """What turns the base design into a choice, as ``table.key=value``."""
         pressure_kPa = float(choice.pool.pressure[0]) / KPA
         pressures = sorted({0.0, round(pressure_kPa, 6)})
-        found = [
+        values = [
             f"membrane.material={_written(choice.resin)}",
             f"membrane.inner_radius_mm={float(choice.pool.radius[0]):.6g}",
             f"membrane.wall_thickness_mm={float(choice.pool.wall[0]):.6g}",
@@ -72,8 +72,8 @@ class SelectionRun:
         ]
         if self.base.design.indentation.depth_mm is not None:
             # A depth in millimetres belongs to the base's own dome: it goes with the radius.
-            found.append(f"indentation.depth_mm={self.problem.depth_share * float(choice.pool.radius[0]):.8g}")
-        return found + self._setting
+            values.append(f"indentation.depth_mm={self.problem.depth_share * float(choice.pool.radius[0]):.8g}")
+        return values + self._setting
 
     def sensor_of(self, choice: Candidate) -> Sensor:
         """A choice as a sensor, in everything else the base design's."""
@@ -96,21 +96,21 @@ class SelectionRun:
 
 def select(target: Target, where: str, library: Library | None = None) -> SelectionRun:
     """Answer a target. Raises InputError where it names what there is not; ``where`` names the file in messages."""
-    shelves = library or Library.default()
-    scene = base_scene(target, where, shelves)
+    library = library or Library.default()
+    scene = base_scene(target, where, library)
     sensor = sensor_of(assemble(scene))
-    pair = pair_asked(target, where, scene.printer, shelves)
+    pair = requested_pair(target, where, scene.printer, library)
     if pair is None:
-        resins, left_out = _resins(target, where, scene, sensor, shelves)
+        resins, left_out = _resins(target, where, scene, sensor, library)
     else:
         resins, left_out = mix_resins(pair, sensor.gas.ambient_pressure, shipped().recipe)
     problem = problem_of(target, scene, sensor, resins)
     answer = choose(
-        problem, (target.weights.robustness, target.weights.tunability), _uncertainty(scene, sensor, shelves),
+        problem, (target.weights.robustness, target.weights.tunability), _uncertainty(scene, sensor, library),
         None if pair is None else _refined(pair),
     )  # fmt: skip
-    found = SelectionRun(target, scene, sensor, problem, answer, left_out, ())
-    return replace(found, confirmed=tuple(_confirm(found, choice) for choice in answer.designs[:_CONFIRMED]))
+    run = SelectionRun(target, scene, sensor, problem, answer, left_out, ())
+    return replace(run, confirmed=tuple(_confirm(run, choice) for choice in answer.designs[:_CONFIRMED]))
 
 
 def _written(resin: CandidateResin) -> str:
@@ -123,12 +123,12 @@ def grade_text(grade: Grade) -> str:
     return value_text(grade.model_dump(by_alias=True, exclude_none=True))
 
 
-def pair_asked(target: Target, where: str, printer: Printer, library: Library) -> ResinPair | None:
+def requested_pair(target: Target, where: str, printer: Printer, library: Library) -> ResinPair | None:
     """The pair to mix: the one named, the usual one for a grade; None where resins are to be chosen from."""
     given = target.given
     if given.mix is None and not given.graded:
         return None
-    return pair_of(given.mix or USUAL, printer, library, where, asked=given.mix is not None)
+    return pair_of(given.mix or USUAL, printer, library, where, named=given.mix is not None)
 
 
 def _refined(pair: ResinPair) -> Callable[[SelectionProblem, CandidatePool], tuple[SelectionProblem, CandidatePool]]:
@@ -160,7 +160,7 @@ def _some_resin(target: Target, where: str, library: Library) -> str:
         design = validate(DesignFile, read_toml(base), str(base)) if base else DesignFile()
         profile = design.print.profile
     printer: Printer = library.load("printers", profile, file=where, key="setting.profile")
-    pair = pair_asked(target, where, printer, library)
+    pair = requested_pair(target, where, printer, library)
     names = [pair.soft] if pair else target.given.materials or sorted(library.shelf("materials"))
     loaded = {name: library.load("materials", name, file=where, key="given.materials") for name in names}
     for name in target.given.materials or []:
@@ -183,15 +183,15 @@ def _resins(
     recipe, resins, out = shipped().recipe, [], {}
     for name in names:
         material = library.load("materials", name, file=where, key="given.materials")
-        own = material_sensor(material)
+        alone = material_sensor(material)
         if scene.printer.mode_for(material) is None:
             out[name] = f"the {scene.printer.title} cannot run it"
-        elif own.wall.law is not None or own.wall.poisson_ratio != recipe.poisson_ratio:
+        elif alone.wall.law is not None or alone.wall.poisson_ratio != recipe.poisson_ratio:
             out[name] = "the atlas knows neither its law nor its Poisson ratio"
-        elif sensor.gas.ambient_pressure > recipe.stiffest * own.wall.shear_modulus:
+        elif sensor.gas.ambient_pressure > recipe.stiffest * alone.wall.shear_modulus:
             out[name] = "it is too soft for the atlas in so high an ambient pressure"
         else:
-            resins.append(CandidateResin(name, material, own.wall.shear_modulus, own.wall.break_stretch or np.inf))
+            resins.append(CandidateResin(name, material, alone.wall.shear_modulus, alone.wall.break_stretch or np.inf))
     return tuple(resins), out
 
 
@@ -199,13 +199,13 @@ def problem_of(
     target: Target, scene: ResolvedDesign, sensor: Sensor, resins: tuple[CandidateResin, ...]
 ) -> SelectionProblem:
     """The search in numbers, on a base with its sensor."""
-    wanted, given = target.target, target.given
+    required, given = target.target, target.given
     feature = scene.printer.smallest.wall("elastomer")
     return SelectionProblem(
-        resins=resins, sensitivity_kPa_per_N=wanted.sensitivity_kPa_per_N, tolerance=wanted.tolerance_percent / 100,
-        driving_pressure=None if wanted.driving_pressure_kPa is None else wanted.driving_pressure_kPa * KPA,
-        force_range=wanted.force_range_N, stiffness=(wanted.stiffness_least_N_per_mm, wanted.stiffness_most_N_per_mm),
-        max_diameter=wanted.max_diameter_mm, inner_radius=given.inner_radius_mm, wall_thickness=given.wall_thickness_mm,
+        resins=resins, sensitivity_kPa_per_N=required.sensitivity_kPa_per_N, tolerance=required.tolerance_percent / 100,
+        driving_pressure=None if required.driving_pressure_kPa is None else required.driving_pressure_kPa * KPA,
+        force_range=required.force_range_N, stiffness=(required.stiffness_least_N_per_mm, required.stiffness_most_N_per_mm),
+        max_diameter=required.max_diameter_mm, inner_radius=given.inner_radius_mm, wall_thickness=given.wall_thickness_mm,
         least_wall=feature.least or feature.recommended, ambient_pressure=sensor.gas.ambient_pressure,
         dead_volume=_dead_volume(scene, sensor), plate_radius=sensor.protocol.plate_radius, gauge_limit=sensor.gas.gauge_limit,
         depth_share=min(sensor.protocol.depth / sensor.dome.inner_radius, shipped().recipe.deepest), steps=sensor.protocol.steps,
@@ -247,11 +247,11 @@ def _uncertainty(
     def relative(resin: CandidateResin, batch: SensorBatch) -> Array:
         errors = known.get(resin.name) or ModelErrors(pool=next(iter(known.values())).pool if known else ())
         near = np.array([is_near_paper(_like(sensor, batch, i)) for i in range(len(batch))])
-        found = budget(
+        uncertainty = budget(
             batch, resin.material, scene.printer, near_paper=near, errors=errors,
             numerical={FIGURES[SENSITIVITY]: NUMERICAL["atlas"]},
         )  # fmt: skip
-        return np.asarray(found.expanded[SENSITIVITY])
+        return np.asarray(uncertainty.expanded[SENSITIVITY])
 
     return relative
 

@@ -10,7 +10,7 @@ from pneutouch.export.threemf_read import RECIPE, Package, StoredBody, read_thre
 from pneutouch.export.threemf_tray import TRAY_RECIPE
 from pneutouch.output.recipe_read import other_versions, read_recipe
 
-_BESIDE = (RECIPE, TRAY_RECIPE, "versions")
+_SHOWN_APART = (RECIPE, TRAY_RECIPE, "versions")
 """Entries that are shown apart, or are too long to be read."""
 
 _DIGITS = 6
@@ -28,7 +28,7 @@ def show(path: Path) -> dict[str, Any]:
         "bodies": [_body(body) for body in package.bodies],
         "thumbnail": package.thumbnail,
         "warnings": list(package.warnings),
-        "metadata": {key: value for key, value in package.metadata.items() if key not in _BESIDE},
+        "metadata": {key: value for key, value in package.metadata.items() if key not in _SHOWN_APART},
         "recipe": None if package.recipe is None else _recipe(package),
     }
 

@@ -46,12 +46,12 @@ def build_specimen(
     progress("bodies")
     drawn = draw(scene)
     progress("rules")
-    found = findings(drawn)
-    refuse(found, scene.where)
-    files = _files(drawn, found, progress)
+    checked = findings(drawn)
+    refuse(checked, scene.where)
+    files = _files(drawn, checked, progress)
     progress("files")
-    write_folder(folder, with_manifest(files, scene.name, inputs(scene), **_measured(drawn, found)))
-    return folder, found
+    write_folder(folder, with_manifest(files, scene.name, inputs(scene), **_measured(drawn, checked)))
+    return folder, checked
 
 
 def check_specimen(
@@ -59,12 +59,12 @@ def check_specimen(
 ) -> list[Finding]:
     """What the print rules say of a specimen, and pymeshlab too where it is asked. Raises InputError for what cannot be."""
     drawn = draw(load_specimen(name, changes, library))
-    found = findings(drawn)
+    checked = findings(drawn)
     if deep:
         from pneutouch.printability.deep import inspect
 
-        found += [finding for body in drawn.bodies for finding in inspect(body)]
-    return found
+        checked += [finding for body in drawn.bodies for finding in inspect(body)]
+    return checked
 
 
 def inputs(scene: ResolvedSpecimen) -> dict[str, Any]:
@@ -106,7 +106,7 @@ def _polygon(corners: list[tuple[float, float]]) -> tuple[Line, ...]:
     return tuple(Line(a, b, "") for a, b in pairwise([*corners, corners[0]]))
 
 
-def _files(drawn: SpecimenBodies, found: list[Finding], progress: Progress) -> dict[str, bytes]:
+def _files(drawn: SpecimenBodies, checked: list[Finding], progress: Progress) -> dict[str, bytes]:
     scene, bodies = drawn.scene, drawn.printed
     whole = input_hash(inputs(scene))
     progress("3MF")
@@ -123,7 +123,7 @@ def _files(drawn: SpecimenBodies, found: list[Finding], progress: Progress) -> d
         files[f"{scene.name}.step"] = step(scene.name, exact, drawn.offset)
     progress("drawing")
     files["drawing.svg"] = drawing_svg(drawn)
-    files["print-sheet.md"] = sheet(drawn, found, whole).encode()
+    files["print-sheet.md"] = sheet(drawn, checked, whole).encode()
     files["specimen.json"] = json_bytes(truth(drawn))
     return files
 
@@ -140,7 +140,7 @@ def _metadata(drawn: SpecimenBodies, whole: str) -> dict[str, str]:
     }
 
 
-def _measured(drawn: SpecimenBodies, found: list[Finding]) -> dict[str, Any]:
+def _measured(drawn: SpecimenBodies, checked: list[Finding]) -> dict[str, Any]:
     """Entries of the manifest on the bodies."""
     scene = drawn.scene
     return {
@@ -151,5 +151,5 @@ def _measured(drawn: SpecimenBodies, found: list[Finding]) -> dict[str, Any]:
             }
             for body in drawn.bodies
         },
-        "findings": [finding.document() for finding in found],
+        "findings": [finding.document() for finding in checked],
     }  # fmt: skip

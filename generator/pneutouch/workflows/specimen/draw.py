@@ -78,14 +78,14 @@ def _patterns(scene: ResolvedSpecimen) -> tuple[PatternGeometry, ...]:
                     f"{_span(earlier.high)} mm; change depth_mm, start_mm or end_mm until matrix lies between them",
                 )  # fmt: skip
         boxes.append(box)
-    found = tuple(FAMILIES[layer.kind].draw(layer, context, number) for number, layer in enumerate(layers))
-    total = sum(len(pattern.mesh.triangles) for pattern in found)
+    patterns = tuple(FAMILIES[layer.kind].draw(layer, context, number) for number, layer in enumerate(layers))
+    total = sum(len(pattern.mesh.triangles) for pattern in patterns)
     if total > MOST_TRIANGLES:
         raise InputError(
             f"{scene.where}: layer: all patterns together take {total / 1e6:.1f} million triangles; the most is "
             f"{MOST_TRIANGLES / 1e6:g} million, so take larger cells"
         )
-    return found
+    return patterns
 
 
 def _span(corner: tuple[float, float, float]) -> str:
@@ -119,13 +119,13 @@ def _letters(scene: ResolvedSpecimen, frame: FramePlate) -> tuple[list[Array], f
     if not frame.mark:
         return [], 0.0
     least = scene.printer.smallest.emboss_mm.recommended
-    depth, room = _MARK * least, frame.border_mm - 2.0
-    shape = rounded(lettering(frame.mark, min(5.0, room), _MARK * least))
+    depth, space = _MARK * least, frame.border_mm - 2.0
+    shape = rounded(lettering(frame.mark, min(5.0, space), _MARK * least))
     low, bottom, high, top = shape.bounds()
     free = scene.block.high[0]
-    if high - low > free or top - bottom > room or room < 2.0:
+    if high - low > free or top - bottom > space or space < 2.0:
         raise InputError(
-            f"{scene.where}: frame.mark = {frame.mark!r}: {high - low:.1f} x {top - bottom:.1f} mm have no room on {free:g} x {room:g} mm; "
+            f"{scene.where}: frame.mark = {frame.mark!r}: {high - low:.1f} x {top - bottom:.1f} mm have no room on {free:g} x {space:g} mm; "
             "take fewer letters, or raise frame.border_mm"
         )
     if frame.thickness_mm - depth < least:

@@ -31,10 +31,10 @@ def drawing_svg(drawn: SpecimenBodies) -> bytes:
     under = 0.0 if frame is None else frame.thickness_mm
     aside = 0.0 if frame is None else frame.border_mm
     length = box.high[0] + 2 * aside
-    room = (box.high[2] + under + 7.0) * (_WIDTH - 18.0) / (1.06 * length)
+    height = (box.high[2] + under + 7.0) * (_WIDTH - 18.0) / (1.06 * length)
     table = _LINE * (len(drawn.patterns) + 2.5)
-    with figure(_WIDTH, room + table + 18.0) as page:
-        upper, lower = page.subplots(2, 1, height_ratios=[room + 14.0, table])
+    with figure(_WIDTH, height + table + 18.0) as page:
+        upper, lower = page.subplots(2, 1, height_ratios=[height + 14.0, table])
         _section(upper, drawn, under, aside)
         _table(lower, drawn)
         _head(page, drawn)
@@ -139,8 +139,8 @@ def _table(ax: Axes, drawn: SpecimenBodies) -> None:
     for k, line in enumerate(lines):
         for x, text in zip(columns, line, strict=True):
             ax.text(x, -k, text, fontsize=7, va="center", color=MUTED if k == 0 else INK, parse_math=False)
-    said = ", ".join(f"{body.name}: {body.material.label}" for body in drawn.bodies)
-    ax.text(0.0, -rows - 1.2, f"{said}; patterns hatched", fontsize=6.5, color=MUTED, va="center")
+    materials = ", ".join(f"{body.name}: {body.material.label}" for body in drawn.bodies)
+    ax.text(0.0, -rows - 1.2, f"{materials}; patterns hatched", fontsize=6.5, color=MUTED, va="center")
 
 
 def _several(values: list[float]) -> str:

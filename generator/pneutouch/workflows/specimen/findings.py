@@ -27,13 +27,13 @@ _JOB = "specimen"
 
 def findings(drawn: SpecimenBodies) -> list[Finding]:
     """What the rules say of the bodies, and of the block with its frame as one."""
-    own = [
+    alone = [
         _bonded(finding)
         for finding in check(bodies_of(drawn))
         if finding.rule not in OPEN and not _rounding(drawn, finding)
     ]
     whole = [finding for finding in check(block_of(drawn)) if finding.rule in OPEN]
-    return sorted([*own, *whole, *_unmeasured(drawn)], key=lambda finding: finding.rank)
+    return sorted([*alone, *whole, *_unmeasured(drawn)], key=lambda finding: finding.rank)
 
 
 def bodies_of(drawn: SpecimenBodies) -> PrintSubject:

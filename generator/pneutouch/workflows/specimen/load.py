@@ -54,9 +54,9 @@ def is_specimen(content: dict[str, Any]) -> bool:
 
 def specimen_file(name: str, library: Library) -> Path | None:
     """The file of a specimen given by name or path, or None where the name is a sensor's or of nothing."""
-    shelf = library.shelf("specimens")
-    if name in shelf:
-        return shelf[name]
+    files = library.shelf("specimens")
+    if name in files:
+        return files[name]
     try:
         path = library.design_file(name)
     except InputError:
@@ -71,18 +71,18 @@ def load_specimen(
 
     Raises InputError that names file, key and value.
     """
-    shelves = library or Library.default()
-    shelf = shelves.shelf("specimens")
-    path = shelf[name] if name in shelf else shelves.design_file(name)
+    library = library or Library.default()
+    files = library.shelf("specimens")
+    path = files[name] if name in files else library.design_file(name)
     content = override(read_toml(path), changes or {}, Specimen)
     if not is_specimen(content):
         raise InputError(f"{path}: has no [block] table, so it is no specimen; a sensor is built by its own name")
-    return _resolved(path.stem, str(path), validate_specimen(content, str(path)), shelves)
+    return _resolved(path.stem, str(path), validate_specimen(content, str(path)), library)
 
 
-def _resolved(name: str, where: str, specimen: Specimen, shelves: Library) -> ResolvedSpecimen:
+def _resolved(name: str, where: str, specimen: Specimen, library: Library) -> ResolvedSpecimen:
     def find(kind: str, table: Table, section: str, key: str) -> Any:
-        return shelves.load(kind, getattr(table, key), file=where, key=f"{section}.{key}")
+        return library.load(kind, getattr(table, key), file=where, key=f"{section}.{key}")
 
     printer: Printer = find("printers", specimen.print, "print", "profile")
     matrix = find("materials", specimen.block, "block", "matrix")

@@ -8,11 +8,11 @@ from pneutouch.workflows.specimen.draw import SpecimenBodies
 from pneutouch.workflows.specimen.truth import frequencies, title
 
 
-def sheet(drawn: SpecimenBodies, found: list[Finding], input_hash: str) -> str:
+def sheet(drawn: SpecimenBodies, findings: list[Finding], input_hash: str) -> str:
     """Markdown for the operator. Print files carry names and colours; the resin is chosen at the machine."""
     scene, document = drawn.scene, drawn.scene.specimen.document
     speed = scene.specimen.scan.speed_mm_per_s
-    said = [f"- {f.severity}: {f.rule}: {f.body}: {f.message}; {f.fix}." for f in found] or ["- none"]
+    listed = [f"- {f.severity}: {f.rule}: {f.body}: {f.message}; {f.fix}." for f in findings] or ["- none"]
     return "\n".join([
         f"# Print sheet: {_escaped(document.title)}", "",
         f"Texture specimen {scene.name}, revision {document.revision}, input {input_hash}", "",
@@ -25,7 +25,7 @@ def sheet(drawn: SpecimenBodies, found: list[Finding], input_hash: str) -> str:
         "| layer | kind | pitch, mm | frequency, Hz | depth, mm | along the path, mm | volume, mm3 | share of its box |",
         "|---|---|---|---|---|---|---|---|", *_layers(drawn), "",
         "## Steps", "", *(f"{k}. {line}" for k, line in enumerate(_steps(drawn), start=1)), "",
-        "## Findings of the rules", "", *said, "",
+        "## Findings of the rules", "", *listed, "",
     ])  # fmt: skip
 
 

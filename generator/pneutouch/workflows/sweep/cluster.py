@@ -76,8 +76,8 @@ def compute_there(chunk: SweepChunk, files: dict[str, str], version: str) -> lis
 def _result(future: Any, address: str) -> list[Record]:
     """A chunk's records; what went wrong on the way, in words."""
     if future.status == "finished":
-        found: list[Record] = future.result()
-        return found
+        records: list[Record] = future.result()
+        return records
     error = future.exception() if future.status == "error" else None
     if isinstance(error, InputError):
         raise InputError(str(error), key="scheduler", value=address)

@@ -37,9 +37,9 @@ def dataset(study: SweepStudy, records: dict[int, Record]) -> xarray.Dataset:
     import xarray
 
     plan = study.plan
-    asked_kPa = [study.point(i).driving_pressures_kPa for i in range(plan.count)]
-    pressures_kPa = sorted({p for each_kPa in asked_kPa for p in each_kPa})
-    rows = _by_pressure(asked_kPa, pressures_kPa, records)
+    requested_kPa = [study.point(i).driving_pressures_kPa for i in range(plan.count)]
+    pressures_kPa = sorted({p for each_kPa in requested_kPa for p in each_kPa})
+    rows = _by_pressure(requested_kPa, pressures_kPa, records)
     shape, dims = plan.shape, plan.dimensions
     content: dict[str, Any] = {}
     for variable in STATE:
@@ -65,8 +65,8 @@ def stored_fingerprint(path: Path) -> str:
     import xarray
 
     try:
-        with xarray.open_dataset(path, engine="scipy") as found:
-            return str(found.load().attrs["input_hash"])
+        with xarray.open_dataset(path, engine="scipy") as content:
+            return str(content.load().attrs["input_hash"])
     # scipy meets a truncated file with whatever its arrays make of it.
     except Exception:
         raise InputError(
@@ -80,19 +80,19 @@ def stored_states(path: Path) -> list[str]:
     """Status of every state of a finished sweep's file."""
     import xarray
 
-    with xarray.open_dataset(path, engine="scipy") as found:
-        states: list[str] = found["status"].values.ravel().tolist()
+    with xarray.open_dataset(path, engine="scipy") as content:
+        states: list[str] = content["status"].values.ravel().tolist()
         return states
 
 
 def _by_pressure(
-    asked_kPa: list[tuple[float, ...]], pressures_kPa: list[float], records: dict[int, Record]
+    requested_kPa: list[tuple[float, ...]], pressures_kPa: list[float], records: dict[int, Record]
 ) -> list[list[dict[str, Any]]]:  # fmt: skip
     """States of every point, one for each pressure of the dimension; empty where a point did not ask for it."""
     rows = []
-    for index, own in enumerate(asked_kPa):
-        found = dict(zip(own, records[index]["states"], strict=True))
-        rows.append([found.get(p, {}) for p in pressures_kPa])
+    for index, pressures_of in enumerate(requested_kPa):
+        states = dict(zip(pressures_of, records[index]["states"], strict=True))
+        rows.append([states.get(p, {}) for p in pressures_kPa])
     return rows
 
 
@@ -109,7 +109,7 @@ def _coordinates(study: SweepStudy) -> dict[str, Any]:
     plan = study.plan
     if plan.axes:
         return {axis.name: (axis.name, *_column(axis.key, axis.values)) for axis in plan.axes}
-    found: dict[str, Any] = {
+    coordinates: dict[str, Any] = {
         "point": ("point", np.arange(plan.count, dtype=np.int32), {"long_name": "number in the list"})
     }
     for key in plan.varied:
@@ -117,8 +117,8 @@ def _coordinates(study: SweepStudy) -> dict[str, Any]:
             table, field = key.split(".")
             default = plan.settings.get(key, getattr(getattr(study.base, table), field))
             values = [point.get(key, default) for point in plan.points]
-            found[key.replace(".", "_")] = ("point", *_column(key, values))
-    return found
+            coordinates[key.replace(".", "_")] = ("point", *_column(key, values))
+    return coordinates
 
 
 def _column(key: str, values: Sequence[Any]) -> tuple[Any, dict[str, str]]:
@@ -126,13 +126,13 @@ def _column(key: str, values: Sequence[Any]) -> tuple[Any, dict[str, str]]:
     table_name, field = key.split(".")
     table = table_of(DesignFile, table_name)
     assert table is not None
-    said = declaration(table, field)
-    names = {"long_name": said.help, "key": key}
-    if said.registry is not None:
+    declared = declaration(table, field)
+    names = {"long_name": declared.help, "key": key}
+    if declared.registry is not None:
         return np.array(values, object), names
     if table.model_fields[field].annotation is int:
-        return np.array(values, np.int32), {"units": said.unit or "1", **names}
-    return np.array(values, float), {"units": said.unit or "1", **names}
+        return np.array(values, np.int32), {"units": declared.unit or "1", **names}
+    return np.array(values, float), {"units": declared.unit or "1", **names}
 
 
 def _attributes(study: SweepStudy, rows: list[list[dict[str, Any]]], content: dict[str, Any]) -> dict[str, str]:

@@ -81,5 +81,5 @@ def _content(line: bytes) -> dict[str, Any] | None:
     checksum, space, text = line.partition(b" ")
     if not space or checksum != _checksum(text):
         return None
-    found: dict[str, Any] = json.loads(text)
-    return found
+    content: dict[str, Any] = json.loads(text)
+    return content

@@ -93,11 +93,11 @@ class SweepPlan:
 
     def position(self, index: int) -> tuple[int, ...]:
         """Place of a point along every dimension; the last varies fastest."""
-        found = []
+        places = []
         for length in reversed(self.shape):
             index, here = divmod(index, length)
-            found.append(here)
-        return tuple(reversed(found))
+            places.append(here)
+        return tuple(reversed(places))
 
     def overrides(self, index: int) -> Settings:
         """All that a point sets, what is set for all points included."""

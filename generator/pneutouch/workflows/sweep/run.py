@@ -77,12 +77,12 @@ def _is_there(study: SweepStudy, out: Path, *, fresh: bool, resumed: bool) -> bo
     """Whether ``out`` is this sweep's dataset already. Raises InputError where it is something to be kept."""
     if not out.exists():
         return False
-    found = stored_fingerprint(out)
-    if found == study.fingerprint:
+    stored = stored_fingerprint(out)
+    if stored == study.fingerprint:
         return not fresh
     if not fresh and not resumed:
         raise InputError(
-            f"{out} is the dataset of another sweep (input hash {found[:12]}, this one {study.fingerprint[:12]})",
+            f"{out} is the dataset of another sweep (input hash {stored[:12]}, this one {study.fingerprint[:12]})",
             key="out",
             remedy="`fresh` replaces it, or give another `out`",
         )

@@ -13,8 +13,8 @@ from pneutouch.output.files import digest, json_bytes
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import declaration, table_of
 from pneutouch.spec.toml_text import toml_text
+from pneutouch.workflows.sweep.cached_library import CachedLibrary
 from pneutouch.workflows.sweep.plan import PRESSURES, Settings, SweepPlan
-from pneutouch.workflows.sweep.shelves import CachedLibrary
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +77,7 @@ def study(plan: SweepPlan, library: Library) -> SweepStudy:
 
 def _names(plan: SweepPlan, base: DesignFile) -> set[tuple[str, str]]:
     """Kind and name of everything that a point of the sweep may name."""
-    found: set[tuple[str, str]] = set()
+    names: set[tuple[str, str]] = set()
     for table_name in DesignFile.model_fields:
         table = table_of(DesignFile, table_name)
         assert table is not None
@@ -85,8 +85,8 @@ def _names(plan: SweepPlan, base: DesignFile) -> set[tuple[str, str]]:
             kind, key = declaration(table, field).registry, f"{table_name}.{field}"
             if kind is not None:
                 given = plan.settings.get(key, getattr(getattr(base, table_name), field))
-                found |= {(kind, name) for name in _chosen(plan, key, given) if name is not None}
-    return found
+                names |= {(kind, name) for name in _chosen(plan, key, given) if name is not None}
+    return names
 
 
 def _chosen(plan: SweepPlan, key: str, default: Any) -> list[Any]:

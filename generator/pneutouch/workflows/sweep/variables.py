@@ -24,10 +24,10 @@ def _at(*keys: str) -> Callable[[Document], Any]:
     """Reads a nested entry; None where one on the way is missing or null."""
 
     def read(document: Document) -> Any:
-        found: Any = document
+        value: Any = document
         for key in keys:
-            found = None if found is None else found.get(key)
-        return found
+            value = None if value is None else value.get(key)
+        return value
 
     return read
 

@@ -13,8 +13,8 @@ from pneutouch.catalogue import Library
 from pneutouch.errors import BeyondLimitError, InputError, PneutouchError
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.units import KPA
+from pneutouch.workflows.sweep.cached_library import CachedLibrary
 from pneutouch.workflows.sweep.plan import PRESSURES
-from pneutouch.workflows.sweep.shelves import CachedLibrary
 from pneutouch.workflows.sweep.study import SweepPoint, SweepStudy
 from pneutouch.workflows.sweep.variables import point_values, state_values
 

@@ -14,7 +14,7 @@ from pneutouch.errors import InputError
 from pneutouch.workflows.sweep.journal import replace_whole
 
 _LOCK, _JOURNAL, _FILES, _DATASET = "lock", "journal", "inputs", "dataset"
-_OURS = {_LOCK, _JOURNAL, f"{_JOURNAL}.new", _FILES, _DATASET}
+_WRITTEN = {_LOCK, _JOURNAL, f"{_JOURNAL}.new", _FILES, _DATASET}
 
 
 class WorkFolder:
@@ -34,7 +34,7 @@ class WorkFolder:
         try:
             while self._lock is None:
                 self.path.mkdir(parents=True, exist_ok=True)
-                foreign = sorted(path.name for path in self.path.iterdir() if path.name not in _OURS)
+                foreign = sorted(path.name for path in self.path.iterdir() if path.name not in _WRITTEN)
                 if foreign:
                     raise InputError(
                         f"{self.path} holds {foreign[0]}, which no sweep wrote", key="out", remedy="give another `out`"

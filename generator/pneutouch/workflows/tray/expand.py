@@ -59,18 +59,18 @@ class ExpandedTray:
 
 def expand(order: TrayOrder, library: Library | None = None) -> ExpandedTray:
     """Load and draw every design of a tray; nothing is predicted. Raises InputError where one is wrong or none is left."""
-    shelves = library or Library.default()
-    values = [value for entry in order.tray.entry for value in _values(order, entry, shelves)]
+    library = library or Library.default()
+    values = [value for entry in order.tray.entry for value in _values(order, entry, library)]
     values = [
         TrayVariant(**{**vars(value), "index": k, "letter": letter(k)}) for k, value in enumerate(values, start=1)
     ]
     profile = order.tray.tray.profile or values[0].assembly.scene.design.print.profile
-    printer = shelves.load("printers", profile, file=order.where, key="tray.profile")
+    printer = library.load("printers", profile, file=order.where, key="tray.profile")
     pieces: list[TrayPiece] = []
     notes: list[str] = []
     for value in values:
-        mine, others = _pieces(value, printer, order)
-        pieces += mine
+        printed, others = _pieces(value, printer, order)
+        pieces += printed
         notes += others
     left_out = tuple(dict.fromkeys(notes))
     if not pieces:
@@ -94,12 +94,12 @@ def letter(index: int) -> str:
 
 def _values(order: TrayOrder, entry: Entry, library: Library) -> list[TrayVariant]:
     key = next(iter(entry.over), None)
-    found = []
+    variants = []
     for value in entry.over[key] if key is not None else [None]:
         settings = {**entry.set, **({key: value} if key is not None and value is not None else {})}
         assembly = _assembly(order, entry, settings, library)
-        found.append(TrayVariant(0, "", entry.design, key, value, entry.copies, assembly))
-    return found
+        variants.append(TrayVariant(0, "", entry.design, key, value, entry.copies, assembly))
+    return variants
 
 
 def _assembly(order: TrayOrder, entry: Entry, settings: dict[str, Any], library: Library) -> Assembly:
@@ -111,21 +111,21 @@ def _assembly(order: TrayOrder, entry: Entry, settings: dict[str, Any], library:
 
 def _pieces(value: TrayVariant, printer: Printer, order: TrayOrder) -> tuple[list[TrayPiece], list[str]]:
     """The pieces of a value by print job, and notes of what is left out."""
-    assembly, wanted = value.assembly, order.tray.tray.bodies
+    assembly, bodies = value.assembly, order.tray.tray.bodies
     groups: dict[str, list[Solid]] = {}
     for solid in assembly.solids:
         groups.setdefault(assembly.job(solid.name), []).append(solid)
     pieces, notes = [], []
     for solids in groups.values():
         names = [solid.name for solid in solids]
-        asked = [name for name in names if wanted is None or name in wanted]
+        listed = [name for name in names if bodies is None or name in bodies]
         machine, _ = assembly.machine(names[0])
-        if not asked:
+        if not listed:
             continue
         if machine != printer:
             notes.append(f"{' and '.join(names)} of {value.design}: for the {machine.title}")
             continue
-        if asked != names:
+        if listed != names:
             notes.append(f"{' and '.join(names)} of {value.design} grow in one print: all of it is on the tray")
         pieces.append(TrayPiece(value, tuple(solids)))
     return pieces, notes

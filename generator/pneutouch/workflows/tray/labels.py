@@ -19,45 +19,45 @@ COLUMNS = (
 """Columns of labels.csv; x and y are the middle of the part on the tray."""
 
 
-def rows(laid: TrayLayout) -> list[dict[str, Any]]:
+def rows(layout: TrayLayout) -> list[dict[str, Any]]:
     """One row a body, in the order of the labels within each job."""
-    return [row for job in laid.jobs for part in job.parts for row in _rows(laid, job, part)]
+    return [row for job in layout.jobs for part in job.parts for row in _rows(layout, job, part)]
 
 
-def labels_csv(laid: TrayLayout) -> bytes:
+def labels_csv(layout: TrayLayout) -> bytes:
     """The list for a spreadsheet or a label printer."""
     text = io.StringIO()
     writer = csv.DictWriter(text, COLUMNS, lineterminator="\n")
     writer.writeheader()
-    writer.writerows(rows(laid))
+    writer.writerows(rows(layout))
     return text.getvalue().encode()
 
 
-def labels_md(laid: TrayLayout, found: tuple[TrayFinding, ...] = ()) -> bytes:
+def labels_md(layout: TrayLayout, findings: tuple[TrayFinding, ...] = ()) -> bytes:
     """The list to print and stick: a head, a table a job, and what the print rules found."""
-    printer, head = laid.printer, laid.order.tray.tray
+    printer, head = layout.printer, layout.order.tray.tray
     lines = [
         f"# {_escaped(head.title)}", "",
-        f"{printer.title}: {counted(laid.parts)}, **{laid.resin_note}**. Support: {printer.support}.", "",
-        *(f"Not on this tray: {_escaped(note)}." for note in laid.expanded.left_out),
+        f"{printer.title}: {counted(layout.parts)}, **{layout.resin_note}**. Support: {printer.support}.", "",
+        *(f"Not on this tray: {_escaped(note)}." for note in layout.expanded.left_out),
     ]  # fmt: skip
-    for number, job in enumerate(laid.jobs, start=1):
-        lines += ["", *_job_lines(laid, job, number)]
-    lines += ["", "## Reading the marks", "", *_marks(laid), ""]
-    lines += ["## Findings of the rules", "", *([f"- {_escaped(one.text)}." for one in found] or ["- none"]), ""]
+    for number, job in enumerate(layout.jobs, start=1):
+        lines += ["", *_job_lines(layout, job, number)]
+    lines += ["", "## Reading the marks", "", *_marks(layout), ""]
+    lines += ["## Findings of the rules", "", *([f"- {_escaped(one.text)}." for one in findings] or ["- none"]), ""]
     return "\n".join(lines).encode()
 
 
-def _rows(laid: TrayLayout, job: TrayJob, part: TrayPart) -> list[dict[str, Any]]:
+def _rows(layout: TrayLayout, job: TrayJob, part: TrayPart) -> list[dict[str, Any]]:
     across, along = part.footprint
-    found = []
+    rows = []
     for solid, body, mark in zip(part.solids, part.bodies, part.marks, strict=True):
         value, low, high = part.value, *body.bounds
-        found.append({
+        rows.append({
             "label": part.label, "body": solid.name, "file": f"stl/{body.name}.stl", "design": value.design,
             "varied": value.key or "", "value": "" if value.value is None else value.value, "copy": part.copy,
             "material": solid.material.title, "base_resins": " + ".join(solid.material.base_resins),
-            "job": laid.jobs.index(job) + 1, "mode": job.mode.name, "layers": layers(float(high[2]), job.mode),
+            "job": layout.jobs.index(job) + 1, "mode": job.mode.name, "layers": layers(float(high[2]), job.mode),
             "x_mm": round(part.place.x + 0.5 * across, 3), "y_mm": round(part.place.y + 0.5 * along, 3),
             "turned_deg": 90 if part.place.turned else 0, "size_x_mm": round(float(high[0] - low[0]), 2),
             "size_y_mm": round(float(high[1] - low[1]), 2), "height_mm": round(float(high[2] - low[2]), 2),
@@ -65,22 +65,22 @@ def _rows(laid: TrayLayout, job: TrayJob, part: TrayPart) -> list[dict[str, Any]
             "mark": f"{mark.kind}, raised" if mark.raised else mark.kind, "mark_face": mark.face,
             "mark_depth_mm": round(mark.depth, 3), "mark_stroke_mm": round(mark.stroke, 3), "mark_note": mark.note,
         })  # fmt: skip
-    return found
+    return rows
 
 
-def _job_lines(laid: TrayLayout, job: TrayJob, number: int) -> list[str]:
-    shares = fill(job, laid.printer)
+def _job_lines(layout: TrayLayout, job: TrayJob, number: int) -> list[str]:
+    shares = fill(job, layout.printer)
     table = [
         f"| **{row['label']}** | {row['body']} | {_value(row)} | {_resin(row)} | "
         f"{row['x_mm']:.1f}, {row['y_mm']:.1f} | {row['mass_g']:.2f} | {_mark(row)} |"
-        for part in job.parts for row in _rows(laid, job, part)
+        for part in job.parts for row in _rows(layout, job, part)
     ]  # fmt: skip
-    mass = sum(row["mass_g"] for part in job.parts for row in _rows(laid, job, part))
+    mass = sum(row["mass_g"] for part in job.parts for row in _rows(layout, job, part))
     return [
-        f"## Job {number}: `{laid.name(job)}.3mf`", "",
+        f"## Job {number}: `{layout.name(job)}.3mf`", "",
         f"Load {' and '.join(job.resins)}. Mode {job.mode.name}, {job.mode.layer_height_um:g} µm, {job.layers} layers, "
         f"{job.height:.1f} mm; {mass:.1f} g of model material. Bounding boxes take {shares['bounding_boxes']:.1%} of the "
-        f"envelope's footprint, outlines {shares['outlines']:.1%}.", "", *(line for note in _coarser(laid, job) for line in (note, "")),
+        f"envelope's footprint, outlines {shares['outlines']:.1%}.", "", *(line for note in _coarser(layout, job) for line in (note, "")),
         "| label | body | design | resin | middle x, y mm | mass g | mark |", "|---|---|---|---|---|---|---|", *table,
     ]  # fmt: skip
 
@@ -96,15 +96,15 @@ def _resin(row: dict[str, Any]) -> str:
     return f"{row['material']} ({row['base_resins']})" if mixed else str(row["material"])
 
 
-def _coarser(laid: TrayLayout, job: TrayJob) -> list[str]:
+def _coarser(layout: TrayLayout, job: TrayJob) -> list[str]:
     """Materials that a job of their own would print in a finer mode."""
-    own = {
-        solid.material.label: laid.printer.mode_for(*(s.material for s in part.solids))
+    modes = {
+        solid.material.label: layout.printer.mode_for(*(s.material for s in part.solids))
         for part in job.parts for solid in part.solids
     }  # fmt: skip
     return [
         f"{label} alone would print in {mode.name}, {mode.layer_height_um:g} µm: the other resins of the job take that from it."
-        for label, mode in own.items()
+        for label, mode in modes.items()
         if mode is not None and mode.layer_height_um < job.mode.layer_height_um
     ]
 
@@ -114,15 +114,15 @@ def _mark(row: dict[str, Any]) -> str:
     return f"{where}; {row['mark_note']}" if row["mark_note"] else where
 
 
-def _marks(laid: TrayLayout) -> list[str]:
+def _marks(layout: TrayLayout) -> list[str]:
     """How each kind of mark that is on the tray is read."""
-    marks = [mark for part in laid.parts for mark in part.marks]
+    marks = [mark for part in layout.parts for mark in part.marks]
     kinds = {mark.kind for mark in marks}
     lines = []
     if "tally" in kinds:
         lines.append(f"- Membranes carry a tally on the flange. {EXPLAINED}")
         counts = ", ".join(
-            f"{letter} {index}" for index, letter in {p.value.index: p.value.letter for p in laid.parts}.items()
+            f"{letter} {index}" for index, letter in {p.value.index: p.value.letter for p in layout.parts}.items()
         )
         lines.append(f"- Letters as numbers: {counts}.")
     if "text" in kinds:

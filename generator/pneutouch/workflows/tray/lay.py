@@ -126,11 +126,11 @@ def lay(order: TrayOrder, library: Library | None = None, progress: Progress = l
     groups = jobs([piece.materials for piece in pieces], printer, order.where)
     labels = [f"{p.value.letter}{copy}" for p in pieces for copy in range(1, p.value.copies + 1)]
     marker = Marker(printer, order.tray.tray.marks, labels)
-    laid = []
+    done = []
     for group in groups:
         progress("parts")
-        laid.append(_job([pieces[k] for k in group], printer, marker, order))
-    return TrayLayout(order, expanded, tuple(laid))
+        done.append(_job([pieces[k] for k in group], printer, marker, order))
+    return TrayLayout(order, expanded, tuple(done))
 
 
 def counted(parts: Sequence[TrayPart]) -> str:
@@ -177,9 +177,11 @@ def _job(pieces: list[TrayPiece], printer: Printer, marker: Marker, order: TrayO
         plain = [replace(meshes[shape_of(solid)], material=solid.material) for solid in piece.solids]
         parts += [_part(piece, plain, copy, marker) for copy in range(1, piece.value.copies + 1)]
     _check_height(parts, printer, order.where)
-    head, room = order.tray.tray, printer.envelope_mm
+    head, envelope = order.tray.tray, printer.envelope_mm
     places = pack(
-        [_box(part) for part in parts], PackingArea(room.x, room.y, head.margin_mm, head.spacing_mm), order.where
+        [_box(part) for part in parts],
+        PackingArea(envelope.x, envelope.y, head.margin_mm, head.spacing_mm),
+        order.where,
     )
     parts = [replace(part, place=place) for part, place in zip(parts, places, strict=True)]
     for part in parts:

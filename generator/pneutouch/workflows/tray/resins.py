@@ -20,10 +20,10 @@ def jobs(materials: Sequence[tuple[Material, ...]], printer: Printer, where: str
     cannot be printed at all.
     """
     kinds: dict[frozenset[str], list[int]] = {}
-    for index, own in enumerate(materials):
-        kinds.setdefault(frozenset(resin for material in own for resin in material.base_resins), []).append(index)
-        if printer.mode_for(*own) is None:
-            raise InputError(f"{where}: the {printer.title} cannot print {_and(own)} in one job")
+    for index, alone in enumerate(materials):
+        kinds.setdefault(frozenset(resin for material in alone for resin in material.base_resins), []).append(index)
+        if printer.mode_for(*alone) is None:
+            raise InputError(f"{where}: the {printer.title} cannot print {_and(alone)} in one job")
     examples = [
         list({tuple(m.base_resins): m for i in indices for m in materials[i]}.values()) for indices in kinds.values()
     ]
@@ -35,8 +35,8 @@ def jobs(materials: Sequence[tuple[Material, ...]], printer: Printer, where: str
     def load(group: list[int]) -> frozenset[str]:
         return frozenset[str]().union(*(sets[k] for k in group))
 
-    ways = [_ordered(groups, list(map(load, groups))) for groups in _fewest(len(kinds), fits)]
-    best = min(ways, key=lambda groups: changes(list(map(load, groups))))
+    orders = [_ordered(groups, list(map(load, groups))) for groups in _fewest(len(kinds), fits)]
+    best = min(orders, key=lambda groups: changes(list(map(load, groups))))
     return [sorted(i for k in group for i in indices[k]) for group in best]
 
 
@@ -56,9 +56,9 @@ def _fewest(count: int, fits: Callable[[list[int]], bool]) -> list[list[list[int
             else:
                 home.append(k)
         return [groups]
-    found = [groups for groups in _partitions(count) if all(map(fits, groups))]
-    least = min(map(len, found))
-    return [groups for groups in found if len(groups) == least]
+    partitions = [groups for groups in _partitions(count) if all(map(fits, groups))]
+    least = min(map(len, partitions))
+    return [groups for groups in partitions if len(groups) == least]
 
 
 def _partitions(count: int) -> Iterator[list[list[int]]]:

@@ -29,16 +29,16 @@ class TrayFinding:
         return f"{finding.severity}: {self.parts}: {finding.rule}: {finding.message}; {finding.fix}"
 
 
-def findings(laid: TrayLayout) -> tuple[TrayFinding, ...]:
+def findings(layout: TrayLayout) -> tuple[TrayFinding, ...]:
     """What the rules say, errors first. Copies, and resins of one kind in one shape, are judged by the first of them."""
-    found = []
-    for job in laid.jobs:
+    listed = []
+    for job in layout.jobs:
         alike: dict[object, list[int]] = {}
         for k, part in enumerate(job.parts):
             kinds = tuple((shape_of(solid), solid.material.kind) for solid in part.solids)
             alike.setdefault(kinds, []).append(k)
         for places in alike.values():
             labels = tuple(job.parts[k].label for k in places)
-            judged = check(subject(job.parts[places[0]], laid.printer, job.mode))
-            found += [TrayFinding(labels, finding) for finding in judged]
-    return tuple(sorted(found, key=lambda one: one.finding.rank))
+            judged = check(subject(job.parts[places[0]], layout.printer, job.mode))
+            listed += [TrayFinding(labels, finding) for finding in judged]
+    return tuple(sorted(listed, key=lambda one: one.finding.rank))

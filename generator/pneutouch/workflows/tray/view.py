@@ -17,21 +17,21 @@ _WIDTH = 170.0
 """Of the drawing, mm."""
 
 
-def tray_svg(laid: TrayLayout, job: TrayJob) -> bytes:
+def tray_svg(layout: TrayLayout, job: TrayJob) -> bytes:
     """SVG of one job."""
-    room = laid.printer.envelope_mm
-    head = laid.order.tray.tray
-    with figure(_WIDTH, _WIDTH * room.y / room.x + 6.0) as drawn:
+    envelope = layout.printer.envelope_mm
+    head = layout.order.tray.tray
+    with figure(_WIDTH, _WIDTH * envelope.y / envelope.x + 6.0) as drawn:
         ax = drawn.add_subplot()
-        _table(ax, room.x, room.y, head.margin_mm)
+        _table(ax, envelope.x, envelope.y, head.margin_mm)
         outlines: dict[Any, Any] = {}
         for part in job.parts:
             key = (tuple(map(shape_of, part.solids)), part.marks[0].raised)
             if key not in outlines:
                 outlines[key] = outline(part.bodies).to_polygons()
-            _part(ax, part, outlines[key], room.x)
+            _part(ax, part, outlines[key], envelope.x)
         ax.set_title(
-            f"{laid.printer.title}, seen from above: {laid.name(job)}, {counted(job.parts)}, {' + '.join(job.resins)}",
+            f"{layout.printer.title}, seen from above: {layout.name(job)}, {counted(job.parts)}, {' + '.join(job.resins)}",
             loc="left", fontsize=7.5, color=INK,
         )  # fmt: skip
         return svg(drawn).encode()
@@ -63,8 +63,8 @@ def _part(ax: Axes, part: TrayPart, polygons: list[Any], width: float) -> None:
     ax.add_patch(PathPatch(path, fill=False, edgecolor=INK, linewidth=0.7))
     across, along = part.footprint
     middle = (part.place.x + 0.5 * across, part.place.y + 0.5 * along)
-    room = min(across, along) * 0.86 * _WIDTH * MM / width * 72  # points
-    size = min(9.0, 0.34 * room)
+    space = min(across, along) * 0.86 * _WIDTH * MM / width * 72  # points
+    size = min(9.0, 0.34 * space)
     ax.text(
         *middle,
         part.label,
@@ -78,7 +78,7 @@ def _part(ax: Axes, part: TrayPart, polygons: list[Any], width: float) -> None:
     )
     names = " + ".join(solid.role for solid in part.solids)
     resins = " + ".join(dict.fromkeys(solid.material.title for solid in part.solids))
-    small = min(5.5, 1.6 * room / max(len(resins), len(names), 8))
+    small = min(5.5, 1.6 * space / max(len(resins), len(names), 8))
     ax.text(
         *middle, f"{resins}\n{names}", ha="center", va="top", fontsize=small, color=INK,
         linespacing=1.15,

@@ -13,7 +13,7 @@ from pneutouch.export.scene import stl
 from pneutouch.export.threemf_tray import TRAY_RECIPE, TrayItem, threemf_tray
 from pneutouch.output.files import check_writable, write_folder
 from pneutouch.output.manifest import short_digest, with_manifest
-from pneutouch.output.recipe import scene_shelves
+from pneutouch.output.recipe import scene_kinds
 from pneutouch.printability import refuse
 from pneutouch.workflows.tray.labels import labels_csv, labels_md, rows
 from pneutouch.workflows.tray.lay import Progress, TrayJob, TrayLayout, TrayPart, counted, fill
@@ -21,49 +21,49 @@ from pneutouch.workflows.tray.rules import TrayFinding, findings
 from pneutouch.workflows.tray.view import tray_svg
 
 
-def write_tray(laid: TrayLayout, folder: Path, progress: Progress = lambda step: None) -> Path:
+def write_tray(layout: TrayLayout, folder: Path, progress: Progress = lambda step: None) -> Path:
     """Write everything of a tray into ``folder`` and return it. The same input gives the same bytes.
 
     Raises RuleBrokenError, with nothing written, where a part breaks a print rule.
     """
     check_writable(folder)
     progress("rules")
-    found = findings(laid)
-    refuse((replace(one.finding, body=one.parts) for one in found), laid.order.where)
+    checked = findings(layout)
+    refuse((replace(one.finding, body=one.parts) for one in checked), layout.order.where)
     files: dict[str, bytes] = {}
-    recipe = json.dumps(inputs(laid), sort_keys=True, allow_nan=False, separators=(",", ":"))
-    for job in laid.jobs:
-        name = laid.name(job)
+    recipe = json.dumps(inputs(layout), sort_keys=True, allow_nan=False, separators=(",", ":"))
+    for job in layout.jobs:
+        name = layout.name(job)
         progress("3MF")
-        files[f"{name}.3mf"] = threemf_tray(name, [_item(part) for part in job.parts], _metadata(laid, job, recipe))
+        files[f"{name}.3mf"] = threemf_tray(name, [_item(part) for part in job.parts], _metadata(layout, job, recipe))
         progress("STL")
         files |= {f"stl/{body.name}.stl": stl(body) for part in job.parts for body in part.on_tray()}
         progress("view")
-        files["tray.svg" if len(laid.jobs) == 1 else f"tray-{laid.jobs.index(job) + 1}.svg"] = tray_svg(laid, job)
-    files["labels.csv"], files["labels.md"] = labels_csv(laid), labels_md(laid, found)
+        files["tray.svg" if len(layout.jobs) == 1 else f"tray-{layout.jobs.index(job) + 1}.svg"] = tray_svg(layout, job)
+    files["labels.csv"], files["labels.md"] = labels_csv(layout), labels_md(layout, checked)
     progress("files")
-    content = inputs(laid)
+    content = inputs(layout)
     # The version is among the inputs of a tray.
     short = short_digest(content)
-    write_folder(folder, with_manifest(files, laid.order.name, content, input_hash=short, **_jobs(laid, found)))
+    write_folder(folder, with_manifest(files, layout.order.name, content, input_hash=short, **_jobs(layout, checked)))
     return folder
 
 
-def document(laid: TrayLayout, folder: Path) -> dict[str, Any]:
+def document(layout: TrayLayout, folder: Path) -> dict[str, Any]:
     """What ``pneutouch tray --json`` prints."""
     return {
-        "tray": laid.order.name, "folder": str(folder), "printer": laid.printer.title, "parts": len(laid.parts),
-        "resin_changes": laid.resin_note, "left_out": list(laid.expanded.left_out),
-        "jobs": [_said(laid, job) for job in laid.jobs], "labels": rows(laid),
+        "tray": layout.order.name, "folder": str(folder), "printer": layout.printer.title, "parts": len(layout.parts),
+        "resin_changes": layout.resin_note, "left_out": list(layout.expanded.left_out),
+        "jobs": [_job_document(layout, job) for job in layout.jobs], "labels": rows(layout),
     }  # fmt: skip
 
 
-def inputs(laid: TrayLayout) -> dict[str, Any]:
+def inputs(layout: TrayLayout) -> dict[str, Any]:
     """Everything that a tray follows from: what was asked for, the printer, and each value's scene resolved.
 
     ``values`` say by letter which of ``things`` each scene is made of: they share most of them.
     """
-    values = {piece.value.letter: piece.value for piece in laid.expanded.pieces}
+    values = {piece.value.letter: piece.value for piece in layout.expanded.pieces}
     things: dict[str, Any] = {}
 
     def kept(model: Any) -> str | None:
@@ -75,12 +75,12 @@ def inputs(laid: TrayLayout) -> dict[str, Any]:
         return name
 
     scenes = {
-        letter: {key: kept(getattr(value.assembly.scene, key)) for key in scene_shelves()}
+        letter: {key: kept(getattr(value.assembly.scene, key)) for key in scene_kinds()}
         for letter, value in values.items()
     }
     return {
-        "tray": laid.order.tray.model_dump(mode="json"), "overrides": list(laid.order.overrides),
-        "printer": kept(laid.printer), "version": __version__, "values": scenes, "things": things,
+        "tray": layout.order.tray.model_dump(mode="json"), "overrides": list(layout.order.overrides),
+        "printer": kept(layout.printer), "version": __version__, "values": scenes, "things": things,
     }  # fmt: skip
 
 
@@ -97,30 +97,30 @@ def _named(body: Body, name: str) -> Body:
     return Body(name, body.role, body.material, body.vertices, body.triangles)
 
 
-def _metadata(laid: TrayLayout, job: TrayJob, recipe: str) -> dict[str, str]:
+def _metadata(layout: TrayLayout, job: TrayJob, recipe: str) -> dict[str, str]:
     return {
-        "Title": laid.order.tray.tray.title,
+        "Title": layout.order.tray.tray.title,
         "Application": f"pneutouch {__version__}",
-        "Description": f"Tray {laid.name(job)} for the {laid.printer.title}: {counted(job.parts)}, mode {job.mode.name}",
+        "Description": f"Tray {layout.name(job)} for the {layout.printer.title}: {counted(job.parts)}, mode {job.mode.name}",
         TRAY_RECIPE: recipe,
         "resins": " + ".join(job.resins),
-        "mesh-tolerance-mm": f"{laid.printer.finest_step(job.mode):g}",
+        "mesh-tolerance-mm": f"{layout.printer.finest_step(job.mode):g}",
     }
 
 
-def _said(laid: TrayLayout, job: TrayJob) -> dict[str, Any]:
+def _job_document(layout: TrayLayout, job: TrayJob) -> dict[str, Any]:
     return {
-        "name": laid.name(job), "mode": job.mode.name, "layer_height_um": job.mode.layer_height_um,
+        "name": layout.name(job), "mode": job.mode.name, "layer_height_um": job.mode.layer_height_um,
         "layers": job.layers, "height_mm": round(job.height, 3), "resins": list(job.resins), "parts": len(job.parts),
-        "mesh_tolerance_mm": laid.printer.finest_step(job.mode),
-        "fill": {key: round(share, 4) for key, share in fill(job, laid.printer).items()},
+        "mesh_tolerance_mm": layout.printer.finest_step(job.mode),
+        "fill": {key: round(share, 4) for key, share in fill(job, layout.printer).items()},
     }  # fmt: skip
 
 
-def _jobs(laid: TrayLayout, found: tuple[TrayFinding, ...]) -> dict[str, Any]:
+def _jobs(layout: TrayLayout, checked: tuple[TrayFinding, ...]) -> dict[str, Any]:
     """Entries of the manifest on jobs and findings."""
     return {
-        "jobs": [_said(laid, job) for job in laid.jobs],
-        "left_out": list(laid.expanded.left_out), "resin_changes": laid.resin_note,
-        "findings": [{"labels": list(one.labels), **one.finding.document()} for one in found],
+        "jobs": [_job_document(layout, job) for job in layout.jobs],
+        "left_out": list(layout.expanded.left_out), "resin_changes": layout.resin_note,
+        "findings": [{"labels": list(one.labels), **one.finding.document()} for one in checked],
     }  # fmt: skip

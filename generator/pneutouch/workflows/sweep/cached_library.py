@@ -13,14 +13,14 @@ from pneutouch.catalogue import Library
 class CachedLibrary(Library):
     """A library over ``folders`` that do not change while it is used; what it hands out is immutable and shared."""
 
-    _shelves: dict[str, dict[str, Path]] = field(default_factory=dict, repr=False, compare=False)
+    _files: dict[str, dict[str, Path]] = field(default_factory=dict, repr=False, compare=False)
     _things: dict[tuple[str, str], Any] = field(default_factory=dict, repr=False, compare=False)
 
     def shelf(self, kind: str) -> dict[str, Path]:
         """Names of one kind with their files, sorted by name."""
-        if kind not in self._shelves:
-            self._shelves[kind] = super().shelf(kind)
-        return self._shelves[kind]
+        if kind not in self._files:
+            self._files[kind] = super().shelf(kind)
+        return self._files[kind]
 
     def load(self, kind: str, name: str, *, file: str | None = None, key: str | None = None) -> Any:
         """Load one thing by name; raises InputError as a library does."""
