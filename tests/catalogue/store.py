@@ -24,7 +24,7 @@ SMALL = ("membrane.inner_radius_mm=8", "membrane.wall_thickness_mm=1.2")
 
 def combinations(library: Library) -> list[tuple[str, str, str]]:
     """Every port with every seat and every mount."""
-    return list(itertools.product(*(library.shelf(kind) for kind in KINDS.values())))
+    return list(itertools.product(*(library.paths(kind) for kind in KINDS.values())))
 
 
 def assembled(library: Library, parts: tuple[str, str, str], *more: str) -> Assembly:
@@ -58,9 +58,9 @@ def design_figures(library: Library, design: str) -> dict[str, Any]:
 
 
 if __name__ == "__main__":
-    shelves = Library((ROOT,))
+    library = Library((ROOT,))
     content = {
-        "designs": {design: design_figures(shelves, design) for design in shelves.shelf("designs")},
-        "parts": {" ".join(parts): shape_figures(assembled(shelves, parts, *SMALL)) for parts in combinations(shelves)},
+        "designs": {design: design_figures(library, design) for design in library.paths("designs")},
+        "parts": {" ".join(parts): shape_figures(assembled(library, parts, *SMALL)) for parts in combinations(library)},
     }
     STORED.write_text(json.dumps(content, indent=1, sort_keys=True) + "\n", encoding="utf-8")

@@ -51,7 +51,7 @@ def test_stiffness_rises_and_elongation_falls_with_hardness(library):
 
 def test_every_number_names_a_source(library):
     for kind in ("materials", "printers"):
-        for name in library.shelf(kind):
+        for name in library.paths(kind):
             found = _sources(library.load(kind, name).model_dump())
             assert found, name
             assert all(len(source) > 7 for source in found)

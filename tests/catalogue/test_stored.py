@@ -23,11 +23,11 @@ def compare_shapes(found, expected):
 
 
 def test_stored_figures_cover_exactly_what_is_registered():
-    assert set(EXPECTED["designs"]) == set(LIBRARY.shelf("designs"))
+    assert set(EXPECTED["designs"]) == set(LIBRARY.paths("designs"))
     assert set(EXPECTED["parts"]) == {" ".join(parts) for parts in PARTS}
 
 
-@pytest.mark.parametrize("design", LIBRARY.shelf("designs"))
+@pytest.mark.parametrize("design", LIBRARY.paths("designs"))
 def test_figures_of_designs_are_the_stored_ones(design):
     found, expected = design_figures(LIBRARY, design), EXPECTED["designs"][design]
     assert found["findings"] == expected["findings"]

@@ -38,7 +38,7 @@ def campaign(tmp_path_factory):
 @pytest.fixture
 def place(tmp_path, monkeypatch, library):
     """A working folder of its own, with a design that states the dead volume."""
-    content = tomllib.loads(library.shelf("designs")["paper-dome"].read_text())
+    content = tomllib.loads(library.paths("designs")["paper-dome"].read_text())
     content["pneumatics"]["dead_volume_mL"] = 0.3
     (tmp_path / "designs").mkdir()
     (tmp_path / "designs" / "mine.toml").write_text(toml_text(content))

@@ -56,7 +56,7 @@ def test_an_impossible_target_exits_1_and_says_what_to_give_up():
     result = run(*ASKED[:-3], "150", "--max-diameter", "25")
     assert result.exit_code == 1
     assert "no design meets the target" in result.stdout
-    assert "giving up force range alone would do" in result.stdout
+    assert "without the requirement on force range alone a design fits" in result.stdout
 
 
 def test_a_target_file_with_flags_over_it(tmp_path):

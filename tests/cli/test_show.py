@@ -69,10 +69,10 @@ def test_a_3mf_of_another_maker_is_shown_without_recipe(command, foreign):
 
 
 def test_build_from_a_3mf_gives_the_same_bytes_in_a_folder_whose_library_changed(command, built, built_file, tmp_path):
-    shelf = tmp_path / "printprofiles"
-    (shelf / "materials").mkdir(parents=True)
+    paths = tmp_path / "printprofiles"
+    (paths / "materials").mkdir(parents=True)
     for name in ("materials/TangoPlus", "materials/Agilus30", "materials/ABS", "objet260-connex", "abs-filament"):
-        (shelf / f"{name}.toml").write_text("title = 'broken'\n")
+        (paths / f"{name}.toml").write_text("title = 'broken'\n")
     result = command("build", "sensor.3mf", "--out", "again")
     assert result.returncode == 0, result.stderr
     assert "was made with" not in result.stderr

@@ -1,4 +1,4 @@
-"""Intervals of a prediction: the budget's, about the figures of the model that was asked, or a word why there are none."""
+"""Intervals of a prediction: the budget's, about the figures of the model that was requested, or a word why there are none."""
 
 from __future__ import annotations
 

@@ -62,7 +62,7 @@ def test_the_recipe_of_every_design_comes_back_as_it_went(name, library):
 def test_every_part_comes_back(kind, library):
     key = {"ports": "port", "seats": "seat", "mounts": "mount"}[kind]
     scene = load_scene("paper-dome", None, library)
-    for name in library.shelf(kind):
+    for name in library.paths(kind):
         changed = dataclasses.replace(scene, **{key: library.load(kind, name)})
         if changed.seat.family == "one-piece":
             continue
@@ -128,7 +128,7 @@ def test_a_3mf_builds_again_to_the_same_bytes_without_any_library(built, tmp_pat
     def refuse(*_, **__):
         raise AssertionError("the library was looked at")
 
-    for method in ("shelf", "load", "all", "default", "design_file"):
+    for method in ("paths", "load", "all", "default", "design_file"):
         monkeypatch.setattr(Library, method, refuse)
     copy = tmp_path / "renamed by a user.3MF"
     copy.write_bytes(path.read_bytes())

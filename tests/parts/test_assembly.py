@@ -20,7 +20,7 @@ from tests.catalogue.store import BASE, KINDS, SMALL, assembled, combinations
 from tests.conftest import ROOT
 
 LIBRARY = Library((ROOT,))
-DESIGNS = sorted(LIBRARY.shelf("designs"))
+DESIGNS = sorted(LIBRARY.paths("designs"))
 PARTS = combinations(LIBRARY)
 
 
@@ -46,9 +46,9 @@ def test_every_design_has_sound_bodies(name):
 def everyday(parts):
     """Every port with every seat and every seat with every mount; the other triples are left to the slow run."""
     port, seat, mount = (
-        sorted(LIBRARY.shelf(kind)).index(part) for kind, part in zip(KINDS.values(), parts, strict=True)
+        sorted(LIBRARY.paths(kind)).index(part) for kind, part in zip(KINDS.values(), parts, strict=True)
     )
-    return mount == (port + 2 * seat) % len(LIBRARY.shelf("mounts"))
+    return mount == (port + 2 * seat) % len(LIBRARY.paths("mounts"))
 
 
 @pytest.mark.parametrize(
@@ -125,7 +125,7 @@ def test_channel_is_open_from_the_cavity_to_the_port():
 
 
 def test_mounting_holes_lie_on_a_whole_millimetre_circle_and_clear_the_seat():
-    for mount in sorted(LIBRARY.shelf("mounts")):
+    for mount in sorted(LIBRARY.paths("mounts")):
         assembly = assembled(LIBRARY, ("barb-4x2.5", "glued-flange", mount))
         layout = assembly.layout
         assert 2 * layout.bolt_circle_radius == pytest.approx(round(2 * layout.bolt_circle_radius))
@@ -235,7 +235,7 @@ def ring_hole(assembly):
     return assembly.solid("ring").bores[0].radius
 
 
-@pytest.mark.parametrize("port", LIBRARY.shelf("ports"))
+@pytest.mark.parametrize("port", LIBRARY.paths("ports"))
 def test_a_plug_leaves_a_side_port_as_wide_a_way_as_its_passage(port):
     """The curtain between the passage's rim and the plug, and the ring around its neck, against the passage."""
     assembly = assembled(LIBRARY, (port, "one-piece", "robot-50-4-M6"), *SMALL)

@@ -21,7 +21,7 @@ from pneutouch.spec.read import parse_changes
 from tests.conftest import ROOT
 
 LIBRARY = Library((ROOT,))
-SEATS = sorted(LIBRARY.shelf("seats"))
+SEATS = sorted(LIBRARY.paths("seats"))
 TOLERANCE = 0.016
 
 

@@ -22,7 +22,7 @@ MOUNTS = ("bolt-circle-4xM3", "robot-50-4-M6")
 CASES = [
     # Every port on every seat; the second of the two mounts is left to the slow run.
     pytest.param(port, seat, MOUNTS[(k + other) % 2], marks=pytest.mark.slow if other else ())
-    for k, (port, seat) in enumerate(itertools.product(sorted(LIBRARY.shelf("ports")), sorted(LIBRARY.shelf("seats"))))
+    for k, (port, seat) in enumerate(itertools.product(sorted(LIBRARY.paths("ports")), sorted(LIBRARY.paths("seats"))))
     for other in range(2)
 ]
 

@@ -24,7 +24,7 @@ def test_the_design_of_the_page_can_be_drawn(library, tmp_path):
 
 def test_the_tables_name_every_part_and_every_rule(library):
     for kind in ("ports", "seats", "mounts"):
-        for name in library.shelf(kind):
+        for name in library.paths(kind):
             assert f"`{name}`" in TEXT or f"`-{name.rsplit('-', 1)[1]}`" in TEXT, name
     table = TEXT.partition("| rule | checks |")[2].partition("\n\n")[0]
     named = {word.strip() for line in re.findall(r"^\| ([a-z, ]+) \|", table, re.MULTILINE) for word in line.split(",")}

@@ -24,8 +24,8 @@ from tests.conftest import ROOT
 from tests.printability.gallery import BAD, ball, box, item, one
 
 LIBRARY = Library((ROOT,))
-DESIGNS = sorted(LIBRARY.shelf("designs"))
-PARTS = [(kind, name) for kind in ("port", "seat", "mount") for name in sorted(LIBRARY.shelf(f"{kind}s"))]
+DESIGNS = sorted(LIBRARY.paths("designs"))
+PARTS = [(kind, name) for kind in ("port", "seat", "mount") for name in sorted(LIBRARY.paths(f"{kind}s"))]
 
 
 def subject(name, *assignments):

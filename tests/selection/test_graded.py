@@ -126,8 +126,8 @@ def test_mixes_keep_every_wish_and_limit_that_resins_keep():
     found = select(Target.model_validate({"target": wanted, "given": {"mix": "TangoPlus+VeroClear"}}), "test")
     assert len(found.answer.designs) >= 3
     for choice in found.answer.designs:
-        assert min(choice.room.values()) >= 0
-        assert choice.room["sensitivity"] > 0.98
+        assert min(choice.margins.values()) >= 0
+        assert choice.margins["sensitivity"] > 0.98
         sensor = found.sensor_of(choice)
         assert sensor.wall.shear_modulus == choice.resin.shear_modulus
         assert 2 * (sensor.dome.inner_radius + sensor.dome.wall_thickness) <= 25.0

@@ -25,17 +25,17 @@ KEYS = {
 def test_the_wish_said_to_be_in_the_way_is(wanted):
     found = answer(wanted)
     assert not found.answer.designs
-    assert found.answer.ways
-    for way in found.answer.ways:
-        rest = {key: value for key, value in wanted.items() if key != KEYS[way.wish]}
+    assert found.answer.dropped
+    for dropped in found.answer.dropped:
+        rest = {key: value for key, value in wanted.items() if key != KEYS[dropped.requirement]}
         if set(rest) & {"sensitivity_kPa_per_N", "force_range_N"}:
-            assert answer(rest).answer.designs, f"{way.wish} given up, and still nothing"
+            assert answer(rest).answer.designs, f"{dropped.requirement} given up, and still nothing"
 
 
 def test_what_a_wish_would_need_is_enough():
     wanted = {**FINGERTIP, "force_range_N": 150.0}
-    way = next(way for way in answer(wanted).answer.ways if way.wish == "force range")
-    reached = float(way.best.pool.force[0])
+    dropped = next(dropped for dropped in answer(wanted).answer.dropped if dropped.requirement == "force range")
+    reached = float(dropped.best.pool.force[0])
     assert answer({**wanted, "force_range_N": 0.95 * reached}).answer.designs
     assert reached < 150.0
 
@@ -43,7 +43,7 @@ def test_what_a_wish_would_need_is_enough():
 def test_the_nearest_breaks_no_limit_but_wishes():
     found = answer({**FINGERTIP, "force_range_N": 150.0}).answer
     assert found.nearest is not None
-    broken = {name for name, room in found.nearest.room.items() if room < 0}
+    broken = {name for name, margin in found.nearest.margins.items() if margin < 0}
     assert broken
     assert broken <= {"sensitivity", "force range", "stiffness", "outer diameter"}
 

@@ -18,7 +18,7 @@ from pneutouch.spec.read import parse_changes
 from tests.conftest import ROOT
 
 LIBRARY = Library((ROOT,))
-RESINS = [name for name in LIBRARY.shelf("materials") if LIBRARY.load("materials", name).kind == "elastomer"]
+RESINS = [name for name in LIBRARY.paths("materials") if LIBRARY.load("materials", name).kind == "elastomer"]
 
 
 def outcome(base: str, chosen: list[str]) -> tuple[str, list[Finding] | str]:

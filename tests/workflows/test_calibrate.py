@@ -87,8 +87,8 @@ def test_no_interval_reaches_below_no_dead_volume(observations, scene):
 
 
 def test_saved_files_predict_what_was_measured(found, observations, library, tmp_path):
-    shelves = Library((tmp_path, *library.folders))
-    saved = prepare(found, "dome-A1", tmp_path, shelves)
+    library = Library((tmp_path, *library.folders))
+    saved = prepare(found, "dome-A1", tmp_path, library)
     save(saved)
     assert [path.removeprefix(str(tmp_path)) for path in saved.paths] == [
         "/printprofiles/materials/dome-A1.toml", "/designs/dome-A1.toml",
@@ -99,7 +99,7 @@ def test_saved_files_predict_what_was_measured(found, observations, library, tmp
     assert "calibrated on sensor A1, Spring campaign, 9 curves, 1 injections" in resin["shear_modulus_MPa"]["source"]
     assert "measured" not in resin
     assert resin["shore_a"]["value"] == 27.6
-    states = evaluate("dome-A1", model="atlas", library=shelves).prediction.states
+    states = evaluate("dome-A1", model="atlas", library=library).prediction.states
     before = evaluate(
         "paper-dome", {"pneumatics.dead_volume_mL": 0.3}, model="atlas", library=library
     ).prediction.states
@@ -111,25 +111,25 @@ def test_saved_files_predict_what_was_measured(found, observations, library, tmp
 
 
 def test_files_of_others_are_left_alone(found, library, tmp_path):
-    shelves = Library((tmp_path, *library.folders))
+    library = Library((tmp_path, *library.folders))
     mine = tmp_path / "designs" / "mine.toml"
     mine.parent.mkdir()
     mine.write_text("[membrane]\n")
     with pytest.raises(InputError, match="was not written by pneutouch calibrate"):
-        prepare(found, "mine", tmp_path, shelves)
+        prepare(found, "mine", tmp_path, library)
     assert mine.read_text() == "[membrane]\n"
     with pytest.raises(InputError, match="which the new file would hide"):
-        prepare(found, "TangoPlus", tmp_path, shelves)
-    assert len(prepare(found, "TangoPlus", tmp_path, shelves, shadow=True).files) == 2
+        prepare(found, "TangoPlus", tmp_path, library)
+    assert len(prepare(found, "TangoPlus", tmp_path, library, shadow=True).files) == 2
     with pytest.raises(InputError, match="letters, digits"):
-        prepare(found, "../up", tmp_path, shelves)
+        prepare(found, "../up", tmp_path, library)
 
 
 def test_its_own_files_are_written_anew(found, library, tmp_path):
-    shelves = Library((tmp_path, *library.folders))
-    save(prepare(found, "A1", tmp_path, shelves))
+    library = Library((tmp_path, *library.folders))
+    save(prepare(found, "A1", tmp_path, library))
     first = (tmp_path / "designs/A1.toml").read_bytes()
-    save(prepare(found, "A1", tmp_path, shelves))
+    save(prepare(found, "A1", tmp_path, library))
     assert (tmp_path / "designs/A1.toml").read_bytes() == first
     assert first.decode().startswith(HEAD)
 

@@ -12,9 +12,9 @@ MARK = "measured on coupons"
 
 @dataclass(frozen=True, slots=True)
 class ProfileChange:
-    """A quantity of a profile as measured: the shelf and name of the profile, the keys that lead to it, its content."""
+    """A quantity of a profile as measured: kind and name of the profile, the keys that lead to it, its content."""
 
-    shelf: Literal["materials", "printers"]
+    kind: Literal["materials", "printers"]
     name: str
     keys: tuple[str, ...]
     content: dict[str, Any]

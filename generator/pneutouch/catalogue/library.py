@@ -1,4 +1,4 @@
-"""The shelves: every kind of thing is a folder of TOML files, and a file's name is the thing's name.
+"""The library: every kind of thing is a folder of TOML files, and a file's name is the thing's name.
 
 Files in the working folder come before the shipped ones, so a lab's own printer profile overrides ours.
 """
@@ -33,7 +33,7 @@ ValidateFile = Callable[[dict[str, Any], str], BaseModel]
 
 @dataclass(frozen=True, slots=True)
 class FileKind:
-    """One shelf: how its files are validated, and the folder they lie in."""
+    """One kind of thing: how its files are validated, and the folder they lie in."""
 
     validate: ValidateFile
     folder: str
@@ -45,7 +45,7 @@ def _one(model: type[BaseModel]) -> ValidateFile:
 
 
 def _by_family(models: Mapping[str, type[BaseModel]]) -> ValidateFile:
-    """A file says its family, and so which keys it has."""
+    """A file states its family, and so which keys it has."""
 
     def check(content: dict[str, Any], where: str) -> BaseModel:
         family = content.get("family")
@@ -86,39 +86,39 @@ class Library:
         """The working folder, then what is shipped."""
         return Library((Path.cwd(), shipped_root()))
 
-    def shelf(self, kind: str) -> dict[str, Path]:
+    def paths(self, kind: str) -> dict[str, Path]:
         """Names of one kind with their files, sorted by name."""
         entry = KINDS[kind]
         roots = (*self.folders, _PACKAGE) if entry.part else self.folders
-        found: dict[str, Path] = {}
+        content: dict[str, Path] = {}
         for root in roots:
             folder = root / entry.folder
             for path in sorted(folder.glob("*.toml")) if folder.is_dir() else ():
-                found.setdefault(path.stem, path)
-        return dict(sorted(found.items()))
+                content.setdefault(path.stem, path)
+        return dict(sorted(content.items()))
 
     def load(self, kind: str, name: str, *, file: str | None = None, key: str | None = None) -> Any:
-        """Load one thing by name; ``file`` and ``key`` say where the name was written, for the error."""
-        shelf = self.shelf(kind)
-        if name not in shelf:
-            problem = f"no such name among the {kind}.{nearest(name, shelf)}"
+        """Load one thing by name; ``file`` and ``key`` state where the name was written, for the error."""
+        paths = self.paths(kind)
+        if name not in paths:
+            problem = f"no such name among the {kind}.{nearest(name, paths)}"
             raise InputError(problem if key else f"{name}: {problem}", file=file, key=key, value=name if key else None)
-        path = shelf[name]
+        path = paths[name]
         return KINDS[kind].validate(read_toml(path), str(path))
 
     def all(self, kind: str, model: type[Model]) -> dict[str, Model]:
         """Load everything of one kind; ``model`` is the kind's model, for the type checker."""
-        return {name: cast(Model, self.load(kind, name)) for name in self.shelf(kind)}
+        return {name: cast(Model, self.load(kind, name)) for name in self.paths(kind)}
 
     def design_file(self, name: str) -> Path:
         """The file of a design given by name or by path."""
-        path, shelf = Path(name), self.shelf("designs")
-        if name in shelf:
-            return shelf[name]
+        path, paths = Path(name), self.paths("designs")
+        if name in paths:
+            return paths[name]
         if path.suffix == ".toml" or "/" in name or path.is_file():
             return path
-        if name in self.shelf("specimens"):
+        if name in self.paths("specimens"):
             raise InputError(
-                f"{name}: is a texture specimen; it can be built, checked and scanned, a sensor's design is wanted here"
+                f"{name}: is a texture specimen; it can be built, checked and scanned, this command needs the design of a sensor"
             )
-        raise InputError(f"{name}: no such design or file.{nearest(name, shelf)}")
+        raise InputError(f"{name}: no such design or file.{nearest(name, paths)}")

@@ -71,14 +71,14 @@ def mixing(
 
     Raises InputError where there is none, where it is another pair's, and where its modulus falls with the fraction.
     """
-    shelf = library.shelf("mixing")
-    if f"{soft}+{stiff}" not in shelf:
-        turned = f"{stiff}+{soft}" in shelf
-        hint = f"the soft resin goes first: {stiff}" if turned else f"known: {', '.join(shelf) or 'none'}"
+    paths = library.paths("mixing")
+    if f"{soft}+{stiff}" not in paths:
+        turned = f"{stiff}+{soft}" in paths
+        hint = f"the soft resin goes first: {stiff}" if turned else f"known: {', '.join(paths) or 'none'}"
         remedy = f"{hint} (printprofiles/mixing)"
         raise InputError(f"no mixing curve of {stiff} in {soft}", file=file, key=key, remedy=remedy)
     curve: MixingCurve = library.load("mixing", f"{soft}+{stiff}", file=file, key=key)
-    where = str(shelf[f"{soft}+{stiff}"])
+    where = str(paths[f"{soft}+{stiff}"])
     if (curve.soft, curve.stiff) != (soft, stiff):
         raise InputError(
             f"{where}: soft = {curve.soft!r}, stiff = {curve.stiff!r}: must be {soft!r} and {stiff!r}, as the file's name"
@@ -98,8 +98,12 @@ def _resolved(point: MixingPoint, curve: MixingCurve, library: Library, where: s
     """Modulus, its spread and the elongation at break of a point; NaN for what is not known."""
     if point.material is None:
         assert point.shear_modulus_MPa is not None
-        spread, torn = point.shear_modulus_spread_MPa, point.elongation_at_break_percent
-        return point.shear_modulus_MPa, np.nan if spread is None else spread, np.nan if torn is None else torn
+        spread, break_percent = point.shear_modulus_spread_MPa, point.elongation_at_break_percent
+        return (
+            point.shear_modulus_MPa,
+            np.nan if spread is None else spread,
+            np.nan if break_percent is None else break_percent,
+        )
     material: Material = library.load("materials", point.material, file=where, key="points.material")
     foreign = [resin for resin in material.base_resins if resin not in (curve.soft, curve.stiff)]
     if foreign:
@@ -123,7 +127,7 @@ def mixed_material(grade: Grade, library: Library, *, file: str | None, key: str
 
     Raises InputError for resins without a curve and for fractions beyond its last point.
     """
-    # The names first: of an unknown resin there is no curve either, and that would be said of the pair.
+    # The names first: of an unknown resin there is no curve either, and the error would name the pair.
     soft: Material = library.load("materials", grade.from_, file=file, key=f"{key}.from")
     stiff: Material = library.load("materials", grade.to, file=file, key=f"{key}.to")
     law = mixing(grade.from_, grade.to, library, file=file, key=key)
@@ -153,15 +157,15 @@ def _modulus(law: ResolvedMixingCurve, fraction: Array, weight: Array) -> dict[s
 
     All the wall is at one end of the band together: the curve is one, and where it is wrong it is wrong everywhere.
     """
-    found: dict[str, Any] = {
+    modulus: dict[str, Any] = {
         "value": float(np.average(law.modulus_at(fraction), weights=weight)),
         "source": f"{FROM_CURVE} {law.curve.soft}+{law.curve.stiff}: {law.curve.assumption}",
     }
     if law.curve.is_assumed:
-        found["low"], found["high"] = (float(np.average(end, weights=weight)) for end in law.band_at(fraction))
+        modulus["low"], modulus["high"] = (float(np.average(end, weights=weight)) for end in law.band_at(fraction))
     elif np.isfinite(law.spread).all():
-        found["spread"] = float(np.average(law.spread_at(fraction), weights=weight))
-    return found
+        modulus["spread"] = float(np.average(law.spread_at(fraction), weights=weight))
+    return modulus
 
 
 def _content(grade: Grade, soft: Material, stiff: Material, share: float) -> dict[str, Any]:
@@ -175,7 +179,7 @@ def _content(grade: Grade, soft: Material, stiff: Material, share: float) -> dic
             "source": f"by volume from {grade.from_} and {grade.to}",
         },
         "poisson_ratio": None if soft.poisson_ratio is None else soft.poisson_ratio.model_dump(exclude_none=True),
-        "mix": {"fractions": fractions, "source": "asked for: printed by voxels"} if whole else None,
+        "mix": {"fractions": fractions, "source": "as designed: printed by voxels"} if whole else None,
     }  # fmt: skip
 
 

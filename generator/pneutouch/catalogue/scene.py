@@ -36,7 +36,7 @@ class ResolvedDesign:
 
     @property
     def membrane_mode(self) -> Mode:
-        """Print mode of the membrane; load_scene has made sure that there is one."""
+        """Print mode of the membrane; load_scene has checked that there is one."""
         if isinstance(self.seat, OnePiece):
             return _mode(self.printer, self.membrane_material, self.connector_material)
         return _mode(self.printer, self.membrane_material)
@@ -101,23 +101,23 @@ def load_scene(
     design: str | DesignSource, changes: Changes | None = None, library: Library | None = None
 ) -> ResolvedDesign:
     """Load a design, given by name, by path or as a source, change fields and resolve its names."""
-    shelves = library or Library.default()
-    source = DesignSource.of(design, shelves)
-    return _resolved(source.name, source.where, source.changed(changes or {}), shelves)
+    library = library or Library.default()
+    source = DesignSource.of(design, library)
+    return _resolved(source.name, source.where, source.changed(changes or {}), library)
 
 
-def _resolved(name: str, where: str, design: DesignFile, shelves: Library) -> ResolvedDesign:
+def _resolved(name: str, where: str, design: DesignFile, library: Library) -> ResolvedDesign:
     def find(kind: str, table: str, key: str) -> Any:
         chosen = getattr(getattr(design, table), key)
-        return shelves.load(kind, chosen, file=where, key=f"{table}.{key}")
+        return library.load(kind, chosen, file=where, key=f"{table}.{key}")
 
     scene = ResolvedDesign(
         name=name, where=where, design=design,
-        membrane_material=_membrane_material(design, where, shelves),
+        membrane_material=_membrane_material(design, where, library),
         connector_material=find("materials", "connector", "material"),
         printer=find("printers", "print", "profile"),
         connector_printer=find("printers", "print", "connector_profile"),
-        tube=_tube(design, where, shelves),
+        tube=_tube(design, where, library),
         port=find("ports", "connector", "port"),
         seat=find("seats", "connector", "seat"),
         mount=find("mounts", "connector", "mount"),
@@ -126,13 +126,13 @@ def _resolved(name: str, where: str, design: DesignFile, shelves: Library) -> Re
     return scene
 
 
-def _membrane_material(design: DesignFile, where: str, shelves: Library) -> Material:
+def _membrane_material(design: DesignFile, where: str, library: Library) -> Material:
     """The resin that the design names, or the mix that it describes."""
     chosen = design.membrane.material
     if isinstance(chosen, Grade):
-        return mixed_material(chosen, shelves, file=where)
-    found: Material = shelves.load("materials", chosen, file=where, key="membrane.material")
-    return found
+        return mixed_material(chosen, library, file=where)
+    material: Material = library.load("materials", chosen, file=where, key="membrane.material")
+    return material
 
 
 def check_scene(scene: ResolvedDesign) -> None:
@@ -144,19 +144,19 @@ def check_scene(scene: ResolvedDesign) -> None:
     _check_one_piece(scene)
 
 
-def _tube(design: DesignFile, where: str, shelves: Library) -> Tube:
+def _tube(design: DesignFile, where: str, library: Library) -> Tube:
     """The tube that the design names, else the usual one of its port. Raises InputError where it does not fit."""
-    port = shelves.load("ports", design.connector.port, file=where, key="connector.port")
+    port = library.load("ports", design.connector.port, file=where, key="connector.port")
     name = design.pneumatics.tube
     if name is not None:
-        shelves.load("tubes", name, file=where, key="pneumatics.tube")
+        library.load("tubes", name, file=where, key="pneumatics.tube")
         if name not in port.tubes:
             raise InputError(
                 f"{where}: pneumatics.tube = {name!r}: the port {design.connector.port} takes {', '.join(port.tubes)}; "
                 "give one of these, or another connector.port"
             )
-    found: Tube = shelves.load("tubes", name or port.tubes[0], file=where, key="tubes of connector.port")
-    return found
+    tube: Tube = library.load("tubes", name or port.tubes[0], file=where, key="tubes of connector.port")
+    return tube
 
 
 def _mode(printer: Printer, *materials: Material) -> Mode:

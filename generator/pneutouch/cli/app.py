@@ -21,7 +21,7 @@ class Commands(TyperGroup):
     """The commands. An error of the library ends one with a message in its own words, and the error's exit code."""
 
     def invoke(self, ctx: Any) -> Any:
-        """Run the command that was asked for."""
+        """Run the requested command."""
         try:
             return super().invoke(ctx)
         except PneutouchError as error:
@@ -99,8 +99,8 @@ def reporting() -> Iterator[None]:
         raise typer.Exit(3) from None
 
 
-def _version(asked: bool) -> None:
-    if asked:
+def _version(requested: bool) -> None:
+    if requested:
         typer.echo(f"pneutouch {__version__}")
         raise typer.Exit
 
@@ -174,7 +174,7 @@ def new(
 
 
 def model_options(model: str | None, tolerance: str | None) -> dict[str, Any]:
-    """The model asked for; a tolerance alone asks for the cheapest that meets it."""
+    """The requested model; a tolerance alone selects the cheapest that meets it."""
     from pneutouch.errors import InputError
     from pneutouch.mechanics.models import DEFAULT_TOLERANCE, parse_tolerance
 

@@ -111,10 +111,10 @@ def check(
             raise typer.Exit(1)
 
 
-def _evaluated(design: str, changed: dict[str, Any], **asked: Any) -> Evaluation:
+def _evaluated(design: str, changed: dict[str, Any], **options: Any) -> Evaluation:
     from pneutouch.evaluation.evaluate import evaluate
 
-    return evaluate(design, changed, **asked)
+    return evaluate(design, changed, **options)
 
 
 def _is_specimen(design: str) -> bool:

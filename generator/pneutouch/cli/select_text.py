@@ -50,7 +50,9 @@ def selection_text(selection: SelectionRun) -> str:
         ).rstrip()
     lines = ["no design meets the target"]
     if answer.nearest is not None:
-        broken = ", ".join(f"{name} by {-100 * room:.0f} %" for name, room in answer.nearest.room.items() if room < 0)
+        broken = ", ".join(
+            f"{name} by {-100 * margin:.0f} %" for name, margin in answer.nearest.margins.items() if margin < 0
+        )
         lines += [
             "",
             "nearest:",
@@ -60,12 +62,12 @@ def selection_text(selection: SelectionRun) -> str:
     lines += [
         "",
         *(
-            f"giving up {way.wish} alone would do: {would_need(selection, way)} ({way.best.resin.name})"
-            for way in answer.ways
+            f"without the requirement on {dropped.requirement} alone a design fits: {would_need(selection, dropped)} ({dropped.best.resin.name})"
+            for dropped in answer.dropped
         ),
     ]
-    if not answer.ways:
-        lines.append("no single wish given up would let a design in")
+    if not answer.dropped:
+        lines.append("no design fits with any single requirement dropped")
     return "\n".join([*lines, *left]).rstrip()
 
 
@@ -76,5 +78,5 @@ def _row(choice: Candidate) -> list[str]:
         choice.resin.name, f"{pool.radius[0]:.2f}", f"{pool.wall[0]:.2f}", f"{pool.pressure[0] / KPA:.2f}",
         f"{pool.response.lines.sensitivity_kPa_per_N[0]:.3f}", f"{100 * choice.expanded:.0f} %", f"0-{pool.force[0]:.2f}",
         f"{'depth' if end == DEPTH else ENDS[end]}", f"{choice.span[0]:.2f}..{choice.span[1]:.2f}", f"{choice.rated / KPA:.1f}",
-        f"{choice.binding} ({100 * choice.room[choice.binding]:+.0f} %)",
+        f"{choice.binding} ({100 * choice.margins[choice.binding]:+.0f} %)",
     ]  # fmt: skip

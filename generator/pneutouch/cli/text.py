@@ -109,13 +109,13 @@ def listing(kind: str | None, library: Library | None = None) -> dict[str, list[
     """Names and titles by kind; ``kind`` is one of designs, specimens, materials, mixing, printers, parts, or None for all."""
     if kind is not None and kind not in _GROUPS:
         raise InputError(f"KIND = {kind!r}: unknown.{nearest(kind, _GROUPS)}")
-    shelves = library or Library.default()
+    library = library or Library.default()
     groups = _GROUPS if kind is None else {kind: _GROUPS[kind]}
     return {
         group: [
-            {"name": name, "title": _title(shelves.load(shelf, name)), **({"kind": shelf} if KINDS[shelf].part else {})}
-            for shelf in shelf_names
-            for name in shelves.shelf(shelf)
+            {"name": name, "title": _title(library.load(paths, name)), **({"kind": paths} if KINDS[paths].part else {})}
+            for paths in shelf_names
+            for name in library.paths(paths)
         ]
         for group, shelf_names in groups.items()
     }

@@ -48,7 +48,7 @@ def prediction_document(evaluation: Evaluation, samples: int = 0) -> dict[str, A
 def full_document(evaluation: Evaluation, samples: int = 0) -> dict[str, Any]:
     """`prediction_document` with ``viscous``, and ``aged`` where the prediction is of an aged sensor."""
     content = {**prediction_document(evaluation, samples), "viscous": viscous(evaluation)}
-    if evaluation.asked.aged:
+    if evaluation.options.aged:
         ratio = ageing_ratio(evaluation.scene.membrane_material)
         content["aged"] = {"modulus_ratio": rounded(ratio, _DIGITS), "assumes": AGED}
     return content

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from pneutouch.printability import Finding
     from pneutouch.printability.estimate import JobEstimate
 
-# The print rules and the uncertainty load where they are asked for: figures alone need neither.
+# The print rules and the uncertainty load where they are used: figures alone need neither.
 
 CLAMPS = ("base", "flange")
 """Where the solid is held."""
@@ -36,7 +36,7 @@ Resins = dict[str, Material]
 
 @dataclass(frozen=True)
 class PredictionOptions:
-    """How a prediction was asked for: the model, the membrane's closure, the clamp and what ``auto`` must meet.
+    """Options of a prediction: the model, the membrane's closure, the clamp and what ``auto`` must meet.
 
     ``aged`` asks for the sensor after a year; a recipe does not carry it: what is printed is fresh.
     """
@@ -50,13 +50,13 @@ class PredictionOptions:
 
 @dataclass(frozen=True)
 class Evaluation:
-    """A scene with its bodies and its prediction; findings are made when asked for."""
+    """A scene with its bodies and its prediction; findings are made on demand."""
 
     scene: ResolvedDesign
     assembly: Assembly
     sensor: Sensor
     prediction: SensorPrediction
-    asked: PredictionOptions
+    options: PredictionOptions
     find_resins: Callable[[], Resins]
 
     @cached_property
@@ -108,32 +108,32 @@ def evaluate(
     """
     if clamp not in CLAMPS:
         raise InputError(f"unknown.{nearest(clamp, CLAMPS)}", key="clamp", value=clamp)
-    shelves = library or Library.default()
-    scene = load_scene(design, changes, shelves)
-    return evaluate_scene(scene, lambda: elastomers(shelves), PredictionOptions(model, closure, clamp, tolerance, aged))
+    library = library or Library.default()
+    scene = load_scene(design, changes, library)
+    return evaluate_scene(scene, lambda: elastomers(library), PredictionOptions(model, closure, clamp, tolerance, aged))
 
 
-def evaluate_scene(scene: ResolvedDesign, find_resins: Callable[[], Resins], asked: PredictionOptions) -> Evaluation:
+def evaluate_scene(scene: ResolvedDesign, find_resins: Callable[[], Resins], options: PredictionOptions) -> Evaluation:
     """Draw and predict a scene; ``find_resins`` gives the resins to compare with, when they are needed.
 
     Raises InputError where the scene cannot work.
     """
     assembly = assemble(scene)
-    sensor = sensor_of(assembly, asked.clamp)
-    if asked.aged:
+    sensor = sensor_of(assembly, options.clamp)
+    if options.aged:
         sensor, shift = _aged(scene, sensor)
     pressures = [p * KPA for p in scene.design.pneumatics.driving_pressures_kPa]
     try:
         prediction = predict(
-            scene.name, sensor, pressures, model=asked.model, closure=asked.closure, tolerance=asked.tolerance,
-            sensitivity_error=lambda model: sensitivity_error(scene.membrane_material, sensor, model, asked.closure),
+            scene.name, sensor, pressures, model=options.model, closure=options.closure, tolerance=options.tolerance,
+            sensitivity_error=lambda model: sensitivity_error(scene.membrane_material, sensor, model, options.closure),
         )  # fmt: skip
     except BeyondLimitError as error:
         raise _beyond_limit(scene, error) from None
     _check_plate(scene, prediction)
-    if asked.aged:
+    if options.aged:
         prediction = replace(prediction, assumptions=(*prediction.assumptions, shift))
-    return Evaluation(scene, assembly, sensor, prediction, asked, find_resins)
+    return Evaluation(scene, assembly, sensor, prediction, options, find_resins)
 
 
 def elastomers(library: Library) -> Resins:

@@ -37,9 +37,9 @@ def resins_of(
     design: str | DesignSource, changes: Changes | None, resins: Sequence[str], truth: SimulationTruth = TRUTH, library: Library | None = None
 ) -> list[SimulatedResin]:  # fmt: skip
     """The design in each resin; none given: its own, "all": those of the paper's Table S1. Raises InputError."""
-    shelves = library or Library.default()
-    own = load_scene(design, changes, shelves)
-    known = elastomers(shelves)
+    library = library or Library.default()
+    own = load_scene(design, changes, library)
+    known = elastomers(library)
     names = list(resins) or [resin_of(own)]
     if tuple(names) == ALL:
         names = sorted(
@@ -53,7 +53,7 @@ def resins_of(
         if names.count(name) > 1:
             raise InputError("named twice", key="resins", value=name, remedy="must be there once")
         own_resin = {} if name == AS_DESIGNED else {"membrane.material": name}
-        scene = load_scene(design, {**(changes or {}), **own_resin}, shelves)
+        scene = load_scene(design, {**(changes or {}), **own_resin}, library)
         material = scene.membrane_material
         new, old = material.shore_a, material.shore_a_one_year
         ageing = 0.0 if new is None or old is None else logarithmic_change(new.nominal, old.nominal)

@@ -1,4 +1,4 @@
-"""Write an output folder whole or not at all: written beside, then renamed into place."""
+"""Write an output folder whole or not at all: written next to its place, then renamed into it."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def json_bytes(document: object) -> bytes:
 
 
 def check_writable(folder: Path) -> None:
-    """Raise InputError where an output folder cannot be made or written, or holds somebody else's files."""
+    """Raise InputError where an output folder cannot be made or written, or holds files of others."""
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{folder} is a file", key="out", remedy="it must be a folder")
     if folder.is_symlink():
@@ -44,7 +44,7 @@ def check_writable(folder: Path) -> None:
 def write_folder(folder: Path, files: dict[str, bytes]) -> None:
     """Replace ``folder`` by ``files`` (path inside it to content); what others put there is kept.
 
-    Everything is written to a hidden folder beside it first. A run that stops before the last renames
+    Everything is written to a hidden folder next to it first. A run that stops before the last renames
     leaves the previous output as it was.
     """
     with replacing(folder) as fresh:
@@ -113,7 +113,7 @@ def _our_files(folder: Path) -> set[str]:
 
 
 def _keep_foreign(folder: Path, fresh: Path) -> None:
-    """Copy files, links and empty folders that the previous manifest does not list and that are not in the way."""
+    """Copy files, links and empty folders that the previous manifest does not list and whose names are free."""
     listed = _our_files(folder)
     for path in sorted(folder.rglob("*")):
         name = path.relative_to(folder).as_posix()

@@ -21,7 +21,7 @@ def check_name(name: str, folder: Path) -> Path:
     if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]*", name):
         raise InputError("use letters, digits, - and _, starting with a letter or digit", key="name", value=name)
     path = folder / f"{name}.toml"
-    known = Library.default().shelf("designs").get(name)
+    known = Library.default().paths("designs").get(name)
     if known is not None and known.resolve() != path.resolve():
         problem = f"{known} is a design of this name, which the new file would hide"
         raise InputError(problem, key="name", value=name, remedy="give another name")

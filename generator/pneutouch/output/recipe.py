@@ -20,7 +20,7 @@ SETTINGS = ("model", "closure", "clamp", "tolerance")
 
 @dataclass(frozen=True)
 class BuildRecipe:
-    """A scene with every name resolved, the resins it is compared with, and how its prediction is asked for.
+    """A scene with every name resolved, the resins it is compared with, and the options of its prediction.
 
     ``version`` is that of the pneutouch that made it.
     """
@@ -33,10 +33,10 @@ class BuildRecipe:
     @staticmethod
     def of(evaluation: Evaluation) -> BuildRecipe:
         """The recipe that an evaluation followed."""
-        return BuildRecipe(evaluation.scene, evaluation.resins, evaluation.asked)
+        return BuildRecipe(evaluation.scene, evaluation.resins, evaluation.options)
 
     def inputs(self) -> dict[str, Any]:
-        """Everything that the result follows from, as data; what the model asked for does not use is null."""
+        """Everything that the result follows from, as data; what the requested model does not use is null."""
         options = self.options
         return {
             "model": options.model,
@@ -57,7 +57,7 @@ class BuildRecipe:
 
 
 def evaluate_recipe(recipe: BuildRecipe) -> Evaluation:
-    """Draw and predict what a recipe says; no library is looked at. Raises InputError that names the recipe's file."""
+    """Draw and predict from a recipe; no library is read. Raises InputError that names the recipe's file."""
     where = recipe.scene.where
     try:
         return evaluate_scene(recipe.scene, lambda: recipe.resins, recipe.options)

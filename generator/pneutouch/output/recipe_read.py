@@ -1,4 +1,4 @@
-"""Read a recipe that a 3MF carries: nothing in it is believed before it is validated."""
+"""Read a recipe that a 3MF carries: nothing in it is used before it is validated."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def read_recipe(package: Package) -> BuildRecipe:
     _check_steps(scene, f"{where}: recipe")
     if package.metadata.get("input-hash") != input_hash(inputs, head.version):
         raise InputError(
-            f"{where}: recipe: altered or damaged: it does not match the input hash that stands beside it; "
+            f"{where}: recipe: altered or damaged: it does not match the input hash stored with it; "
             "take the file as it was built, or build from a design file"
         )
     return BuildRecipe(scene, resins, options, head.version)
@@ -118,7 +118,7 @@ def _resins(content: Any, where: str) -> Resins:
 
 
 def _options(inputs: dict[str, Any], where: str) -> PredictionOptions:
-    """How the prediction is asked for; what is null keeps its default, which the model does not use."""
+    """Options of the prediction; what is null keeps its default, which the model does not use."""
     model = _one_of(inputs, "model", MODEL_CHOICES, where)
     needed = {"closure": model in ("membrane", "auto"), "tolerance": model == "auto"}
     given: dict[str, Any] = {"model": model, "clamp": _one_of(inputs, "clamp", CLAMPS, where)}

@@ -1,10 +1,10 @@
 """The inverse: a target in, designs out.
 
-`problem` says what is wanted in numbers, `search` finds candidates, `pool` holds them with their room to every limit,
-`choose` ranks them or says what stands in the way.
+`problem` states the target in numbers, `search` finds candidates, `pool` holds them with their margin to every limit,
+`choose` ranks them or states which requirement prevents a design.
 """
 
-from pneutouch.selection.choose import Candidate, DroppedWish, SelectionResult, choose
+from pneutouch.selection.choose import Candidate, DroppedRequirement, SelectionResult, choose
 from pneutouch.selection.problem import CandidateResin, SelectionProblem
 
-__all__ = ["Candidate", "CandidateResin", "DroppedWish", "SelectionProblem", "SelectionResult", "choose"]
+__all__ = ["Candidate", "CandidateResin", "DroppedRequirement", "SelectionProblem", "SelectionResult", "choose"]

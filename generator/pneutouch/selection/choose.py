@@ -1,4 +1,4 @@
-"""From candidates to an answer: the few best of each resin, or what stands in the way."""
+"""From candidates to an answer: the few best of each resin, or the requirements that prevent one."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pneutouch.arrays import Array, Flags, Index
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.limits import RATED_SHARE
-from pneutouch.selection.pool import WISHES, CandidatePool, evaluated, margins
+from pneutouch.selection.pool import REQUIREMENTS, CandidatePool, evaluated, margins
 from pneutouch.selection.problem import CandidateResin, SelectionProblem
 from pneutouch.selection.search import search
 
@@ -38,14 +38,14 @@ Refine = Callable[[SelectionProblem, CandidatePool], tuple[SelectionProblem, Can
 class Candidate:
     """One candidate with all that it is judged by.
 
-    room: margins by name. binding: the smallest but the sensitivity's. expanded: relative expanded uncertainty of the
+    margins: by name. binding: the smallest but the sensitivity's. expanded: relative expanded uncertainty of the
     sensitivity. span: sensitivities at no pressure and at the rated one. rated: that pressure, MPa. cost: what the
     ranking sorts by, less is better.
     """
 
     resin: CandidateResin
     pool: CandidatePool
-    room: dict[str, float]
+    margins: dict[str, float]
     expanded: float
     span: tuple[float, float]
     rated: float
@@ -53,15 +53,15 @@ class Candidate:
 
     @property
     def binding(self) -> str:
-        """The limit or wish with the least room; the sensitivity is met exactly and does not count."""
-        return min((name for name in self.room if name != "sensitivity"), key=lambda name: self.room[name])
+        """The limit or requirement with the least margin; the sensitivity is met exactly and does not count."""
+        return min((name for name in self.margins if name != "sensitivity"), key=lambda name: self.margins[name])
 
 
 @dataclass(frozen=True)
-class DroppedWish:
-    """A wish to give up and the best that can then be had of it."""
+class DroppedRequirement:
+    """A requirement to drop and the best value of it that can then be attained."""
 
-    wish: str
+    requirement: str
     best: Candidate
 
 
@@ -69,12 +69,12 @@ class DroppedWish:
 class SelectionResult:
     """designs: the best of each resin first, in order of cost, then the runners-up in order of cost.
 
-    Without designs: the candidate nearest to the target, and which single wish to give up for a design.
+    Without designs: the candidate nearest to the target, and which single requirement to drop for a design.
     """
 
     designs: list[Candidate]
     nearest: Candidate | None
-    ways: list[DroppedWish]
+    dropped: list[DroppedRequirement]
     candidates: int
 
 
@@ -85,39 +85,41 @@ def choose(
     pool = search(problem) if problem.resins else None
     if pool is None or pool.resin.size == 0:
         return SelectionResult([], None, [], 0)
-    room = margins(problem, pool)
-    wide = room if refine is None else margins(replace(problem, tolerance=max(problem.tolerance, _REFINABLE)), pool)
+    margin_of = margins(problem, pool)
+    wide = (
+        margin_of if refine is None else margins(replace(problem, tolerance=max(problem.tolerance, _REFINABLE)), pool)
+    )
     fits = np.all([margin >= 0.0 for margin in wide.values()], axis=0)
     rows = _shortlist(pool, wide, fits)
     if rows.size:
         close = _rounded(problem, pool.take(rows))
-        own, close = (problem, close) if refine is None else refine(problem, close)
-        judged = _judged(own, close, weights, uncertainty)
-        good = [choice for choice in judged if min(choice.room.values()) >= 0.0]
+        refined_problem, close = (problem, close) if refine is None else refine(problem, close)
+        judged = _judged(refined_problem, close, weights, uncertainty)
+        good = [choice for choice in judged if min(choice.margins.values()) >= 0.0]
         if good:
             return SelectionResult(_ranked(good), None, [], pool.resin.size)
-    return _impossible(problem, pool, room, weights, uncertainty)
+    return _impossible(problem, pool, margin_of, weights, uncertainty)
 
 
-def _room(room: dict[str, Array]) -> Array:
+def _least_margin(margin_of: dict[str, Array]) -> Array:
     """The least margin but the sensitivity's, no more than 1."""
-    rest = [margin for name, margin in room.items() if name != "sensitivity"]
+    rest = [margin for name, margin in margin_of.items() if name != "sensitivity"]
     return np.asarray(np.minimum(np.min(rest, axis=0), 1.0))
 
 
-def _shortlist(pool: CandidatePool, room: dict[str, Array], fits: Flags) -> Index:
-    """For each resin a few candidates that are not nearly the same, those with the most room first."""
-    least = _room(room) + 0.5 * room.get("sensitivity", np.zeros_like(pool.radius))
+def _shortlist(pool: CandidatePool, margin_of: dict[str, Array], fits: Flags) -> Index:
+    """For each resin a few candidates that are not nearly the same, those with the greatest margin first."""
+    least = _least_margin(margin_of) + 0.5 * margin_of.get("sensitivity", np.zeros_like(pool.radius))
     chosen: list[int] = []
     for resin in np.unique(pool.resin[fits]):
         rows = np.flatnonzero(fits & (pool.resin == resin))
-        mine: list[int] = []
+        kept: list[int] = []
         for row in rows[np.argsort(-least[rows], kind="stable")]:
-            if all(_differ(pool, row, other) for other in mine):
-                mine.append(int(row))
-            if len(mine) == _EACH:
+            if all(_differ(pool, row, other) for other in kept):
+                kept.append(int(row))
+            if len(kept) == _EACH:
                 break
-        chosen += mine
+        chosen += kept
     return np.array(chosen, dtype=np.intp)
 
 
@@ -128,7 +130,7 @@ def _differ(pool: CandidatePool, a: int, b: int) -> bool:
 
 
 def _rounded(problem: SelectionProblem, pool: CandidatePool) -> CandidatePool:
-    """The same at sizes that can be written down, still inside the box and the room; what was given stays as given."""
+    """The same at sizes that can be written down, still inside the atlas and the size limit; what was given stays as given."""
     unit, box = 10.0**-_DIGITS, problem.recipe
     radius = pool.radius if problem.inner_radius is not None else np.floor(pool.radius / unit) * unit
     wall = pool.wall
@@ -143,8 +145,8 @@ def _rounded(problem: SelectionProblem, pool: CandidatePool) -> CandidatePool:
 def _judged(
     problem: SelectionProblem, pool: CandidatePool, weights: tuple[float, float], uncertainty: Uncertainty
 ) -> list[Candidate]:
-    room = margins(problem, pool)
-    least = _room(room)
+    margin_of = margins(problem, pool)
+    least = _least_margin(margin_of)
     rated, span = _span(problem, pool)
     expanded = np.full(pool.radius.size, np.nan)
     for number in np.unique(pool.resin):
@@ -157,7 +159,7 @@ def _judged(
     cost = weights[0] * np.nan_to_num(expanded, nan=1.0) - weights[1] * np.nan_to_num(moves) - 0.1 * least
     return [
         Candidate(
-            problem.resins[int(pool.resin[i])], pool.take(np.array([i])), {name: float(m[i]) for name, m in room.items()},
+            problem.resins[int(pool.resin[i])], pool.take(np.array([i])), {name: float(m[i]) for name, m in margin_of.items()},
             float(expanded[i]), (float(span[0][i]), float(span[1][i])), float(rated[i]), float(cost[i]),
         )
         for i in range(pool.radius.size)
@@ -186,25 +188,25 @@ def _ranked(choices: list[Candidate]) -> list[Candidate]:
 def _impossible(
     problem: SelectionProblem,
     pool: CandidatePool,
-    room: dict[str, Array],
+    margin_of: dict[str, Array],
     weights: tuple[float, float],
     uncertainty: Uncertainty,
 ) -> SelectionResult:
-    """The candidate that breaks the least, and each wish whose loss would let one in."""
-    every = np.array(list(room.values()))
+    """The candidate that breaks the least, and each requirement without which there is a design."""
+    every = np.array(list(margin_of.values()))
     worst = np.where(np.isneginf(every), _UNKNOWN, every).min(axis=0)
     nearest = int(np.argmax(worst))
 
     def close(row: int) -> Candidate:
         return _judged(problem, _rounded(problem, pool.take(np.array([row]))), weights, uncertainty)[0]
 
-    ways = []
-    for wish in WISHES:
-        if wish not in room:
+    dropped = []
+    for requirement in REQUIREMENTS:
+        if requirement not in margin_of:
             continue
-        rest = np.all([margin >= 0.0 for name, margin in room.items() if name != wish], axis=0)
+        rest = np.all([margin >= 0.0 for name, margin in margin_of.items() if name != requirement], axis=0)
         if rest.any():
-            row = int(np.flatnonzero(rest)[np.argmax(room[wish][rest])])
-            ways.append(DroppedWish(wish, close(row)))
+            row = int(np.flatnonzero(rest)[np.argmax(margin_of[requirement][rest])])
+            dropped.append(DroppedRequirement(requirement, close(row)))
     known = bool(worst[nearest] > _UNKNOWN)
-    return SelectionResult([], close(nearest) if known else None, ways, pool.resin.size)
+    return SelectionResult([], close(nearest) if known else None, dropped, pool.resin.size)

@@ -14,7 +14,7 @@ _RATIOS, _RADII = 36, 20
 _LEVELS = 64
 _STEPS = (0.8, 0.5, 0.3, 0.15, 0.07)
 """How far each closer look goes from the best so far, in steps of the scan."""
-_WISHES = ("sensitivity", "force range", "stiffness")
+_REQUIREMENTS = ("sensitivity", "force range", "stiffness")
 
 
 class TradeOffFront(NamedTuple):
@@ -28,7 +28,7 @@ class TradeOffFront(NamedTuple):
 
 
 def front(problem: SelectionProblem) -> list[TradeOffFront]:
-    """Fronts of all resins at the problem's driving pressure (none given: no pressure), inside the room and every limit.
+    """Fronts of all resins at the problem's driving pressure (none given: no pressure), inside the size limit and every other.
 
     No point of a front has both more sensitivity and more force than another. A scan over wall ratio and radius; then, at
     each of many levels, closer and closer looks around the candidate of most force that is at least so sensitive. Ends
@@ -58,21 +58,21 @@ def _pool(problem: SelectionProblem, number: int, places: Array) -> CandidatePoo
     box = problem.recipe
     ratio = box.thinnest * (box.thickest / box.thinnest) ** places[0]
     low, high = problem.radii(ratio)
-    # Where the room is smaller than the least wall needs, the candidate breaks a limit and is dropped as such.
+    # Where the size limit is smaller than the least wall needs, the candidate breaks a limit and is dropped as such.
     radius = low * (np.maximum(high, low) / low) ** places[1]
     ones = np.ones_like(ratio)
     return evaluated(problem, number * ones, radius, ratio * radius, (problem.driving_pressure or 0.0) * ones)
 
 
-def _room(problem: SelectionProblem, pool: CandidatePool) -> Array:
-    """Least room to a limit, with the rounding of a bound's own computation forgiven."""
-    rest = [margin for name, margin in margins(problem, pool).items() if name not in _WISHES]
+def _least_margin(problem: SelectionProblem, pool: CandidatePool) -> Array:
+    """Least margin to a limit, up to the rounding of the bound's own computation."""
+    rest = [margin for name, margin in margins(problem, pool).items() if name not in _REQUIREMENTS]
     return np.asarray(np.min(rest, axis=0) + 1e-9)
 
 
 def _best(problem: SelectionProblem, pool: CandidatePool) -> Index:
     """At each level the candidate of most force that is at least so sensitive and keeps every limit, (few,)."""
-    good = np.flatnonzero(_room(problem, pool) >= 0.0)
+    good = np.flatnonzero(_least_margin(problem, pool) >= 0.0)
     if good.size == 0:
         return good
     good = good[np.argsort(-pool.response.lines.sensitivity_kPa_per_N[good], kind="stable")]
@@ -84,7 +84,7 @@ def _best(problem: SelectionProblem, pool: CandidatePool) -> Index:
 
 def _hull(problem: SelectionProblem, number: int, pool: CandidatePool) -> TradeOffFront:
     """Candidates that meet every limit, without those that another beats in both."""
-    rows = np.flatnonzero(_room(problem, pool) >= 0.0)
+    rows = np.flatnonzero(_least_margin(problem, pool) >= 0.0)
     rows = rows[np.argsort(-pool.response.lines.sensitivity_kPa_per_N[rows], kind="stable")]
     force = pool.force[rows]
     rows = rows[force > np.maximum.accumulate(np.concatenate([[-np.inf], force[:-1]]))][::-1] if rows.size else rows

@@ -1,4 +1,4 @@
-"""The search for a grade: fractions at the pole and at the rim that meet a wish, by as few solid solves as it takes."""
+"""The search for a grade: fractions at the pole and at the rim that meet a target, by as few solid solves as possible."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ ENOUGH = 0.5
 _LEAST_GAIN = 1e-3
 """A search ends where the surface through the trials promises no more than this: of a tolerance, or of the force."""
 _SPARE = 0.9
-"""Share of a tolerance that the surface may use up for the widest range: what it says is not exact."""
+"""Share of a tolerance that the surface may use up for the widest range: it is not exact."""
 _LATTICE = 51
 _APART = 2e-3
 """Trials lie at least so far from one another, as a share of the greatest fraction."""
 _FEWEST = 4
 _SURFACES = ("linear", "thin_plate_spline")
-"""Radial bases in the order they are asked: the first does not ring where figures jump, since another event ends the range;
+"""Radial bases in the order they are tried: the first does not ring where figures jump, since another event ends the range;
 the second follows a smooth course better."""
 _DIGITS = 4
 """A fraction is given to a hundredth of a percent, below what a droplet pattern resolves."""
@@ -46,7 +46,7 @@ class GradeTarget:
 
 @dataclass(frozen=True)
 class GradeTrial:
-    """One membrane and what the solid says: fractions at pole and rim, by pressure sensitivity and end of the force range
+    """One membrane and the solid's figures: fractions at pole and rim, by pressure sensitivity and end of the force range
     (NaN where there are no figures), the rated driving pressure (MPa), what ends the ranges, and why there are no figures."""
 
     pole: float
@@ -70,7 +70,7 @@ class GradeTrial:
 
 @dataclass(frozen=True)
 class GradeSearch:
-    """The best trial, whether it meets the wish, and all trials in order; one solid solve each."""
+    """The best trial, whether it meets the target, and all trials in order; one solid solve each."""
 
     best: GradeTrial
     met: bool
@@ -81,35 +81,35 @@ TryGrade = Callable[[float, float], GradeTrial]
 Progress = Callable[[GradeTrial, int, int], None]
 
 
-def shares(wish: GradeTarget, trial: GradeTrial) -> dict[str, float]:
+def shares(target: GradeTarget, trial: GradeTrial) -> dict[str, float]:
     """What of each tolerance or limit a trial uses up: at most 1 where it is kept."""
     values = np.array(trial.sensitivity_kPa_per_N)
     if not np.isfinite(values).all() or values.min() <= 0.0:
         return {"no figures": _MISSED}
-    found = {"sensitivity": float(np.abs(values / wish.sensitivity_kPa_per_N - 1.0).max()) / wish.tolerance}
-    if wish.same_within is not None:
-        found["same sensitivity"] = abs(trial.difference) / wish.same_within
-    found["rated pressure"] = max(wish.pressures) / trial.rated
-    if wish.force is not None:
-        found["force range"] = wish.force / max(trial.reach, 1e-9)
-    return found
+    used_share = {"sensitivity": float(np.abs(values / target.sensitivity_kPa_per_N - 1.0).max()) / target.tolerance}
+    if target.same_within is not None:
+        used_share["same sensitivity"] = abs(trial.difference) / target.same_within
+    used_share["rated pressure"] = max(target.pressures) / trial.rated
+    if target.force is not None:
+        used_share["force range"] = target.force / max(trial.reach, 1e-9)
+    return used_share
 
 
-def cost(wish: GradeTarget, trial: GradeTrial, spare: float = 1.0) -> float:
+def cost(target: GradeTarget, trial: GradeTrial, spare: float = 1.0) -> float:
     """What the search makes small: the worst share of the aims; for the widest range, less the more force, where all is kept.
 
     ``spare`` is the share of every tolerance that may be used up for the widest range.
     """
-    used = shares(wish, trial)
-    if wish.widest:
+    used = shares(target, trial)
+    if target.widest:
         worst = max(used.values()) / spare
         return 100.0 + 10.0 * (worst - 1.0) if worst > 1.0 else -float(np.log(max(trial.reach, 1e-9)))
     # The rated pressure and a force range are limits, not aims: nothing is gained far inside them.
     return max(value for name, value in used.items() if name not in _LIMITS or value > 1.0)
 
 
-def grade_search(wish: GradeTarget, levels: Array, solve: TryGrade, progress: Progress, most: int) -> GradeSearch:
-    """Fractions at pole and rim between the ends of ``levels``, rising fractions (n,), that meet a wish.
+def grade_search(target: GradeTarget, levels: Array, solve: TryGrade, progress: Progress, most: int) -> GradeSearch:
+    """Fractions at pole and rim between the ends of ``levels``, rising fractions (n,), that meet a target.
 
     A scan of all pairs of levels, soft ones first; then the best place on a surface through all trials is tried, and again
     with that trial in it. It stops where every tolerance is half kept, or where the surface promises no gain. ``most`` bounds
@@ -123,25 +123,25 @@ def grade_search(wish: GradeTarget, levels: Array, solve: TryGrade, progress: Pr
 
     for pole in np.round(levels, _DIGITS):
         for rim in np.round(levels, _DIGITS):
-            if len(trials) < most and not _done(wish, trials):
+            if len(trials) < most and not _done(target, trials):
                 tried(float(pole), float(rim))
-    while len(trials) < most and not _done(wish, trials):
-        looks = (_promising(wish, float(levels[-1]), trials, surface) for surface in _SURFACES)
+    while len(trials) < most and not _done(target, trials):
+        looks = (_promising(target, float(levels[-1]), trials, surface) for surface in _SURFACES)
         place = next((look for look in looks if look is not None), None)
         if place is None:
             break
         tried(*place)
-    best = min(trials, key=lambda trial: cost(wish, trial))
-    return GradeSearch(best, max(shares(wish, best).values()) <= 1.0, tuple(trials))
+    best = min(trials, key=lambda trial: cost(target, trial))
+    return GradeSearch(best, max(shares(target, best).values()) <= 1.0, tuple(trials))
 
 
-def _done(wish: GradeTarget, trials: list[GradeTrial]) -> bool:
-    return not wish.widest and any(
-        max(shares(wish, trial).values()) <= 1.0 and cost(wish, trial) <= ENOUGH for trial in trials
+def _done(target: GradeTarget, trials: list[GradeTrial]) -> bool:
+    return not target.widest and any(
+        max(shares(target, trial).values()) <= 1.0 and cost(target, trial) <= ENOUGH for trial in trials
     )
 
 
-def _promising(wish: GradeTarget, top: float, trials: list[GradeTrial], surface: str) -> tuple[float, float] | None:
+def _promising(target: GradeTarget, top: float, trials: list[GradeTrial], surface: str) -> tuple[float, float] | None:
     """The place of least cost on the surface through the trials, none tried yet; None where it promises no gain."""
     known = [trial for trial in trials if np.isfinite(trial.sensitivity_kPa_per_N).all()]
     if len(known) < _FEWEST:
@@ -150,17 +150,17 @@ def _promising(wish: GradeTarget, top: float, trials: list[GradeTrial], surface:
     for _ in range(2):
         axes = [np.linspace(max(c - width, 0.0), min(c + width, top), _LATTICE) for c in centre]
         places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2).round(_DIGITS)
-        costs = _expected(wish, top, trials, places, surface)
+        costs = _expected(target, top, trials, places, surface)
         k = int(np.argmin(costs))
         centre, best, width = places[k], float(costs[k]), 2 * width / (_LATTICE - 1)
-    gain = min(cost(wish, trial) for trial in trials) - best
+    gain = min(cost(target, trial) for trial in trials) - best
     return (float(centre[0]), float(centre[1])) if gain > _LEAST_GAIN else None
 
 
-def _expected(wish: GradeTarget, top: float, trials: list[GradeTrial], places: Array, surface: str) -> Array:
+def _expected(target: GradeTarget, top: float, trials: list[GradeTrial], places: Array, surface: str) -> Array:
     """Cost at places (n, 2) by a surface through the logarithms of sensitivities, forces and rated pressures, (n,).
 
-    Infinite beside a trial and where the nearest one has no figures.
+    Infinite next to a trial and where the nearest one has no figures.
     """
     from scipy.interpolate import RBFInterpolator
 
@@ -168,9 +168,9 @@ def _expected(wish: GradeTarget, top: float, trials: list[GradeTrial], places: A
     at = np.array([(t.pole, t.rim) for t in known]) / top
     table = np.log([[*t.sensitivity_kPa_per_N, *np.maximum(t.force, 1e-9), t.rated] for t in known])
     values = np.exp(RBFInterpolator(at, table, kernel=surface, degree=1)(places / top))
-    n = len(wish.pressures)
+    n = len(target.pressures)
     costs = np.array([
-        cost(wish, GradeTrial(0.0, 0.0, tuple(v[:n]), tuple(v[n : 2 * n]), v[-1]), _SPARE) for v in values.tolist()
+        cost(target, GradeTrial(0.0, 0.0, tuple(v[:n]), tuple(v[n : 2 * n]), v[-1]), _SPARE) for v in values.tolist()
     ])  # fmt: skip
     every = np.array([(t.pole, t.rim) for t in trials])
     away = np.hypot(*np.moveaxis(places[:, None, :] - every[None, :, :], -1, 0)) / top

@@ -1,4 +1,4 @@
-"""Graded membranes beside constant ones: the solid's figures of each, and the constant mix that comes nearest to a wish."""
+"""Graded membranes compared with constant ones: the solid's figures of each, and the constant mix that comes nearest to a target."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from pneutouch.selection.grade_search import GradeTarget, GradeTrial, cost
 from pneutouch.selection.problem import CandidateResin, SelectionProblem
 
 _FRACTIONS = 401
-"""Constant fractions that the atlas is asked about."""
+"""Constant fractions that the atlas evaluates."""
 _WALLS = 60
 
 
@@ -35,11 +35,11 @@ def trial_of(sensor: Sensor, pressures: tuple[float, ...], pole: float = np.nan,
 
     unknown = (np.nan,) * len(pressures)
     try:
-        found = solid_result(sensor, np.array(pressures), past_limit=1.0)
+        result = solid_result(sensor, np.array(pressures), past_limit=1.0)
     except ComputationError as error:
         return GradeTrial(pole, rim, unknown, unknown, 1e-12, note=str(error))
     sensitivities_kPa_per_N, forces, ends = [], [], []
-    for state in found.states:
+    for state in result.states:
         figures = state.figures
         sensitivities_kPa_per_N.append(np.nan if figures is None else figures.sensitivity_kPa_per_N)
         reach = np.nan if figures is None else figures.force_range[1]
@@ -47,28 +47,28 @@ def trial_of(sensor: Sensor, pressures: tuple[float, ...], pole: float = np.nan,
         forces.append(reach if saturated is None else min(reach, saturated))
         ends.append(next((event.kind for event in state.events if event.ends_range), "depth"))
     return GradeTrial(
-        pole, rim, tuple(sensitivities_kPa_per_N), tuple(forces), RATED_SHARE * found.limits.lowest, tuple(ends)
+        pole, rim, tuple(sensitivities_kPa_per_N), tuple(forces), RATED_SHARE * result.limits.lowest, tuple(ends)
     )
 
 
 def nearest_fraction(
-    wish: GradeTarget, problem: SelectionProblem, law: ResolvedMixingCurve, size: tuple[float, float]
+    target: GradeTarget, problem: SelectionProblem, law: ResolvedMixingCurve, size: tuple[float, float]
 ) -> float | None:
-    """The constant fraction nearest to a wish at an inner radius and a wall (mm), by the atlas; None where it has no answer."""
+    """The constant fraction nearest to a target at an inner radius and a wall (mm), by the atlas; None where it has no answer."""
     at = np.linspace(0.0, float(law.fraction[-1]), _FRACTIONS)
     strain = law.elongation_at(at) / 100.0
     resins = tuple(
         CandidateResin("", problem.resins[0].material, float(modulus), float(stretch))
         for modulus, stretch in zip(law.modulus_at(at), 1.0 + np.nan_to_num(strain, nan=np.inf), strict=True)
     )
-    mine, ones, numbers = replace(problem, resins=resins), np.ones(at.size), np.arange(at.size, dtype=float)
+    one_resin, ones, numbers = replace(problem, resins=resins), np.ones(at.size), np.arange(at.size, dtype=float)
     answers = [
-        respond(mine.batch(numbers, size[0] * ones, size[1] * ones, pressure * ones), problem.steps)
-        for pressure in wish.pressures
+        respond(one_resin.batch(numbers, size[0] * ones, size[1] * ones, pressure * ones), problem.steps)
+        for pressure in target.pressures
     ]
     lines = [answer.lines for answer in answers]
     costs = np.array([
-        cost(wish, GradeTrial(
+        cost(target, GradeTrial(
             at[k], at[k], tuple(float(line.sensitivity_kPa_per_N[k]) for line in lines),
             tuple(float(np.fmin(line.force_high[k], line.saturation_force[k])) for line in lines),
             RATED_SHARE * float(np.fmin(answers[0].limit_pressure[k], problem.gauge_limit)),
@@ -79,8 +79,8 @@ def nearest_fraction(
     return float(at[np.argmin(np.where(known, costs, np.inf))]) if known.any() else None
 
 
-def middle_wall(wish: GradeTarget, problem: SelectionProblem, radius: float, thickest: float) -> float | None:
-    """The wall (mm) with which the problem's one resin has the sensitivity wished for, by the atlas; None where it has no answer.
+def middle_wall(target: GradeTarget, problem: SelectionProblem, radius: float, thickest: float) -> float | None:
+    """The wall (mm) with which the problem's one resin has the target sensitivity, by the atlas; None where it has no answer.
 
     With a mix of middle modulus either end of a grade is then free to be softer or stiffer.
     """
@@ -90,7 +90,7 @@ def middle_wall(wish: GradeTarget, problem: SelectionProblem, radius: float, thi
         return None
     walls: Array = np.geomspace(low, high, _WALLS)
     ones = np.ones(_WALLS)
-    found = respond(problem.batch(0 * ones, radius * ones, walls, wish.pressures[0] * ones), problem.steps)
+    response = respond(problem.batch(0 * ones, radius * ones, walls, target.pressures[0] * ones), problem.steps)
     with np.errstate(invalid="ignore", divide="ignore"):
-        off = np.abs(np.log(found.lines.sensitivity_kPa_per_N / wish.sensitivity_kPa_per_N))
+        off = np.abs(np.log(response.lines.sensitivity_kPa_per_N / target.sensitivity_kPa_per_N))
     return None if not np.isfinite(off).any() else round(float(walls[np.nanargmin(off)]), 2)

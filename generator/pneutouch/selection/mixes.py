@@ -47,8 +47,10 @@ def met_by_fraction(
     once = np.sort(np.unique(places, axis=1, return_index=True)[1])
     pool, at = pool.take(once), places[0, once]
     resins = tuple(mixed(float(fraction)) for fraction in at)
-    own = replace(problem, resins=resins)
-    return own, evaluated(own, np.arange(len(resins), dtype=float), pool.radius, pool.wall, pool.pressure)
+    mix_problem = replace(problem, resins=resins)
+    return mix_problem, evaluated(
+        mix_problem, np.arange(len(resins), dtype=float), pool.radius, pool.wall, pool.pressure
+    )
 
 
 def _fraction(resin: CandidateResin) -> float:
@@ -57,21 +59,21 @@ def _fraction(resin: CandidateResin) -> float:
 
 
 def _best(problem: SelectionProblem, pool: CandidatePool) -> Index:
-    """Candidates with the most room, one a fraction at most."""
-    room = [margin for name, margin in margins(problem, pool).items() if name != "sensitivity"]
-    order = np.argsort(-np.minimum(np.min(room, axis=0), 1.0), kind="stable")
+    """Candidates with the greatest margin, one a fraction at most."""
+    margin_list = [margin for name, margin in margins(problem, pool).items() if name != "sensitivity"]
+    order = np.argsort(-np.minimum(np.min(margin_list, axis=0), 1.0), kind="stable")
     first = np.unique(pool.resin[order], return_index=True)[1]
     return order[np.sort(first)[:_KEPT]]
 
 
 def _bisected(problem: SelectionProblem, pool: CandidatePool, law: ResolvedMixingCurve, at: Array) -> Array:
-    """Fractions (n,) between the neighbouring levels at which the sensitivity is the one wanted."""
+    """Fractions (n,) between the neighbouring levels at which the sensitivity is the target."""
     assert problem.sensitivity_kPa_per_N is not None
     known = levels(law)
     index = np.clip(np.searchsorted(known, at - 1e-9), 0, known.size - 1)
     low, high = known[np.maximum(index - 1, 0)], known[np.minimum(index + 1, known.size - 1)]
 
-    wanted_kPa_per_N = problem.sensitivity_kPa_per_N
+    target_kPa_per_N = problem.sensitivity_kPa_per_N
 
     def off(fraction: Array) -> Array:
         resins = tuple(
@@ -79,9 +81,9 @@ def _bisected(problem: SelectionProblem, pool: CandidatePool, law: ResolvedMixin
             for number, modulus in zip(pool.resin, law.modulus_at(fraction), strict=True)
         )
         numbers = np.arange(len(resins), dtype=float)
-        found = evaluated(replace(problem, resins=resins), numbers, pool.radius, pool.wall, pool.pressure)
+        pool_there = evaluated(replace(problem, resins=resins), numbers, pool.radius, pool.wall, pool.pressure)
         with np.errstate(invalid="ignore", divide="ignore"):
-            return np.asarray(np.log(found.response.lines.sensitivity_kPa_per_N / wanted_kPa_per_N))
+            return np.asarray(np.log(pool_there.response.lines.sensitivity_kPa_per_N / target_kPa_per_N))
 
     a, b = off(low), off(high)
     bracketed = a * b <= 0.0

@@ -11,8 +11,8 @@ from pneutouch.mechanics.atlas.respond import BREAK, OUTSIDE, AtlasResponse, res
 from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.selection.problem import SelectionProblem
 
-WISHES = ("sensitivity", "force range", "stiffness", "outer diameter")
-"""What a user asks for and may give up."""
+REQUIREMENTS = ("sensitivity", "force range", "stiffness", "outer diameter")
+"""What a user requires and may drop."""
 
 
 class CandidatePool(NamedTuple):
@@ -52,50 +52,50 @@ def joined(pools: list[CandidatePool]) -> CandidatePool:
 
 
 def margins(problem: SelectionProblem, pool: CandidatePool) -> dict[str, Array]:
-    """Relative room to each limit, (n,) each: negative where it is broken, -inf where nothing can be said.
+    """Relative margin to each limit, (n,) each: negative where it is broken, -inf where it is unknown.
 
-    Wishes: sensitivity (1 on the spot, 0 at the tolerance), force range, stiffness, outer diameter. Limits: limit point
-    (to RATED_SHARE of it), break strain, gauge range (at the force wanted), printable wall.
+    Requirements: sensitivity (1 on the spot, 0 at the tolerance), force range, stiffness, outer diameter. Limits: limit point
+    (to RATED_SHARE of it), break strain, gauge range (at the required force), printable wall.
     """
-    lines, found = pool.response.lines, {}
+    lines, margin_of = pool.response.lines, {}
     if problem.sensitivity_kPa_per_N is not None:
-        found["sensitivity"] = (
+        margin_of["sensitivity"] = (
             1.0 - np.abs(lines.sensitivity_kPa_per_N / problem.sensitivity_kPa_per_N - 1.0) / problem.tolerance
         )
     if problem.force_range is not None:
-        found["force range"] = pool.force / problem.force_range - 1.0
+        margin_of["force range"] = pool.force / problem.force_range - 1.0
     least, most = problem.stiffness
     if least is not None or most is not None:
         with np.errstate(divide="ignore"):
-            found["stiffness"] = np.minimum(
+            margin_of["stiffness"] = np.minimum(
                 np.inf if least is None else lines.stiffness / least - 1.0,
                 np.inf if most is None else most / lines.stiffness - 1.0,
             )
     if problem.max_diameter is not None:
-        found["outer diameter"] = problem.max_diameter / (2.0 * (pool.radius + pool.wall)) - 1.0
-    found |= _limits(problem, pool)
+        margin_of["outer diameter"] = problem.max_diameter / (2.0 * (pool.radius + pool.wall)) - 1.0
+    margin_of |= _limits(problem, pool)
     known = np.isfinite(lines.sensitivity_kPa_per_N) & (pool.response.ends != OUTSIDE)
     return {
         name: np.where(known & np.isfinite(margin) | (known & (margin > 0)), margin, -np.inf)
-        for name, margin in found.items()
+        for name, margin in margin_of.items()
     }
 
 
 def _limits(problem: SelectionProblem, pool: CandidatePool) -> dict[str, Array]:
     strain = np.array([resin.break_stretch for resin in problem.resins])[pool.resin.astype(np.intp)] - 1.0
     with np.errstate(divide="ignore", invalid="ignore"):
-        torn = strain / (pool.response.max_stretch - 1.0) - 1.0
+        break_margin = strain / (pool.response.max_stretch - 1.0) - 1.0
         return {
             "limit point": RATED_SHARE * pool.response.limit_pressure / pool.pressure - 1.0,
             # A range that ends by the break strain ends on it, to the rounding of that end.
-            "break strain": np.where(pool.response.ends == BREAK, np.maximum(torn, 0.0), torn),
+            "break strain": np.where(pool.response.ends == BREAK, np.maximum(break_margin, 0.0), break_margin),
             "gauge range": (problem.gauge_limit - pool.pressure) / _rise(problem, pool) - 1.0,
             "printable wall": pool.wall / problem.least_wall - 1.0 + 1e-9,
         }
 
 
 def _rise(problem: SelectionProblem, pool: CandidatePool) -> Array:
-    """Pressure rise at the force wanted, or at the end of the range where that comes first; none without a wish."""
+    """Pressure rise at the required force, or at the end of the range where that comes first; none without a requirement."""
     force, rise = pool.response.force, pool.response.rise
     if problem.force_range is None:
         return np.zeros(force.shape[0])

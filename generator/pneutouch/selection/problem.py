@@ -1,4 +1,4 @@
-"""The search in numbers: resins, bounds, what is wanted. mm, N, MPa; sensitivities in kPa/N."""
+"""The search in numbers: resins, bounds, the target. mm, N, MPa; sensitivities in kPa/N."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class CandidateResin:
 
 @dataclass(frozen=True)
 class SelectionProblem:
-    """What is wanted of a sensor and what is settled; None where free. depth_share: plate travel over R0."""
+    """What is required of a sensor and what is settled; None where free. depth_share: plate travel over R0."""
 
     resins: tuple[CandidateResin, ...]
     sensitivity_kPa_per_N: float | None
@@ -61,10 +61,10 @@ class SelectionProblem:
         )  # fmt: skip
 
     def radii(self, ratio: Array) -> tuple[Array, Array]:
-        """Least and greatest inner radius for wall ratios: by the printer's least wall and by the room."""
+        """Least and greatest inner radius for wall ratios: by the printer's least wall and by the size limit."""
         if self.inner_radius is not None:
             fixed = np.full_like(ratio, self.inner_radius)
             return fixed, fixed
         low = np.maximum(self.least_wall / ratio, _SMALLEST)
-        room = _LARGEST if self.max_diameter is None else 0.5 * self.max_diameter
-        return low, np.minimum(room / (1.0 + ratio), _LARGEST)
+        largest = _LARGEST if self.max_diameter is None else 0.5 * self.max_diameter
+        return low, np.minimum(largest / (1.0 + ratio), _LARGEST)

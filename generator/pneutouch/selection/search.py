@@ -29,7 +29,7 @@ class CandidateGrid:
 
 
 def search(problem: SelectionProblem) -> CandidatePool:
-    """Every candidate looked at: the scan, and the points on it where the sensitivity is the one wanted."""
+    """Every candidate evaluated: the scan, and the points on it where the sensitivity is the target."""
     grid = scan(problem)
     coarse = evaluated(problem, *(part.ravel() for part in (grid.resin, grid.radius, grid.wall, grid.pressure)))
     if problem.sensitivity_kPa_per_N is None or grid.radius.shape[-1] < 2:
@@ -39,7 +39,7 @@ def search(problem: SelectionProblem) -> CandidatePool:
 
 
 def scan(problem: SelectionProblem) -> CandidateGrid:
-    """A coarse grid over resin and whatever is free, inside the atlas's box, the room and the printer's least wall."""
+    """A coarse grid over resin and whatever is free, inside the atlas's range, the size limit and the printer's least wall."""
     resins = np.arange(len(problem.resins), dtype=float)
     line = _RADII if problem.inner_radius is None else _LINE
     ratios = _ratios(problem, _RATIOS if problem.inner_radius is None else line)
@@ -95,9 +95,9 @@ def _pressures(problem: SelectionProblem, resins: Array, ratio: Array) -> Array:
 
 
 def _met(problem: SelectionProblem, grid: CandidateGrid, coarse: CandidatePool) -> CandidatePool | None:
-    """Points between neighbours of the scan where the sensitivity passes the one wanted; None where it never does."""
+    """Points between neighbours of the scan where the sensitivity passes the target; None where it never does."""
     assert problem.sensitivity_kPa_per_N is not None
-    off = _off(problem.sensitivity_kPa_per_N, coarse).reshape(grid.radius.shape)
+    off = _log_ratio(problem.sensitivity_kPa_per_N, coarse).reshape(grid.radius.shape)
     with np.errstate(invalid="ignore"):
         passes = off[..., :-1] * off[..., 1:] <= 0.0
     where = np.nonzero(passes)
@@ -112,17 +112,17 @@ def _met(problem: SelectionProblem, grid: CandidateGrid, coarse: CandidatePool) 
         share = left + (right - left) * np.clip(low / np.where(low == high, 1.0, low - high), 0.02, 0.98)
         radius, wall, pressure = (_between(a, b, share) for a, b in ends)
         pool = evaluated(problem, resin, radius, wall, pressure)
-        here = np.nan_to_num(_off(problem.sensitivity_kPa_per_N, pool))
+        here = np.nan_to_num(_log_ratio(problem.sensitivity_kPa_per_N, pool))
         same = here * low > 0.0
         left, right = np.where(same, share, left), np.where(same, right, share)
         low, high = np.where(same, here, 0.5 * low), np.where(same, 0.5 * high, here)
     return pool
 
 
-def _off(wanted_kPa_per_N: float, pool: CandidatePool) -> Array:
-    """Logarithm of the sensitivity over the one wanted; NaN where there is none."""
+def _log_ratio(target_kPa_per_N: float, pool: CandidatePool) -> Array:
+    """Logarithm of the sensitivity over the target; NaN where there is none."""
     with np.errstate(invalid="ignore", divide="ignore"):
-        return np.asarray(np.log(pool.response.lines.sensitivity_kPa_per_N / wanted_kPa_per_N))
+        return np.asarray(np.log(pool.response.lines.sensitivity_kPa_per_N / target_kPa_per_N))
 
 
 def _between(a: Array, b: Array, share: Array) -> Array:

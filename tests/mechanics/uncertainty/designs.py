@@ -47,7 +47,7 @@ def batch_for(library: Library, case: Case) -> SensorBatch:
 def budget_for(
     library: Library, batch: SensorBatch, resin: str, near_paper: bool, **more: Any
 ) -> Budget:  # fmt: skip
-    shelf = materials(library)
+    paths = materials(library)
     printer: Printer = library.load("printers", "objet260-connex")
-    errors = model_errors(shelf[resin], shelf.values())
-    return budget(batch, shelf[resin], printer, near_paper=near_paper, errors=errors, numerical=NUMERICAL, **more)
+    errors = model_errors(paths[resin], paths.values())
+    return budget(batch, paths[resin], printer, near_paper=near_paper, errors=errors, numerical=NUMERICAL, **more)

@@ -69,12 +69,12 @@ def test_a_measured_modulus_takes_the_place_of_the_published_one(library):
 
 
 def test_assumed_numbers_are_what_their_sentences_say(library):
-    shelf = [m for m in materials(library).values() if m.measured]
+    paths = [m for m in materials(library).values() if m.measured]
     rms = lambda values: np.sqrt(np.mean(np.square(values)))  # noqa: E731
-    assert rms([m.shore_a.spread for m in shelf]) == pytest.approx(modulus.ASSUMED_HARDNESS_SPREAD, abs=0.01)
-    changes = [m.shore_a_one_year.value - m.shore_a.value for m in shelf]
+    assert rms([m.shore_a.spread for m in paths]) == pytest.approx(modulus.ASSUMED_HARDNESS_SPREAD, abs=0.01)
+    changes = [m.shore_a_one_year.value - m.shore_a.value for m in paths]
     assert rms(changes) == pytest.approx(modulus.ASSUMED_HARDNESS_CHANGE, abs=0.01)
-    aged = [m.measured.sensitivity_change_one_year_percent for m in shelf]
+    aged = [m.measured.sensitivity_change_one_year_percent for m in paths]
     assert rms([q.value / 100 for q in aged if q]) == pytest.approx(modulus.ASSUMED_AGEING, abs=0.001)
     agilus = materials(library)["Agilus30"].shear_modulus_MPa
     assert agilus.high / agilus.low == pytest.approx(modulus.ASSUMED_FACTOR)
@@ -113,8 +113,8 @@ def test_an_error_of_a_figure_that_there_is_not_is_refused(library):
 
 
 def test_the_resin_that_nothing_explains_keeps_its_own_error(library):
-    shelf = materials(library)
-    errors = model_errors(shelf["FLX9995"], shelf.values())
+    paths = materials(library)
+    errors = model_errors(paths["FLX9995"], paths.values())
     assert errors.left_out == ("FLX9995-DM",)
     assert len(errors.pool) == 12
     far = named(paper(library, "FLX9995", near=False), "model")

@@ -116,8 +116,8 @@ def test_the_shipped_specimen_breaks_no_rule():
 
 
 def test_a_specimen_is_known_by_its_block():
-    assert list(LIBRARY.shelf("specimens")) == [NAME]
-    assert is_specimen(read_toml(LIBRARY.shelf("specimens")[NAME]))
+    assert list(LIBRARY.paths("specimens")) == [NAME]
+    assert is_specimen(read_toml(LIBRARY.paths("specimens")[NAME]))
     assert specimen_file(NAME, LIBRARY) is not None
     assert specimen_file("paper-dome", LIBRARY) is None
     assert specimen_file("no-such-thing", LIBRARY) is None

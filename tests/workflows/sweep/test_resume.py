@@ -184,16 +184,16 @@ def test_progress_of_other_inputs_is_refused_and_fresh_starts_over(single, libra
 def test_a_changed_material_is_noticed(single, library, tmp_path, root):
     from pneutouch.catalogue import Library
 
-    shelf = tmp_path / "lab/printprofiles/materials/TangoPlus.toml"
-    shelf.parent.mkdir(parents=True)
+    paths = tmp_path / "lab/printprofiles/materials/TangoPlus.toml"
+    paths.parent.mkdir(parents=True)
     text = (root / "printprofiles/materials/TangoPlus.toml").read_text()
-    shelf.write_text(text)
+    paths.write_text(text)
     own = Library((tmp_path / "lab", root))
     stopped(tmp_path / "sweep.nc", own, 2)
-    shelf.write_text("# a comment changes nothing\n" + text)
+    paths.write_text("# a comment changes nothing\n" + text)
     stopped(tmp_path / "sweep.nc", own, 3)
-    shelf.write_text(text.replace("[shear_modulus_MPa]\nvalue = ", "[shear_modulus_MPa]\nvalue = 1"))
-    assert shelf.read_text() != text
+    paths.write_text(text.replace("[shear_modulus_MPa]\nvalue = ", "[shear_modulus_MPa]\nvalue = 1"))
+    assert paths.read_text() != text
     with pytest.raises(InputError, match="a material"):
         sweep(six(), tmp_path / "sweep.nc", ALONE, library=own)
 

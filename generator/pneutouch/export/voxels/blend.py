@@ -60,7 +60,7 @@ def _even(fraction: float) -> Share:
 def _assumed(name: str, resins: tuple[str, ...], library: Library, where: str) -> tuple[float, str]:
     """Where on a mixing curve a digital material lies, and why."""
     curve_name = f"{resins[0]}+{resins[1]}"
-    if curve_name in library.shelf("mixing"):
+    if curve_name in library.paths("mixing"):
         curve: MixingCurve = library.load("mixing", curve_name)
         for point in curve.points:
             if point.material == name:

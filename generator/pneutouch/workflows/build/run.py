@@ -42,7 +42,7 @@ def build(evaluation: Evaluation, out: Path, progress: Progress = lambda step: N
     Raises RuleBrokenError, with nothing written, where a rule is broken. The same input gives the same bytes.
     """
     scene, assembly = evaluation.scene, evaluation.assembly
-    if evaluation.asked.aged:
+    if evaluation.options.aged:
         raise InputError(f"{scene.where}: an aged prediction is for reading; a build is of a fresh print")
     folder = out / scene.name
     check_writable(folder)

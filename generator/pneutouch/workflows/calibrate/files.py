@@ -51,7 +51,7 @@ def write_calibration(found: Calibration, out: Path) -> Path:
     return folder
 
 
-def prepare(found: Calibration, name: str, root: Path, shelves: Library, *, shadow: bool = False) -> SavedCalibration:
+def prepare(found: Calibration, name: str, root: Path, library: Library, *, shadow: bool = False) -> SavedCalibration:
     """Check and word the files of ``name`` under ``root``: the resin where its modulus was fitted, and the design.
 
     Nothing is written. Raises InputError for a bad name, one that would hide another resin or design (unless ``shadow``), a file
@@ -62,8 +62,8 @@ def prepare(found: Calibration, name: str, root: Path, shelves: Library, *, shad
     by_name = {estimate["parameter"]: estimate for estimate in found.estimates}
     files = []
     if "modulus" in by_name:
-        files.append(_material(found, by_name["modulus"], _place("materials", name, root, shelves, shadow), shelves))
-    files.append(_design(found, by_name, name, _place("designs", name, root, shelves, shadow)))
+        files.append(_material(found, by_name["modulus"], _place("materials", name, root, library, shadow), library))
+    files.append(_design(found, by_name, name, _place("designs", name, root, library, shadow)))
     return SavedCalibration(tuple(files))
 
 
@@ -72,9 +72,9 @@ def save(saved: SavedCalibration) -> None:
     write_profiles(saved.files)
 
 
-def _place(kind: str, name: str, root: Path, shelves: Library, shadow: bool) -> Path:
+def _place(kind: str, name: str, root: Path, library: Library, shadow: bool) -> Path:
     path = root / KINDS[kind].folder / f"{name}.toml"
-    other = shelves.shelf(kind).get(name)
+    other = library.paths(kind).get(name)
     if other is not None and other.resolve() != path.resolve() and not shadow:
         raise InputError(
             f"{other} is of this name, which the new file would hide",
@@ -109,7 +109,7 @@ def _origin(found: Calibration) -> str:
     return f"sensor {found.sensor or 'unnamed'}, {found.title or 'unnamed campaign'}, {counts}"
 
 
-def _material(found: Calibration, estimate: dict[str, Any], path: Path, shelves: Library) -> MeasuredProfile:
+def _material(found: Calibration, estimate: dict[str, Any], path: Path, library: Library) -> MeasuredProfile:
     interval = estimate["interval_95"]
     if interval is None:
         raise InputError(
@@ -122,7 +122,7 @@ def _material(found: Calibration, estimate: dict[str, Any], path: Path, shelves:
             key="save",
             remedy="a modulus can be saved of a resin that has a file",
         )
-    content = read_toml(shelves.shelf("materials")[base])
+    content = read_toml(library.paths("materials")[base])
     before = content["shear_modulus_MPa"]
     # A material file holds one standard deviation; read with k = 2 it gives this interval back.
     spread = 0.5 * (interval[1] - interval[0]) / _TWO_SIDED

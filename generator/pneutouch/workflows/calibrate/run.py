@@ -30,13 +30,13 @@ class CalibrationOptions:
 
 
 def run_calibration(
-    asked: CalibrationOptions, shelves: Library | None = None, progress: Progress = lambda done, total: None
+    asked: CalibrationOptions, library: Library | None = None, progress: Progress = lambda done, total: None
 ) -> dict[str, Any]:
     """Read, fit and write; the calibration's document with ``written`` and ``failures``. Raises InputError.
 
     Everything is checked before the first file is written.
     """
-    library = shelves or Library.default()
+    library = library or Library.default()
     if asked.shadow and asked.save is None:
         raise InputError("goes with `save` NAME", key="shadow")
     loaded = load_curves(asked.data, progress=progress)

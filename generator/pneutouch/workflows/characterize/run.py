@@ -63,26 +63,26 @@ def characterize(
     ``design`` comes before the one that the campaign names; ``changes`` are laid over either. Raises InputError where nothing can
     be read; files that fail are listed in the outcome.
     """
-    shelves = library or Library.default()
+    library = library or Library.default()
     name, own = (design, {}) if design is not None else _design_of(data)
     wanted = None if target is None else validate(Target, read_toml(target), str(target))
     given = {**own, **(changes or {})}
-    loaded = load_curves(data, load_scene(name, given, shelves), progress)
+    loaded = load_curves(data, load_scene(name, given, library), progress)
     if loaded.campaign.ambient_pressure_kPa is not None:
         given.setdefault("pneumatics.ambient_pressure_kPa", loaded.campaign.ambient_pressure_kPa)
-    _check_resins(data, loaded, shelves)
+    _check_resins(data, loaded, library)
     pairs = [(curve.run.resin, curve.run.driving_pressure_kPa) for curve in loaded.curves]
-    model_says = answers(name, given, pairs, model, shelves)
+    model_says = answers(name, given, pairs, model, library)
     curves, failures, questions = sound(loaded, model_says)
     groups = summarize(curves)
-    scene = load_scene(name, given, shelves)
+    scene = load_scene(name, given, library)
     pushed, unread = injections(loaded, scene)
     measured = CampaignReport(
         campaign=loaded.campaign, scene=scene, folder=loaded.folder,
         besides=tuple(beside(group, _answer(model_says, group.key.resin, group.key.driving_pressure_kPa)) for group in groups),
         curves=tuple(curves), failures=(*loaded.failures, *failures, *unread), questions=questions,
         verdicts=() if wanted is None else verdicts(wanted, groups), injections=pushed,
-        ageing=ageing(groups, shelves), model=model, input_hash=_hash(loaded, scene.design.model_dump(mode="json")),
+        ageing=ageing(groups, library), model=model, input_hash=_hash(loaded, scene.design.model_dump(mode="json")),
     )  # fmt: skip
     return CharacterizationResult(measured, loaded.traces, f"{_stem(data)}-measured")
 
@@ -108,10 +108,10 @@ def _stem(data: Path) -> str:
     return path.parent.name if path.name == "campaign.toml" else path.stem if path.is_file() else path.name
 
 
-def _check_resins(data: Path, loaded: CampaignData, shelves: Library) -> None:
+def _check_resins(data: Path, loaded: CampaignData, library: Library) -> None:
     for place, run in enumerate(loaded.campaign.runs):
         if run.resin != AS_DESIGNED:
-            shelves.load("materials", run.resin, file=str(data), key=f"runs[{place}].resin")
+            library.load("materials", run.resin, file=str(data), key=f"runs[{place}].resin")
 
 
 def _answer(

@@ -79,7 +79,7 @@ def _curve(pair: str, soft: str, stiff: str, known: Sequence[MixModulus], source
 def _changes(path: Path, content: dict[str, Any], pair: str, library: Library) -> list[dict[str, Any]]:
     """Every point beside what the curve in force before says there."""
     before = None
-    if pair in library.shelf("mixing"):
+    if pair in library.paths("mixing"):
         before = mixing(content["soft"], content["stiff"], library)
     rows = []
     for point in content["points"]:

@@ -44,12 +44,12 @@ def local_profiles(
     of that name was not written by the command.
     """
     profiles = []
-    for kind, name in dict.fromkeys((change.shelf, change.name) for change in changes):
+    for kind, name in dict.fromkeys((change.kind, change.name) for change in changes):
         path = out / KINDS[kind].folder / f"{name}.toml"
-        earlier = _earlier(path, [change for change in changes if (change.shelf, change.name) == (kind, name)])
+        earlier = _earlier(path, [change for change in changes if (change.kind, change.name) == (kind, name)])
         content = read_toml(base_file(kind, name, library))
         _carry(earlier, content)
-        change_list = [_put(content, change, path) for change in changes if (change.shelf, change.name) == (kind, name)]
+        change_list = [_put(content, change, path) for change in changes if (change.kind, change.name) == (kind, name)]
         KINDS[kind].validate(content, str(path))
         profiles.append(
             MeasuredProfile(

@@ -86,7 +86,7 @@ def _shipped(kind: str, name: str, file: str, key: str, library: Library) -> Any
 
 
 def _design(name: str, where: str, library: Library) -> str:
-    if name not in library.shelf("designs"):
+    if name not in library.paths("designs"):
         library.load("designs", name, file=where, key="leak-cap or volume-plug")
     return name
 

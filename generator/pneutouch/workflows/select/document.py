@@ -10,7 +10,7 @@ import numpy as np
 from pneutouch.errors import InputError
 from pneutouch.mechanics.atlas.respond import ENDS
 from pneutouch.output.new import write_design
-from pneutouch.selection import Candidate, DroppedWish
+from pneutouch.selection import Candidate, DroppedRequirement
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import override, parse_changes, validate
 from pneutouch.spec.template import design_template
@@ -33,8 +33,8 @@ def document(selection: SelectionRun) -> dict[str, Any]:
         ],
         "nearest": None if answer.nearest is None else _choice(selection, answer.nearest, None),
         "dropped_requirements": [
-            {"requirement": way.wish, "attainable": would_need(selection, way), "design": _choice(selection, way.best, None)}
-            for way in answer.ways
+            {"requirement": dropped.requirement, "attainable": would_need(selection, dropped), "design": _choice(selection, dropped.best, None)}
+            for dropped in answer.dropped
         ],
         "left_out": selection.left_out,
     }  # fmt: skip
@@ -68,7 +68,7 @@ def _choice(selection: SelectionRun, choice: Candidate, solid: Confirmation | No
         "limit_point_kPa": float(pool.response.limit_pressure[0]) / KPA,
         "rated_pressure_kPa": choice.rated / KPA,
         "sensitivity_at_0kPa_and_rated_kPa_per_N": list(choice.span),
-        "margins": {name: room if np.isfinite(room) else None for name, room in choice.room.items()},
+        "margins": {name: margin if np.isfinite(margin) else None for name, margin in choice.margins.items()},
         "binding": choice.binding,
         "model": "atlas",
         "solid": None if solid is None else {
@@ -78,16 +78,16 @@ def _choice(selection: SelectionRun, choice: Candidate, solid: Confirmation | No
     }  # fmt: skip
 
 
-def would_need(selection: SelectionRun, way: DroppedWish) -> str:
-    """What a wish would have to be for the best design without it."""
-    pool, lines = way.best.pool, way.best.pool.response.lines
-    if way.wish == "sensitivity":
+def would_need(selection: SelectionRun, dropped: DroppedRequirement) -> str:
+    """What a requirement would have to be for the best design without it."""
+    pool, lines = dropped.best.pool, dropped.best.pool.response.lines
+    if dropped.requirement == "sensitivity":
         return (
             f"{float(lines.sensitivity_kPa_per_N[0]):.3g} kPa/N instead of {selection.problem.sensitivity_kPa_per_N:g}"
         )
-    if way.wish == "force range":
+    if dropped.requirement == "force range":
         return f"{float(pool.force[0]):.3g} N instead of {selection.problem.force_range:g}"
-    if way.wish == "stiffness":
+    if dropped.requirement == "stiffness":
         return f"{float(lines.stiffness[0]):.3g} N/mm"
     return f"{2 * float(pool.radius[0] + pool.wall[0]):.4g} mm instead of {selection.problem.max_diameter:g}"
 

@@ -161,7 +161,7 @@ def _some_resin(target: Target, where: str, library: Library) -> str:
         profile = design.print.profile
     printer: Printer = library.load("printers", profile, file=where, key="setting.profile")
     pair = requested_pair(target, where, printer, library)
-    names = [pair.soft] if pair else target.given.materials or sorted(library.shelf("materials"))
+    names = [pair.soft] if pair else target.given.materials or sorted(library.paths("materials"))
     loaded = {name: library.load("materials", name, file=where, key="given.materials") for name in names}
     for name in target.given.materials or []:
         if loaded[name].kind != "elastomer":

@@ -54,7 +54,7 @@ def is_specimen(content: dict[str, Any]) -> bool:
 
 def specimen_file(name: str, library: Library) -> Path | None:
     """The file of a specimen given by name or path, or None where the name is a sensor's or of nothing."""
-    files = library.shelf("specimens")
+    files = library.paths("specimens")
     if name in files:
         return files[name]
     try:
@@ -72,7 +72,7 @@ def load_specimen(
     Raises InputError that names file, key and value.
     """
     library = library or Library.default()
-    files = library.shelf("specimens")
+    files = library.paths("specimens")
     path = files[name] if name in files else library.design_file(name)
     content = override(read_toml(path), changes or {}, Specimen)
     if not is_specimen(content):

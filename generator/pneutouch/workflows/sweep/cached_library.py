@@ -16,10 +16,10 @@ class CachedLibrary(Library):
     _files: dict[str, dict[str, Path]] = field(default_factory=dict, repr=False, compare=False)
     _things: dict[tuple[str, str], Any] = field(default_factory=dict, repr=False, compare=False)
 
-    def shelf(self, kind: str) -> dict[str, Path]:
+    def paths(self, kind: str) -> dict[str, Path]:
         """Names of one kind with their files, sorted by name."""
         if kind not in self._files:
-            self._files[kind] = super().shelf(kind)
+            self._files[kind] = super().paths(kind)
         return self._files[kind]
 
     def load(self, kind: str, name: str, *, file: str | None = None, key: str | None = None) -> Any:

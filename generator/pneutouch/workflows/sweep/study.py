@@ -64,7 +64,7 @@ def study(plan: SweepPlan, library: Library) -> SweepStudy:
     # A design that names no tube takes one of its port's.
     names |= {("tubes", tube) for kind, name in names if kind == "ports" for tube in library.load(kind, name).tubes}
     for kind, name in sorted(names):
-        path = library.shelf(kind)[name]
+        path = library.paths(kind)[name]
         files[f"{KINDS[kind].folder}/{name}.toml"] = path.read_text(encoding="utf-8-sig")
         things[f"{kind}/{name}"] = library.load(kind, name).model_dump(mode="json")
     facts = {
