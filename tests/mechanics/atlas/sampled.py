@@ -35,8 +35,8 @@ def random_batch(count: int, seed: int, deepest: float = 0.7) -> SensorBatch:
 
 def energy(slices: AtlasSlices, nu: Array, height: Array, k: int = 0) -> Array:
     """Energy of the wall in mu R0^3 at volumes nu and plate heights of one slice, by full rows of the basis."""
-    way = slices.way
-    by_volume = way.volume.rows(nu)
-    by_depth = way.depth.rows(by_volume @ slices.apex[k] - height)
+    grid = slices.grid
+    by_volume = grid.volume.rows(nu)
+    by_depth = grid.depth.rows(by_volume @ slices.apex[k] - height)
     found: Array = np.einsum("ni,ij,nj->n", by_volume, slices.potential[k], by_depth)
     return found

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.uncertainty import batch_of, gas_notes
-from pneutouch.mechanics.uncertainty.gas_notes import ADIABATIC, ROOM
+from pneutouch.mechanics.uncertainty.gas_notes import ADIABATIC, REFERENCE_TEMPERATURE
 from tests.mechanics.test_contact import PAPER
 
 
@@ -24,10 +24,10 @@ def test_heating_a_sealed_cavity_by_a_kelvin(pressure, dead):
         volume = float(respond(batch_of(sensor, [p])).cavity_volume[0]) + dead
         return (p + sensor.gas.ambient_pressure) * volume / temperature
 
-    sealed = amount(pressure, ROOM)
+    sealed = amount(pressure, REFERENCE_TEMPERATURE)
     hot, cold = (
         brentq(lambda p, t=t: amount(p, t) - sealed, 0.5 * pressure, 1.5 * pressure, xtol=1e-12)
-        for t in (ROOM + 0.5, ROOM - 0.5)
+        for t in (REFERENCE_TEMPERATURE + 0.5, REFERENCE_TEMPERATURE - 0.5)
     )
     found = gas_notes(batch_of(sensor, [pressure]))
     assert found.by_temperature_kPa_per_K[0] == pytest.approx(1e3 * (hot - cold), rel=1e-3)
@@ -35,7 +35,7 @@ def test_heating_a_sealed_cavity_by_a_kelvin(pressure, dead):
 
 def test_a_stiff_wall_shows_what_a_rigid_cavity_shows():
     found = gas_notes(batch_of(PAPER.replace(shear_modulus=50.0, depth=0.3), [0.0]))
-    rigid = 1e3 * PAPER.gas.ambient_pressure / ROOM
+    rigid = 1e3 * PAPER.gas.ambient_pressure / REFERENCE_TEMPERATURE
     assert found.wall_give[0] > 0.99
     assert found.by_temperature_kPa_per_K[0] == pytest.approx(rigid * found.wall_give[0])
     assert found.fast_over_slow[0] == pytest.approx(ADIABATIC, rel=0.02)

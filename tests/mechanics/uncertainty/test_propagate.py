@@ -75,11 +75,11 @@ def test_table_s1_lies_within_the_expanded_uncertainty(library):
     scores = []
     for name, material in materials(library).items():
         errors = model_errors(material, materials(library).values())
-        if not errors.own or name == "FLX9995":
+        if not errors.resin_errors or name == "FLX9995":
             continue
         batch = batch_of(material_sensor(material), [0.0, 0.022])
         found = budget_for(library, batch, name, False, aged=False)
-        scores += (np.log1p(errors.own) / found.standard[SENSITIVITY]).tolist()
+        scores += (np.log1p(errors.resin_errors) / found.standard[SENSITIVITY]).tolist()
     assert len(scores) == 12
     assert np.abs(scores).max() < COVERAGE
     assert 0.4 < np.sqrt(np.mean(np.square(scores))) < 1.0

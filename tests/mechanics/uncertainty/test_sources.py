@@ -118,4 +118,4 @@ def test_the_resin_that_nothing_explains_keeps_its_own_error(library):
     assert errors.left_out == ("FLX9995-DM",)
     assert len(errors.pool) == 12
     far = named(paper(library, "FLX9995", near=False), "model")
-    assert far.standard[0] == pytest.approx(np.sqrt(np.mean(np.log1p(errors.own) ** 2)))
+    assert far.standard[0] == pytest.approx(np.sqrt(np.mean(np.log1p(errors.resin_errors) ** 2)))

@@ -1,4 +1,4 @@
-"""Turns surveys into the atlas's coefficients: one potential over wall, volume and depth, and the fields beside it."""
+"""Turns surveys into the atlas's coefficients: one potential over wall, volume and depth, and further fields."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _FLOOR = 0.15
 _TYPES = {"inner_apex": np.float32}
 """Half precision is enough for the other fields: a step of it moves a stretch by less than a thousandth."""
 _AT_CONTACT = 4.0
-"""Weight of the free dome: its fields tell the limits of driving, and no force is the force at first contact."""
+"""Weight of the free dome: its fields give the limits of driving, and no force is the force at first contact."""
 
 
 @dataclass(frozen=True)
@@ -36,8 +36,8 @@ class NormalEquations:
     def solve(self, near: Array | None = None) -> Array:
         """The coefficients, drawn to those of `near` where nothing else decides; (n, several)."""
         right = self.right if near is None else self.right + _ALIKE**2 * near
-        found: Array = solve_triangular(self.factor, solve_triangular(self.factor, right, trans="T"))
-        return found
+        solution: Array = solve_triangular(self.factor, solve_triangular(self.factor, right, trans="T"))
+        return solution
 
 
 @dataclass(frozen=True)
@@ -60,35 +60,39 @@ class WallCoefficients:
 
 def fit_sheet(survey: Survey, recipe: AtlasRecipe) -> WallCoefficients:
     """Least squares over all states of one survey; energy, pressure and force are met by one and the same potential."""
-    way = axes(recipe)
+    grid = axes(recipe)
     rest, reach = survey.free_volume[0], survey.limit_volume - survey.free_volume[0]
-    apex = _fit_apex(survey, way.volume, rest, reach)
+    apex = _fit_apex(survey, grid.volume, rest, reach)
     nu = (survey.volume - rest) / reach
-    rise, slope = way.volume.rows(nu) @ apex, way.volume.rows(nu, 1) @ apex
+    rise, slope = grid.volume.rows(nu) @ apex, grid.volume.rows(nu, 1) @ apex
     w = np.maximum(rise - survey.height, 0.0)
 
     def products(by_volume: int, by_depth: int) -> Array:
-        a, b = way.volume.rows(nu, by_volume), way.depth.rows(w, by_depth)
+        a, b = grid.volume.rows(nu, by_volume), grid.depth.rows(w, by_depth)
         return (a[:, :, None] * b[:, None, :]).reshape(nu.size, -1)
 
     force = products(0, 1)
     pressure = (products(1, 0) + slope[:, None] * force) / reach
     value = products(0, 0)
     unit = survey.limit_pressure
-    found = [(value, survey.energy, 0.1 * _FLOOR), (pressure, survey.pressure, _FLOOR), (force, survey.force, _FLOOR)]
-    scales = [1.0 / (floor * unit + np.abs(wanted)) for _, wanted, floor in found]
+    solution = [
+        (value, survey.energy, 0.1 * _FLOOR),
+        (pressure, survey.pressure, _FLOOR),
+        (force, survey.force, _FLOOR),
+    ]
+    scales = [1.0 / (floor * unit + np.abs(target)) for _, target, floor in solution]
     scales[2] = scales[2] * np.where(w > 0.0, 1.0, _AT_CONTACT)
-    smooth = _smoothness(way)
+    smooth = _smoothness(grid)
     potential = _system(
-        [rows * (unit * scale)[:, None] for (rows, _, _), scale in zip(found, scales, strict=True)],
-        [(wanted * scale)[:, None] for (_, wanted, _), scale in zip(found, scales, strict=True)], smooth / _FLOOR,
+        [rows * (unit * scale)[:, None] for (rows, _, _), scale in zip(solution, scales, strict=True)],
+        [(target * scale)[:, None] for (_, target, _), scale in zip(solution, scales, strict=True)], smooth / _FLOOR,
     )  # fmt: skip
     weight = np.where(w > 0.0, 1.0, _AT_CONTACT)[:, None]
-    wanted = np.stack([flattened(name, field) for name, field in zip(STORED, survey.fields, strict=True)], axis=1)
-    support = np.zeros((way.volume.cells, way.depth.cells))
-    support[way.volume.basis(nu)[0], way.depth.basis(w)[0]] = 1.0
+    target = np.stack([flattened(name, field) for name, field in zip(STORED, survey.fields, strict=True)], axis=1)
+    support = np.zeros((grid.volume.cells, grid.depth.cells))
+    support[grid.volume.basis(nu)[0], grid.depth.basis(w)[0]] = 1.0
     return WallCoefficients(
-        survey.limit_volume, unit, apex, potential, _system([value * weight], [wanted * weight], smooth), _grown(support),
+        survey.limit_volume, unit, apex, potential, _system([value * weight], [target * weight], smooth), _grown(support),
         survey.fold_from, survey.fold_volume,
     )  # fmt: skip
 
@@ -107,12 +111,12 @@ def _fit_apex(survey: Survey, axis: SplineAxis, rest: float, reach: float) -> Ar
     stiff[axis.basis(np.zeros(1))[0][0] :] = 0.0
     left = np.concatenate([axis.rows(nu), 1e-3 * stiff, 1e-6 * roughness(axis.size, 4)])
     right = np.concatenate([survey.free_apex, np.zeros(left.shape[0] - nu.size)])
-    found: Array = np.linalg.lstsq(left, right, rcond=None)[0]
-    return found
+    solution: Array = np.linalg.lstsq(left, right, rcond=None)[0]
+    return solution
 
 
-def _smoothness(way: AtlasAxes) -> Array:
-    volume, depth = way.volume.size, way.depth.size
+def _smoothness(grid: AtlasAxes) -> Array:
+    volume, depth = grid.volume.size, grid.depth.size
     rough = np.concatenate([
         np.kron(roughness(volume, 4), np.eye(depth)), np.kron(np.eye(volume), roughness(depth, 4)),
     ])  # fmt: skip
@@ -158,9 +162,9 @@ def _settled(systems: list[NormalEquations]) -> Array:
 
     States end at another volume for every wall; a spline over the walls needs what lies beyond to agree.
     """
-    found = np.stack([system.solve() for system in systems])
+    solution = np.stack([system.solve() for system in systems])
     last = len(systems) - 1
     for _ in range(_SETTLING):
         for i, system in enumerate(systems):
-            found[i] = system.solve(0.5 * (found[max(i - 1, 0)] + found[min(i + 1, last)]))
-    return found
+            solution[i] = system.solve(0.5 * (solution[max(i - 1, 0)] + solution[min(i + 1, last)]))
+    return solution

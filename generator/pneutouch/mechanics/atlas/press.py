@@ -53,8 +53,8 @@ class SensorBatch:
 
 
 class PressTrack(NamedTuple):
-    """Where the plate's way leads, (n, m) each; nondimensional. ok: a stable state of the gas was found and the atlas
-    knows it; margin: dp/dV of wall less gas, positive while stable."""
+    """States along the plate's travel, (n, m) each; nondimensional. ok: a stable state of the gas was found and the atlas
+    covers it; margin: dp/dV of wall less gas, positive while stable."""
 
     nu: Array
     height: Array
@@ -95,8 +95,8 @@ class AtlasPress:
         self.reach, self.limit = slices.reach(k), slices.limit_pressure[k]
         self.free = _inflated(slices, k, self.pressure)
         self.apex = slices.free_apex(k, self.free)[:, 0]
-        room = self.volume(self.free) + self.dead
-        self.content = (self.pressure + self.ambient) * room
+        gas_volume = self.volume(self.free) + self.dead
+        self.content = (self.pressure + self.ambient) * gas_volume
 
     def volume(self, nu: Array) -> Array:
         """Cavity volume."""
@@ -125,9 +125,9 @@ class AtlasPress:
         reached = np.zeros(nu.size, dtype=bool)
         for _ in range(iterations):
             point = self.slices.point(self.k, nu, height)
-            room = self.volume(nu) + self.dead
-            gas = self.content / room
-            margin = stiffening * point.by_volume + gas / room
+            gas_volume = self.volume(nu) + self.dead
+            gas = self.content / gas_volume
+            margin = stiffening * point.by_volume + gas / gas_volume
             excess = gas - self.ambient - stiffening * point.pressure - memory
             step = excess / np.where(margin > 0, margin, 1.0) / self.reach
             reached = np.abs(step) < _LAST_STEP
@@ -150,15 +150,15 @@ class AtlasPress:
         for column in indentation.T:
             travel = column - before
             height = self.apex - column
-            found = self.solve(nu + travel * (rate + 0.5 * travel * bend), height)
-            ok = ok & found.ok
-            now = found.point.by_height / np.where(found.margin > 0, found.margin, 1.0) / self.reach
+            solved = self.solve(nu + travel * (rate + 0.5 * travel * bend), height)
+            ok = ok & solved.ok
+            now = solved.point.by_height / np.where(solved.margin > 0, solved.margin, 1.0) / self.reach
             with np.errstate(invalid="ignore", divide="ignore"):
                 bend = np.where(ok & (travel > 0) & (len(columns) > 1), (now - rate) / travel, 0.0)
-            nu, rate, before = np.where(ok, found.nu, nu), np.where(ok, now, 0.0), column
+            nu, rate, before = np.where(ok, solved.nu, nu), np.where(ok, now, 0.0), column
             # The plate at the free apex presses on nothing, whatever the table's error leaves there.
-            point = found.point._replace(force=np.where(column > _NO_TRAVEL, found.point.force, 0.0))
-            columns.append((found.nu, height, *point, found.margin, ok))
+            point = solved.point._replace(force=np.where(column > _NO_TRAVEL, solved.point.force, 0.0))
+            columns.append((solved.nu, height, *point, solved.margin, ok))
         stacked = [np.stack(part, axis=1) for part in zip(*columns, strict=True)]
         return PressTrack(stacked[0], stacked[1], AtlasPoint(*stacked[2:-2]), stacked[-2], stacked[-1])
 

@@ -1,4 +1,4 @@
-"""What the atlas is made from: where the solid is asked, and how its answers are held."""
+"""What the atlas is made from: where the solid is solved, and how its answers are stored."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ _HOLDING = ("stiffest", "degree", "volume_cells", "volume_stretch", "depth_cells
 class AtlasRecipe:
     """The box and the resolution of the atlas, in units of R0 and mu.
 
-    Coordinates: t0/R0; ``nu``, the cavity volume above the unloaded one as a share of its way to the limit point; ``w``,
+    Coordinates: t0/R0; ``nu``, the cavity volume above the unloaded one as a share of that at the limit point; ``w``,
     how far the plate is below the free apex at that volume. A press with trapped gas leaves nu = 0 downwards where the
     cavity is squeezed below its unloaded volume. ambients, first_pressures: presses with trapped
     gas from these ambient pressures (in mu; 0: vented) and shares of the limit pressure, which line the edge at zero
-    pressure. stiffest_gas: greatest ambient pressure over mu that is asked about; stiffest: that is inside the box. deepest: greatest plate travel;
-    states are asked for to ``beyond``, so that the edge of the box is not the edge of the data.
+    pressure. stiffest_gas: greatest ambient pressure over mu that is solved; stiffest: that is inside the box. deepest: greatest plate travel;
+    states are solved to ``beyond``, so that the edge of the box is not the edge of the data.
     """
 
     poisson_ratio: float = 0.49
@@ -84,7 +84,7 @@ class AtlasRecipe:
         return cls(**fields)
 
     def survey_fingerprint(self) -> str:
-        """Tells apart recipes that ask the solid for other states; how the answers are held does not count."""
+        """Distinguishes recipes that solve other states; how the answers are stored does not count."""
         content = {key: value for key, value in asdict(self).items() if key not in _HOLDING}
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
 
@@ -112,7 +112,7 @@ def axes(recipe: AtlasRecipe) -> AtlasAxes:
 RECIPE = AtlasRecipe()
 
 FIELDS = ("contact_radius", "stretch", "von_mises", "overhang", "fold", "inner_apex")
-"""What can be asked for beside the potential: see `solid.PressState`; lengths in R0, stresses in mu."""
+"""Fields that can be read in addition to the potential: see `solid.PressState`; lengths in R0, stresses in mu."""
 
 STRETCHES = tuple(f"stretch_{face}_{part}" for face in ("inner", "outer") for part in ("low", "middle", "high"))
 """The greatest stretch by face and third of the arc, each smooth where the greatest of all has kinks."""

@@ -19,7 +19,7 @@ ENDS = ("depth", "plate edge", "gauge range", "break strain", "inward buckling",
 DEPTH, EDGE, GAUGE, BREAK, BUCKLING, OUTSIDE = range(len(ENDS))
 
 NEAR = 0.03
-"""Travel in R0 before buckling at which the table is less sure: the stiffness falls there faster than it resolves."""
+"""Travel in R0 before buckling at which the table is less certain: the stiffness falls there faster than it resolves."""
 _CHUNK = 1000
 _FIELDS = ("stretch", "contact_radius")
 _ROUNDS = 14
@@ -30,7 +30,7 @@ class AtlasResponse(NamedTuple):
     """Answers for n sensors; (n,) or (n, m) arrays in mm, N, MPa, sensitivities in kPa/N.
 
     ends: number in `ENDS`. near_buckling: the wall would buckle within NEAR more of travel, so close to the edge of the
-    tabulated states that they are less sure. range_end: mm of indentation. limit_pressure: of the limit point. Curves
+    tabulated states that they are less certain. range_end: mm of indentation. limit_pressure: of the limit point. Curves
     reach from first contact to range_end in equal steps. max_stretch: over the range, the free state included. Rows that cannot be
     (beyond the limit point, outside the box) are NaN throughout.
     """
@@ -56,12 +56,12 @@ class AtlasResponse(NamedTuple):
     def join(cls, parts: Sequence[AtlasResponse]) -> AtlasResponse:
         """Several as one."""
         columns: list[Any] = [np.concatenate(column) for column in zip(*(part[1:] for part in parts), strict=True)]
-        found = [np.concatenate(column) for column in zip(*(part.lines for part in parts), strict=True)]
-        return cls(FigureArrays(*found), *columns)
+        solved = [np.concatenate(column) for column in zip(*(part.lines for part in parts), strict=True)]
+        return cls(FigureArrays(*solved), *columns)
 
 
 def inside(batch: SensorBatch, atlas: Atlas) -> Flags:
-    """Whether the atlas speaks for sensors: wall, depth, stiffness of the gas, no suction; what is negative or NaN is none.
+    """Whether the atlas covers sensors: wall, depth, stiffness of the gas, no suction; what is negative or NaN is none.
 
     A dead volume may be negative as a deviation of a small one; half of the unloaded cavity must be left.
     """
@@ -116,16 +116,16 @@ def _respond(batch: SensorBatch, steps: int, atlas: Atlas) -> AtlasResponse:
     indentation = share * end[:, None] * radius
     force = track.point.force * mu * radius**2
     rise = (track.point.pressure - press.pressure[:, None]) * mu
-    hopeless = ~good | (batch.driving_pressure >= limit) | (end <= 0.0)
+    infeasible = ~good | (batch.driving_pressure >= limit) | (end <= 0.0)
     for array in (indentation, force, rise):
-        array[hopeless] = np.nan
+        array[infeasible] = np.nan
     stretch = press.field("stretch", track).max(axis=1)
     return AtlasResponse(
         lines(indentation, force, rise / KPA), np.where(good, ends, OUTSIDE), good & _near(press, track),
-        np.where(hopeless, np.nan, end * batch.inner_radius), np.where(good, limit, np.nan),
-        np.where(hopeless, np.nan, press.apex * batch.inner_radius),
-        np.where(hopeless, np.nan, press.volume(press.free) * batch.inner_radius**3),
-        np.where(hopeless, np.nan, stretch), indentation, force, rise,
+        np.where(infeasible, np.nan, end * batch.inner_radius), np.where(good, limit, np.nan),
+        np.where(infeasible, np.nan, press.apex * batch.inner_radius),
+        np.where(infeasible, np.nan, press.volume(press.free) * batch.inner_radius**3),
+        np.where(infeasible, np.nan, stretch), indentation, force, rise,
     )  # fmt: skip
 
 
@@ -175,11 +175,11 @@ def _closed_in(press: AtlasPress, nu: Array, low: Array, high: Array) -> tuple[A
             share = before / (before - after)
         share = np.where(np.isfinite(before) & np.isfinite(after), np.clip(share, 0.02, 0.98), 0.5)
         middle = low + share * (high - low)
-        worst, reason, found = _worst(press, nu, middle)
+        worst, reason, solved = _worst(press, nu, middle)
         over = worst > 0.0
         low, high = np.where(over, low, middle), np.where(over, middle, high)
         before, after = np.where(over, 0.5 * before, worst), np.where(over, worst, 0.5 * after)
-        ends, nu = np.where(over, reason, ends), np.where(over, nu, found)
+        ends, nu = np.where(over, reason, ends), np.where(over, nu, solved)
         if np.all((high - low < _WITHIN) | (np.abs(worst) < _WITHIN)):
             break
     return np.where(np.abs(after) < np.abs(before), high, low), ends
@@ -188,9 +188,9 @@ def _closed_in(press: AtlasPress, nu: Array, low: Array, high: Array) -> tuple[A
 def _worst(press: AtlasPress, nu: Array, indentation: Array) -> tuple[Array, Index, Array]:
     """Greatest margin at plate travels (n,), infinite where the state is lost; its reason; and the volume nu."""
     height = press.apex - indentation
-    found = press.solve(nu, height)
-    one = PressTrack(found.nu, height, found.point, found.margin, found.ok).each(lambda column: column[:, None])
+    solved = press.solve(nu, height)
+    one = PressTrack(solved.nu, height, solved.point, solved.margin, solved.ok).each(lambda column: column[:, None])
     margins = _margins(press, one)[..., 0]
-    unknown = (found.margin > 0.0) & ~found.point.supported & ~found.point.folded
-    reason = np.where(found.ok, EDGE + margins.argmax(axis=0), np.where(unknown, OUTSIDE, BUCKLING))
-    return np.where(found.ok, margins.max(axis=0), np.inf), reason, np.where(found.ok, found.nu, nu)
+    unknown = (solved.margin > 0.0) & ~solved.point.supported & ~solved.point.folded
+    reason = np.where(solved.ok, EDGE + margins.argmax(axis=0), np.where(unknown, OUTSIDE, BUCKLING))
+    return np.where(solved.ok, margins.max(axis=0), np.inf), reason, np.where(solved.ok, solved.nu, nu)

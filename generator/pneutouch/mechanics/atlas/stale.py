@@ -1,4 +1,4 @@
-"""Whether the shipped atlas still speaks for the solid: the solid's answers at a few states, as a fingerprint."""
+"""Whether the shipped atlas still matches the solid: the solid's answers at a few states, as a fingerprint."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import hashlib
 import numpy as np
 
 from pneutouch.mechanics.atlas.recipe import RECIPE
-from pneutouch.mechanics.atlas.surveyor import Surveyor
+from pneutouch.mechanics.atlas.sampler import AtlasSampler
 
 _WALLS = (0.07, 0.16, 0.3)
 _ROWS = (0, 12)
@@ -16,21 +16,21 @@ _DIGITS = 6
 
 
 def solid_fingerprint() -> str:
-    """What the solid says of three walls, two volumes and one depth, to six digits.
+    """The solid's answers for three walls, two volumes and one depth, to six digits.
 
     It follows from the solid's behaviour and not from its text: rewriting the solid without changing its answers
     leaves the atlas fresh.
     """
-    said = []
+    answers = []
     for wall in _WALLS:
-        surveyor = Surveyor(wall, RECIPE)
-        said += [surveyor.limit.volume, surveyor.limit.pressure]
+        sampler = AtlasSampler(wall, RECIPE)
+        answers += [sampler.limit.volume, sampler.limit.pressure]
         for row in _ROWS:
-            start = here = surveyor.touching(surveyor.free[row])
+            start = here = sampler.touching(sampler.free[row])
             for depth in np.arange(0.05, _DEPTH + 1e-9, 0.05):
-                found = surveyor.step(here, start.state.volume, start.height - depth)
-                assert found is not None
-                here = found
-            said += [here.state.filling.pressure, here.force, here.energy]
-            said += surveyor.probe.stretch_by_zone(here.state.x).tolist()
-    return hashlib.sha256(" ".join(f"{x:.{_DIGITS}g}" for x in said).encode()).hexdigest()[:16]
+                equilibrium = sampler.step(here, start.state.volume, start.height - depth)
+                assert equilibrium is not None
+                here = equilibrium
+            answers += [here.state.filling.pressure, here.force, here.energy]
+            answers += sampler.probe.stretch_by_zone(here.state.x).tolist()
+    return hashlib.sha256(" ".join(f"{x:.{_DIGITS}g}" for x in answers).encode()).hexdigest()[:16]

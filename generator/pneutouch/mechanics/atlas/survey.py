@@ -1,4 +1,4 @@
-"""Asks the solid for one wall ratio: equilibria over cavity volume and plate height, gas left out.
+"""Solves the solid for one wall ratio: equilibria over cavity volume and plate height, gas left out.
 
 A state is the least elastic energy at a given volume and plate height; its pressure and force are the slopes of that
 energy, so that any gas can be put behind it afterwards.
@@ -12,7 +12,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.recipe import STORED, STRETCHES, AtlasRecipe
-from pneutouch.mechanics.atlas.surveyor import Equilibrium, SurveyedPress, Surveyor
+from pneutouch.mechanics.atlas.sampler import AtlasSampler, Equilibrium, SampledPress
 
 _NEAR_ZERO = 0.3
 """Below this share of the limit pressure, a pressure that rises as the plate goes up belongs to a buckled wall."""
@@ -20,7 +20,7 @@ _NEAR_ZERO = 0.3
 
 @dataclass(frozen=True)
 class Survey:
-    """Everything asked of one wall ratio.
+    """All states solved for one wall ratio.
 
     free_volume, free_apex: the free inflation curve from nu = 0 on, (n,). limit_volume, limit_pressure: the limit point.
     volume, height, energy, pressure, force, stiffness (dp/dV at a fixed plate): (m,). fields: (len(STORED), m).
@@ -43,30 +43,30 @@ class Survey:
 
 
 def survey(wall_ratio: float, recipe: AtlasRecipe) -> Survey:
-    """Ask the solid for every reachable state of one wall ratio. Raises ComputationError where the dome itself fails."""
-    surveyor = Surveyor(wall_ratio, recipe)
-    rows = [_down(surveyor, surveyor.touching(free)) for free in surveyor.free]
-    found = [node for row in rows for node in row.values()]
+    """Solve the solid for every reachable state of one wall ratio. Raises ComputationError where the dome itself fails."""
+    sampler = AtlasSampler(wall_ratio, recipe)
+    rows = [_down(sampler, sampler.touching(free)) for free in sampler.free]
+    nodes = [node for row in rows for node in row.values()]
     above = rows[0]
     for nu in reversed(recipe.survey_volumes[recipe.survey_volumes < 0.0]):
-        above = _squeezed(surveyor, above, float(nu))
-        found += above.values()
+        above = _squeezed(sampler, above, float(nu))
+        nodes += above.values()
     presses = [
-        surveyor.pressed(share * surveyor.limit.pressure, ambient)
+        sampler.pressed(share * sampler.limit.pressure, ambient)
         for share in recipe.first_pressures
         for ambient in recipe.ambients
     ]
-    found += [node for press in presses for node in press.path]
-    return _gathered(surveyor, found, *_fold(surveyor, presses))
+    nodes += [node for press in presses for node in press.path]
+    return _gathered(sampler, nodes, *_fold(sampler, presses))
 
 
-def _fold(surveyor: Surveyor, presses: list[SurveyedPress]) -> tuple[float, Array]:
+def _fold(sampler: AtlasSampler, presses: list[SampledPress]) -> tuple[float, Array]:
     """Where the sheet of states ends by buckling: the depth below the unloaded apex at which a vented press does, and the
     least volume at depths beyond; (recipe.fold_depths,).
 
     The ends of the presses are points of that edge; where no press has ended, the lowest press is.
     """
-    rest, recipe = surveyor.rest.outer_apex, surveyor.recipe
+    rest, recipe = sampler.rest.outer_apex, sampler.recipe
     grid: Array = recipe.fold_depths
     tracks = [np.array([[rest - node.height, node.state.volume] for node in press.path]).T for press in presses]
     ended = [track[:, -1] for track, press in zip(tracks, presses, strict=True) if press.ended]
@@ -78,58 +78,58 @@ def _fold(surveyor: Surveyor, presses: list[SurveyedPress]) -> tuple[float, Arra
     return float(min(vented, recipe.beyond)), np.where(np.isfinite(lowest), lowest, 0.0)
 
 
-def _down(surveyor: Surveyor, start: Equilibrium) -> dict[int, Equilibrium]:
+def _down(sampler: AtlasSampler, start: Equilibrium) -> dict[int, Equilibrium]:
     """The plate coming down at a fixed volume, as far as a gas can hold it."""
     row = {0: start}
-    for k, w in enumerate(surveyor.recipe.survey_depths[1:], start=1):
-        found = surveyor.step(row[k - 1], start.state.volume, start.height - w)
-        if found is None or not surveyor.reachable(found):
+    for k, w in enumerate(sampler.recipe.survey_depths[1:], start=1):
+        node = sampler.step(row[k - 1], start.state.volume, start.height - w)
+        if node is None or not sampler.reachable(node):
             break
-        row[k] = found
+        row[k] = node
     return row
 
 
-def _squeezed(surveyor: Surveyor, above: dict[int, Equilibrium], nu: float) -> dict[int, Equilibrium]:
+def _squeezed(sampler: AtlasSampler, above: dict[int, Equilibrium], nu: float) -> dict[int, Equilibrium]:
     """The row at a volume below the unloaded one, each state from the one above it, as long as a gas can be there.
 
     The free apex is continued along its tangent, so that w keeps its meaning. Only the unbroken deep end of the row
     counts: past a break lies another branch.
     """
-    volume, rest = surveyor.volume(nu), surveyor.rest
-    apex = rest.outer_apex + surveyor.first_slope * (volume - rest.volume)
-    lowest = rest.outer_apex - surveyor.recipe.beyond
+    volume, rest = sampler.volume(nu), sampler.rest
+    apex = rest.outer_apex + sampler.first_slope * (volume - rest.volume)
+    lowest = rest.outer_apex - sampler.recipe.beyond
     row: dict[int, Equilibrium] = {}
     for k in sorted(above, reverse=True):
-        height = apex - surveyor.recipe.survey_depths[k]
+        height = apex - sampler.recipe.survey_depths[k]
         if height < lowest:
             continue
-        found = surveyor.step(above[k], volume, height)
-        if found is None or not surveyor.reachable(found) or _turned(surveyor, found, row.get(k + 1)):
+        node = sampler.step(above[k], volume, height)
+        if node is None or not sampler.reachable(node) or _turned(sampler, node, row.get(k + 1)):
             if row:
                 break
             continue
-        row[k] = found
+        row[k] = node
     return row
 
 
-def _turned(surveyor: Surveyor, found: Equilibrium, deeper: Equilibrium | None) -> bool:
+def _turned(sampler: AtlasSampler, node: Equilibrium, deeper: Equilibrium | None) -> bool:
     if deeper is None:
         return False
-    low, high = deeper.state.filling.pressure, found.state.filling.pressure
-    return low < high and low < _NEAR_ZERO * surveyor.limit.pressure
+    low, high = deeper.state.filling.pressure, node.state.filling.pressure
+    return low < high and low < _NEAR_ZERO * sampler.limit.pressure
 
 
-def _gathered(surveyor: Surveyor, found: list[Equilibrium], fold_from: float, fold_volume: Array) -> Survey:
-    solid = surveyor.solid
+def _gathered(sampler: AtlasSampler, nodes: list[Equilibrium], fold_from: float, fold_volume: Array) -> Survey:
+    solid = sampler.solid
     inner = solid.mesh.inner_apex
 
     def fields(node: Equilibrium) -> list[float]:
         """One state's `STORED` fields, in their order."""
         x, touch = node.state.x, node.state.touch
         assert touch is not None
-        peak = surveyor.probe.peak(x)
+        peak = sampler.probe.peak(x)
         values = {
-            **dict(zip(STRETCHES, surveyor.probe.stretch_by_zone(x), strict=True)),
+            **dict(zip(STRETCHES, sampler.probe.stretch_by_zone(x), strict=True)),
             "contact_radius": solid.contact.footprint(x, touch).radius,
             "von_mises": peak.von_mises, "fold": peak.fold, "inner_apex": float(x[inner, 1]),
             "overhang": float((solid.rest[:, 1].min() - x[:, 1]).max()),
@@ -137,10 +137,10 @@ def _gathered(surveyor: Surveyor, found: list[Equilibrium], fold_from: float, fo
         return [values[name] for name in STORED]
 
     return Survey(
-        solid.wall, surveyor.limit.volume, surveyor.limit.pressure,
-        np.array([f.volume for f in surveyor.free]), np.array([f.outer_apex for f in surveyor.free]),
-        np.array([n.state.volume for n in found]), np.array([n.height for n in found]),
-        np.array([n.energy for n in found]), np.array([n.state.filling.pressure for n in found]),
-        np.array([n.force for n in found]), np.array([n.stiffness for n in found]),
-        np.array([fields(n) for n in found]).T, fold_from, fold_volume,
+        solid.wall, sampler.limit.volume, sampler.limit.pressure,
+        np.array([f.volume for f in sampler.free]), np.array([f.outer_apex for f in sampler.free]),
+        np.array([n.state.volume for n in nodes]), np.array([n.height for n in nodes]),
+        np.array([n.energy for n in nodes]), np.array([n.state.filling.pressure for n in nodes]),
+        np.array([n.force for n in nodes]), np.array([n.stiffness for n in nodes]),
+        np.array([fields(n) for n in nodes]).T, fold_from, fold_volume,
     )  # fmt: skip

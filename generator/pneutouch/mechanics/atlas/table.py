@@ -23,7 +23,7 @@ class AtlasPoint(NamedTuple):
     """A state looked up, nondimensional; arrays of one length.
 
     by_volume, by_height: derivatives of the pressure by volume and plate height; force_by_height: of the force.
-    supported: whether the solid was asked near it. folded: whether the wall has buckled before it.
+    supported: whether the solid was solved near it. folded: whether the wall has buckled before it.
     """
 
     pressure: Array
@@ -45,7 +45,7 @@ class AtlasSlices:
     support (k, volume cells, depth cells), fields: tables (k, volume, depth) by name. rest_apex: outer height of the unloaded dome;
     fold_from, fold_volume (k,), (k, folds): the buckling edge, see `survey._fold`."""
 
-    way: AtlasAxes
+    grid: AtlasAxes
     limit_volume: Array
     limit_pressure: Array
     apex: Array
@@ -59,24 +59,24 @@ class AtlasSlices:
 
     def reach(self, k: Index) -> Array:
         """Volume from rest to the limit point, of the slices k."""
-        found: Array = self.limit_volume[k] - REST_VOLUME
-        return found
+        values: Array = self.limit_volume[k] - REST_VOLUME
+        return values
 
     def free_apex(self, k: Index, nu: Array) -> Array:
         """Outer apex height of the free dome and its first two derivatives by nu, (n, 3)."""
-        cell, weight = self.way.volume.basis(nu)
+        cell, weight = self.grid.volume.basis(nu)
         return self._apex(k, cell, weight)
 
     def _apex(self, k: Index, cell: Index, weight: Array) -> Array:
-        block = self.apex[k[:, None], cell[:, None] + np.arange(self.way.volume.degree + 1)]
-        found: Array = np.matmul(weight, block[..., None])[..., 0]
-        return found
+        block = self.apex[k[:, None], cell[:, None] + np.arange(self.grid.volume.degree + 1)]
+        values: Array = np.matmul(weight, block[..., None])[..., 0]
+        return values
 
     def point(self, k: Index, nu: Array, height: Array) -> AtlasPoint:
         """Pressure, force and their slopes at volumes nu and plate heights, (n,) each."""
-        cell, by_nu = self.way.volume.basis(nu)
+        cell, by_nu = self.grid.volume.basis(nu)
         apex = self._apex(k, cell, by_nu)
-        depth, by_w = self.way.depth.basis(apex[:, 0] - height)
+        depth, by_w = self.grid.depth.basis(apex[:, 0] - height)
         jet = _contract(self.potential, k, cell, depth, by_nu, by_w)
         rise, bend, reach = apex[:, 1], apex[:, 2], self.reach(k)
         force = jet[:, 0, 1]
@@ -102,15 +102,15 @@ class AtlasSlices:
 
     def field(self, name: str, k: Index, nu: Array, height: Array) -> Array:
         """A tabulated field (see `recipe.FIELDS`) at volumes nu and plate heights, (n,)."""
-        cell, by_nu = self.way.volume.basis(nu)
-        depth, by_w = self.way.depth.basis(self._apex(k, cell, by_nu)[:, 0] - height)
+        cell, by_nu = self.grid.volume.basis(nu)
+        depth, by_w = self.grid.depth.basis(self._apex(k, cell, by_nu)[:, 0] - height)
         weight = (by_nu[:, 0, :, None] * by_w[:, 0, None, :]).reshape(nu.size, -1)
-        rows, columns = self.way.volume.size, self.way.depth.size
-        side = np.arange(self.way.depth.degree + 1)
+        rows, columns = self.grid.volume.size, self.grid.depth.size
+        side = np.arange(self.grid.depth.degree + 1)
         offsets = (side[:, None] * columns + side).ravel()
         where = ((k * rows + cell) * columns + depth)[:, None] + offsets
-        found = [unflattened(part, (self.fields[part].ravel()[where] * weight).sum(axis=1)) for part in parts(name)]
-        return np.asarray(np.max(found, axis=0))
+        values = [unflattened(part, (self.fields[part].ravel()[where] * weight).sum(axis=1)) for part in parts(name)]
+        return np.asarray(np.max(values, axis=0))
 
 
 def _contract(table: Array, k: Index, cell: Index, depth: Index, by_nu: Array, by_w: Array) -> Array:
@@ -126,7 +126,7 @@ class Atlas:
     def __init__(self, tables: dict[str, Array], recipe: AtlasRecipe) -> None:
         self.recipe = recipe
         self._tables = tables
-        self._way = axes(recipe)
+        self._grid = axes(recipe)
 
     def boxed(self, recipe: AtlasRecipe) -> Atlas:
         """The same tables with the box of another recipe; its coordinates must be the same."""
@@ -134,9 +134,9 @@ class Atlas:
 
     def slices(self, wall_ratio: Array, names: tuple[str, ...] = FIELDS) -> AtlasSlices:
         """The tables at wall ratios inside the box, (k,), with the named fields."""
-        way = self._way.wall
-        cell, weight = way.basis(np.log(wall_ratio))
-        four = cell[:, None] + np.arange(way.degree + 1)
+        grid = self._grid.wall
+        cell, weight = grid.basis(np.log(wall_ratio))
+        four = cell[:, None] + np.arange(grid.degree + 1)
 
         def cut(name: str) -> Array:
             table = self._tables[name]
@@ -151,11 +151,11 @@ class Atlas:
 
         def between(name: str) -> Array:
             table = self._tables[name].reshape(nodes.size, -1)
-            found: Array = (1 - share) * table[below] + share * table[below + 1]
-            return found
+            values: Array = (1 - share) * table[below] + share * table[below + 1]
+            return values
 
         return AtlasSlices(
-            self._way, cut("limit_volume"), cut("limit_pressure"), cut("apex"), cut("potential"),
+            self._grid, cut("limit_volume"), cut("limit_pressure"), cut("apex"), cut("potential"),
             support[below] & support[below + 1], 1.0 + wall_ratio, between("fold_from")[:, 0], between("fold_volume"),
             self.recipe.fold_depths, {part: cut(part) for name in names for part in parts(name)},
         )  # fmt: skip

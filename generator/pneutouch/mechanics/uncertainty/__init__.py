@@ -1,4 +1,4 @@
-"""How sure a prediction is: stated sources, their shares, expanded uncertainties with k = 2 (JCGM 100)."""
+"""The uncertainty of a prediction: stated sources, their shares, expanded uncertainties with k = 2 (JCGM 100)."""
 
 from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.uncertainty.budget import budget

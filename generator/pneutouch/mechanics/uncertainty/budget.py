@@ -17,13 +17,13 @@ def budget(
     batch: SensorBatch, material: Material, printer: Printer, *,
     near_paper: Flags | bool, errors: ModelErrors, numerical: Mapping[str, float], aged: bool = True,
 ) -> Budget:  # fmt: skip
-    """How sure the figures of n sensors are that share a resin and a printer.
+    """The uncertainty of the figures of n sensors that share a resin and a printer.
 
     Args:
         batch: The sensors, mm, MPa, mm3; see `batch_of`.
         material: Their resin; must have a shear modulus.
         printer: Who prints them.
-        near_paper: Which of them the model's error on the paper's sensor speaks for, one flag or (n,).
+        near_paper: Which of them the model's error on the paper's sensor applies to, one flag or (n,).
         errors: The model's relative errors against Table S1; see `model_errors`.
         numerical: Greatest relative errors of discretisation and interpolation by figure (`FIGURES`).
         aged: Whether the sensor may be up to a year old; else it is fresh.
@@ -31,7 +31,7 @@ def budget(
     Raises:
         InputError: ``numerical`` names a figure that there is not.
     """
-    found = sources(
+    source_list = sources(
         batch, material, printer, near_paper=near_paper, errors=errors, numerical=numerical, aged=aged
     )  # fmt: skip
-    return propagate(batch, found)
+    return propagate(batch, source_list)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from pneutouch.mechanics.atlas.press import SensorBatch
-from pneutouch.mechanics.uncertainty.gas_notes import ADIABATIC, ROOM, gas_notes
+from pneutouch.mechanics.uncertainty.gas_notes import ADIABATIC, REFERENCE_TEMPERATURE, gas_notes
 from pneutouch.mechanics.uncertainty.propagate import COVERAGE, Budget
 from pneutouch.mechanics.uncertainty.source import FIGURES, INPUTS, SENSITIVITY
 
@@ -36,7 +36,7 @@ def document(
 
     Returns:
         A dict of plain numbers, texts and lists. A figure that the atlas does not have is left out; without any the
-        notes say so.
+        notes state it.
     """
     known = [i for i in range(len(FIGURES)) if np.isfinite(budget.standard[i, row])]
     given = values or {}
@@ -70,10 +70,10 @@ def _figure(budget: Budget, figure: int, row: int, given: float | None) -> dict[
 
 def shares(budget: Budget, figure: str, row: int = 0) -> dict[str, float]:
     """Shares of the variance of a figure by source, greatest first; sources of one name added, tiny ones left out."""
-    found: dict[str, float] = {}
+    notes: dict[str, float] = {}
     for source, share in zip(budget.sources, budget.shares[:, FIGURES.index(figure), row], strict=True):
-        found[source.name] = found.get(source.name, 0.0) + float(share)
-    kept = {name: share for name, share in found.items() if share > _LEAST_SHARE}
+        notes[source.name] = notes.get(source.name, 0.0) + float(share)
+    kept = {name: share for name, share in notes.items() if share > _LEAST_SHARE}
     total = sum(kept.values())
     return {name: share / total for name, share in sorted(kept.items(), key=lambda item: (-item[1], item[0]))}
 
@@ -81,23 +81,23 @@ def shares(budget: Budget, figure: str, row: int = 0) -> dict[str, float]:
 def _notes(budget: Budget, row: int) -> list[str]:
     if not np.isfinite(budget.standard[SENSITIVITY, row]):
         return ["the sensor is outside the atlas or beyond its limit point: no uncertainty can be given"]
-    found = []
+    notes = []
     bent = [name for name, flag in zip(FIGURES, budget.nonlinear[:, row], strict=True) if flag]
     if bent:
-        found.append(
+        notes.append(
             f"nonlinear within the uncertainties: {', '.join(bent)}: near the limit point, or because another event ends "
             "the range. Their uncertainty is taken over the inputs' whole spread"
         )
     if budget.doubtful[row]:
-        found.append("within its uncertainties the sensor may be beyond its limit point, or leaves the atlas")
+        notes.append("within its uncertainties the sensor may be beyond its limit point, or leaves the atlas")
     few = [
         f"{name} ({freedom:.2g})"
         for name, freedom in zip(FIGURES, budget.freedom[:, row], strict=True)
         if freedom < _FEW
     ]
     if few:
-        found.append(f"k = {COVERAGE:g} covers less than 95 % with few degrees of freedom: {', '.join(few)}")
-    return [*found, _UNCOUNTED]
+        notes.append(f"k = {COVERAGE:g} covers less than 95 % with few degrees of freedom: {', '.join(few)}")
+    return [*notes, _UNCOUNTED]
 
 
 def text(budget: Budget, row: int = 0) -> str:
@@ -108,22 +108,24 @@ def text(budget: Budget, row: int = 0) -> str:
     parts = shares(budget, FIGURES[SENSITIVITY], row)
     first = ", then ".join(f"{name} ({share:.0%} of the variance)" for name, share in list(parts.items())[:2])
     assumed = [s.name for s in budget.sources if not s.known and s.name in parts and parts[s.name] >= 0.1]
-    said = f" Assumed, not known: {', '.join(assumed)}." if assumed else ""
+    assumed_text = f" Assumed, not known: {', '.join(assumed)}." if assumed else ""
     interval = f"{np.exp(-width) - 1:+.0%} to {np.exp(width) - 1:+.0%}"
-    return f"Expanded uncertainty of the sensitivity (k = {COVERAGE:g}): {interval}; measure first: {first}.{said}"
+    return (
+        f"Expanded uncertainty of the sensitivity (k = {COVERAGE:g}): {interval}; measure first: {first}.{assumed_text}"
+    )
 
 
 def gas_text(batch: SensorBatch) -> list[tuple[str, ...]]:
     """Notes on the air of n sensors, one tuple each; empty where the atlas has no state."""
-    found = gas_notes(batch)
+    notes = gas_notes(batch)
     return [
         (
-            f"sealed and untouched, the pressure moves by {rise:.2g} kPa/K at {ROOM - 273.15:g} C, which reads as "
+            f"sealed and untouched, the pressure moves by {rise:.2g} kPa/K at {REFERENCE_TEMPERATURE - 273.15:g} C, which reads as "
             f"{force:.2g} N/K; the wall leaves {give:.0%} of what a rigid cavity would show",
             f"pressed so fast that the air is adiabatic (p V^{ADIABATIC:g}) the sensitivity is {fast:.2f} times the "
             "isothermal one given here",
         )
         if np.isfinite([rise, force, give, fast]).all()
         else ()
-        for rise, force, give, fast in zip(*found, strict=True)
+        for rise, force, give, fast in zip(*notes, strict=True)
     ]

@@ -19,7 +19,7 @@ ADIABATIC = 1.4
 _TRAVEL = 0.98
 """Share of the range compared: its end may be the last stable state, which one rounding more would lose."""
 
-ROOM = 293.15
+REFERENCE_TEMPERATURE = 293.15
 """K. An assumption: 20 C, within the 18 to 26 C of the paper's tests (Supplement C)."""
 
 _NEWTON, _LONGEST, _CLOSE = 20, 0.05, 1.0e-10
@@ -40,7 +40,7 @@ class GasNotes(NamedTuple):
     fast_over_slow: Array
 
 
-def gas_notes(batch: SensorBatch, temperature: float = ROOM) -> GasNotes:
+def gas_notes(batch: SensorBatch, temperature: float = REFERENCE_TEMPERATURE) -> GasNotes:
     """Temperature effect at ``temperature`` (K) and gas law effect of n sensors.
 
     Ideal gas: dp = (p + p_a) dT/T - k_gas dV with k_gas = (p + p_a)/(V + V_d), and the wall gives dp = k_wall dV, so
@@ -53,8 +53,8 @@ def gas_notes(batch: SensorBatch, temperature: float = ROOM) -> GasNotes:
     press = AtlasPress(batch, atlas.slices(walls), k)
     stiffness = _wall_stiffness(press, k)
     absolute = press.pressure + press.ambient
-    room = press.volume(press.free) + press.dead
-    give = np.where(good, stiffness / (stiffness + absolute / room), np.nan)
+    gas_volume = press.volume(press.free) + press.dead
+    give = np.where(good, stiffness / (stiffness + absolute / gas_volume), np.nan)
     rise_kPa_per_K = absolute * batch.shear_modulus / temperature * give / KPA
     travel = _TRAVEL * response.indentation
     fast = _sensitivity_kPa_per_N(press, travel, ADIABATIC) / _sensitivity_kPa_per_N(press, travel, 1.0)
@@ -73,9 +73,9 @@ def _wall_stiffness(press: AtlasPress, k: Index) -> Array:
 def _sensitivity_kPa_per_N(press: AtlasPress, indentation: Array, exponent: float) -> Array:
     """Slope of pressure over force, kPa/N, at plate travels (n, m) in mm; NaN where no state is found at one of them."""
     mu, radius = press.batch.shear_modulus[:, None], press.batch.inner_radius[:, None]
-    pressure, force, found = _pressed(press, np.nan_to_num(indentation) / radius, exponent)
+    pressure, force, converged = _pressed(press, np.nan_to_num(indentation) / radius, exponent)
     rise_kPa = (pressure - press.pressure[:, None]) * mu / KPA
-    lost = ~found | np.isnan(indentation).any(axis=1)
+    lost = ~converged | np.isnan(indentation).any(axis=1)
     return np.where(lost, np.nan, lines(indentation, force * mu * radius**2, rise_kPa).sensitivity_kPa_per_N)
 
 
@@ -87,9 +87,9 @@ def _pressed(press: AtlasPress, indentation: Array, exponent: float) -> tuple[Ar
     for column in indentation.T:
         for _ in range(_NEWTON):
             point = press.slices.point(press.k, nu, press.apex - column)
-            room = press.volume(nu) + press.dead
-            gas = press.content / start * (start / room) ** exponent
-            gap, slope = point.pressure + press.ambient - gas, point.by_volume + exponent * gas / room
+            gas_volume = press.volume(nu) + press.dead
+            gas = press.content / start * (start / gas_volume) ** exponent
+            gap, slope = point.pressure + press.ambient - gas, point.by_volume + exponent * gas / gas_volume
             reached = np.abs(gap) <= _CLOSE * (1.0 + gas)
             if reached.all():
                 break

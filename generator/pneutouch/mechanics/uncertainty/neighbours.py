@@ -23,7 +23,7 @@ def neighbourhood() -> Atlas:
     """The shipped atlas with its box opened to nearly all the data it holds.
 
     A sensor pressed to three quarters of R0 lies on the edge of the box, where a smaller radius with the same travel is
-    outside. The survey went on to `AtlasRecipe.beyond` and to walls outside the box, so that its neighbours can be asked for.
+    outside. The survey went on to `AtlasRecipe.beyond` and to walls outside the box, so that its neighbours can be evaluated.
     """
     known = shipped()
     recipe, walls = known.recipe, known.recipe.wall_ratios
@@ -65,14 +65,14 @@ def unit_step(batch: SensorBatch) -> Array:
 
 
 def log_figures(batch: SensorBatch) -> Array:
-    """Natural logarithms of the figures, (figures, n); NaN where there is none. Units as `FIGURES` say."""
+    """Natural logarithms of the figures, (figures, n); NaN where there is none. Units as stated in `FIGURES`."""
     # In order of the wall ratio, because the atlas cuts its tables once for each ratio of a chunk.
     order = np.argsort(batch.wall_ratio, kind="stable")
-    found = respond(batch.take(order), atlas=neighbourhood())
+    response = respond(batch.take(order), atlas=neighbourhood())
     figures = np.empty((len(FIGURES), len(batch)))
     figures[:, order] = [
-        found.lines.sensitivity_kPa_per_N, found.limit_pressure / KPA, found.lines.stiffness, found.lines.force_high,
-        found.range_end, found.apex_outer,
+        response.lines.sensitivity_kPa_per_N, response.limit_pressure / KPA, response.lines.stiffness, response.lines.force_high,
+        response.range_end, response.apex_outer,
     ]  # fmt: skip
     with np.errstate(invalid="ignore", divide="ignore"):
         logs = np.log(figures)

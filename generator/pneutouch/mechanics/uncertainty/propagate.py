@@ -27,7 +27,7 @@ _NOTHING = 1e-6
 class Budget:
     """Uncertainties of the figures of n sensors.
 
-    Everything is reckoned in natural logarithms: a figure lies between value / exp(k u) and value * exp(k u). For small u
+    Everything is computed in natural logarithms: a figure lies between value / exp(k u) and value * exp(k u). For small u
     that is value +- k u value; for wide ones it keeps positive quantities positive.
 
     Attributes:
@@ -86,14 +86,14 @@ class Budget:
 
 def propagate(batch: SensorBatch, sources: list[UncertaintySource]) -> Budget:
     """Combine the sources of n sensors through the atlas; they are taken as independent of one another."""
-    found = derivatives(batch, *_by_input(batch, sources))
-    variances = _variances(sources, found.slopes)
-    linear = np.sqrt(_variances(sources, found.local).sum(axis=0))
+    slopes_of = derivatives(batch, *_by_input(batch, sources))
+    variances = _variances(sources, slopes_of.slopes)
+    linear = np.sqrt(_variances(sources, slopes_of.local).sum(axis=0))
     freedom = np.array([source.freedom for source in sources])
     total = variances.sum(axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):
         effective = total**2 / (variances**2 / freedom[:, None, None]).sum(axis=0)
-    return Budget(tuple(sources), found, variances, linear, np.where(np.isnan(effective), np.inf, effective))
+    return Budget(tuple(sources), slopes_of, variances, linear, np.where(np.isnan(effective), np.inf, effective))
 
 
 def _variances(sources: list[UncertaintySource], slopes: Array) -> Array:

@@ -1,4 +1,4 @@
-"""What a press, a hold and a loop of every state say, in figures."""
+"""Figures of a press, a hold and a loop of every state."""
 
 from __future__ import annotations
 
@@ -67,17 +67,17 @@ class ViscousRuns:
 def describe(sensor: Sensor, material: Material, driving_pressures: Sequence[float], depth: float) -> ViscousRuns:
     """Press a sensor at driving pressures (MPa) to a depth (mm) in every series of its resin.
 
-    The sensor and its resin must be such that `known.unknown` has nothing to say. A series whose relaxed modulus leaves the
+    The sensor and its resin must be such that `known.unknown` returns None. A series whose relaxed modulus leaves the
     atlas, where the file gives the instantaneous one, is left out.
     """
     kept, held, loops = [], [], []
     for series in prony_series(material):
-        own = relaxed(sensor, material, series)
-        if outside_atlas(own) is not None:
+        relaxed_sensor = relaxed(sensor, material, series)
+        if outside_atlas(relaxed_sensor) is not None:
             continue
         kept.append(series.source)
-        held.append(relaxation(own, [series], driving_pressures, depth, RAMP_SPEED))
-        loops.append({v: loop(own, [series], driving_pressures, depth, v) for v in LOOP_SPEEDS})
+        held.append(relaxation(relaxed_sensor, [series], driving_pressures, depth, RAMP_SPEED))
+        loops.append({v: loop(relaxed_sensor, [series], driving_pressures, depth, v) for v in LOOP_SPEEDS})
     states = range(len(driving_pressures))
     return ViscousRuns(
         tuple(kept), tuple(driving_pressures), depth, [[one[i][0] for one in held] for i in states],
@@ -116,9 +116,9 @@ def _held(run: RelaxationRun) -> dict[str, Any]:
 
 
 def _looped(run: LoopRun) -> dict[str, Any]:
-    found, ended = run.hysteresis(), {} if run.ended is None else {"ended": run.ended}
-    if found is None:
+    hysteresis, ended = run.hysteresis(), {} if run.ended is None else {"ended": run.ended}
+    if hysteresis is None:
         return ended
     return {
-        "width_percent": 100 * found[0], "area_percent": 100 * found[1], "contact_lost_at_mm": run.contact_lost, **ended,
+        "width_percent": 100 * hysteresis[0], "area_percent": 100 * hysteresis[1], "contact_lost_at_mm": run.contact_lost, **ended,
     }  # fmt: skip

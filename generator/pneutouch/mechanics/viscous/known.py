@@ -1,4 +1,4 @@
-"""Whether anything can be said of a resin's relaxation and of its ageing."""
+"""Whether a resin's relaxation and its ageing are known."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ AGED = (
 
 
 def unknown(sensor: Sensor, material: Material, model: str) -> str | None:
-    """Why nothing can be said of relaxation and hysteresis, or None where it can."""
+    """Why relaxation and hysteresis cannot be predicted, or None where they can."""
     if not material.relaxation:
         return f"no relaxation data for {material.title}; no other resin's are put in their place"
     if model == "membrane":
@@ -39,7 +39,7 @@ def ageing_unknown(material: Material) -> str | None:
 
 
 def ageing_ratio(material: Material) -> float:
-    """Shear modulus after a year in light and air over the fresh one, by hardness; `AGED` says what that assumes.
+    """Shear modulus after a year in light and air over the fresh one, by hardness; `AGED` states the assumptions.
 
     Raises InputError for a resin of which it is not known.
     """

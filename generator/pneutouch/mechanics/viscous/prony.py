@@ -16,7 +16,7 @@ _SHORT = 1.0e-4
 
 @dataclass(frozen=True)
 class Prony:
-    """G(t)/G_0 = 1 - sum of ``shares`` (1 - exp(-t/``times``)), times in s; ``source`` says whose it is."""
+    """G(t)/G_0 = 1 - sum of ``shares`` (1 - exp(-t/``times``)), times in s; ``source`` names its origin."""
 
     shares: tuple[float, ...]
     times: tuple[float, ...]
@@ -65,6 +65,6 @@ def prony_series(material: Material) -> tuple[Prony, ...]:
 
 
 def relaxed(sensor: Sensor, material: Material, series: Prony) -> Sensor:
-    """A sensor with its relaxed modulus, where that of its resin's file is relaxed or instantaneous as the file says."""
+    """A sensor with its relaxed modulus, where that of its resin's file is relaxed or instantaneous as the file states."""
     share = series.relaxed_share if material.shear_modulus_is == "instantaneous" else 1.0
     return sensor.replace(shear_modulus=share * sensor.wall.shear_modulus)

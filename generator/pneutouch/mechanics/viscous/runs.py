@@ -30,7 +30,7 @@ _RAMP_STEPS, _LOOP_STEPS = 30, 48
 class RelaxationRun:
     """A sensor pressed evenly to a depth and held: force (N) and pressure rise (MPa) over times (s) since the ramp's end.
 
-    ``ended`` says where the run could not be followed further, with what is known before; None where it was followed.
+    ``ended`` states where the run could not be followed further, with what is known before; None where it was followed.
     """
 
     times: Array
@@ -55,9 +55,9 @@ class RelaxationRun:
 class LoopRun:
     """A sensor pressed evenly to a depth and let go: indentation (mm), force (N), pressure rise (MPa) in and out.
 
-    ``contact_lost`` is the plate travel (mm) at which the dome no longer follows the plate on its way out, where the loop
-    ends; None where it follows to the end. ``ended`` says where the run could not be followed further, or None; one that
-    does not reach its depth has no way out.
+    ``contact_lost`` is the plate travel (mm) at which the dome no longer follows the plate while it retracts, where the loop
+    ends; None where it follows to the end. ``ended`` states where the run could not be followed further, or None; one that
+    does not reach its depth has no retraction.
     """
 
     indentation_in: Array
@@ -70,13 +70,13 @@ class LoopRun:
     ended: str | None = None
 
     def hysteresis(self) -> tuple[float, float] | None:
-        """Both usual measures, see `response.hysteresis`; None where there is no way out."""
+        """Both usual measures, see `response.hysteresis`; None where there is no retraction."""
         if self.force_out.size < 2:
             return None
         return hysteresis(self.force_in, self.rise_in, self.force_out, self.rise_out)
 
     def energy_loss(self) -> float | None:
-        """Share of the plate's work that does not come back; None where there is no way out."""
+        """Share of the plate's work that does not come back; None where there is no retraction."""
         if self.force_out.size < 2:
             return None
         spent = np.trapezoid(self.force_in, self.indentation_in)
@@ -92,7 +92,7 @@ def relaxation(
     The sensor's modulus is the relaxed one and the sensor lies inside the atlas (`atlas_states.outside_atlas`).
     """
     share = np.linspace(0.0, 1.0, steps + 1)
-    # The history is taken as even between times: those between the ones asked for must not be left out.
+    # The history is taken as even between times: those between the requested ones must not be left out.
     between = (
         HOLD_TIMES
         if times[-1] <= HOLD_TIMES[-1]
@@ -106,10 +106,10 @@ def relaxation(
     runs = []
     for i in range(force.shape[0]):
         known, ended = _sound(press, path, i)
-        asked = steps + 1 + np.searchsorted(waits, times)
-        asked = asked[asked < known]
+        requested = steps + 1 + np.searchsorted(waits, times)
+        requested = requested[requested < known]
         where = None if ended is None else f"{ended} at {travel[known]:.2f} mm"
-        runs.append(RelaxationRun(times[: asked.size], force[i, asked], rise[i, asked], where))
+        runs.append(RelaxationRun(times[: requested.size], force[i, requested], rise[i, requested], where))
     return _by_state(runs, len(series))
 
 

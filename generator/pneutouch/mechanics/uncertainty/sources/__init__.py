@@ -23,11 +23,11 @@ def sources(
     """Sources that count for at least one figure of one sensor; see `budget` for the arguments."""
     size = len(batch)
     near = np.broadcast_to(np.asarray(near_paper, dtype=bool), size)
-    found = [
-        *modulus_sources(material, near & bool(errors.own)),
+    source_list = [
+        *modulus_sources(material, near & bool(errors.resin_errors)),
         *build_sources(batch, printer),
         *(ageing_sources(material, size) if aged else []),
         *model_sources(near, errors),
         *numerical_sources(size, numerical),
     ]
-    return [source for source in found if source.counts.any()]
+    return [source for source in source_list if source.counts.any()]

@@ -1,4 +1,4 @@
-"""How sure the print and its surroundings are: wall, radius, air behind the cavity, weather, driving pressure."""
+"""The uncertainty of the print and its surroundings: wall, radius, air behind the cavity, weather, driving pressure."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _ROOT = np.sqrt(3.0)
 def build_sources(batch: SensorBatch, printer: Printer) -> list[UncertaintySource]:
     """Sources on dimensions, dead volume, ambient and driving pressure of n sensors from one printer."""
     accuracy = printer.accuracy_mm.nominal
-    said = (
+    origin = (
         f"{printer.title}, +-{accuracy:g} mm, even between its bounds (JCGM 100, 4.3.7): {printer.accuracy_mm.source}"
     )
     bore = 2.0 * BORE_TOLERANCE / BORE
@@ -44,10 +44,10 @@ def build_sources(batch: SensorBatch, printer: Printer) -> list[UncertaintySourc
         return UncertaintySource(name, acts_on, standard, shape, counting(len(batch)), origin, known)
 
     return [
-        source("wall thickness", "wall_thickness", accuracy / _ROOT / batch.wall_thickness, "rectangular", said, True),
+        source("wall thickness", "wall_thickness", accuracy / _ROOT / batch.wall_thickness, "rectangular", origin, True),
         source(
             "inner radius", "inner_radius", 0.5 * accuracy / _ROOT / batch.inner_radius, "rectangular",
-            f"half of the diameter's: {said}", True,
+            f"half of the diameter's: {origin}", True,
         ),
         source(
             "tube bore", "dead_volume", bore / _ROOT * np.abs(batch.dead_volume), "rectangular",
@@ -61,7 +61,7 @@ def build_sources(batch: SensorBatch, printer: Printer) -> list[UncertaintySourc
         source(
             "weather", "ambient_pressure", WEATHER / _LIMITS / batch.ambient_pressure, "normal",
             "960 to 1050 mbar at sea level (San Francisco State University, Geosciences M301), read as three standard "
-            "deviations either way; the height of the place is not in it",
+            "deviations to either side; the height of the place is not in it",
             True,
         ),
         source(

@@ -1,4 +1,4 @@
-"""How sure the model itself is: its errors against the paper's Table S1, and the numbers' own error."""
+"""The uncertainty of the model itself: its errors against the paper's Table S1, and the numbers' own error."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ It leaves out FLX9995-DM, which reads twice too sensitive for a reason not known
 class ModelErrors:
     """Relative errors of the sensitivity against Table S1: of the resin itself, and of all resins of the pool."""
 
-    own: tuple[float, ...] = ()
+    resin_errors: tuple[float, ...] = ()
     pool: tuple[float, ...] = ()
     left_out: tuple[str, ...] = ()
 
@@ -34,10 +34,10 @@ class ModelErrors:
 def model_errors(material: Material, materials: Iterable[Material]) -> ModelErrors:
     """The atlas on the paper's sensor against Table S1, in every resin of ``materials`` that was measured."""
     others = list(materials)
-    own, *rest = table_s1_errors([material, *others])
+    resin_errors, *rest = table_s1_errors([material, *others])
     pool = [error for errors in rest if not _unexplained(errors) for error in errors]
     out = [other.title for other, errors in zip(others, rest, strict=True) if _unexplained(errors)]
-    return ModelErrors(own, tuple(pool), tuple(out))
+    return ModelErrors(resin_errors, tuple(pool), tuple(out))
 
 
 def table_s1_errors(materials: list[Material]) -> list[tuple[float, ...]]:
@@ -45,8 +45,8 @@ def table_s1_errors(materials: list[Material]) -> list[tuple[float, ...]]:
     known = [(m.measured, batch_of(material_sensor(m), [0.0, 22.0 * KPA])) for m in materials if m.measured is not None]
     if not known:
         return [() for _ in materials]
-    found = iter(respond(joined([batch for _, batch in known])).lines.sensitivity_kPa_per_N.reshape(-1, 2))
-    return [() if m.measured is None else _against(m.measured, next(found)) for m in materials]
+    source_list = iter(respond(joined([batch for _, batch in known])).lines.sensitivity_kPa_per_N.reshape(-1, 2))
+    return [() if m.measured is None else _against(m.measured, next(source_list)) for m in materials]
 
 
 def _against(measured: PaperMeasurements, sensitivity: Array) -> tuple[float, ...]:
@@ -69,34 +69,34 @@ def model_sources(near: Flags, errors: ModelErrors) -> list[UncertaintySource]:
 
     A resin left out of the pool keeps its own error everywhere. Nothing of the kind is known for the other figures.
     """
-    own = (near | _unexplained(errors.own)) & bool(errors.own)
+    resin_errors = (near | _unexplained(errors.resin_errors)) & bool(errors.resin_errors)
     left = f", without {', '.join(errors.left_out)}" if errors.left_out else ""
     cases = (
-        ("model", own, errors.own, "this resin's {n} cells of the paper's Table S1; they hold the error of its modulus"),
+        ("model", resin_errors, errors.resin_errors, "this resin's {n} cells of the paper's Table S1; they hold the error of its modulus"),
         (
-            "model", ~own, errors.pool,
+            "model", ~resin_errors, errors.pool,
             f"all {{n}} cells of the paper's Table S1{left}: the best that is known away from the paper's sensor; they "
             "hold errors of moduli too, which so count in part twice",
         ),
     )  # fmt: skip
-    found = []
+    source_list = []
     for name, rows, known, origin in cases:
         if rows.any() and known:
             standard: Array = np.full(near.size, _spread(known))
             counts = counting(near.size, only=(SENSITIVITY,)) & rows
             origin = f"{_spread(known):.1%} root mean square against " + origin.format(n=len(known))
-            found.append(UncertaintySource(name, FIGURE, standard, "lognormal", counts, origin, True, len(known)))
-    return found
+            source_list.append(UncertaintySource(name, FIGURE, standard, "lognormal", counts, origin, True, len(known)))
+    return source_list
 
 
 def numerical_sources(size: int, numerical: Mapping[str, float]) -> list[UncertaintySource]:
     """Discretisation and interpolation: greatest relative errors by figure. Raises InputError for an unknown figure."""
-    found = []
+    source_list = []
     for name, greatest in numerical.items():
         if name not in FIGURES:
             raise InputError(f"numerical error of {name!r}: no such figure; there are {', '.join(FIGURES)}")
-        found.append(UncertaintySource(
+        source_list.append(UncertaintySource(
             "numerical", FIGURE, np.full(size, greatest / np.sqrt(3.0)), "rectangular",
             counting(size, only=(FIGURES.index(name),)), f"greatest error found, {greatest:.2g} of {name}", True,
         ))  # fmt: skip
-    return found
+    return source_list

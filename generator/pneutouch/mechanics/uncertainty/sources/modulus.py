@@ -1,4 +1,4 @@
-"""How sure the shear modulus is: between prints, between laboratories, and as the resin ages."""
+"""The uncertainty of the shear modulus: between prints, between laboratories, and as the resin ages."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def _filled(value: float, size: int) -> Array:
 def modulus_sources(material: Material, validated: Flags) -> list[UncertaintySource]:
     """Sources on the shear modulus of n sensors in one resin.
 
-    ``validated``, (n,), says where the model's error on a sensor was measured in this resin: that error contains the
+    ``validated``, (n,), states where the model's error on a sensor was measured in this resin: that error contains the
     error of the published modulus, so the published range does not count there for the sensitivity.
     """
     modulus = material.shear_modulus_MPa

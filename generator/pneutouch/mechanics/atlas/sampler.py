@@ -65,14 +65,14 @@ class Equilibrium:
         return self.state.energy - self.state.filling.energy
 
 
-class SurveyedPress(NamedTuple):
+class SampledPress(NamedTuple):
     """States of one press with trapped gas, and whether it ended before the greatest depth."""
 
     path: list[Equilibrium]
     ended: bool
 
 
-class Surveyor:
+class AtlasSampler:
     """Steps from equilibrium to equilibrium of one dome with R0 = mu = 1."""
 
     def __init__(self, wall_ratio: float, recipe: AtlasRecipe) -> None:
@@ -92,46 +92,46 @@ class Surveyor:
         below = [s for s in run.states if s.volume <= volume * (1 + 1e-12)]
         if nu == 0.0:
             return below[0]
-        found = at_volume(self.solid, below[-1:], volume)
-        if isinstance(found, NewtonFailure):
-            raise ComputationError(f"t0/R0 = {self.solid.wall:g}, nu = {nu:g}: {found.why}")
-        return found
+        solution = at_volume(self.solid, below[-1:], volume)
+        if isinstance(solution, NewtonFailure):
+            raise ComputationError(f"t0/R0 = {self.solid.wall:g}, nu = {nu:g}: {solution.why}")
+        return solution
 
     def volume(self, nu: float) -> float:
-        """Cavity volume at a share of the way to the limit point."""
+        """Cavity volume at a share of that at the limit point."""
         return self.rest.volume + nu * (self.limit.volume - self.rest.volume)
 
     def touching(self, free: FreeState) -> Equilibrium:
         """A free state with the plate at its apex."""
-        found = self._solve(free.unit.x, free.volume, free.outer_apex, free.pressure)
-        if found is None:
+        solution = self._solve(free.unit.x, free.volume, free.outer_apex, free.pressure)
+        if solution is None:
             raise ComputationError(f"t0/R0 = {self.solid.wall:g}: no equilibrium at first contact")
-        return found
+        return solution
 
     def _solve(self, guess: Array, volume: float, height: float, pressure: float) -> Equilibrium | None:
         plate = Plate(height, np.inf, self.solid.contact.longest)
         for hold in _HOLDS:
             scene = SolidScene(self.solid, Liquid(volume + pressure / hold, hold), plate)
-            found = minimise(scene, guess)
-            if not isinstance(found, NewtonFailure):
-                return self._equilibrium(scene, found.state, height)
+            solution = minimise(scene, guess)
+            if not isinstance(solution, NewtonFailure):
+                return self._equilibrium(scene, solution.state, height)
         return None
 
     def _equilibrium(self, scene: SolidScene, state: SolverState, height: float) -> Equilibrium:
         solid, touch, contact = self.solid, state.touch, self.solid.contact
         assert touch is not None
         active = np.where(touch.traction > 0.0, -contact.stiffness, 0.0)
-        way = stability(scene, state, solid.push(contact.force(active, touch.slope)))
-        stiffness = 1.0 / float(state.by_volume @ way.soft)
-        by_volume, drift = solid.expand(way.soft) * stiffness, float(state.by_volume @ way.step)
+        answer = stability(scene, state, solid.push(contact.force(active, touch.slope)))
+        stiffness = 1.0 / float(state.by_volume @ answer.soft)
+        by_volume, drift = solid.expand(answer.soft) * stiffness, float(state.by_volume @ answer.step)
         # The hold lets the volume drift as the plate moves; here the derivatives are at a fixed volume.
-        by_height = solid.expand(way.step) - drift * by_volume
+        by_height = solid.expand(answer.step) - drift * by_volume
         mixed = -(state.filling.rate + stiffness) * drift
         r, z = contact.positions(by_height)
         push = -float(np.vdot(contact.weight * active, 1.0 + touch.slope * r - z))
         return Equilibrium(
             state, height, float(np.vdot(contact.weight, touch.traction)), by_height, by_volume,
-            np.array([[stiffness, mixed], [mixed, push]]), way.stable,
+            np.array([[stiffness, mixed], [mixed, push]]), answer.stable,
         )  # fmt: skip
 
     def step(self, a: Equilibrium, volume: float, height: float, halvings: int = _HALVINGS) -> Equilibrium | None:
@@ -146,31 +146,31 @@ class Surveyor:
         middle = self.step(a, a.state.volume + 0.5 * more, a.height + 0.5 * lift, halvings - 1)
         return None if middle is None else self.step(middle, volume, height, halvings - 1)
 
-    def pressed(self, pressure: float, ambient: float) -> SurveyedPress:
+    def pressed(self, pressure: float, ambient: float) -> SampledPress:
         """The states of one press with trapped gas (vented for no ambient pressure) down to where it ends."""
         free = state_at(self.solid, pressure, self.run)
         supply: Supply = Regulator(pressure)
         if ambient > 0.0:
             supply = Gas.filled(pressure, free.volume, ambient, 0.0)
         plate = Plate(free.outer_apex, np.inf, self.solid.contact.longest)
-        walker = PathFollower(self.solid, supply, plate, free.unit.x)
+        follower = PathFollower(self.solid, supply, plate, free.unit.x)
         for depth in self.recipe.survey_depths[1:]:
-            ended = descend(walker, plate.height - depth) is not None
+            ended = descend(follower, plate.height - depth) is not None
             if ended:
                 break
-        return SurveyedPress(
-            [self._equilibrium(spot.scene, spot.state, spot.height) for spot in walker.path[1:]], ended
+        return SampledPress(
+            [self._equilibrium(spot.scene, spot.state, spot.height) for spot in follower.path[1:]], ended
         )
 
-    def reachable(self, found: Equilibrium) -> bool:
+    def reachable(self, solution: Equilibrium) -> bool:
         """Whether a trapped gas can hold the state, started at rest or above with the plate no lower than the box allows.
 
         The stiffest gas starts as full as that depth lets it, with no dead volume and the greatest ambient pressure:
         p + pa = (p1 + pa) V1/V, dp/dV = -(p + pa)/V.
         """
-        volume, pressure, recipe = found.state.volume, found.state.filling.pressure, self.recipe
+        volume, pressure, recipe = solution.state.volume, solution.state.filling.pressure, self.recipe
         apex, volumes = [f.outer_apex for f in self.free], [f.volume for f in self.free]
-        start = max(volume, float(np.interp(found.height + recipe.beyond, apex, volumes)))
+        start = max(volume, float(np.interp(solution.height + recipe.beyond, apex, volumes)))
         first = float(np.interp(start, volumes, [f.pressure for f in self.free]))
         most = (first + recipe.stiffest_gas) * start / volume - recipe.stiffest_gas
         rate = (pressure + recipe.stiffest_gas) / volume
@@ -178,7 +178,7 @@ class Surveyor:
             # Squeezed to so low a pressure, the gas cannot have been that stiff: it must have started at rest or above.
             rate = min(rate, max(pressure, 0.0) / (self.rest.volume - volume) * self.rest.volume / volume)
         lowest = -_SUCTION * self.limit.pressure
-        return lowest <= pressure <= most + 1e-9 and found.stiffness + rate > 0.0
+        return lowest <= pressure <= most + 1e-9 and solution.stiffness + rate > 0.0
 
 
 def _lost(a: Equilibrium, b: Equilibrium) -> float:
