@@ -121,7 +121,7 @@ kind = "{kind}"
     ("length", "kind", "period", "more", "said"),
     [
         (36, "bars", "pitch_mm", "", "must last 9.7"),
-        (60, "gyroid", "cell_mm", "volume_fraction = 0.4", "the scan model knows bars alone"),
+        (60, "gyroid", "cell_mm", "volume_fraction = 0.4", "the scan model covers bars alone"),
     ],
 )
 def test_specimens_that_cannot_be_scanned(tmp_path, length, kind, period, more, said):

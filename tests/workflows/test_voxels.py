@@ -107,7 +107,7 @@ def test_a_full_disk_leaves_nothing_and_keeps_the_earlier_stack(written, stack, 
     assert list(stack.parent.iterdir()) == [stack]
 
 
-def test_somebody_elses_files_are_left_alone(written, stack):
+def test_foreign_files_are_left_alone(written, stack):
     for name in ("notes.txt", "section.png"):
         (stack / name).write_text("mine")
         with pytest.raises(InputError, match=rf"{name} is not of the stack"):

@@ -69,7 +69,7 @@ def test_a_lock_file_of_a_dead_process_holds_nobody(library, tmp_path):
     assert names(tmp_path) == ["sweep.nc"]
 
 
-def test_a_folder_of_somebody_else_is_left_alone(library, tmp_path):
+def test_a_folder_of_another_program_is_left_alone(library, tmp_path):
     (tmp_path / "sweep.nc.parts").mkdir()
     (tmp_path / "sweep.nc.parts/thesis.tex").write_text("mine")
     with pytest.raises(InputError, match=r"holds thesis\.tex"):

@@ -219,7 +219,7 @@ def test_resins_that_do_not_fit_at_once_make_more_jobs(library, tmp_path):
     order = order_of_flags(["agilus-dome"], ["membrane.material=Agilus30,TangoPlus"], 2)
     laid = lay(order, small)
     assert [job.resins for job in laid.jobs] == [("Agilus30",), ("VeroClear",), ("TangoPlus",)] or len(laid.jobs) == 3
-    assert "3 jobs in this order, 2 resins loaded anew" in laid.resin_note
+    assert "3 jobs in this order, 2 resins loaded between" in laid.resin_note
     where = write_tray(laid, tmp_path / "out")
     assert {path.name for path in where.glob("*.3mf")} == {f"agilus-dome-tray-{k}.3mf" for k in (1, 2, 3)}
     assert {path.name for path in where.glob("*.svg")} == {"tray-1.svg", "tray-2.svg", "tray-3.svg"}

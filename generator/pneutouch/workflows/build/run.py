@@ -71,7 +71,7 @@ def build(evaluation: Evaluation, out: Path, progress: Progress = lambda step: N
 
 
 def _sheet(evaluation: Evaluation) -> Datasheet:
-    """What the datasheet is made from; the air and the charts only where the atlas knows the sensor."""
+    """What the datasheet is made from; the air and the charts only where the atlas covers the sensor."""
     prediction, sensor = evaluation.prediction, evaluation.sensor
     sheet = Datasheet(
         evaluation.scene, evaluation.assembly, prediction, evaluation.findings, input_hash(evaluation),

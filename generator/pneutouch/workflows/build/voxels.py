@@ -36,7 +36,7 @@ _SLICE = re.compile(r".*_[0-9]+\.png")
 
 @dataclass(frozen=True)
 class VoxelPlan:
-    """What a stack will be, before it is made: the job, its mode, and what the rules say of it."""
+    """What a stack will be, before it is made: the job, its mode, and the findings on it."""
 
     assembly: Assembly
     job: VoxelJob
@@ -54,7 +54,7 @@ def plan_voxels(
 ) -> VoxelPlan:
     """Plan the stack of the print job that the membrane is in; ``mode`` names a print mode, else it is the design's.
 
-    Raises InputError for an unknown mode and for a mix that nobody knows.
+    Raises InputError for an unknown mode and for a mix of unknown fraction.
     """
     scene = assembly.scene
     printer, _ = assembly.machine("membrane")
@@ -77,7 +77,7 @@ def plan_voxels(
 
 
 def stack_folder(out: Path, name: str) -> Path:
-    """The folder of a design's stack, beside its output folder."""
+    """The folder of a design's stack, next to its output folder."""
     return out / f"{name}-voxels"
 
 
@@ -107,7 +107,7 @@ def write_stack(
 ) -> VoxelSlicer:
     """Slice a job into a hidden folder and rename that to ``folder``. One slice at a time is in memory.
 
-    Raises InputError that names the folder where it cannot be written, the disk is full, or somebody else's files lie
+    Raises InputError that names the folder where it cannot be written, the disk is full, or foreign files lie
     in it; nothing is left behind then, and an earlier stack stays.
     """
     check_stack_folder(folder)
@@ -142,7 +142,7 @@ def write_stack(
 
 
 def check_stack_folder(folder: Path) -> None:
-    """Raise InputError where a stack cannot be written into ``folder`` or somebody else's files lie in it."""
+    """Raise InputError where a stack cannot be written into ``folder`` or foreign files lie in it."""
     if not folder.is_dir() or folder.is_symlink() or not any(folder.iterdir()):
         check_writable(folder)
         return
@@ -154,9 +154,7 @@ def check_stack_folder(folder: Path) -> None:
         (path for path in sorted(folder.iterdir()) if path.name != MANIFEST and not _SLICE.fullmatch(path.name)), None
     )
     if foreign is not None:
-        raise InputError(
-            f"{foreign} is not of the stack that is to be written anew", key="out", remedy="move it elsewhere"
-        )
+        raise InputError(f"{foreign} is not of the stack that is to be replaced", key="out", remedy="move it elsewhere")
 
 
 def _mode(assembly: Assembly, name: str | None) -> Mode:

@@ -24,7 +24,7 @@ RESULTS = "results.toml"
 
 
 def build_coupons(options: CouponOptions, out: Path, library: Library | None = None) -> tuple[Path, dict[str, Any]]:
-    """Write the coupons asked for into ``out/coupons-<printer>/``; the folder and what lies in it, as data.
+    """Write the requested coupons into ``out/coupons-<printer>/``; the folder and what lies in it, as data.
 
     Raises InputError for what is unknown or does not fit the tray, and rather than lose readings in the folder. The same input gives the same bytes.
     """
@@ -64,7 +64,7 @@ def inputs(ordered: CouponOrder) -> dict[str, Any]:
 
 
 def _check_unfilled(folder: Path) -> None:
-    """Refuse to write over a results file that somebody has filled in."""
+    """Refuse to write over a results file that a user has filled in."""
     path = folder / RESULTS
     if not path.is_file():
         return

@@ -13,7 +13,7 @@ from pneutouch.spec.printer import Mode, Printer
 from pneutouch.workflows.coupons.order import CouponItem
 
 MARGIN, SPACING = 5.0, 5.0
-"""mm around the tray, and between bounding boxes: room for a spatula; Objet trays refuse boxes that touch (DOC-37004)."""
+"""mm around the tray, and between bounding boxes: space for a spatula; Objet trays refuse boxes that touch (DOC-37004)."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ def job_mode(printer_name: str, items: tuple[CouponItem, ...]) -> Mode:
         raise InputError(
             f"{names} do not run in one job on the {printer.title}, which holds {printer.resins_at_once} resins",
             file=printer_name,
-            remedy="ask for fewer `material` at a time",
+            remedy="give fewer `material` at a time",
         )
     return mode
 

@@ -55,8 +55,8 @@ def local_curve(
         for point in known
     ]  # fmt: skip
     results.notes.append(
-        f"{pair}: elongation at break was not measured; put elongation_at_break_percent beside the points, or no prediction "
-        "knows when a mixed wall tears"
+        f"{pair}: elongation at break was not measured; add elongation_at_break_percent to the points, or no prediction "
+        "has a break strain of a mixed wall"
     )
     text = head(replace(source, where=Path(source.where).name), "the mixing curve as measured") + toml_text(content)
     return MeasuredProfile(path, text, _changes(path, content, pair, library))
@@ -77,7 +77,7 @@ def _curve(pair: str, soft: str, stiff: str, known: Sequence[MixModulus], source
 
 
 def _changes(path: Path, content: dict[str, Any], pair: str, library: Library) -> list[dict[str, Any]]:
-    """Every point beside what the curve in force before says there."""
+    """Every point, compared with the curve that was in force before."""
     before = None
     if pair in library.paths("mixing"):
         before = mixing(content["soft"], content["stiff"], library)

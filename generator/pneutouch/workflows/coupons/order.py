@@ -1,4 +1,4 @@
-"""Which coupons are asked for, each on its machine and in its material."""
+"""Which coupons are requested, each on its machine and in its material."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ MIXED = ("puck", "dumbbell")
 """Coupons that there are of a mix."""
 
 MIXED_COPIES = 2
-"""Of each fraction: the least that a spread can be told from, two pucks making the 6 mm under the durometer."""
+"""Of each fraction: the least that gives a spread, two pucks making the 6 mm under the durometer."""
 
 
 @dataclass(frozen=True)
 class CouponOptions:
-    """What the user asked for; what is None is chosen."""
+    """What the user requested; what is None is chosen."""
 
     profile: str | None = None
     materials: Sequence[str] = ()
@@ -38,7 +38,7 @@ class CouponOptions:
 class CouponItem:
     """One coupon to print: ``about`` is the material or design that the results file files it under.
 
-    ``blend`` is given where it is of two resins in a known fraction, and then says where it is filed.
+    ``blend`` is given where it is of two resins in a known fraction, and then states where it is filed.
     """
 
     coupon: Coupon
@@ -63,7 +63,7 @@ class CouponItem:
 
 @dataclass(frozen=True)
 class CouponOrder:
-    """Everything to print. ``name`` is the folder's; ``profile`` the printer asked for."""
+    """Everything to print. ``name`` is the folder's; ``profile`` the requested printer."""
 
     name: str
     profile: str
@@ -71,7 +71,7 @@ class CouponOrder:
     items: tuple[CouponItem, ...]
 
     def machines(self) -> dict[str, tuple[CouponItem, ...]]:
-        """Items by printer, the one asked for first."""
+        """Items by printer, the requested one first."""
         names = dict.fromkeys((self.profile, *(item.printer_name for item in self.items)))
         groups = {name: tuple(item for item in self.items if item.printer_name == name) for name in names}
         return {name: items for name, items in groups.items() if items}
@@ -128,7 +128,7 @@ def _families(options: CouponOptions) -> list[Coupon]:
 def _materials(
     options: CouponOptions, scene: ResolvedDesign | None, printer: Printer, profile: str, library: Library
 ) -> list[str]:
-    """As asked; else the design's membrane; else the default resin where the printer runs it, else its first."""
+    """As requested; else the design's membrane; else the default resin where the printer runs it, else its first."""
     if options.materials or options.mixing:
         return list(dict.fromkeys(options.materials))
     if scene is not None and scene.design.print.profile == profile:
@@ -146,7 +146,7 @@ def _materials(
 def _of_mixing(
     options: CouponOptions, profile: str, printer: Printer, families: list[Coupon], library: Library
 ) -> list[CouponItem]:
-    """The mixing set: every fraction of each pair; pucks alone unless dumbbells are asked for, which take a large tray."""
+    """The mixing set: every fraction of each pair; pucks alone unless dumbbells are requested, which take a large tray."""
     chosen = [
         coupon for coupon in families
         if coupon.name in MIXED and (coupon.name in options.only or (not options.only and coupon.name == MIXED[0]))

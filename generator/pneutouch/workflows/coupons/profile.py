@@ -68,7 +68,7 @@ def head(source: ReadingSource, what: str) -> str:
 
 
 def write_profiles(profiles: Sequence[MeasuredProfile]) -> None:
-    """Write every profile beside its place and rename it there. Raises InputError where a folder cannot be written."""
+    """Write every profile to a temporary file in its folder and rename it. Raises InputError where a folder cannot be written."""
     fresh: list[tuple[Path, Path]] = []
     try:
         for profile in profiles:
@@ -102,7 +102,7 @@ def _earlier(path: Path, changes: Sequence[ProfileChange]) -> dict[str, Any]:
 
 
 def check_ours(path: Path, keys: str) -> bool:
-    """Whether there is a file of ours. Raises InputError where it is somebody else's; ``keys`` is what would go into it."""
+    """Whether there is a file that the command wrote. Raises InputError where the file is another; ``keys`` is what would go into it."""
     if not (path.exists() or path.is_symlink()):
         return False
     if path.is_file() and not path.is_symlink() and _is_ours(path):
@@ -115,7 +115,7 @@ def check_ours(path: Path, keys: str) -> bool:
 
 
 def _carry(earlier: dict[str, Any], content: dict[str, Any]) -> None:
-    """Take over the quantities whose source says that a coupon gave them."""
+    """Take over the quantities whose source is a coupon."""
     for key, value in earlier.items():
         if not isinstance(value, dict):
             continue

@@ -40,7 +40,7 @@ def _printing(name: str, pieces: tuple[CouponPiece, ...], order: CouponOrder) ->
     return [
         f"### {printer.title} (`{name}`)", "",
         f"`{order.name if name == order.profile else name}.3mf`: all copies in place, one material an object; mode {mode.name}, "
-        f"{mode.layer_height_um:g} µm. **Choose the material of each object by hand**; pieces of one shape are told apart by "
+        f"{mode.layer_height_um:g} µm. **Choose the material of each object by hand**; pieces of one shape differ by "
         "their place on the tray alone, so bag and label them as they come off.", "",
         "| piece | copies | file | material | size, mm | mass each | middle of each on the tray, mm |",
         "|---|---|---|---|---|---|---|", *rows, "",
@@ -60,7 +60,7 @@ def _mixes(pieces: tuple[CouponPiece, ...]) -> list[str]:
 
 
 def stl_name(piece: CouponPiece, order: CouponOrder) -> str:
-    """File of a piece; that of another machine than the one asked for says which."""
+    """File of a piece; that of another machine than the requested one is named by it."""
     item = piece.item
     return (
         f"{piece.body.name}.stl" if item.printer_name == order.profile else f"{item.printer_name}-{piece.body.name}.stl"

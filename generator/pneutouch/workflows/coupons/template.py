@@ -68,7 +68,7 @@ def _table(item: CouponItem, path: str) -> str:
 
 
 def _settings(model: type[BaseModel]) -> list[str]:
-    """Plain numbers that say how it was measured, at their defaults."""
+    """Plain numbers that state how it was measured, at their defaults."""
     lines = []
     for key, info in model.model_fields.items():
         if isinstance(info.default, float):

@@ -24,7 +24,7 @@ ASSUMPTIONS = (
     "the dome's flat-plate contact, frictionless; uniform pressure over the patch; no inertia, no relaxation",
     "the specimen is linear elastic and bonded to a rigid floor; its bars stand still and its surface is flat: no relief",
     "amplitudes of single patterns are 1.15 to 1.35 times those of finite elements at pitch 6 mm under a small patch and up to 4.4 times at "
-    "3 mm; near a zero of the patch filter they say no more than 'small' (docs/texture.md)",
+    "3 mm; near a zero of the patch filter they mean no more than 'small' (docs/texture.md)",
     f"noise: white, {NOISE / KPA:g} kPa rms a sample unless given, in steps of {STEP / KPA:.4f} kPa: assumed, the paper states none",
     "air at constant temperature (Boyle) with the design's dead volume",
 )
@@ -33,7 +33,7 @@ _DIGITS = 7
 
 
 def document(run: ScanRun) -> dict[str, Any]:
-    """Everything said of a scan; names carry their units."""
+    """All results of a scan; names carry their units."""
     content = {
         "specimen": run.specimen.name, "design": run.design.name, "control": run.options.control,
         "preload_N": run.options.preload, "speed_mm_per_s": run.path.speed, "path_mm": [run.path.start, run.path.end],
@@ -114,7 +114,7 @@ def _state(run: ScanRun, number: int, seen: AnalysedSignal) -> dict[str, Any]:
 
 
 def _detection(run: ScanRun, seen: AnalysedSignal, row: BarRow, detection: Detection | None) -> dict[str, Any]:
-    """One pattern in one signal. Patterns of one pitch share what is found: a spectrum does not tell them apart."""
+    """One pattern in one signal. Patterns of one pitch share one detection: a spectrum does not distinguish them."""
     text: dict[str, Any] = {"name": row.name, "true_frequency_Hz": run.frequencies[row.name]}
     if seen.touch is not None and seen.substrate is not None:
         swing = pressure_amplitude(seen.touch, seen.substrate, row, run.path.control)

@@ -41,7 +41,7 @@ PRESSURES = (0.0, 22.0 * KPA)
 
 @dataclass(frozen=True)
 class ScanOptions:
-    """How a scan was asked for: pressures in MPa, N, mm/s (None: the specimen's), MPa rms, measured signals."""
+    """The options of a scan: pressures in MPa, N, mm/s (None: the specimen's), MPa rms, measured signals."""
 
     pressures: tuple[float, ...] = PRESSURES
     preload: float = PRELOAD
@@ -138,12 +138,12 @@ def load_both(
 
 
 def bars_of(context: ResolvedSpecimen) -> tuple[BarRow, ...]:
-    """The specimen's rows of bars. Raises InputError for layers of another kind, which the scan model does not know."""
+    """The specimen's rows of bars. Raises InputError for layers of another kind, which the scan model does not cover."""
     rows = []
     for number, layer in enumerate(context.specimen.layer):
         if not isinstance(layer, Bars):
             problem, remedy = (
-                "the scan model knows bars alone",
+                "the scan model covers bars alone",
                 (
                     "with `data`, measured signals of any specimen can be read against a specimen of bars with the same pitches"
                 ),
@@ -197,7 +197,7 @@ def check_options(options: ScanOptions) -> None:
 
 
 def _check_length(context: ResolvedSpecimen, scan_path: ScanPath, frequencies: dict[str, float]) -> None:
-    """Refuse a path too short to tell a pattern's frequency, in terms of the specimen."""
+    """Refuse a path too short to resolve a pattern's frequency, in terms of the specimen."""
     lasts = (scan_path.end - scan_path.start) / scan_path.speed
     for name, frequency in frequencies.items():
         needed = least_duration(frequency)

@@ -1,4 +1,4 @@
-"""Which dome tells two patterns of a specimen apart: candidates over radius, wall, resin and driving pressure."""
+"""Which dome distinguishes two patterns of a specimen: candidates over radius, wall, resin and driving pressure."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def parse_patterns(text: str) -> tuple[BarPattern, BarPattern]:
         raise InputError("a pitch must be more than 0 mm", key="separate", value=text)
     if (a, b) == (c, d):
         raise InputError(
-            "both patterns are the same", key="separate", value=text, remedy="there is nothing to tell apart"
+            "both patterns are the same", key="separate", value=text, remedy="there is nothing to distinguish"
         )
     return BarPattern(a, b), BarPattern(c, d)
 
@@ -60,7 +60,7 @@ def separating(
     specimen: str, design: str | DesignSource, text: str, options: ScanOptions, changes: Changes | None = None,
     library: Library | None = None,
 ) -> dict[str, Any]:  # fmt: skip
-    """The domes that best tell two patterns apart, as a document; the specimen gives matrix and speed, the design the rest."""
+    """The domes that best distinguish two patterns, as a document; the specimen gives matrix and speed, the design the rest."""
     library = library or Library.default()
     check_options(options)
     patterns = parse_patterns(text)
@@ -90,7 +90,7 @@ def _dome(domes: DomeCandidates, separation: Separation, k: int) -> dict[str, An
 
 
 def candidates(scene: ResolvedDesign, sensor: Sensor, library: Library) -> DomeCandidates:
-    """A grid over the resins that the design's printer runs and the atlas knows, wall ratio, radius and pressure."""
+    """A grid over the resins that the design's printer runs and the atlas covers, wall ratio, radius and pressure."""
     recipe, feature = shipped().recipe, scene.printer.smallest.wall("elastomer")
     least = feature.least or feature.recommended
     resins = {
@@ -99,7 +99,7 @@ def candidates(scene: ResolvedDesign, sensor: Sensor, library: Library) -> DomeC
         and alone.wall.poisson_ratio == recipe.poisson_ratio and sensor.gas.ambient_pressure <= recipe.stiffest * alone.wall.shear_modulus
     }  # fmt: skip
     if not resins:
-        raise InputError(f"{scene.where}: print.profile: the {scene.printer.title} runs no resin that the atlas knows")
+        raise InputError(f"{scene.where}: print.profile: the {scene.printer.title} runs no resin that the atlas covers")
     ratios = np.geomspace(recipe.thinnest, recipe.thickest, _RATIOS)
     mu = np.array([alone.wall.shear_modulus for alone in resins.values()])
     resin, ratio, radius, share = _grid(

@@ -23,7 +23,7 @@ _SIZE = (130.0, 90.0)
 """Width and height of a chart, mm."""
 
 _DESIGNS = 5
-"""Designs marked on the trade-off, and resins drawn beside the chosen one on the tuning chart."""
+"""Designs marked on the trade-off, and resins compared with the chosen one on the tuning chart."""
 
 
 def write_charts(
@@ -99,7 +99,7 @@ def _spot(rank: int, choice: Candidate) -> ChartPoint:
 
 
 def _write(path: Path, text: str) -> Path:
-    """Write a file beside its place and rename it into it."""
+    """Write a temporary file in the same folder and rename it."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)

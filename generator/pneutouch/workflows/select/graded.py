@@ -1,4 +1,4 @@
-"""A graded selection: a target that no constant mix meets to a grade that does, beside the constant ones of its size."""
+"""A graded selection: for a target that no constant mix meets, a grade that does, and the constant mixes of its size."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def select_graded(
     target: Target, where: str, library: Library | None = None, progress: Progress = lambda trial, done, most: None,
     trials: int | None = None,
 ) -> GradedSelectionRun:  # fmt: skip
-    """Answer a target that asks for a grade. Raises InputError where it names what there is not.
+    """Answer a target that requires a grade. Raises InputError where it names what there is not.
 
     ``where`` names the file in messages; ``trials`` bounds the solid solves of the search.
     """
@@ -155,7 +155,7 @@ def _catalogue(
 def _nearest(
     grade_target: GradeTarget, problem: SelectionProblem, pair: ResinPair, sensor: Sensor, search: GradeSearch
 ) -> UniformMembrane:
-    """The constant mix nearest to the wish: found by the atlas, else the nearest of those tried; solved by the solid."""
+    """The constant mix nearest to the target: by the atlas, else the nearest of those tried; solved by the solid."""
     middle, recipe = problem.resins[0].material, shipped().recipe
     fraction = None
     soft = float(pair.law.modulus_at(np.array(0.0)))

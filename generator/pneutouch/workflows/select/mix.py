@@ -33,7 +33,7 @@ class ResinPair:
 
     @property
     def name(self) -> str:
-        """``SOFT+STIFF``, as it is asked for."""
+        """``SOFT+STIFF``, as a target names it."""
         return f"{self.soft}+{self.stiff}"
 
     def grade(self, *fractions: float) -> Grade:
@@ -58,7 +58,7 @@ class ResinPair:
 def pair_of(name: str, printer: Printer, library: Library, where: str, named: bool = True) -> ResinPair:
     """The pair of ``SOFT+STIFF``. Raises InputError where a name is unknown or the printer does not hold both.
 
-    ``asked`` says whether the user named the pair.
+    ``named`` is whether the user named the pair.
     """
     soft, stiff = (part.strip() for part in name.split("+"))
     pair = ResinPair(soft, stiff, mixing(soft, stiff, library, file=where, key="given.mix"), library, where)
@@ -74,13 +74,13 @@ def pair_of(name: str, printer: Printer, library: Library, where: str, named: bo
 def mix_resins(
     pair: ResinPair, ambient_pressure: float, recipe: AtlasRecipe
 ) -> tuple[tuple[CandidateResin, ...], dict[str, str]]:
-    """Mixes of a pair that the atlas knows, and why the others are left out."""
+    """Mixes of a pair that the atlas covers, and why the others are left out."""
     resins, out = [], {}
     for fraction in levels(pair.law):
         resin = pair.resin(round(float(fraction), 4))
         sensor = material_sensor(resin.material)
         if sensor.wall.law is not None or sensor.wall.poisson_ratio != recipe.poisson_ratio:
-            out[resin.name] = "the atlas knows neither its law nor its Poisson ratio"
+            out[resin.name] = "the atlas covers neither its law nor its Poisson ratio"
         elif ambient_pressure > recipe.stiffest * sensor.wall.shear_modulus:
             out[resin.name] = "it is too soft for the atlas in so high an ambient pressure"
         else:

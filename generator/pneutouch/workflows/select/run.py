@@ -35,14 +35,14 @@ from pneutouch.units import KPA
 from pneutouch.workflows.select.mix import USUAL, ResinPair, mix_resins, pair_of
 
 _CONFIRMED = 3
-"""Designs that the solid is asked about."""
+"""Designs that are confirmed by the solid."""
 _DEAD_VOLUMES = 8
 """Radii at which the connector is drawn for its dead volume; between them it is straight."""
 
 
 @dataclass(frozen=True)
 class Confirmation:
-    """What the solid says of a design: sensitivity (kPa/N) and whether it lies within the stated uncertainty."""
+    """The result of the solid for a design: sensitivity (kPa/N) and whether it lies within the stated uncertainty."""
 
     sensitivity_kPa_per_N: float
     within: bool
@@ -177,7 +177,7 @@ def _some_resin(target: Target, where: str, library: Library) -> str:
 def _resins(
     target: Target, where: str, scene: ResolvedDesign, sensor: Sensor, library: Library
 ) -> tuple[tuple[CandidateResin, ...], dict[str, str]]:
-    """Resins the printer runs and the atlas knows, and why the others are left out."""
+    """Resins the printer runs and the atlas covers, and why the others are left out."""
     known = library.all("materials", Material)
     names = target.given.materials or sorted(name for name, m in known.items() if m.kind == "elastomer")
     recipe, resins, out = shipped().recipe, [], {}
@@ -187,7 +187,7 @@ def _resins(
         if scene.printer.mode_for(material) is None:
             out[name] = f"the {scene.printer.title} cannot run it"
         elif alone.wall.law is not None or alone.wall.poisson_ratio != recipe.poisson_ratio:
-            out[name] = "the atlas knows neither its law nor its Poisson ratio"
+            out[name] = "the atlas covers neither its law nor its Poisson ratio"
         elif sensor.gas.ambient_pressure > recipe.stiffest * alone.wall.shear_modulus:
             out[name] = "it is too soft for the atlas in so high an ambient pressure"
         else:
@@ -263,7 +263,7 @@ def _like(sensor: Sensor, batch: SensorBatch, i: int) -> Sensor:
 
 
 def _confirm(selection: SelectionRun, choice: Candidate) -> Confirmation:
-    """The solid's sensitivity beside the atlas's."""
+    """The solid's sensitivity, compared with that of the atlas."""
     from pneutouch.mechanics.solid_states import solid_result
 
     figures = solid_result(selection.sensor_of(choice), choice.pool.pressure).states[0].figures

@@ -43,7 +43,7 @@ def _body(body: StoredBody) -> dict[str, Any]:
 
 
 def _recipe(package: Package) -> dict[str, Any]:
-    """The recipe with the versions and the input hash that stand beside it; nothing is computed from it."""
+    """The recipe with the versions and the input hash that are stored with it; nothing is computed from it."""
     recipe = read_recipe(package)
     return {
         **recipe.document(),

@@ -35,7 +35,7 @@ def build_specimen(
     name: str, out: Path, changes: Changes | None = None, library: Library | None = None,
     progress: Progress = lambda step: None,
 ) -> tuple[Path, list[Finding]]:  # fmt: skip
-    """Write everything a specimen, by name or path, gives into ``out/<name>/``; that folder and what the rules say.
+    """Write everything a specimen, by name or path, gives into ``out/<name>/``; that folder and the findings.
 
     Raises InputError for what cannot be, RuleBrokenError, with nothing written, where a rule is broken. The same input
     gives the same bytes.
@@ -57,7 +57,7 @@ def build_specimen(
 def check_specimen(
     name: str, changes: Changes | None = None, library: Library | None = None, *, deep: bool = False
 ) -> list[Finding]:
-    """What the print rules say of a specimen, and pymeshlab too where it is asked. Raises InputError for what cannot be."""
+    """The findings of the print rules on a specimen; with ``deep`` those of pymeshlab too. Raises InputError for what cannot be."""
     drawn = draw(load_specimen(name, changes, library))
     checked = findings(drawn)
     if deep:

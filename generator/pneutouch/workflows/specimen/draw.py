@@ -99,7 +99,7 @@ def _frame(scene: ResolvedSpecimen, frame: FramePlate, material: Material, bodie
     least = smallest.wall(material.kind).least or smallest.wall(material.kind).recommended
     if land < least:
         raise InputError(
-            f"{where}: frame.hole_diameter_mm = {frame.hole_diameter_mm:g}: leaves {land:.3g} mm beside the hole; it must be at most "
+            f"{where}: frame.hole_diameter_mm = {frame.hole_diameter_mm:g}: leaves {land:.3g} mm next to the hole; it must be at most "
             f"{frame.border_mm - 2 * least:.3g} mm, or raise frame.border_mm"
         )
     letters, depth = _letters(scene, frame)
@@ -125,7 +125,7 @@ def _letters(scene: ResolvedSpecimen, frame: FramePlate) -> tuple[list[Array], f
     free = scene.block.high[0]
     if high - low > free or top - bottom > space or space < 2.0:
         raise InputError(
-            f"{scene.where}: frame.mark = {frame.mark!r}: {high - low:.1f} x {top - bottom:.1f} mm have no room on {free:g} x {space:g} mm; "
+            f"{scene.where}: frame.mark = {frame.mark!r}: {high - low:.1f} x {top - bottom:.1f} mm do not fit on {free:g} x {space:g} mm; "
             "take fewer letters, or raise frame.border_mm"
         )
     if frame.thickness_mm - depth < least:

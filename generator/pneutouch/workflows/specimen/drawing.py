@@ -19,7 +19,7 @@ _WIDTH = 180.0
 """Of the drawing, mm."""
 
 _ASIDE = 0.011
-"""The section is taken this far (mm) beside the middle, so that it runs along no face of a lattice."""
+"""The section is taken this far (mm) off the middle, so that it runs along no face of a lattice."""
 
 _LINE = 5.0
 """Height of a line of the table, mm."""

@@ -17,7 +17,7 @@ OPEN = frozenset({"holes", "channels", "gaps", "hollows", "cleaning", "emboss", 
 """Rules on open space: what one body leaves open another one fills, so they look at the block as a whole."""
 
 BONDED = frozenset({"walls", "pins"})
-"""Rules on free-standing features: here they are bonded to the other resin, which the limits do not know."""
+"""Rules on free-standing features: here they are bonded to the other resin, which the limits do not include."""
 
 _MOST_CHECKED = 40_000
 """Indices of a body up to which it is measured by rays; beyond it a minute and more."""
@@ -26,7 +26,7 @@ _JOB = "specimen"
 
 
 def findings(drawn: SpecimenBodies) -> list[Finding]:
-    """What the rules say of the bodies, and of the block with its frame as one."""
+    """The findings on the bodies, and on the block with its frame as one."""
     alone = [
         _bonded(finding)
         for finding in check(bodies_of(drawn))

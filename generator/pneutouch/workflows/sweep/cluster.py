@@ -31,14 +31,14 @@ def on_cluster(study: SweepStudy, chunks: list[SweepChunk], address: str) -> Ite
     """Compute chunks on the cluster of a scheduler; records come in the order in which chunks are done.
 
     A chunk whose worker is lost is computed again elsewhere by Dask. Raises InputError where there is no cluster
-    that can do this work, ComputationError where it is lost on the way.
+    that can do this work, ComputationError where the connection is lost.
     """
     try:
         with _connected(address) as client:
             yield from _computed(client, study, chunks, address)
     except PneutouchError:
         raise
-    # Dask says that its scheduler is gone by whatever it was doing at that moment: a dozen kinds of error.
+    # Where its scheduler is gone, Dask raises an error of whatever it was doing: a dozen kinds.
     except (Exception, CancelledError) as error:
         raise ComputationError(
             f"the connection was lost ({type(error).__name__})", key="scheduler", value=address
@@ -74,7 +74,7 @@ def compute_there(chunk: SweepChunk, files: dict[str, str], version: str) -> lis
 
 
 def _result(future: Any, address: str) -> list[Record]:
-    """A chunk's records; what went wrong on the way, in words."""
+    """A chunk's records; raises what went wrong, in words."""
     if future.status == "finished":
         records: list[Record] = future.result()
         return records
@@ -101,7 +101,7 @@ def _connected(address: str) -> Iterator[Client]:
         raise InputError(
             "needs Dask, which is not installed: pip install pneutouch[cluster]", key="scheduler", value=address
         ) from None
-    # Dask tells its troubles on stderr as they happen; they are told here, once and in words.
+    # Dask logs its errors to stderr as they happen; here they are reported once and in words.
     for name in ("distributed", "distributed.client", "distributed.core", "distributed.comm", "tornado.application"):
         logging.getLogger(name).setLevel(logging.CRITICAL + 1)
     _require_scheduler(address)
@@ -120,15 +120,15 @@ def _connected(address: str) -> Iterator[Client]:
 
 
 def _require_scheduler(address: str) -> None:
-    """Raise InputError where no scheduler answers. Asked before a client is made: one that fails to connect takes
-    a quarter of a minute to go away, and says so with a traceback."""
+    """Raise InputError where no scheduler answers. Checked before a client is made: one that fails to connect takes
+    a quarter of a minute to go away, and prints a traceback."""
     try:
         kind = asyncio.run(asyncio.wait_for(_identity(address), _PATIENCE))
     except (OSError, ValueError) as error:
         kind = (str(error) or f"no answer within {_PATIENCE} s").splitlines()[0]
     # What listens there may be no Dask at all, and its bytes be taken for anything, even a length beyond all memory.
     except Exception:
-        kind = "what listens there speaks another language"
+        kind = "what listens there has another protocol"
     if kind != "Scheduler":
         raise InputError(
             f"no Dask scheduler answers there ({kind})",

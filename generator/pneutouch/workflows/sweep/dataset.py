@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     import xarray
 
 PRESSURE = "driving_pressure_kPa"
-"""The dimension of the driving pressures: all that any point asks for."""
+"""The dimension of the driving pressures: those of all points."""
 
 
 def dataset(study: SweepStudy, records: dict[int, Record]) -> xarray.Dataset:
@@ -88,7 +88,7 @@ def stored_states(path: Path) -> list[str]:
 def _by_pressure(
     requested_kPa: list[tuple[float, ...]], pressures_kPa: list[float], records: dict[int, Record]
 ) -> list[list[dict[str, Any]]]:  # fmt: skip
-    """States of every point, one for each pressure of the dimension; empty where a point did not ask for it."""
+    """States of every point, one for each pressure of the dimension; empty where a point does not have it."""
     rows = []
     for index, pressures_of in enumerate(requested_kPa):
         states = dict(zip(pressures_of, records[index]["states"], strict=True))
@@ -122,7 +122,7 @@ def _coordinates(study: SweepStudy) -> dict[str, Any]:
 
 
 def _column(key: str, values: Sequence[Any]) -> tuple[Any, dict[str, str]]:
-    """Values of one field, with what its declaration says of it."""
+    """Values of one field, with unit and help of its declaration."""
     table_name, field = key.split(".")
     table = table_of(DesignFile, table_name)
     assert table is not None

@@ -77,7 +77,7 @@ def _checksum(text: bytes) -> bytes:
 
 
 def _content(line: bytes) -> dict[str, Any] | None:
-    """What a line says, or None where it does not agree with its checksum."""
+    """The content of a line, or None where it does not agree with its checksum."""
     checksum, space, text = line.partition(b" ")
     if not space or checksum != _checksum(text):
         return None

@@ -51,7 +51,7 @@ def in_pool(chunks: list[SweepChunk], folder: Path, workers: int) -> Iterator[li
                     yield future.result()
         except BrokenProcessPool:
             raise ComputationError(
-                "a worker process died, perhaps for want of memory", remedy="try fewer with `workers`"
+                "a worker process died, perhaps for missing memory", remedy="try fewer with `workers`"
             ) from None
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
@@ -73,7 +73,7 @@ def _single_threaded() -> Iterator[None]:
 
 @contextlib.contextmanager
 def _deaf() -> Iterator[None]:
-    """Processes started here never hear Ctrl-C, not even while they start: it is the parent's to handle."""
+    """Processes started here never receive Ctrl-C, not even while they start: it is the parent's to handle."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return

@@ -18,7 +18,7 @@ _RANGE = {"from", "to", "count"}
 
 
 def plan_of_file(path: Path, changes: Changes | None = None, **options: str | None) -> SweepPlan:
-    """Read a sweep file; ``changes`` and ``options`` (model, closure, clamp) come before what it says.
+    """Read a sweep file; ``changes`` and ``options`` (model, closure, clamp) override its content.
 
     Raises InputError naming file, key and value.
     """

@@ -20,7 +20,7 @@ from pneutouch.workflows.sweep.work import Record, chunks, unpack
 from pneutouch.workflows.sweep.workfolder import WorkFolder
 
 Progress = Callable[[int, int], None]
-"""Told how many points are done, of how many."""
+"""Called with the number of points done and of all points."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,10 +49,10 @@ def sweep(
 ) -> SweepResult:  # fmt: skip
     """Compute every point of a plan and write the dataset to ``out``; returns what was done.
 
-    Progress is kept in ``out`` with ``.parts`` added. A sweep that was stopped, in whatever way, goes on there and
+    Progress is kept in ``out`` with ``.parts`` added. A sweep that was stopped, however that happened, goes on there and
     ends with the same bytes. ``fresh`` forgets progress and replaces another sweep's dataset.
 
-    Raises InputError before any work starts, ComputationError where it stopped on the way, its progress kept.
+    Raises InputError before any work starts, ComputationError where it stopped half way, its progress kept.
     """
     if machines.workers is not None and machines.workers < 1:
         raise InputError("must be at least 1", key="workers", value=machines.workers)
@@ -104,7 +104,7 @@ def _compute(
 
 @contextlib.contextmanager
 def _keeping(folder: WorkFolder, records: dict[int, Record], total: int) -> Iterator[None]:
-    """Say of whatever stops the work how far it came, and that it goes on from there."""
+    """Report how far the work came where anything stops it, and that it goes on from there."""
     try:
         yield
     except (KeyboardInterrupt, ComputationError, OSError) as error:

@@ -30,7 +30,7 @@ class SweepPoint:
 class SweepStudy:
     """A checked plan. ``base`` is the design file alone; ``files`` (path to text) is a library of what it names.
 
-    The work reads ``files`` and not the shelves: a sweep does not notice when somebody edits a material while it
+    The work reads ``files`` and not the library: a sweep does not notice when a user edits a material while it
     runs, and a machine of a cluster needs no copy of the user's folder. ``fingerprint`` is the SHA-256 of all that
     the figures follow from.
     """
@@ -90,7 +90,7 @@ def _names(plan: SweepPlan, base: DesignFile) -> set[tuple[str, str]]:
 
 
 def _chosen(plan: SweepPlan, key: str, default: Any) -> list[Any]:
-    """The values that a field has at any point; ``default`` where a point says nothing."""
+    """The values that a field has at any point; ``default`` where a point does not set it."""
     for axis in plan.axes:
         if axis.key == key:
             return list(axis.values)

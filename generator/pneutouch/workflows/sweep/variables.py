@@ -21,7 +21,7 @@ class SweepVariable:
 
 
 def _at(*keys: str) -> Callable[[Document], Any]:
-    """Reads a nested entry; None where one on the way is missing or null."""
+    """Reads a nested entry; None where a key is missing or null."""
 
     def read(document: Document) -> Any:
         value: Any = document
@@ -45,7 +45,7 @@ def _range_event(state: Document) -> str:
 
 
 STATE: tuple[SweepVariable, ...] = (
-    SweepVariable("status", "", "ok, refused (not possible), failed (not computed); empty where not asked", lambda _: "ok", True),
+    SweepVariable("status", "", "ok, refused (not possible), failed (not computed); empty where not requested", lambda _: "ok", True),
     SweepVariable("message", "", "why a state is refused or failed", lambda _: "", True),
     _number("sensitivity_kPa_per_N", "kPa/N", "slope of pressure rise over contact force, first contact to range end"),
     _number("sensitivity_through_origin_kPa_per_N", "kPa/N", "the same slope of a line through the origin"),

@@ -73,7 +73,7 @@ def _record(chunk: SweepChunk, point: SweepPoint, library: Library) -> Record:
             states, values = _predicted(chunk, left, library)
             break
         except InputError as error:
-            # evaluate says the limit in words; the numbers are in the error that it was made from.
+            # evaluate states the limit in words; the numbers are in the error that it was made from.
             beyond = error.__context__
             if not isinstance(beyond, BeyondLimitError):
                 states = _stopped("refused", str(error), len(left.driving_pressures_kPa), library)

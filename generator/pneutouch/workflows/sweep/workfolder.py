@@ -1,4 +1,4 @@
-"""The work folder beside the output: one process at a time, and nothing left of it at the end."""
+"""The work folder next to the output: one process at a time, and nothing left of it at the end."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class WorkFolder:
         self._lock: FileIO | None = None
 
     def __enter__(self) -> WorkFolder:
-        """Make and lock the folder. Raises InputError where it cannot be, or is held, or is somebody else's."""
+        """Make and lock the folder. Raises InputError where it cannot be, or is held, or holds foreign files."""
         check_output(self.out)
         try:
             while self._lock is None:

@@ -23,7 +23,7 @@ MOST_PARTS = 2000
 
 @dataclass(frozen=True)
 class TrayVariant:
-    """One design of a tray. ``index`` counts from 1 and ``letter`` says it; ``key`` and ``value`` are what was varied."""
+    """One design of a tray. ``index`` counts from 1 and ``letter`` is it in letters; ``key`` and ``value`` are what was varied."""
 
     index: int
     letter: str

@@ -129,7 +129,7 @@ def _marks(layout: TrayLayout) -> list[str]:
         lines.append("- Rigid bodies carry the label in letters; all parts of one sensor carry the same.")
     if "none" in kinds:
         lines.append(
-            "- Parts without a mark are told apart by their place on the tray alone: bag and label them as they come off."
+            "- Parts without a mark differ by their place on the tray alone: bag and label them as they come off."
         )
     return lines
 

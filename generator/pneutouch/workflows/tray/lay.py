@@ -110,7 +110,7 @@ class TrayLayout:
         if len(self.jobs) == 1:
             return "one job, no resin change"
         count = changes([frozenset(job.resins) for job in self.jobs])
-        return f"{len(self.jobs)} jobs in this order, {count} {'resin' if count == 1 else 'resins'} loaded anew between them"
+        return f"{len(self.jobs)} jobs in this order, {count} {'resin' if count == 1 else 'resins'} loaded between them"
 
     def name(self, job: TrayJob) -> str:
         """Name of a job's files."""
@@ -119,7 +119,7 @@ class TrayLayout:
 
 
 def lay(order: TrayOrder, library: Library | None = None, progress: Progress = lambda step: None) -> TrayLayout:
-    """Draw, group, mesh, mark and pack what a tray asks for. Raises InputError where it cannot be or does not fit."""
+    """Draw, group, mesh, mark and pack the parts of a tray. Raises InputError where it cannot be or does not fit."""
     progress("designs")
     expanded = expand(order, library)
     pieces, printer = expanded.pieces, expanded.printer

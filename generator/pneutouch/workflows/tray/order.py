@@ -1,4 +1,4 @@
-"""What a tray is asked to hold: from a tray file or from the flags of the command line."""
+"""What a tray must hold: from a tray file or from the flags of the command line."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class TrayOrder:
     folder: Path = field(default=Path())
 
     def design(self, name: str) -> str:
-        """A design as the catalogue takes it: a file name in a tray file is beside that file."""
+        """A design as the catalogue takes it: a file name in a tray file is in the folder of that file."""
         return str(self.folder / name) if name.endswith(".toml") else name
 
 

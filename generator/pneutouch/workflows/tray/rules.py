@@ -30,7 +30,7 @@ class TrayFinding:
 
 
 def findings(layout: TrayLayout) -> tuple[TrayFinding, ...]:
-    """What the rules say, errors first. Copies, and resins of one kind in one shape, are judged by the first of them."""
+    """The findings, errors first. Copies, and resins of one kind in one shape, are judged by the first of them."""
     listed = []
     for job in layout.jobs:
         alike: dict[object, list[int]] = {}

@@ -52,7 +52,7 @@ def _table(ax: Axes, width: float, depth: float, margin: float) -> None:
 
 
 def _part(ax: Axes, part: TrayPart, polygons: list[Any], width: float) -> None:
-    """One part: its resin's colour, its outline, its label as large as it has room for."""
+    """One part: its resin's colour, its outline, its label as large as it fits."""
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
 

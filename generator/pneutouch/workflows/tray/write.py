@@ -59,9 +59,9 @@ def document(layout: TrayLayout, folder: Path) -> dict[str, Any]:
 
 
 def inputs(layout: TrayLayout) -> dict[str, Any]:
-    """Everything that a tray follows from: what was asked for, the printer, and each value's scene resolved.
+    """Everything that a tray follows from: the tray file or options, the printer, and each value's scene resolved.
 
-    ``values`` say by letter which of ``things`` each scene is made of: they share most of them.
+    ``values`` state by letter which of ``things`` each scene is made of: they share most of them.
     """
     values = {piece.value.letter: piece.value for piece in layout.expanded.pieces}
     things: dict[str, Any] = {}
