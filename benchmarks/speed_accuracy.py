@@ -163,7 +163,7 @@ def describe(scene: Scene, truth: Reference) -> dict[str, Any]:
     known = not np.isnan(top)
     return {
         "scene": scene.name, "inner_radius_mm": s.dome.inner_radius, "wall_thickness_mm": s.dome.wall_thickness,
-        "law": [s.wall.law[0], list(s.wall.wall.law[1])] if s.wall.law else ["neo-hookean", [s.wall.shear_modulus]],
+        "law": [s.wall.law[0], list(s.wall.law[1])] if s.wall.law else ["neo-hookean", [s.wall.shear_modulus]],
         "poisson_ratio": s.wall.poisson_ratio, "driving_pressure_kPa": scene.pressure / KPA,
         "dead_volume_mL": s.gas.dead_volume * 1e-3, "depth_mm": s.protocol.depth,
         "reference": {

@@ -10,12 +10,12 @@ import hashlib
 import json
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from pneutouch.mechanics import Sensor, predict
 from pneutouch.mechanics.paper_sensor import is_paper_sensor, material_sensor
+from pneutouch.mechanics.prediction import ErrorEstimate
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
 
@@ -78,7 +78,7 @@ def is_near_paper(sensor: Sensor) -> bool:
     return bool(close and sensor.gas.dead_volume <= NEAR_DEAD_VOLUME * cavity and sensor.dome.flange is None)
 
 
-def sensitivity_error(material: Material, sensor: Sensor, model: str, closure: str) -> dict[str, Any]:
+def sensitivity_error(material: Material, sensor: Sensor, model: str, closure: str) -> ErrorEstimate:
     """The part of ``error_estimate`` on sensitivity: greatest and single relative errors, and their basis.
 
     Unknown where nothing was measured, and where the sensor is not near the one that was.
@@ -105,5 +105,5 @@ def sensitivity_error(material: Material, sensor: Sensor, model: str, closure: s
     }
 
 
-def _unknown(why: str) -> dict[str, Any]:
+def _unknown(why: str) -> ErrorEstimate:
     return {"sensitivity_relative": None, "sensitivity_basis": why, "summary": [f"Sensitivity: error unknown; {why}."]}

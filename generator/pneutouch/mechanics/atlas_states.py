@@ -21,30 +21,26 @@ from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.events import CREASE, DETAIL, OVERHANG, PathPoint, crossing
 from pneutouch.units import KPA
 
-_DETAIL = {
-    EDGE: DETAIL["plate_rim"], GAUGE: DETAIL["gauge_range"], BREAK: DETAIL["break"],
-    BUCKLING: "the wall buckles inward under the plate, or its gas no longer holds it",
-}  # fmt: skip
+_BUCKLES = "the wall buckles inward under the plate, or its gas no longer holds it"
+_DETAIL = {EDGE: DETAIL["plate_rim"], GAUGE: DETAIL["gauge_range"], BREAK: DETAIL["break"], BUCKLING: _BUCKLES}
 
 
 def outside_atlas(sensor: Sensor, atlas: Atlas | None = None) -> str | None:
     """Why the atlas does not cover a sensor, or None where it does. Its box is in `atlas.recipe.Recipe`."""
     recipe = (atlas or shipped()).recipe
-    ratio, depth = (
-        sensor.dome.wall_thickness / sensor.dome.inner_radius,
-        sensor.protocol.depth / sensor.dome.inner_radius,
-    )
-    gas = sensor.gas.ambient_pressure / sensor.wall.shear_modulus
+    dome, wall = sensor.dome, sensor.wall
+    ratio, depth = dome.wall_thickness / dome.inner_radius, sensor.protocol.depth / dome.inner_radius
+    gas, nu = sensor.gas.ambient_pressure / wall.shear_modulus, recipe.poisson_ratio
+    inside = recipe.thinnest * (1 - 1e-9) <= ratio <= recipe.thickest * (1 + 1e-9)
     reasons = [
-        (sensor.wall.grade is not None, "the wall is graded along its arc"),
-        (sensor.wall.law is not None, "the resin has a law of its own, not the neo-Hookean one"),
-        (sensor.wall.poisson_ratio != recipe.poisson_ratio, f"Poisson ratio {sensor.wall.poisson_ratio:g}, not {recipe.poisson_ratio:g}"),
-        (sensor.dome.flange is not None, "the flange is held as printed, not the base plane"),
-        (not recipe.thinnest * (1 - 1e-9) <= ratio <= recipe.thickest * (1 + 1e-9),
-         f"wall {ratio:.3g} R0, not {recipe.thinnest:g} to {recipe.thickest:g}"),
+        (wall.grade is not None, "the wall is graded along its arc"),
+        (wall.law is not None, "the resin has a law of its own, not the neo-Hookean one"),
+        (wall.poisson_ratio != nu, f"Poisson ratio {wall.poisson_ratio:g}, not {nu:g}"),
+        (dome.flange is not None, "the flange is held as printed, not the base plane"),
+        (not inside, f"wall {ratio:.3g} R0, not {recipe.thinnest:g} to {recipe.thickest:g}"),
         (depth > recipe.deepest * (1 + 1e-9), f"depth {depth:.3g} R0, more than {recipe.deepest:g}"),
         (gas > recipe.stiffest, f"ambient pressure {gas:.3g} mu, more than {recipe.stiffest:g}"),
-    ]  # fmt: skip
+    ]
     return next((why for applies, why in reasons if applies), None)
 
 
@@ -76,18 +72,14 @@ def atlas_result(sensor: Sensor, driving_pressures: Array) -> tuple[ModelResult,
             raise BeyondLimitError(float(pressure), limit, "it lies beyond the limit point")
     response = respond(batch, sensor.protocol.steps)
     press = AtlasPress(batch, slices, np.zeros(len(batch), dtype=np.intp))
-    track = press.march(
-        np.linspace(0.0, 1.0, sensor.protocol.steps + 1)
-        * (sensor.protocol.depth / sensor.dome.inner_radius)
-        * np.ones((len(batch), 1))
-    )
+    steps, depth = np.linspace(0.0, 1.0, sensor.protocol.steps + 1), sensor.protocol.depth / sensor.dome.inner_radius
+    track = press.march(steps * depth * np.ones((len(batch), 1)))
     ends = [int(end) for end in response.ends]
     states = tuple(_state(sensor, press, track, i, ends[i], float(response.range_end[i])) for i in range(len(batch)))
     limitation = next((reason for end, reason in _LIMITATIONS.items() if end in ends), None)
     if limitation is None and response.near_buckling.any():
-        limitation = AnswerLimitation(
-            f"the wall would buckle within {NEAR:g} R0 more of travel, where the table is less accurate", False
-        )
+        why = f"the wall would buckle within {NEAR:g} R0 more of travel, where the table is less accurate"
+        limitation = AnswerLimitation(why, False)
     curve, point, rupture = _inflation(sensor, slices)
     return ModelResult(point, Limits(limit, rupture, sensor.gas.gauge_limit), curve, states), limitation
 
@@ -101,16 +93,22 @@ def _state(sensor: Sensor, press: AtlasPress, track: PressTrack, i: int, end: in
     depth = (press.apex[i] - one.height[0]) * length
     range_end = range_end if np.isfinite(range_end) else 0.0
     force, rise = one.point.force[0] * mu * length**2, (one.point.pressure[0] - press.pressure[i]) * mu
-    shown = _curve(row, range_end / length, sensor.protocol.steps)
+    x, f, dp = _curve(row, range_end / length, sensor.protocol.steps)
     return SensorState(
-        driving_pressure=float(press.batch.driving_pressure[i]), apex_inner=float(field["inner_apex"][0]) * length,
-        apex_outer=float(press.apex[i]) * length, cavity_volume=float(row.volume(row.free)[0]) * length**3,
+        driving_pressure=float(press.batch.driving_pressure[i]),
+        apex_inner=float(field["inner_apex"][0]) * length,
+        apex_outer=float(press.apex[i]) * length,
+        cavity_volume=float(row.volume(row.free)[0]) * length**3,
         range_end=range_end,
-        figures=figures(shown[0] * length, shown[1] * mu * length**2, shown[2] * mu / KPA) if range_end > 0 else None,
-        indentation=depth, force=force, pressure_rise=rise,
-        contact_radius=np.maximum(field["contact_radius"], 0.0) * length, max_stretch=field["stretch"],
-        events=tuple(_events(sensor, depth, field, end, range_end)), max_von_mises=field["von_mises"] * mu,
-    )  # fmt: skip
+        figures=figures(x * length, f * mu * length**2, dp * mu / KPA) if range_end > 0 else None,
+        indentation=depth,
+        force=force,
+        pressure_rise=rise,
+        contact_radius=np.maximum(field["contact_radius"], 0.0) * length,
+        max_stretch=field["stretch"],
+        events=tuple(_events(sensor, depth, field, end, range_end)),
+        max_von_mises=field["von_mises"] * mu,
+    )
 
 
 def _curve(row: AtlasPress, end: float, steps: int) -> tuple[Array, Array, Array]:
@@ -143,10 +141,9 @@ def _inflation(sensor: Sensor, slices: AtlasSlices) -> tuple[InflationCurve, Lim
     pressure = slices.point(k, nu, apex).pressure * mu
     volume = (REST_VOLUME + nu * slices.reach(k)) * length**3
     top = 90
-    point = LimitPoint(
-        float(inner[top]) * length, float(apex[top]) * length, float(slices.limit_pressure[0]) * mu,
-        float(apex[top] - inner[top]) * length / sensor.dome.wall_thickness,
-    )  # fmt: skip
+    thinning = float(apex[top] - inner[top]) * length / sensor.dome.wall_thickness
+    limit = float(slices.limit_pressure[0]) * mu
+    point = LimitPoint(float(inner[top]) * length, float(apex[top]) * length, limit, thinning)
     rupture = None
     if sensor.wall.break_stretch is not None:
         over = np.flatnonzero(stretch[: top + 1] >= sensor.wall.break_stretch)

@@ -39,14 +39,12 @@ def pressed_cap(rho: Array, h: Array, inner_radius: float) -> PressedCap:
     c = inner_radius - rho
     a = (c**2 + h**2) / (2 * h)
     theta = np.arctan2(c, a - h)
+    slope = 2 * rho * h + a**2 * theta - 2 * rho * a * theta * c / h + rho * (2 * a - h) - c * a + rho * c**2 / h
     return PressedCap(
         area=np.pi * (rho**2 + 2 * rho * a * theta + c**2 + h**2),
         volume=np.pi * (rho**2 * h + rho * a**2 * theta - rho * c * (a - h) + a * h**2 - h**3 / 3),
         area_rho=2 * np.pi * (2 * rho + a * theta - rho * theta * c / h - c),
         area_h=2 * np.pi * (rho * theta * (1 - a / h) + rho * c / h + h),
-        volume_rho=np.pi * (
-            2 * rho * h + a**2 * theta - 2 * rho * a * theta * c / h + rho * (2 * a - h)
-            - c * a + rho * c**2 / h
-        ),
+        volume_rho=np.pi * slope,
         volume_h=np.pi * (rho**2 + 2 * rho * a * theta * (1 - a / h) + 2 * rho * c * a / h + a * h),
-    )  # fmt: skip
+    )

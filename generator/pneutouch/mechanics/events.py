@@ -23,20 +23,24 @@ class Event:
     ends_range: bool
     message: str
 
+    def document(self) -> dict[str, str | float]:
+        """The event in boundary units."""
+        place = {"indentation_mm": self.indentation, "ends_range": self.ends_range}
+        return {"kind": self.kind, **place, "message": self.message}
+
 
 def events(sensor: Sensor, indentation: Array, pressed: PressedStates, closure: str) -> list[Event]:
     """The events of one pressed curve, in the order of the plate's travel."""
-    stretch = pressed.thickness_stretch**-0.5
+    stretch, radius, gauge = pressed.thickness_stretch**-0.5, pressed.contact_radius, sensor.gas.gauge_limit
+    beyond_gauge = f"the cavity pressure leaves the gauge's range of {1e3 * gauge:g} kPa"
+    at_base = "the contact reaches the base circle, where a cap of constant curvature ends"
+    slack = "the wall is shorter than unloaded: a real membrane wrinkles, this theory does not"
     margins: list[tuple[str, Array, bool, str]] = [
-        ("gauge range", pressed.pressure - sensor.gas.gauge_limit, True,
-         f"the cavity pressure leaves the gauge's range of {1e3 * sensor.gas.gauge_limit:g} kPa"),
-        ("plate edge", pressed.contact_radius - sensor.protocol.plate_radius, True,
-         "the contact reaches the edge of the plate"),
-        ("contact at base", pressed.contact_radius - _NEAR_BASE * sensor.dome.inner_radius, True,
-         "the contact reaches the base circle, where a cap of constant curvature ends"),
-        ("slack wall", 1 - 1e-9 - stretch, False,
-         "the wall is shorter than unloaded: a real membrane wrinkles, this theory does not"),
-    ]  # fmt: skip
+        ("gauge range", pressed.pressure - gauge, True, beyond_gauge),
+        ("plate edge", radius - sensor.protocol.plate_radius, True, "the contact reaches the edge of the plate"),
+        ("contact at base", radius - _NEAR_BASE * sensor.dome.inner_radius, True, at_base),
+        ("slack wall", 1 - 1e-9 - stretch, False, slack),
+    ]
     if sensor.wall.break_stretch is not None:
         text = f"the stretch reaches the resin's least elongation at break, {sensor.wall.break_stretch - 1:.0%}"
         margins.append(("break strain", stretch - sensor.wall.break_stretch, True, text))

@@ -11,10 +11,10 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.mechanics.inflation import LIMIT_HEIGHT, LIMIT_PRESSURE, relative_height
 
-RISING_BRANCH = np.array([
-    (0.0, 1.0), (0.487184, 1.066291), (0.816153, 1.134059), (1.204673, 1.255874), (1.398748, 1.360730),
-    (1.497427, 1.452773), (1.546655, 1.535446), (1.568785, 1.611202), (1.57537, 1.69000),
-])  # fmt: skip
+_PRESSURE = (0.0, 0.487184, 0.816153, 1.204673, 1.398748, 1.497427, 1.546655, 1.568785, 1.57537)
+_HEIGHT = (1.0, 1.066291, 1.134059, 1.255874, 1.360730, 1.452773, 1.535446, 1.611202, 1.69000)
+
+RISING_BRANCH = np.column_stack([_PRESSURE, _HEIGHT])
 """p R0/(mu t0) and h/R0 from no pressure to the limit point."""
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from pneutouch.mechanics.inflation import LIMIT_HEIGHT, LIMIT_PRESSURE, pressure, thickness_stretch
 from pneutouch.mechanics.sensor import Sensor
+from pneutouch.units import KPA
 
 RATED_SHARE = 0.9
 """Share of the binding limit that a sensor is rated at, and warned above: the dome grows fast near the limit point."""
@@ -21,6 +22,16 @@ class LimitPoint:
     apex_outer: float
     driving_pressure: float
     thickness_stretch: float
+
+    def document(self) -> dict[str, float]:
+        """The limit point in boundary units."""
+        return {
+            "apex_height_inner_mm": self.apex_inner,
+            "apex_height_outer_mm": self.apex_outer,
+            "driving_pressure_kPa": self.driving_pressure / KPA,
+            "membrane_stretch": self.membrane_stretch,
+            "thickness_stretch": self.thickness_stretch,
+        }
 
     @property
     def membrane_stretch(self) -> float:
@@ -70,7 +81,6 @@ def limits(sensor: Sensor) -> Limits:
     if sensor.wall.break_stretch is not None:
         height = np.sqrt(2 * sensor.wall.break_stretch**2 - 1)
         if height < LIMIT_HEIGHT:
-            broken = float(
-                pressure(height, sensor.dome.inner_radius, sensor.dome.wall_thickness, sensor.wall.shear_modulus)
-            )
+            dome = sensor.dome
+            broken = float(pressure(height, dome.inner_radius, dome.wall_thickness, sensor.wall.shear_modulus))
     return Limits(limit_point(sensor).driving_pressure, broken, sensor.gas.gauge_limit)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from pneutouch.arrays import Array
@@ -13,13 +11,13 @@ from pneutouch.mechanics.exact_membrane import height_errors, limit_point_errors
 from pneutouch.mechanics.gas import TrappedGas
 from pneutouch.mechanics.inflation import LIMIT_HEIGHT, pressure, relative_height, thickness_stretch
 from pneutouch.mechanics.limits import limit_point, limits
-from pneutouch.mechanics.prediction import InflationCurve, ModelResult, SensorState
+from pneutouch.mechanics.prediction import ErrorEstimate, InflationCurve, ModelResult, SensorState
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.units import KPA
 
 
-def error_against_exact_membrane(sensor: Sensor, driving_pressures: Array) -> dict[str, Any]:
+def error_against_exact_membrane(sensor: Sensor, driving_pressures: Array) -> ErrorEstimate:
     """What the assumption of constant curvature costs in state I: relative errors, the greatest for the heights."""
     limit_pressure, limit_height = limit_point_errors()
     scale = sensor.dome.inner_radius / (sensor.wall.shear_modulus * sensor.dome.wall_thickness)
@@ -42,23 +40,22 @@ _FINE = 8
 
 def membrane_result(sensor: Sensor, driving_pressures: Array, closure: str) -> ModelResult:
     """Limit point, limits and states of the membrane theory."""
-    return ModelResult(
-        limit_point(sensor),
-        limits(sensor),
-        inflation_curve(sensor),
-        membrane_states(sensor, driving_pressures, closure),
-    )
+    states = membrane_states(sensor, driving_pressures, closure)
+    return ModelResult(limit_point(sensor), limits(sensor), inflation_curve(sensor), states)
 
 
 def inflation_curve(sensor: Sensor) -> InflationCurve:
     """Both branches of the closed form, to 1.8 times the height of the limit point."""
     x = np.concatenate([np.linspace(1.0, LIMIT_HEIGHT, 60), np.linspace(LIMIT_HEIGHT, 1.8 * LIMIT_HEIGHT, 60)[1:]])
     apex = x * sensor.dome.inner_radius
-    return InflationCurve(
-        apex_inner=apex, apex_outer=apex + thickness_stretch(x) * sensor.dome.wall_thickness,
-        volume=np.pi / 6 * apex * (3 * sensor.dome.inner_radius**2 + apex**2),
-        pressure=pressure(x, sensor.dome.inner_radius, sensor.dome.wall_thickness, sensor.wall.shear_modulus),
-    )  # fmt: skip
+    outer = apex + thickness_stretch(x) * sensor.dome.wall_thickness
+    driving = pressure(x, sensor.dome.inner_radius, sensor.dome.wall_thickness, sensor.wall.shear_modulus)
+    return InflationCurve(apex, outer, cap_volume(apex, sensor.dome.inner_radius), driving)
+
+
+def cap_volume(apex: Array, radius: float) -> Array:
+    """Volume of a spherical cap on a base circle, mm3."""
+    return np.asarray(np.pi / 6 * apex * (3 * radius**2 + apex**2))
 
 
 def membrane_states(sensor: Sensor, driving_pressures: Array, closure: str) -> tuple[SensorState, ...]:
@@ -67,11 +64,10 @@ def membrane_states(sensor: Sensor, driving_pressures: Array, closure: str) -> t
     Figures are fitted on as many equal steps up to the first event that ends the range, so that they do not
     jump when an event passes a step.
     """
-    x = relative_height(
-        driving_pressures, sensor.dome.inner_radius, sensor.dome.wall_thickness, sensor.wall.shear_modulus
-    )
-    apex = x * sensor.dome.inner_radius
-    volume = np.pi / 6 * apex * (3 * sensor.dome.inner_radius**2 + apex**2)
+    radius, thickness = sensor.dome.inner_radius, sensor.dome.wall_thickness
+    x = relative_height(driving_pressures, radius, thickness, sensor.wall.shear_modulus)
+    apex = x * radius
+    volume = cap_volume(apex, radius)
     gas = TrappedGas(driving_pressures[:, None], volume[:, None], sensor.gas.dead_volume, sensor.gas.ambient_pressure)
 
     def pressed(indentation: Array) -> PressedStates:
@@ -83,15 +79,21 @@ def membrane_states(sensor: Sensor, driving_pressures: Array, closure: str) -> t
     ends = np.array([range_end(passed, sensor.protocol.depth) for passed in happened])
     grid = np.linspace(0.0, 1.0, sensor.protocol.steps + 1) * ends[:, None]
     fitted = pressed(grid)
-    wall = thickness_stretch(x) * sensor.dome.wall_thickness
+    outer = apex + thickness_stretch(x) * thickness
     return tuple(
         SensorState(
-            driving_pressure=float(p), apex_inner=float(apex[k]), apex_outer=float(apex[k] + wall[k]),
-            cavity_volume=float(volume[k]), range_end=float(ends[k]),
+            driving_pressure=float(p),
+            apex_inner=float(apex[k]),
+            apex_outer=float(outer[k]),
+            cavity_volume=float(volume[k]),
+            range_end=float(ends[k]),
             figures=figures(grid[k], fitted.force[k], (fitted.pressure[k] - p) / KPA),
-            indentation=fine[::_FINE], force=curve.force[k, ::_FINE], pressure_rise=curve.pressure[k, ::_FINE] - p,
+            indentation=fine[::_FINE],
+            force=curve.force[k, ::_FINE],
+            pressure_rise=curve.pressure[k, ::_FINE] - p,
             contact_radius=curve.contact_radius[k, ::_FINE],
-            max_stretch=curve.thickness_stretch[k, ::_FINE] ** -0.5, events=tuple(happened[k]),
+            max_stretch=curve.thickness_stretch[k, ::_FINE] ** -0.5,
+            events=tuple(happened[k]),
         )
         for k, p in enumerate(driving_pressures)
-    )  # fmt: skip
+    )

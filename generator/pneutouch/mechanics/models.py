@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from pneutouch.errors import InputError
+from pneutouch.mechanics.prediction import ErrorEstimate
 from pneutouch.mechanics.sensor import Sensor
 
 MODELS = ("membrane", "atlas", "solid")
@@ -14,7 +15,7 @@ MODEL_CHOICES = (*MODELS, "auto")
 
 DEFAULT_TOLERANCE = 0.02
 
-DISCRETISATION = {"sensitivity_discretisation_relative": 0.011, "limit_pressure_relative": 0.002}
+DISCRETISATION: ErrorEstimate = {"sensitivity_discretisation_relative": 0.011, "limit_pressure_relative": 0.002}
 """Greatest relative errors of the solid at its default resolution against a refined mesh (docs/accuracy.md)."""
 
 TABULATION = 0.0075

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,20 +19,21 @@ from pneutouch.mechanics.models import (
     TABULATION,
     models_for,
 )
-from pneutouch.mechanics.prediction import ModelResult, SensorPrediction
+from pneutouch.mechanics.prediction import ErrorEstimate, ModelResult, SensorPrediction
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.units import KPA, ML
 
 if TYPE_CHECKING:
     from pneutouch.mechanics.atlas_states import AnswerLimitation
 
-Error = dict[str, Any]
-
 _DISCRETISATION_SUMMARY = (
     f"Discretisation: sensitivity within {DISCRETISATION['sensitivity_discretisation_relative']:.1%}, limit pressure "
     f"within {DISCRETISATION['limit_pressure_relative']:.1%} of a refined mesh."
 )
-_TABULATION_SUMMARY = f"Tabulation: sensitivity within {TABULATION:.1%} of the solid, that is within {NUMERICAL['atlas']:.1%} of a refined mesh."
+_TABULATION_SUMMARY = (
+    f"Tabulation: sensitivity within {TABULATION:.1%} of the solid, that is within {NUMERICAL['atlas']:.1%} "
+    "of a refined mesh."
+)
 
 _MEMBRANE_ASSUMPTIONS = (
     "thin neo-Hookean membrane, incompressible, C1 = mu/2; no bending stiffness: the wall's own stiffness is missing",
@@ -63,21 +64,26 @@ _COMMON_ASSUMPTIONS = (
 _OTHER = "take `model` auto or solid"
 
 
-def _merged(one: dict[str, Any], other: dict[str, Any]) -> dict[str, Any]:
+def _merged(one: ErrorEstimate, other: ErrorEstimate) -> ErrorEstimate:
     return {**one, **other, "summary": [*one.get("summary", []), *other.get("summary", [])]}
 
 
 def predict(
-    design: str, sensor: Sensor, driving_pressures: list[float], *,
-    model: str = "solid", closure: str = "variational", tolerance: float = DEFAULT_TOLERANCE,
-    sensitivity_error: Callable[[str], Error] | None = None,
-) -> SensorPrediction:  # fmt: skip
+    design: str,
+    sensor: Sensor,
+    driving_pressures: list[float],
+    *,
+    model: str = "solid",
+    closure: str = "variational",
+    tolerance: float = DEFAULT_TOLERANCE,
+    sensitivity_error: Callable[[str], ErrorEstimate] | None = None,
+) -> SensorPrediction:
     """Predict a sensor at ascending driving pressures (MPa) with one model; ``closure`` is the membrane's.
 
     ``auto`` takes the cheapest model whose stated error meets the tolerance (a fraction) and gives the reason.
     ``sensitivity_error`` gives the known error of a model in sensitivity for this resin. Raises InputError for
     an unknown model or closure and for a sensor outside the atlas's box, BeyondLimitError beyond the limit point,
-    ComputationError where no equilibrium is result.
+    ComputationError where no equilibrium is found.
     """
     if model not in MODEL_CHOICES:
         raise InputError(f"unknown model.{nearest(model, MODEL_CHOICES)}", key="model", value=model)
@@ -90,15 +96,21 @@ def predict(
         errors = _merged(errors, sensitivity_error(chosen))
     if why:
         errors = _merged({"model_choice": why, "summary": [f"Model {chosen}: {why}."]}, errors)
-    gas = (
-        f"dead volume {sensor.gas.dead_volume / ML:.4g} mL, ambient pressure {sensor.gas.ambient_pressure / KPA:g} kPa"
-    )
+    dead, ambient_kPa = sensor.gas.dead_volume, sensor.gas.ambient_pressure / KPA
+    gas = f"dead volume {dead / ML:.4g} mL, ambient pressure {ambient_kPa:g} kPa"
     held = _CLAMPED_FLANGE if chosen == "solid" and sensor.dome.flange is not None else _CLAMPED_BASE
     return SensorPrediction(
-        design=design, model=chosen, closure=closure if chosen == "membrane" else None, error_estimate=errors,
-        limit_point=answer.limit_point, limits=answer.limits, dead_volume=sensor.gas.dead_volume,
-        inflation=answer.inflation, states=answer.states, assumptions=(*assumptions, held, *_COMMON_ASSUMPTIONS, gas),
-    )  # fmt: skip
+        design=design,
+        model=chosen,
+        closure=closure if chosen == "membrane" else None,
+        error_estimate=errors,
+        limit_point=answer.limit_point,
+        limits=answer.limits,
+        dead_volume=dead,
+        inflation=answer.inflation,
+        states=answer.states,
+        assumptions=(*assumptions, held, *_COMMON_ASSUMPTIONS, gas),
+    )
 
 
 def _answer(
@@ -139,12 +151,16 @@ def _result(model: str, sensor: Sensor, pressures: Array, closure: str) -> tuple
     return solid_result(sensor, pressures), None
 
 
-def _stated(model: str, sensor: Sensor, pressures: Array) -> tuple[Error, tuple[str, ...]]:
+def _stated(model: str, sensor: Sensor, pressures: Array) -> tuple[ErrorEstimate, tuple[str, ...]]:
     """Numerical errors and assumptions of a model."""
     if model == "membrane":
         return error_against_exact_membrane(sensor, pressures), _MEMBRANE_ASSUMPTIONS
     law = f"law {sensor.wall.hyperelastic.convention}, Poisson ratio {sensor.wall.poisson_ratio:g}"
     if model == "atlas":
-        errors = {**DISCRETISATION, "sensitivity_tabulation_relative": TABULATION, "summary": [_TABULATION_SUMMARY]}
+        errors: ErrorEstimate = {
+            **DISCRETISATION,
+            "sensitivity_tabulation_relative": TABULATION,
+            "summary": [_TABULATION_SUMMARY],
+        }
         return errors, (law, *_SOLID_ASSUMPTIONS)
     return {**DISCRETISATION, "summary": [_DISCRETISATION_SUMMARY]}, (law, *_SOLID_ASSUMPTIONS)

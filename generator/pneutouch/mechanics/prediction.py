@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypedDict
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.events import Event
@@ -17,6 +17,21 @@ _DIGITS = 12
 
 _NOTHING = 1e-12
 """Forces and pressure rises below this (N, kPa) are rounding."""
+
+
+class ErrorEstimate(TypedDict, total=False):
+    """Stated errors of a prediction: relative ones as fractions, and a summary in sentences."""
+
+    model_choice: str
+    limit_pressure_relative: float
+    limit_apex_height_relative: float
+    apex_height_relative: float
+    sensitivity_discretisation_relative: float
+    sensitivity_tabulation_relative: float
+    sensitivity_relative: float | None
+    sensitivity_relative_0kPa_22kPa: list[float | None]
+    sensitivity_basis: str
+    summary: list[str]
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,15 +91,7 @@ class SensorState:
                 **({} if self.max_von_mises is None else {"max_von_mises_MPa": self.max_von_mises.tolist()}),
                 "tangent_stiffness_N_per_mm": tangent_stiffness(self.indentation, self.force).tolist(),
             },
-            "events": [
-                {
-                    "kind": event.kind,
-                    "indentation_mm": event.indentation,
-                    "ends_range": event.ends_range,
-                    "message": event.message,
-                }
-                for event in self.events
-            ],
+            "events": [event.document() for event in self.events],
         }
 
 
@@ -115,7 +122,7 @@ class SensorPrediction:
     design: str
     model: str
     closure: str | None
-    error_estimate: dict[str, Any]
+    error_estimate: ErrorEstimate
     limit_point: LimitPoint | None
     limits: Limits
     dead_volume: float
@@ -131,15 +138,7 @@ class SensorPrediction:
             "model": self.model,
             "closure": self.closure,
             "error_estimate": self.error_estimate,
-            "limit_point": None
-            if point is None
-            else {
-                "apex_height_inner_mm": point.apex_inner,
-                "apex_height_outer_mm": point.apex_outer,
-                "driving_pressure_kPa": point.driving_pressure / KPA,
-                "membrane_stretch": point.membrane_stretch,
-                "thickness_stretch": point.thickness_stretch,
-            },
+            "limit_point": point and point.document(),
             "limits": {
                 "limit_point_kPa": None if caps.limit_point is None else caps.limit_point / KPA,
                 "break_strain_kPa": None if caps.break_strain is None else caps.break_strain / KPA,

@@ -81,15 +81,9 @@ def figures(indentation: Array, force: Array, rise_kPa: Array) -> Figures | None
     """
     if len(force) < _LEAST_POINTS or np.ptp(force) <= 0 or np.ptp(indentation) <= 0:
         return None
-    line = lines(indentation, force, rise_kPa)
-    saturated = float(line.saturation_force)
-    return Figures(
-        sensitivity_kPa_per_N=float(line.sensitivity_kPa_per_N), intercept_kPa=float(line.intercept_kPa),
-        sensitivity_through_origin_kPa_per_N=float(line.sensitivity_through_origin_kPa_per_N), r_squared=float(line.r_squared),
-        nonlinearity=float(line.nonlinearity), stiffness=float(line.stiffness),
-        force_range=(float(line.force_low), float(line.force_high)),
-        saturation_force=None if np.isnan(saturated) else saturated,
-    )  # fmt: skip
+    values = {name: float(value) for name, value in lines(indentation, force, rise_kPa)._asdict().items()}
+    low, high, saturated = (values.pop(name) for name in ("force_low", "force_high", "saturation_force"))
+    return Figures(**values, force_range=(low, high), saturation_force=None if np.isnan(saturated) else saturated)
 
 
 def saturation_force(force: Array, rise_kPa: Array, slope: Array | float) -> Array:

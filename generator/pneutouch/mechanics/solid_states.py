@@ -86,11 +86,10 @@ def _inflation(solid: SolidModel, run: Inflation) -> InflationCurve:
         # Positions by volume are nondimensional: R0 over R0 cubed.
         return [float(s.by_volume[node, 1]) / solid.length**2 for s in run.states]
 
-    return InflationCurve(
-        along([s.inner_apex for s in run.states], apex(solid.mesh.inner_apex)),
-        along([s.outer_apex for s in run.states], apex(solid.mesh.outer_apex)), grid,
-        along([s.pressure for s in run.states], [s.stiffness for s in run.states]),
-    )  # fmt: skip
+    inner = along([s.inner_apex for s in run.states], apex(solid.mesh.inner_apex))
+    outer = along([s.outer_apex for s in run.states], apex(solid.mesh.outer_apex))
+    pressure = along([s.pressure for s in run.states], [s.stiffness for s in run.states])
+    return InflationCurve(inner, outer, grid, pressure)
 
 
 def _limits(sensor: Sensor, probe: StrainProbe, run: Inflation) -> Limits:
@@ -107,23 +106,37 @@ def _limits(sensor: Sensor, probe: StrainProbe, run: Inflation) -> Limits:
 
 def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) -> SensorState:
     free = state_at(probe.solid, pressure, run)
+    test, gas, stretch = sensor.protocol, sensor.gas, sensor.wall.break_stretch
     press = PressSettings(
-        sensor.protocol.depth, sensor.protocol.steps, 2 * sensor.protocol.plate_radius, sensor.gas.ambient_pressure, sensor.gas.dead_volume,
-        sensor.gas.gauge_limit, np.inf if sensor.wall.break_stretch is None else sensor.wall.break_stretch - 1,
-    )  # fmt: skip
+        depth=test.depth,
+        steps=test.steps,
+        plate_diameter=2 * test.plate_radius,
+        ambient=gas.ambient_pressure,
+        dead_volume=gas.dead_volume,
+        gauge_range=gas.gauge_limit,
+        break_strain=np.inf if stretch is None else stretch - 1,
+    )
     pressed = indent(probe.solid, free, press, probe)
     happened = _events(pressed)
-    end = min(range_end(happened, sensor.protocol.depth), pressed.path[-1].indentation)
-    grid = np.linspace(0.0, end, sensor.protocol.steps + 1)
+    end = min(range_end(happened, test.depth), pressed.path[-1].indentation)
+    grid = np.linspace(0.0, end, test.steps + 1)
     force, rise = _curve(pressed.path, grid)
     return SensorState(
-        driving_pressure=pressure, apex_inner=free.inner_apex, apex_outer=free.outer_apex,
-        cavity_volume=free.volume, range_end=end, figures=figures(grid, force, rise / KPA),
-        indentation=pressed.column("indentation"), force=pressed.column("force"),
-        pressure_rise=pressed.column("rise"), contact_radius=pressed.column("contact_radius"),
-        max_stretch=pressed.column("stretch"), max_von_mises=pressed.column("von_mises"),
-        events=tuple(happened), shapes=_shapes(probe, free, pressed, end),
-    )  # fmt: skip
+        driving_pressure=pressure,
+        apex_inner=free.inner_apex,
+        apex_outer=free.outer_apex,
+        cavity_volume=free.volume,
+        range_end=end,
+        figures=figures(grid, force, rise / KPA),
+        indentation=pressed.column("indentation"),
+        force=pressed.column("force"),
+        pressure_rise=pressed.column("rise"),
+        contact_radius=pressed.column("contact_radius"),
+        max_stretch=pressed.column("stretch"),
+        max_von_mises=pressed.column("von_mises"),
+        events=tuple(happened),
+        shapes=_shapes(probe, free, pressed, end),
+    )
 
 
 def _events(pressed: IndentationPath) -> list[Event]:

@@ -73,7 +73,7 @@ def test_only_the_product_of_modulus_and_grade_counts():
     stiff = sensor(0.0, 0.25)
     other = stiff.replace(
         shear_modulus=0.4 * stiff.wall.shear_modulus,
-        grade=(stiff.wall.grade[0], tuple(2.5 * g for g in stiff.wall.wall.grade[1])),
+        grade=(stiff.wall.grade[0], tuple(2.5 * g for g in stiff.wall.grade[1])),
     )
     one, two = (solid_result(s, np.array([0.012]), past_limit=1.0) for s in (stiff, other))
     assert two.limits.limit_point == pytest.approx(one.limits.limit_point, rel=1e-9)

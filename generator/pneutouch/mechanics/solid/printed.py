@@ -21,9 +21,13 @@ _COINCIDE = 1e-9
 
 
 def printed_dome(
-    inner_radius: float, wall: float, flange_width: float, flange_thickness: float,
-    arc: int | None = None, through: int | None = None,
-) -> SolidMesh:  # fmt: skip
+    inner_radius: float,
+    wall: float,
+    flange_width: float,
+    flange_thickness: float,
+    arc: int | None = None,
+    through: int | None = None,
+) -> SolidMesh:
     """A dome whose rim goes on below z = 0 as a flange (mm), clamped on its inside, underside and outside.
 
     The flange's top stays free, as in the connector's groove, so the foot of the wall gives a little. Nine-node
@@ -35,22 +39,25 @@ def printed_dome(
     angle = 0.5 * np.pi * with_middles(graded(n, 1.0))
     cap = np.stack([np.cos(angle)[:, None] * across, np.sin(angle)[:, None] * across], axis=-1)
     cap[-1, :, 0] = 0.0
-    down = with_middles(
-        np.linspace(-flange_thickness, 0.0, 1 + max(2, round(_CELLS_PER_WALL * flange_thickness / wall)))
-    )
-    out = with_middles(np.linspace(outer, rim, 1 + max(2, round(_CELLS_PER_WALL * flange_width / wall))))
+    deep, wide = (max(2, round(_CELLS_PER_WALL * size / wall)) for size in (flange_thickness, flange_width))
+    down = with_middles(np.linspace(-flange_thickness, 0.0, 1 + deep))
+    out = with_middles(np.linspace(outer, rim, 1 + wide))
     blocks = [cap, _rectangle(across, down), _rectangle(out, down)]
     nodes, cells, first = _merge(blocks, _COINCIDE * wall)
     height = cap.shape[1]
     r, z = nodes.T
-    held = (z <= _COINCIDE) & (
-        (r <= inner_radius + _COINCIDE) | (z <= _COINCIDE - flange_thickness) | (r >= rim - _COINCIDE)
-    )
+    faces = (r <= inner_radius + _COINCIDE) | (z <= _COINCIDE - flange_thickness) | (r >= rim - _COINCIDE)
     return SolidMesh(
-        nodes, cells, first[boundary(n, height, 0)], first[boundary(n, height, height - 1)],
-        np.flatnonzero(held).astype(np.intp), first[np.arange(height) + 2 * n * height], np.zeros(0, np.intp),
-        inner_radius, wall,
-    )  # fmt: skip
+        nodes,
+        cells,
+        inner=first[boundary(n, height, 0)],
+        outer=first[boundary(n, height, height - 1)],
+        clamped=np.flatnonzero((z <= _COINCIDE) & faces).astype(np.intp),
+        axis=first[np.arange(height) + 2 * n * height],
+        sliding=np.zeros(0, np.intp),
+        length=inner_radius,
+        wall=wall,
+    )
 
 
 def _rectangle(r: Array, z: Array) -> Array:
