@@ -55,7 +55,7 @@ def record(kind="steps", sensor=Sensor(), faults=Faults(), what: RunProtocol | N
     what = what or protocol(kind, 9.25)
     if kind == "steps" and what.rest == 30.0:
         what = what.quicker(6.0)
-    rng, (knots, travels) = np.random.default_rng(seed), what.way()
+    rng, (knots, travels) = np.random.default_rng(seed), what.knots()
     time = np.arange(0, knots[-1] + 0.5, 1 / faults.rate)
     plate = np.interp(time, knots, travels)
     force = sensor.force(plate)
@@ -76,11 +76,14 @@ def record(kind="steps", sensor=Sensor(), faults=Faults(), what: RunProtocol | N
     # The encoder sits on the motor: going out it moves before the plate does.
     out = np.gradient(plate) < -1e-9
     position = plate + faults.zero - np.where(out, faults.backlash, 0.0)
-    samples = np.stack([
-        time, position + rng.normal(0, faults.position_noise, time.size) if faults.position_noise else position,
-        force + faults.force_zero + rng.normal(0, 1, time.size) * faults.force_noise,
-        pressure + rng.normal(0, 1, time.size) * faults.pressure_noise,
-    ])  # fmt: skip
+    samples = np.stack(
+        [
+            time,
+            position + rng.normal(0, faults.position_noise, time.size) if faults.position_noise else position,
+            force + faults.force_zero + rng.normal(0, 1, time.size) * faults.force_noise,
+            pressure + rng.normal(0, 1, time.size) * faults.pressure_noise,
+        ]
+    )
     return samples[:, rng.random(time.size) >= faults.missed] if faults.missed else samples
 
 

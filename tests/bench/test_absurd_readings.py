@@ -1,4 +1,4 @@
-"""Readings that no print can give are refused before they reach a profile; unlikely ones are told."""
+"""Readings that no print can give are refused before they reach a profile; unlikely ones are noted."""
 
 from __future__ import annotations
 
@@ -40,15 +40,17 @@ def refused(**tables):
 
 
 def gauged(row, *sizes):
-    told = [{"nominal_mm": nominal, "measured_mm": [reading, reading]} for nominal, reading in sizes]
-    return {"gauge": {PRINTER: {RESIN: {row: told}}}}
+    sizes_read = [{"nominal_mm": nominal, "measured_mm": [reading, reading]} for nominal, reading in sizes]
+    return {"gauge": {PRINTER: {RESIN: {row: sizes_read}}}}
 
 
 def pulled(*forces):
     specimen = {
-        "width_mm": [6.0, 6.0], "thickness_mm": [2.0, 2.0],
-        "extension_mm": [float(k) for k in range(1, len(forces) + 1)], "force_N": list(forces),
-    }  # fmt: skip
+        "width_mm": [6.0, 6.0],
+        "thickness_mm": [2.0, 2.0],
+        "extension_mm": [float(k) for k in range(1, len(forces) + 1)],
+        "force_N": list(forces),
+    }
     return {"dumbbell": {RESIN: {"specimen": [specimen, specimen]}}}
 
 
@@ -65,15 +67,17 @@ def capped(start, end, accuracy=None):
 @pytest.mark.parametrize(
     ("row", "nominal", "reading", "right"),
     [
-        ("hole", 1.0, 9.0, "from 0.5 to 1.5 mm"), ("wall", 0.3, 50.0, "from 0 to 0.6 mm"),
-        ("pin", 2.0, 0.9, "from 1 to 3 mm"), ("slot", 0.5, 50.0, "from 0.2 to 0.8 mm"),
+        ("hole", 1.0, 9.0, "from 0.5 to 1.5 mm"),
+        ("wall", 0.3, 50.0, "from 0 to 0.6 mm"),
+        ("pin", 2.0, 0.9, "from 1 to 3 mm"),
+        ("slot", 0.5, 50.0, "from 0.2 to 0.8 mm"),
     ],
-)  # fmt: skip
+)
 def test_a_slip_in_a_row_of_the_gauge_is_refused(row, nominal, reading, right):
-    said = refused(**gauged(row, (nominal, reading), (2.0, 2.0)))
-    assert f"gauge.{PRINTER}.{RESIN}.{row}: nominal_mm = {nominal:g}: measured_mm = {reading:g}" in said
-    assert right in said
-    assert "unit" in said and "row" in said
+    message = refused(**gauged(row, (nominal, reading), (2.0, 2.0)))
+    assert f"gauge.{PRINTER}.{RESIN}.{row}: nominal_mm = {nominal:g}: measured_mm = {reading:g}" in message
+    assert right in message
+    assert "unit" in message and "row" in message
 
 
 @given(row=st.sampled_from(sorted(NOMINALS)), place=st.integers(0, 8), share=st.floats(-3, 3))
@@ -97,10 +101,10 @@ def test_readings_at_the_limit_pass():
 
 @pytest.mark.parametrize(("reading", "made"), [(4.2, -1.2), (1.6, 1.4)])
 def test_holes_that_make_a_profile_no_printer_has_are_refused(reading, made):
-    said = refused(**gauged("hole", (3.0, reading), (2.0, 2.0)))
-    assert f"gauge.{PRINTER}.hole: nominal_mm = 3: mean of measured_mm = {reading:g}" in said
-    assert f"hole_undersize_mm = {made:g}" in said
-    assert "must be from -0.5 to 1 mm" in said
+    message = refused(**gauged("hole", (3.0, reading), (2.0, 2.0)))
+    assert f"gauge.{PRINTER}.hole: nominal_mm = 3: mean of measured_mm = {reading:g}" in message
+    assert f"hole_undersize_mm = {made:g}" in message
+    assert "must be from -0.5 to 1 mm" in message
 
 
 def test_nothing_is_written_of_what_is_refused(tmp_path):
@@ -113,9 +117,9 @@ def test_nothing_is_written_of_what_is_refused(tmp_path):
 
 @pytest.mark.parametrize("forces", [(30000.0, 20000.0, 10000.0), (0.3, 0.6, 0.5, 1.0), (0.3, 0.3, 0.3)])
 def test_force_must_rise_with_extension(forces):
-    said = refused(**pulled(*forces))
-    assert f"dumbbell.{RESIN}.specimen[1].force_N" in said
-    assert "must rise" in said
+    message = refused(**pulled(*forces))
+    assert f"dumbbell.{RESIN}.specimen[1].force_N" in message
+    assert "must rise" in message
 
 
 def test_points_may_come_in_any_order_and_a_gauge_may_repeat_a_force():
@@ -127,18 +131,18 @@ def test_points_may_come_in_any_order_and_a_gauge_may_repeat_a_force():
 
 @pytest.mark.parametrize("mu", [0.009, 21.0, 5558.0])
 def test_a_modulus_that_no_elastomer_has_is_refused(mu):
-    said = refused(**neo_hookean(mu))
-    assert f"dumbbell.{RESIN}.specimen[1]: force_N" in said
-    assert f"{mu:g} MPa" in said
-    assert "from 0.01 to 20 MPa" in said
+    message = refused(**neo_hookean(mu))
+    assert f"dumbbell.{RESIN}.specimen[1]: force_N" in message
+    assert f"{mu:g} MPa" in message
+    assert "from 0.01 to 20 MPa" in message
 
 
 @pytest.mark.parametrize(
     ("mu", "noted"), [(0.17 * 5.1, True), (0.17 / 5.1, True), (0.17 * 4.9, False), (0.17 / 4.9, False)]
 )
-def test_a_modulus_far_from_the_shipped_one_is_told(mu, noted):
-    found = entered(**neo_hookean(mu))
-    notes = [note for note in found.notes if "shipped" in note]
+def test_a_modulus_far_from_the_shipped_one_is_noted(mu, noted):
+    result = entered(**neo_hookean(mu))
+    notes = [note for note in result.notes if "shipped" in note]
     assert bool(notes) == noted
     assert all(RESIN in note and "shear_modulus_MPa" in note and "0.17" in note for note in notes)
 
@@ -146,28 +150,31 @@ def test_a_modulus_far_from_the_shipped_one_is_told(mu, noted):
 @pytest.mark.parametrize(
     ("name", "key", "readings", "noted"),
     [
-        ("TangoPlus", "shore_a", [52.0, 53.0], True), ("TangoPlus", "shore_a", [52.0, 52.5], False),
-        ("FLX9995", "shore_a", [66.0, 66.0], True), ("VeroClear", "shore_d", [30.0, 31.0], True),
-        ("VeroClear", "shore_d", [80.0, 81.0], False), ("VeroClear", "shore_a", [30.0, 31.0], False),
+        ("TangoPlus", "shore_a", [52.0, 53.0], True),
+        ("TangoPlus", "shore_a", [52.0, 52.5], False),
+        ("FLX9995", "shore_a", [66.0, 66.0], True),
+        ("VeroClear", "shore_d", [30.0, 31.0], True),
+        ("VeroClear", "shore_d", [80.0, 81.0], False),
+        ("VeroClear", "shore_a", [30.0, 31.0], False),
     ],
-)  # fmt: skip
-def test_a_hardness_far_from_the_shipped_one_is_told(name, key, readings, noted):
+)
+def test_a_hardness_far_from_the_shipped_one_is_noted(name, key, readings, noted):
     notes = entered(puck={name: {key: readings}}).notes
     assert bool(notes) == noted
     assert all(name in note and key in note and "resin" in note for note in notes)
 
 
 def test_a_cap_that_gains_pressure_is_refused():
-    said = refused(**capped([20.0, 20.0], [19.0, 21.0]))
-    assert f"leak-cap.{DESIGN}.end_kPa: run 2: 21 kPa" in said
-    assert "start_kPa = 20" in said
-    assert "gauge_accuracy_kPa" in said
+    message = refused(**capped([20.0, 20.0], [19.0, 21.0]))
+    assert f"leak-cap.{DESIGN}.end_kPa: run 2: 21 kPa" in message
+    assert "start_kPa = 20" in message
+    assert "gauge_accuracy_kPa" in message
 
 
-def test_a_rise_within_the_gauges_accuracy_is_told():
-    found = entered(**capped([20.0, 20.0], [19.9, 20.1], 0.1))
-    (note,) = found.notes
+def test_a_rise_within_the_gauges_accuracy_is_noted():
+    result = entered(**capped([20.0, 20.0], [19.9, 20.1], 0.1))
+    (note,) = result.notes
     assert "run 2" in note and "0.1 kPa" in note
-    assert found.figures[0].value == pytest.approx(0.0, abs=1e-9)
+    assert result.figures[0].value == pytest.approx(0.0, abs=1e-9)
     refused(**capped([20.0, 20.0], [19.9, 20.3], 0.1))
     assert not entered(**capped([20.0, 20.0], [19.9, 20.0])).notes

@@ -38,21 +38,21 @@ def test_every_figure_has_a_key_of_its_own_with_its_unit():
 @given(slope=st.floats(0.1, 10.0), power=st.floats(1.0, 2.0))
 def test_a_straight_response_has_its_slope(slope, power):
     force = 0.8 * DEPTHS**power
-    found = run_figures(curve(force=force, rise=slope * KPA * force))
-    assert found["sensitivity_kPa_per_N"] == pytest.approx(slope, rel=1e-9)
-    assert found["sensitivity_through_origin_kPa_per_N"] == pytest.approx(slope, rel=1e-9)
-    assert found["r_squared"] == pytest.approx(1.0) and found["nonlinearity_percent"] == pytest.approx(0.0, abs=1e-6)
-    assert found["stiffness_N_per_mm"] == pytest.approx(force[-1] / 7.0) and found["force_range_N"] == force[-1]
-    assert found["resolution_N"] == pytest.approx(3 * 0.01 / slope)
-    assert found["drift_pressure_kPa_per_min"] == pytest.approx(0.1)
+    result = run_figures(curve(force=force, rise=slope * KPA * force))
+    assert result["sensitivity_kPa_per_N"] == pytest.approx(slope, rel=1e-9)
+    assert result["sensitivity_through_origin_kPa_per_N"] == pytest.approx(slope, rel=1e-9)
+    assert result["r_squared"] == pytest.approx(1.0) and result["nonlinearity_percent"] == pytest.approx(0.0, abs=1e-6)
+    assert result["stiffness_N_per_mm"] == pytest.approx(force[-1] / 7.0) and result["force_range_N"] == force[-1]
+    assert result["resolution_N"] == pytest.approx(3 * 0.01 / slope)
+    assert result["drift_pressure_kPa_per_min"] == pytest.approx(0.1)
 
 
 def test_a_saturating_run_gives_its_range_and_no_sensitivity():
     force = np.linspace(0.0, 30.0, 31)
     rise = KPA * np.where(force < 18, 2.0 * force, 36.0 + 0.2 * (force - 18))
-    found = run_figures(curve("saturation", indentation=np.linspace(0, 8, 31), force=force, rise=rise))
-    assert found["saturation_force_N"] == pytest.approx(18.0, abs=1.0) == found["sensing_range_N"]
-    assert "sensitivity_kPa_per_N" not in found
+    result = run_figures(curve("saturation", indentation=np.linspace(0, 8, 31), force=force, rise=rise))
+    assert result["saturation_force_N"] == pytest.approx(18.0, abs=1.0) == result["sensing_range_N"]
+    assert "sensitivity_kPa_per_N" not in result
     straight = run_figures(curve("saturation", force=force[:15], rise=2 * KPA * force[:15]))
     assert "saturation_force_N" not in straight and straight["sensing_range_N"] == 14.0
 
@@ -65,10 +65,10 @@ def branches(width, noise=0.0, count=400, seed=0):
     gap = 4 * width * root * (1 - root)
     middle = 2.0 * force - 0.01 * force**2
     sides = []
-    for way in (-0.5, 0.5):
+    for direction in (-0.5, 0.5):
         sides += [
             force + noise * draw.standard_normal(count),
-            (middle + way * gap + noise * draw.standard_normal(count)) * KPA,
+            (middle + direction * gap + noise * draw.standard_normal(count)) * KPA,
         ]
     return tuple(sides)
 
@@ -84,12 +84,12 @@ def test_a_known_loop_has_its_width_and_area_in_noise_too():
         run_figures(curve("loop", loop=tuple(branches(0.3, 0.02, seed=3 * k + j) for j in range(3)))) for k in range(8)
     ]
     for key in ("hysteresis_width_percent", "hysteresis_area_percent"):
-        assert np.mean([found[key] for found in noisy]) == pytest.approx(clean[key], rel=0.04)
+        assert np.mean([result[key] for result in noisy]) == pytest.approx(clean[key], rel=0.04)
 
 
 def test_a_loop_of_an_elastic_sensor_has_next_to_none():
-    found = run_figures(curve("loop", loop=tuple(branches(0.0, 0.02, seed=j) for j in range(3))))
-    assert found["hysteresis_width_percent"] < 0.05 and "noise_force_N" not in found
+    result = run_figures(curve("loop", loop=tuple(branches(0.0, 0.02, seed=j) for j in range(3))))
+    assert result["hysteresis_width_percent"] < 0.05 and "noise_force_N" not in result
 
 
 @pytest.mark.parametrize("terms", [((0.05, 10.0),), ((0.02, 1.0), (0.02, 10.0), (0.02, 100.0))])
@@ -98,13 +98,13 @@ def test_relaxation_is_what_a_prony_series_loses(terms):
     force = 20.0 * (1.0 - sum(share * (1 - np.exp(-time / tau)) for share, tau in terms))
     draw = np.random.default_rng(0)
     noisy = force + 0.02 * draw.standard_normal(time.size)
-    found = run_figures(curve("relaxation", relaxation=(time, noisy, 2 * KPA * force)))
+    result = run_figures(curve("relaxation", relaxation=(time, noisy, 2 * KPA * force)))
     start = np.interp(1.0, time, force)
-    assert found["relaxation_force_percent"] == pytest.approx(100 * (start - force[-1]) / start, abs=0.06)
-    assert found["relaxation_pressure_percent"] == pytest.approx(100 * (start - force[-1]) / start, abs=0.05)
+    assert result["relaxation_force_percent"] == pytest.approx(100 * (start - force[-1]) / start, abs=0.06)
+    assert result["relaxation_pressure_percent"] == pytest.approx(100 * (start - force[-1]) / start, abs=0.05)
     even = np.interp(np.geomspace(1.0, 599.99, 200), time, force)
     slope = np.polyfit(np.log10(np.geomspace(1.0, 599.99, 200)), even, 1)[0]
-    assert found["relaxation_force_percent_per_decade"] == pytest.approx(-100 * slope / start, abs=0.03)
+    assert result["relaxation_force_percent_per_decade"] == pytest.approx(-100 * slope / start, abs=0.03)
 
 
 def test_what_a_run_does_not_determine_is_left_out():

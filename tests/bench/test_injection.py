@@ -28,18 +28,18 @@ def test_a_cap_gives_back_its_volume(tmp_path):
     pressure = 101.325 * injected / 2.6 + 0.4  # kPa, with the gauge's zero off
     volume, read = read_injection(table(tmp_path, injected, pressure), COLUMNS)
     assert volume == pytest.approx(injected * ML) and read == pytest.approx(pressure * KPA, rel=1e-5)
-    found = dead_volume_of_cap(volume, read, AMBIENT)
-    assert found.value == pytest.approx(2.6 * ML, rel=1e-4) and found.error < 1e-3 * ML
+    result = dead_volume_of_cap(volume, read, AMBIENT)
+    assert result.value == pytest.approx(2.6 * ML, rel=1e-4) and result.error < 1e-3 * ML
 
 
 def test_its_error_is_that_of_many_trials():
     rng, volume = np.random.default_rng(4), np.linspace(0, 500, 11)
-    found = [
+    result = [
         dead_volume_of_cap(volume, AMBIENT * volume / 2600 + rng.normal(0, 0.1 * KPA, 11), AMBIENT) for _ in range(3000)
     ]
-    values = np.array([one.value for one in found])
+    values = np.array([one.value for one in result])
     assert values.mean() == pytest.approx(2600, rel=2e-3)
-    assert np.sqrt(np.mean([one.spread**2 for one in found])) == pytest.approx(values.std(), rel=0.05)
+    assert np.sqrt(np.mean([one.spread**2 for one in result])) == pytest.approx(values.std(), rel=0.05)
 
 
 def test_units_of_an_injection(tmp_path):
@@ -50,17 +50,19 @@ def test_units_of_an_injection(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("volume", "pressure", "told"),
+    ("volume", "pressure", "words"),
     [
-        ([0, 0.1], [0, 4], "2 rows; at least 3"), ([0.1, 0.1, 0.1], [0, 4, 5], "volume_mL: does not vary"),
-        ([0, 0.1, 0.2], [4, 4, 4], "pressure_kPa: does not rise"), ([0, 0.1, 0.2], [8, 4, 0], "pressure_kPa: does not rise"),
+        ([0, 0.1], [0, 4], "2 rows; at least 3"),
+        ([0.1, 0.1, 0.1], [0, 4, 5], "volume_mL: does not vary"),
+        ([0, 0.1, 0.2], [4, 4, 4], "pressure_kPa: does not rise"),
+        ([0, 0.1, 0.2], [8, 4, 0], "pressure_kPa: does not rise"),
     ],
-)  # fmt: skip
-def test_tables_that_cannot_be(tmp_path, volume, pressure, told):
+)
+def test_tables_that_cannot_be(tmp_path, volume, pressure, words):
     path = table(tmp_path, volume, pressure)
     with pytest.raises(InputError) as caught:
         read_injection(path, COLUMNS)
-    assert str(caught.value).startswith(f"{path}: ") and told in str(caught.value)
+    assert str(caught.value).startswith(f"{path}: ") and words in str(caught.value)
 
 
 def test_a_missing_column_is_named(tmp_path):
@@ -84,11 +86,11 @@ def leak_samples(rng, constant=3600.0, noise=0.05, size=60_000):
 
 
 def test_a_leak_gives_back_its_rate_and_time_constant():
-    found = leak_of(*leak_samples(np.random.default_rng(1)))
+    result = leak_of(*leak_samples(np.random.default_rng(1)))
     # The slope of a straight line through an exponential is that in its middle, to second order.
-    assert found.rate == pytest.approx(22 * KPA / 3600 * np.exp(-300 / 3600), rel=2e-3)
-    assert found.time_constant == pytest.approx(3600, rel=2e-3)
-    assert found.interval[0] < found.rate < found.interval[1]
+    assert result.rate == pytest.approx(22 * KPA / 3600 * np.exp(-300 / 3600), rel=2e-3)
+    assert result.time_constant == pytest.approx(3600, rel=2e-3)
+    assert result.interval[0] < result.rate < result.interval[1]
 
 
 def test_the_interval_of_a_leak_covers_it():
@@ -104,8 +106,8 @@ def test_the_interval_of_a_leak_covers_it():
 
 def test_a_tight_line_has_no_time_constant():
     time, rng = np.arange(1000.0), np.random.default_rng(2)
-    found = leak_of(time, 22 * KPA + 1e-9 * time + rng.normal(0, 1e-12, 1000))
-    assert found.rate < 0 and found.time_constant == np.inf
+    result = leak_of(time, 22 * KPA + 1e-9 * time + rng.normal(0, 1e-12, 1000))
+    assert result.rate < 0 and result.time_constant == np.inf
 
 
 def test_a_leak_run_goes_through_blocks():

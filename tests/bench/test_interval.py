@@ -25,7 +25,7 @@ def test_the_mean_is_covered(specimens, runs):
     values = campaigns(specimens, runs)
     truths = np.full(TRIALS, 2.0) if specimens > 1 else None
     if truths is None:
-        # One specimen speaks of itself alone.
+        # One specimen gives no scatter between specimens.
         draw = np.random.default_rng(2)
         values = 2.0 + 0.01 * draw.standard_normal((TRIALS, 1, runs))
         truths = np.full(TRIALS, 2.0)

@@ -1,4 +1,4 @@
-"""What a run cannot be: each wrong unit, sign, exchange and mixture is told as what it is, and a right run is left alone."""
+"""Each wrong unit, sign, exchange and mixture is reported as such, and a correct run passes without a question."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pneutouch.bench.curve import curve_of
-from pneutouch.bench.plausible import ExpectedRun, check_leak, check_plausible, mixed
+from pneutouch.bench.outliers import outliers
+from pneutouch.bench.plausible import ExpectedRun, check_leak, check_plausible
 from pneutouch.bench.reading import read_blocks
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.errors import InputError
@@ -69,15 +70,25 @@ def test_a_right_run_is_left_alone(tmp_path, samples):
 
 
 @pytest.mark.parametrize(
-    ("key", "unit", "ask"),
+    ("key", "unit", "units"),
     [
-        ("force", "mN", "mN"), ("force", "kN", "kN"), ("force", "gf", "gf"), ("force", "lbf", "lbf"), ("force", "kgf", "kgf"),
-        ("pressure", "Pa", "Pa"), ("pressure", "psi", "psi"), ("pressure", "MPa", "MPa"), ("pressure", "hPa", "hPa or mbar"),
-        ("pressure", "mmHg", "mmHg"), ("position", "um", "um"), ("position", "m", "m"), ("position", "in", "in"),
+        ("force", "mN", "mN"),
+        ("force", "kN", "kN"),
+        ("force", "gf", "gf"),
+        ("force", "lbf", "lbf"),
+        ("force", "kgf", "kgf"),
+        ("pressure", "Pa", "Pa"),
+        ("pressure", "psi", "psi"),
+        ("pressure", "MPa", "MPa"),
+        ("pressure", "hPa", "hPa or mbar"),
+        ("pressure", "mmHg", "mmHg"),
+        ("position", "um", "um"),
+        ("position", "m", "m"),
+        ("position", "in", "in"),
     ],
-)  # fmt: skip
-def test_every_wrong_unit_is_asked_for(tmp_path, samples, key, unit, ask):
-    """The file is written in ``unit``; the campaign says N, kPa and mm."""
+)
+def test_every_wrong_unit_is_identified(tmp_path, samples, key, unit, units):
+    """The file is written in ``unit``; the campaign states N, kPa and mm."""
     row, inner = {"position": (1, 1.0), "force": (2, 1.0), "pressure": (3, KPA)}[key]
     wrong = samples.copy()
     wrong[row] *= inner / UNITS[key][unit]
@@ -89,46 +100,46 @@ def test_every_wrong_unit_is_asked_for(tmp_path, samples, key, unit, ask):
     with pytest.raises(InputError) as caught:
         check_plausible(curve, COLUMNS, EXPECTED, path)
     assert str(caught.value).startswith(f"{path}: column {name}: ")
-    assert f"is the column in {ask}? set columns.{key}.unit" in str(caught.value)
+    assert f"is the column in {units}? set columns.{key}.unit" in str(caught.value)
     right = declared(**{key: unit})
-    found = curve_of(run_of(), read_blocks(path, right, RIG), RIG)
-    assert check_plausible(found, right, EXPECTED, path) == ()
+    result = curve_of(run_of(), read_blocks(path, right, RIG), RIG)
+    assert check_plausible(result, right, EXPECTED, path) == ()
 
 
 def test_the_message_has_the_numbers(tmp_path):
     curve = ideal(factor=(1, 1e3, 1))
     with pytest.raises(InputError) as caught:
         check_plausible(curve, COLUMNS, ExpectedRun(6.9, 4.2, 11 * KPA, 2.5 * KPA), Path("run.csv"))
-    told = str(caught.value)
-    assert told == (
+    words = str(caught.value)
+    assert words == (
         "run.csv: column force_N: reads 4.5e+03 N at 6.9 mm where the prediction has 4.2 N, 1079 times it; is the column in mN? "
         "set columns.force.unit"
     )
 
 
-def test_time_in_milliseconds_is_asked_for(tmp_path, samples):
+def test_time_in_milliseconds_is_identified(tmp_path, samples):
     slow = samples * np.array([[1e3], [1], [1], [1]])
     refused(tmp_path, slow, "column time_s", "holds last 2.4e+03 s", "is the column in ms? set columns.time.unit")
 
 
 def test_what_no_unit_explains_is_a_question():
-    told = check_plausible(ideal(factor=(1, 20.0, 1)), COLUMNS, replace(EXPECTED, depth=6.9), Path("run.csv"))
-    assert len(told) == 1 and "column force_N" in told[0] and "no unit explains that" in told[0]
+    words = check_plausible(ideal(factor=(1, 20.0, 1)), COLUMNS, replace(EXPECTED, depth=6.9), Path("run.csv"))
+    assert len(words) == 1 and "column force_N" in words[0] and "no unit explains that" in words[0]
 
 
 @settings(max_examples=50, deadline=None)
 @given(force=st.floats(0.45, 2.2), rise=st.floats(0.45, 2.2), depth=st.floats(0.5, 2.0))
-def test_nothing_is_asked_within_a_factor_of_two(force, rise, depth):
+def test_no_question_within_a_factor_of_two(force, rise, depth):
     measured = ideal(deepest=depth * DEPTH, factor=(1, force, rise), driving=0.0)
     true = float(SENSOR.force(DEPTH))
-    # A swap is told by magnitudes where there is no driving pressure; these numbers are far from each other's.
+    # A swap is detected by magnitudes where there is no driving pressure; these numbers are far from each other's.
     expected = ExpectedRun(DEPTH, true, 40 * SENSOR.slope * true, 40 * SENSOR.slope)
     measured = replace(measured, rise=40 * measured.rise)
     assert check_plausible(measured, COLUMNS, expected, Path("run.csv")) == ()
 
 
 @pytest.mark.parametrize("driving", [0.0, 12.0, 22.0])
-def test_exchanged_columns_are_told(tmp_path, driving):
+def test_exchanged_columns_are_reported(tmp_path, driving):
     sensor = replace(SENSOR, driving=driving * KPA)
     samples = small(sensor=sensor)
     swapped = (HEADER[0], HEADER[1], HEADER[3], HEADER[2])
@@ -137,34 +148,34 @@ def test_exchanged_columns_are_told(tmp_path, driving):
 
 
 @pytest.mark.parametrize(
-    ("row", "told"), [(1, "columns.position.sign"), (2, "columns.force.sign = -1"), (3, "columns.pressure.sign = -1")]
+    ("row", "words"), [(1, "columns.position.sign"), (2, "columns.force.sign = -1"), (3, "columns.pressure.sign = -1")]
 )
-def test_wrong_signs_are_told(tmp_path, samples, row, told):
+def test_wrong_signs_are_reported(tmp_path, samples, row, words):
     wrong = samples.copy()
     wrong[row] *= -1
-    refused(tmp_path, wrong, told)
+    refused(tmp_path, wrong, words)
 
 
 def test_another_driving_pressure_is_a_question(tmp_path, samples):
-    (told,) = analyse(tmp_path, samples, sensor=replace(SENSOR, driving=22 * KPA))
-    assert "column pressure_kPa: 12 kPa before contact" in told and "driving_pressure_kPa = 22" in told
+    (words,) = analyse(tmp_path, samples, sensor=replace(SENSOR, driving=22 * KPA))
+    assert "column pressure_kPa: 12 kPa before contact" in words and "driving_pressure_kPa = 22" in words
     assert analyse(tmp_path, samples, sensor=replace(SENSOR, driving=12.9 * KPA)) == ()
 
 
 def test_the_odd_one_of_three_is_named():
     other = ideal(lambda d: 1.5 * SENSOR.force(d), number=3)
     runs = [ideal(number=1), ideal(lambda d: 1.02 * SENSOR.force(d), number=2), other]
-    ((found, why),) = mixed(runs)
-    assert found is other and why.startswith(
+    ((result, why),) = outliers(runs)
+    assert result is other and why.startswith(
         "A1-3.csv: force at 6.9 mm is 1.49 times that of the other 2 runs of sensor A1"
     )
-    ((found, why),) = mixed([*runs[:2], ideal(slope=0.7 * SENSOR.slope, number=3)])
-    assert found.run.run == 3 and "slope of pressure over force is 0.70 times" in why
+    ((result, why),) = outliers([*runs[:2], ideal(slope=0.7 * SENSOR.slope, number=3)])
+    assert result.run.run == 3 and "slope of pressure over force is 0.70 times" in why
 
 
 def test_of_two_that_differ_both_are_named():
     runs = [ideal(number=1), ideal(lambda d: 1.5 * SENSOR.force(d), number=2)]
-    assert [curve.run.run for curve, _ in mixed(runs)] == [1, 2]
+    assert [curve.run.run for curve, _ in outliers(runs)] == [1, 2]
 
 
 @settings(max_examples=30, deadline=None)
@@ -173,30 +184,31 @@ def test_runs_alike_and_other_sensors_are_left_alone(factors):
     alike = [ideal(lambda d, f=f: f * SENSOR.force(d), number=k + 1) for k, f in enumerate(factors)]
     stiffer = ideal(lambda d: 3 * SENSOR.force(d), name="B1")
     inflated = ideal(lambda d: 2 * SENSOR.force(d), driving=22.0)
-    assert mixed([*alike, stiffer, inflated]) == []
+    assert outliers([*alike, stiffer, inflated]) == []
 
 
 @pytest.mark.parametrize(
-    ("factor", "told"), [((1, -1, 1), "columns.force.sign"), ((1, 1, -1), "columns.pressure.sign"), ((-1, 1, 1), "position.sign")]
-)  # fmt: skip
-def test_signs_are_told_without_a_prediction(factor, told):
-    with pytest.raises(InputError, match=told):
+    ("factor", "words"),
+    [((1, -1, 1), "columns.force.sign"), ((1, 1, -1), "columns.pressure.sign"), ((-1, 1, 1), "position.sign")],
+)
+def test_signs_are_checked_without_a_prediction(factor, words):
+    with pytest.raises(InputError, match=words):
         check_plausible(ideal(factor=factor), COLUMNS, None, Path("run.csv"))
 
 
-def test_without_a_prediction_time_and_driving_pressure_are_asked_about_and_magnitudes_not(tmp_path, samples):
+def test_without_a_prediction_time_and_driving_pressure_are_checked_and_magnitudes_not(tmp_path, samples):
     assert analyse(tmp_path, samples, expected=None) == ()
     assert check_plausible(ideal(factor=(1, 20.0, 1)), COLUMNS, None, Path("run.csv")) == ()
     refused(tmp_path, samples * np.array([[1e3], [1], [1], [1]]), "is the column in ms?", expected=None)
-    (told,) = analyse(tmp_path, samples, sensor=replace(SENSOR, driving=22 * KPA), expected=None)
-    assert "driving_pressure_kPa = 22" in told
+    (words,) = analyse(tmp_path, samples, sensor=replace(SENSOR, driving=22 * KPA), expected=None)
+    assert "driving_pressure_kPa = 22" in words
 
 
 @pytest.mark.parametrize("expected", [EXPECTED, None])
 def test_holds_that_no_unit_explains_are_a_question(tmp_path, samples, expected):
     slow = samples * np.array([[125.0], [1], [1], [1]])
-    (told,) = analyse(tmp_path, slow, expected=expected)
-    assert "column time_s: holds last 3e+02 s" in told and "another protocol" in told
+    (words,) = analyse(tmp_path, slow, expected=expected)
+    assert "column time_s: holds last 3e+02 s" in words and "another protocol" in words
 
 
 def leak(tmp_path, driving=22.0, top=100.0, start=22.0, constant=3600.0):
@@ -217,16 +229,16 @@ def test_a_leak_run_at_its_pressure_is_left_alone(tmp_path):
 
 def test_a_leak_run_at_another_pressure(tmp_path):
     for driving in (12.0, 0.0):
-        (told,) = leak(tmp_path, driving)
-        assert "leak.csv" in told and "begins at 22 kPa" in told and f"driving_pressure_kPa = {driving:g}" in told
+        (words,) = leak(tmp_path, driving)
+        assert "leak.csv" in words and "begins at 22 kPa" in words and f"driving_pressure_kPa = {driving:g}" in words
     for start in (2.0, 90.0):
         with pytest.raises(InputError, match=r"leak\.csv: a leak run that begins at .*driving_pressure_kPa = 22"):
             leak(tmp_path, start=start)
 
 
 def test_a_leak_run_that_is_clipped(tmp_path):
-    (told,) = leak(tmp_path, 99.0, start=100.0, top=100.0, constant=3600.0)
-    assert "are clipped" in told
+    (words,) = leak(tmp_path, 99.0, start=100.0, top=100.0, constant=3600.0)
+    assert "are clipped" in words
     with pytest.raises(
         InputError, match=r"leak\.csv: a leak run of 300 s of which 300 s are clipped .*range of 100 kPa"
     ):

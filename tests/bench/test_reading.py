@@ -1,4 +1,4 @@
-"""Files to blocks: what is read is what was written, and each kind of damage is told as what it is."""
+"""Files to blocks: the values read are those written."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def test_blocks_are_the_means_of_the_samples(file, samples):
     assert blocks.force_spread[:whole] == pytest.approx(parts[2].std(axis=1), abs=1e-5)
     assert blocks.pressure_extreme[:whole] == pytest.approx(np.abs(parts[3]).max(axis=1), abs=1e-8)
     assert blocks.first_row[:3].tolist() == [2, 12, 22]
-    assert blocks.doubts == ()
+    assert blocks.warnings == ()
 
 
 def test_chunks_do_not_show(file, monkeypatch):
@@ -56,12 +56,14 @@ def test_units_and_signs_are_those_of_the_columns(tmp_path, samples):
     frame = pd.DataFrame(table.T, columns=names[:4]).assign(note="ok, fine")
     frame.to_csv(path, index=False)
     columns = ColumnMap(
-        time=Column(name="t", unit="ms"), position=Column(name="z", unit="um", sign=-1),
-        force=Column(name="load", unit="lbf"), pressure=Column(name="p", unit="psi"),
-    )  # fmt: skip
-    found, expected = read(path, columns), blocks_of(path, *samples)
+        time=Column(name="t", unit="ms"),
+        position=Column(name="z", unit="um", sign=-1),
+        force=Column(name="load", unit="lbf"),
+        pressure=Column(name="p", unit="psi"),
+    )
+    result, expected = read(path, columns), blocks_of(path, *samples)
     for name in ("time", "position", "force", "pressure", "force_spread", "pressure_extreme"):
-        assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=1e-9, abs=1e-12)
+        assert getattr(result, name) == pytest.approx(getattr(expected, name), rel=1e-9, abs=1e-12)
 
 
 @pytest.mark.parametrize("separator", [",", ";", "\t"])
@@ -88,7 +90,7 @@ def test_parquet_reads_as_csv(tmp_path, file):
     refuse(path, "column force_N", "must be numbers")
 
 
-def test_parquet_without_pyarrow_says_what_to_install(tmp_path, file, monkeypatch):
+def test_parquet_without_pyarrow_names_what_to_install(tmp_path, file, monkeypatch):
     path = tmp_path / "run.parquet"
     path.write_bytes(b"PAR1")
     monkeypatch.setitem(sys.modules, "pyarrow", None)

@@ -1,4 +1,4 @@
-"""What a channel cannot have measured: gaps, clips, spikes and dead channels are told with their stretch."""
+"""What a channel cannot have measured: gaps, clips, spikes and dead channels are reported with their intervals."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ def samples():
     return small()
 
 
-def test_gaps_are_doubts_and_most_of_a_record_missing_is_an_error(tmp_path, samples):
+def test_gaps_are_warnings_and_most_of_a_record_missing_is_an_error(tmp_path, samples):
     keep = np.ones(samples.shape[1], bool)
     keep[4000:4500] = False
     keep[[100, 200, 201]] = False
-    long, short = read(write(tmp_path / "a.csv", samples[:, keep])).doubts
+    long, short = read(write(tmp_path / "a.csv", samples[:, keep])).warnings
     assert long.why == "gap: 500 samples missing" and not long.used
     assert (long.start, long.end) == (pytest.approx(3.999), pytest.approx(4.5))
     assert short.why.startswith(f"3 of {samples.shape[1] - 500} samples missed, in 2 places") and short.used
@@ -33,8 +33,8 @@ def test_missed_samples_are_counted_across_chunks(tmp_path, monkeypatch):
     path = write(tmp_path / "a.csv", lossy)
     monkeypatch.setattr("pneutouch.tables.csv_table.CHUNK", 3001)
     lost = round((lossy[0, -1] - lossy[0, 0]) * 1000) + 1 - lossy.shape[1]
-    (doubt,) = read(path).doubts
-    assert doubt.why.startswith(f"{lost} of {lossy.shape[1] + lost} samples missed")
+    (warning,) = read(path).warnings
+    assert warning.why.startswith(f"{lost} of {lossy.shape[1] + lost} samples missed")
 
 
 def test_clipped_stretches_are_found(tmp_path, samples):
@@ -42,26 +42,26 @@ def test_clipped_stretches_are_found(tmp_path, samples):
     clipped = samples.copy()
     clipped[2] = np.minimum(clipped[2], top)
     true = samples[0][samples[2] > top + 0.1]
-    by_range = read(write(tmp_path / "a.csv", clipped), rig=Rig(force_range_N=float(top))).doubts
-    flat = read(write(tmp_path / "a.csv", clipped)).doubts
-    for doubts, told in ((by_range, "of the range"), (flat, "flat top")):
-        (doubt,) = doubts
-        assert told in doubt.why and "force clipped" in doubt.why and not doubt.used
-        assert doubt.start <= true[0] + 0.05 and doubt.end >= true[-1] - 0.05
-        assert doubt.end - doubt.start < true[-1] - true[0] + 0.3
+    by_range = read(write(tmp_path / "a.csv", clipped), rig=Rig(force_range_N=float(top))).warnings
+    flat = read(write(tmp_path / "a.csv", clipped)).warnings
+    for warnings, words in ((by_range, "of the range"), (flat, "flat top")):
+        (warning,) = warnings
+        assert words in warning.why and "force clipped" in warning.why and not warning.used
+        assert warning.start <= true[0] + 0.05 and warning.end >= true[-1] - 0.05
+        assert warning.end - warning.start < true[-1] - true[0] + 0.3
 
 
 def test_a_coarse_or_noiseless_channel_is_not_clipped(tmp_path, samples):
     coarse = samples.copy()
     coarse[2] = np.round(coarse[2] / 0.1) * 0.1
-    assert read(write(tmp_path / "a.csv", coarse)).doubts == ()
+    assert read(write(tmp_path / "a.csv", coarse)).warnings == ()
     still = small(force_noise=0.0, pressure_noise=0.0)
-    assert read(write(tmp_path / "a.csv", still)).doubts == ()
+    assert read(write(tmp_path / "a.csv", still)).warnings == ()
 
 
-def test_a_reading_far_beyond_the_range_is_asked_about(tmp_path, samples):
-    (doubt,) = read(write(tmp_path / "a.csv", samples), rig=Rig(force_range_N=0.5)).doubts
-    assert "beyond the rig's range of 0.5" in doubt.why and doubt.used
+def test_a_reading_far_beyond_the_range_is_questioned(tmp_path, samples):
+    (warning,) = read(write(tmp_path / "a.csv", samples), rig=Rig(force_range_N=0.5)).warnings
+    assert "beyond the rig's range of 0.5" in warning.why and warning.used
 
 
 @pytest.mark.parametrize(("channel", "name"), [(1, "position_mm"), (2, "force_N"), (3, "pressure_kPa")])
@@ -78,14 +78,14 @@ def test_a_spike_hides_no_clipping(tmp_path, samples):
     spiked = clipped.copy()
     spiked[2, 700] = 1.3 * top
     rig = Rig(force_range_N=float(top))
-    (alone,) = read(write(tmp_path / "a.csv", clipped), rig=rig).doubts
-    spike, still = sorted(read(write(tmp_path / "a.csv", spiked), rig=rig).doubts)
+    (alone,) = read(write(tmp_path / "a.csv", clipped), rig=rig).warnings
+    spike, still = sorted(read(write(tmp_path / "a.csv", spiked), rig=rig).warnings)
     assert still == alone and still.kind == "clipped"
     assert spike.kind == "spike" and "force spike" in spike.why and not spike.used
     assert spike.start <= 0.7 <= spike.end and spike.end - spike.start < 0.05
     # Nor a flat top far below the range.
     spiked[2, 700] = 60.0
-    spike, still = sorted(read(write(tmp_path / "a.csv", spiked)).doubts)
+    spike, still = sorted(read(write(tmp_path / "a.csv", spiked)).warnings)
     assert (
         spike.kind == "spike"
         and "flat top" in still.why
@@ -97,22 +97,22 @@ def test_many_spikes_are_no_unit(tmp_path, samples):
     """Half a second of them in all, and yet none lasts."""
     spiked = samples.copy()
     spiked[2, 300:9000:170] = 55.0
-    doubts = read(write(tmp_path / "a.csv", spiked)).doubts
-    assert len(doubts) > 50 and {doubt.kind for doubt in doubts} == {"spike"}
+    warnings = read(write(tmp_path / "a.csv", spiked)).warnings
+    assert len(warnings) > 50 and {warning.kind for warning in warnings} == {"spike"}
 
 
 def test_a_few_missed_samples_are_a_note(tmp_path):
     few = small(rate=4000.0)
     keep = np.ones(few.shape[1], bool)
     keep[[500, 900, 901]] = False
-    (note,) = read(write(tmp_path / "a.csv", few[:, keep])).doubts
+    (note,) = read(write(tmp_path / "a.csv", few[:, keep])).warnings
     assert note.kind == "note" and note.used and note.why.startswith(f"3 of {few.shape[1]} samples missed, in 2 places")
     keep[902] = False
-    (burst,) = read(write(tmp_path / "a.csv", few[:, keep])).doubts
+    (burst,) = read(write(tmp_path / "a.csv", few[:, keep])).warnings
     assert burst.kind == "other"
     keep[902] = True
     keep[1000 : few.shape[1] : 900] = False
-    (often,) = read(write(tmp_path / "a.csv", few[:, keep])).doubts
+    (often,) = read(write(tmp_path / "a.csv", few[:, keep])).warnings
     assert often.kind == "other"
 
 
@@ -128,11 +128,11 @@ def test_a_number_that_overflows_in_inner_units_is_named(tmp_path, samples, valu
 
 
 def test_a_gap_across_a_move_kills_no_channel(tmp_path):
-    """The one block after the gap has moved farthest; it alone says nothing of force and pressure."""
+    """The one block after the gap has moved farthest; it is no evidence on force and pressure."""
     slow = record(faults=Faults(rate=100.0))
     rests = np.flatnonzero(slow[1] < slow[1].min() + 0.1)
     holds = np.flatnonzero(slow[1] > slow[1].max() - 0.1)
     keep = np.ones(slow.shape[1], bool)
     keep[rests[rests < holds[0]][-1] : holds[0] + 5] = False
-    (gap, *_) = read(write(tmp_path / "a.csv", slow[:, keep])).doubts
+    (gap, *_) = read(write(tmp_path / "a.csv", slow[:, keep])).warnings
     assert gap.kind == "gap" and not gap.used

@@ -1,4 +1,4 @@
-"""Files that are cut, torn or no tables: each fault is told with its row and column."""
+"""Files that are cut, damaged or no tables: each fault is reported with its row and column."""
 
 from __future__ import annotations
 
@@ -22,11 +22,18 @@ def file(tmp_path_factory, samples):
 
 
 @pytest.mark.parametrize(
-    ("cell", "told"),
-    [("", "empty"), ("abc", "'abc' is no finite number"), ("nan", "'nan'"), ("inf", "'inf'"), ("1_0", "'1_0'"), ("0x1F", "'0x1F'")],
-)  # fmt: skip
-def test_a_cell_that_is_no_number_is_named(tmp_path, file, cell, told):
-    refuse(spoilt(tmp_path, file, 1234, 2, cell), "row 1234", "column force_N", told)
+    ("cell", "words"),
+    [
+        ("", "empty"),
+        ("abc", "'abc' is no finite number"),
+        ("nan", "'nan'"),
+        ("inf", "'inf'"),
+        ("1_0", "'1_0'"),
+        ("0x1F", "'0x1F'"),
+    ],
+)
+def test_a_cell_that_is_no_number_is_named(tmp_path, file, cell, words):
+    refuse(spoilt(tmp_path, file, 1234, 2, cell), "row 1234", "column force_N", words)
 
 
 def test_a_row_with_too_many_or_too_few_fields_is_named(tmp_path, file):
@@ -60,14 +67,18 @@ def test_files_that_are_none(tmp_path, file):
     path = tmp_path / "a.csv"
     refuse(path, "no such file")
     refuse(tmp_path, "folder")
-    for content, told in (
-        (b"", "empty file"), (b"\n\n", "no header"), (",".join(HEADER).encode() + b"\n", "no rows"),
-        (bytes(range(256)) * 50, "binary"), ("ä".encode("latin-1") + file.read_bytes(), "not UTF-8"),
-        (file.read_text().encode("utf-16"), "UTF-16"), (file.read_bytes() + b"\0\0\0\n", "binary file"),
+    for content, words in (
+        (b"", "empty file"),
+        (b"\n\n", "no header"),
+        (",".join(HEADER).encode() + b"\n", "no rows"),
+        (bytes(range(256)) * 50, "binary"),
+        ("ä".encode("latin-1") + file.read_bytes(), "not UTF-8"),
+        (file.read_text().encode("utf-16"), "UTF-16"),
+        (file.read_bytes() + b"\0\0\0\n", "binary file"),
         (file.read_bytes()[:5000] + "é".encode("latin-1") + file.read_bytes()[5000:], "not UTF-8"),
-    ):  # fmt: skip
+    ):
         path.write_bytes(content)
-        refuse(path, told)
+        refuse(path, words)
 
 
 def test_a_file_that_is_cut_off(tmp_path, file):
@@ -79,8 +90,8 @@ def test_a_file_that_is_cut_off(tmp_path, file):
         path.write_bytes(data[:end])
         refuse(path, f"row {row}", "cut off")
     path.write_bytes(data[:-2])
-    (doubt,) = read(path).doubts
-    assert "last row left out" in doubt.why and not doubt.used
+    (warning,) = read(path).warnings
+    assert "last row left out" in warning.why and not warning.used
 
 
 def test_time_must_run_on(tmp_path, file):
@@ -88,7 +99,7 @@ def test_time_must_run_on(tmp_path, file):
     refuse(spoilt(tmp_path, file, 500, 0, "0.497"), "row 500", "stands still")
 
 
-def test_a_row_cut_within_text_is_told_whole(tmp_path):
+def test_a_row_cut_within_text_is_quoted(tmp_path):
     """The sixtieth byte may be the first half of a letter."""
     path = tmp_path / "a.csv"
     for before in range(4):
@@ -111,7 +122,7 @@ def test_rows_end_at_line_feeds_alone(tmp_path, file):
         refuse(path, "row 152: column force_N: '?'")
 
 
-def test_carriage_returns_within_rows_are_told(tmp_path, file):
+def test_carriage_returns_within_rows_are_reported(tmp_path, file):
     path = tmp_path / "a.csv"
     path.write_bytes(file.read_bytes()[:9000].replace(b"\n", b"\r"))
     refuse(path, "row 1: carriage returns")
@@ -122,12 +133,12 @@ def test_carriage_returns_within_rows_are_told(tmp_path, file):
 def test_a_last_row_without_line_end_must_be_whole(tmp_path, file):
     path = tmp_path / "a.csv"
     row = file.read_bytes().count(b"\n") + 1
-    for end, told in ((b"99,1,2,3,4", "5 fields"), (b"99,1,1e999,3", "column force_N: '1e999' is no finite number")):
+    for end, words in ((b"99,1,2,3,4", "5 fields"), (b"99,1,1e999,3", "column force_N: '1e999' is no finite number")):
         path.write_bytes(file.read_bytes() + end)
-        refuse(path, f"row {row}", told)
+        refuse(path, f"row {row}", words)
 
 
-def test_whole_numbers_beyond_2_to_53_are_told(tmp_path, file):
+def test_whole_numbers_beyond_2_to_53_are_refused(tmp_path, file):
     path = tmp_path / "run.parquet"
     frame = pd.read_csv(file)
     time = (frame["time_s"] * 1e3).round().astype("int64")

@@ -1,4 +1,4 @@
-"""Records of known sensors to curves: the law that was put in comes out, and what is wrong is told."""
+"""Records of known sensors to curves: the law of the record is recovered, and faults are reported."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from pneutouch.bench.blocks import blocks_of
-from pneutouch.bench.curve import WAY_POINTS, curve_of
+from pneutouch.bench.curve import LOADING_POINTS, curve_of
 from pneutouch.bench.protocol import HOLD, protocol
 from pneutouch.bench.segment import excursions, position_noise
 from pneutouch.errors import InputError
@@ -28,58 +28,62 @@ def curve(samples, kind="steps", sensor=LAWS[1], rig=None, **more):
     return curve_of(run_of(kind, sensor), blocks_of(FILE, *samples, **more), rig or Rig())
 
 
-def whys(found, used=None):
-    return [doubt.why for doubt in found.doubts if used is None or doubt.used == used]
+def whys(result, used=None):
+    return [warning.why for warning in result.warnings if used is None or warning.used == used]
 
 
 @pytest.mark.parametrize(("sensor", "bias"), [(LAWS[0], 0.01), (LAWS[1], 0.05), (LAWS[2], 0.09), (LAWS[3], 0.04)])
 @pytest.mark.parametrize("kind", ["steps", "saturation"])
 def test_points_are_those_of_the_law(kind, sensor, bias):
     faults = Faults(rate=4000.0, missed=0.01, backlash=0.1)
-    found = curve(record(kind, sensor, faults), kind, sensor)
+    result = curve(record(kind, sensor, faults), kind, sensor)
     depths = np.array(protocol(kind, 9.25).depths)
-    assert found.indentation[0] == found.force[0] == found.rise[0] == 0
+    assert result.indentation[0] == result.force[0] == result.rise[0] == 0
     # The shallowest is touched with less than 0.1 N, five times the noise of one sample.
-    onset = np.array([one.onset for one in found.indents[1:]]) - faults.zero
+    onset = np.array([one.onset for one in result.indents[1:]]) - faults.zero
     assert abs(np.median(onset)) < bias
     assert np.abs(onset - np.median(onset)).max() < 0.08
     # Every travel is counted from one place, the first contact of the run's first indentations.
-    start = depths - found.indentation[1:]
+    start = depths - result.indentation[1:]
     assert np.ptp(start) < 0.006 and abs(start.mean()) < bias + 0.03
     force = sensor.force(depths)
-    assert found.force[1:] == pytest.approx(force, abs=0.002)
-    assert found.rise[1:] == pytest.approx(sensor.slope * force, abs=0.01 * KPA)
-    assert found.driving == pytest.approx(sensor.driving, abs=0.005 * KPA)
-    (missed,) = (why for why in whys(found) if not why.startswith("indentation 1: too light"))
+    assert result.force[1:] == pytest.approx(force, abs=0.002)
+    assert result.rise[1:] == pytest.approx(sensor.slope * force, abs=0.01 * KPA)
+    assert result.driving == pytest.approx(sensor.driving, abs=0.005 * KPA)
+    (missed,) = (why for why in whys(result) if not why.startswith("indentation 1: too light"))
     assert "samples missed" in missed
 
 
 def test_the_sensitivity_is_that_put_in():
     sensor = Sensor(0.3, 1.4, 1.9 * KPA)
-    found = curve(record(sensor=sensor), sensor=sensor)
-    told = figures(found.indentation, found.force, found.rise / KPA)
-    assert told is not None and told.sensitivity_kPa_per_N == pytest.approx(1.9, rel=2e-3) and told.r_squared > 0.9999
+    result = curve(record(sensor=sensor), sensor=sensor)
+    message = figures(result.indentation, result.force, result.rise / KPA)
+    assert (
+        message is not None
+        and message.sensitivity_kPa_per_N == pytest.approx(1.9, rel=2e-3)
+        and message.r_squared > 0.9999
+    )
 
 
-def test_a_filter_moves_the_onset_by_at_most_the_way_made_in_its_delay():
+def test_a_filter_moves_the_onset_by_at_most_the_travel_in_its_delay():
     for tau in (0.005, 0.02):
-        found = curve(record(sensor=LAWS[3], faults=Faults(rate=2000.0, filter=tau)))
-        onset = np.median([one.onset for one in found.indents]) - 41.3
+        result = curve(record(sensor=LAWS[3], faults=Faults(rate=2000.0, filter=tau)))
+        onset = np.median([one.onset for one in result.indents]) - 41.3
         assert 0.0 < onset < 5.0 * tau
-        assert found.force[-1] == pytest.approx(LAWS[3].force(6.9375), abs=0.005)
+        assert result.force[-1] == pytest.approx(LAWS[3].force(6.9375), abs=0.005)
 
 
 def test_noise_is_that_of_samples_and_drift_that_of_a_leak():
-    found = curve(record(faults=Faults(rate=2000.0, leak=0.02 * KPA)))
-    assert found.noise[0] == pytest.approx(0.02, rel=0.03)
-    assert found.noise[1] == pytest.approx(0.03 * KPA, rel=0.03)
-    assert found.drift[0] == pytest.approx(-0.02 * KPA, rel=0.1)
+    result = curve(record(faults=Faults(rate=2000.0, leak=0.02 * KPA)))
+    assert result.noise[0] == pytest.approx(0.02, rel=0.03)
+    assert result.noise[1] == pytest.approx(0.03 * KPA, rel=0.03)
+    assert result.drift[0] == pytest.approx(-0.02 * KPA, rel=0.1)
     fast = curve(record(faults=Faults(rate=2000.0, leak=0.1 * KPA)))
     (leak,) = (why for why in whys(fast) if why.startswith("pressure without"))
-    told = re.fullmatch(r"pressure without contact drifts by (\S+) kPa a minute, .*", leak)
-    assert told is not None and float(told[1]) == pytest.approx(-6.0, rel=0.02)
+    message = re.fullmatch(r"pressure without contact drifts by (\S+) kPa a minute, .*", leak)
+    assert message is not None and float(message[1]) == pytest.approx(-6.0, rel=0.02)
     quiet = curve(record(faults=Faults(rate=2000.0)))
-    assert quiet.doubts == () and abs(quiet.drift[0]) < 1e-3 * KPA
+    assert quiet.warnings == () and abs(quiet.drift[0]) < 1e-3 * KPA
 
 
 def test_filtered_noise_is_not_underestimated():
@@ -92,19 +96,19 @@ def test_filtered_noise_is_not_underestimated():
 
 
 def test_a_reset_does_not_enter_the_driving_pressure():
-    """In every rest the cavity is vented and filled anew."""
+    """In every rest the cavity is vented and filled again."""
     blocks = blocks_of(FILE, *record())
     assert blocks.pressure.min() < 1 * KPA
-    found = curve_of(run_of(), blocks, Rig())
-    assert [one.driving for one in found.indents] == pytest.approx([12 * KPA] * 14, abs=0.02 * KPA)
+    result = curve_of(run_of(), blocks, Rig())
+    assert [one.driving for one in result.indents] == pytest.approx([12 * KPA] * 14, abs=0.02 * KPA)
 
 
 def test_times_are_those_of_the_protocol():
     faults = Faults(rate=2000.0, backlash=0.0)
     what = protocol("saturation", 9.25)
-    found = curve(record("saturation", faults=faults, what=what), "saturation")
-    knots, travels = what.way()
-    for k, one in enumerate(found.indents):
+    result = curve(record("saturation", faults=faults, what=what), "saturation")
+    knots, travels = what.knots()
+    for k, one in enumerate(result.indents):
         rest, down, up = knots[4 * k + 1], knots[4 * k + 2], knots[4 * k + 3]
         assert one.hold == (pytest.approx(down, abs=0.03), pytest.approx(up, abs=0.03))
         assert one.contact == pytest.approx(rest + 1.0 / 5.0, abs=0.03)
@@ -115,12 +119,12 @@ def test_times_are_those_of_the_protocol():
 
 @pytest.mark.parametrize("rate", [100.0, 500.0])
 def test_slow_rigs_are_read_too(rate):
-    found = curve(record(faults=Faults(rate=rate)))
+    result = curve(record(faults=Faults(rate=rate)))
     force = LAWS[1].force(np.array(protocol("steps", 9.25).depths))
-    count = found.force.size - 1
+    count = result.force.size - 1
     assert count >= 13
-    assert found.force[1:] == pytest.approx(force[-count:], abs=0.015)
-    assert found.indentation[3:] == pytest.approx(np.array(protocol("steps", 9.25).depths)[2 - 14 :], abs=0.2)
+    assert result.force[1:] == pytest.approx(force[-count:], abs=0.015)
+    assert result.indentation[3:] == pytest.approx(np.array(protocol("steps", 9.25).depths)[2 - 14 :], abs=0.2)
 
 
 def test_a_run_in_a_wrong_unit_is_cut_all_the_same():
@@ -138,11 +142,11 @@ def test_a_run_in_a_wrong_unit_is_cut_all_the_same():
 def test_a_loop_has_its_branches(rest):
     sensor = LAWS[1]
     what = replace(protocol("loop", 9.25), rest=rest)
-    found = curve(record("loop", sensor, Faults(rate=5000.0, backlash=0.0), what), "loop", sensor)
-    assert len(found.loop) == 3 and found.indentation.size == WAY_POINTS + 1
-    assert found.indentation[-1] == pytest.approx(6.9375, abs=0.05)
-    assert found.force == pytest.approx(sensor.force(found.indentation), abs=0.06)
-    for force_in, rise_in, force_out, rise_out in found.loop:
+    result = curve(record("loop", sensor, Faults(rate=5000.0, backlash=0.0), what), "loop", sensor)
+    assert len(result.loop) == 3 and result.indentation.size == LOADING_POINTS + 1
+    assert result.indentation[-1] == pytest.approx(6.9375, abs=0.05)
+    assert result.force == pytest.approx(sensor.force(result.indentation), abs=0.06)
+    for force_in, rise_in, force_out, rise_out in result.loop:
         assert force_in[0] < 0.05 and force_in[-1] == pytest.approx(sensor.force(6.9375), rel=0.01)
         assert force_out[0] == pytest.approx(force_in[-1]) and force_out[-1] < 0.1
         assert np.all(np.diff(force_in[10:]) > 0) and np.all(np.diff(force_out[:-10]) < 0)
@@ -153,35 +157,35 @@ def test_a_loop_has_its_branches(rest):
 def test_relaxation_is_followed():
     what = protocol("relaxation", 9.25).quicker(5.0)
     samples = record("relaxation", faults=Faults(rate=500.0), what=what)
-    begin = what.way()[0][2]
+    begin = what.knots()[0][2]
     held = samples[0] > begin
     samples[2, held] -= 0.4 * (1 - np.exp(-(samples[0, held] - begin) / 100.0))
-    found = curve(samples, "relaxation")
-    assert found.relaxation is not None
-    since, force, rise = found.relaxation
+    result = curve(samples, "relaxation")
+    assert result.relaxation is not None
+    since, force, rise = result.relaxation
     assert since[-1] == pytest.approx(600.0, abs=0.5)
     middle = slice(50, -50)
     expected = LAWS[1].force(6.9375) - 0.4 * (1 - np.exp(-since / 100.0))
     assert force[middle] == pytest.approx(expected[middle], abs=0.05)
     assert rise.mean() == pytest.approx(2.5 * KPA * LAWS[1].force(6.9375), rel=0.01)
-    assert found.indentation.size == WAY_POINTS + 1 and len(found.indents) == 1
+    assert result.indentation.size == LOADING_POINTS + 1 and len(result.indents) == 1
 
 
-def test_no_contact_is_said():
+def test_no_contact_is_reported():
     samples = small()
     samples[2] = 0.13 + np.random.default_rng(1).normal(0, 0.02, samples.shape[1])
     with pytest.raises(InputError, match=r"run\.csv: no contact: the force never leaves its noise: at most 0\.0\d+ N"):
         curve(samples)
 
 
-def test_an_indentation_without_contact_is_a_doubt():
+def test_an_indentation_without_contact_is_a_warning():
     what = replace(protocol("steps", 9.25), depths=(-0.3, 2.0, 4.0), rest=4.0)
-    found = curve(record(what=what))
-    assert whys(found, used=False) == ["indentation 1: no contact found"]
-    assert np.isnan(found.indents[0].contact) and found.indentation.size == 3
+    result = curve(record(what=what))
+    assert whys(result, used=False) == ["indentation 1: no contact found"]
+    assert np.isnan(result.indents[0].contact) and result.indentation.size == 3
 
 
-def test_a_plate_that_stays_or_goes_the_wrong_way():
+def test_a_plate_that_stays_or_moves_backwards():
     samples = small()
     with pytest.raises(InputError, match=r"columns\.position\.sign"):
         curve(samples * np.array([[1], [-1], [1], [1]]))
@@ -198,15 +202,15 @@ def test_holds_that_are_short_or_not_settled():
     samples = small()
     late = curve(small()).indents[2].read
     samples[2] += np.where((samples[0] > late[0]) & (samples[0] < late[1] + 0.2), -(samples[0] - late[0]) * 0.5, 0.0)
-    (told,) = whys(curve(samples))
-    assert told.startswith("indentation 3: force not settled: changes by -")
+    (message,) = whys(curve(samples))
+    assert message.startswith("indentation 3: force not settled: changes by -")
 
 
 def test_depths_out_of_order_or_twice():
     what = replace(protocol("steps", 9.25), rest=4.0)
-    found = curve(record(what=replace(what, depths=(4.0, 2.0, 3.0))))
-    assert np.all(np.diff(found.indentation) > 0)
-    assert [why for why in whys(found) if why.startswith("out of order")]
+    result = curve(record(what=replace(what, depths=(4.0, 2.0, 3.0))))
+    assert np.all(np.diff(result.indentation) > 0)
+    assert [why for why in whys(result) if why.startswith("out of order")]
     twice = curve(record(what=replace(what, depths=(2.0, 4.0, 4.0)), faults=Faults(rate=10_000.0)))
     assert [why for why in whys(twice) if why.startswith("two indentations at one depth")]
 

@@ -1,4 +1,4 @@
-"""Records with gaps, clips and spikes: the points that they spoil are left out and told, the others stay."""
+"""Records with gaps, clips and spikes: the points that they spoil are left out and reported, the others stay."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ import pytest
 
 from pneutouch.bench.blocks import blocks_of
 from pneutouch.bench.curve import curve_of
-from pneutouch.bench.doubts import MOST
 from pneutouch.bench.reading import read_blocks
 from pneutouch.bench.record import SuspectInterval
+from pneutouch.bench.suspect import MOST
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import ColumnMap, Rig
 from tests.bench.rig import Dome, Sensor, run_of, small, write
@@ -25,23 +25,23 @@ def curve(samples, kind="steps", sensor=LAWS[1], rig=None, **more):
     return curve_of(run_of(kind, sensor), blocks_of(FILE, *samples, **more), rig or Rig())
 
 
-def whys(found, used=None):
-    return [doubt.why for doubt in found.doubts if used is None or doubt.used == used]
+def whys(result, used=None):
+    return [warning.why for warning in result.warnings if used is None or warning.used == used]
 
 
-def test_clipped_points_are_left_out_and_told():
+def test_clipped_points_are_left_out_and_reported():
     samples = small()
     blocks = blocks_of(FILE, *samples)
     third = curve(samples).indents[2]
     clipped = replace(
-        blocks, doubts=(SuspectInterval(third.hold[0], third.hold[1], "force clipped: at the top", False),)
+        blocks, warnings=(SuspectInterval(third.hold[0], third.hold[1], "force clipped: at the top", False),)
     )
-    found = curve_of(run_of(), clipped, Rig())
-    assert found.indentation.size == 3
+    result = curve_of(run_of(), clipped, Rig())
+    assert result.indentation.size == 3
     assert any(
-        why.startswith("indentation 3, ") and "left out: force clipped" in why for why in whys(found, used=False)
+        why.startswith("indentation 3, ") and "left out: force clipped" in why for why in whys(result, used=False)
     )
-    everywhere = replace(blocks, doubts=(SuspectInterval(0.0, 1e3, "force clipped", False),))
+    everywhere = replace(blocks, warnings=(SuspectInterval(0.0, 1e3, "force clipped", False),))
     with pytest.raises(InputError, match=r"none of 3 indentations can be used: .*clipped"):
         curve_of(run_of(), everywhere, Rig())
 
@@ -69,9 +69,9 @@ def test_a_gap_that_swallows_the_begin_of_the_window(first):
     begin, end = one.read
     time, whole = samples[0], end - begin
     lost = (time > begin + first * whole) & (time < end - 0.02)
-    found = curve(samples[:, ~lost])
-    assert found.indentation.size == 3
-    assert found.indents[1].read == (pytest.approx(begin, abs=0.03), pytest.approx(end, abs=0.03))
+    result = curve(samples[:, ~lost])
+    assert result.indentation.size == 3
+    assert result.indents[1].read == (pytest.approx(begin, abs=0.03), pytest.approx(end, abs=0.03))
     lost = (time > begin + 0.6 * whole) & (time < end)
     assert curve(samples[:, ~lost]).indentation.size == 4
 
@@ -86,10 +86,10 @@ def test_gaps_beyond_those_listed_count_too():
     whole = one.read[1] - one.read[0]
     for start in (0.1, 0.55):
         keep[(time > one.read[0] + start * whole) & (time < one.read[0] + (start + 0.4) * whole)] = False
-    found = curve(samples[:, keep])
-    assert any(why.startswith("indentation 5, ") and "missing" in why for why in whys(found, used=False))
-    listed = [doubt for doubt in found.doubts if doubt.kind == "gap"]
-    assert len(listed) == MOST + 1 and sum("6 more gaps: " in doubt.why for doubt in listed) == 1
+    result = curve(samples[:, keep])
+    assert any(why.startswith("indentation 5, ") and "missing" in why for why in whys(result, used=False))
+    listed = [warning for warning in result.warnings if warning.kind == "gap"]
+    assert len(listed) == MOST + 1 and sum("6 more gaps: " in warning.why for warning in listed) == 1
 
 
 def test_a_spike_while_read_leaves_the_point_out_and_elsewhere_not(tmp_path):
@@ -99,5 +99,5 @@ def test_a_spike_while_read_leaves_the_point_out_and_elsewhere_not(tmp_path):
         spiked = samples.copy()
         spiked[2, np.searchsorted(samples[0], at)] = 60.0
         blocks = read_blocks(write(tmp_path / "run.csv", spiked), ColumnMap(), Rig())
-        found = curve_of(run_of(), blocks, Rig())
-        assert found.indentation.size == size and any("force spike: 60 N" in why for why in whys(found))
+        result = curve_of(run_of(), blocks, Rig())
+        assert result.indentation.size == size and any("force spike: 60 N" in why for why in whys(result))

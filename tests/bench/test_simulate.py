@@ -61,11 +61,11 @@ def test_quiet_record_is_the_solids_curve_at_the_holds(sensor, pressed):
 def test_low_pass_has_settled_long_before_the_end_of_a_hold(pressed):
     test, rig = protocol("steps", R0).quicker(5.0), replace(RigModel.perfect(), cutoff=RigModel().cutoff)
     exact = simulate_run(pressed.curves[1], test, RigModel.perfect(), 100.0, rng(), **QUIET)
-    found = simulate_run(pressed.curves[1], test, rig, 100.0, rng(), **QUIET)
+    result = simulate_run(pressed.curves[1], test, rig, 100.0, rng(), **QUIET)
     at = ends(test, 100.0)
-    assert found.force[at] == pytest.approx(exact.force[at], rel=1e-9)
+    assert result.force[at] == pytest.approx(exact.force[at], rel=1e-9)
     moving = np.abs(np.gradient(exact.force)) > 0.05
-    assert np.abs(found.force - exact.force)[moving].max() > 0.05
+    assert np.abs(result.force - exact.force)[moving].max() > 0.05
 
 
 def test_noise_in_the_file_has_the_filtered_rms():
@@ -87,7 +87,7 @@ def test_noise_in_the_file_has_the_filtered_rms():
 
 
 def test_reading_is_right_going_in_and_lags_by_the_play_coming_out():
-    knots, travels = RunProtocol("loop", (7.0, 7.0), 0.0, 2.0, False).way()
+    knots, travels = RunProtocol("loop", (7.0, 7.0), 0.0, 2.0, False).knots()
     time = np.linspace(0, knots[-1], 20_001)
     plate, read = np.interp(time, knots, travels), _lagging(time, knots, travels, 0.03)
     speed = np.gradient(plate, time)
@@ -99,17 +99,17 @@ def test_reading_is_right_going_in_and_lags_by_the_play_coming_out():
 
 @given(depths=st.lists(st.floats(0.1, 8.0), min_size=1, max_size=6), play=st.floats(0.0, 0.5), rest=st.floats(0.0, 5.0))
 def test_reading_never_strays_beyond_the_play(depths, play, rest):
-    knots, travels = RunProtocol("steps", tuple(depths), 1.0, rest, False).way()
+    knots, travels = RunProtocol("steps", tuple(depths), 1.0, rest, False).knots()
     time = np.linspace(0, knots[-1], 2_001)
     gap = _lagging(time, knots, travels, play) - np.interp(time, knots, travels)
     assert gap.min() >= -1e-9 and gap.max() <= play + 1e-9
 
 
-def test_reset_vents_and_fills_anew_each_time():
+def test_reset_vents_and_fills_each_time():
     curve, test = line(driving=22 * KPA), RunProtocol("steps", (1.0, 2.0, 3.0), 4.0, 30.0, True)
     scatter = replace(ScatterModel.none(), reset=0.5 * KPA)
     record = simulate_run(curve, test, RigModel.perfect(), 100.0, rng(5), wall=NO_WALL, scatter=scatter)
-    starts = test.way()[0][:-1:4]
+    starts = test.knots()[0][:-1:4]
     for start in starts:
         vented = (record.time > start + 9) & (record.time < start + 11.9)
         assert np.abs(record.pressure[vented]).max() < 0.3 * KPA
@@ -149,7 +149,7 @@ def test_memory_of_an_even_ramp_and_its_fading_are_the_closed_form(share, tau, d
     wall = WallMemory((share,), (0.0,), (tau,))
     test = RunProtocol("relaxation", (depth,), 5.0, 1.0, False)
     record = simulate_run(line(), test, RigModel.perfect(), 1000.0, rng(), wall=wall, scatter=ScatterModel.none())
-    knots, _ = test.way()
+    knots, _ = test.knots()
     begun = knots[1] + 1.0 / 5.0
     ramp, since = knots[2] - begun, record.time - knots[2]
     start = share * 2.0 * 5.0 * tau * (1 - np.exp(-ramp / tau))
@@ -179,14 +179,14 @@ def test_runs_of_one_specimen_scatter_by_the_gain(pressed):
 
 
 def test_curve_stops_where_the_range_ends_and_the_protocol_with_it(sensor):
-    found = press_curves(sensor.replace(dead_volume=4940.0), [0.0], 0.9 * R0, "solid").curves[0]
-    assert found.ends is not None and found.ends[0] == "inward buckling"
-    assert found.reach == pytest.approx(found.ends[1], rel=1e-3) and found.reach < 0.75 * R0
-    steps = within(protocol("steps", R0), found.reach)
-    assert max(steps.depths) <= found.reach < max(steps.depths) + 0.5
-    assert set(within(protocol("loop", R0), found.reach).depths) == {found.reach}
+    result = press_curves(sensor.replace(dead_volume=4940.0), [0.0], 0.9 * R0, "solid").curves[0]
+    assert result.ends is not None and result.ends[0] == "inward buckling"
+    assert result.reach == pytest.approx(result.ends[1], rel=1e-3) and result.reach < 0.75 * R0
+    steps = within(protocol("steps", R0), result.reach)
+    assert max(steps.depths) <= result.reach < max(steps.depths) + 0.5
+    assert set(within(protocol("loop", R0), result.reach).depths) == {result.reach}
     with pytest.raises(ValueError, match="beyond the curve"):
-        simulate_run(found, protocol("steps", R0), RigModel(), 100.0, rng())
+        simulate_run(result, protocol("steps", R0), RigModel(), 100.0, rng())
 
 
 def test_injected_air_obeys_boyle_with_the_swelling_cavity(pressed):
@@ -195,16 +195,16 @@ def test_injected_air_obeys_boyle_with_the_swelling_cavity(pressed):
     for dead in (0.0, 800.0):
         p = sensor_pressure(pushed, pressed.inflation, dead, 0.101325)
         start = pressed.inflation.volume[0]
-        for air, found in zip(pushed, p, strict=True):
+        for air, result in zip(pushed, p, strict=True):
             content = 0.101325 * (start + dead + air)
             volume = brentq(lambda v, c=content, d=dead: (wall(v) + 0.101325) * (v + d) - c, start, 2 * start)
-            assert found == pytest.approx(float(wall(volume)), rel=1e-5, abs=1e-9)
+            assert result == pytest.approx(float(wall(volume)), rel=1e-5, abs=1e-9)
         # A cavity that swells keeps the pressure below that of one that does not.
         assert np.all(p[1:] < line_pressure(pushed[1:], start + dead, 0.101325))
     assert np.isnan(sensor_pressure(np.array([1e5]), pressed.inflation, 0.0, 0.101325)).all()
 
 
-def test_every_parameter_says_its_unit_and_reason():
+def test_every_parameter_has_a_unit_and_a_reason():
     for model in (ScatterModel(), RigModel(), WallMemory()):
-        for name, said in parameters(model).items():
-            assert said["unit"] and len(said["reason"]) > 10, name
+        for name, record_ in parameters(model).items():
+            assert record_["unit"] and len(record_["reason"]) > 10, name

@@ -1,4 +1,4 @@
-"""What a simulated specimen's figures are said to be, against quiet records, derivatives and what was declared."""
+"""The true figures of a simulated specimen, against records without noise, derivatives and declared values."""
 
 from __future__ import annotations
 
@@ -43,52 +43,54 @@ def atlas(sensor) -> PressCurves:
     return press_curves(sensor, [0.0, 22 * KPA], 0.75 * R0, "atlas", steps=28)
 
 
-def test_relaxation_truth_is_what_the_quiet_record_says(pressed):
+def test_relaxation_truth_is_that_of_the_quiet_record(pressed):
     truth, curve = SimulationTruth(rest=2.0, rig=RigModel.perfect()), pressed.curves[1]
-    said = specimen_figures(curve, truth, R0, 100.0)
+    stated = specimen_figures(curve, truth, R0, 100.0)
     test = truth.protocol("relaxation", R0, curve.reach)
     record = simulate_run(curve, test, RigModel.perfect(), 100.0, rng(), wall=truth.wall, scatter=ScatterModel.none())
-    since = record.time - test.way()[0][2]
+    since = record.time - test.knots()[0][2]
     # The stop and the release fall between samples.
     time = np.geomspace(1.0, 599.9, 400)
     for name, values in (("force", record.force), ("pressure", record.pressure - curve.driving)):
         level = np.interp(time, since, values)
-        assert said[f"relaxation_{name}_percent"] == pytest.approx(100 * (level[0] - level[-1]) / level[0], rel=2e-3)
+        assert stated[f"relaxation_{name}_percent"] == pytest.approx(100 * (level[0] - level[-1]) / level[0], rel=2e-3)
         slope = np.polyfit(np.log10(time), level, 1)[0]
-        assert said[f"relaxation_{name}_percent_per_decade"] == pytest.approx(-100 * slope / level[0], rel=2e-3)
-        assert said[f"relaxation_{name}_percent"] > 0
+        assert stated[f"relaxation_{name}_percent_per_decade"] == pytest.approx(-100 * slope / level[0], rel=2e-3)
+        assert stated[f"relaxation_{name}_percent"] > 0
 
 
-def test_loading_truth_is_what_the_quiet_record_says(pressed):
+def test_loading_truth_is_that_of_the_quiet_record(pressed):
     truth, curve = SimulationTruth(rest=2.0), pressed.curves[0]
-    said = specimen_figures(curve, truth, R0, 100.0)
+    stated = specimen_figures(curve, truth, R0, 100.0)
     test = truth.protocol("steps", R0, curve.reach)
     record = simulate_run(curve, test, RigModel.perfect(), 200.0, rng(), wall=truth.wall, scatter=ScatterModel.none())
     at = ends(test, 200.0)
     force, rise = (
         np.append(0.0, record.force[at]),
-        np.append(0.0, record.pressure[at] - record.pressure[np.floor(test.way()[0][1::4] * 200.0 + 1e-6).astype(int)])
+        np.append(
+            0.0, record.pressure[at] - record.pressure[np.floor(test.knots()[0][1::4] * 200.0 + 1e-6).astype(int)]
+        )
         / KPA,
     )
-    assert said["sensitivity_kPa_per_N"] == pytest.approx(np.polyfit(force, rise, 1)[0], rel=2e-4)
-    assert said["force_range_N"] == pytest.approx(force[-1], rel=2e-4)
-    assert said["sensitivity_through_origin_kPa_per_N"] == pytest.approx(force @ rise / (force @ force), rel=2e-4)
-    assert said["stiffness_N_per_mm"] == pytest.approx(force[-1] / test.depths[-1], rel=2e-4)
+    assert stated["sensitivity_kPa_per_N"] == pytest.approx(np.polyfit(force, rise, 1)[0], rel=2e-4)
+    assert stated["force_range_N"] == pytest.approx(force[-1], rel=2e-4)
+    assert stated["sensitivity_through_origin_kPa_per_N"] == pytest.approx(force @ rise / (force @ force), rel=2e-4)
+    assert stated["stiffness_N_per_mm"] == pytest.approx(force[-1] / test.depths[-1], rel=2e-4)
 
 
 def test_hysteresis_comes_from_memory_alone_and_grows_with_it(pressed):
-    found = [
+    result = [
         specimen_figures(pressed.curves[0], SimulationTruth(wall=WallMemory((g,), (0.0,), (1.0,)), rest=2.0), R0, 100.0)
         for g in (0.0, 0.01, 0.02)
     ]
-    width = [one["hysteresis_width_percent"] for one in found]
+    width = [one["hysteresis_width_percent"] for one in result]
     assert width[0] < 0.02 and width[2] == pytest.approx(2 * width[1], rel=0.1) and width[1] > 0.3
 
 
-def test_population_spreads_as_the_derivative_says(sensor, atlas):
+def test_population_spreads_as_the_derivative_predicts(sensor, atlas):
     """To first order the spread of a figure is its logarithmic derivative by the modulus times the modulus' spread."""
     truth = SimulationTruth(scatter=replace(ScatterModel.none(), modulus=0.04, gain=0.002), wall=NO_WALL, rest=2.0)
-    found = population(atlas, 1, truth, 100.0, (7,))
+    result = population(atlas, 1, truth, 100.0, (7,))
     depths = np.append(0.0, protocol("steps", R0).depths)
 
     def slope(factor: float) -> float:
@@ -97,22 +99,22 @@ def test_population_spreads_as_the_derivative_says(sensor, atlas):
         return float(np.polyfit(force, rise / KPA, 1)[0])
 
     by_modulus = (slope(1.02) - slope(0.98)) / (np.log(1.02) - np.log(0.98))
-    assert found.count == 4000
-    assert found.figures["part_to_part_kPa_per_N"] == pytest.approx(abs(by_modulus) * 0.04, rel=0.06)
-    assert found.figures["sensitivity_kPa_per_N"] == pytest.approx(slope(1.0), rel=2e-3)
-    assert found.figures["repeatability_kPa_per_N"] == pytest.approx(0.002 * slope(1.0), rel=2e-3)
+    assert result.count == 4000
+    assert result.figures["part_to_part_kPa_per_N"] == pytest.approx(abs(by_modulus) * 0.04, rel=0.06)
+    assert result.figures["sensitivity_kPa_per_N"] == pytest.approx(slope(1.0), rel=2e-3)
+    assert result.figures["repeatability_kPa_per_N"] == pytest.approx(0.002 * slope(1.0), rel=2e-3)
 
 
 def test_population_without_scatter_is_the_nominal_sensor(pressed):
     truth = SimulationTruth(scatter=ScatterModel.none(), rest=2.0, specimens=20)
-    found = population(pressed, 0, truth, 100.0, (0,))
+    result = population(pressed, 0, truth, 100.0, (0,))
     nominal = specimen_figures(pressed.curves[0], truth, R0, 100.0)
     for key, value in nominal.items():
         if value is None:
-            assert found.figures[key] is None, key
+            assert result.figures[key] is None, key
         else:
-            assert found.figures[key] == pytest.approx(value, rel=1e-9), key
-    assert max(found.spread.values()) < 1e-9
+            assert result.figures[key] == pytest.approx(value, rel=1e-9), key
+    assert max(result.spread.values()) < 1e-9
 
 
 def test_specimens_are_drawn_as_declared():

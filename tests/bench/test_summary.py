@@ -16,8 +16,13 @@ DEPTHS = np.linspace(0.0, 7.0, 15)
 def run(sensor, slope=2.0, pressure=0.0, number=1, age=0.0, resin="TangoPlus"):
     force = 1.5 * DEPTHS**1.5
     named = CampaignRun(
-        file=f"{sensor}{pressure}{number}{age}", sensor=sensor, resin=resin, driving_pressure_kPa=pressure, run=number, age_days=age
-    )  # fmt: skip
+        file=f"{sensor}{pressure}{number}{age}",
+        sensor=sensor,
+        resin=resin,
+        driving_pressure_kPa=pressure,
+        run=number,
+        age_days=age,
+    )
     return MeasuredCurve(named, DEPTHS, force, slope * KPA * force, pressure * KPA)
 
 
@@ -34,17 +39,17 @@ def test_a_print_of_a_week_is_fresh_and_one_of_two_weeks_is_not():
 
 def test_groups_are_of_one_resin_age_and_pressure():
     curves = [run(f"{resin}-{k}", resin=resin, pressure=p) for resin in ("B", "A") for k in (1, 2) for p in (22.0, 0.0)]
-    found = summarize(curves)
-    assert [(g.key.resin, g.key.driving_pressure_kPa) for g in found] == [
+    result = summarize(curves)
+    assert [(g.key.resin, g.key.driving_pressure_kPa) for g in result] == [
         ("A", 0.0),
         ("A", 22.0),
         ("B", 0.0),
         ("B", 22.0),
     ]
-    assert all(len(group.curves) == 2 and len(group.sensors) == 2 for group in found)
+    assert all(len(group.curves) == 2 and len(group.sensors) == 2 for group in result)
 
 
-def test_means_are_over_specimens_and_spreads_are_told_apart():
+def test_means_are_over_specimens_and_spreads_are_separate():
     slopes = {"a": (1.9, 2.1), "b": (2.9, 3.1), "c": (2.4, 2.6)}
     (group,) = summarize(
         [run(name, slope, number=k + 1) for name, pair in slopes.items() for k, slope in enumerate(pair)]

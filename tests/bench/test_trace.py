@@ -59,10 +59,12 @@ def test_a_short_run_is_whole():
         assert np.array_equal(getattr(thinned, key), getattr(blocks, key))
 
 
-def test_a_note_marks_nothing_and_a_doubt_does():
-    def drawn(*doubts):
+def test_a_note_marks_nothing_and_a_warning_does():
+    def drawn(*warnings):
         zero = np.array([0.0, 1.0])
-        return evidence_svg(MeasuredCurve(run_of(), zero, zero, zero, 0.0, doubts=doubts), trace(long_run(500)), False)
+        return evidence_svg(
+            MeasuredCurve(run_of(), zero, zero, zero, 0.0, warnings=warnings), trace(long_run(500)), False
+        )
 
     note = SuspectInterval(0.0, 5.0, "3 of 5000 samples missed", True, "note")
     assert drawn(note) == drawn()

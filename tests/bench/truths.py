@@ -7,11 +7,7 @@ from functools import cache
 import numpy as np
 
 from pneutouch.bench.protocol import RunProtocol
-from pneutouch.bench.simulate import (
-    PressCurve,
-    WallMemory,
-    press_curves,
-)
+from pneutouch.bench.simulate import PressCurve, WallMemory, press_curves
 from pneutouch.bench.simulate.curve import PressCurves
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.evaluation.evaluate import sensor_of
@@ -36,7 +32,7 @@ def line(stiffness: float = 2.0, slope: float = 3 * KPA, driving: float = 0.0, r
 
 def ends(test: RunProtocol, rate: float) -> np.ndarray:
     """The last samples of the holds."""
-    return np.floor(test.way()[0][3::4] * rate + 1e-6).astype(int)
+    return np.floor(test.knots()[0][3::4] * rate + 1e-6).astype(int)
 
 
 @cache

@@ -79,10 +79,10 @@ def test_the_truth_is_in_the_intervals_and_the_files_predict(campaign, place):
 def test_a_part_of_the_parameters_says_what_else_counts(campaign, place):
     words = ("calibrate", str(campaign), "--design", "mine", "--fit", "modulus,dead-volume", "--out", "out", "--json")
     counted, bare = (json.loads(run(*words, *more).stdout) for more in ((), ("--no-priors",)))
-    (line,) = [line for line in counted["notes"] if "the intervals hold" in line]
-    assert "what is believed of wall thickness and contact offset" in line
+    (line,) = [line for line in counted["notes"] if "the intervals include" in line]
+    assert "the priors of wall thickness and contact offset" in line
     assert counted["fit"]["considered"] == ["wall", "offset"]
-    assert any("without priors only what is fitted is uncertain" in line for line in bare["notes"])
+    assert any("without priors only the fitted parameters are uncertain" in line for line in bare["notes"])
     width = [one["estimates"][0]["interval_95"][1] - one["estimates"][0]["interval_95"][0] for one in (counted, bare)]
     assert width[0] > 1.5 * width[1]
 

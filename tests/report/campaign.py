@@ -59,7 +59,7 @@ def curve_of(
         relaxation = (time, force[-1] * fall + rng.normal(0, 0.01, time.size), rise[-1] * (0.4 + 0.6 * fall))
     return MeasuredCurve(
         run, depth, force, rise, (run.driving_pressure_kPa + rng.normal(0, 0.02)) * KPA, loop=loop, relaxation=relaxation,
-        noise=(0.012, 0.015 * KPA), drift=(0.001 * KPA, 1e-4), doubts=doubts,
+        noise=(0.012, 0.015 * KPA), drift=(0.001 * KPA, 1e-4), warnings=doubts,
     )  # fmt: skip
 
 

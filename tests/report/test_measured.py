@@ -48,7 +48,7 @@ def campaign(library):
         SuspectInterval(10.0 + k, 10.5 + k, f"doubt number {k} in a row", bool(k % 2)) for k in range(MOST + 7)
     )
     return replace(
-        found, curves=(replace(found.curves[0], doubts=doubts), *found.curves[1:]), verdicts=VERDICTS,
+        found, curves=(replace(found.curves[0], warnings=doubts), *found.curves[1:]), verdicts=VERDICTS,
         injections=INJECTIONS, failures=(FAILURE,), questions=(QUESTION,),
     )  # fmt: skip
 

@@ -77,7 +77,7 @@ def test_steps_follow_the_plate(plan):
     travels = [-1.0]
     for step in steps:
         travels.append(step["value"] if step["action"] in ("move", "hold") else travels[-1])
-    knots, way = test.way()
+    knots, way = test.knots()
     assert np.interp(knots + 1e-9, times, travels)[1:-1] == pytest.approx(way[1:-1], abs=1e-6)
 
 

@@ -74,7 +74,7 @@ def test_same_seed_gives_the_same_bytes_and_another_other_noise(folder, library,
 def test_files_hold_what_the_truth_says(folder, truth):
     """Holds read by the clock give each specimen's sensitivity to the scatter of the runs' gain and the noise."""
     test = protocol("steps", R0).quicker(2.0)
-    knots, _ = test.way()
+    knots, _ = test.knots()
     for name, one in truth["specimens"].items():
         for pressure, figures in one["pressures"].items():
             table = pandas.read_csv(folder / f"runs/{name}-{pressure}kPa-steps-1.csv", comment="#")

@@ -1,4 +1,4 @@
-"""Samples averaged into blocks of equal time as they come, with what is missing among them."""
+"""Samples averaged into blocks of equal time as they arrive, with a record of missing samples."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _ROUNDING = 1e-6
 
 @dataclass
 class BlockCollector:
-    """Takes samples in inner units (s, mm, N, MPa) chunk by chunk, gives `Blocks`.
+    """Takes samples in internal units (s, mm, N, MPa) chunk by chunk, gives `Blocks`.
 
     ``rate`` in Hz and samples a block ``size``: left out, found from the first chunk (the median step of time; `BLOCK_RATE`);
     ``total`` is about how many samples will come. ``names`` are the columns' names for messages.
@@ -64,7 +64,7 @@ class BlockCollector:
             self._first = float(time[0])
         if self.rate is None:
             if time.size < 2:
-                raise InputError(f"{self.file}: 1 row; at least 2, so that a sampling rate can be told")
+                raise InputError(f"{self.file}: 1 row; at least 2, for a sampling rate")
             self.rate = 1 / float(np.median(np.diff(time)))
         if self.size is None:
             usual = 1 if self.rate <= SLOW else round(self.rate / BLOCK_RATE)
@@ -119,8 +119,8 @@ class BlockCollector:
         extremes = np.maximum.reduceat(np.abs(samples[3:]), starts, axis=1)
         self._parts.append(np.vstack([samples[:1, starts], means, spreads, extremes]))
 
-    def blocks(self, doubts: tuple[SuspectInterval, ...] = ()) -> Blocks:
-        """The blocks, with the gaps among their doubts. Raises InputError where more than half of the record is missing."""
+    def blocks(self, warnings: tuple[SuspectInterval, ...] = ()) -> Blocks:
+        """The blocks, with the gaps among their warnings. Raises InputError where more than half of the record is missing."""
         if self.rate is None or self.size is None or self._first is None:
             raise InputError(f"{self.file}: no samples")
         if self._held.size:
@@ -134,26 +134,43 @@ class BlockCollector:
         row, time, position, force, pressure, *more = np.concatenate(self._parts, axis=1)
         force_spread, pressure_spread, force_extreme, pressure_extreme = more
         return Blocks(
-            self.file, self.rate, self.size, row, time, position, force, pressure, force_spread, pressure_spread,
-            force_extreme, pressure_extreme, (*self._gaps(), *doubts),
-        )  # fmt: skip
+            self.file,
+            self.rate,
+            self.size,
+            row,
+            time,
+            position,
+            force,
+            pressure,
+            force_spread,
+            pressure_spread,
+            force_extreme,
+            pressure_extreme,
+            (*self._gaps(), *warnings),
+        )
 
     def _gaps(self) -> list[SuspectInterval]:
-        found = [
+        warnings = [
             SuspectInterval(start, end, f"gap: {count} samples missing", False, "gap")
             for start, end, count in self._missed
         ]
         count, times, longest = self._short
         if count:
-            told = f"{count} of {self._samples + count} samples missed, in {times} places of at most {GAP:g} s"
+            why = f"{count} of {self._samples + count} samples missed, in {times} places of at most {GAP:g} s"
             rare = longest <= ISOLATED and count < RARE * (self._samples + count)
-            found.append(SuspectInterval(self._first or 0.0, self._last, told, True, "note" if rare else "other"))
-        return found
+            warnings.append(SuspectInterval(self._first or 0.0, self._last, why, True, "note" if rare else "other"))
+        return warnings
 
 
 def blocks_of(
-    file: Path, time: Array, position: Array, force: Array, pressure: Array, rate: float | None = None, size: int | None = None
-) -> Blocks:  # fmt: skip
+    file: Path,
+    time: Array,
+    position: Array,
+    force: Array,
+    pressure: Array,
+    rate: float | None = None,
+    size: int | None = None,
+) -> Blocks:
     """Blocks of samples in memory, (n,) each, s, mm, N, MPa; no range is checked. Raises InputError as `BlockCollector`."""
     collector = BlockCollector(file, rate, size, len(time))
     collector.take(np.arange(len(time), dtype=float) + 2, np.vstack([time, position, force, pressure]).astype(float))

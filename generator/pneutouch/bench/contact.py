@@ -1,4 +1,4 @@
-"""First contact of each way in: found by the force's noise, then carried back to zero force."""
+"""First contact of each loading: detected against the force's noise, then extrapolated to zero force."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ LEAST_FORCE = 1e-3
 """The same as a share of the run's greatest force, for a channel with next to no noise."""
 
 FIRST, CLEARLY = 0.01, 20.0
-"""The way in is fitted up to this share of the run's greatest force, or so many noise standard deviations if that is more. A
+"""The loading is fitted up to this share of the run's greatest force, or this many noise standard deviations if that is more. A
 dome's force grows a hundredfold over its range, and only its first hundredth is of one power of the travel."""
 
 BENDS = tuple(np.linspace(0.0, 1.0, 21).tolist())
@@ -30,12 +30,12 @@ which begin straight, w = 1 for a dome whose stiffness grows from none; between 
 few hundredths of the stretch. One w is fitted for all of a run."""
 
 UNSURE = 4.0
-"""An onset whose standard error is so many times the run's median one is that of a touch too light to tell where it began:
+"""An onset whose standard error is this many times the run's median one is that of a contact too light to be fitted:
 our choice."""
 
 _LEAST_POINTS, _MOST_POINTS = 6, 200
 _BACK = 3
-"""Stretch without contact that is fitted along, as a multiple of that with contact."""
+"""Length of the stretch without contact in the fit, as a multiple of that with contact."""
 
 _GRID = 81
 
@@ -52,11 +52,11 @@ class Baseline(NamedTuple):
 
 
 class ContactOnset(NamedTuple):
-    """First contact: its time and plate position; ``own`` is False where the position is the median of the run's others."""
+    """First contact: its time and plate position; ``fitted`` is False where the position is the median of the run's others."""
 
     time: float
     position: float
-    own: bool
+    fitted: bool
 
 
 def baseline(blocks: Blocks, start: int, end: int) -> Baseline:
@@ -89,9 +89,7 @@ def first_baseline(blocks: Blocks, one: Excursion) -> Baseline:
 def threshold(blocks: Blocks, bases: list[Baseline], parts: list[Excursion]) -> tuple[float, int]:
     """Force in N that is contact, and the sign that the force has when pressed (+1, or -1 where the column's is wrong)."""
     noise = float(np.sqrt(np.mean([base.between[0] for base in bases])))
-    off = [
-        blocks.force[one.clear[1] : one.hold[1]] - base.mean[0] for one, base in zip(parts, bases, strict=True)
-    ]  # fmt: skip
+    off = [blocks.force[one.clear[1] : one.hold[1]] - base.mean[0] for one, base in zip(parts, bases, strict=True)]
     high, low = max(float(part.max()) for part in off), min(float(part.min()) for part in off)
     return max(THRESHOLD * noise, LEAST_FORCE * max(high, -low)), 1 if high >= -low else -1
 
@@ -99,14 +97,14 @@ def threshold(blocks: Blocks, bases: list[Baseline], parts: list[Excursion]) -> 
 def onsets(
     blocks: Blocks, parts: list[Excursion], bases: list[Baseline], least: float, sign: int
 ) -> list[ContactOnset | None]:
-    """First contact of each way in; None where there is none.
+    """First contact of each loading; None where there is none.
 
-    The force is contact from the block after the last one on the way in that is within ``least`` N of the force without.
-    From there F = c ((1 - w) x + w x^2), x = position - onset, is fitted to the way in up to a small force (`FIRST`) and a stretch without
-    contact before it, by least squares with onset and c free for each way and w common to all. Where a hold presses but
-    its way in is too light to tell (`UNSURE`), the onset is the median of the others.
+    Contact begins in the block after the last one of the loading that is within ``least`` N of the force without contact.
+    From there F = c ((1 - w) x + w x^2), x = position - onset, is fitted up to a small force (`FIRST`), with a stretch without
+    contact before it, by least squares with onset and c free for each loading and w common to all. Where a hold presses but
+    its loading is too light to be fitted (`UNSURE`), the onset is the median of the others.
 
-    Bias, held by tests, at 5 mm/s with 0.02 N of noise a sample at 4 kHz, in the median of a run: below 0.01 mm for a
+    Bias, as tested, at 5 mm/s with 0.02 N of noise a sample at 4 kHz, in the median of a run: below 0.01 mm for a
     force that grows evenly, 0.04 mm for one that begins evenly and grows a hundredfold as a dome's does, 0.05 mm for
     travel^1.5 and 0.09 mm for travel^1.8, which begins with next to no force. A force that lags by a time constant T comes
     out late by at most speed times T.
@@ -117,59 +115,59 @@ def onsets(
         for one, base in zip(parts, bases, strict=True)
     )
     limit = max(FIRST * top, CLEARLY / THRESHOLD * least)
-    ways = [
-        None if at is None else _way(blocks, one, base, at, limit, sign)
+    loadings = [
+        None if at is None else _loading(blocks, one, base, at, limit, sign)
         for at, one, base in zip(crossed, parts, bases, strict=True)
     ]
-    real = [way for way in ways if way is not None]
+    real = [loading for loading in loadings if loading is not None]
     if not real:
         return [None] * len(parts)
-    length = float(np.median([way.length for way in real]))
+    length = float(np.median([loading.length for loading in real]))
     bends = np.array(BENDS)
-    bend = bends[[int(np.argmin(np.sum([_search(way, bends, length)[1] for way in real], axis=0)))]]
-    fits = [None if way is None else float(_search(way, bend, length)[0][0]) for way in ways]
+    bend = bends[[int(np.argmin(np.sum([_search(loading, bends, length)[1] for loading in real], axis=0)))]]
+    fits = [None if loading is None else float(_search(loading, bend, length)[0][0]) for loading in loadings]
     errors = [
-        np.inf if way is None or fit is None else _error(way, fit, float(bend[0]), length)
-        for way, fit in zip(ways, fits, strict=True)
+        np.inf if loading is None or fit is None else _error(loading, fit, float(bend[0]), length)
+        for loading, fit in zip(loadings, fits, strict=True)
     ]
-    sure = UNSURE * float(np.median([error for error in errors if error < np.inf]))
+    limit_error = UNSURE * float(np.median([error for error in errors if error < np.inf]))
     middle = float(
-        np.median([fit for fit, error in zip(fits, errors, strict=True) if fit is not None and error <= sure])
+        np.median([fit for fit, error in zip(fits, errors, strict=True) if fit is not None and error <= limit_error])
     )
-    found: list[ContactOnset | None] = []
+    contacts: list[ContactOnset | None] = []
     for fit, error, one, base in zip(fits, errors, parts, bases, strict=True):
-        own = fit is not None and error <= sure
-        place = fit if fit is not None and own else middle
-        touches = own or _presses(blocks, one, base, least, sign, middle)
-        found.append(ContactOnset(_time_at(blocks, one, place), place, own) if touches else None)
-    return found
+        fitted = fit is not None and error <= limit_error
+        place = fit if fit is not None and fitted else middle
+        touches = fitted or _presses(blocks, one, base, least, sign, middle)
+        contacts.append(ContactOnset(_time_at(blocks, one, place), place, fitted) if touches else None)
+    return contacts
 
 
 def _presses(blocks: Blocks, one: Excursion, base: Baseline, least: float, sign: int, onset: float) -> bool:
-    """Whether a hold presses, by the mean of its later half, although no single block on the way in tells it."""
+    """Whether a hold presses, by the mean of its later half, although no single block of the loading shows it."""
     at = slice((one.hold[0] + one.hold[1]) // 2, one.hold[1])
     force = sign * (blocks.force[at] - base.mean[0])
     count = min(force.size, base.end - base.start)
     return bool(blocks.position[at].mean() > onset and force.mean() > least * np.sqrt(2 / count))
 
 
-def _error(way: _Way, onset: float, bend: float, length: float) -> float:
+def _error(loading: _Loading, onset: float, bend: float, length: float) -> float:
     """Standard error of a fitted onset, mm, with the factor c free."""
-    over = np.maximum(way.position - onset, 0.0) / length
+    over = np.maximum(loading.position - onset, 0.0) / length
     shape = (1 - bend) * over + bend * over**2
     slope = (over > 0) * ((1 - bend) + 2 * bend * over) / length
     square = float(shape @ shape)
     if square <= 0:
         return float(np.inf)
-    factor = float(way.force @ shape) / square
-    rest = way.force - factor * shape
+    factor = float(loading.force @ shape) / square
+    rest = loading.force - factor * shape
     slope = factor * (slope - shape * float(slope @ shape) / square)
     steep = float(slope @ slope)
-    return float(np.sqrt(rest @ rest / max(way.force.size - 2, 1) / steep)) if steep > 0 else float(np.inf)
+    return float(np.sqrt(rest @ rest / max(loading.force.size - 2, 1) / steep)) if steep > 0 else float(np.inf)
 
 
 def _crossing(blocks: Blocks, one: Excursion, base: Baseline, least: float, sign: int) -> int | None:
-    """The block from which the force stays beyond its noise on the way in; None where it does not before the hold."""
+    """The block from which the force stays beyond its noise; None where it does not before the hold."""
     start, end = one.clear[1] - 1, max(one.hold[0] + 1, one.clear[1] + 1)
     force = sign * (blocks.force[start:end] - base.mean[0])
     peak = int(force.argmax())
@@ -179,8 +177,8 @@ def _crossing(blocks: Blocks, one: Excursion, base: Baseline, least: float, sign
     return start + (int(below[-1]) + 1 if below.size else 0)
 
 
-class _Way(NamedTuple):
-    """The first part of a way in: position, force less that without contact, the onset's bounds, the travel pressed."""
+class _Loading(NamedTuple):
+    """The first part of a loading: position, force less that without contact, the onset's bounds, the travel pressed."""
 
     position: Array
     force: Array
@@ -189,7 +187,7 @@ class _Way(NamedTuple):
     length: float
 
 
-def _way(blocks: Blocks, one: Excursion, base: Baseline, at: int, limit: float, sign: int) -> _Way:
+def _loading(blocks: Blocks, one: Excursion, base: Baseline, at: int, limit: float, sign: int) -> _Loading:
     deepest = max(one.hold[0] + 1, at + 2)
     beyond = np.flatnonzero(sign * (blocks.force[at:deepest] - base.mean[0]) > limit)
     end = min(at + max(int(beyond[0]) if beyond.size else deepest, _LEAST_POINTS), deepest)
@@ -202,29 +200,29 @@ def _way(blocks: Blocks, one: Excursion, base: Baseline, at: int, limit: float, 
         starts = np.linspace(0, position.size, _MOST_POINTS, endpoint=False).astype(int)
         counts = np.diff(np.append(starts, position.size))
         position, force = np.add.reduceat(position, starts) / counts, np.add.reduceat(force, starts) / counts
-    return _Way(position, force, min(low, first), first + 0.5 * step, max(last - first, step, 1e-9))
+    return _Loading(position, force, min(low, first), first + 0.5 * step, max(last - first, step, 1e-9))
 
 
-def _search(way: _Way, bends: Array, length: float) -> tuple[Array, Array]:
+def _search(loading: _Loading, bends: Array, length: float) -> tuple[Array, Array]:
     """Best onset and its squared misfit for each bend, (m,): a grid, then a finer one about its best."""
-    low, high = np.full(bends.size, way.low), np.full(bends.size, way.high)
+    low, high = np.full(bends.size, loading.low), np.full(bends.size, loading.high)
     best, misfit = low, np.zeros(bends.size)
     for _ in range(3):
         tries = low[:, None] + (high - low)[:, None] * np.linspace(0, 1, _GRID)
-        over = np.maximum(way.position - tries[..., None], 0.0) / length
+        over = np.maximum(loading.position - tries[..., None], 0.0) / length
         shape = over * (1 - bends[:, None, None] * (1 - over))
         square = np.maximum((shape * shape).sum(axis=-1), 1e-300)
-        left = (way.force @ way.force) - (shape @ way.force) ** 2 / square
+        left = (loading.force @ loading.force) - (shape @ loading.force) ** 2 / square
         at = left.argmin(axis=1)
         row = np.arange(bends.size)
         best, misfit = tries[row, at], left[row, at]
         step = (high - low) / (_GRID - 1)
-        low, high = np.maximum(best - 2 * step, way.low), np.minimum(best + 2 * step, way.high)
+        low, high = np.maximum(best - 2 * step, loading.low), np.minimum(best + 2 * step, loading.high)
     return best, misfit
 
 
 def _time_at(blocks: Blocks, one: Excursion, onset: float) -> float:
-    """When the plate passed the onset on its way in."""
+    """Time at which the plate passes the onset."""
     start = max(one.clear[1] - 1, 0)
     place = blocks.position[start : one.hold[0] + 1]
     below = np.flatnonzero(place < onset)

@@ -1,4 +1,4 @@
-"""A run's blocks to its curve: points read at the ends of holds, or the way in of a run without holds."""
+"""A run's blocks to its curve: points read at the ends of holds, or the loading of a run without holds."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.bench.contact import BEFORE, Baseline, baseline
-from pneutouch.bench.doubts import doubts_of, listed, untrusted
 from pneutouch.bench.indents import RunIndentations, find_indents
 from pneutouch.bench.record import Blocks, MeasuredCurve, SuspectInterval
+from pneutouch.bench.suspect import listed, run_warnings, untrusted
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import CampaignRun, Rig
 
-WAY_POINTS = 25
-"""Points on the way in of a loop or a relaxation run: our choice, about twice as many as the stairs have."""
+LOADING_POINTS = 25
+"""Points of the loading of a loop or a relaxation run: our choice, about twice as many as the stairs have."""
 
 _BEYOND_TRAVEL = 1.05
 
@@ -24,49 +24,52 @@ _BEYOND_TRAVEL = 1.05
 def curve_of(run: CampaignRun, blocks: Blocks, rig: Rig) -> MeasuredCurve:
     """The curve of a run with a plate; its first point is the origin.
 
-    Steps and saturation: one point for each indentation, sorted by depth. Loop and relaxation: the way in, averaged over
-    the cycles, at `WAY_POINTS` even depths. A force or rise that falls as the sensor is pressed stays negative
-    (`plausible.check_plausible` tells). Noise is that of single samples without contact, from the spread within blocks and
-    the one between their means about a straight line; drift the slope before the first contact.
+    Steps and saturation: one point for each indentation, sorted by depth. Loop and relaxation: the loading, averaged over
+    the cycles, at `LOADING_POINTS` even depths. A force or rise that falls as the sensor is pressed stays negative
+    (see `plausible.check_plausible`). Noise is that of single samples without contact, from the spread within blocks and
+    that between their means about a straight line; drift is the slope before the first contact.
 
-    Raises InputError where the plate does not move or moves the wrong way, or nothing is ever touched.
+    Raises InputError where the plate does not move or moves backwards, or there is no contact.
     """
     if run.kind in ("leak", "injection"):
         raise InputError(f"{blocks.file}: a {run.kind} run has no plate and no curve")
-    found = find_indents(blocks)
-    touched = [k for k, contact in enumerate(found.contacts) if contact is not None]
+    indentations = find_indents(blocks)
+    touched = [k for k, contact in enumerate(indentations.contacts) if contact is not None]
     if not touched:
-        raise InputError(_no_contact(blocks, found))
-    doubts = [*listed(blocks.doubts), *_travel(blocks, rig), *doubts_of(run, blocks, found)]
-    kept, left_out = _kept(blocks, found, touched)
-    doubts += left_out
+        raise InputError(_no_contact(blocks, indentations))
+    warnings = [*listed(blocks.warnings), *_travel(blocks, rig), *run_warnings(run, blocks, indentations)]
+    kept, left_out = _kept(blocks, indentations, touched)
+    warnings += left_out
     if not kept:
-        reasons = "; ".join(sorted({doubt.why for doubt in left_out}))
+        reasons = "; ".join(sorted({warning.why for warning in left_out}))
         raise InputError(f"{blocks.file}: none of {len(touched)} indentations can be used: {reasons}")
-    ways = [_way(blocks, found, k) for k in kept] if run.kind in ("loop", "relaxation") else []
-    points = _averaged(ways) if ways else _points(found, kept)
-    bases = [found.bases[k] for k in kept]
+    loadings = [_loading(blocks, indentations, k) for k in kept] if run.kind in ("loop", "relaxation") else []
+    points = _averaged(loadings) if loadings else _points(indentations, kept)
+    bases = [indentations.bases[k] for k in kept]
     return MeasuredCurve(
-        run, *points, driving=float(np.mean([base.mean[1] for base in bases])), indents=found.indents,
-        loop=tuple(_cycle(blocks, found, k) for k in kept) if run.kind == "loop" else (),
-        relaxation=_relaxation(blocks, found, kept[0]) if run.kind == "relaxation" else None,
+        run,
+        *points,
+        driving=float(np.mean([base.mean[1] for base in bases])),
+        indents=indentations.indents,
+        loop=tuple(_cycle(blocks, indentations, k) for k in kept) if run.kind == "loop" else (),
+        relaxation=_relaxation(blocks, indentations, kept[0]) if run.kind == "relaxation" else None,
         noise=(_noise(bases, 0), _noise(bases, 1)),
-        drift=_drift(blocks, found),
-        doubts=tuple(sorted(doubts, key=lambda doubt: (doubt.start, doubt.end, doubt.why))),
-    )  # fmt: skip
+        drift=_drift(blocks, indentations),
+        warnings=tuple(sorted(warnings, key=lambda warning: (warning.start, warning.end, warning.why))),
+    )
 
 
-def _no_contact(blocks: Blocks, found: RunIndentations) -> str:
-    if not found.parts:
+def _no_contact(blocks: Blocks, indentations: RunIndentations) -> str:
+    if not indentations.parts:
         return f"{blocks.file}: no contact: the plate never goes in and out; from {blocks.position.min():.4g} to {blocks.position.max():.4g} mm"
-    noise = _noise(found.bases, 0)
+    noise = _noise(indentations.bases, 0)
     over = max(
         float(np.abs(blocks.force[one.clear[1] : one.hold[1]] - base.mean[0]).max())
-        for one, base in zip(found.parts, found.bases, strict=True)
+        for one, base in zip(indentations.parts, indentations.bases, strict=True)
     )
     return (
         f"{blocks.file}: no contact: the force never leaves its noise: at most {over:.3g} N beyond what it is without, with "
-        f"{noise:.3g} N of noise, in {len(found.parts)} indentations; did the plate reach the sensor, is columns.force the right column?"
+        f"{noise:.3g} N of noise, in {len(indentations.parts)} indentations; did the plate reach the sensor, is columns.force the right column?"
     )
 
 
@@ -78,48 +81,47 @@ def _travel(blocks: Blocks, rig: Rig) -> list[SuspectInterval]:
     return [SuspectInterval(float(blocks.time[0]), float(blocks.time[-1]), why, True)]
 
 
-def _kept(blocks: Blocks, found: RunIndentations, touched: list[int]) -> tuple[list[int], list[SuspectInterval]]:
-    kept, doubts = [], []
+def _kept(blocks: Blocks, indentations: RunIndentations, touched: list[int]) -> tuple[list[int], list[SuspectInterval]]:
+    kept, warnings = [], []
     for k in touched:
-        indent = found.indents[k]
+        indent = indentations.indents[k]
         why = untrusted(blocks, indent, BEFORE)
         if why is None:
             kept.append(k)
         else:
-            told = f"indentation {k + 1}, {indent.indentation:.4g} mm, left out: {why}"
-            doubts.append(SuspectInterval(*indent.read, told, False))
-    return kept, doubts
+            message = f"indentation {k + 1}, {indent.indentation:.4g} mm, left out: {why}"
+            warnings.append(SuspectInterval(*indent.read, message, False))
+    return kept, warnings
 
 
-def _points(found: RunIndentations, kept: Sequence[int]) -> tuple[Array, Array, Array]:
-    points = np.array([
-        (0.0, 0.0, 0.0),
-        *((one.indentation, one.force, one.rise) for one in (found.indents[k] for k in kept)),
-    ])  # fmt: skip
+def _points(indentations: RunIndentations, kept: Sequence[int]) -> tuple[Array, Array, Array]:
+    points = np.array(
+        [(0.0, 0.0, 0.0), *((one.indentation, one.force, one.rise) for one in (indentations.indents[k] for k in kept))]
+    )
     depth, force, rise = points[np.argsort(points[:, 0], kind="stable")].T
     return depth, force, rise
 
 
-def _way(blocks: Blocks, found: RunIndentations, k: int) -> tuple[Array, Array, Array]:
-    """Indentation, force and rise of the blocks on a way in, from contact to the deepest."""
-    part, base, indent = found.parts[k], found.bases[k], found.indents[k]
+def _loading(blocks: Blocks, indentations: RunIndentations, k: int) -> tuple[Array, Array, Array]:
+    """Indentation, force and rise of the blocks of a loading, from contact to the deepest point."""
+    part, base, indent = indentations.parts[k], indentations.bases[k], indentations.indents[k]
     start = int(np.searchsorted(blocks.time, indent.contact))
     end = _deepest(blocks, part.hold) + 1
     at = slice(min(start, end - 1), end)
-    return blocks.position[at] - found.onset, blocks.force[at] - base.mean[0], blocks.pressure[at] - base.mean[1]
+    return blocks.position[at] - indentations.onset, blocks.force[at] - base.mean[0], blocks.pressure[at] - base.mean[1]
 
 
 def _deepest(blocks: Blocks, hold: tuple[int, int]) -> int:
-    """Where the way in ends: in the middle of a short stay, else at the hold's begin."""
+    """Block at which the loading ends: the deepest of a short stay, else the hold's begin."""
     begin, end = hold
-    return begin + int(blocks.position[begin:end].argmax()) if end - begin < WAY_POINTS else begin
+    return begin + int(blocks.position[begin:end].argmax()) if end - begin < LOADING_POINTS else begin
 
 
-def _averaged(ways: list[tuple[Array, Array, Array]]) -> tuple[Array, Array, Array]:
-    """Ways in at even depths from the origin, averaged."""
-    depth = np.linspace(0.0, min(float(way[0].max()) for way in ways), WAY_POINTS + 1)
-    curves = np.zeros((2, len(ways), depth.size))
-    for k, (place, force, rise) in enumerate(ways):
+def _averaged(loadings: list[tuple[Array, Array, Array]]) -> tuple[Array, Array, Array]:
+    """Loadings at even depths from the origin, averaged."""
+    depth = np.linspace(0.0, min(float(loading[0].max()) for loading in loadings), LOADING_POINTS + 1)
+    curves = np.zeros((2, len(loadings), depth.size))
+    for k, (place, force, rise) in enumerate(loadings):
         order = np.argsort(place, kind="stable")
         for row, values in enumerate((force, rise)):
             curves[row, k, 1:] = np.interp(depth[1:], np.append(0.0, place[order]), np.append(0.0, values[order]))
@@ -127,27 +129,27 @@ def _averaged(ways: list[tuple[Array, Array, Array]]) -> tuple[Array, Array, Arr
     return depth, force, rise
 
 
-def _cycle(blocks: Blocks, found: RunIndentations, k: int) -> tuple[Array, Array, Array, Array]:
-    _, force, rise = _way(blocks, found, k)
-    part, base, indent = found.parts[k], found.bases[k], found.indents[k]
+def _cycle(blocks: Blocks, indentations: RunIndentations, k: int) -> tuple[Array, Array, Array, Array]:
+    _, force, rise = _loading(blocks, indentations, k)
+    part, base, indent = indentations.parts[k], indentations.bases[k], indentations.indents[k]
     start = _deepest(blocks, part.hold)
     end = part.out if math.isnan(indent.release) else int(np.searchsorted(blocks.time, indent.release))
     out = slice(start, max(end, start + 1))
     return force, rise, blocks.force[out] - base.mean[0], blocks.pressure[out] - base.mean[1]
 
 
-def _relaxation(blocks: Blocks, found: RunIndentations, k: int) -> tuple[Array, Array, Array]:
-    at, base = slice(*found.parts[k].hold), found.bases[k]
+def _relaxation(blocks: Blocks, indentations: RunIndentations, k: int) -> tuple[Array, Array, Array]:
+    at, base = slice(*indentations.parts[k].hold), indentations.bases[k]
     time = blocks.time[at]
     return time - time[0], blocks.force[at] - base.mean[0], blocks.pressure[at] - base.mean[1]
 
 
-def _drift(blocks: Blocks, found: RunIndentations) -> tuple[float, float]:
+def _drift(blocks: Blocks, indentations: RunIndentations) -> tuple[float, float]:
     """Slopes of pressure and force over the last third of the first stretch without contact.
 
     There a reset is over and nothing was pressed yet: after an indentation the wall still recovers.
     """
-    start, end = found.parts[0].clear
+    start, end = indentations.parts[0].clear
     slopes = baseline(blocks, end - max((end - start) // 3, 1), end).slope
     return slopes[1], slopes[0]
 

@@ -1,4 +1,4 @@
-"""What a run says in figures: measured curves through the same `mechanics.response` as predicted ones."""
+"""Figures of a run: measured curves go through the same `mechanics.response` as predicted ones."""
 
 from __future__ import annotations
 
@@ -41,13 +41,19 @@ FIGURES = (
     FigureDefinition("sensitivity_through_origin_kPa_per_N", "Sensitivity, line through the origin", "kPa/N", digits=4),
     FigureDefinition("r_squared", "R²", "", digits=5),
     FigureDefinition("nonlinearity_percent", "Nonlinearity", "% of full scale"),
-    FigureDefinition("repeatability_kPa_per_N", "Repeatability of the sensitivity", "kPa/N", "within", "sensitivity_kPa_per_N"),
-    FigureDefinition("part_to_part_kPa_per_N", "Part to part, of the sensitivity", "kPa/N", "between", "sensitivity_kPa_per_N"),
+    FigureDefinition(
+        "repeatability_kPa_per_N", "Repeatability of the sensitivity", "kPa/N", "within", "sensitivity_kPa_per_N"
+    ),
+    FigureDefinition(
+        "part_to_part_kPa_per_N", "Part to part, of the sensitivity", "kPa/N", "between", "sensitivity_kPa_per_N"
+    ),
     FigureDefinition("stiffness_N_per_mm", "Mean stiffness", "N/mm"),
     FigureDefinition("force_range_N", "Force at the greatest depth", "N"),
     FigureDefinition("saturation_force_N", "Saturation force", "N"),
     FigureDefinition("sensing_range_N", "Sensing range", "N"),
-    FigureDefinition("hysteresis_width_percent", "Hysteresis, greatest width", "% of full scale", reading=_WIDTH_READING),
+    FigureDefinition(
+        "hysteresis_width_percent", "Hysteresis, greatest width", "% of full scale", reading=_WIDTH_READING
+    ),
     FigureDefinition("hysteresis_area_percent", "Hysteresis, area of the loop", "% of loading", reading=_AREA_READING),
     FigureDefinition("relaxation_force_percent", "Relaxation of the force", "%"),
     FigureDefinition("relaxation_force_percent_per_decade", "Relaxation of the force", "% a decade"),
@@ -57,13 +63,13 @@ FIGURES = (
     FigureDefinition("noise_force_N", "Noise of a force sample", "N rms"),
     FigureDefinition("noise_pressure_kPa", "Noise of a pressure sample", "kPa rms"),
     FigureDefinition("resolution_N", "Resolution of the force read from the pressure", "N"),
-)  # fmt: skip
+)
 """In the order of every table. Definitions with formula and source: docs/measuring.md."""
 
 BY_KEY = {figure.key: figure for figure in FIGURES}
 
 FIRST = 1.0
-"""Seconds after the hold began from which relaxation is counted: the plate's stop has rung down."""
+"""Seconds after the hold began from which relaxation is counted: the plate's stop no longer oscillates."""
 
 RESOLVED = 3.0
 """Noise standard deviations that count as resolved: the limit of detection of IUPAC (Gold Book, L03540)."""
@@ -82,16 +88,16 @@ _GRID = 200
 
 def run_figures(curve: MeasuredCurve) -> dict[str, float]:
     """The figures that one run gives, by key; those it does not determine are left out."""
-    found: dict[str, float] = {}
+    values: dict[str, float] = {}
     kind = curve.run.kind
     if kind in ("steps", "saturation") and len(curve.force) > 2:
-        found |= _line(curve, saturating=kind == "saturation")
+        values |= _line(curve, saturating=kind == "saturation")
     if kind == "loop" and curve.loop:
-        found |= _loop(curve)
+        values |= _loop(curve)
     if kind == "relaxation" and curve.relaxation is not None:
-        found |= _relaxation(*curve.relaxation)
-    found |= _still(curve, found.get("sensitivity_kPa_per_N"))
-    return {key: value for key, value in found.items() if np.isfinite(value)}
+        values |= _relaxation(*curve.relaxation)
+    values |= _still(curve, values.get("sensitivity_kPa_per_N"))
+    return {key: value for key, value in values.items() if np.isfinite(value)}
 
 
 def _line(curve: MeasuredCurve, *, saturating: bool) -> dict[str, float]:
@@ -103,10 +109,13 @@ def _line(curve: MeasuredCurve, *, saturating: bool) -> dict[str, float]:
         saturated = {} if got.saturation_force is None else {"saturation_force_N": got.saturation_force}
         return {**saturated, "sensing_range_N": end}
     return {
-        "sensitivity_kPa_per_N": got.sensitivity_kPa_per_N, "sensitivity_through_origin_kPa_per_N": got.sensitivity_through_origin_kPa_per_N,
-        "r_squared": got.r_squared, "nonlinearity_percent": 100 * got.nonlinearity, "stiffness_N_per_mm": got.stiffness,
+        "sensitivity_kPa_per_N": got.sensitivity_kPa_per_N,
+        "sensitivity_through_origin_kPa_per_N": got.sensitivity_through_origin_kPa_per_N,
+        "r_squared": got.r_squared,
+        "nonlinearity_percent": 100 * got.nonlinearity,
+        "stiffness_N_per_mm": got.stiffness,
         "force_range_N": got.force_range[1],
-    }  # fmt: skip
+    }
 
 
 def _loop(curve: MeasuredCurve) -> dict[str, float]:
@@ -118,19 +127,21 @@ def _loop(curve: MeasuredCurve) -> dict[str, float]:
     force, rise = np.concatenate([side[1] for side in sides]), np.concatenate([side[2] for side in sides])
     if force.size < _LEAST_SAMPLES or force.max() <= 0:
         return {}
-    way = np.concatenate([np.full(len(side[1]), side[0]) for side in sides])
-    found = np.linalg.lstsq(np.hstack(_branches(force / force.max(), way)), rise, rcond=None)[0]
+    direction = np.concatenate([np.full(len(side[1]), side[0]) for side in sides])
+    coefficients = np.linalg.lstsq(np.hstack(_branches(force / force.max(), direction)), rise, rcond=None)[0]
     lowest = max(min(cycle[k].min() for cycle in curve.loop) for k in (0, 2))
     grid = np.linspace(max(lowest, 0.0) / force.max(), 1.0, _GRID)
-    line, gap = (part @ c for part, c in zip(_branches(grid, np.ones(_GRID)), np.split(found, [_CURVE]), strict=True))
+    line, gap = (
+        part @ c for part, c in zip(_branches(grid, np.ones(_GRID)), np.split(coefficients, [_CURVE]), strict=True)
+    )
     width, area = hysteresis(grid, line + gap, grid, line - gap)
     return {"hysteresis_width_percent": 100 * width, "hysteresis_area_percent": 100 * area}
 
 
-def _branches(share: Array, way: Array) -> tuple[Array, Array]:
-    """Columns of the middle line and of half the gap at shares of the greatest force, going in (way 1) or out (-1)."""
+def _branches(share: Array, direction: Array) -> tuple[Array, Array]:
+    """Columns of the middle line and of half the gap at shares of the greatest force, in loading (direction 1) or unloading (-1)."""
     root = np.sqrt(np.clip(share, 0.0, None))
-    half = 0.5 * way * (1 - root)
+    half = 0.5 * direction * (1 - root)
     place = 2 * root - 1
     return legvander(place, _CURVE - 1), half[:, None] * legvander(place, _GAP - 1)
 
@@ -141,18 +152,19 @@ def _relaxation(time: Array, force: Array, rise: Array) -> dict[str, float]:
     if later.sum() < 3:
         return {}
     decades = np.log10(time[later])
-    found = {}
+    figures = {}
     for name, values in (("force", force[later]), ("pressure", rise[later])):
         # Even in log time: a hold of 600 s has nine tenths of its samples in its last decade.
         grid = np.linspace(decades[0], decades[-1], _GRID)
         even = _binned(decades, values, grid)
         slope = np.polyfit(grid, even, 1)[0]
-        start, end = (float(np.polyval(np.polyfit(grid[part] - at, even[part], 1), 0.0)) for part, at in (
-            (grid <= grid[0] + _ENDS, grid[0]), (grid >= grid[-1] - _ENDS, grid[-1]),
-        ))  # fmt: skip
-        found[f"relaxation_{name}_percent"] = float(100 * (start - end) / start)
-        found[f"relaxation_{name}_percent_per_decade"] = float(-100 * slope / start)
-    return found
+        start, end = (
+            float(np.polyval(np.polyfit(grid[part] - at, even[part], 1), 0.0))
+            for part, at in ((grid <= grid[0] + _ENDS, grid[0]), (grid >= grid[-1] - _ENDS, grid[-1]))
+        )
+        figures[f"relaxation_{name}_percent"] = float(100 * (start - end) / start)
+        figures[f"relaxation_{name}_percent_per_decade"] = float(-100 * slope / start)
+    return figures
 
 
 def _binned(place: Array, values: Array, grid: Array) -> Array:
@@ -170,9 +182,9 @@ def _still(curve: MeasuredCurve, sensitivity_kPa_per_N: float | None) -> dict[st
     if curve.run.kind == "loop":
         # Its rests are too short for noise and drift: the wall still recovers.
         return {}
-    found = {"drift_pressure_kPa_per_min": 60 * curve.drift[0] / KPA}
+    values = {"drift_pressure_kPa_per_min": 60 * curve.drift[0] / KPA}
     noise_force, noise_kPa = curve.noise[0], curve.noise[1] / KPA
-    found |= {"noise_force_N": noise_force, "noise_pressure_kPa": noise_kPa}
+    values |= {"noise_force_N": noise_force, "noise_pressure_kPa": noise_kPa}
     if sensitivity_kPa_per_N:
-        found["resolution_N"] = RESOLVED * noise_kPa / abs(sensitivity_kPa_per_N)
-    return found
+        values["resolution_N"] = RESOLVED * noise_kPa / abs(sensitivity_kPa_per_N)
+    return values

@@ -1,4 +1,4 @@
-"""What comes out of measured coupons: quantities of profiles, figures to be told, and remarks."""
+"""Results of measured coupons: quantities of profiles, figures for the reader, and notes."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 MARK = "measured on coupons"
-"""What the source of every quantity says that a coupon gave."""
+"""Part of the source of every quantity that was measured on a coupon."""
 
 
 @dataclass(frozen=True, slots=True)
 class ProfileChange:
-    """A quantity of a profile as measured: kind and name of the profile, the keys that lead to it, its content."""
+    """A measured quantity of a profile: kind and name of the profile, the keys of the quantity, its content."""
 
     kind: Literal["materials", "printers"]
     name: str
@@ -22,7 +22,7 @@ class ProfileChange:
 
 @dataclass(frozen=True, slots=True)
 class MeasuredFigure:
-    """A figure for people: what it is of, its name with unit, value, standard deviation and count."""
+    """A figure for the reader: its subject, its name with unit, value, standard deviation and count."""
 
     about: str
     name: str
@@ -33,16 +33,26 @@ class MeasuredFigure:
 
 @dataclass
 class CouponFindings:
-    """Changes, figures and remarks, gathered coupon by coupon."""
+    """Changes, figures and notes, collected coupon by coupon."""
 
     changes: list[ProfileChange] = field(default_factory=list)
     figures: list[MeasuredFigure] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
+    def change(self, kind: Literal["materials", "printers"], name: str, keys: tuple[str, ...], **content: Any) -> None:
+        """Add a quantity of a profile."""
+        self.changes.append(ProfileChange(kind, name, keys, content))
+
+    def figure(
+        self, about: str, name: str, value: float, spread: float | None = None, count: int | None = None
+    ) -> None:
+        """Add a figure."""
+        self.figures.append(MeasuredFigure(about, name, value, spread, count))
+
 
 @dataclass(frozen=True, slots=True)
 class ReadingSource:
-    """Where readings are from: ``where`` is the results file for messages, lab and date go into every source."""
+    """Origin of readings: ``where`` is the results file for messages, lab and date are part of every source."""
 
     where: str
     lab: str
@@ -54,5 +64,5 @@ class ReadingSource:
 
 
 def rounded(value: float) -> float:
-    """Four significant digits: more than a reading has."""
+    """Round to four significant digits, more than a reading has."""
     return float(f"{value:.4g}")

@@ -1,4 +1,4 @@
-"""Each way in and out to an indentation: what was read, before contact and at the end of the hold."""
+"""Each loading and unloading to an indentation: the readings before contact and at the end of the hold."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pneutouch.bench.record import Blocks, MeasuredIndentation
 from pneutouch.bench.segment import Excursion, excursions
 
 READ, READ_LONGEST = 0.25, 1.0
-"""The read window is the last quarter of the hold, at most its last second: our choice, the paper does not say. A dome
+"""The read window is the last quarter of the hold, at most its last second: our choice, the paper does not state it. A dome
 settles as an exponential does, most at first, and of the paper's 4 s the last one changes least; its 100 blocks leave no noise."""
 
 MARGIN = 0.01
@@ -40,7 +40,7 @@ class RunIndentations:
         indents: What was read.
         pressed: Whether the record begins with the plate in.
         sign: -1 where the force falls as the sensor is pressed.
-        least: Force that is told from none, N.
+        least: Least force that counts as contact, N.
         onset: Plate position at the run's first contact, mm; NaN where there is none.
     """
 
@@ -63,8 +63,8 @@ def find_indents(blocks: Blocks) -> RunIndentations:
     least, sign = threshold(blocks, bases, parts)
     contacts = onsets(blocks, parts, bases, least, sign)
     bases = [_just_before(blocks, base, contact) for base, contact in zip(bases, contacts, strict=True)]
-    own = [contact.position for contact in contacts if contact is not None and contact.own][:EARLY]
-    onset = float(np.median(own)) if own else math.nan
+    fitted = [contact.position for contact in contacts if contact is not None and contact.fitted][:EARLY]
+    onset = float(np.median(fitted)) if fitted else math.nan
     indents = tuple(
         _indent(blocks, one, base, contact, onset, (least, sign))
         for one, base, contact in zip(parts, bases, contacts, strict=True)
@@ -101,9 +101,9 @@ def _just_before(blocks: Blocks, base: Baseline, contact: ContactOnset | None) -
 
 
 def _indent(
-    blocks: Blocks, one: Excursion, base: Baseline, contact: ContactOnset | None, onset: float, told: tuple[float, int]
-) -> MeasuredIndentation:  # fmt: skip
-    least, sign = told
+    blocks: Blocks, one: Excursion, base: Baseline, contact: ContactOnset | None, onset: float, limit: tuple[float, int]
+) -> MeasuredIndentation:
+    least, sign = limit
     start, end = read_window(blocks, one.hold)
     at = slice(start, end)
     force = float(blocks.force[at].mean()) - base.mean[0]
@@ -113,9 +113,12 @@ def _indent(
         read=_read_times(blocks, one.hold),
         release=math.nan if contact is None else _release(blocks, one, base, max(RELEASED * sign * force, least), sign),
         onset=math.nan if contact is None else contact.position,
-        indentation=math.nan if contact is None else float(blocks.position[at].mean()) - onset, force=force,
-        rise=float(blocks.pressure[at].mean()) - base.mean[1], driving=base.mean[1], zero_force=base.mean[0],
-    )  # fmt: skip
+        indentation=math.nan if contact is None else float(blocks.position[at].mean()) - onset,
+        force=force,
+        rise=float(blocks.pressure[at].mean()) - base.mean[1],
+        driving=base.mean[1],
+        zero_force=base.mean[0],
+    )
 
 
 def _release(blocks: Blocks, one: Excursion, base: Baseline, least: float, sign: int) -> float:

@@ -29,13 +29,13 @@ _ABSOLUTE = 0.7
 def read_injection(path: Path, columns: ColumnMap) -> tuple[Array, Array]:
     """Injected volume (mm3, at ambient pressure) and gauge pressure (MPa), (n,) each, in the file's order.
 
-    Raises InputError for what `tables.read.chunks` refuses, fewer than three rows, a volume that does not vary, and a
+    Raises InputError as `tables.read.chunks`, for fewer than three rows, a volume that does not vary, and a
     pressure that does not rise with it.
     """
     rows, (volume, pressure) = whole(path, [columns.volume.name, columns.pressure.name])
     volume, pressure = scaled(path, columns, ("volume", "pressure"), rows, np.stack([volume, pressure]))
     if rows.size < LEAST_POINTS:
-        raise InputError(f"{path}: {rows.size} rows; at least {LEAST_POINTS}, so that a line and its error can be told")
+        raise InputError(f"{path}: {rows.size} rows; at least {LEAST_POINTS}, for a line and its error")
     if np.ptp(volume) <= 0:
         raise InputError(
             f"{path}: column {columns.volume.name}: does not vary; must be the volumes injected one after another"
@@ -66,8 +66,8 @@ def dead_volume_of_cap(volume: Array, pressure: Array, ambient: float) -> Mean:
         raise ValueError("the pressure begins near the ambient one; it must be gauge pressure")
     rest = pressure - pressure.mean() - slope * centred
     error = math.sqrt(float(rest @ rest) / (volume.size - 2) / square)
-    found = ambient / slope
-    return Mean(found, found * error / slope, 1)
+    dead = ambient / slope
+    return Mean(dead, dead * error / slope, 1)
 
 
 class Leak(NamedTuple):
@@ -110,7 +110,7 @@ def leak_of(time: Array, pressure: Array) -> Leak:
 def leak_rate(blocks: Blocks) -> tuple[float, float]:
     """Leak rate of a leak run and its standard error, MPa/s. Raises InputError for a run of fewer than ten blocks."""
     try:
-        found = leak_of(blocks.time, blocks.pressure)
+        leak = leak_of(blocks.time, blocks.pressure)
     except InputError as error:
         raise InputError(f"{blocks.file}: {error}") from None
-    return found.rate, found.error
+    return leak.rate, leak.error

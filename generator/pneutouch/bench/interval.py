@@ -50,7 +50,7 @@ class Estimate:
 def mean_of(groups: Sequence[Array]) -> Estimate:
     """Mean over specimens of their means over runs; ``groups`` has an array of runs a specimen, none of them empty.
 
-    With one specimen the interval is over its runs and says nothing of other specimens; with one value there is none.
+    With one specimen the interval is over its runs and does not cover other specimens; with one value there is none.
     """
     runs = sum(len(group) for group in groups)
     if len(groups) > 1:

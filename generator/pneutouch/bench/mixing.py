@@ -1,4 +1,4 @@
-"""Coupons of two resins in known fractions: how stiff each mix is, by dumbbells, or by hardness beside the soft resin's."""
+"""Coupons of two resins in known fractions: the modulus of each mix, by dumbbells or by hardness relative to the soft resin."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from pneutouch.spec.coupon import MixedCoupons
 from pneutouch.spec.material import Material
 
 _HARDEST = 95.0
-"""Shore A beyond which no modulus is taken from it: the scale is compressed and Gent's relation runs away. ASTM D2240 has
-the D scale for readings above 90 A; our choice leaves the scatter of a puck of 90."""
+"""Greatest Shore A that a modulus is derived from: above it the scale is compressed and Gent's relation diverges. ASTM D2240
+uses the D scale for readings above 90 A; our choice allows for the scatter of a puck of 90."""
 
 _DUMBBELLS, _HARDNESS = "dumbbells", "hardness, by ratio"
 
 
 @dataclass(frozen=True, slots=True)
 class MixModulus:
-    """Shear modulus of one mix in MPa with its standard deviation, how often and by what it was measured."""
+    """Shear modulus of one mix in MPa with its standard deviation, the number of measurements and the method."""
 
     fraction: float
     modulus: float
@@ -34,45 +34,47 @@ class MixModulus:
     by: str
     how: str
 
-    def content(self, said: ReadingSource) -> dict[str, Any]:
+    def content(self, source: ReadingSource) -> dict[str, Any]:
         """The point of a mixing curve."""
         return {
-            "fraction": self.fraction, "shear_modulus_MPa": rounded(self.modulus),
-            "shear_modulus_spread_MPa": rounded(self.spread), "source": said.source(self.how, self.count),
-        }  # fmt: skip
+            "fraction": self.fraction,
+            "shear_modulus_MPa": rounded(self.modulus),
+            "shear_modulus_spread_MPa": rounded(self.spread),
+            "source": source.source(self.how, self.count),
+        }
 
 
 def stiffness(
-    pair: str, soft: Material, stiff: Material, measured: Sequence[MixedCoupons], said: ReadingSource
+    pair: str, soft: Material, stiff: Material, measured: Sequence[MixedCoupons], source: ReadingSource
 ) -> list[MixModulus]:
-    """Every fraction that something was measured of.
+    """Modulus of every fraction that was measured.
 
-    By its dumbbells; else by its hardness: Gent's relation (1958) is trusted for ratios alone, so the modulus is that of the
-    soft resin, measured or from the catalogue, times the ratio to the hardness at fraction 0 of the same set.
+    By its dumbbells, else by its hardness: Gent's relation (1958) is used for ratios alone, so the modulus is that of the
+    soft resin, measured or from the catalogue, times the ratio to the modulus at fraction 0 of the same set.
     Raises InputError for readings that cannot be used, and where the modulus falls with the fraction.
     """
-    where = f"{said.where}: mixing.{pair}"
-    found, by_hardness = [], []
+    where = f"{source.where}: mixing.{pair}"
+    moduli, by_hardness = [], []
     for k, one in enumerate(measured, start=1):
         place = f"{where}[{k}]"
         dumbbells = pulled(one.dumbbell, f"{place}.dumbbell")
         if dumbbells is not None:
             how = f"dumbbells of {100 * one.fraction:g} % {stiff.title}, {dumbbells.how}"
             over = dumbbells.over
-            found.append(MixModulus(one.fraction, over.value, dumbbells.spread, over.count, _DUMBBELLS, how))
+            moduli.append(MixModulus(one.fraction, over.value, dumbbells.spread, over.count, _DUMBBELLS, how))
         elif one.shore_a:
             by_hardness.append((place, one))
     if by_hardness:
-        base = _base(soft, measured, found, where)
-        found += [_by_hardness(place, one, base) for place, one in by_hardness]
-    found.sort(key=lambda point: point.fraction)
-    _check_rising(found, where, soft, stiff)
-    return found
+        base = _base(soft, measured, moduli, where)
+        moduli += [_by_hardness(place, one, base) for place, one in by_hardness]
+    moduli.sort(key=lambda point: point.fraction)
+    _check_rising(moduli, where, soft, stiff)
+    return moduli
 
 
 @dataclass(frozen=True, slots=True)
 class _Base:
-    """The soft resin: its hardness in this set, its modulus, and where that is from."""
+    """The soft resin: its hardness in this set, its modulus, and the origin of that."""
 
     shore: Mean
     modulus: float
@@ -80,7 +82,7 @@ class _Base:
     origin: str
 
 
-def _base(soft: Material, measured: Sequence[MixedCoupons], found: Sequence[MixModulus], where: str) -> _Base:
+def _base(soft: Material, measured: Sequence[MixedCoupons], moduli: Sequence[MixModulus], where: str) -> _Base:
     at_zero = next((one for one in measured if one.fraction == 0 and one.shore_a), None)
     if at_zero is None:
         raise InputError(
@@ -88,8 +90,8 @@ def _base(soft: Material, measured: Sequence[MixedCoupons], found: Sequence[MixM
             "measure it on the same day, or pull dumbbells"
         )
     shore = mean(at_zero.shore_a)
-    if found and found[0].fraction == 0:
-        return _Base(shore, found[0].modulus, found[0].spread, "the dumbbells of it")
+    if moduli and moduli[0].fraction == 0:
+        return _Base(shore, moduli[0].modulus, moduli[0].spread, "the dumbbells of it")
     known = soft.shear_modulus_MPa
     assert known is not None
     return _Base(shore, known.nominal, known.spread or 0.0, f"{soft.title} in the catalogue")
@@ -116,8 +118,8 @@ def _by_hardness(place: str, one: MixedCoupons, base: _Base) -> MixModulus:
     return MixModulus(one.fraction, modulus, modulus * math.hypot(*relative), shore.count, _HARDNESS, how)
 
 
-def _check_rising(found: Sequence[MixModulus], where: str, soft: Material, stiff: Material) -> None:
-    points = [(point.fraction, point.modulus, point.by) for point in found]
+def _check_rising(moduli: Sequence[MixModulus], where: str, soft: Material, stiff: Material) -> None:
+    points = [(point.fraction, point.modulus, point.by) for point in moduli]
     if points and points[0][0] > 0 and soft.shear_modulus_MPa is not None:
         points.insert(0, (0.0, soft.shear_modulus_MPa.nominal, "the catalogue"))
     for (f, low, by), (g, high, how) in pairwise(points):

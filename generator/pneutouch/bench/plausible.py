@@ -1,4 +1,4 @@
-"""Whether a run can be what the campaign says it is: wrong units, signs and columns are asked about, never guessed."""
+"""Plausibility of a run against its campaign: wrong units, signs and columns are reported as questions, never corrected."""
 
 from __future__ import annotations
 
@@ -9,17 +9,16 @@ from pathlib import Path
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.mixed import mixed
 from pneutouch.bench.protocol import HOLD, RELAXATION
 from pneutouch.bench.record import Blocks, MeasuredCurve
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import UNITS, CampaignRun, ColumnMap, Rig
 from pneutouch.units import KPA
 
-__all__ = ["ExpectedRun", "check_leak", "check_plausible", "mixed"]
+__all__ = ["ExpectedRun", "check_leak", "check_plausible"]
 
 FAR = 3.0
-"""Factor from the prediction beyond which something is asked: our choice. The solid's predictions meet the paper's table with a
+"""Factor from the prediction beyond which a question is reported: our choice. The solid's predictions meet the paper's table with a
 median error of 8 % and are off by two for its stiffest resin."""
 
 UNIT_NEAR = 1.8
@@ -28,8 +27,8 @@ UNIT_NEAR = 1.8
 RESET_KPA, RESET_SHARE = 1.0, 0.1
 """How far the pressure before contact may be from the driving pressure: our choice, a regulator's scatter."""
 
-SWAP_SURE = math.log(2.0)
-"""The swapped reading must be nearer to the prediction by this (logarithm of a factor), where no driving pressure tells."""
+SWAP_MARGIN = math.log(2.0)
+"""How much nearer to the prediction the swapped reading must be (logarithm of a factor) where there is no driving pressure."""
 
 _RESTS = 0.05
 """Share of the greatest force or rise by which points may be negative: noise about the origin."""
@@ -38,17 +37,17 @@ _HOLD_FAR = 50.0
 _WHY_TIME = "holds of another protocol, another kind of run, or another column?"
 
 _START = 1.0
-"""Seconds in which a line that leaks has lost little, and whose mean the noise of a gauge does not move: our choice."""
+"""Seconds in which a leaking line loses little, long enough to average the noise of a gauge: our choice."""
 
 _SHAPE = 1.5
-"""Exponent of force and rise over depth by which a prediction without a curve is carried to a shallower depth (Hertz)."""
+"""Exponent of force and rise over depth with which a prediction without a curve is scaled to a shallower depth (Hertz)."""
 
 
 @dataclass(frozen=True, slots=True)
 class ExpectedRun:
     """The prediction of a run: force (N) and rise (MPa) at a depth (mm), and the sensitivity (MPa/N).
 
-    ``curve`` are indentations (ascending, mm), forces and rises on the way there, (n,) each, where they are known.
+    ``curve`` are indentations (ascending, mm), forces and rises up to there, (n,) each, where they are available.
     """
 
     depth: float
@@ -69,10 +68,10 @@ class ExpectedRun:
 def check_plausible(
     curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun | None, file: Path
 ) -> tuple[str, ...]:
-    """Questions about a run that may be right all the same.
+    """Questions about a run that may nevertheless be correct.
 
-    Without a prediction (``expected`` None) only signs, times and the driving pressure are looked at. Raises InputError for
-    what cannot be: a sign that is wrong, force and pressure swapped, a magnitude that is off by more than `FAR` and right in
+    Without a prediction (``expected`` None) only signs, times and the driving pressure are checked. Raises InputError for
+    what is impossible: a sign that is wrong, force and pressure swapped, a magnitude that is off by more than `FAR` and right in
     another unit of `spec.campaign.UNITS`.
     """
     _check_signs(curve, columns, file)
@@ -84,35 +83,37 @@ def check_plausible(
 
 
 def check_leak(blocks: Blocks, run: CampaignRun, rig: Rig) -> tuple[str, ...]:
-    """Questions about a leak run that may be right all the same; its pressure is judged by its first `_START` seconds.
+    """Questions about a leak run that may nevertheless be correct; its pressure is the median of the first `_START` seconds.
 
     Raises InputError where the pressure is at the end of the gauge's range (`reading.CLIPPED`) or at a flat top for more than
-    half of the run, or begins at more than `FAR` times or less than 1 / `FAR` of the driving pressure that the campaign says.
+    half of the run, or begins at more than `FAR` times or less than 1 / `FAR` of the driving pressure in the campaign.
     """
-    told: list[str] = []
-    lost = [doubt for doubt in blocks.doubts if doubt.kind == "clipped"]
-    length, at = float(np.ptp(blocks.time)), sum(doubt.end - doubt.start for doubt in lost)
+    questions: list[str] = []
+    lost = [warning for warning in blocks.warnings if warning.kind == "clipped"]
+    length, at = float(np.ptp(blocks.time)), sum(warning.end - warning.start for warning in lost)
     if at > 0.5 * length:
         raise InputError(
             f"{blocks.file}: a leak run of {length:.3g} s of which {at:.3g} s are clipped ({lost[0].why}); the gauge has a range of "
             f"{rig.pressure_range_kPa:g} kPa; must be run within it"
         )
     if lost:
-        told.append(f"{blocks.file}: {at:.2g} s of {length:.3g} s are clipped ({lost[0].why}); is the leak greater?")
+        questions.append(
+            f"{blocks.file}: {at:.2g} s of {length:.3g} s are clipped ({lost[0].why}); is the leak greater?"
+        )
     count = int(np.searchsorted(blocks.time, blocks.time[0] + _START))
     read_kPa, stated_kPa = float(np.median(blocks.pressure[: max(count, 1)])) / KPA, run.driving_pressure_kPa
     if abs(read_kPa - stated_kPa) <= max(RESET_KPA, RESET_SHARE * stated_kPa):
-        return tuple(told)
-    said = f"{blocks.file}: a leak run that begins at {read_kPa:.3g} kPa; the campaign says driving_pressure_kPa = {stated_kPa:g}"
+        return tuple(questions)
+    problem = f"{blocks.file}: a leak run that begins at {read_kPa:.3g} kPa; the campaign states driving_pressure_kPa = {stated_kPa:g}"
     if stated_kPa > 0 and not stated_kPa / FAR <= read_kPa <= stated_kPa * FAR:
-        raise InputError(f"{said}; the unit of the pressure (columns.pressure.unit), or another run's file?")
-    return (*told, f"{said}; was it left out, is the gauge not zeroed, or does the line lose it at once?")
+        raise InputError(f"{problem}; the unit of the pressure (columns.pressure.unit), or another run's file?")
+    return (*questions, f"{problem}; was it left out, is the gauge not zeroed, or does the line lose it at once?")
 
 
 def _magnitudes(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun, file: Path) -> list[str | None]:
     depth = float(curve.indentation[-1])
     ratio = depth / expected.depth
-    told = [
+    questions = [
         _magnitude(
             file,
             columns,
@@ -122,44 +123,43 @@ def _magnitudes(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun,
             f"the prediction goes to {_number(expected.depth)} mm",
         )
     ]
-    # Where the travel itself is in doubt, the ends are compared.
-    reach = min(depth, expected.depth) if told[0] is None else depth
-    force, rise = expected.at(reach) if told[0] is None else (expected.force, expected.rise)
+    # Where the travel itself is suspect, the ends are compared.
+    reach = min(depth, expected.depth) if questions[0] is None else depth
+    force, rise = expected.at(reach) if questions[0] is None else (expected.force, expected.rise)
     for key, values, target, unit, name in (
-        ("force", curve.force, force, 1.0, "N"), ("pressure", curve.rise, rise, KPA, "kPa")
-    ):  # fmt: skip
+        ("force", curve.force, force, 1.0, "N"),
+        ("pressure", curve.rise, rise, KPA, "kPa"),
+    ):
         measured = float(np.interp(reach, curve.indentation, values))
         what = "reads" if key == "force" else "rises by"
         reads = f"{what} {_number(measured / unit)} {name} at {_number(reach)} mm"
-        told.append(
+        questions.append(
             _magnitude(
                 file, columns, key, measured / target, reads, f"the prediction has {_number(target / unit)} {name}"
             )
         )
-    return told
+    return questions
 
 
 def _number(value: float) -> str:
     return f"{value:.2g}" if abs(value) < 1e4 else f"{value:.1e}".replace("e+0", "e")
 
 
-def _magnitude(
-    file: Path, columns: ColumnMap, key: str, ratio: float, reads: str, predicted: str
-) -> str | None:  # fmt: skip
+def _magnitude(file: Path, columns: ColumnMap, key: str, ratio: float, reads: str, predicted: str) -> str | None:
     """None where a ratio of measured to predicted is plausible, else a question; an error where a unit explains it."""
     if 1 / FAR <= ratio <= FAR:
         return None
     column = getattr(columns, key)
     times = f"{ratio:.2g} times it" if ratio < 100 else f"{ratio:.0f} times it"
-    said = f"{file}: column {column.name}: {reads} where {predicted}, {times}"
+    problem = f"{file}: column {column.name}: {reads} where {predicted}, {times}"
     declared = UNITS[key][column.unit]
     off = {unit: abs(math.log(max(ratio, 1e-12) * factor / declared)) for unit, factor in UNITS[key].items()}
     nearest = min(off, key=lambda unit: off[unit])
     if nearest != column.unit and off[nearest] < math.log(UNIT_NEAR):
         same = " or ".join(unit for unit in off if math.isclose(UNITS[key][unit], UNITS[key][nearest]))
-        raise InputError(f"{said}; is the column in {same}? set columns.{key}.unit")
+        raise InputError(f"{problem}; is the column in {same}? set columns.{key}.unit")
     why = _WHY_TIME if key == "time" else "another resin or design, a smaller plate, or a wrong calibration?"
-    return f"{said}; no unit explains that: {why}"
+    return f"{problem}; no unit explains that: {why}"
 
 
 def _check_signs(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> None:
@@ -181,36 +181,36 @@ def _check_signs(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> None:
 def _check_swap(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun, file: Path) -> None:
     """Force and pressure exchanged: each has the magnitude of the other, and the pressure before contact is in the force.
 
-    Compared as the numbers that stand in the columns. At a driving pressure the resting values decide; at none the
-    magnitudes do, where they differ enough.
+    The numbers in the columns are compared. At a driving pressure the values before contact decide, otherwise the
+    magnitudes, where they differ enough.
     """
     force_unit, pressure_unit = UNITS["force"][columns.force.unit], UNITS["pressure"][columns.pressure.unit]
     depth = min(float(curve.indentation[-1]), expected.depth)
     predicted = expected.at(max(depth, 0.0))
     force = float(np.interp(depth, curve.indentation, curve.force)) / force_unit
     rise = float(np.interp(depth, curve.indentation, curve.rise)) / pressure_unit
-    wanted_force, wanted_rise = predicted[0] / force_unit, predicted[1] / pressure_unit
-    if min(force, rise, wanted_force, wanted_rise) <= 0:
+    expected_force, expected_rise = predicted[0] / force_unit, predicted[1] / pressure_unit
+    if min(force, rise, expected_force, expected_rise) <= 0:
         return
-    as_said = abs(math.log(force / wanted_force)) + abs(math.log(rise / wanted_rise))
-    swapped = abs(math.log(force / wanted_rise)) + abs(math.log(rise / wanted_force))
+    as_stated = abs(math.log(force / expected_force)) + abs(math.log(rise / expected_rise))
+    swapped = abs(math.log(force / expected_rise)) + abs(math.log(rise / expected_force))
     driving = curve.run.driving_pressure_kPa * KPA
     zeros = [one.zero_force for one in curve.indents if not math.isnan(one.contact)]
     in_force = (float(np.mean(zeros)) if zeros else 0.0) / force_unit * pressure_unit
     allowed = max(RESET_KPA * KPA, RESET_SHARE * driving)
-    tells = driving > 3 * RESET_KPA * KPA
+    driven = driving > 3 * RESET_KPA * KPA
     rests = abs(in_force - driving) <= allowed and abs(curve.driving - driving) > allowed
-    if swapped < 2 * math.log(FAR) and ((tells and rests) or (not tells and swapped + SWAP_SURE < as_said)):
-        before = f", and {_number(in_force / KPA)} before contact, the driving pressure" if tells else ""
+    if swapped < 2 * math.log(FAR) and ((driven and rests) or (not driven and swapped + SWAP_MARGIN < as_stated)):
+        before = f", and {_number(in_force / KPA)} before contact, the driving pressure" if driven else ""
         raise InputError(
             f"{file}: columns {columns.force.name} and {columns.pressure.name} look swapped: {columns.force.name} rises by {force:.3g} "
-            f"where {wanted_force:.3g} {columns.force.unit} are predicted and {wanted_rise:.3g} {columns.pressure.unit} of pressure{before}; "
+            f"where {expected_force:.3g} {columns.force.unit} are predicted and {expected_rise:.3g} {columns.pressure.unit} of pressure{before}; "
             "exchange columns.force.name and columns.pressure.name"
         )
 
 
 def _check_time(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> str | None:
-    """A hold's length tells a wrong unit of time, where the unit is wrong by far: holds may well be a few times the paper's."""
+    """The length of holds reveals a unit of time that is wrong by far; holds may be a few times as long as the paper's."""
     if curve.run.kind == "loop" or not curve.indents:
         return None
     length = float(np.median([one.hold[1] - one.hold[0] for one in curve.indents]))
@@ -226,6 +226,6 @@ def _driving(curve: MeasuredCurve, file: Path, columns: ColumnMap) -> str | None
     if abs(read_kPa - stated_kPa) <= max(RESET_KPA, RESET_SHARE * stated_kPa):
         return None
     return (
-        f"{file}: column {columns.pressure.name}: {read_kPa:.3g} kPa before contact; the campaign says driving_pressure_kPa = {stated_kPa:g}; "
+        f"{file}: column {columns.pressure.name}: {read_kPa:.3g} kPa before contact; the campaign states driving_pressure_kPa = {stated_kPa:g}; "
         "another run's file, a gauge not zeroed, or absolute pressure?"
     )

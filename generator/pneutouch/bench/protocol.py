@@ -1,4 +1,4 @@
-"""How a sensor is characterized: the paper's protocols (section 3, Supplements C and D) as what the stage does."""
+"""How a sensor is characterized: the paper's protocols (section 3, Supplements C and D) as movements of the plate."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class RunProtocol:
         depths: Plate travels after first contact at which the plate stays, in order; of a loop its deepest point.
         hold: How long it stays at each; 0 in a loop.
         rest: How long it waits without contact before each indentation.
-        reset: Whether the cavity is vented and set to its driving pressure anew in every rest.
+        reset: Whether the cavity is vented and set to its driving pressure again in every rest.
         speed: Of the plate.
     """
 
@@ -61,14 +61,16 @@ class RunProtocol:
         """The same with a shorter rest and, where given, hold."""
         return replace(self, rest=rest, hold=self.hold if hold is None else hold)
 
-    def way(self) -> tuple[Array, Array]:
+    def knots(self) -> tuple[Array, Array]:
         """Times (n,) s and plate travels (n,) mm between which the plate moves evenly; below zero it is clear."""
         times, travels = [0.0], [-CLEARANCE]
         for depth in self.depths:
             for seconds, travel in (
-                (self.rest, -CLEARANCE), ((depth + CLEARANCE) / self.speed, depth), (self.hold, depth),
+                (self.rest, -CLEARANCE),
+                ((depth + CLEARANCE) / self.speed, depth),
+                (self.hold, depth),
                 ((depth + CLEARANCE) / self.speed, -CLEARANCE),
-            ):  # fmt: skip
+            ):
                 times.append(times[-1] + seconds)
                 travels.append(travel)
         return np.array(times), np.array(travels)

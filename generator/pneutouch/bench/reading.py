@@ -1,4 +1,4 @@
-"""A measured file to blocks: units and signs, and what a channel cannot have measured."""
+"""A measured file to blocks: units and signs, and values that a channel cannot have measured."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ CLIPPED = 0.98
 """Share of an instrument's range at which it is taken for clipped: our choice, makers specify up to the range."""
 
 BEYOND = 1.2
-"""No instrument reads on beyond this share of its range: where a channel does for long, its unit or the stated range is wrong
+"""No instrument reads beyond this share of its range: where a channel does for long, its unit or the stated range is wrong
 and nothing is clipped at that range; where it does for a moment, that is a fault of the line."""
 
 SPIKE, FEW = 0.1, 3
-"""A moment is shorter than this, in s, or than so many blocks if that is longer: our choice, a plate stays longer."""
+"""A moment is shorter than this, in s, or than this many blocks if that is longer: our choice, a plate stays longer."""
 
 GREATEST = 1e100
-"""In inner units; what is beyond no instrument reads, and its square would overflow."""
+"""In internal units; no instrument reads more, and its square would overflow."""
 
 FLAT, ALIKE = 0.1, 0.05
 """A flat top lasts longer than this, in s, and less than this share of the other blocks repeats the one before: a coarse
 or noiseless channel repeats everywhere. Our choice."""
 
 _PRESSED = 30.0
-"""Noise standard deviations by which the force must change to say that something moved: our choice."""
+"""Noise standard deviations by which the force must change as evidence of movement: our choice."""
 
 _CHANNELS = ("time", "position", "force", "pressure")
 _EXACT = 1e-9
@@ -43,15 +43,15 @@ _EXACT = 1e-9
 
 def read_blocks(
     path: Path, columns: ColumnMap, rig: Rig, progress: Callable[[float], None] = lambda share: None, plate: bool = True
-) -> Blocks:  # fmt: skip
+) -> Blocks:
     """Blocks of a CSV or parquet file, in s, mm, N, MPa; ``progress`` is called with the share read, 0 to 1.
 
     About `blocks.BLOCK_RATE` blocks a second, or one sample each up to `blocks.SLOW` Hz. The file is read in one pass and never
-    stands whole in memory. Gaps, clipped stretches and a last row that may be cut are among the doubts.
+    is in memory as a whole. Gaps, clipped stretches and a last row that may be cut are among the warnings.
 
     Of a run without a plate (``plate`` False: a leak run) only time and pressure are read; position and force are zero.
 
-    Raises InputError, naming file, column and row, for what `tables.read.chunks` refuses, time that does not run on, more than
+    Raises InputError, naming file, column and row, as `tables.read.chunks`, for time that does not increase, more than
     half of the samples missing, and a channel that is dead; a run in which nothing moves, as a leak run, has no dead channel.
     """
     names = {key: getattr(columns, key).name for key in _CHANNELS}
@@ -68,71 +68,74 @@ def read_blocks(
         progress(chunk.share)
     blocks = collector.blocks()
     end = float(blocks.time[-1])
-    doubts = (
+    warnings = (
         [SuspectInterval(end, end, "last row left out: no line end, so its last number may be cut", False)]
         if cut
         else []
     )
     if plate:
         _check_alive(blocks, names)
-        doubts += _clipped(blocks, "force", blocks.force, blocks.force_extreme, rig.force_range_N, 1.0, "N")
-    doubts += _clipped(blocks, "pressure", blocks.pressure, blocks.pressure_extreme, rig.pressure_range_kPa, KPA, "kPa")
-    return replace(blocks, doubts=(*blocks.doubts, *doubts))
+        warnings += _clipped(blocks, "force", blocks.force, blocks.force_extreme, rig.force_range_N, 1.0, "N")
+    warnings += _clipped(
+        blocks, "pressure", blocks.pressure, blocks.pressure_extreme, rig.pressure_range_kPa, KPA, "kPa"
+    )
+    return replace(blocks, warnings=(*blocks.warnings, *warnings))
 
 
 def scaled(path: Path, columns: ColumnMap, keys: Sequence[str], rows: Array, values: Array) -> Array:
-    """Values (k, n) of the columns ``keys`` in inner units and with their signs; ``rows`` (n,) are their places in the file.
+    """Values (k, n) of the columns ``keys`` in internal units and with their signs; ``rows`` (n,) are their row numbers.
 
     Raises InputError, naming column and row, for a number beyond `GREATEST`.
     """
     factor = np.array([[UNITS[key][getattr(columns, key).unit] * getattr(columns, key).sign] for key in keys])
     with np.errstate(over="ignore"):
-        found: Array = values * factor
-    if not (np.abs(found) <= GREATEST).all():
-        place, at = np.argwhere(~(np.abs(found) <= GREATEST))[0]
+        values_inside: Array = values * factor
+    if not (np.abs(values_inside) <= GREATEST).all():
+        place, at = np.argwhere(~(np.abs(values_inside) <= GREATEST))[0]
         column = getattr(columns, keys[place])
         raise InputError(
             f"{path}: row {rows[at]:.0f}: column {column.name}: {values[place, at]:.3g} {column.unit}: no instrument reads that; must "
             "be a measured number"
         )
-    return found
+    return values_inside
 
 
 def _check_alive(blocks: Blocks, names: dict[str, str]) -> None:
-    """Force and pressure are judged while the plate moves, the position where the force shows that it must have moved."""
-    said = f"dead: reads one and the same number from row {blocks.first_row[0]:.0f} on"
-    ask = "; was the right column named, the sensor connected?"
+    """Force and pressure are checked while the plate moves, the position where the force shows that it must have moved."""
+    problem = f"dead: reads one and the same number from row {blocks.first_row[0]:.0f} on"
+    question = "; was the right column named, the sensor connected?"
     moved = np.abs(np.diff(blocks.position, prepend=blocks.position[0]))
     if np.ptp(blocks.position) <= _EXACT * float(np.abs(blocks.position).max()):
         noise = float(np.median(blocks.force_spread))
         if blocks.size > 1 and np.ptp(blocks.force) > _PRESSED * noise:
-            raise InputError(f"{blocks.file}: column {names['position']}: {said} while the force changes{ask}")
+            raise InputError(f"{blocks.file}: column {names['position']}: {problem} while the force changes{question}")
         return
     # Across a gap the plate has moved far between two blocks; that is no motion that was recorded.
     steps = np.diff(blocks.time, prepend=blocks.time[0] - np.median(np.diff(blocks.time)))
     moved = np.where(steps <= 2 * np.median(steps), moved, 0.0)
     moving = moved > 0.1 * moved.max()
     for key, values, spread in (
-        ("force", blocks.force, blocks.force_spread), ("pressure", blocks.pressure, blocks.pressure_spread)
-    ):  # fmt: skip
+        ("force", blocks.force, blocks.force_spread),
+        ("pressure", blocks.pressure, blocks.pressure_spread),
+    ):
         close = _EXACT * float(np.abs(values).max())
         if spread[moving].max() <= close and np.ptp(values[moving]) <= close:
-            raise InputError(f"{blocks.file}: column {names[key]}: {said} whenever the plate moves{ask}")
+            raise InputError(f"{blocks.file}: column {names[key]}: {problem} whenever the plate moves{question}")
 
 
 def _clipped(
     blocks: Blocks, key: str, values: Array, extreme: Array, top: float, unit: float, name: str
-) -> list[SuspectInterval]:  # fmt: skip
+) -> list[SuspectInterval]:
     """Stretches at the end of an instrument's range, or at a flat top below it."""
     beyond = extreme / unit > BEYOND * top
     spikes = _short(blocks, beyond)
     if (beyond & ~spikes).any():
-        told = (
+        why = (
             f"{key} goes to {extreme.max() / unit:.4g} {name}, beyond the rig's range of {top:g}: is its unit right, or the "
             "rig's range?"
         )
-        return [SuspectInterval(float(blocks.time[0]), float(blocks.time[-1]), told, True)]
-    found = [
+        return [SuspectInterval(float(blocks.time[0]), float(blocks.time[-1]), why, True)]
+    warnings = [
         SuspectInterval(
             start, end, f"{key} clipped: at {CLIPPED:g} of the range of {top:g} {name} or beyond", False, "clipped"
         )
@@ -140,10 +143,10 @@ def _clipped(
     ]
     rest = np.where(spikes, 0.0, extreme)
     flat = _flat_top(blocks, values, getattr(blocks, f"{key}_spread"), rest)
-    if not found:
-        told = f"{key} clipped: a flat top at {rest.max() / unit:.4g} {name}"
-        found = [SuspectInterval(start, end, told, False, "clipped") for start, end in _stretches(blocks, flat)]
-    return [*found, *_spikes(blocks, key, extreme / unit, spikes, f"{name}, beyond the rig's range of {top:g}")]
+    if not warnings:
+        why = f"{key} clipped: a flat top at {rest.max() / unit:.4g} {name}"
+        warnings = [SuspectInterval(start, end, why, False, "clipped") for start, end in _stretches(blocks, flat)]
+    return [*warnings, *_spikes(blocks, key, extreme / unit, spikes, f"{name}, beyond the rig's range of {top:g}")]
 
 
 def _short(blocks: Blocks, beyond: Flags) -> Flags:
@@ -155,15 +158,18 @@ def _short(blocks: Blocks, beyond: Flags) -> Flags:
     return short
 
 
-def _spikes(blocks: Blocks, key: str, extreme: Array, spikes: Flags, told: str) -> list[SuspectInterval]:
+def _spikes(blocks: Blocks, key: str, extreme: Array, spikes: Flags, excess: str) -> list[SuspectInterval]:
     width = blocks.size / blocks.rate / 2
     return [
         SuspectInterval(
-            float(blocks.time[start]) - width, float(blocks.time[end - 1]) + width,
-            f"{key} spike: {extreme[start:end].max():.4g} {told}, for a moment: a fault of the line?", False, "spike",
+            float(blocks.time[start]) - width,
+            float(blocks.time[end - 1]) + width,
+            f"{key} spike: {extreme[start:end].max():.4g} {excess}, for a moment: a fault of the line?",
+            False,
+            "spike",
         )
         for start, end in _runs(spikes)
-    ]  # fmt: skip
+    ]
 
 
 def _flat_top(blocks: Blocks, values: Array, spread: Array, extreme: Array) -> Flags:
@@ -189,12 +195,12 @@ def _runs(mask: Flags) -> list[tuple[int, int]]:
 
 def _stretches(blocks: Blocks, mask: Flags) -> list[tuple[float, float]]:
     """Begin and end in s of the stretches in which ``mask`` holds; those less than `FLAT` apart are one."""
-    found: list[tuple[float, float]] = []
+    stretches: list[tuple[float, float]] = []
     width = blocks.size / blocks.rate
     for start, end in _runs(mask):
         begin, finish = float(blocks.time[start] - width / 2), float(blocks.time[end - 1] + width / 2)
-        if found and begin - found[-1][1] < FLAT:
-            found[-1] = (found[-1][0], finish)
+        if stretches and begin - stretches[-1][1] < FLAT:
+            stretches[-1] = (stretches[-1][0], finish)
         else:
-            found.append((begin, finish))
-    return found
+            stretches.append((begin, finish))
+    return stretches

@@ -1,4 +1,4 @@
-"""What a run is on its way from file to figures: blocks of samples, indentations, a curve."""
+"""A run between file and figures: blocks of samples, indentations, a curve."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ SuspectKind = Literal["gap", "clipped", "spike", "note", "other"]
 
 
 class SuspectInterval(NamedTuple):
-    """A stretch of a run that is not to be trusted, or not as it should be: seconds, and why. Never dropped silently.
+    """A time interval (s) of a run that may be wrong, and the reason.
 
-    ``used`` says whether it is used all the same, ``kind`` what it is: a gap, a channel at its end, a reading beyond what
-    the instrument has, a note of what is usual, or another.
+    ``used``: whether it is used nevertheless.  ``kind``: a gap, a channel at the end of its range, a reading beyond that,
+    a note of a usual defect, or another.
     """
 
     start: float
@@ -46,12 +46,12 @@ class Blocks:
     pressure_spread: Array
     force_extreme: Array
     pressure_extreme: Array
-    doubts: tuple[SuspectInterval, ...] = ()
+    warnings: tuple[SuspectInterval, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class MeasuredIndentation:
-    """One indentation as it was found. Times in s; mm, N, MPa.
+    """One indentation as read from a record. Times in s; mm, N, MPa.
 
     Attributes:
         contact: Time of first contact; of an indentation without, NaN.
@@ -80,10 +80,10 @@ class MeasuredIndentation:
 
 @dataclass(frozen=True, slots=True)
 class MeasuredCurve:
-    """What a run says: points in order of their depth, from first contact, (n,) mm, N, MPa; the first is the origin.
+    """The curve of a run: points in order of their depth, from first contact, (n,) mm, N, MPa; the first is the origin.
 
     Attributes:
-        run: What the campaign says of it.
+        run: Its entry in the campaign.
         indentation, force, rise: Loading points.
         driving: Pressure before contact as it was read, MPa, mean over the indentations.
         indents: The indentations behind the points.
@@ -92,7 +92,7 @@ class MeasuredCurve:
         noise: Standard deviations of a sample of force (N) and pressure (MPa) without contact, trend taken out; NaN where
             nothing was without contact.
         drift: Slope of the pressure before the first contact, MPa/s, and of the force, N/s.
-        doubts: Stretches not to be trusted.
+        warnings: Intervals that may be wrong.
     """
 
     run: CampaignRun
@@ -105,4 +105,4 @@ class MeasuredCurve:
     relaxation: tuple[Array, Array, Array] | None = None
     noise: tuple[float, float] = (float("nan"), float("nan"))
     drift: tuple[float, float] = (float("nan"), float("nan"))
-    doubts: tuple[SuspectInterval, ...] = field(default=())
+    warnings: tuple[SuspectInterval, ...] = field(default=())

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from pneutouch.bench.finding import MARK, CouponFindings, MeasuredFigure, ProfileChange, ReadingSource, rounded
+from pneutouch.bench.finding import MARK, CouponFindings, ReadingSource, rounded
 from pneutouch.bench.statistics import Mean, mean, neo_hookean, secant_modulus, shear_from_young
 from pneutouch.errors import InputError
 from pneutouch.spec.coupon import LEAST_READINGS, Dumbbell, DumbbellSpecimen, Puck
@@ -20,30 +20,30 @@ _SECANT = 0.1
 _LEAST_POINTS = 3
 
 _DENSITIES = (0.5, 3.0)
-"""g/cm3: outside these a reading slipped; cured resins and filaments have 0.9 to 1.4."""
+"""g/cm3: outside these a reading is wrong; cured resins and filaments have 0.9 to 1.4."""
 
 _FAR_SHORE = 25.0
-"""Points off the shipped hardness beyond which another resin may have been measured: our own choice. Makers state ranges of
+"""Points off the shipped hardness beyond which another resin may have been measured: our choice. Makers state ranges of
 3 to 5 points, and the seven elastomers of the paper lie about 10 apart."""
 
 _MODULI = (0.01, 20.0)
-"""MPa: outside these a reading slipped, our own choice; the shipped elastomers have 0.17 to 5.33."""
+"""MPa: outside these a reading is wrong, our choice; the shipped elastomers have 0.17 to 5.33."""
 
 _FAR_MODULUS = 5.0
-"""Times the shipped shear modulus, or its part, beyond which it is told: our own choice; published estimates of one resin
+"""Factor from the shipped shear modulus beyond which a note is given: our choice; published estimates of one resin
 differ by a factor of 3 (TangoPlus.toml)."""
 
 
-def puck(name: str, material: Material, measured: Puck, said: ReadingSource, found: CouponFindings) -> None:
+def puck(name: str, material: Material, measured: Puck, source: ReadingSource, results: CouponFindings) -> None:
     """Hardness and density. Raises InputError for a density that no resin has."""
     for key, scale in (("shore_a", "Shore A"), ("shore_d", "Shore D")):
         readings = getattr(measured, key)
         if readings:
             how = f"{scale} of pucks 20 mm x 3 mm, standard deviation over the readings"
-            _add(found, said, name, key, mean(readings), how, f"{scale} hardness")
-            _compare_hardness(name, key, readings, getattr(material, key), found)
+            _add(results, source, name, key, mean(readings), how, f"{scale} hardness")
+            _compare_hardness(name, key, readings, getattr(material, key), results)
     if measured.shore_a:
-        _one_year(name, material, mean(measured.shore_a).value, found)
+        _one_year(name, material, mean(measured.shore_a).value, results)
     if not measured.mass_g:
         return
     mass, diameter, thickness = (np.array(v) for v in (measured.mass_g, measured.diameter_mm, measured.thickness_mm))
@@ -51,48 +51,50 @@ def puck(name: str, material: Material, measured: Puck, said: ReadingSource, fou
     for place, density in enumerate(densities, start=1):
         if not _DENSITIES[0] <= density <= _DENSITIES[1]:
             raise InputError(
-                f"{said.where}: puck.{name}: puck {place}: mass_g = {mass[place - 1]:g}, diameter_mm = {diameter[place - 1]:g} and "
+                f"{source.where}: puck.{name}: puck {place}: mass_g = {mass[place - 1]:g}, diameter_mm = {diameter[place - 1]:g} and "
                 f"thickness_mm = {thickness[place - 1]:g} make {density:.3g} g/cm3; must be from {_DENSITIES[0]:g} to {_DENSITIES[1]:g}"
             )
     how = "mass over measured volume of pucks"
-    _add(found, said, name, "density_g_per_cm3", mean(densities.tolist()), how, "density, g/cm3")
+    _add(results, source, name, "density_g_per_cm3", mean(densities.tolist()), how, "density, g/cm3")
 
 
 def _compare_hardness(
-    name: str, key: str, readings: list[float], shipped: Quantity | None, found: CouponFindings
+    name: str, key: str, readings: list[float], shipped: Quantity | None, results: CouponFindings
 ) -> None:
     if shipped is None:
         return
     farthest = max(readings, key=lambda reading: abs(reading - shipped.nominal))
     if (off := abs(farthest - shipped.nominal)) > _FAR_SHORE:
-        found.notes.append(
+        results.notes.append(
             f"{name}: {key} = {farthest:g} is {off:.3g} points off the shipped {shipped.nominal:g}; "
             "was another resin measured, or on the other scale?"
         )
 
 
-def _one_year(name: str, material: Material, fresh: float, found: CouponFindings) -> None:
-    """Keep the published change in a year: beside another fresh hardness the old value would mean another ageing."""
+def _one_year(name: str, material: Material, fresh: float, results: CouponFindings) -> None:
+    """Keep the published change in a year: with another fresh hardness the old value would mean another ageing."""
     before, aged = material.shore_a, material.shore_a_one_year
     if before is None or aged is None:
         return
     change = aged.nominal - before.nominal
-    content = {
-        **aged.model_dump(exclude_none=True, exclude={"low", "high"}), "value": rounded(fresh + change),
-        "source": f"hardness {MARK} and a change of {change:+.3g} in a year: {aged.source}",
-    }  # fmt: skip
-    found.changes.append(ProfileChange("materials", name, ("shore_a_one_year",), content))
+    kept = aged.model_dump(exclude_none=True, exclude={"low", "high"})
+    text = f"hardness {MARK} and a change of {change:+.3g} in a year: {aged.source}"
+    results.change(
+        "materials", name, ("shore_a_one_year",), **{**kept, "value": rounded(fresh + change), "source": text}
+    )
 
 
-def _add(found: CouponFindings, said: ReadingSource, name: str, key: str, value: Mean, how: str, title: str) -> None:
-    content = {"value": rounded(value.value), "spread": rounded(value.spread), "source": said.source(how, value.count)}
-    found.changes.append(ProfileChange("materials", name, (key,), content))
-    found.figures.append(MeasuredFigure(name, title, value.value, value.spread, value.count))
+def _add(
+    results: CouponFindings, source: ReadingSource, name: str, key: str, value: Mean, how: str, title: str
+) -> None:
+    text, spread = source.source(how, value.count), rounded(value.spread)
+    results.change("materials", name, (key,), value=rounded(value.value), spread=spread, source=text)
+    results.figure(name, title, value.value, value.spread, value.count)
 
 
 @dataclass(frozen=True, slots=True)
 class DumbbellModuli:
-    """What dumbbells gave: moduli over the specimens, the spread that counts, and how, for a source."""
+    """Results of dumbbells: moduli of the specimens, their standard deviation, and the method as stated in a source."""
 
     over: Mean
     moduli: tuple[float, ...]
@@ -111,9 +113,8 @@ def pulled(measured: Dumbbell, where: str) -> DumbbellModuli | None:
     if not curves:
         return None
     if len(curves) < LEAST_READINGS:
-        raise InputError(
-            f"{where}: {len(curves)} specimen with a curve; at least {LEAST_READINGS}, so that a spread can be told"
-        )
+        problem = f"{where}: {len(curves)} specimen with a curve"
+        raise InputError(problem, remedy=f"at least {LEAST_READINGS}, for a standard deviation")
     most = measured.largest_strain
     fits = [_fit(specimen, most, f"{where}.specimen[{k}]") for k, specimen in enumerate(curves, start=1)]
     moduli, errors = tuple(fit[0] for fit in fits), tuple(fit[1] for fit in fits)
@@ -124,9 +125,9 @@ def pulled(measured: Dumbbell, where: str) -> DumbbellModuli | None:
     return DumbbellModuli(over, moduli, spread, errors, secants, how)
 
 
-def dumbbell(name: str, material: Material, measured: Dumbbell, said: ReadingSource, found: CouponFindings) -> None:
+def dumbbell(name: str, material: Material, measured: Dumbbell, source: ReadingSource, results: CouponFindings) -> None:
     """Shear modulus by the neo-Hookean fit. Raises InputError for too few specimens or points, and for a rigid material."""
-    where = f"{said.where}: dumbbell.{name}"
+    where = f"{source.where}: dumbbell.{name}"
     if material.kind != "elastomer" and any(specimen.force_N for specimen in measured.specimen):
         raise InputError(f"{where}: {material.label} is rigid; die C is for an elastomer")
     fit = pulled(measured, where)
@@ -140,29 +141,25 @@ def dumbbell(name: str, material: Material, measured: Dumbbell, said: ReadingSou
         f"dumbbells {fit.how}; low and high: least and greatest dumbbell; standard error of the mean {over.error:.2g} MPa, of "
         f"the fits {max(fit.errors):.2g} MPa at most{compared}"
     )
-    content = {
-        "value": rounded(over.value), "low": rounded(min(fit.moduli)), "high": rounded(max(fit.moduli)),
-        "spread": rounded(fit.spread), "source": said.source(how, over.count),
-    }  # fmt: skip
-    found.changes.append(ProfileChange("materials", name, ("shear_modulus_MPa",), content))
-    found.figures.append(MeasuredFigure(name, "shear modulus, MPa (neo-Hookean)", over.value, fit.spread, over.count))
+    value, low, high, spread = (rounded(x) for x in (over.value, min(fit.moduli), max(fit.moduli), fit.spread))
+    text, keys = source.source(how, over.count), ("shear_modulus_MPa",)
+    results.change("materials", name, keys, value=value, low=low, high=high, spread=spread, source=text)
+    results.figure(name, "shear modulus, MPa (neo-Hookean)", over.value, fit.spread, over.count)
     if secants:
-        found.figures.append(
-            MeasuredFigure(name, "shear modulus, MPa (secant E at 10 %)", float(np.mean(secants)), None, len(secants))
-        )
-    _compare_modulus(name, over.value, material.shear_modulus_MPa, found)
+        results.figure(name, "shear modulus, MPa (secant E at 10 %)", float(np.mean(secants)), None, len(secants))
+    _compare_modulus(name, over.value, material.shear_modulus_MPa, results)
     if material.law is not None:
-        found.notes.append(
-            f"{name} has a law of its own ({material.law.name}), which predictions use; the shear modulus does not change it"
+        results.notes.append(
+            f"{name} has a hyperelastic law ({material.law.name}), which predictions use; the shear modulus does not change it"
         )
 
 
-def _compare_modulus(name: str, modulus: float, shipped: Quantity | None, found: CouponFindings) -> None:
+def _compare_modulus(name: str, modulus: float, shipped: Quantity | None, results: CouponFindings) -> None:
     if shipped is None:
         return
     times = modulus / shipped.nominal
     if not 1 / _FAR_MODULUS <= times <= _FAR_MODULUS:
-        found.notes.append(
+        results.notes.append(
             f"{name}: shear_modulus_MPa = {modulus:.3g} is {times:.2g} times the shipped {shipped.nominal:g}; "
             "was another resin measured, or in other units than N and mm?"
         )
@@ -176,7 +173,7 @@ def _check_rising(specimen: DumbbellSpecimen, where: str) -> None:
         if higher < lower or (k == len(pairs) and higher == lower):
             raise InputError(
                 f"{where}.force_N: {lower:g} N at extension_mm = {before:g}, {higher:g} N at {after:g}; it must rise with "
-                "extension_mm; give the points of the way up, none after a break"
+                "extension_mm; give the points of the loading, none after a break"
             )
 
 

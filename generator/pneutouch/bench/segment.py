@@ -15,7 +15,7 @@ NOISE = 5.0
 
 TURN = 0.05
 """Share of the whole travel by which the plate must turn back to begin another indentation. The smallest of the paper's
-(0.5 mm of 6.9 mm, and the way through the clearance) is three times as long."""
+(0.5 mm of 6.9 mm, and the clearance) is three times as long."""
 
 NEAR, STAY = 0.02, 0.005
 """Shares of an indentation's travel: within the first of its end an actuator may overshoot and settle; within the second it stays."""
@@ -34,10 +34,10 @@ _MOVES = 0.2
 
 
 class Excursion(NamedTuple):
-    """One way in and out, as block numbers, ends exclusive.
+    """One loading and unloading, as block numbers, ends exclusive.
 
     ``clear`` is the stretch before it with the plate at its clear end, ``hold`` the stay at its deep end, ``out`` where
-    the way out ends (the next clear stretch, or the record).
+    the unloading ends (the next clear stretch, or the record).
     """
 
     clear: tuple[int, int]
@@ -46,10 +46,10 @@ class Excursion(NamedTuple):
 
 
 def excursions(blocks: Blocks) -> tuple[list[Excursion], bool]:
-    """All ways in and out, and whether the record begins with the plate in (that one is left out).
+    """All loadings and unloadings, and whether the record begins with the plate in (that one is left out).
 
     No speed and no length is presumed: all limits are shares of the travel or multiples of the position's noise, so that
-    a run in a wrong unit is still cut rightly, and its magnitude tells. Missed samples do not matter, as no differences
+    a run in a wrong unit is still segmented correctly, and its magnitude reveals the unit. Missed samples do not matter, as no differences
     of neighbours are taken. Raises InputError where the plate does not move, or moves out of the sensor when it presses.
     """
     place = _smooth(blocks.position)
@@ -63,7 +63,7 @@ def excursions(blocks: Blocks) -> tuple[list[Excursion], bool]:
     turns = _turns(place, max(2 * NOISE * noise, TURN * span))
     tops = [at for at, high in turns if high]
     lows = [at for at, high in turns if not high]
-    found: list[Excursion] = []
+    excursions_: list[Excursion] = []
     previous = 0
     for top in tops:
         before = [low for low in lows if low < top]
@@ -71,15 +71,15 @@ def excursions(blocks: Blocks) -> tuple[list[Excursion], bool]:
         if not before:
             previous = after
             continue
-        start = max(previous, found[-1].hold[1] if found else 0)
+        start = max(previous, excursions_[-1].hold[1] if excursions_ else 0)
         hold = _stay(place[before[-1] : after + 1], place[before[-1]], noise)
         hold = (hold[0] + before[-1], hold[1] + before[-1])
         clear = _clear(place[start : hold[0]], float(place[before[-1]]), float(place[top]), noise)
-        found.append(Excursion((clear[0] + start, clear[1] + start), hold, place.size))
+        excursions_.append(Excursion((clear[0] + start, clear[1] + start), hold, place.size))
         previous = after
-    ends = [*(one.clear[0] for one in found[1:]), place.size]
-    found = [one._replace(out=end) for one, end in zip(found, ends, strict=True)]
-    return found, bool(tops) and (not lows or tops[0] < lows[0])
+    ends = [*(one.clear[0] for one in excursions_[1:]), place.size]
+    excursions_ = [one._replace(out=end) for one, end in zip(excursions_, ends, strict=True)]
+    return excursions_, bool(tops) and (not lows or tops[0] < lows[0])
 
 
 def position_noise(position: Array) -> float:
@@ -107,8 +107,8 @@ def _check_direction(blocks: Blocks, place: Array, span: float) -> None:
         return
     if low.std() > _ACTIVE * high.std() and np.ptp(low) > TURN * np.ptp(blocks.force):
         raise InputError(
-            f"{blocks.file}: the force changes where position is low ({place.min():.4g} mm) and rests where it is high "
-            f"({place.max():.4g} mm); position must count into the sensor: set columns.position.sign the other way"
+            f"{blocks.file}: the force changes where position is low ({place.min():.4g} mm) and is constant where it is high "
+            f"({place.max():.4g} mm); position must count into the sensor: invert columns.position.sign"
         )
 
 
@@ -135,7 +135,7 @@ def _turns(place: Array, least: float) -> list[tuple[int, bool]]:
 
 
 def _stay(place: Array, low: float, noise: float) -> tuple[int, int]:
-    """Where the plate stays at the deep end of a way in and out."""
+    """Where the plate stays at the deep end of an excursion."""
     top = float(place.max())
     level = float(np.median(place[place >= top - max(NEAR * (top - low), NOISE * noise)]))
     at = np.flatnonzero(np.abs(place - level) <= max(STAY * (top - low), NOISE * noise))

@@ -1,4 +1,4 @@
-"""What readings say: mean, standard deviation, and the fits and formulas of the coupons."""
+"""Statistics of readings: mean, standard deviation, and the fits and formulas of the coupons."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ def mean(values: Sequence[float]) -> Mean:
     """Mean of at least two values. Raises ValueError for fewer."""
     if len(values) < 2:
         raise ValueError("a spread needs at least two values")
-    found = np.asarray(values, float)
-    return Mean(float(found.mean()), float(found.std(ddof=1)), len(values))
+    readings = np.asarray(values, float)
+    return Mean(float(readings.mean()), float(readings.std(ddof=1)), len(values))
 
 
 def neo_hookean(stretch: Array, stress: Array) -> tuple[float, float]:

@@ -22,8 +22,10 @@ _APART = 3.0, 0.05
 """Ages further apart than so many days, or this share of the younger, are two: a campaign lasts some days."""
 
 _POOL: dict[Pooled, Callable[[Sequence[Array]], Estimate]] = {
-    "mean": mean_of, "within": spread_within, "between": spread_between,
-}  # fmt: skip
+    "mean": mean_of,
+    "within": spread_within,
+    "between": spread_between,
+}
 
 
 @dataclass(frozen=True, order=True, slots=True)
@@ -86,7 +88,7 @@ def _ages(days: set[float]) -> dict[float, float]:
 
 def _group(key: GroupKey, curves: list[MeasuredCurve]) -> RunGroup:
     each = tuple(run_figures(curve) for curve in curves)
-    found: dict[str, Estimate] = {}
+    pooled: dict[str, Estimate] = {}
     for figure in FIGURES:
         by_sensor: dict[str, list[float]] = {}
         for curve, values in zip(curves, each, strict=True):
@@ -95,5 +97,5 @@ def _group(key: GroupKey, curves: list[MeasuredCurve]) -> RunGroup:
         if by_sensor:
             estimate = _POOL[figure.pooled]([np.array(by_sensor[name]) for name in sorted(by_sensor)])
             if np.isfinite(estimate.value):
-                found[figure.key] = widened(estimate, figure.reading)
-    return RunGroup(key, tuple(curves), found, each)
+                pooled[figure.key] = widened(estimate, figure.reading)
+    return RunGroup(key, tuple(curves), pooled, each)

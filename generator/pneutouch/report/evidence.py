@@ -51,7 +51,7 @@ def _mark(ax: Axes, curve: MeasuredCurve) -> None:
 
 def _told(curve: MeasuredCurve) -> list[SuspectInterval]:
     """What is marked: a note is of all the run, and would hide it."""
-    return [doubt for doubt in curve.doubts if doubt.kind != "note"]
+    return [doubt for doubt in curve.warnings if doubt.kind != "note"]
 
 
 def _key(ax: Axes, curve: MeasuredCurve) -> None:

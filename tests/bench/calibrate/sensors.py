@@ -41,17 +41,18 @@ def disturbed(at, force, rise, pressure, number, rng, gain=GAIN) -> MeasuredCurv
 
 def curves(truth: Sensor, pressures, runs: int, rng, gain=GAIN, offset=0.0) -> tuple[MeasuredCurve, ...]:
     """Runs of the atlas's sensor at pressures in kPa; ``offset`` is travel that was not seen."""
-    found = respond(batch_of(truth, [p * KPA for p in pressures]), truth.protocol.steps)
+    result = respond(batch_of(truth, [p * KPA for p in pressures]), truth.protocol.steps)
     return tuple(
-        disturbed(np.maximum(found.indentation[i] - offset, 0.0), found.force[i], found.rise[i], p, n + 1, rng, gain)
-        for i, p in enumerate(pressures) for n in range(runs)
-    )  # fmt: skip
+        disturbed(np.maximum(result.indentation[i] - offset, 0.0), result.force[i], result.rise[i], p, n + 1, rng, gain)
+        for i, p in enumerate(pressures)
+        for n in range(runs)
+    )
 
 
 def exact(truth: Sensor, pressures) -> tuple[MeasuredCurve, ...]:
-    found = respond(batch_of(truth, [p * KPA for p in pressures]), truth.protocol.steps)
+    result = respond(batch_of(truth, [p * KPA for p in pressures]), truth.protocol.steps)
     return tuple(
-        MeasuredCurve(run(p), found.indentation[i], found.force[i], found.rise[i], p * KPA)
+        MeasuredCurve(run(p), result.indentation[i], result.force[i], result.rise[i], p * KPA)
         for i, p in enumerate(pressures)
     )
 
@@ -60,15 +61,22 @@ def injections(truth: Sensor, volumes, runs: int, rng, gain=0.002, noise=0.03 * 
     """Air pushed into the atlas's sensor."""
     slices = shipped().slices(np.array([truth.dome.wall_thickness / truth.dome.inner_radius]), ())
     size, mu = truth.dome.inner_radius**3, truth.wall.shear_modulus
-    found, ok = injected(
-        slices, np.zeros(1, dtype=np.intp), np.array([truth.gas.ambient_pressure / mu]), np.array([truth.gas.dead_volume / size]),
+    result, ok = injected(
+        slices,
+        np.zeros(1, dtype=np.intp),
+        np.array([truth.gas.ambient_pressure / mu]),
+        np.array([truth.gas.dead_volume / size]),
         volumes / size,
-    )  # fmt: skip
+    )
     assert ok.all()
     return tuple(
-        Injection(f"injection {n}", volumes, found[0] * mu * (1 + gain * rng.normal()) + noise * rng.normal(size=volumes.size))
+        Injection(
+            f"injection {n}",
+            volumes,
+            result[0] * mu * (1 + gain * rng.normal()) + noise * rng.normal(size=volumes.size),
+        )
         for n in range(runs)
-    )  # fmt: skip
+    )
 
 
 def observed(*parts) -> Observations:

@@ -39,7 +39,7 @@ def designed(library, resin: str) -> Sensor:
 
 def trial(
     nominal: Sensor, pressures: Sequence[float], runs: int, rng: np.random.Generator, model: str = "atlas"
-) -> Trial:  # fmt: skip
+) -> Trial:
     """A specimen drawn around ``nominal`` and its runs at driving pressures in kPa."""
     specimen = SimulatedSpecimens.draw(TRUTH.scatter, 1, rng).sensor(nominal, 0)
     pressed = press_curves(specimen, [p * KPA for p in pressures], 0.75 * nominal.dome.inner_radius, model)
@@ -50,9 +50,9 @@ def trial(
 
 def _runs(curves, pressures, runs: int, nominal: Sensor, rng: np.random.Generator) -> Iterator[MeasuredCurve]:
     for pressure, curve in zip(pressures, curves, strict=True):
-        way = TRUTH.protocol("steps", nominal.dome.inner_radius, curve.reach)
+        steps = TRUTH.protocol("steps", nominal.dome.inner_radius, curve.reach)
         for number in range(1, runs + 1):
-            record = simulate_run(curve, way, TRUTH.rig, RATE, rng, wall=TRUTH.wall, scatter=TRUTH.scatter)
+            record = simulate_run(curve, steps, TRUTH.rig, RATE, rng, wall=TRUTH.wall, scatter=TRUTH.scatter)
             run = CampaignRun(
                 file=f"{pressure:g}-{number}", sensor="A", resin="TangoPlus", driving_pressure_kPa=pressure, run=number
             )
@@ -63,9 +63,9 @@ def held(
     one: Trial, nominal: Sensor, parameters: CalibrationParameters
 ) -> tuple[CalibrationFit, list[bool], list[float]]:
     """The fit to a trial, whether the intervals of modulus and dead volume hold the truth, and their half widths."""
-    found = fit(one.seen, nominal, parameters)
+    result = fit(one.seen, nominal, parameters)
     true = {MODULUS: float(np.log(one.truth.wall.shear_modulus)), DEAD: one.truth.gas.dead_volume}
     places = [parameters.fitted.index(k) for k in true]
-    off = [abs(float(found.solution.at[place]) - value) for place, value in zip(places, true.values(), strict=True)]
-    half = [float(found.half_width[place]) for place in places]
-    return found, [o <= h for o, h in zip(off, half, strict=True)], half
+    off = [abs(float(result.solution.at[place]) - value) for place, value in zip(places, true.values(), strict=True)]
+    half = [float(result.half_width[place]) for place in places]
+    return result, [o <= h for o, h in zip(off, half, strict=True)], half

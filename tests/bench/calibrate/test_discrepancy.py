@@ -41,9 +41,9 @@ def test_intervals_hold_the_truth_of_simulated_sensors(library):
 
 @pytest.mark.slow
 def test_intervals_hold_the_truth_of_200_simulated_sensors(library):
-    found = shares(library, ("TangoPlus", "FLX9960"), 100, PLANS)
-    assert np.all(found >= 0.90)
-    assert np.all(found <= 0.995)
+    result = shares(library, ("TangoPlus", "FLX9960"), 100, PLANS)
+    assert np.all(result >= 0.90)
+    assert np.all(result <= 0.995)
 
 
 @pytest.mark.slow
@@ -65,10 +65,10 @@ def test_a_misfit_at_one_pressure_is_sized_by_the_residuals(library, share):
         for c in clean
     )
     known = chosen(library, "modulus", "dead-volume")
-    calm, found = fit(Observations(clean), DESIGNED, known), fit(Observations(waved), DESIGNED, known)
+    calm, result = fit(Observations(clean), DESIGNED, known), fit(Observations(waved), DESIGNED, known)
     assert calm.sizes == pytest.approx(FLOOR)
-    assert 0.4 * share < found.sizes[0] < 2.5 * share
-    assert abs(found.full[0] - np.log(0.2)) < found.half_width[0]
+    assert 0.4 * share < result.sizes[0] < 2.5 * share
+    assert abs(result.full[0] - np.log(0.2)) < result.half_width[0]
 
 
 def test_a_wall_that_is_not_fitted_counts_with_priors_alone(library):
@@ -76,14 +76,14 @@ def test_a_wall_that_is_not_fitted_counts_with_priors_alone(library):
     truth = other(shear_modulus=0.2, wall_thickness=1.58)
     seen = Observations(curves(truth, (0.0, 12.0, 22.0), 3, np.random.default_rng(3), 0.002))
     names = ("modulus", "dead-volume")
-    told, bare = (fit(seen, DESIGNED, chosen(library, *names, priors=priors)) for priors in (True, False))
-    off = abs(told.solution.at[0] - np.log(0.2))
-    assert bare.half_width[0] < off < told.half_width[0]
+    informed, bare = (fit(seen, DESIGNED, chosen(library, *names, priors=priors)) for priors in (True, False))
+    off = abs(informed.solution.at[0] - np.log(0.2))
+    assert bare.half_width[0] < off < informed.half_width[0]
     assert not bare.covariance.considered.any()
-    moved = told.covariance.considered[0, WALL] / told.parameters.belief[WALL]
+    moved = informed.covariance.considered[0, WALL] / informed.parameters.prior_spread[WALL]
     thick = fit(seen, other(wall_thickness=1.58), chosen(library, *names, sensor=other(wall_thickness=1.58)))
-    said = moved * np.log(1.5 / 1.58)
-    assert thick.solution.at[0] - told.solution.at[0] == pytest.approx(-said, rel=0.25)
+    expected = moved * np.log(1.5 / 1.58)
+    assert thick.solution.at[0] - informed.solution.at[0] == pytest.approx(-expected, rel=0.25)
 
 
 @pytest.mark.parametrize(("deviation", "bound"), [(1.0, 1e-9), (1.0, 0.5), (1.0, 1.0), (0.3, 1.0), (1e-9, 1.0)])

@@ -1,4 +1,4 @@
-"""Known parameters come back, with intervals that hold them as often as they say."""
+"""Known parameters are recovered, with intervals of the stated coverage."""
 
 from __future__ import annotations
 
@@ -25,58 +25,56 @@ def coordinates(truth, offset=0.0):
 
 def test_clean_curves_give_all_four_parameters_back(library):
     truth = other(**TRUTH)
-    found = fit(Observations(exact(truth, (0.0, 12.0, 22.0))), DESIGNED, chosen(library, *NAMES, priors=False))
-    assert found.full == pytest.approx(coordinates(truth), rel=1e-4, abs=1e-3)
-    assert found.chi_squared / found.freedom < 1e-4
+    result = fit(Observations(exact(truth, (0.0, 12.0, 22.0))), DESIGNED, chosen(library, *NAMES, priors=False))
+    assert result.full == pytest.approx(coordinates(truth), rel=1e-4, abs=1e-3)
+    assert result.chi_squared / result.freedom < 1e-4
 
 
 def test_clean_injections_and_curves_agree(library):
     truth = other(**TRUTH)
     pushed = injections(truth, np.linspace(100, 1500, 12), 3, np.random.default_rng(0), 0.0, 0.0)
-    found = fit(
-        Observations(exact(truth, (0.0, 22.0)), pushed), DESIGNED, chosen(library, *NAMES, priors=False)
-    )  # fmt: skip
-    assert found.full == pytest.approx(coordinates(truth), rel=1e-4, abs=1e-3)
+    result = fit(Observations(exact(truth, (0.0, 22.0)), pushed), DESIGNED, chosen(library, *NAMES, priors=False))
+    assert result.full == pytest.approx(coordinates(truth), rel=1e-4, abs=1e-3)
 
 
 def test_a_missed_first_touch_is_found(library):
     truth = other(shear_modulus=0.2, depth=6.0)
     seen = curves(truth, (0.0, 12.0, 22.0), 2, np.random.default_rng(2), 0.002, offset=0.15)
-    found = fit(Observations(seen), DESIGNED, chosen(library, "modulus", "offset", priors=False))
-    assert found.full[OFFSET] == pytest.approx(0.15, abs=found.half_width[1])
-    assert found.full[MODULUS] == pytest.approx(np.log(0.2), abs=found.half_width[0])
-    assert found.half_width[1] < 0.03
+    result = fit(Observations(seen), DESIGNED, chosen(library, "modulus", "offset", priors=False))
+    assert result.full[OFFSET] == pytest.approx(0.15, abs=result.half_width[1])
+    assert result.full[MODULUS] == pytest.approx(np.log(0.2), abs=result.half_width[0])
+    assert result.half_width[1] < 0.03
 
 
 def test_derivatives_are_those_of_the_model(library):
-    """Each parameter moves the curves the way its derivative says: a step of ten times the difference's."""
-    found = fit(Observations(exact(DESIGNED, (0.0, 22.0))), DESIGNED, chosen(library, *NAMES, priors=False))
-    step = 10 * found.parameters.step
+    """Each parameter moves the curves as its derivative predicts: a step of ten times the difference's."""
+    result = fit(Observations(exact(DESIGNED, (0.0, 22.0))), DESIGNED, chosen(library, *NAMES, priors=False))
+    step = 10 * result.parameters.step
     for k in (MODULUS, WALL, DEAD, OFFSET):
-        moved = found.full + step * np.eye(4)[k]
-        change = (found.problem.model.values(moved[None])[0][0] - found.solution.model) / found.problem.errors
-        said = found.solution.jacobian[:, k] * step[k]
-        assert np.linalg.norm(change - said) < 0.05 * np.linalg.norm(change), NAMES[k]
+        moved = result.full + step * np.eye(4)[k]
+        change = (result.problem.model.values(moved[None])[0][0] - result.solution.model) / result.problem.errors
+        expected = result.solution.jacobian[:, k] * step[k]
+        assert np.linalg.norm(change - expected) < 0.05 * np.linalg.norm(change), NAMES[k]
 
 
 def cover(library, trials, runs, pressures, priors, floor=FLOOR):
-    """Share of the trials whose intervals of modulus and dead volume hold the truth, the truth drawn anew each time."""
+    """Share of the trials whose intervals of modulus and dead volume hold the truth, the truth drawn again each time."""
     rng = np.random.default_rng(11)
     parameters = chosen(library, "modulus", "dead-volume", priors=priors)
     hits = np.zeros(2)
     for _ in range(trials):
-        dead = DESIGNED.gas.dead_volume + parameters.belief[DEAD] * rng.normal()
-        # What is believed of wall and contact counts with priors, and so it is drawn.
-        wall = np.sqrt(3.0) * parameters.belief[WALL] * rng.uniform(-1, 1) if priors else 0.0
-        offset = abs(parameters.belief[OFFSET] * rng.normal()) if priors else 0.0
+        dead = DESIGNED.gas.dead_volume + parameters.prior_spread[DEAD] * rng.normal()
+        # Wall and contact have priors, and so they are drawn.
+        wall = np.sqrt(3.0) * parameters.prior_spread[WALL] * rng.uniform(-1, 1) if priors else 0.0
+        offset = abs(parameters.prior_spread[OFFSET] * rng.normal()) if priors else 0.0
         modulus = 0.2 * np.exp(0.2 * rng.normal())
         truth = other(
             shear_modulus=modulus, dead_volume=dead, wall_thickness=DESIGNED.dome.wall_thickness * np.exp(wall)
         )
         seen = Observations(curves(truth, pressures, runs, rng, offset=offset))
-        found = fit(seen, DESIGNED, parameters, floor)
+        result = fit(seen, DESIGNED, parameters, floor)
         at = coordinates(truth)[[MODULUS, DEAD]]
-        hits += np.abs(found.solution.at - at) <= found.half_width
+        hits += np.abs(result.solution.at - at) <= result.half_width
     return hits / trials
 
 
@@ -87,17 +85,23 @@ def test_intervals_hold_the_truth(library):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("runs", "pressures", "priors"), [
-    (2, (0.0, 12.0, 22.0), True), (2, (0.0, 12.0, 22.0), False), (3, (0.0, 12.0, 22.0), False), (2, (0.0, 22.0), False),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("runs", "pressures", "priors"),
+    [
+        (2, (0.0, 12.0, 22.0), True),
+        (2, (0.0, 12.0, 22.0), False),
+        (3, (0.0, 12.0, 22.0), False),
+        (2, (0.0, 22.0), False),
+    ],
+)
 def test_intervals_hold_the_truth_in_200_trials(library, runs, pressures, priors):
-    """The atlas's own sensors: nothing is left out, and none is said to be."""
+    """Sensors of the atlas itself: nothing is left out, and the discrepancy is at its floor."""
     share = cover(library, 200, runs, pressures, priors, np.zeros(3))
     assert np.all(share >= 0.90)
     assert np.all(share <= 0.995)
 
 
-def test_intervals_know_that_runs_differ(library):
+def test_intervals_include_the_scatter_between_runs(library):
     """Gains that differ between runs widen the interval; points alone, however many, would not show it."""
     truth, rng = other(shear_modulus=0.2), np.random.default_rng(5)
     pressures, parameters = (0.0, 12.0, 22.0), chosen(library, "modulus", "dead-volume", priors=False)
@@ -115,23 +119,23 @@ def test_an_estimate_on_its_bound_has_no_interval(library):
     few = curves(truth, (0.0, 12.0, 22.0), 2, np.random.default_rng(3))
     # Pressures that read 3 % high are what a cavity smaller than none would give.
     seen = tuple(type(c)(c.run, c.indentation, c.force, 1.03 * c.rise, c.driving) for c in few)
-    found = fit(Observations(seen), DESIGNED, chosen(library, "modulus", "dead-volume", priors=False))
-    assert found.full[DEAD] == 0.0
-    assert found.solution.bound.tolist() == [False, True]
-    assert np.isnan(found.half_width[1])
-    assert 0 < found.half_width[0] < 0.1
+    result = fit(Observations(seen), DESIGNED, chosen(library, "modulus", "dead-volume", priors=False))
+    assert result.full[DEAD] == 0.0
+    assert result.solution.bound.tolist() == [False, True]
+    assert np.isnan(result.half_width[1])
+    assert 0 < result.half_width[0] < 0.1
 
 
 def test_fewer_than_three_runs_give_an_interval_of_points(library):
-    found = fit(
+    result = fit(
         Observations(curves(DESIGNED, (22.0,), 2, np.random.default_rng(1))), DESIGNED, chosen(library, "modulus")
     )
-    assert not found.covariance.clustered
-    assert np.isfinite(found.half_width).all()
+    assert not result.covariance.clustered
+    assert np.isfinite(result.half_width).all()
 
 
 def test_priors_pull_only_as_far_as_the_data_are_poor(library):
-    """One shallow point leaves the belief; six curves overrule it."""
+    """One shallow point leaves the prior; six curves overrule it."""
     truth, rng = other(shear_modulus=0.3), np.random.default_rng(8)
     many = fit(Observations(curves(truth, (0.0, 12.0, 22.0), 2, rng)), DESIGNED, chosen(library, "modulus"))
     assert np.exp(many.full[MODULUS]) == pytest.approx(0.3, rel=0.03)
@@ -141,20 +145,20 @@ def test_priors_pull_only_as_far_as_the_data_are_poor(library):
         chosen(library, "wall", "offset"),
     )
     assert wall.full[OFFSET] == 0.0
-    assert wall.half_width[1] == pytest.approx(1.96 * wall.parameters.belief[OFFSET], rel=1e-3)
+    assert wall.half_width[1] == pytest.approx(1.96 * wall.parameters.prior_spread[OFFSET], rel=1e-3)
 
 
-def test_gauges_that_read_too_much_move_the_estimates_as_told(library):
+def test_gauges_that_read_too_much_move_the_estimates_as_stated(library):
     truth, parameters = other(shear_modulus=0.2), chosen(library, "modulus", "dead-volume", priors=False)
     clean = exact(truth, (0.0, 12.0, 22.0))
-    found = fit(Observations(clean), DESIGNED, parameters)
-    force, pressure = gain_shifts(found)
+    result = fit(Observations(clean), DESIGNED, parameters)
+    force, pressure = gain_shifts(result)
     strong = tuple(type(c)(c.run, c.indentation, 1.01 * c.force, c.rise, c.driving) for c in clean)
     high = tuple(type(c)(c.run, c.indentation, c.force, 1.01 * c.rise, 1.01 * c.driving) for c in clean)
-    for seen, said in ((strong, force), (high, pressure)):
-        moved = fit(Observations(seen), DESIGNED, parameters).solution.at - found.solution.at
+    for seen, expected in ((strong, force), (high, pressure)):
+        moved = fit(Observations(seen), DESIGNED, parameters).solution.at - result.solution.at
         # The weights follow the residuals, so that they differ a little between the two fits.
-        assert moved == pytest.approx(said, rel=0.35, abs=0.3 * found.half_width.max() * 1e-3)
+        assert moved == pytest.approx(expected, rel=0.35, abs=0.3 * result.half_width.max() * 1e-3)
 
 
 def test_points_beyond_the_models_range_are_left_out(library):
@@ -164,27 +168,40 @@ def test_points_beyond_the_models_range_are_left_out(library):
     end = max(float(c.indentation.max()) for c in seen if c.run.driving_pressure_kPa == 0.0)
     assert end < 6.7
     past = tuple(
-        type(c)(c.run, np.append(c.indentation, [6.75, 6.9]), np.append(c.force, c.force[-1] * np.array([0.6, 0.5])),
-                np.append(c.rise, c.rise[-1] * np.array([1.1, 1.2])), c.driving)
-        if c.run.driving_pressure_kPa == 0.0 else c for c in seen
-    )  # fmt: skip
-    found = fit(Observations(past), hard, chosen(library, "modulus", priors=False, sensor=hard))
-    assert found.left_out.sum() >= 4
-    assert np.exp(found.full[MODULUS]) == pytest.approx(2.0, rel=0.02)
+        type(c)(
+            c.run,
+            np.append(c.indentation, [6.75, 6.9]),
+            np.append(c.force, c.force[-1] * np.array([0.6, 0.5])),
+            np.append(c.rise, c.rise[-1] * np.array([1.1, 1.2])),
+            c.driving,
+        )
+        if c.run.driving_pressure_kPa == 0.0
+        else c
+        for c in seen
+    )
+    result = fit(Observations(past), hard, chosen(library, "modulus", priors=False, sensor=hard))
+    assert result.left_out.sum() >= 4
+    assert np.exp(result.full[MODULUS]) == pytest.approx(2.0, rel=0.02)
 
 
-def test_a_model_that_misses_is_told_where(library):
+def test_deviations_of_the_model_are_located(library):
     """A softening that the model does not have: force 5 % lower beyond 4 mm at one pressure."""
     rng = np.random.default_rng(6)
     clean = curves(DESIGNED, (0.0, 12.0, 22.0), 3, rng, 0.002)
     bent = tuple(
-        type(c)(c.run, c.indentation, np.where((c.indentation > 4) & (c.run.driving_pressure_kPa == 12), 0.9, 1.0) * c.force, c.rise, c.driving)
+        type(c)(
+            c.run,
+            c.indentation,
+            np.where((c.indentation > 4) & (c.run.driving_pressure_kPa == 12), 0.9, 1.0) * c.force,
+            c.rise,
+            c.driving,
+        )
         for c in clean
-    )  # fmt: skip
+    )
     parameters = chosen(library, "modulus", "dead-volume")
     assert misses(fit(Observations(clean), DESIGNED, parameters)) == []
-    found = misses(fit(Observations(bent), DESIGNED, parameters))
-    worst = max(found, key=lambda miss: abs(miss.share))
+    result = misses(fit(Observations(bent), DESIGNED, parameters))
+    worst = max(result, key=lambda miss: abs(miss.share))
     assert (worst.driving_pressure_kPa, worst.channel) == (12.0, "force")
     assert worst.share > 0.03
     assert worst.start > 3.9

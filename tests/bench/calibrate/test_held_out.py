@@ -19,25 +19,28 @@ def solid_curves():
     states = solid_result(truth, np.array([0.0, 0.012, 0.022])).states
     at = np.linspace(0.0, 6.5, 14)
     return tuple(
-        disturbed(at, np.interp(at, s.indentation, s.force), np.interp(at, s.indentation, s.pressure_rise), p, n, rng, 0.002)
-        for s, p in zip(states, (0.0, 12.0, 22.0), strict=True) for n in (1, 2)
-    )  # fmt: skip
+        disturbed(
+            at, np.interp(at, s.indentation, s.force), np.interp(at, s.indentation, s.pressure_rise), p, n, rng, 0.002
+        )
+        for s, p in zip(states, (0.0, 12.0, 22.0), strict=True)
+        for n in (1, 2)
+    )
 
 
 def test_the_solids_parameters_come_back(library, solid_curves):
-    found = fit(Observations(solid_curves), DESIGNED, chosen(library, "modulus", "dead-volume"))
-    assert np.exp(found.full[MODULUS]) == pytest.approx(0.2, rel=0.01)
-    assert found.full[DEAD] == pytest.approx(1300.0, abs=40.0)
+    result = fit(Observations(solid_curves), DESIGNED, chosen(library, "modulus", "dead-volume"))
+    assert np.exp(result.full[MODULUS]) == pytest.approx(0.2, rel=0.01)
+    assert result.full[DEAD] == pytest.approx(1300.0, abs=40.0)
 
 
 @pytest.mark.parametrize("pressure", [0.0, 12.0, 22.0])
 def test_a_pressure_left_out_is_predicted(library, solid_curves, pressure):
-    found = predict_held_out(Observations(solid_curves), DESIGNED, chosen(library, "modulus", "dead-volume"), pressure)
-    assert abs(found.error) < 0.015
-    assert found.force_error < 0.015
-    assert found.rise_error < 0.015
-    assert found.force_worst >= found.force_error
-    assert (found.points, found.left_out) == (26, 0)
+    result = predict_held_out(Observations(solid_curves), DESIGNED, chosen(library, "modulus", "dead-volume"), pressure)
+    assert abs(result.error) < 0.015
+    assert result.force_error < 0.015
+    assert result.rise_error < 0.015
+    assert result.force_worst >= result.force_error
+    assert (result.points, result.left_out) == (26, 0)
 
 
 def test_the_prediction_is_better_than_the_designs(library, solid_curves):

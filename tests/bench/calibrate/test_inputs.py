@@ -21,13 +21,16 @@ def one(at, force, rise) -> Observations:
     return Observations((MeasuredCurve(run(22.0), np.array(at), np.array(force), np.array(rise), 0.022),))
 
 
-@pytest.mark.parametrize(("observations", "words"), [
-    (Observations(()), "no curves and no injections"),
-    (one([0.0], [0.0], [0.0]), "22-1.csv: no point beyond first contact"),
-    (one([0.0, 3.0], [0.0, 0.5], [0.0, 1e-3]), "one point is not enough"),
-    (one([0.0, 3.0, 4.0], [0.0, np.nan, 1.0], [0.0, 1e-3, 2e-3]), "22-1.csv: force: not a number"),
-    (Observations((), (Injection("i", np.zeros(3), np.zeros(3)),)), "i: no injected volume above zero"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("observations", "words"),
+    [
+        (Observations(()), "no curves and no injections"),
+        (one([0.0], [0.0], [0.0]), "22-1.csv: no point beyond first contact"),
+        (one([0.0, 3.0], [0.0, 0.5], [0.0, 1e-3]), "one point is not enough"),
+        (one([0.0, 3.0, 4.0], [0.0, np.nan, 1.0], [0.0, 1e-3, 2e-3]), "22-1.csv: force: not a number"),
+        (Observations((), (Injection("i", np.zeros(3), np.zeros(3)),)), "i: no injected volume above zero"),
+    ],
+)
 def test_nothing_to_fit_is_refused(library, observations, words):
     with pytest.raises(InputError, match=words):
         fit(observations, DESIGNED, chosen(library, "modulus"))
@@ -43,41 +46,46 @@ def test_more_parameters_than_values_need_priors(library):
 
 def test_a_sensor_outside_the_atlas_is_refused(library):
     thick = DESIGNED.replace(wall_thickness=4.0)
-    with pytest.raises(InputError, match=r"the atlas does not speak for this sensor: wall 0\.432 R0"):
+    with pytest.raises(InputError, match=r"the atlas does not cover this sensor: wall 0\.432 R0"):
         fit(Observations(exact(DESIGNED, (0.0,))), thick, chosen(library, "modulus"))
 
 
 def test_all_at_one_pressure_can_be_fitted(library):
     seen = curves(DESIGNED.replace(shear_modulus=0.2), (12.0,), 4, np.random.default_rng(3))
-    found = fit(Observations(seen), DESIGNED, chosen(library, "modulus", priors=False))
-    assert abs(found.full[0] - np.log(0.2)) < found.half_width[0] < 0.1
+    result = fit(Observations(seen), DESIGNED, chosen(library, "modulus", priors=False))
+    assert abs(result.full[0] - np.log(0.2)) < result.half_width[0] < 0.1
 
 
-def test_a_dome_that_stood_its_pressure_is_stiffer_than_the_limit_says(library):
+def test_a_dome_that_stood_its_pressure_is_stiffer_than_its_limit_pressure_implies(library):
     """Driven at 60 kPa, beyond the limit point of the design's modulus: the search begins above it."""
     truth = DESIGNED.replace(shear_modulus=0.35)
-    found = fit(Observations(exact(truth, (0.0, 60.0))), DESIGNED, chosen(library, "modulus", priors=False))
-    assert found.full[0] == pytest.approx(np.log(0.35), abs=1e-4)
+    result = fit(Observations(exact(truth, (0.0, 60.0))), DESIGNED, chosen(library, "modulus", priors=False))
+    assert result.full[0] == pytest.approx(np.log(0.35), abs=1e-4)
 
 
-@pytest.mark.parametrize(("names", "words"), [
-    (["moduls"], "fit = 'moduls': no such parameter. Did you mean modulus"), (["wall", "wall"], "wall is there twice"), ([], "empty"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("names", "words"),
+    [
+        (["moduls"], "fit = 'moduls': no such parameter. Did you mean modulus"),
+        (["wall", "wall"], "wall is there twice"),
+        ([], "empty"),
+    ],
+)
 def test_names_of_parameters_are_checked(names, words):
     with pytest.raises(InputError, match=words):
         parse_names(names)
 
 
-def test_a_first_contact_that_is_not_sure_moves_force_and_rise_of_its_run_together(library):
+def test_an_uncertain_first_contact_moves_force_and_rise_of_its_run_together(library):
     """A contact that is the middle of three 0.1 mm apart is known to 0.1 mm over root 3, a little worse than their mean."""
     (clean,) = exact(DESIGNED, (22.0,))
     indents = tuple(
         MeasuredIndentation(0.0, (1.0, 5.0), (4.0, 5.0), 6.0, 0.1 * k, 1.0, 0.0, 0.0, 0.022, 0.0) for k in (-1, 0, 1)
     )
-    sure = shared_of(points_of(Observations((clean,))))
+    exact_contact = shared_of(points_of(Observations((clean,))))
     points = points_of(Observations((replace(clean, indents=indents), replace(clean, indents=indents))))
     wandering = shared_of(points)
-    assert (sure.kind < TRAVEL).all()
+    assert (exact_contact.kind < TRAVEL).all()
     columns = wandering.columns[:, wandering.kind == TRAVEL]
     assert columns.shape[1] == 2
     force, rise = (columns[:, 0].reshape(2, 2, -1)[k, 0] for k in (0, 1))
@@ -93,6 +101,6 @@ def test_forces_at_the_end_of_the_sensors_range_are_not_fitted(library):
     seen = exact(truth, (0.0, 22.0))
     cut = tuple(replace(curve, force=np.minimum(curve.force, 5.0)) for curve in seen)
     observations = Observations(cut, rig=Rig(force_range_N=5.0))
-    found = fit(observations, DESIGNED, chosen(library, "modulus", priors=False))
-    assert found.full[0] == pytest.approx(np.log(0.2), abs=2e-3)
+    result = fit(observations, DESIGNED, chosen(library, "modulus", priors=False))
+    assert result.full[0] == pytest.approx(np.log(0.2), abs=2e-3)
     assert max(curve.force.max() for curve in seen) > 10.0

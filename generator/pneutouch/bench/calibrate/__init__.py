@@ -1,4 +1,4 @@
-"""Calibrate: fit the model to the sensor in hand, and say how sure the fit is."""
+"""Calibrate: fit the model to the sensor in hand, and state its uncertainty."""
 
 from pneutouch.bench.calibrate.fit import CalibrationFit, fit
 from pneutouch.bench.calibrate.held_out import HeldOutPrediction, predict_held_out
@@ -15,4 +15,4 @@ __all__ = [
     "fit",
     "parameters",
     "predict_held_out",
-]  # fmt: skip
+]

@@ -1,7 +1,7 @@
-"""What the model leaves out of every run alike, and how far the first contact of each run is off.
+"""Model discrepancy, common to all runs, and the error of the first contact of each run.
 
-Both are unknowns with a spread of their own beside the parameters. The first is the model discrepancy of Kennedy and O'Hagan
-(J. R. Stat. Soc. B 63, 2001, 425-464, DOI 10.1111/1467-9868.00294): without it a calibrated parameter is sure of a wrong value
+Both are unknowns with a standard deviation, estimated with the parameters. The first is the model discrepancy of Kennedy and O'Hagan
+(J. R. Stat. Soc. B 63, 2001, 425-464, DOI 10.1111/1467-9868.00294): without it a calibrated parameter has too small an interval around a wrong value
 (Brynjarsdottir and O'Hagan, Inverse Problems 30, 2014, 114007).
 """
 
@@ -15,20 +15,20 @@ from pneutouch.arrays import Array
 from pneutouch.bench.calibrate.observations import ObservationPoints
 
 FLOOR = np.array([0.01, 0.005, 0.005])
-"""Least standard deviation of what the model leaves out, as a share of force, of pressure rise and of an injection's pressure.
+"""Least standard deviation of the model discrepancy, as a share of force, of pressure rise and of an injection's pressure.
 
 A share that is the same everywhere is a modulus to the model, so no residual shows it. Our choice: a wall that relaxes carries
 more at the end of a 4 s hold than at rest; no Prony data of these resins are published, the paper's Fig. S1 calls relaxation
 low, and what the air reads of it is less than what the plate does."""
 
 _LARGEST = 0.3
-"""Greatest size looked for: our choice, no model of the sensor any more."""
+"""Greatest size considered: our choice, no longer a model of the sensor."""
 
 _LENGTH = 0.5
-"""Length, as a share of a run's travel, over which the shape of what is left out stays alike: our choice."""
+"""Length, as a share of a run's travel, over which the discrepancy stays correlated: our choice."""
 
 _NODES = 4
-"""Places along a travel that carry the shape: two thirds of its length apart, so that nothing is missed between."""
+"""Nodes of the discrepancy along a travel: two thirds of its correlation length apart."""
 
 _GRID = 12
 TRAVEL = 3
@@ -79,19 +79,19 @@ def shared_of(points: ObservationPoints) -> SharedUnknowns:
 
 
 def sizes_of(
-    shared: SharedUnknowns, jacobian: Array, residual: Array, belief: Array, pull: Array, floor: Array
+    shared: SharedUnknowns, jacobian: Array, residual: Array, prior_weight: Array, pull: Array, floor: Array
 ) -> Array:
     """Sizes (3,) that the residuals make most likely, the parameters taken out (restricted likelihood: Patterson and Thompson,
     Biometrika 58, 1971, 545-554); at least ``floor``.
 
-    Rows are those used, over their standard deviations: ``shared`` (n, q), ``jacobian`` (n, k), ``residual`` (n,); ``belief`` (k,) are
+    Rows are those used, over their standard deviations: ``shared`` (n, q), ``jacobian`` (n, k), ``residual`` (n,); ``prior_weight`` (k,) are
     the weights of the parameters, ``pull`` (k,) how many standard deviations each is off it. Where the likelihood is greatest is sought kind by kind on a grid, twice round.
     """
     k, q = jacobian.shape[1], shared.kind.size
     rows = np.hstack([jacobian, shared.columns, residual[:, None]])
     gram = rows.T @ rows
-    # The beliefs are data too, one row each.
-    gram[:k, -1] += np.sqrt(belief) * pull
+    # The priors are data too, one row each.
+    gram[:k, -1] += np.sqrt(prior_weight) * pull
     gram[-1, :k] = gram[:k, -1]
     gram[-1, -1] += float(pull @ pull)
     tiny = 1e-12 * np.maximum(np.diag(gram)[:k], 1e-30)
@@ -103,7 +103,9 @@ def sizes_of(
             for size in tried:
                 sizes[kind] = size
                 scale = np.concatenate([np.ones(k), np.append(sizes, 1.0)[shared.kind], [1.0]])
-                costs.append(_unlikely(gram * np.outer(scale, scale), np.concatenate([belief + tiny, np.ones(q)])))
+                costs.append(
+                    _unlikely(gram * np.outer(scale, scale), np.concatenate([prior_weight + tiny, np.ones(q)]))
+                )
             sizes[kind] = tried[int(np.argmin(costs))]
     return np.maximum(sizes, floor)
 
@@ -116,7 +118,7 @@ def _unlikely(gram: Array, weight: Array) -> float:
 
 
 def _shape(depth: Array) -> Array:
-    """A smooth share along a way of unit length and unit variance, as weights (N, nodes) of independent unknowns."""
+    """A smooth share along a unit length with unit variance, as weights (N, nodes) of independent unknowns."""
     nodes = np.linspace(0.0, 1.0, _NODES)
 
     def alike(a: Array, b: Array) -> Array:

@@ -1,4 +1,4 @@
-"""The fit: parameters of the sensor in hand from what was measured on it, with intervals."""
+"""The fit: parameters of one sensor from measurements of it, with intervals."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _START_SHARE = 0.9
 """The search begins where the greatest driving pressure is at most this share of the limit pressure: our choice."""
 
 _ROUNDS = 2
-"""How often errors and sizes are taken from the residuals and the fit made anew: our choice, the third changes nothing."""
+"""How often errors and sizes are estimated from the residuals and the fit is repeated: our choice, a third time changes nothing."""
 
 _SMOOTH = 0.1
 """Smooth share of a reading that may be anything while the scatter of single points is looked at: our choice, generous."""
@@ -34,7 +34,7 @@ class CalibrationFit:
     Attributes:
         observations, points, parameters, sensor: What was fitted; the sensor as designed, in the laboratory's air.
         problem, solution: As solved, weights with the scatter of the runs.
-        covariance: How sure it is.
+        covariance: Its uncertainty.
         half_width: Of the 95 % intervals, (k,); NaN on a bound.
         chi_squared, freedom: Sum of squared residuals by the covariance of reading, atlas, first contact and what the model leaves
             out, and its degrees of freedom.
@@ -81,7 +81,7 @@ def fit(
     """Fit ``parameters`` of ``sensor`` to observations.
 
     First with the errors stated for reading and atlas; then with those that the residuals show, channel by channel, and with
-    the scatter between runs, so that beliefs are weighed against what the data are worth. What the model leaves out is as large as
+    the scatter between runs, so that the priors are weighed against the information in the data. The model discrepancy is as large as
     the residuals show, at least ``floor`` (see `discrepancy`). Raises InputError for too few points, ComputationError where no
     fit is found.
     """
@@ -96,54 +96,67 @@ def fit(
     model = AtlasModel(sensor, points)
     # A start that trusts neither the shape of the model nor single points: all errors alike, as shares of full scale.
     rough = np.hypot(points.errors, points.full_scale * floor[points.channels])
-    found = solve(
+    solution = solve(
         LeastSquaresProblem(model, parameters, rough, np.zeros((rough.size, 0))), _start(sensor, points, parameters)
     )
     for _ in range(_ROUNDS):
         # A share of what was read would pull the fit below the readings (Peelle's puzzle); of what is fitted it does not.
-        shared = shared_of(points.with_values(np.where(found.use, found.model, points.values)))
+        shared = shared_of(points.with_values(np.where(solution.use, solution.model, points.values)))
         channels = _channel_factors(
-            LeastSquaresProblem(model, parameters, points.errors, shared.sized(np.full(3, _SMOOTH))), found
+            LeastSquaresProblem(model, parameters, points.errors, shared.sized(np.full(3, _SMOOTH))), solution
         )
         errors = points.errors * channels[points.channels]
-        sizes = _sizes(LeastSquaresProblem(model, parameters, errors, shared.columns), found, shared, floor)
+        sizes = _sizes(LeastSquaresProblem(model, parameters, errors, shared.columns), solution, shared, floor)
         seen = LeastSquaresProblem(model, parameters, errors, shared.sized(sizes))
-        found = solve(seen, found.at)
-    runs = factor(seen, found)
+        solution = solve(seen, solution.at)
+    runs = factor(seen, solution)
     last = LeastSquaresProblem(model, parameters, errors * np.sqrt(runs), shared.sized(sizes))
-    found = solve(last, found.at)
-    certain = covariance(last, found, runs, _others(last, found) * parameters.belief)
+    solution = solve(last, solution.at)
+    certain = covariance(last, solution, runs, _others(last, solution) * parameters.prior_spread)
     read = LeastSquaresProblem(model, parameters, points.errors, shared.sized(sizes))
-    squares = read.whitened((found.residual * last.errors / points.errors)[:, None], found.use) ** 2
+    squares = read.whitened((solution.residual * last.errors / points.errors)[:, None], solution.use) ** 2
     return CalibrationFit(
-        observations, points, parameters, sensor, last, found, certain, half_widths(certain),
-        float(squares.sum()), max(int(found.use.sum()) - fitted, 0), channels, sizes, runs,
-    )  # fmt: skip
+        observations,
+        points,
+        parameters,
+        sensor,
+        last,
+        solution,
+        certain,
+        half_widths(certain),
+        float(squares.sum()),
+        max(int(solution.use.sum()) - fitted, 0),
+        channels,
+        sizes,
+        runs,
+    )
 
 
-def _others(problem: LeastSquaresProblem, found: LeastSquaresSolution) -> Array:
+def _others(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> Array:
     """Derivatives by the parameters that are not fitted but uncertain, (N, 4), over the errors; 0 by the others."""
-    slopes = np.zeros((found.residual.size, len(NAMES)))
+    slopes = np.zeros((solution.residual.size, len(NAMES)))
     others = list(problem.chosen.others)
     if others:
-        full, step = problem.chosen.full(found.at), problem.chosen.step
+        full, step = problem.chosen.full(solution.at), problem.chosen.step
         step = np.where(full + step <= problem.chosen.high, step, -step)
         values, ok = problem.model.values(np.vstack([full, full + np.diag(step)[others]]))
-        use = found.use & ok.all(axis=0)
+        use = solution.use & ok.all(axis=0)
         change = (values[1:] - values[0]) / step[others, None] / problem.errors
         slopes[:, others] = np.where(use, change, 0.0).T
     return slopes
 
 
-def _sizes(problem: LeastSquaresProblem, found: LeastSquaresSolution, shared: SharedUnknowns, floor: Array) -> Array:
-    """Sizes of what the model leaves out; all that is believed uncertain may explain the residuals first."""
-    others, use = list(problem.chosen.others), found.use
-    residual, jacobian, _, _ = problem.look(found.at)
-    whole = np.hstack([jacobian, _others(problem, found)[:, others]])
-    belief = np.concatenate([problem.weight, problem.chosen.belief[others] ** -2.0])
-    # At the solution the beliefs pull the fitted ones: their rows are part of the data.
-    pull = np.concatenate([np.sqrt(problem.weight) * (found.at - problem.centre), np.zeros(len(others))])
-    return sizes_of(SharedUnknowns(problem.shared[use], shared.kind), whole[use], residual[use], belief, pull, floor)
+def _sizes(problem: LeastSquaresProblem, solution: LeastSquaresSolution, shared: SharedUnknowns, floor: Array) -> Array:
+    """Sizes of the model discrepancy; everything that has a prior may explain the residuals first."""
+    others, use = list(problem.chosen.others), solution.use
+    residual, jacobian, _, _ = problem.look(solution.at)
+    whole = np.hstack([jacobian, _others(problem, solution)[:, others]])
+    prior_weight = np.concatenate([problem.weight, problem.chosen.prior_spread[others] ** -2.0])
+    # At the solution the priors pull the fitted ones: their rows are part of the data.
+    pull = np.concatenate([np.sqrt(problem.weight) * (solution.at - problem.centre), np.zeros(len(others))])
+    return sizes_of(
+        SharedUnknowns(problem.shared[use], shared.kind), whole[use], residual[use], prior_weight, pull, floor
+    )
 
 
 def _start(sensor: Sensor, points: ObservationPoints, parameters: CalibrationParameters) -> Array:
@@ -157,16 +170,16 @@ def _start(sensor: Sensor, points: ObservationPoints, parameters: CalibrationPar
     return start
 
 
-def _channel_factors(problem: LeastSquaresProblem, found: LeastSquaresSolution) -> Array:
+def _channel_factors(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> Array:
     """Root mean square by channel of what no smooth share explains, at least 1: what reading and atlas do not either."""
-    factors, use = np.ones(3), found.use
-    residual, shared = problem.look(found.at)[0], problem.shared[use]
+    factors, use = np.ones(3), solution.use
+    residual, shared = problem.look(solution.at)[0], problem.shared[use]
     explained = shared.T @ shared
     best = np.linalg.solve(np.eye(len(explained)) + explained, np.column_stack([explained, shared.T @ residual[use]]))
-    own, total = residual[use] - shared @ best[:, -1], int(use.sum())
+    rest, total = residual[use] - shared @ best[:, -1], int(use.sum())
     spare = max(total - float(np.trace(best[:, :-1])), 0.1 * total) / total
     for channel in range(3):
         rows = problem.model.points.channels[use] == channel
         if rows.any():
-            factors[channel] = max(1.0, float(np.sqrt(np.mean(own[rows] ** 2) / spare)))
+            factors[channel] = max(1.0, float(np.sqrt(np.mean(rest[rows] ** 2) / spare)))
     return factors

@@ -1,4 +1,4 @@
-"""Which further test would tell apart what the data do not: predicted at the estimate, before anybody measures."""
+"""Further tests that would reduce the uncertainty most, predicted at the estimate before any measurement."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ COUPON = 0.03
 
 CALIPER = 0.05 / np.sqrt(3.0)
 """Standard deviation of a soft wall's thickness by caliper, mm: even within 0.05 mm, our choice; the caliper itself is
-better, the soft wall gives way."""
+better, but the soft wall yields."""
 
 SYRINGE = 0.01
 """Relative error of an injected volume, all volumes of a syringe alike: our choice, a gas-tight syringe."""
@@ -41,11 +41,11 @@ _QUANTILE = 1.96
 
 @dataclass(frozen=True, slots=True)
 class SuggestedTest:
-    """A test, what it would do.
+    """A test and its predicted effect.
 
     Attributes:
         what: The test in words.
-        gain: By how much it shrinks the interval of the worst known combination.
+        gain: Factor by which it shrinks the interval of the most uncertain combination.
         half_width: 95 % intervals then expected of the fitted parameters, coordinates, (k,).
     """
 
@@ -60,25 +60,25 @@ def further_tests(fit: CalibrationFit) -> list[SuggestedTest]:
     if not places.size:
         return []
     numbers = np.array(fit.parameters.fitted)[places]
-    belief = fit.parameters.belief[numbers]
-    scale = np.outer(belief, belief)
+    prior_spread = fit.parameters.prior_spread[numbers]
+    scale = np.outer(prior_spread, prior_spread)
     now = fit.covariance.information[np.ix_(places, places)] * scale
     now += (1.0 if fit.parameters.priors else _RIDGE) * np.eye(places.size)
     before = np.linalg.inv(now)
     worst = np.linalg.eigh(before)[1][:, -1]
-    # What is believed of parameters not fitted stays as it is: the test is of those that are.
+    # The priors of parameters that are not fitted stay: the test concerns those that are.
     stays = (fit.covariance.considered**2).sum(axis=1)[places]
-    found = []
+    tests = []
     for what, gained in _candidates(fit):
         after = np.linalg.inv(now + gained[np.ix_(numbers, numbers)] * scale)
         width = np.full(fit.solution.at.size, np.nan)
-        width[places] = _QUANTILE * np.sqrt(np.diag(after) * belief**2 + stays)
-        found.append(SuggestedTest(what, float(np.sqrt((worst @ before @ worst) / (worst @ after @ worst))), width))
-    return sorted(found, key=lambda test: -test.gain)
+        width[places] = _QUANTILE * np.sqrt(np.diag(after) * prior_spread**2 + stays)
+        tests.append(SuggestedTest(what, float(np.sqrt((worst @ before @ worst) / (worst @ after @ worst))), width))
+    return sorted(tests, key=lambda test: -test.gain)
 
 
 def _candidates(fit: CalibrationFit) -> Iterator[tuple[str, Array]]:
-    """Tests with what they would say of all four parameters, (4, 4)."""
+    """Tests with their information on all four parameters, (4, 4)."""
     full, size = fit.full, fit.sensor.dome.inner_radius
     slices = shipped().slices(np.array([np.exp(full[WALL]) / size]), ())
     limit = float(slices.limit_pressure[0]) * float(np.exp(full[MODULUS]))
@@ -108,13 +108,13 @@ def _rated(fit: CalibrationFit) -> float:
 
 
 def _alone(number: int, spread: float) -> Array:
-    found = np.zeros((len(NAMES), len(NAMES)))
-    found[number, number] = spread**-2.0
-    return found
+    matrix = np.zeros((len(NAMES), len(NAMES)))
+    matrix[number, number] = spread**-2.0
+    return matrix
 
 
-def _looked(fit: CalibrationFit, full: Array, points: ObservationPoints) -> tuple[Array, Array]:
-    """Values (N,) and derivatives (N, 4) at the estimate; what the model does not have is 0 with no derivative."""
+def _evaluated(fit: CalibrationFit, full: Array, points: ObservationPoints) -> tuple[Array, Array]:
+    """Values (N,) and derivatives (N, 4) at the estimate; both are 0 outside the model."""
     step = np.where(full + fit.parameters.step <= fit.parameters.high, fit.parameters.step, -fit.parameters.step)
     values, ok = AtlasModel(fit.sensor, points).values(np.vstack([full, full + np.diag(step)]))
     known = np.asarray(ok.all(axis=0))
@@ -126,16 +126,29 @@ def _indented(fit: CalibrationFit, full: Array, pressure: float, depth: float) -
     """Repeated runs at one pressure, scattering as the runs measured do."""
     row = np.linspace(0.0, depth, _STEPS + 1)[None, 1:]
     one, none = np.ones_like(row), np.zeros((0, 0))
-    points = ObservationPoints(row, one, one, one, one, one > 0, np.array([pressure]), none, none, none, none > 0, np.zeros(1),
-                    np.zeros(1, dtype=int))  # fmt: skip
-    values, derivatives = _looked(fit, full, points)
+    points = ObservationPoints(
+        row,
+        one,
+        one,
+        one,
+        one,
+        one > 0,
+        np.array([pressure]),
+        none,
+        none,
+        none,
+        none > 0,
+        np.zeros(1),
+        np.zeros(1, dtype=int),
+    )
+    values, derivatives = _evaluated(fit, full, points)
     half = row.size
     force = np.hypot(fit.observations.rig.force_resolution_N / np.sqrt(12.0), ATLAS_FORCE * np.abs(values[:half]).max())
     rise = np.hypot(READING, ATLAS_PRESSURE * np.abs(values[half:]).max())
     error = np.repeat([force, rise] * fit.channel_factor[:2], half)
-    # Where no scatter between runs was seen, a run is taken to be worth a point: its points all move together.
+    # Without data on the scatter between runs a run counts as one point: its points all move together.
     together = fit.run_factor if fit.points.there.any() and fit.covariance.clustered else float(half)
-    return _said(fit, points, values, derivatives, np.diag(error**2 * together / REPETITIONS))
+    return _information(fit, points, values, derivatives, np.diag(error**2 * together / REPETITIONS))
 
 
 def _volume(fit: CalibrationFit, full: Array, pressure: float) -> float:
@@ -143,27 +156,32 @@ def _volume(fit: CalibrationFit, full: Array, pressure: float) -> float:
     size, mu = fit.sensor.dome.inner_radius, float(np.exp(full[MODULUS]))
     slices = shipped().slices(np.array([np.exp(full[WALL]) / size]), ())
     nodes = np.linspace(0.0, 1.0, 100)
-    found, _ = free_pressure(slices, np.zeros(nodes.size, dtype=np.intp), nodes)
-    nu = float(np.interp(pressure / mu, found, nodes))
+    pressures, _ = free_pressure(slices, np.zeros(nodes.size, dtype=np.intp), nodes)
+    nu = float(np.interp(pressure / mu, pressures, nodes))
     grown = nu * float(slices.reach(np.zeros(1, dtype=np.intp))[0]) * size**3
-    room = REST_VOLUME * size**3 + full[DEAD]
-    return float((pressure + fit.sensor.gas.ambient_pressure) * (room + grown) / fit.sensor.gas.ambient_pressure - room)
+    volume = REST_VOLUME * size**3 + full[DEAD]
+    return float(
+        (pressure + fit.sensor.gas.ambient_pressure) * (volume + grown) / fit.sensor.gas.ambient_pressure - volume
+    )
 
 
 def _injected(fit: CalibrationFit, full: Array, volume: float) -> Array:
     """An injection in steps, all its volumes wrong by one factor."""
     row = np.linspace(0.0, volume, _STEPS + 1)[None, 1:]
     one, none = np.ones_like(row), np.zeros((0, 0))
-    points = ObservationPoints(none, none, none, none, none, none > 0, np.zeros(0), row, one, one, one > 0, np.zeros(0),
-                    np.zeros(0, dtype=int))  # fmt: skip
-    values, derivatives = _looked(fit, full, points)
+    points = ObservationPoints(
+        none, none, none, none, none, none > 0, np.zeros(0), row, one, one, one > 0, np.zeros(0), np.zeros(0, dtype=int)
+    )
+    values, derivatives = _evaluated(fit, full, points)
     by_volume = np.gradient(values, row[0]) * row[0] * SYRINGE
     error = np.hypot(READING, ATLAS_PRESSURE * np.abs(values).max()) * fit.channel_factor[2]
     noise = np.diag(np.full(row.size, error**2)) + np.outer(by_volume, by_volume)
-    return _said(fit, points, values, derivatives, noise)
+    return _information(fit, points, values, derivatives, noise)
 
 
-def _said(fit: CalibrationFit, points: ObservationPoints, values: Array, derivatives: Array, noise: Array) -> Array:
+def _information(
+    fit: CalibrationFit, points: ObservationPoints, values: Array, derivatives: Array, noise: Array
+) -> Array:
     """Information of values with errors ``noise``, (N, N), and with what the model leaves out as the runs measured show it."""
     shared = shared_of(points.with_values(values)).sized(fit.sizes)
     return np.asarray(derivatives.T @ np.linalg.solve(noise + shared @ shared.T, derivatives))

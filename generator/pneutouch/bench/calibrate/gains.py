@@ -16,10 +16,10 @@ def gain_shifts(fit: CalibrationFit) -> tuple[Array, Array]:
 
     The gauge reads the driving pressure too.
     """
-    p, found = fit.points, fit.solution
+    p, solution = fit.points, fit.solution
     size = p.there.size
     more = AtlasModel(fit.sensor, p._replace(driving=p.driving * (1.0 - GAIN))).values(fit.full[None])[0][0]
-    force, pressure = np.zeros(p.values.size), np.where(found.use, more - found.model, 0.0)
+    force, pressure = np.zeros(p.values.size), np.where(solution.use, more - solution.model, 0.0)
     # True values are lower than read ones, and so would be the data.
     force[:size] = GAIN * p.values[:size]
     pressure[size:] += GAIN * p.values[size:]

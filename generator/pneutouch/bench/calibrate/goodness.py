@@ -66,21 +66,31 @@ def residuals(fit: CalibrationFit) -> tuple[RunResiduals, ...]:
     gap = np.where(fit.solution.use, fit.solution.model - p.values, np.nan)
     force, rise = gap[:size].reshape(p.there.shape), gap[size : 2 * size].reshape(p.there.shape)
     pressure = gap[2 * size :].reshape(p.known.shape)
-    found = [
+    runs = [
         RunResiduals(
-            curve.run.label, curve.run.driving_pressure_kPa, p.travel[i][p.there[i]], force[i][p.there[i]],
-            rise[i][p.there[i]], _scale(p.force[i]), _scale(p.rise[i]),
+            curve.run.label,
+            curve.run.driving_pressure_kPa,
+            p.travel[i][p.there[i]],
+            force[i][p.there[i]],
+            rise[i][p.there[i]],
+            _scale(p.force[i]),
+            _scale(p.rise[i]),
         )
         for i, curve in enumerate(fit.observations.curves)
-    ]  # fmt: skip
-    found += [
+    ]
+    runs += [
         RunResiduals(
-            injection.label, float("nan"), p.volume[i][p.known[i]], np.zeros(0), pressure[i][p.known[i]], 1.0,
+            injection.label,
+            float("nan"),
+            p.volume[i][p.known[i]],
+            np.zeros(0),
+            pressure[i][p.known[i]],
+            1.0,
             _scale(p.pressure[i]),
         )
         for i, injection in enumerate(fit.observations.injections)
-    ]  # fmt: skip
-    return tuple(found)
+    ]
+    return tuple(runs)
 
 
 def misses(fit: CalibrationFit) -> list[SystematicDeviation]:
@@ -90,7 +100,7 @@ def misses(fit: CalibrationFit) -> list[SystematicDeviation]:
     errors are there to compare with.
     """
     runs = [run for run in residuals(fit) if run.force.size]
-    found = []
+    deviations = []
     for channel in ("force", "pressure"):
         groups = {
             p: _on_one_grid([run for run in runs if run.driving_pressure_kPa == p], channel)
@@ -98,8 +108,8 @@ def misses(fit: CalibrationFit) -> list[SystematicDeviation]:
         }
         spread, freedom = _pooled([rows for _, rows in groups.values()])
         for driving_pressure_kPa, (at, rows) in groups.items():
-            found += _missed(driving_pressure_kPa, channel, at, rows, spread, freedom)
-    return found
+            deviations += _missed(driving_pressure_kPa, channel, at, rows, spread, freedom)
+    return deviations
 
 
 def _on_one_grid(runs: list[RunResiduals], channel: str) -> tuple[Array, Array]:

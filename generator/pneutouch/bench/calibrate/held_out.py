@@ -47,7 +47,7 @@ class HeldOutPrediction:
 
 def predict_held_out(
     observations: Observations, sensor: Sensor, parameters: CalibrationParameters, driving_pressure_kPa: float
-) -> HeldOutPrediction:  # fmt: skip
+) -> HeldOutPrediction:
     """Leave out a driving pressure (kPa), fit to the rest, predict it.
 
     Raises InputError for a pressure that was not measured, where nothing is left to fit, and where the model has too few of
@@ -78,9 +78,16 @@ def predict_held_out(
     mean = np.mean(rows, axis=0)
     worst = np.max(rows, axis=0)
     return HeldOutPrediction(
-        driving_pressure_kPa, float(mean[0]), float(mean[1]), float(mean[2]), float(mean[3]), float(worst[4]), float(worst[5]),
-        int(use.sum()), int((points.there & ~use).sum()),
-    )  # fmt: skip
+        driving_pressure_kPa,
+        float(mean[0]),
+        float(mean[1]),
+        float(mean[2]),
+        float(mean[3]),
+        float(worst[4]),
+        float(worst[5]),
+        int(use.sum()),
+        int((points.there & ~use).sum()),
+    )
 
 
 def _row(travel: Array, force: Array, rise: Array, model_force: Array, model_rise: Array, use: Array) -> list[float]:

@@ -1,4 +1,4 @@
-"""What the data cannot tell apart, the beliefs left aside."""
+"""Parameters that the data alone, without priors, cannot determine."""
 
 from __future__ import annotations
 
@@ -12,25 +12,25 @@ from pneutouch.bench.calibrate.intervals import information
 from pneutouch.bench.calibrate.parameters import LOGARITHMIC
 
 CORRELATED = 0.95
-"""Correlation from which on two parameters count as not told apart: our choice; alone each is 3 times less sure than with
-the other known."""
+"""Correlation above which two parameters count as strongly correlated: our choice; the standard deviation of each is then
+3 times that with the other known."""
 
 UNSEEN = 0.7
-"""Share of the belief's standard deviation left, from which on the data say nothing of a parameter: our choice; they then
-weigh no more than the belief."""
+"""Share of the prior standard deviation that remains, above which a parameter counts as not determined by the data: our choice;
+they then weigh no more than the prior."""
 
 _LEAST = 1e-12
 _NEEDED = 0.5
-"""Share of the belief's standard deviation that the data alone leave, from which on more than two parameters count as not told
-apart: our choice."""
+"""Share of the prior standard deviation that the data alone leave, above which more than two parameters count as strongly
+correlated: our choice."""
 _MEMBER = 0.3
-_SAID = 0.25
-"""Least weight of a parameter in a group that cannot be told apart, and of one in a named combination."""
+_NAMED = 0.25
+"""Least weight of a parameter in a correlated group, and of one in a named combination."""
 
 
 @dataclass(frozen=True, slots=True)
 class CorrelatedParameters:
-    """Parameters that the data know together better than apart.
+    """Strongly correlated parameters.
 
     Attributes:
         members: Their numbers.
@@ -50,14 +50,14 @@ class CorrelatedParameters:
 
 @dataclass(frozen=True, slots=True)
 class Identifiability:
-    """Numbers of parameters that the data say nothing of (beside those of an ambiguity), and the ambiguities."""
+    """Numbers of parameters that the data do not determine (without those of an ambiguity), and the ambiguities."""
 
     unseen: tuple[int, ...]
     ambiguities: tuple[CorrelatedParameters, ...]
 
     @property
     def clear(self) -> bool:
-        """Whether the data tell everything apart."""
+        """Whether the data determine every parameter."""
         return not self.unseen and not self.ambiguities
 
 
@@ -67,27 +67,28 @@ def identify(fit: CalibrationFit) -> Identifiability:
     seen = np.abs(fit.solution.jacobian).max(axis=0) > 0
     places = np.flatnonzero(seen)
     numbers, known = fitted[places], fit.covariance.information[np.ix_(places, places)]
-    # What leans on what is a matter of the model's curves; how sure it leaves each, of all that is uncertain.
+    # Correlations follow from the model's curves alone; standard deviations from all that is uncertain.
     curves = information(fit.solution.jacobian[:, places])
-    found = _groups(curves, known, numbers, fit.parameters.belief[numbers]) if places.size > 1 else []
-    grouped = {k for group in found for k in group.members}
+    groups = _groups(curves, known, numbers, fit.parameters.prior_spread[numbers]) if places.size > 1 else []
+    grouped = {k for group in groups for k in group.members}
     unseen = [
-        int(k) for place, k in enumerate(fitted)
+        int(k)
+        for place, k in enumerate(fitted)
         if k not in grouped and not fit.solution.bound[place] and _left(fit, place, bool(seen[place])) > UNSEEN
-    ]  # fmt: skip
-    return Identifiability(tuple(unseen), tuple(found))
+    ]
+    return Identifiability(tuple(unseen), tuple(groups))
 
 
 def _left(fit: CalibrationFit, place: int, seen: bool) -> float:
-    """Standard deviation with belief and data over that of the belief."""
+    """Standard deviation with prior and data over that of the prior."""
     if not seen:
         return 1.0
-    belief = fit.parameters.belief[list(fit.parameters.fitted)]
-    whole = fit.covariance.information * np.outer(belief, belief) + np.eye(belief.size)
+    prior_spread = fit.parameters.prior_spread[list(fit.parameters.fitted)]
+    whole = fit.covariance.information * np.outer(prior_spread, prior_spread) + np.eye(prior_spread.size)
     return float(np.sqrt(np.linalg.inv(whole)[place, place]))
 
 
-def _groups(curves: Array, known: Array, numbers: Array, belief: Array) -> list[CorrelatedParameters]:
+def _groups(curves: Array, known: Array, numbers: Array, prior_spread: Array) -> list[CorrelatedParameters]:
     """Sets of parameters along the directions that the curves, by their information (n, n), hold least of.
 
     ``known``, (n, n), is the information with what many values share taken into account.
@@ -98,22 +99,27 @@ def _groups(curves: Array, known: Array, numbers: Array, belief: Array) -> list[
     spread = np.sqrt(np.diag(covariance))
     correlation = covariance / np.outer(spread, spread) - np.eye(numbers.size)
     sets = [np.flatnonzero(np.abs(v) > _MEMBER) for v in vectors[:, values < 1.0 - CORRELATED].T]
-    # Three or four together always lean on one another; it matters where a belief is still needed.
+    # Three or four parameters are always correlated; it matters where a prior is still needed.
     alone = _spreads(known)
-    sets = [places for places in sets if (alone / belief)[places].max() > _NEEDED]
+    sets = [places for places in sets if (alone / prior_spread)[places].max() > _NEEDED]
     sets += [np.array(pair) for pair in np.argwhere(np.triu(np.abs(correlation) > CORRELATED))]
-    found: list[CorrelatedParameters] = []
+    groups: list[CorrelatedParameters] = []
     for places in sorted(sets, key=len, reverse=True):
         members = {int(numbers[p]) for p in places}
-        if len(members) < 2 or any(members <= set(group.members) for group in found):
+        if len(members) < 2 or any(members <= set(group.members) for group in groups):
             continue
         inner = correlation[np.ix_(places, places)]
         strongest = float(inner.ravel()[np.abs(inner).argmax()])
-        found.append(CorrelatedParameters(
-            tuple(int(numbers[p]) for p in places), strongest, spread[places], 1.0 / scale[places],
-            _product(covariance[np.ix_(places, places)], numbers[places]),
-        ))  # fmt: skip
-    return found
+        groups.append(
+            CorrelatedParameters(
+                tuple(int(numbers[p]) for p in places),
+                strongest,
+                spread[places],
+                1.0 / scale[places],
+                _product(covariance[np.ix_(places, places)], numbers[places]),
+            )
+        )
+    return groups
 
 
 def _spreads(known: Array) -> Array:
@@ -129,4 +135,4 @@ def _product(covariance: Array, numbers: Array) -> float | None:
         return None
     # Along the ridge d ln mu = -a d ln t0; the ridge is the direction of the greatest variance.
     ridge = np.linalg.eigh(covariance)[1][:, -1]
-    return float(-ridge[0] / ridge[1]) if abs(ridge[1]) > _SAID else None
+    return float(-ridge[0] / ridge[1]) if abs(ridge[1]) > _NAMED else None

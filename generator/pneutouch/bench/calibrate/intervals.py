@@ -1,6 +1,6 @@
-"""How sure the estimates are: runs differ by gain and zero, so the run is the unit that repeats, not the point.
+"""Uncertainty of the estimates: runs differ by gain and zero, so the run is the unit of repetition, not the point.
 
-What many values share (`discrepancy`) is carried along as unknowns beside the parameters: given them, runs are independent.
+Errors that many values share (`discrepancy`) are unknowns next to the parameters: given them, runs are independent.
 """
 
 from __future__ import annotations
@@ -14,25 +14,25 @@ from pneutouch.arrays import Array, Flags, Index
 from pneutouch.bench.calibrate.solve import LeastSquaresProblem, LeastSquaresSolution
 
 LEAST_RUNS = 3
-"""Fewer runs say nothing of how runs scatter."""
+"""Fewer runs give no scatter between runs."""
 
 LEVEL = 0.95
 
 _LEVERAGE = 0.9
-"""A run that alone holds more of what is known in a direction shows no scatter there: our choice."""
+"""A run with a greater share of the information in a direction shows no scatter there: our choice."""
 
 
 @dataclass(frozen=True, slots=True)
 class Covariance:
-    """How sure the fitted parameters are.
+    """Uncertainty of the fitted parameters.
 
     Attributes:
-        matrix: Covariance, beliefs included, (k, k); NaN on a bound, and where neither data nor belief speak.
-        information: What the data alone say of all, at the average scatter of the runs, (k, k).
-        freedom: Degrees of freedom of the scatter between runs, infinite where points or instruments alone are known.
+        matrix: Covariance, priors included, (k, k); NaN on a bound, and where neither data nor prior determine it.
+        information: Information of the data alone, at the average scatter of the runs, (k, k).
+        freedom: Degrees of freedom of the scatter between runs, infinite without scatter between runs.
         share: Share of the data in each parameter's variance, (k,).
         considered: Standard deviations that the parameters not fitted add, by those, (k, 4); they are in ``matrix``.
-        even: Which of those are believed evenly within bounds, (4,).
+        even: Which of those have a uniform prior, (4,).
         runs: Runs with a point in the fit.
         alone: For each parameter the number of the one run that it rests on, -1 where there are several, (k,).
     """
@@ -53,10 +53,10 @@ class Covariance:
 
 
 class WeightedRows(NamedTuple):
-    """Values used, (N,), with derivatives (N, j) by free parameters and shared unknowns, what is left of each, and what is believed of
-    the unknowns, weights (j,); all in units of ``scale`` (j,), in which data and beliefs together say one of each."""
+    """Values used, (N,), with derivatives (N, j) by free parameters and shared unknowns, the local residuals, and the prior
+    weights (j,) of the unknowns; all in units of ``scale`` (j,), in which data and priors together have unit information."""
 
-    own: Array
+    residual: Array
     jacobian: Array
     use: Flags
     weight: Array
@@ -64,21 +64,21 @@ class WeightedRows(NamedTuple):
 
     @property
     def normal(self) -> Array:
-        """What data and beliefs say, (j, j); a tiny weight keeps it invertible."""
+        """Information of data and priors, (j, j); a tiny weight keeps it invertible."""
         return np.asarray(information(self.jacobian) + np.diag(self.weight + 1e-12))
 
 
 class RunScatter(NamedTuple):
-    """Scatter between runs: ``meat`` the variance of the slopes (k, k); ``held`` the directions that one run alone holds, a
+    """Scatter between runs: ``score`` the covariance of the slopes (k, k); ``held`` the directions that one run alone holds, a
     projection in coordinates of unit information (k, k); ``alone`` that run by parameter, -1 without one (k,)."""
 
-    meat: Array
+    score: Array
     held: Array
     alone: Array
 
 
 def information(jacobian: Array) -> Array:
-    """What points of unit error say, (k, k)."""
+    """Information of points of unit error, (k, k)."""
     return np.asarray(jacobian.T @ jacobian)
 
 
@@ -86,7 +86,7 @@ def scatter(clusters: Array, part: WeightedRows, normal: Array) -> RunScatter:
     """How the slopes scatter between runs whose points move together.
 
     Cluster-robust with the leverage correction of Bell and McCaffrey (Survey Methodology 28, 2002, 169-181): a run's residuals
-    are too small by what it pulls the fit towards itself. ``normal``, (j, j), is what all runs and beliefs say.
+    are too small by what it pulls the fit towards itself. ``normal``, (j, j), is the information of all runs and priors.
     """
     root = _root(normal)
     total, held = np.zeros_like(normal), np.zeros_like(normal)
@@ -98,7 +98,7 @@ def scatter(clusters: Array, part: WeightedRows, normal: Array) -> RunScatter:
         j = part.jacobian[rows] @ root
         share, axes = np.linalg.eigh(j.T @ j)
         grown = (axes / np.sqrt(1.0 - np.clip(share, 0.0, _LEVERAGE))) @ axes.T
-        slope = grown @ (j.T @ part.own[rows])
+        slope = grown @ (j.T @ part.residual[rows])
         total += np.outer(slope, slope)
         over = axes[:, share > _LEVERAGE]
         held += over @ over.T
@@ -108,69 +108,74 @@ def scatter(clusters: Array, part: WeightedRows, normal: Array) -> RunScatter:
     return RunScatter(back @ total @ back, held, alone)
 
 
-def factor(problem: LeastSquaresProblem, found: LeastSquaresSolution) -> float:
+def factor(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> float:
     """By how much more than of independent points the variance of the data's slopes is, on average over directions; at least 1."""
-    free = np.flatnonzero(~found.bound & (np.abs(found.jacobian).max(axis=0) > 0))
-    if not free.size or _freedom(problem, found) < 1:
+    free = np.flatnonzero(~solution.bound & (np.abs(solution.jacobian).max(axis=0) > 0))
+    if not free.size or _freedom(problem, solution) < 1:
         return 1.0
-    part = _rows(problem, found, free)
+    part = _rows(problem, solution, free)
     normal = part.normal
-    seen = np.linalg.solve(normal, scatter(problem.model.points.clusters, part, normal).meat)
+    seen = np.linalg.solve(normal, scatter(problem.model.points.clusters, part, normal).score)
     return max(1.0, float(np.trace(seen) / np.trace(np.linalg.solve(normal, information(part.jacobian)))))
 
 
 def covariance(
-    problem: LeastSquaresProblem, found: LeastSquaresSolution, run_factor: float, others: Array
+    problem: LeastSquaresProblem, solution: LeastSquaresSolution, run_factor: float, others: Array
 ) -> Covariance:
     """Covariances at a solution whose weights hold ``run_factor`` (`factor`).
 
     ``others``, (N, 4), are derivatives by the parameters that are not fitted but uncertain, times their standard deviations: they
     move the estimates although they are not estimated (consider covariance: Schmidt, in Advances in Control Systems 3, 1966).
     """
-    k, runs = found.at.size, _runs(problem, found)
-    free = np.flatnonzero(~found.bound)
-    part, freedom = _rows(problem, found, free), _freedom(problem, found)
+    k, runs = solution.at.size, _runs(problem, solution)
+    free = np.flatnonzero(~solution.bound)
+    part, freedom = _rows(problem, solution, free), _freedom(problem, solution)
     data, normal = information(part.jacobian), part.normal
-    own = slice(0, free.size)
-    blank = (np.diag(data) + part.weight)[own] <= 0
+    parameters = slice(0, free.size)
+    blank = (np.diag(data) + part.weight)[parameters] <= 0
     seen = scatter(problem.model.points.clusters, part, normal)
-    meat = _at_least(seen.meat, data, normal, seen.held, run_factor) if freedom >= 1 else data
-    inverse, unit = np.linalg.inv(normal), np.outer(part.scale[own], part.scale[own])
-    of_data = (inverse @ meat @ inverse)[own, own] / unit
-    moved = -(inverse[own] @ part.jacobian.T @ others) / part.scale[own, None]
-    whole = of_data + (inverse @ np.diag(part.weight) @ inverse)[own, own] / unit + moved @ moved.T
-    # What neither data nor belief speak of has no interval; the tiny weight above only keeps the inverse.
+    score = _at_least(seen.score, data, normal, seen.held, run_factor) if freedom >= 1 else data
+    inverse, unit = np.linalg.inv(normal), np.outer(part.scale[parameters], part.scale[parameters])
+    of_data = (inverse @ score @ inverse)[parameters, parameters] / unit
+    moved = -(inverse[parameters] @ part.jacobian.T @ others) / part.scale[parameters, None]
+    whole = of_data + (inverse @ np.diag(part.weight) @ inverse)[parameters, parameters] / unit + moved @ moved.T
+    # A parameter without data and prior has no interval; the tiny weight above only keeps the inverse.
     whole[blank, :] = whole[:, blank] = np.nan
     considered = np.zeros((k, others.shape[1]))
     considered[free] = moved
-    known = problem.whitened(found.jacobian, found.use)
+    known = problem.whitened(solution.jacobian, solution.use)
     return Covariance(
-        _placed(whole, free, k), information(known), float(freedom) if freedom >= 1 else np.inf,
-        _spread(np.diag(of_data) / np.diag(whole), free, k), considered, problem.chosen.even, runs,
-        _spread(seen.alone[own], free, k, -1.0).astype(int),
-    )  # fmt: skip
+        _placed(whole, free, k),
+        information(known),
+        float(freedom) if freedom >= 1 else np.inf,
+        _spread(np.diag(of_data) / np.diag(whole), free, k),
+        considered,
+        problem.chosen.even,
+        runs,
+        _spread(seen.alone[parameters], free, k, -1.0).astype(int),
+    )
 
 
-def half_widths(found: Covariance) -> Array:
+def half_widths(estimate: Covariance) -> Array:
     """Half widths of the 95 % intervals in the coordinates, (k,); NaN where there is none.
 
-    Student's t with the degrees of freedom of Welch and Satterthwaite: of beliefs they are infinite (JCGM 100, G.4). What a
-    parameter adds that lies evenly within bounds is not normal: there the interval is that of the sum (JCGM 101, 5.3).
+    Student's t with the degrees of freedom of Welch and Satterthwaite: of priors they are infinite (JCGM 100, G.4). The contribution
+    of a parameter with a uniform prior is not normal: there the interval is that of the sum (JCGM 101, 5.3).
     """
     from scipy.stats import t
 
     with np.errstate(divide="ignore", invalid="ignore"):
-        freedom = found.freedom / found.share**2 if found.clustered else np.full(found.share.size, np.inf)
+        freedom = estimate.freedom / estimate.share**2 if estimate.clustered else np.full(estimate.share.size, np.inf)
     grown = t.ppf(0.5 + 0.5 * LEVEL, np.where(np.isnan(freedom), np.inf, freedom)) / t.ppf(0.5 + 0.5 * LEVEL, np.inf)
-    variance = np.diag(found.matrix)
-    # Of several even ones the widest counts as even, and the rest as normal.
-    even = np.sqrt((found.considered**2 * found.even).max(axis=1, initial=0.0))
+    variance = np.diag(estimate.matrix)
+    # Of several uniform ones the widest counts as uniform, the others as normal.
+    even = np.sqrt((estimate.considered**2 * estimate.even).max(axis=1, initial=0.0))
     rest = grown * np.sqrt(np.maximum(variance - even**2, 0.0))
     return np.array([_half(float(s), float(np.sqrt(3.0) * a)) for s, a in zip(rest, even, strict=True)])
 
 
 def _half(deviation: float, bound: float) -> float:
-    """Half width of the 95 % interval of a normal error and one even within +-``bound``."""
+    """Half width of the 95 % interval of a normal error and a uniform one within +-``bound``."""
     from scipy.optimize import brentq
     from scipy.stats import norm
 
@@ -192,26 +197,26 @@ def _half(deviation: float, bound: float) -> float:
     return float(brentq(missing, 0.0, wide + bound))
 
 
-def _runs(problem: LeastSquaresProblem, found: LeastSquaresSolution) -> int:
-    return int(np.unique(problem.model.points.clusters[found.use]).size)
+def _runs(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> int:
+    return int(np.unique(problem.model.points.clusters[solution.use]).size)
 
 
-def _freedom(problem: LeastSquaresProblem, found: LeastSquaresSolution) -> int:
-    """Runs beyond the first of each driving pressure: what all runs of one share says nothing of how runs differ."""
+def _freedom(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> int:
+    """Runs beyond the first of each driving pressure: errors that all runs of one share do not show in their differences."""
     points = problem.model.points
-    clusters = np.unique(points.clusters[found.use])
+    clusters = np.unique(points.clusters[solution.use])
     curves = clusters[clusters < points.group.size].astype(int)
     groups = np.unique(points.group[curves]).size + int(curves.size < clusters.size)
     return int(clusters.size - groups) if clusters.size >= LEAST_RUNS else 0
 
 
-def _rows(problem: LeastSquaresProblem, found: LeastSquaresSolution, free: Index) -> WeightedRows:
-    shared = np.where(found.use[:, None], problem.shared, 0.0)
+def _rows(problem: LeastSquaresProblem, solution: LeastSquaresSolution, free: Index) -> WeightedRows:
+    shared = np.where(solution.use[:, None], problem.shared, 0.0)
     weight = np.concatenate([problem.weight[free], np.ones(shared.shape[1])])
-    jacobian = np.hstack([found.jacobian[:, free], shared])
-    said = (jacobian**2).sum(axis=0) + weight
-    scale = np.sqrt(np.where(said > 0, said, 1.0))
-    return WeightedRows(found.own, jacobian / scale, found.use, weight / scale**2, scale)
+    jacobian = np.hstack([solution.jacobian[:, free], shared])
+    total = (jacobian**2).sum(axis=0) + weight
+    scale = np.sqrt(np.where(total > 0, total, 1.0))
+    return WeightedRows(solution.local, jacobian / scale, solution.use, weight / scale**2, scale)
 
 
 def _root(normal: Array) -> Array:
@@ -220,14 +225,14 @@ def _root(normal: Array) -> Array:
     return np.asarray((vectors / np.sqrt(values)) @ vectors.T)
 
 
-def _at_least(meat: Array, data: Array, normal: Array, held: Array, run_factor: float) -> Array:
+def _at_least(score: Array, data: Array, normal: Array, held: Array, run_factor: float) -> Array:
     """The scatter, nowhere less than that of independent points.
 
-    Where one run alone speaks it shows none; it is taken to scatter as the others do on average.
+    A direction that one run alone determines shows none; there the run is assumed to scatter as the others on average.
     """
     root = _root(normal)
     least = root @ data @ root / run_factor + (1.0 - 1.0 / run_factor) * held
-    seen, axes = np.linalg.eigh(root @ meat @ root - least)
+    seen, axes = np.linalg.eigh(root @ score @ root - least)
     back = np.linalg.inv(root)
     return np.asarray(back @ (least + (axes * np.maximum(seen, 0.0)) @ axes.T) @ back)
 

@@ -1,4 +1,4 @@
-"""What the atlas says at the measured travels and volumes, for many sets of parameters in one batch."""
+"""Values of the atlas at the measured travels and volumes, for many sets of parameters in one batch."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ _GAP = 0.08
 class AtlasModel:
     """The atlas at ``points``. Parameter sets are (s, 4) coordinates, values (s, N) in the order of `ObservationPoints.values`.
 
-    Raises InputError where the atlas does not speak for the sensor.
+    Raises InputError where the atlas does not cover the sensor.
     """
 
     def __init__(self, sensor: Sensor, points: ObservationPoints) -> None:
         why = outside_atlas(sensor)
         if why is not None:
-            raise InputError(f"calibrate: the atlas does not speak for this sensor: {why}; no fit without it")
+            raise InputError(f"calibrate: the atlas does not cover this sensor: {why}; no fit without it")
         self.sensor, self.points = sensor, points
         self._last: tuple[bytes, Array, Flags] | None = None
         size, depth = sensor.dome.inner_radius, points.travel / sensor.dome.inner_radius
@@ -40,13 +40,13 @@ class AtlasModel:
         self._between = np.linspace(0.0, deepest, int(np.ceil(deepest / _GAP)) + 1)[1:] * size if wide else np.zeros(0)
 
     def values(self, sets: Array) -> tuple[Array, Flags]:
-        """Values and whether the model has them, (s, N) each. The last answer is kept: fits begin where others end."""
+        """Values and whether the model has them, (s, N) each. The last result is kept: fits begin where others end."""
         key = sets.tobytes()
         if self._last is None or self._last[0] != key:
-            self._last = key, *self._asked(sets)
+            self._last = key, *self._evaluated(sets)
         return self._last[1], self._last[2]
 
-    def _asked(self, sets: Array) -> tuple[Array, Flags]:
+    def _evaluated(self, sets: Array) -> tuple[Array, Flags]:
         atlas, size = shipped(), self.sensor.dome.inner_radius
         walls, k = np.unique(np.exp(sets[:, WALL]) / size, return_inverse=True)
         slices = atlas.slices(walls, ("contact_radius",))
@@ -61,14 +61,14 @@ class AtlasModel:
         each = np.repeat(np.arange(s), c)
         batch = self._batch(sets[each], np.tile(self.points.driving, s))
         press = AtlasPress(batch, slices, k[each])
-        asked = np.maximum(self.points.travel[None] + sets[:, OFFSET, None, None], 0.0).reshape(s * c, m)
-        rows = np.hstack([np.zeros((s * c, 1)), asked, np.broadcast_to(self._between, (s * c, self._between.size))])
+        travels = np.maximum(self.points.travel[None] + sets[:, OFFSET, None, None], 0.0).reshape(s * c, m)
+        rows = np.hstack([np.zeros((s * c, 1)), travels, np.broadcast_to(self._between, (s * c, self._between.size))])
         order = np.argsort(rows, axis=1, kind="stable")
         track = press.march(np.take_along_axis(rows, order, axis=1) / size)
         place = np.argsort(order, axis=1, kind="stable")[:, 1 : m + 1]
 
-        def at(found: NDArray[Any]) -> NDArray[Any]:
-            return np.take_along_axis(found, place, axis=1).reshape(s, c * m)
+        def at(field: NDArray[Any]) -> NDArray[Any]:
+            return np.take_along_axis(field, place, axis=1).reshape(s, c * m)
 
         mu = batch.shear_modulus[:, None]
         edge = press.field("contact_radius", track) < press.flat_radius[:, None]
@@ -81,10 +81,17 @@ class AtlasModel:
             return np.full(len(sets), value)
 
         return SensorBatch(
-            all_of(self.sensor.dome.inner_radius), np.exp(sets[:, WALL]), np.exp(sets[:, MODULUS]),
-            all_of(self.sensor.gas.ambient_pressure), sets[:, DEAD], driving, all_of(self.sensor.protocol.depth),
-            all_of(self.sensor.protocol.plate_radius), all_of(np.inf), all_of(np.inf),
-        )  # fmt: skip
+            all_of(self.sensor.dome.inner_radius),
+            np.exp(sets[:, WALL]),
+            np.exp(sets[:, MODULUS]),
+            all_of(self.sensor.gas.ambient_pressure),
+            sets[:, DEAD],
+            driving,
+            all_of(self.sensor.protocol.depth),
+            all_of(self.sensor.protocol.plate_radius),
+            all_of(np.inf),
+            all_of(np.inf),
+        )
 
     def _injections(self, sets: Array, slices: AtlasSlices, k: Index) -> tuple[Array, Flags]:
         """Gauge pressures after the injections, (s, i n)."""

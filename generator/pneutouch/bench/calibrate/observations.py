@@ -1,4 +1,4 @@
-"""What a calibration is fitted to: indentation curves and injections of one sensor, as arrays of one shape."""
+"""Data of a calibration: indentation curves and injections of one sensor, as arrays of one shape."""
 
 from __future__ import annotations
 
@@ -111,17 +111,18 @@ class ObservationPoints(NamedTuple):
     def full_scale(self) -> Array:
         """Greatest reading of each value's run and channel, (N,)."""
         parts = self.force, self.rise, self.pressure
-        return np.concatenate([
-            np.broadcast_to(np.abs(part).max(axis=1, initial=0.0)[:, None], part.shape).ravel() for part in parts
-        ])  # fmt: skip
+        return np.concatenate(
+            [np.broadcast_to(np.abs(part).max(axis=1, initial=0.0)[:, None], part.shape).ravel() for part in parts]
+        )
 
     def with_values(self, values: Array) -> ObservationPoints:
         """The same points with other values, (N,)."""
         force, rise, pressure = np.split(values, [self.force.size, 2 * self.force.size])
         return self._replace(
-            force=force.reshape(self.force.shape), rise=rise.reshape(self.rise.shape),
+            force=force.reshape(self.force.shape),
+            rise=rise.reshape(self.rise.shape),
             pressure=pressure.reshape(self.pressure.shape),
-        )  # fmt: skip
+        )
 
     @property
     def use(self) -> Flags:
@@ -157,13 +158,24 @@ def points_of(observations: Observations) -> ObservationPoints:
     group = np.array(
         [observations.driving_pressures_kPa.index(curve.run.driving_pressure_kPa) for curve in observations.curves]
     )
-    found = ObservationPoints(
-        travel, force, rise, force_error, rise_error, there.astype(bool), driving, volume, pressure, pressure_error,
-        known.astype(bool), _travel_errors(observations.curves), group,
-    )  # fmt: skip
-    if found.there.sum() + found.known.sum() < 2:
-        raise InputError("calibrate: one point is not enough; there must be at least two beside the origin")
-    return found
+    points = ObservationPoints(
+        travel,
+        force,
+        rise,
+        force_error,
+        rise_error,
+        there.astype(bool),
+        driving,
+        volume,
+        pressure,
+        pressure_error,
+        known.astype(bool),
+        _travel_errors(observations.curves),
+        group,
+    )
+    if points.there.sum() + points.known.sum() < 2:
+        raise InputError("calibrate: one point is not enough; there must be at least two without the origin")
+    return points
 
 
 def _curve(curve: MeasuredCurve, rig: Rig) -> tuple[Array, ...]:
@@ -192,29 +204,29 @@ def clipped(curve: MeasuredCurve, rig: Rig) -> Flags:
 
 
 def _travel_errors(curves: Sequence[MeasuredCurve]) -> Array:
-    """Standard errors of the runs' first contacts, mm, (c,): of the indentations that each is the middle of.
+    """Standard errors of the runs' first contacts, mm, (c,): of the indentations that each is the median of.
 
     The spread is that of all runs together: of a few indentations it would be far too small as often as too large.
     """
-    found = []
+    groups = []
     for curve in curves:
         onsets = np.array([indent.onset for indent in curve.indents])
-        found.append(onsets[np.isfinite(onsets)][:EARLY])
-    free = sum(max(onsets.size - 1, 0) for onsets in found)
-    squares = sum(float(((onsets - onsets.mean()) ** 2).sum()) for onsets in found if onsets.size > 1)
+        groups.append(onsets[np.isfinite(onsets)][:EARLY])
+    free = sum(max(onsets.size - 1, 0) for onsets in groups)
+    squares = sum(float(((onsets - onsets.mean()) ** 2).sum()) for onsets in groups if onsets.size > 1)
     spread = np.sqrt(squares / free) if free else 0.0
-    # A middle is less sure than a mean, by pi/2 in variance for many normal values.
-    return np.array([spread * np.sqrt(0.5 * np.pi / max(onsets.size, 1)) for onsets in found])
+    # The variance of a median is pi/2 times that of the mean, for many normal values.
+    return np.array([spread * np.sqrt(0.5 * np.pi / max(onsets.size, 1)) for onsets in groups])
 
 
 def _slopes(travel: Array, values: Array) -> Array:
     """Slopes along each row, (c, m); of repeated travels, which only pad, zero."""
-    found = np.zeros_like(values)
+    slopes = np.zeros_like(values)
     for row, (x, y) in enumerate(zip(travel, values, strict=True)):
         at = np.concatenate([[0.0], np.unique(x)])
         slope = np.gradient(np.concatenate([[0.0], y[: at.size - 1]]), at)[1:]
-        found[row, : slope.size] = slope
-    return found
+        slopes[row, : slope.size] = slope
+    return slopes
 
 
 def _injection(injection: Injection) -> tuple[Array, ...]:
@@ -231,9 +243,9 @@ def _injection(injection: Injection) -> tuple[Array, ...]:
 def _padded(rows: list[tuple[Array, ...]], columns: int) -> list[Array]:
     """Columns of rows as (rows, longest) arrays, the last value repeated, and which entries are there."""
     longest = max((row[0].size for row in rows), default=0)
-    found = [
+    arrays = [
         np.array([np.pad(row[k], (0, longest - row[k].size), mode="edge") for row in rows]).reshape(len(rows), longest)
         for k in range(columns)
     ]
     there = np.array([np.arange(longest) < row[0].size for row in rows]).reshape(len(rows), longest)
-    return [*found, there]
+    return [*arrays, there]

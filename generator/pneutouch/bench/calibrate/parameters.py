@@ -1,4 +1,4 @@
-"""What can be fitted, in which coordinate, within which bounds, and what is believed of it beforehand."""
+"""The parameters that can be fitted: coordinates, bounds and priors."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ OFFSET_PRIOR = 0.05
 _STIFFEST = 100.0
 """Greatest shear modulus fitted, MPa: our choice, far above any elastomer."""
 _LARGEST = 1e6
-"""Greatest dead volume fitted, mm3: the design file's own bound, 1000 mL."""
+"""Greatest dead volume fitted, mm3: the bound of the design file, 1000 mL."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,18 +51,18 @@ class CalibrationParameters:
         fitted: Numbers of those that are fitted, ascending.
         start: Design values; what is not fitted keeps them.
         low, high: Bounds.
-        belief: Standard deviations believed beforehand around ``start``.
-        even: Which of the beliefs are even within bounds; the others are normal.
+        prior_spread: Standard deviations of the priors around ``start``.
+        even: Which of the priors are uniform; the others are normal.
         step: Finite difference steps.
-        origin: Where each belief comes from.
-        priors: Whether the beliefs count in the fit.
+        origin: Origin of each prior.
+        priors: Whether the priors are used in the fit.
     """
 
     fitted: tuple[int, ...]
     start: Array
     low: Array
     high: Array
-    belief: Array
+    prior_spread: Array
     even: Flags
     step: Array
     origin: tuple[str, ...]
@@ -70,7 +70,7 @@ class CalibrationParameters:
 
     @property
     def others(self) -> tuple[int, ...]:
-        """Numbers of those that are not fitted but believed uncertain; none where the beliefs do not count."""
+        """Numbers of those that are not fitted but have a prior; none where the priors are not used."""
         return tuple(k for k in range(len(NAMES)) if k not in self.fitted) if self.priors else ()
 
     @property
@@ -80,9 +80,9 @@ class CalibrationParameters:
 
     def full(self, fitted: Array) -> Array:
         """All four from the fitted ones, (..., k) to (..., 4)."""
-        found = np.broadcast_to(self.start, (*fitted.shape[:-1], 4)).copy()
-        found[..., list(self.fitted)] = fitted
-        return found
+        full = np.broadcast_to(self.start, (*fitted.shape[:-1], 4)).copy()
+        full[..., list(self.fitted)] = fitted
+        return full
 
 
 def outside_value(k: int, coordinate: float) -> float:
@@ -113,14 +113,21 @@ def parameters(
     low = [np.log(sensor.gas.ambient_pressure / recipe.stiffest), np.log(recipe.thinnest * size), 0.0, -OFFSET_BOUND]
     high = [np.log(_STIFFEST), np.log(recipe.thickest * size), _LARGEST, OFFSET_BOUND]
     start = [np.log(sensor.wall.shear_modulus), np.log(sensor.dome.wall_thickness), sensor.gas.dead_volume, 0.0]
-    belief, even, origin = _beliefs(sensor, material, printer)
+    prior_spread, even, origin = _priors(sensor, material, printer)
     return CalibrationParameters(
-        parse_names(names), np.array(start), np.array(low), np.array(high), belief, even,
-        np.array([1e-3, 1e-3, 1e-3 * (rest + sensor.gas.dead_volume), 1e-3 * size]), origin, priors,
-    )  # fmt: skip
+        parse_names(names),
+        np.array(start),
+        np.array(low),
+        np.array(high),
+        prior_spread,
+        even,
+        np.array([1e-3, 1e-3, 1e-3 * (rest + sensor.gas.dead_volume), 1e-3 * size]),
+        origin,
+        priors,
+    )
 
 
-def _beliefs(sensor: Sensor, material: Material, printer: Printer) -> tuple[Array, Flags, tuple[str, ...]]:
+def _priors(sensor: Sensor, material: Material, printer: Printer) -> tuple[Array, Flags, tuple[str, ...]]:
     """Standard deviations in the coordinates, which are even, and where they come from: the sources of every prediction's
     uncertainty."""
     built = build_sources(batch_of(sensor, [0.0]), printer)
@@ -129,9 +136,9 @@ def _beliefs(sensor: Sensor, material: Material, printer: Printer) -> tuple[Arra
         [source for source in built if source.acts_on == "wall_thickness"],
         [source for source in built if source.acts_on == "dead_volume"],
     )
-    found = [_together(group) for group in groups]
+    priors = [_together(group) for group in groups]
     offset = (OFFSET_PRIOR, f"normal, {OFFSET_PRIOR:g} mm: our choice, what is lost of the first touch below the noise")
-    spreads, origins = zip(*found, offset, strict=True)
+    spreads, origins = zip(*priors, offset, strict=True)
     even = [len(group) == 1 and group[0].distribution.endswith("rectangular") for group in groups]
     return np.array(spreads), np.array([*even, False]), tuple(origins)
 

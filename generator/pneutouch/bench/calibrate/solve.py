@@ -15,8 +15,8 @@ _ROUNDS = 60
 _DAMPING = 1e-3
 _MOST = 1e9
 _SETTLED = 1e-4
-"""A step that is to lower the sum of squares by less, a hundredth of a standard deviation, ends the search. It is counted in
-the sum, not the step: along a direction that nothing holds, steps stay long."""
+"""The search ends where a step would lower the sum of squares by less, a hundredth of a standard deviation. The criterion is the
+sum, not the step: along an undetermined direction steps stay long."""
 _MOST_LOST = 0.5
 """A step that loses more than this share of a run's points is too long: our choice; else runs could vanish unseen."""
 
@@ -28,7 +28,7 @@ class LeastSquaresSolution:
     Attributes:
         at: Coordinates of the fitted parameters.
         residual: Model less measured over the standard deviation, 0 where not used, (N,).
-        own: What is left of it once what many values share is taken off, (N,).
+        local: The residual less the contribution of the shared unknowns, (N,).
         jacobian: Its derivatives, (N, k).
         model: Values of the model, (N,).
         use: Points that were used, (N,).
@@ -38,7 +38,7 @@ class LeastSquaresSolution:
 
     at: Array
     residual: Array
-    own: Array
+    local: Array
     jacobian: Array
     model: Array
     use: Flags
@@ -55,11 +55,11 @@ class LeastSquaresProblem:
         self.shared = shared / errors[:, None]
         fitted = list(chosen.fitted)
         self.low, self.high, self.step = chosen.low[fitted], chosen.high[fitted], chosen.step[fitted]
-        self.centre, belief = chosen.start[fitted], chosen.belief[fitted]
-        self.weight: Array = belief**-2.0 if chosen.priors else np.zeros(len(fitted))
+        self.centre, prior_spread = chosen.start[fitted], chosen.prior_spread[fitted]
+        self.weight: Array = prior_spread**-2.0 if chosen.priors else np.zeros(len(fitted))
 
     def look(self, at: Array) -> tuple[Array, Array, Array, Flags]:
-        """Residuals (N,), derivatives (N, k), values (N,), and where all of them are known; one batch."""
+        """Residuals (N,), derivatives (N, k), values (N,), and where the model has all of them; one batch."""
         # Differences point inwards where the bound is near.
         step = np.where(at + self.step <= self.high, self.step, -self.step)
         sets = self.chosen.full(np.vstack([at, at + np.diag(step)]))
@@ -88,27 +88,27 @@ class LeastSquaresProblem:
         return np.vstack([seen - shared @ best, best])
 
     def cost(self, residual: Array, use: Flags, at: Array) -> float:
-        """Sum of squares, beliefs included."""
+        """Sum of squares, priors included."""
         return float((self.whitened(residual[:, None], use) ** 2).sum() + (self.weight * (at - self.centre) ** 2).sum())
 
 
 def solve(problem: LeastSquaresProblem, start: Array) -> LeastSquaresSolution:
     """The least sum of squares from ``start``, (k,). Raises ComputationError where the search does not end.
 
-    Points that the model does not have on the way are left out; once the search has ended, those it has there come back.
+    Points outside the model are left out during the search; those that are inside at its end are included again.
     """
     at = np.clip(start, problem.low, problem.high)
     rounds = 0
     for _ in range(3):
-        found = _descend(problem, at)
-        rounds += found.rounds
-        at = found.at
-        if found.use.sum() == problem.model.points.use.sum():
+        solution = _descend(problem, at)
+        rounds += solution.rounds
+        at = solution.at
+        if solution.use.sum() == problem.model.points.use.sum():
             break
         known = problem.look(at)[3]
-        if (known & problem.model.points.use).sum() == found.use.sum():
+        if (known & problem.model.points.use).sum() == solution.use.sum():
             break
-    return replace(found, rounds=rounds)
+    return replace(solution, rounds=rounds)
 
 
 def _descend(problem: LeastSquaresProblem, at: Array) -> LeastSquaresSolution:
@@ -146,16 +146,16 @@ def _descend(problem: LeastSquaresProblem, at: Array) -> LeastSquaresSolution:
             f"calibrate: no least sum of squares within {_ROUNDS} steps; fit fewer parameters with `fit`"
         )
     keep = use[:, None]
-    own = np.zeros_like(residual)
-    own[use] = problem.whitened(residual[:, None], use)[: int(use.sum()), 0]
+    local = np.zeros_like(residual)
+    local[use] = problem.whitened(residual[:, None], use)[: int(use.sum()), 0]
     return LeastSquaresSolution(
-        at, np.where(use, residual, 0.0), own, np.where(keep, jacobian, 0.0), values, use, bound, rounds
+        at, np.where(use, residual, 0.0), local, np.where(keep, jacobian, 0.0), values, use, bound, rounds
     )
 
 
 def _step(
     problem: LeastSquaresProblem, at: Array, residual: Array, jacobian: Array, use: Flags, damping: float
-) -> tuple[Array, Flags, float]:  # fmt: skip
+) -> tuple[Array, Flags, float]:
     """The damped step, which parameters it holds on their bounds, and by how much it is to lower the cost."""
     whole = problem.whitened(np.column_stack([residual, jacobian]), use)
     r, j = whole[:, 0], whole[:, 1:]

@@ -1,4 +1,4 @@
-"""A rig that is none: records as a laboratory would get them, from known sensors. Always labelled as simulated."""
+"""The simulator: records like those of a rig, from known sensors. They are always labelled as simulated."""
 
 from pneutouch.bench.simulate.curve import PressCurve, press_curves
 from pneutouch.bench.simulate.rig import RigModel
@@ -21,4 +21,4 @@ __all__ = [
     "simulate_leak",
     "simulate_run",
     "specimen_figures",
-]  # fmt: skip
+]

@@ -31,7 +31,7 @@ class PressCurve:
     Attributes:
         driving: Driving pressure.
         indentation, force, rise: The curve; the first point is the origin.
-        ends: What ends the range before the depth asked for, and where (mm); None where nothing does.
+        ends: What ends the range before the requested depth, and where (mm); None where nothing does.
     """
 
     driving: float
@@ -42,10 +42,10 @@ class PressCurve:
 
     @property
     def reach(self) -> float:
-        """Greatest plate travel that the curve knows."""
+        """Greatest plate travel of the curve."""
         return float(self.indentation[-1])
 
-    def knows(self, depth: float) -> bool:
+    def covers(self, depth: float) -> bool:
         """Whether a plate travel lies within the range."""
         return depth <= self.reach * (1 + _ROUNDING)
 
@@ -53,8 +53,8 @@ class PressCurve:
         """Force and rise at plate travels (n,) from zero to the reach; monotone between the points (Fritsch and Carlson)."""
         from scipy.interpolate import PchipInterpolator
 
-        found = PchipInterpolator(self.indentation, np.stack([self.force, self.rise], axis=1))(travel)
-        return found[..., 0], found[..., 1]
+        values = PchipInterpolator(self.indentation, np.stack([self.force, self.rise], axis=1))(travel)
+        return values[..., 0], values[..., 1]
 
 
 @dataclass(frozen=True, slots=True)

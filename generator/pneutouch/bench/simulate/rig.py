@@ -1,8 +1,8 @@
-"""What the instruments make of what there is."""
+"""The instruments of the simulated rig: noise, drift, play, ranges."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -16,7 +16,7 @@ MINUTE = 60.0
 
 @dataclass(frozen=True, slots=True)
 class RigModel:
-    """Noise, drift and play of a rig; inner units. Zero offsets are drawn once a run."""
+    """Noise, drift and play of a rig; internal units. Zero offsets are drawn once a run."""
 
     force_noise: float = parameter(
         0.02,
@@ -62,12 +62,9 @@ class RigModel:
 
     @classmethod
     def perfect(cls) -> RigModel:
-        """A rig that reads what is there."""
-        return cls(
-            force_noise=0.0, pressure_noise=0.0, pressure_step=0.0, cutoff=np.inf, force_range=np.inf, pressure_range=np.inf,
-            force_drift=0.0, temperature=0.0, leak=0.0, backlash=0.0, position_noise=0.0, missed=0.0, force_zero=0.0,
-            pressure_zero=0.0, position_zero=0.0,
-        )  # fmt: skip
+        """A rig that reads the true values."""
+        unlimited = dict.fromkeys(("cutoff", "force_range", "pressure_range"), np.inf)
+        return cls(**{one.name: unlimited.get(one.name, 0.0) for one in fields(cls)})
 
     def share(self, rate: float) -> float:
         """Weight of the new sample in the low pass at ``rate`` Hz."""
@@ -89,9 +86,8 @@ class RigModel:
         """
         share = self.share(rate)
         kept = np.sqrt(share / (2.0 - share))
-        return float(self.force_noise * kept), float(
-            np.hypot(self.pressure_noise * kept, self.pressure_step / np.sqrt(12))
-        )
+        pressure = np.hypot(self.pressure_noise * kept, self.pressure_step / np.sqrt(12))
+        return float(self.force_noise * kept), float(pressure)
 
     def drift(self, driving: float) -> float:
         """Slope of the shut-in pressure at a driving pressure (MPa), MPa/s."""

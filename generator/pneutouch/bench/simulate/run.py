@@ -1,4 +1,4 @@
-"""One run on the simulated rig: a protocol, a curve, and what the instruments write."""
+"""One run on the simulated rig: a protocol, a curve, and the readings of the instruments."""
 
 from __future__ import annotations
 
@@ -31,24 +31,30 @@ class RecordSamples(NamedTuple):
 
 
 def within(protocol: RunProtocol, reach: float) -> RunProtocol:
-    """The protocol with no depth beyond ``reach``: steps leave the deeper ones out, the others stop there."""
+    """The protocol with no depth beyond ``reach``: steps omit the deeper ones, the others stop there."""
     if protocol.kind in ("loop", "relaxation"):
         return replace(protocol, depths=tuple(min(depth, reach) for depth in protocol.depths))
     return replace(protocol, depths=tuple(depth for depth in protocol.depths if depth <= reach * (1 + 1e-9)))
 
 
 def simulate_run(
-    curve: PressCurve, protocol: RunProtocol, rig: RigModel, rate: float, rng: np.random.Generator, *,
-    wall: WallMemory = WALL, scatter: ScatterModel = SCATTER,
-) -> RecordSamples:  # fmt: skip
+    curve: PressCurve,
+    protocol: RunProtocol,
+    rig: RigModel,
+    rate: float,
+    rng: np.random.Generator,
+    *,
+    wall: WallMemory = WALL,
+    scatter: ScatterModel = SCATTER,
+) -> RecordSamples:
     """Simulate one run at ``rate`` Hz.
 
     Memory of the wall lasts over the whole run; without contact there is no force. Raises ValueError for a protocol that
     leaves the curve (see `within`).
     """
-    if not curve.knows(max(protocol.depths)):
+    if not curve.covers(max(protocol.depths)):
         raise ValueError(f"depth {max(protocol.depths):g} mm is beyond the curve, {curve.reach:g} mm")
-    knots, travels = protocol.way()
+    knots, travels = protocol.knots()
     time = np.arange(round(float(knots[-1]) * rate) + 1) / rate
     travel = np.interp(time, knots, travels)
     force, rise = _pressed(curve, travel, wall, 1.0 / rate)
@@ -81,10 +87,10 @@ def _pressed(curve: PressCurve, travel: Array, wall: WallMemory, step: float) ->
 
 
 def _shut_in(protocol: RunProtocol, time: Array, set_to: Array, drift: float, rise: Array) -> Array:
-    """Pressure of the shut-in gas; in a rest with reset it is vented and filled again, and drift begins anew."""
+    """Pressure of the shut-in gas; in a rest with reset it is vented and filled again, and drift begins again."""
     if not protocol.reset or protocol.rest <= 0:
         return np.asarray(set_to[0] + drift * time + rise)
-    starts = protocol.way()[0][:-1:4]
+    starts = protocol.knots()[0][:-1:4]
     vents, shut = starts + VENT * protocol.rest, starts + SHUT * protocol.rest
     fade = VALVE * protocol.rest
     number = np.searchsorted(shut, time, side="right")
@@ -92,7 +98,7 @@ def _shut_in(protocol: RunProtocol, time: Array, set_to: Array, drift: float, ri
     base = np.concatenate([[0.0], rise[np.minimum(np.searchsorted(time, shut), time.size - 1)]])
     opened = np.searchsorted(vents, time, side="right")
     closed = opened == number
-    # While the valves are open the regulator holds what it is set to, whatever the wall does.
+    # While the valves are open the regulator holds its set pressure, whatever the wall does.
     vented = time - np.concatenate([[-np.inf], vents])[opened]
     filled = vented - (REFILL - VENT) * protocol.rest
     valve = np.where(filled < 0, np.exp(-np.maximum(vented, 0.0) / fade), -np.expm1(-np.maximum(filled, 0.0) / fade))
@@ -101,7 +107,7 @@ def _shut_in(protocol: RunProtocol, time: Array, set_to: Array, drift: float, ri
 
 
 def _lagging(time: Array, knots: Array, travels: Array, play: float) -> Array:
-    """The stage's reading: going in it is the plate's place, coming out it stays behind by up to ``play``."""
+    """The stage's reading: in loading the plate's position, in unloading it lags by up to ``play``."""
     if play <= 0:
         return np.asarray(np.interp(time, knots, travels))
     times, reads = [knots[0]], [travels[0] + play]
@@ -120,7 +126,7 @@ def _lagging(time: Array, knots: Array, travels: Array, play: float) -> Array:
 
 
 def _read(rig: RigModel, rate: float, rng: np.random.Generator, true: RecordSamples) -> RecordSamples:
-    """What the instruments write of what is there."""
+    """Readings of the instruments from the true values."""
     time, position, force, pressure = true
     zero = rng.standard_normal(3)
     noise = rng.standard_normal((3, time.size))

@@ -1,4 +1,4 @@
-"""How specimens of one resin differ, and how runs of one specimen do."""
+"""Scatter between specimens of one resin and between runs of one specimen."""
 
 from __future__ import annotations
 
@@ -20,12 +20,14 @@ _LEAST_WALL = 0.05
 
 @dataclass(frozen=True, slots=True)
 class ScatterModel:
-    """What differs from specimen to specimen and from run to run; inner units."""
+    """Differences between specimens and between runs; internal units."""
 
     modulus: float = parameter(
-        0.04, "ln", "standard deviation of the modulus' logarithm: hardness spread of the paper's Table 1 (TangoPlus 1.0 Shore A) "
+        0.04,
+        "ln",
+        "standard deviation of the modulus' logarithm: hardness spread of the paper's Table 1 (TangoPlus 1.0 Shore A) "
         "times Gent's slope, 0.042 at Shore A 27.6",
-    )  # fmt: skip
+    )
     wall: float = parameter(
         0.10, "mm", "greatest deviation of the wall, even within: accuracy of the PolyJet machine (printprofiles)"
     )
@@ -43,9 +45,11 @@ class ScatterModel:
         0.002, "1", "standard deviation of a run's gain on the pressure rise: paper, Table S1, 0.0051 of 2.547 kPa/N"
     )
     reset: float = parameter(
-        0.05 * KPA, "MPa", "standard deviation of the driving pressure each time it is set: our choice, a hand regulator; "
+        0.05 * KPA,
+        "MPa",
+        "standard deviation of the driving pressure each time it is set: our choice, a hand regulator; "
         "its effect upon the curve, under 0.1 % of the sensitivity, is left to the gain",
-    )  # fmt: skip
+    )
 
     @classmethod
     def none(cls) -> ScatterModel:
@@ -65,9 +69,10 @@ class SimulatedSpecimens:
     def draw(cls, scatter: ScatterModel, count: int, rng: np.random.Generator) -> SimulatedSpecimens:
         """``count`` specimens."""
         return cls(
-            np.exp(scatter.modulus * rng.standard_normal(count)), scatter.wall * rng.uniform(-1.0, 1.0, count),
+            np.exp(scatter.modulus * rng.standard_normal(count)),
+            scatter.wall * rng.uniform(-1.0, 1.0, count),
             scatter.dead_volume * rng.uniform(0.0, 1.0, count),
-        )  # fmt: skip
+        )
 
     def sensor(self, nominal: Sensor, k: int, factor: float = 1.0) -> Sensor:
         """The k-th specimen of a nominal sensor, its modulus times ``factor`` for its age."""

@@ -1,9 +1,9 @@
-"""What a perfect reading of simulated runs must find: figures of each specimen and of the population it is from."""
+"""True values of simulated runs: figures of each specimen and of its population."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import cast
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.atlas.respond import DEPTH, respond
 from pneutouch.mechanics.response import FigureArrays, figures, hysteresis, lines
 from pneutouch.mechanics.sensor import Sensor
+from pneutouch.spec.campaign import RunKind
 from pneutouch.units import KPA
 
 SPECIMENS = 4000
@@ -31,20 +32,23 @@ _ENOUGH = 0.5
 
 _LOOP_RATE = 1000.0
 _FIRST = 1.0
-"""Seconds into the hold from which relaxation is counted: the stop of the plate has rung down."""
+"""Seconds into the hold from which relaxation is counted: the plate no longer oscillates."""
 
 _INSTANTS = 200
 _KEYS = (
-    ("sensitivity_kPa_per_N", "sensitivity_kPa_per_N", 1.0), ("sensitivity_through_origin_kPa_per_N", "sensitivity_through_origin_kPa_per_N", 1.0),
-    ("r_squared", "r_squared", 1.0), ("nonlinearity_percent", "nonlinearity", 100.0), ("stiffness_N_per_mm", "stiffness", 1.0),
+    ("sensitivity_kPa_per_N", "sensitivity_kPa_per_N", 1.0),
+    ("sensitivity_through_origin_kPa_per_N", "sensitivity_through_origin_kPa_per_N", 1.0),
+    ("r_squared", "r_squared", 1.0),
+    ("nonlinearity_percent", "nonlinearity", 100.0),
+    ("stiffness_N_per_mm", "stiffness", 1.0),
     ("force_range_N", "force_high", 1.0),
-)  # fmt: skip
+)
 """Figures of a loading curve: key, field of `FigureArrays`, factor."""
 
 
 @dataclass(frozen=True, slots=True)
 class SimulationTruth:
-    """All that the simulator makes up: how specimens and runs scatter, what the rig does, the wall's memory.
+    """All assumptions of the simulator: scatter of specimens and runs, the rig, the memory of the wall.
 
     ``rest`` is the longest rest in s (None: the protocol's), ``specimens`` how many are drawn for a population.
     """
@@ -55,15 +59,16 @@ class SimulationTruth:
     rest: float | None = None
     specimens: int = SPECIMENS
 
-    def protocol(self, kind: Any, inner_radius: float, reach: float) -> RunProtocol:
-        """The protocol of a kind as it is simulated: rests as asked for, no depth beyond the range."""
-        found = within(protocol(kind, inner_radius), reach)
-        return found if self.rest is None else found.quicker(min(self.rest, found.rest))
+    def protocol(self, kind: str, inner_radius: float, reach: float) -> RunProtocol:
+        """The protocol of a kind as it is simulated: its rests shortened to ``rest``, no depth beyond the range."""
+        reduced = within(protocol(cast(RunKind, kind), inner_radius), reach)
+        return reduced if self.rest is None else reduced.quicker(min(self.rest, reduced.rest))
 
 
 @dataclass(frozen=True, slots=True)
 class Population:
-    """Sensors of one resin and age at one driving pressure: mean figures by key, their spread over specimens, how many, and where from."""
+    """Sensors of one resin and age at one driving pressure: mean figures by key, their spread over specimens, the
+    number of specimens, and the basis in words."""
 
     figures: dict[str, float | None]
     spread: dict[str, float]
@@ -90,12 +95,12 @@ def specimen_figures(
     """
     steps = truth.protocol("steps", inner_radius, curve.reach)
     depth, force, rise = loading(curve, steps, truth.wall)
-    found = _by_key(lines(depth, force, rise / KPA))
+    loading_figures = _by_key(lines(depth, force, rise / KPA))
     deep = loading(curve, truth.protocol("saturation", inner_radius, curve.reach), truth.wall)
     saturation = figures(deep[0], deep[1], deep[2] / KPA)
     noise = truth.rig.noise(rate)
     return {
-        **found,
+        **loading_figures,
         "saturation_force_N": None if saturation is None else saturation.saturation_force,
         **loop_figures(curve, truth, inner_radius),
         **relaxation_figures(curve, truth, inner_radius),
@@ -112,7 +117,7 @@ def loop_figures(curve: PressCurve, truth: SimulationTruth, inner_radius: float)
     record = simulate_run(
         curve, loop, RigModel.perfect(), _LOOP_RATE, np.random.default_rng(0), wall=truth.wall, scatter=quiet
     )
-    knots, _ = loop.way()
+    knots, _ = loop.knots()
     rise, both = record.pressure - curve.driving, []
     touched = record.force > 0
     for k in range(len(loop.depths)):
@@ -132,32 +137,32 @@ def relaxation_figures(curve: PressCurve, truth: SimulationTruth, inner_radius: 
 
     The slope is the least-squares line through instants even in log time; a loss counts as positive.
     """
-    asked = truth.protocol("relaxation", inner_radius, curve.reach)
-    depth = np.array(asked.depths[:1])
+    test = truth.protocol("relaxation", inner_radius, curve.reach)
+    depth = np.array(test.depths[:1])
     force, rise = (float(x[0]) for x in curve.at(depth))
-    step = depth[0] / asked.speed / 2000
+    step = depth[0] / test.speed / 2000
     ramp = np.stack(curve.at(np.linspace(0.0, depth[0], 2001)), axis=1)
     start = [term[-1] for term in truth.wall.terms(ramp, step)]
-    time = np.geomspace(_FIRST, asked.hold, _INSTANTS)
-    found = {}
+    time = np.geomspace(_FIRST, test.hold, _INSTANTS)
+    values = {}
     rig, wall = truth.rig, truth.wall
-    for k, (name, level, shares, drift) in enumerate((
-        ("force", force, wall.force, rig.force_drift), ("pressure", rise, wall.rise, rig.drift(curve.driving)),
-    )):  # fmt: skip
+    for k, (name, level, shares, drift) in enumerate(
+        (("force", force, wall.force, rig.force_drift), ("pressure", rise, wall.rise, rig.drift(curve.driving)))
+    ):
         value = level + drift * time
         for share, term, tau in zip(shares, start, truth.wall.times, strict=True):
             value += share * term[k] * np.exp(-time / tau)
         slope = np.polyfit(np.log10(time), value, 1)[0]
-        found[f"relaxation_{name}_percent"] = float(100 * (value[0] - value[-1]) / value[0])
-        found[f"relaxation_{name}_percent_per_decade"] = float(-100 * slope / value[0])
-    return found
+        values[f"relaxation_{name}_percent"] = float(100 * (value[0] - value[-1]) / value[0])
+        values[f"relaxation_{name}_percent_per_decade"] = float(-100 * slope / value[0])
+    return values
 
 
 def population(pressed: PressCurves, k: int, truth: SimulationTruth, rate: float, seed: tuple[int, ...]) -> Population:
     """The population around a nominal sensor, pressed at its k-th driving pressure.
 
     Specimens come from the atlas in one batch. Mean and spread of each figure are then scaled by the nominal sensor's own
-    figure over the atlas's, so that they belong to the model that made the records. Where the atlas does not speak, the
+    figure over the atlas's, so that they belong to the model behind the records. Outside the atlas, the
     figures are the nominal sensor's and there is no spread but the runs'.
     """
     sensor, curve = pressed.sensor, pressed.curves[k]
@@ -166,15 +171,15 @@ def population(pressed: PressCurves, k: int, truth: SimulationTruth, rate: float
     drawn = _drawn(sensor, curve.driving, steps, truth, seed)
     if drawn is None:
         return Population(
-            _with_runs(nominal, truth, None), {}, 0, "the nominal sensor: the atlas does not speak for this population"
+            _with_runs(nominal, truth, None), {}, 0, "the nominal sensor: the atlas does not cover this population"
         )
     here, kept = drawn
     base = _by_key(FigureArrays(*(column[:1] for column in here)))
     mean, spread = dict(nominal), {}
     for key, name, factor in _KEYS:
         values = factor * getattr(here, name)[1:]
-        own, tabulated = nominal[key], base[key]
-        scale = own / tabulated if own is not None and tabulated else 1.0
+        simulated, tabulated = nominal[key], base[key]
+        scale = simulated / tabulated if simulated is not None and tabulated else 1.0
         mean[key], spread[key] = float(scale * values.mean()), float(scale * values.std(ddof=1))
     basis = (
         f"{kept} of {truth.specimens} specimens through the atlas, scaled to the {pressed.model}'s nominal sensor; "
@@ -198,16 +203,17 @@ def _drawn(
     batch = batch_of(nominal, np.full(count + 1, driving))
     wall = np.maximum(batch.wall_thickness[1:] + some.wall, 0.05 * sensor.dome.wall_thickness)
     batch = replace(
-        batch, shear_modulus=batch.shear_modulus * np.concatenate([[1.0], some.modulus]),
+        batch,
+        shear_modulus=batch.shear_modulus * np.concatenate([[1.0], some.modulus]),
         wall_thickness=np.concatenate([batch.wall_thickness[:1], wall]),
         dead_volume=batch.dead_volume + np.concatenate([[0.0], some.dead_volume]),
-    )  # fmt: skip
-    found = respond(batch, STEPS)
-    whole = np.flatnonzero((found.ends == DEPTH) & np.isfinite(found.range_end))
+    )
+    response = respond(batch, STEPS)
+    whole = np.flatnonzero((response.ends == DEPTH) & np.isfinite(response.range_end))
     if not whole.size or whole[0] != 0 or whole.size - 1 < _ENOUGH * count:
         return None
     nodes = np.linspace(0.0, depth, STEPS + 1)
-    force, rise = _held(found.force[whole], found.rise[whole], nodes, steps, truth.wall)
+    force, rise = _held(response.force[whole], response.rise[whole], nodes, steps, truth.wall)
     depths = np.broadcast_to(np.concatenate([[0.0], steps.depths]), force.shape)
     return lines(depths, force, rise / KPA), whole.size - 1
 
@@ -216,15 +222,15 @@ def _held(force: Array, rise: Array, nodes: Array, steps: RunProtocol, wall: Wal
     """Values at the ends of the holds of curves (n, nodes), the origin first."""
     from scipy.interpolate import PchipInterpolator
 
-    found = []
+    rows = []
     for values, memory in zip((force, rise), wall.held(steps, nodes), strict=True):
         here = PchipInterpolator(nodes, values, axis=1)(np.array(steps.depths)) + values @ memory.T
-        found.append(np.concatenate([np.zeros((len(values), 1)), here], axis=1))
-    return found[0], found[1]
+        rows.append(np.concatenate([np.zeros((len(values), 1)), here], axis=1))
+    return rows[0], rows[1]
 
 
-def _by_key(found: FigureArrays) -> dict[str, float | None]:
-    return {key: float(factor * np.ravel(getattr(found, name))[0]) for key, name, factor in _KEYS}
+def _by_key(arrays: FigureArrays) -> dict[str, float | None]:
+    return {key: float(factor * np.ravel(getattr(arrays, name))[0]) for key, name, factor in _KEYS}
 
 
 def _with_runs(mean: dict[str, float | None], truth: SimulationTruth, parts: float | None) -> dict[str, float | None]:

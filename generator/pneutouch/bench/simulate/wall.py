@@ -1,4 +1,4 @@
-"""The wall's memory: what force and pressure are above the relaxed curve, as a sum of fading terms.
+"""The memory of the wall: force and pressure above the relaxed curve, as a sum of decaying terms.
 
 A standard linear solid on the curve: each term follows q' + q/tau = share f', with f the relaxed force or pressure rise.
 No Prony data of TangoPlus or its digital materials are published: shares and times are the simulator's own.
@@ -14,7 +14,7 @@ from pneutouch.arrays import Array
 from pneutouch.bench.protocol import RunProtocol
 from pneutouch.bench.simulate.parameter import parameter
 
-_OWN = "the simulator's own, no data published; small, as the paper's Fig. S1 shows"
+_ASSUMED = "the simulator's own, no data published; small, as the paper's Fig. S1 shows"
 
 _RATE = 50.0
 """Samples a second at which the memory of a protocol is added up."""
@@ -24,12 +24,16 @@ _RATE = 50.0
 class WallMemory:
     """Terms of the memory: shares of force and of pressure rise, and times in s; equally many each."""
 
-    force: tuple[float, ...] = parameter((0.01, 0.01, 0.01), "1", _OWN)
-    rise: tuple[float, ...] = parameter((0.002, 0.002, 0.002), "1", _OWN + "; less than of the force: the air keeps it")
-    times: tuple[float, ...] = parameter((1.0, 10.0, 100.0), "s", _OWN + "; a decade apart, within a relaxation run")
+    force: tuple[float, ...] = parameter((0.01, 0.01, 0.01), "1", _ASSUMED)
+    rise: tuple[float, ...] = parameter(
+        (0.002, 0.002, 0.002), "1", _ASSUMED + "; less than of the force: the air keeps it"
+    )
+    times: tuple[float, ...] = parameter(
+        (1.0, 10.0, 100.0), "s", _ASSUMED + "; a decade apart, within a relaxation run"
+    )
 
     def over(self, values: Array, shares: tuple[float, ...], step: float) -> Array:
-        """What memory adds to relaxed values (n, ...) at equal ``step`` in s along the first axis."""
+        """Contribution of the memory to relaxed values (n, ...) at equal ``step`` in s along the first axis."""
         parts = [share * part for share, part in zip(shares, self.terms(values, step), strict=True)]
         return np.asarray(sum(parts, np.zeros_like(values)))
 
@@ -38,18 +42,18 @@ class WallMemory:
         from scipy.signal import lfilter
 
         change = np.diff(values, axis=0, prepend=values[:1])
-        found = []
+        terms = []
         for time in self.times:
             fade = np.exp(-step / time)
-            found.append(np.asarray(lfilter([(1.0 - fade) * time / step], [1.0, -fade], change, axis=0)))
-        return found
+            terms.append(np.asarray(lfilter([(1.0 - fade) * time / step], [1.0, -fade], change, axis=0)))
+        return terms
 
     def held(self, protocol: RunProtocol, nodes: Array) -> tuple[Array, Array]:
-        """What memory adds at the end of every hold, as matrices (depths, nodes) on relaxed values at travels ``nodes``.
+        """Contribution of the memory at the end of every hold, as matrices (depths, nodes) on relaxed values at travels ``nodes``.
 
         The first is for the force, the second for the rise, which counts from before the plate moves in. Between the nodes the curve counts as straight.
         """
-        knots, travels = protocol.way()
+        knots, travels = protocol.knots()
         count = round(float(knots[-1]) * _RATE) + 1
         travel = np.clip(np.interp(np.arange(count) / _RATE, knots, travels), 0.0, nodes[-1])
         ends = np.minimum(np.floor(knots[3::4] * _RATE + 1e-9).astype(int), count - 1)
@@ -65,7 +69,7 @@ def _hats(travel: Array, nodes: Array) -> Array:
     """Weights (n, m) of values at nodes for a straight interpolation at travels (n,)."""
     k = np.clip(np.searchsorted(nodes, travel, side="right") - 1, 0, nodes.size - 2)
     share = (travel - nodes[k]) / (nodes[k + 1] - nodes[k])
-    found = np.zeros((travel.size, nodes.size))
+    weights = np.zeros((travel.size, nodes.size))
     rows = np.arange(travel.size)
-    found[rows, k], found[rows, k + 1] = 1.0 - share, share
-    return found
+    weights[rows, k], weights[rows, k + 1] = 1.0 - share, share
+    return weights

@@ -63,7 +63,7 @@ def verdict(measured: CampaignReport) -> dict[str, Any]:
 def _notes(measured: CampaignReport) -> list[str]:
     """What is to be said under the verdicts."""
     failed, runs = len(measured.failures), len(measured.campaign.runs)
-    doubts = sum(doubt.kind != "note" for curve in measured.curves for doubt in curve.doubts)
+    doubts = sum(doubt.kind != "note" for curve in measured.curves for doubt in curve.warnings)
     notes = []
     if any(v.passed is None for v in measured.verdicts):
         notes.append("Not decided: the interval holds values on both sides of the limit; more specimens would tell.")

@@ -135,7 +135,7 @@ def doubts(measured: CampaignReport) -> tuple[list[Row], str]:
     """Stretches not to be trusted: file, seconds, why, used or not; mere notes are in figures.json."""
     rows = [
         [curve.run.file, f"{doubt.start:.2f} to {doubt.end:.2f}", doubt.why, said(doubt.used)]
-        for curve in measured.curves for doubt in curve.doubts if doubt.kind != "note"
+        for curve in measured.curves for doubt in curve.warnings if doubt.kind != "note"
     ]  # fmt: skip
     return cut(rows, MOST)
 

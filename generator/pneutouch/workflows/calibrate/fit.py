@@ -22,8 +22,8 @@ from pneutouch.bench.calibrate import (
 from pneutouch.bench.calibrate.further import SuggestedTest, further_tests
 from pneutouch.bench.calibrate.goodness import RunResiduals, SystematicDeviation, misses, residuals
 from pneutouch.bench.calibrate.identify import CorrelatedParameters, Identifiability, identify
+from pneutouch.bench.calibrate.notes import fit_notes
 from pneutouch.bench.calibrate.parameters import DEAD, KEYS, LOGARITHMIC, UNITS, outside_value
-from pneutouch.bench.calibrate.tell import sentences
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
@@ -58,7 +58,7 @@ class Calibration:
     @property
     def told(self) -> list[str]:
         """What a reader must know beside the numbers."""
-        return [*self.notes, *sentences(self.fit, self.identified, self.further, self.misses, self.held_out)]
+        return [*self.notes, *fit_notes(self.fit, self.identified, self.further, self.misses, self.held_out)]
 
     @property
     def estimates(self) -> list[dict[str, Any]]:
@@ -170,7 +170,7 @@ def _estimate(found: CalibrationFit, place: int) -> dict[str, Any]:
     if np.isfinite(half):
         low = at - half if k != DEAD else max(at - half, 0.0)
         interval = [outside_value(k, low), outside_value(k, at + half)]
-    belief = float(found.parameters.belief[k])
+    belief = float(found.parameters.prior_spread[k])
     return {
         "parameter": NAMES[k], "key": KEYS[k], "unit": UNITS[k], "value": outside_value(k, at), "interval_95": interval,
         "on_bound": bool(found.solution.bound[place]), "designed": outside_value(k, float(found.parameters.start[k])),

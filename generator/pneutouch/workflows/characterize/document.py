@@ -65,6 +65,6 @@ def _run(curve: MeasuredCurve, values: dict[str, float]) -> dict[str, Any]:
         "driving_pressure_kPa": run.driving_pressure_kPa, "age_days": run.age_days, "points": len(curve.force) - 1,
         "figures": dict(values),
         "warnings": [
-            {"start_s": round(d.start, 4), "end_s": round(d.end, 4), "why": d.why, "used": d.used, "kind": d.kind} for d in curve.doubts
+            {"start_s": round(d.start, 4), "end_s": round(d.end, 4), "why": d.why, "used": d.used, "kind": d.kind} for d in curve.warnings
         ],
     }  # fmt: skip

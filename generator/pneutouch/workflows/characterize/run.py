@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pneutouch.bench.plausible import check_plausible, mixed
+from pneutouch.bench.outliers import outliers
+from pneutouch.bench.plausible import check_plausible
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.bench.summary import summarize
 from pneutouch.bench.trace import Trace
@@ -136,7 +137,7 @@ def sound(
             kept.append(curve)
         except InputError as error:
             failures.append((run.file, str(error)))
-    questions += [(curve.run.file, why) for curve, why in mixed(kept)]
+    questions += [(curve.run.file, why) for curve, why in outliers(kept)]
     return kept, failures, (*loaded.questions, *questions)
 
 
@@ -182,7 +183,7 @@ def _shown(measured: CampaignReport, evidence: str) -> list[MeasuredCurve]:
     if evidence == "none":
         return []
     first = {(b.group.key, curve.run.kind): curve for b in measured.besides for curve in reversed(b.group.curves)}
-    doubtful = {curve.run.file for curve in measured.curves if any(doubt.kind != "note" for doubt in curve.doubts)}
+    doubtful = {curve.run.file for curve in measured.curves if any(doubt.kind != "note" for doubt in curve.warnings)}
     asked = {file for file, _ in measured.questions}
     chosen = {curve.run.file for curve in first.values()} | doubtful | asked
     return [curve for curve in measured.curves if curve.run.file in chosen]

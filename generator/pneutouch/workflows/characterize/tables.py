@@ -44,7 +44,7 @@ def segments_csv(curves: Iterable[MeasuredCurve]) -> bytes:
                     "",
                 ]
             )
-        for doubt in curve.doubts:
+        for doubt in curve.warnings:
             blank = [""] * 6
             rows.append(
                 [

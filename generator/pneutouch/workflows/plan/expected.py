@@ -49,7 +49,7 @@ class PlanViolation:
 
 def points(curve: PressCurve, depths: tuple[float, ...]) -> list[dict[str, float | None]]:
     """Expected force, pressure rise and cavity pressure at plate travels; null beyond the predicted range."""
-    known = [depth for depth in depths if curve.knows(depth)]
+    known = [depth for depth in depths if curve.covers(depth)]
     force, rise = curve.at(np.minimum(known, curve.reach)) if known else (np.zeros(0), np.zeros(0))
     found = {d: (float(f), float(r) / KPA) for d, f, r in zip(known, force, rise, strict=True)}
     driving_kPa = curve.driving / KPA
@@ -97,7 +97,7 @@ def curve_warnings(
         rig.pressure_range_kPa,
         "expected cavity pressure of {least:.1f} to {most:.1f} kPa passes the gauge's {limit:g} kPa; {stop}, or take a wider gauge",
     )
-    lost = [depth for depth in depths if not curve.knows(depth)]
+    lost = [depth for depth in depths if not curve.covers(depth)]
     if lost and curve.ends is not None:
         say(
             "range end",

@@ -1,4 +1,4 @@
-"""A calibration in sentences: what was left out, what the data cannot tell, what would, and where the model misses."""
+"""Notes on a calibration: data left out, undetermined parameters, further tests, and deviations of the model."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from pneutouch.units import ML
 CHANNELS = ("force", "pressure rise", "injection's pressure")
 WORDS = ("shear modulus", "wall thickness", "dead volume", "contact offset")
 _WORTH = 1.2
-"""A test that shrinks the worst interval by less than this is not told: our choice."""
+"""A test that shrinks the widest interval by a smaller factor is not listed: our choice."""
 _FAR = 2.0
-"""Prior standard deviations from the design from which on an estimate is remarked: our choice, one in twenty by chance."""
+"""Prior standard deviations from the design from which on an estimate is noted: our choice, one in twenty by chance."""
 _MANY = 100.0
 _MOVED = 0.2
-"""Share of an interval's half width below which a wrong gauge's effect is not told: our choice."""
+"""Share of an interval's half width below which the effect of a gain error is not listed: our choice."""
 
 
 def amount(k: int, deviation: float) -> str:
@@ -37,80 +37,91 @@ def amount(k: int, deviation: float) -> str:
     return f"{deviation / ML:.2g} mL" if k == DEAD else f"{deviation:.2g} mm"
 
 
-def sentences(
-    fit: CalibrationFit, identified: Identifiability, further: Sequence[SuggestedTest], missed: Sequence[SystematicDeviation], held_out: Sequence[HeldOutPrediction]
-) -> list[str]:  # fmt: skip
-    """What a reader must know beside the numbers: at most one sentence of a kind."""
+def fit_notes(
+    fit: CalibrationFit,
+    identified: Identifiability,
+    further: Sequence[SuggestedTest],
+    missed: Sequence[SystematicDeviation],
+    held_out: Sequence[HeldOutPrediction],
+) -> list[str]:
+    """The notes that belong to the numbers: at most one sentence of a kind."""
     kinds = (
-        _left_out(fit), _bounds(fit), _far(fit), _counted(fit) + _basis(fit), _open(fit, identified),
-        _tests(fit, identified, further), _fitness(fit, missed), [_held(one) for one in held_out],
-    )  # fmt: skip
+        _left_out(fit),
+        _bounds(fit),
+        _far(fit),
+        _counted(fit) + _basis(fit),
+        _open(fit, identified),
+        _tests(fit, identified, further),
+        _fitness(fit, missed),
+        [_held(one) for one in held_out],
+    )
     return ["; ".join(kind) for kind in kinds if kind]
 
 
 def _counted(fit: CalibrationFit) -> list[str]:
-    """What is in the intervals beside the scatter."""
+    """What the intervals include in addition to the scatter."""
     used = np.unique(fit.points.channels[fit.solution.use])
     sizes = ", ".join(f"{(fit.sizes[c]):.1%} of the {CHANNELS[c]}" for c in used)
-    found = [f"the intervals hold what the model leaves out ({sizes})"]
+    parts = [f"the intervals include the model discrepancy ({sizes})"]
     others = _joined([WORDS[k] for k in fit.parameters.others]) if fit.parameters.others else ""
     if others:
-        found.append(f"and what is believed of {others}, not fitted")
+        parts.append(f"and the priors of {others}, not fitted")
     elif not fit.parameters.priors and len(fit.parameters.fitted) < len(WORDS):
-        found.append("without priors only what is fitted is uncertain: the rest is taken to be as designed")
+        parts.append("without priors only the fitted parameters are uncertain: the others are taken as designed")
     moved = _shared(fit)
-    return [*found, *([f"but no wrong gauge: {'; '.join(moved)}"] if moved else [])]
+    return [*parts, *([f"but no gain error that all runs share: {'; '.join(moved)}"] if moved else [])]
 
 
 def _left_out(fit: CalibrationFit) -> list[str]:
-    found = []
+    notes = []
     over = [(curve.run.label, int(clipped(curve, fit.observations.rig).sum())) for curve in fit.observations.curves]
     if any(count for _, count in over):
-        found.append(
+        notes.append(
             f"{sum(count for _, count in over)} points at the end of the force sensor's range are left out "
             f"({_few([label for label, count in over if count])})"
         )
     for curve, lost, travel in zip(fit.observations.curves, fit.left_out, fit.points.travel, strict=True):
         if lost.any():
-            found.append(
+            notes.append(
                 f"{curve.run.label}: {int(lost.sum())} points from {travel[lost].min():.2f} mm on are left out: the model's "
                 "range ends before them (buckling, the plate's edge, or a depth beyond the atlas)"
             )
     for injection, lost in zip(fit.observations.injections, fit.injections_left_out, strict=True):
         if lost.any():
-            found.append(
+            notes.append(
                 f"{injection.label}: {int(lost.sum())} points are left out: beyond the limit point of the dome"
             )
-    return found
+    return notes
 
 
 def _bounds(fit: CalibrationFit) -> list[str]:
     return [
-        f"{WORDS[k]}: the estimate is on its bound, no interval: the data would have it beyond"
-        for k, bound in zip(fit.parameters.fitted, fit.solution.bound, strict=True) if bound
-    ]  # fmt: skip
+        f"{WORDS[k]}: the estimate is on its bound, no interval: the optimum of the data is beyond it"
+        for k, bound in zip(fit.parameters.fitted, fit.solution.bound, strict=True)
+        if bound
+    ]
 
 
 def _far(fit: CalibrationFit) -> list[str]:
-    """Estimates that the beliefs hold back although the data would have them elsewhere."""
-    found = []
+    """Estimates that the priors keep away from the optimum of the data."""
+    notes = []
     for place, k in enumerate(fit.parameters.fitted):
-        away = abs(fit.solution.at[place] - fit.parameters.start[k]) / fit.parameters.belief[k]
+        away = abs(fit.solution.at[place] - fit.parameters.start[k]) / fit.parameters.prior_spread[k]
         if away > _FAR and fit.parameters.priors:
-            found.append(
-                f"{WORDS[k]}: the estimate is {away:.1f} prior standard deviations from the design's value; where the design does "
-                "not say what was built, mend it or leave the priors aside"
+            notes.append(
+                f"{WORDS[k]}: the estimate is {away:.1f} prior standard deviations from the design's value; where the design is "
+                "not what was built, correct it or fit without priors"
             )
-    return found
+    return notes
 
 
 def _basis(fit: CalibrationFit) -> list[str]:
-    found = []
+    notes = []
     if not fit.covariance.clustered:
         runs = fit.covariance.runs
         why = f"{runs} run{'s'[: runs != 1]}, fewer than {LEAST_RUNS}" if runs < LEAST_RUNS else "no pressure twice"
-        found.append(
-            f"they rest on the scatter of the points and the instruments alone ({why}): how runs differ is not in them; measure "
+        notes.append(
+            f"they rest on the scatter of the points and the instruments alone ({why}): the differences between runs are not in them; measure "
             "more runs"
         )
     labels = [curve.run.label for curve in fit.observations.curves]
@@ -119,30 +130,30 @@ def _basis(fit: CalibrationFit) -> list[str]:
         words = _joined(
             [WORDS[k] for k, one in zip(fit.parameters.fitted, fit.covariance.alone, strict=True) if one == run]
         )
-        found.append(f"{words} rest on one run ({labels[run]}), taken to scatter as the others do; repeat it")
-    return found
+        notes.append(f"{words} rest on one run ({labels[run]}), taken to scatter as the others do; repeat it")
+    return notes
 
 
 def _open(fit: CalibrationFit, identified: Identifiability) -> list[str]:
-    found = [_apart(group) for group in identified.ambiguities]
+    notes = [_apart(group) for group in identified.ambiguities]
     for k in identified.unseen:
-        what = "the estimate is the belief" if fit.parameters.priors else "the estimate means nothing"
-        found.append(
-            f"{WORDS[k]}: the data say nothing of it (more than {UNSEEN:.0%} of its prior spread is left); {what}"
+        what = "the estimate is the prior" if fit.parameters.priors else "the estimate means nothing"
+        notes.append(
+            f"{WORDS[k]}: the data do not determine it (more than {UNSEEN:.0%} of its prior standard deviation remains); {what}"
         )
-    return found
+    return notes
 
 
 def _apart(group: CorrelatedParameters) -> str:
     names = _joined([WORDS[k] for k in group.members])
     product = (
-        f"; what is known is modulus × wall^{group.combination:.2f}"
+        f"; the data determine modulus × wall^{group.combination:.2f}"
         if group.combination is not None and group.combination > 0
         else ""
     )
     wider = float(np.max(group.alone / group.given))
     return (
-        f"{names}: the data cannot tell them apart (correlation {group.correlation:+.3f}, {_times(wider)} less sure than with the "
+        f"{names}: strongly correlated parameters (correlation {group.correlation:+.3f}, intervals {_times(wider)} as wide as with the "
         f"other{'s'[: len(group.members) > 2]} known){product}"
     )
 
@@ -152,7 +163,7 @@ def _tests(fit: CalibrationFit, identified: Identifiability, further: Sequence[S
         return []
     helpful = [test for test in further if test.gain > _WORTH][:2]
     return [
-        f"{'to tell them apart, measure' if place == 0 else 'or'}: {test.what} (the widest interval would shrink {_times(test.gain)})"
+        f"{'to separate them, measure' if place == 0 else 'or'}: {test.what} (the widest interval would shrink {_times(test.gain)})"
         for place, test in enumerate(helpful)
     ]
 
@@ -162,27 +173,28 @@ def _times(gain: float) -> str:
 
 
 def _fitness(fit: CalibrationFit, missed: Sequence[SystematicDeviation]) -> list[str]:
-    """Where the model misses, one clause a pressure: its greatest miss."""
-    found = []
+    """Deviations of the model, one clause a pressure: the greatest."""
+    parts = []
     for pressure_kPa in sorted({miss.driving_pressure_kPa for miss in missed}):
         miss = max((m for m in missed if m.driving_pressure_kPa == pressure_kPa), key=lambda m: abs(m.share))
-        found.append(
+        parts.append(
             f"{pressure_kPa:g} kPa: {miss.channel} {abs(miss.share):.1%} of full scale too {'high' if miss.share > 0 else 'low'} "
             f"from {miss.start:.2f} to {miss.end:.2f} mm"
         )
-    return [f"the model misses in all runs alike, {'; '.join(found)}"] if found else []
+    return [f"the model deviates in all runs alike, {'; '.join(parts)}"] if parts else []
 
 
 def _shared(fit: CalibrationFit) -> list[str]:
-    found = []
+    parts = []
     for what, shift in zip(("force", "pressure"), gain_shifts(fit), strict=True):
         moved = ", ".join(
             f"{WORDS[k]} {'+' if d >= 0 else '-'}{amount(k, abs(d))}"
-            for k, d in zip(fit.parameters.fitted, shift, strict=True) if abs(d) > _MOVED * fit.half_width[fit.parameters.fitted.index(k)]
-        )  # fmt: skip
+            for k, d in zip(fit.parameters.fitted, shift, strict=True)
+            if abs(d) > _MOVED * fit.half_width[fit.parameters.fitted.index(k)]
+        )
         if moved:
-            found.append(f"a {what} reading 1 % too high in all runs moves {moved}")
-    return found
+            parts.append(f"a {what} reading 1 % too high in all runs moves {moved}")
+    return parts
 
 
 def _few(labels: Sequence[str]) -> str:

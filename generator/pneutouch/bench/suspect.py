@@ -1,4 +1,4 @@
-"""What is not as it should be in a run: told with its stretch, never dropped silently."""
+"""Warnings about a run, each with its time interval and reason; nothing is dropped without one."""
 
 from __future__ import annotations
 
@@ -23,133 +23,130 @@ SETTLED = 0.01
 """Share of the force or the rise by which the two halves of a read window may differ: our choice."""
 
 LEAK = 0.02
-"""Share of the greatest rise that a leak may take during a hold: our choice, about what three runs of a sensor differ by."""
+"""Share of the greatest rise that a leak may take during a hold: our choice, about the difference between three runs of a sensor."""
 
 SAME_DEPTH = 0.03
 """mm within which two indentations are of one depth: some standard deviations of an onset (0.004 to 0.01 mm in the tests)."""
 
 MOST = 20
-"""Gaps listed one by one, and clipped stretches, and spikes: our choice, so that a list can be read."""
+"""Gaps, clipped stretches and spikes that are listed one by one, of each kind: our choice, so that a list can be read."""
 
 _MANY = MappingProxyType({"gap": "gaps", "clipped": "clipped stretches", "spike": "spikes"})
 
-_SURE = 4.0
-"""Standard errors that a change must have before it is told: one false alarm in 10^4."""
+_SIGNIFICANT = 4.0
+"""Standard errors that a change must exceed before it is reported: one false alarm in 10^4."""
 
 
 def untrusted(blocks: Blocks, indent: MeasuredIndentation, before: float) -> str | None:
-    """Why an indentation cannot be used: something clipped before contact or while read, or half of the read samples gone."""
+    """Why an indentation cannot be used: a channel clipped before contact or while read, or half of the samples missing."""
     lost = 0.0
-    for doubt in blocks.doubts:
-        if doubt.used:
+    for warning in blocks.warnings:
+        if warning.used:
             continue
-        in_read = min(doubt.end, indent.read[1]) - max(doubt.start, indent.read[0])
-        if doubt.kind == "gap":
+        in_read = min(warning.end, indent.read[1]) - max(warning.start, indent.read[0])
+        if warning.kind == "gap":
             lost += max(in_read, 0.0)
-        elif in_read >= 0 or (doubt.end >= indent.contact - before and doubt.start <= indent.contact):
-            return doubt.why
+        elif in_read >= 0 or (warning.end >= indent.contact - before and warning.start <= indent.contact):
+            return warning.why
     return "most of its samples are missing" if lost > 0.5 * (indent.read[1] - indent.read[0]) else None
 
 
-def listed(doubts: Sequence[SuspectInterval]) -> list[SuspectInterval]:
-    """Doubts as they are listed: of gaps, clipped stretches and spikes the first `MOST` of each, the others summed up."""
-    found = [doubt for doubt in doubts if doubt.kind not in _MANY]
+def listed(warnings: Sequence[SuspectInterval]) -> list[SuspectInterval]:
+    """Warnings as listed: of gaps, clipped stretches and spikes the first `MOST` of each and a sum of the others."""
+    shown = [warning for warning in warnings if warning.kind not in _MANY]
     for kind, name in _MANY.items():
-        alike = [doubt for doubt in doubts if doubt.kind == kind]
-        found += alike[:MOST]
+        alike = [warning for warning in warnings if warning.kind == kind]
+        shown += alike[:MOST]
         more = alike[MOST:]
         if more:
-            lasts = sum(doubt.end - doubt.start for doubt in more)
-            first, last = min(doubt.start for doubt in more), max(doubt.end for doubt in more)
-            found.append(
+            lasts = sum(warning.end - warning.start for warning in more)
+            first, last = min(warning.start for warning in more), max(warning.end for warning in more)
+            shown.append(
                 SuspectInterval(first, last, f"{len(more)} more {name}: {lasts:.3g} s in all", False, more[0].kind)
             )
-    return found
+    return shown
 
 
-def doubts_of(run: CampaignRun, blocks: Blocks, found: RunIndentations) -> list[SuspectInterval]:
-    """Doubts about holds, contacts, releases, depths and the pressure without contact, in order of time."""
-    told: list[SuspectInterval] = []
-    if found.pressed:
-        end = found.parts[0].clear[0] if found.parts else blocks.time.size - 1
-        told.append(
+def run_warnings(run: CampaignRun, blocks: Blocks, indentations: RunIndentations) -> list[SuspectInterval]:
+    """Warnings about holds, contacts, releases, depths and the pressure without contact, in order of time."""
+    warnings: list[SuspectInterval] = []
+    if indentations.pressed:
+        end = indentations.parts[0].clear[0] if indentations.parts else blocks.time.size - 1
+        warnings.append(
             SuspectInterval(
                 float(blocks.time[0]), float(blocks.time[end]), "the record begins with the plate in; left out", False
             )
         )
     usual = RELAXATION if run.kind == "relaxation" else HOLD
-    for number, indent in enumerate(found.indents, start=1):
-        told += _of_one(number, indent, blocks, found, usual, run.kind != "loop")
+    for number, indent in enumerate(indentations.indents, start=1):
+        warnings += _of_one(number, indent, blocks, indentations, usual, run.kind != "loop")
     if run.kind != "loop":
-        told += _of_depths([indent for indent in found.indents if not math.isnan(indent.contact)])
-    return told + _leak(blocks, found)
+        warnings += _of_depths([indent for indent in indentations.indents if not math.isnan(indent.contact)])
+    return warnings + _leak(blocks, indentations)
 
 
 def _of_one(
-    number: int, indent: MeasuredIndentation, blocks: Blocks, found: RunIndentations, usual: float, held: bool
-) -> list[SuspectInterval]:  # fmt: skip
+    number: int, indent: MeasuredIndentation, blocks: Blocks, indentations: RunIndentations, usual: float, held: bool
+) -> list[SuspectInterval]:
     begin, end = indent.hold
     if math.isnan(indent.contact):
         return [SuspectInterval(begin, end, f"indentation {number}: no contact found", False)]
-    told = []
-    contact = found.contacts[number - 1]
-    if contact is not None and not contact.own:
-        light = "too light to tell where it began; its onset is the median of the others"
-        told.append(SuspectInterval(indent.contact, begin, f"indentation {number}: {light}", True))
+    warnings = []
+    contact = indentations.contacts[number - 1]
+    if contact is not None and not contact.fitted:
+        light = "too light for an onset by itself; its onset is the median of the others"
+        warnings.append(SuspectInterval(indent.contact, begin, f"indentation {number}: {light}", True))
     if held and end - begin < SHORT * usual:
-        told.append(
+        warnings.append(
             SuspectInterval(
                 begin, end, f"indentation {number}: held for {end - begin:.3g} s, usual are {usual:g} s", True
             )
         )
-    elif held and (why := _unsettled(blocks, found, number - 1)):
-        told.append(SuspectInterval(*indent.read, f"indentation {number}: {why}", True))
+    elif held and (why := _unsettled(blocks, indentations, number - 1)):
+        warnings.append(SuspectInterval(*indent.read, f"indentation {number}: {why}", True))
     if math.isnan(indent.release):
-        told.append(
+        warnings.append(
             SuspectInterval(
                 end, float(blocks.time[-1]), f"indentation {number}: no release: the force does not go back", True
             )
         )
-    return told
+    return warnings
 
 
-def _unsettled(blocks: Blocks, found: RunIndentations, number: int) -> str | None:
-    start, end = read_window(blocks, found.parts[number].hold)
-    middle, indent = (start + end) // 2, found.indents[number]
+def _unsettled(blocks: Blocks, indentations: RunIndentations, number: int) -> str | None:
+    start, end = read_window(blocks, indentations.parts[number].hold)
+    middle, indent = (start + end) // 2, indentations.indents[number]
     if end - start < 4:
         return None
-    for key, values, whole in (
-        ("force", blocks.force, indent.force),
-        ("pressure", blocks.pressure, indent.rise),
-    ):
+    for key, values, whole in (("force", blocks.force, indent.force), ("pressure", blocks.pressure, indent.rise)):
         first, last = values[start:middle], values[middle:end]
         change = float(last.mean() - first.mean())
         error = math.sqrt(first.var() / first.size + last.var() / last.size)
-        if abs(change) > max(SETTLED * abs(whole), _SURE * error):
+        if abs(change) > max(SETTLED * abs(whole), _SIGNIFICANT * error):
             return f"{key} not settled: changes by {100 * change / whole:.2g} % within the stretch that is read"
     return None
 
 
 def _of_depths(indents: list[MeasuredIndentation]) -> list[SuspectInterval]:
-    told = []
+    warnings = []
     for before, after in itertools.pairwise(indents):
         if after.indentation < before.indentation - SAME_DEPTH:
             why = f"out of order: {after.indentation:.3g} mm after {before.indentation:.3g} mm; sorted by depth"
-            told.append(SuspectInterval(*after.hold, why, True))
+            warnings.append(SuspectInterval(*after.hold, why, True))
     by_depth = sorted(indents, key=lambda one: one.indentation)
     for less, more in itertools.pairwise(by_depth):
         if more.indentation - less.indentation <= SAME_DEPTH:
             later = max(less, more, key=lambda one: one.contact)
             why = f"two indentations at one depth, {less.indentation:.4g} and {more.indentation:.4g} mm"
-            told.append(SuspectInterval(*later.hold, why, True))
-    return told
+            warnings.append(SuspectInterval(*later.hold, why, True))
+    return warnings
 
 
-def _leak(blocks: Blocks, found: RunIndentations) -> list[SuspectInterval]:
-    """The pressure without contact drifts: while a hold lasts by more than a share of the greatest rise."""
+def _leak(blocks: Blocks, indentations: RunIndentations) -> list[SuspectInterval]:
+    """A drift of the pressure without contact: during a hold by more than a share of the greatest rise."""
     touched = [
         (base, one)
-        for base, one in zip(found.bases, found.indents, strict=True)
+        for base, one in zip(indentations.bases, indentations.indents, strict=True)
         if not math.isnan(one.contact) and base.end - base.start > 3
     ]
     if not touched:
@@ -159,7 +156,7 @@ def _leak(blocks: Blocks, found: RunIndentations) -> list[SuspectInterval]:
     top = max(abs(one.rise) for _, one in touched)
     slope = float(slopes.mean())
     error = math.sqrt(sum(_slope_variance(blocks, base) for base, _ in touched)) / slopes.size
-    if abs(slope) * longest <= LEAK * top or abs(slope) <= _SURE * error:
+    if abs(slope) * longest <= LEAK * top or abs(slope) <= _SIGNIFICANT * error:
         return []
     first, last = touched[0][0], touched[-1][0]
     why = (

@@ -1,4 +1,4 @@
-"""Runs that stand apart from the others of their sensor: a file of another sensor among them."""
+"""Runs that deviate from the others of their sensor, as a file of another sensor does."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ APART = 0.15
 identical sensors by 2 to 10 % (Fig. 7 and S2)."""
 
 TIMES = 5.0
-"""So many times the scatter of the others (1.4826 of their median deviation) must be exceeded besides."""
+"""Factor on the scatter of the others (1.4826 times their median deviation) that must be exceeded too."""
 
 
-def mixed(curves: Sequence[MeasuredCurve]) -> list[tuple[MeasuredCurve, str]]:
-    """Runs that stand apart from the others of one sensor, kind, driving pressure and age, and why.
+def outliers(curves: Sequence[MeasuredCurve]) -> list[tuple[MeasuredCurve, str]]:
+    """Runs that deviate from the others of one sensor, kind, driving pressure and age, and the reason.
 
-    Compared are the force at the greatest common depth and the slope of pressure over force, as logarithms: a run
-    stands apart where one of them is off the median of the others by more than `APART` and `TIMES` their scatter. Of
-    two that differ by `APART` both are told, as neither is known to be the odd one.
+    The force at the greatest common depth and the slope of pressure over force are compared, as logarithms: a run
+    deviates where one of them is off the median of the others by more than `APART` and `TIMES` their scatter. Of two
+    runs that differ by `APART` both are reported.
     """
     groups: dict[tuple[object, ...], list[MeasuredCurve]] = {}
     for curve in curves:
         run = curve.run
         groups.setdefault((run.sensor, run.kind, run.driving_pressure_kPa, run.age_days), []).append(curve)
-    found: list[tuple[MeasuredCurve, str]] = []
+    odd: list[tuple[MeasuredCurve, str]] = []
     for group in groups.values():
-        found += _apart(group)
-    return found
+        odd += _apart(group)
+    return odd
 
 
 def _apart(group: list[MeasuredCurve]) -> list[tuple[MeasuredCurve, str]]:
@@ -41,7 +41,7 @@ def _apart(group: list[MeasuredCurve]) -> list[tuple[MeasuredCurve, str]]:
     depth = min(float(curve.indentation[-1]) for curve in group)
     forces = np.array([float(np.interp(depth, curve.indentation, curve.force)) for curve in group])
     slopes_kPa_per_N = np.array([_sensitivity_kPa_per_N(curve) for curve in group])
-    told: dict[int, str] = {}
+    reasons: dict[int, str] = {}
     for name, values in ((f"force at {depth:.3g} mm", forces), ("slope of pressure over force", slopes_kPa_per_N)):
         if not (values > 0).all():
             continue
@@ -50,15 +50,15 @@ def _apart(group: list[MeasuredCurve]) -> list[tuple[MeasuredCurve, str]]:
             middle = float(np.median(others))
             scatter = 1.4826 * float(np.median(np.abs(np.log(others / middle))))
             if abs(np.log(values[k] / middle)) > max(np.log1p(APART), TIMES * scatter):
-                told.setdefault(k, f"{name} is {values[k] / middle:.2f} times that of")
+                reasons.setdefault(k, f"{name} is {values[k] / middle:.2f} times that of")
     which = "the other run" if len(group) == 2 else f"the other {len(group) - 1} runs"
-    ask = "is one of them" if len(group) == 2 else "is it"
+    question = "is one of them" if len(group) == 2 else "is it"
     return [
-        (group[k], f"{group[k].run.file}: {why} {which} of sensor {group[k].run.sensor}; {ask} of another sensor?")
-        for k, why in sorted(told.items())
+        (group[k], f"{group[k].run.file}: {why} {which} of sensor {group[k].run.sensor}; {question} of another sensor?")
+        for k, why in sorted(reasons.items())
     ]
 
 
 def _sensitivity_kPa_per_N(curve: MeasuredCurve) -> float:
-    found = figures(curve.indentation, curve.force, curve.rise / KPA)
-    return float("nan") if found is None else found.sensitivity_kPa_per_N
+    values = figures(curve.indentation, curve.force, curve.rise / KPA)
+    return float("nan") if values is None else values.sensitivity_kPa_per_N
