@@ -8,6 +8,7 @@ import numpy as np
 
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.mixture import ResolvedMixingCurve, mixing
+from pneutouch.evaluation.mixing import mixing_data
 from pneutouch.mechanics.mixing import (
     LONG_TERM,
     PLACING,
@@ -18,7 +19,7 @@ from pneutouch.mechanics.mixing import (
     placings,
     stiff_moduli,
 )
-from pneutouch.report.mixing import MixingChart, mixing_chart
+from pneutouch.report.mixing import mixing_chart
 from pneutouch.spec.material import Material
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -148,7 +149,7 @@ def _lab() -> list[str]:
 
 def main() -> None:
     found = measure(Library((ROOT,)))
-    chart = mixing_chart(MixingChart(*found), (178, 110))
+    chart = mixing_chart(mixing_data(*found), (178, 110))
     for name, text in (("mixing.svg", chart), ("mixing.md", page(*found))):
         (DOCS / name).write_text(text, encoding="utf-8")
         print(f"wrote docs/{name}")

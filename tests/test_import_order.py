@@ -57,6 +57,34 @@ def test_imports_run_one_way():
     assert not wrong, "\n".join(wrong)
 
 
+DRAWN_FROM = {
+    "pneutouch.mechanics.prediction",
+    "pneutouch.evaluation.chart_data",
+    "pneutouch.evaluation.sheet_data",
+}
+"""Modules of records, which is all that `report` may import of the layers that compute."""
+
+
+def test_report_computes_nothing():
+    """It imports neither a solver nor a search, at the top, under TYPE_CHECKING or inside functions."""
+    computing, wrong, known = {"mechanics", "selection", "evaluation"}, [], modules()
+    for path in (PACKAGE / "report").rglob("*.py"):
+        wrong += [
+            f"{path}: {name}"
+            for name in dependencies(path, known)
+            if name not in DRAWN_FROM and len(name.split(".")) > 1 and name.split(".")[1] in computing
+        ]
+        outside = {name.split(".")[0] for name, _ in imports(path)}
+        wrong += [f"{path}: {name}" for name in outside & {"scipy", "skfem", "xarray"}]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_modules_of_records_define_classes_alone():
+    for name in DRAWN_FROM:
+        tree = ast.parse(modules()[name].read_text())
+        assert not [node.name for node in tree.body if isinstance(node, ast.FunctionDef)], name
+
+
 def test_every_folder_has_its_place_in_the_order():
     found = {path.name for path in PACKAGE.iterdir() if path.is_dir() and (path / "__init__.py").is_file()}
     assert found <= set(RANK), found - set(RANK)

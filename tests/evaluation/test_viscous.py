@@ -16,6 +16,8 @@ from pneutouch.cli.text import prediction_text
 from pneutouch.errors import InputError
 from pneutouch.evaluation import evaluate
 from pneutouch.evaluation.document import full_document, viscous
+from pneutouch.evaluation.relaxation import ageing_data, viscous_data, viscous_runs
+from pneutouch.evaluation.sheet import sheet_data
 from pneutouch.mechanics.viscous.known import ageing_ratio
 from pneutouch.output.files import json_bytes
 from pneutouch.report import relaxation
@@ -126,8 +128,8 @@ def test_the_flag_reaches_the_prediction(command):
 
 
 def test_the_sheets_section_has_the_figures_of_the_prediction(agilus):
-    runs = relaxation.runs_of(agilus.prediction, agilus.scene.membrane_material, agilus.sensor)
-    section = relaxation.section(runs, "Ageing: not known.")
+    data = viscous_data(agilus.viscous_runs)
+    section = relaxation.section(data, "Ageing: not known.")
     rows = iter(section["rows"])
     for state in viscous(agilus)["states"]:
         for one in state["by_source"]:
@@ -142,24 +144,26 @@ def test_the_sheets_section_has_the_figures_of_the_prediction(agilus):
     assert any("dogbone" in note for note in section["notes"]) and any(
         "1904.11888" in note for note in section["notes"]
     )
-    assert relaxation.held_chart(runs, (86.0, 62.0)) == relaxation.held_chart(runs, (86.0, 62.0))
-    assert relaxation.loop_chart(runs, (86.0, 62.0)).count("<path") > 4
+    assert relaxation.held_chart(data, (86.0, 62.0)) == relaxation.held_chart(data, (86.0, 62.0))
+    assert relaxation.loop_chart(data, (86.0, 62.0)).count("<path") > 4
 
 
 def test_a_run_that_stops_is_told_in_the_section_and_not_drawn(agilus):
     sensor = agilus.sensor.replace(gauge_limit=0.03)
-    runs = relaxation.runs_of(agilus.prediction, agilus.scene.membrane_material, sensor)
-    section = relaxation.section(runs, "")
+    data = viscous_data(viscous_runs(agilus.prediction, agilus.scene.membrane_material, sensor))
+    section = relaxation.section(data, "")
     assert any("gauge range" in note for note in section["notes"])
     assert any("–" in row for row in section["rows"])
-    assert "<svg" in relaxation.held_chart(runs, (86.0, 62.0)) and "<svg" in relaxation.loop_chart(runs, (86.0, 62.0))
+    assert "<svg" in relaxation.held_chart(data, (86.0, 62.0)) and "<svg" in relaxation.loop_chart(data, (86.0, 62.0))
 
 
 def test_the_line_on_ageing(library):
     tango = evaluate("paper-dome", model="atlas", library=library)
-    line = relaxation.ageing_line(tango.prediction, tango.scene.membrane_material, tango.sensor)
+    sheet = sheet_data(tango, "")
+    line = relaxation.ageing_line(sheet)
     assert "27.6 to 29.5" in line and "+8.3%" in line and "14.76 %, sign not given" in line
-    assert relaxation.ageing_line(tango.prediction, resin(library, "Agilus30"), tango.sensor).endswith("is not known.")
+    unknown = ageing_data(tango.prediction, resin(library, "Agilus30"), tango.sensor)
+    assert relaxation.ageing_line(replace(sheet, ageing=unknown)).endswith("is not known.")
 
 
 @pytest.mark.parametrize("table", [agilus_table, wall_table, paper_table])

@@ -9,6 +9,8 @@ import numpy as np
 import pypdfium2
 import pytest
 
+from pneutouch.report import curves
+
 SECTIONS = [
     "Performance", "How sure", "Absolute maximum ratings", "Operating conditions", "What limits the driving pressure", "Environment",
     "Mechanical drawing", "Material and print", "Reliability", "Ordering code", "How to measure it", "Handling",
@@ -99,15 +101,16 @@ def test_the_air_on_the_sheet_is_computed_and_no_longer_a_fixed_factor(evaluated
 
 def test_model_and_why_it_was_taken_stand_on_the_sheet(evaluated):
     from pneutouch.evaluation import evaluate
+    from pneutouch.evaluation.sheet import sheet_data
     from pneutouch.report.certainty import how_sure
 
     chosen = evaluate("paper-dome", model="auto", tolerance=0.02)
-    model = dict(how_sure(chosen.prediction, chosen.uncertainty)["model"])
+    model = dict(how_sure(sheet_data(chosen, ""))["model"])
     assert model["Model"] == "atlas"
     assert model["Numerical error"] == "within 1.8% in sensitivity"
     assert "passed over membrane" in model["Why this model"]
     asked = evaluated("paper-dome", model="atlas")
-    assert "asked for" in dict(how_sure(asked.prediction, asked.uncertainty)["model"])["Why this model"]
+    assert "asked for" in dict(how_sure(sheet_data(asked, ""))["model"])["Why this model"]
 
 
 def test_without_the_solid_the_sheet_says_where_shapes_come_from(evaluated, tmp_path):
@@ -133,7 +136,7 @@ def test_a_sensor_outside_the_atlas_says_so_on_its_sheet(tmp_path):
 
 def test_zero_drift_is_that_of_the_gas_in_a_dome_that_yields(evaluated):
     """By brute force: the volume at which the warmed gas and the dome's own curve balance."""
-    from pneutouch.report.environment import zero_drift_kPa_per_K
+    from pneutouch.evaluation.sheet import zero_drift_kPa_per_K
 
     evaluation = evaluated("paper-dome")
     state, curve = evaluation.prediction.states[3], evaluation.prediction.inflation
@@ -169,7 +172,7 @@ def test_a_resin_that_cannot_be_solved_does_not_stop_the_sheet(evaluated, librar
 
 
 def test_resins_are_compared_by_the_atlas_as_respond_has_them(evaluated, library):
-    from pneutouch.evaluation.variants import drawn_by, in_resin, resin_curves
+    from pneutouch.evaluation.variants import in_resin, resin_curves
     from pneutouch.mechanics.atlas.respond import respond
     from pneutouch.mechanics.uncertainty import batch_of
     from pneutouch.spec.material import Material
@@ -178,7 +181,7 @@ def test_resins_are_compared_by_the_atlas_as_respond_has_them(evaluated, library
     elastic = {name: m for name, m in materials.items() if m.kind == "elastomer"}
     found = resin_curves(sensor, materials, 0.022, "solid", None)
     assert set(found) == {m.title for m in elastic.values()}
-    assert drawn_by(found) == "drawn by the atlas"
+    assert curves.drawn_by(found) == "drawn by the atlas"
     for material in elastic.values():
         pressure, sensitivity, model = found[material.title]
         assert model == "atlas"
@@ -189,7 +192,7 @@ def test_resins_are_compared_by_the_atlas_as_respond_has_them(evaluated, library
 
 
 def test_a_resin_outside_the_atlas_is_drawn_by_the_solid_and_the_caption_says_so(evaluated, library):
-    from pneutouch.evaluation.variants import drawn_by, resin_curves
+    from pneutouch.evaluation.variants import resin_curves
     from pneutouch.spec.material import Material
 
     tango, hard = (library.load("materials", name) for name in ("TangoPlus", "FLX9960"))
@@ -198,7 +201,7 @@ def test_a_resin_outside_the_atlas_is_drawn_by_the_solid_and_the_caption_says_so
     sensor = evaluated("paper-dome").sensor
     found = resin_curves(sensor, {"a": tango, "b": odd}, 0.02, "solid", None)
     assert [curve.model for curve in found.values()] == ["atlas", "solid"]
-    assert drawn_by(found) == "drawn by the atlas, FLX9960-DM by the solid"
+    assert curves.drawn_by(found) == "drawn by the atlas, FLX9960-DM by the solid"
     same = resin_curves(sensor, {"b": hard}, 0.02, "solid", None)["FLX9960-DM"]
     near = np.interp(found["FLX9960-DM"].driving_pressure_kPa, same.driving_pressure_kPa, same.sensitivity_kPa_per_N)
     np.testing.assert_allclose(found["FLX9960-DM"].sensitivity_kPa_per_N, near, rtol=0.02)
@@ -225,8 +228,6 @@ def test_pdf_pages_keep_text_inside_the_margins(built):
 def test_axes_carry_quantities_and_units(evaluated):
     from matplotlib.figure import Figure
 
-    from pneutouch.report import curves
-
     seen = []
     original = Figure.savefig
 
@@ -237,7 +238,7 @@ def test_axes_carry_quantities_and_units(evaluated):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Figure, "savefig", record)
         evaluation = evaluated("paper-dome")
-        curves.inflation(evaluation.sensor, evaluation.prediction)
+        curves.inflation(evaluation.prediction)
         curves.response(evaluation.prediction)
         curves.indentation(evaluation.prediction)
     assert len(seen) == 3

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from pneutouch.evaluation.evaluate import evaluate
+from pneutouch.evaluation.sheet import constant_membranes, sheet_data
 from pneutouch.evaluation.variants import in_resin
 from pneutouch.report.graded_sheet import graded_figures
 from pneutouch.spec.read import parse_changes
@@ -21,7 +22,7 @@ def graded():
 
 
 def test_a_graded_membrane_has_two_figures_in_the_same_bytes(graded):
-    once, again = (graded_figures(graded.scene, graded.sensor, graded.prediction) for _ in range(2))
+    once, again = (graded_figures(sheet_data(graded, "")) for _ in range(2))
     assert set(once) == {"grade", "graded"}
     assert once == again
     # The wall's cells are there one by one, on both sides of the axis.
@@ -30,16 +31,16 @@ def test_a_graded_membrane_has_two_figures_in_the_same_bytes(graded):
 
 def test_a_constant_membrane_has_none():
     found = evaluate("paper-dome", parse_changes(SHALLOW))
-    assert graded_figures(found.scene, found.sensor, found.prediction) == {}
+    assert graded_figures(sheet_data(found, "")) == {}
 
 
 def test_constants_beyond_their_own_limit_are_drawn_as_far_as_they_go(graded):
     """The softest bears 40 kPa, the grade more: its curve ends, the sheet does not."""
     states = tuple(replace(s, driving_pressure=p) for s, p in zip(graded.prediction.states, (0.0, 0.05), strict=True))
-    assert set(graded_figures(graded.scene, graded.sensor, replace(graded.prediction, states=states))) == {
-        "grade",
-        "graded",
-    }
+    constants = constant_membranes(graded.sensor, replace(graded.prediction, states=states))
+    assert [len(membrane.states) for membrane in constants] == [1, 2, 2]
+    sheet = replace(sheet_data(graded, ""), constants=constants)
+    assert set(graded_figures(sheet)) == {"grade", "graded"}
 
 
 def test_other_resins_in_the_same_geometry_are_not_graded(graded, library):

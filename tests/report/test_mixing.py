@@ -11,8 +11,9 @@ import pytest
 from benchmarks.mixing_page import DOCS, STIFF, WHERE, measure, page
 
 from pneutouch.catalogue import load_scene
+from pneutouch.evaluation.mixing import mixing_data
 from pneutouch.mechanics.mixing import fraction_of, hashin_shtrikman_low, placings
-from pneutouch.report.mixing import MixingChart, mixing_chart
+from pneutouch.report.mixing import mixing_chart
 
 
 @pytest.fixture(scope="module")
@@ -30,7 +31,7 @@ def test_the_page_is_what_the_code_gives(found, text):
 
 
 def test_the_chart_names_every_line_and_repeats_its_bytes(found):
-    chart = MixingChart(*found)
+    chart = mixing_data(*found)
     drawn = mixing_chart(chart, (178, 110))
     assert drawn == mixing_chart(chart, (178, 110))
     assert drawn == (DOCS / "mixing.svg").read_text(encoding="utf-8")

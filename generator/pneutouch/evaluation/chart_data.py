@@ -1,4 +1,4 @@
-"""What the trade-off chart and the tuning chart draw."""
+"""Records that charts are drawn from: they hold what was computed and compute nothing."""
 
 from __future__ import annotations
 
@@ -6,7 +6,24 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from pneutouch.arrays import Array
+from pneutouch.catalogue.mixture import ResolvedMixingCurve
+from pneutouch.mechanics.prediction import SensorState
 from pneutouch.selection.front import TradeOffFront
+
+
+class ResinCurve(NamedTuple):
+    """Sensitivity (kPa/N) over driving pressure (kPa), (n,) each, and the model that computed it."""
+
+    driving_pressure_kPa: Array
+    sensitivity_kPa_per_N: Array
+    model: str
+
+
+class ComparedMembrane(NamedTuple):
+    """A membrane with its states, driving pressures ascending."""
+
+    label: str
+    states: tuple[SensorState, ...]
 
 
 class TuningCurve(NamedTuple):
@@ -71,3 +88,30 @@ class TradeOff:
     def known(self) -> tuple[TradeOffFront, ...]:
         """The fronts with a line to draw."""
         return tuple(front for front in self.fronts if front.sensitivity_kPa_per_N.size > 1)
+
+
+class MixingLine(NamedTuple):
+    """A bound or model of a mix: moduli (n,) in MPa over the chart's fractions, and the point of its label."""
+
+    label: str
+    modulus: Array
+    mark: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class MixingChart:
+    """A mixing curve between its bounds.
+
+    Attributes:
+        law: The curve.
+        stiff: Greatest modulus of its stiff resin, MPa.
+        names: Labels of its points.
+        fraction: Volume fractions of the lines, (n,).
+        lines: Reuss, Voigt, Hashin and Shtrikman low and high, percolation.
+    """
+
+    law: ResolvedMixingCurve
+    stiff: float
+    names: tuple[str, ...]
+    fraction: Array
+    lines: tuple[MixingLine, ...]

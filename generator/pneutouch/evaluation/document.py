@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from pneutouch.evaluation.uncertainty import documents
-from pneutouch.mechanics.viscous.known import AGED, ageing_ratio, unknown
+from pneutouch.mechanics.viscous.known import AGED, ageing_ratio
 from pneutouch.rounding import rounded
 
 if TYPE_CHECKING:
@@ -17,18 +17,8 @@ _DIGITS = 6
 
 def viscous(evaluation: Evaluation) -> dict[str, Any]:
     """Relaxation and hysteresis of every state, see `mechanics.viscous.describe`; or ``{"unknown": why}``."""
-    sensor, material, prediction = evaluation.sensor, evaluation.scene.membrane_material, evaluation.prediction
-    why = unknown(sensor, material, prediction.model)
-    if why is not None:
-        return {"unknown": why}
-    # Through the atlas this loads scipy, which a prediction by the membrane must not pay for.
-    from pneutouch.mechanics.viscous.describe import chosen_depth, describe
-
-    depth = chosen_depth(sensor, [state.range_end for state in prediction.states])
-    if not depth > 0:
-        return {"unknown": "a state has no range"}
-    found = describe(sensor, material, [state.driving_pressure for state in prediction.states], depth)
-    return rounded(found.document(), _DIGITS)  # type: ignore[no-any-return]
+    runs = evaluation.viscous_runs
+    return {"unknown": runs} if isinstance(runs, str) else rounded(runs.document(), _DIGITS)
 
 
 def prediction_document(evaluation: Evaluation, samples: int = 0) -> dict[str, Any]:

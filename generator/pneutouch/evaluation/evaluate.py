@@ -22,6 +22,7 @@ from pneutouch.spec.read import Changes
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
+    from pneutouch.mechanics.viscous.describe import ViscousRuns
     from pneutouch.printability import Finding
     from pneutouch.printability.estimate import JobEstimate
 
@@ -94,6 +95,13 @@ class Evaluation:
         from pneutouch.evaluation.uncertainty import documents
 
         return documents(self.prediction, self.sensor, self.scene, lambda: self.resins)
+
+    @cached_property
+    def viscous_runs(self) -> ViscousRuns | str:
+        """Relaxation and loops of every state, or why they are not predicted."""
+        from pneutouch.evaluation.relaxation import viscous_runs
+
+        return viscous_runs(self.prediction, self.scene.membrane_material, self.sensor)
 
 
 def evaluate(

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
-from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
+from pneutouch.evaluation.chart_data import ResinCurve
 from pneutouch.mechanics import Sensor, predict
 from pneutouch.mechanics.limits import limit_point
 from pneutouch.mechanics.paper_sensor import material_sensor
@@ -22,14 +20,6 @@ _MARGIN = 0.95
 
 _LIMIT_SHARE = {"membrane": 1.0, "solid": 0.8}
 """A safe share of the membrane's limit pressure: thick compressible walls reach theirs earlier."""
-
-
-class ResinCurve(NamedTuple):
-    """Sensitivity (kPa/N) over driving pressure (kPa), (n,) each, and the model that drew it."""
-
-    driving_pressure_kPa: Array
-    sensitivity_kPa_per_N: Array
-    model: str
 
 
 def in_resin(sensor: Sensor, material: Material) -> Sensor:
@@ -100,12 +90,3 @@ def _by_model(variant: Sensor, highest: float, model: str, closure: str | None) 
         return None
     x, y = zip(*values, strict=True)
     return ResinCurve(np.array(x), np.array(y), model)
-
-
-def drawn_by(curves: dict[str, ResinCurve]) -> str:
-    """Which model drew which resins, in words."""
-    models = sorted({curve.model for curve in curves.values()})
-    if len(models) == 1:
-        return f"drawn by the {models[0]}"
-    solid = ", ".join(title for title, curve in curves.items() if curve.model != "atlas")
-    return f"drawn by the atlas, {solid} by the solid"

@@ -2,6 +2,5 @@
 
 from pneutouch.report.datasheet import datasheet
 from pneutouch.report.print_sheet import print_sheet
-from pneutouch.report.sheet import Datasheet
 
-__all__ = ["Datasheet", "datasheet", "print_sheet"]
+__all__ = ["datasheet", "print_sheet"]

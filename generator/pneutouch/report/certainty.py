@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from pneutouch.mechanics import SensorPrediction
-from pneutouch.mechanics.models import NUMERICAL
+from pneutouch.evaluation.sheet_data import SheetData
+from pneutouch.mechanics.prediction import SensorPrediction
 from pneutouch.units import KPA
 
 Document = dict[str, Any]
@@ -42,9 +42,10 @@ def shares(found: dict[str, Document]) -> dict[str, dict[str, float]]:
     return {label: document["figures"][SENSITIVITY]["shares"] for label, document in found.items()}
 
 
-def how_sure(prediction: SensorPrediction, documents: tuple[Document, ...]) -> dict[str, Any]:
+def how_sure(sheet: SheetData) -> dict[str, Any]:
     """Everything that the section says; every leaf is text or a flag."""
-    found = ends(prediction, documents)
+    documents = sheet.uncertainty
+    found = ends(sheet.prediction, documents)
     why = next((document["unknown"] for document in documents if "unknown" in document), None)
     last = list(found.values())[-1] if found else {}
     return {
@@ -55,7 +56,7 @@ def how_sure(prediction: SensorPrediction, documents: tuple[Document, ...]) -> d
         "figures": _figures(found),
         "sources": [_source(source) for source in last.get("sources", []) if source["standard_uncertainty"] > 0],
         "notes": [_plain(f"{note}.") for note in last.get("notes", [])],
-        "model": _model_rows(prediction),
+        "model": _model_rows(sheet),
     }
 
 
@@ -100,13 +101,13 @@ def _source(source: dict[str, Any]) -> list[str]:
     return [source["name"], value, acts_on, "known" if source["known"] else "assumed", _plain(source["origin"])]
 
 
-def _model_rows(prediction: SensorPrediction) -> list[list[str]]:
-    """Which model gave the figures, how exactly it solves its equations, and why it was taken."""
-    error = prediction.error_estimate
-    exact = f"within {NUMERICAL[prediction.model]:.1%} in sensitivity" if prediction.model != "membrane" else (
-        f"up to {1 + NUMERICAL['membrane']:.0f} times off the solid's sensitivity"
-    )  # fmt: skip
-    why = error.get("model_choice", "asked for by name, or the default")
+def _model_rows(sheet: SheetData) -> list[list[str]]:
+    """The model of the figures, its numerical error, and why it was chosen."""
+    prediction, error = sheet.prediction, sheet.numerical_error
+    exact = f"within {error:.1%} in sensitivity"
+    if prediction.model == "membrane":
+        exact = f"up to {1 + error:.0f} times off the solid's sensitivity"
+    why = prediction.error_estimate.get("model_choice", "asked for by name, or the default")
     return [["Model", prediction.model], ["Numerical error", exact], ["Why this model", why]]
 
 

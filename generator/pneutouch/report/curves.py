@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.evaluation.variants import ResinCurve
-from pneutouch.mechanics import Sensor, SensorPrediction, SensorState
+from pneutouch.evaluation.chart_data import ResinCurve
+from pneutouch.mechanics.prediction import SensorPrediction, SensorState
 from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MARKERS, MUTED, figure, label_ends, svg
 from pneutouch.units import KPA
 
@@ -20,7 +20,7 @@ SIZE = (86.0, 62.0)
 """Width and height of a plot in mm: two in a row on A4."""
 
 
-def inflation(sensor: Sensor, prediction: SensorPrediction) -> str:
+def inflation(prediction: SensorPrediction) -> str:
     """Driving pressure over inner apex height, both branches, with the limit point and the other limits."""
     curve, point = prediction.inflation, prediction.limit_point
     height, p = curve.apex_inner, curve.pressure / KPA
@@ -38,15 +38,15 @@ def inflation(sensor: Sensor, prediction: SensorPrediction) -> str:
             ax.plot(*at, "D", color=INK, ms=4.5, zorder=4)
             text = f"limit point\n{at[1]:.1f} kPa, {at[0]:.2f} mm"
             ax.annotate(text, at, xytext=(0, 7), textcoords="offset points", ha="center")
-        _mark_limits(ax, sensor, prediction)
+        _mark_limits(ax, prediction)
         ax.set(xlabel="inner apex height  (mm)", ylabel="driving pressure  (kPa)", ylim=(0, 1.28 * p.max()))
         ax.legend(loc="lower right", handletextpad=0.2)
         return svg(drawn)
 
 
-def _mark_limits(ax: Axes, sensor: Sensor, prediction: SensorPrediction) -> None:
+def _mark_limits(ax: Axes, prediction: SensorPrediction) -> None:
     curve = prediction.inflation
-    p, gauge_kPa = curve.pressure / KPA, sensor.gas.gauge_limit / KPA
+    p, gauge_kPa = curve.pressure / KPA, prediction.limits.gauge / KPA
     if gauge_kPa < 1.2 * p.max():
         ax.axhline(gauge_kPa, color=MUTED, lw=0.8, ls=LINES[4])
         ax.text(
@@ -171,3 +171,12 @@ def sensitivities(curves: dict[str, ResinCurve], chosen: str, published_kPa_per_
         )
         label_ends(ax, ends)
         return svg(drawn)
+
+
+def drawn_by(curves: dict[str, ResinCurve]) -> str:
+    """Which model drew which resins, in words."""
+    models = sorted({curve.model for curve in curves.values()})
+    if len(models) == 1:
+        return f"drawn by the {models[0]}"
+    solid = ", ".join(title for title, curve in curves.items() if curve.model != "atlas")
+    return f"drawn by the atlas, {solid} by the solid"

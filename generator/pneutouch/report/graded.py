@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pneutouch.catalogue import ResolvedDesign
-from pneutouch.mechanics.prediction import SensorState
+from pneutouch.evaluation.chart_data import ComparedMembrane
 from pneutouch.report.style import ACCENT, BOLD, INK, LINES, MUTED, Label, figure, label_ends, svg
 from pneutouch.spec.material import ArcGrading, Material
 from pneutouch.units import KPA
@@ -19,13 +19,6 @@ if TYPE_CHECKING:
 _CELLS = 90
 """Cells along the arc of the shaded section; one more would not be seen."""
 _SHADES = ("#F4F1EA", ACCENT)
-
-
-class ComparedMembrane(NamedTuple):
-    """A membrane with its states, driving pressures ascending."""
-
-    label: str
-    states: Sequence[SensorState]
 
 
 def grade_section(material: Material, scene: ResolvedDesign, size: tuple[float, float] = (180.0, 62.0)) -> str:

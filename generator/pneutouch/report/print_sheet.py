@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from pneutouch.body import Body
+from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.report import prose
 from pneutouch.report.ordering import part_number
-from pneutouch.report.sheet import Datasheet
 from pneutouch.units import ML
 
 
-def print_sheet(sheet: Datasheet) -> str:
+def print_sheet(sheet: SheetData) -> str:
     """Markdown for the operator. Print files carry names and colours; the resin is chosen at the machine."""
     scene, assembly = sheet.scene, sheet.assembly
     rows = []
@@ -37,7 +37,7 @@ def print_sheet(sheet: Datasheet) -> str:
     ])  # fmt: skip
 
 
-def _takes(sheet: Datasheet) -> list[str]:
+def _takes(sheet: SheetData) -> list[str]:
     """Resin, support, layers and a rough time of each job, with what they rest on."""
     rows, notes = [], []
     for job in sheet.estimates:

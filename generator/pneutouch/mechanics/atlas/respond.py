@@ -171,7 +171,7 @@ def _closed_in(press: AtlasPress, nu: Array, low: Array, high: Array) -> tuple[A
     before, _, _ = _worst(press, nu, low)
     after, ends, _ = _worst(press, nu, high)
     for _ in range(_ROUNDS):
-        with np.errstate(invalid="ignore"):
+        with np.errstate(invalid="ignore", divide="ignore"):
             share = before / (before - after)
         share = np.where(np.isfinite(before) & np.isfinite(after), np.clip(share, 0.02, 0.98), 0.5)
         middle = low + share * (high - low)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +11,7 @@ from pneutouch.body import Body
 from pneutouch.errors import InputError
 from pneutouch.evaluation.document import full_document
 from pneutouch.evaluation.evaluate import Evaluation
-from pneutouch.evaluation.table_s1 import published_sensitivities
-from pneutouch.evaluation.uncertainty import unknown
+from pneutouch.evaluation.sheet import sheet_data
 from pneutouch.export.scene import cut_open, glb, stl, viewer_html
 from pneutouch.export.step import step
 from pneutouch.export.threemf import threemf
@@ -23,9 +21,9 @@ from pneutouch.output.manifest import input_hash as hash_of
 from pneutouch.output.manifest import versions, with_manifest
 from pneutouch.output.recipe import BuildRecipe
 from pneutouch.printability import refuse
-from pneutouch.report import Datasheet, datasheet, print_sheet
+from pneutouch.report import datasheet, print_sheet
 from pneutouch.report.picture import picture
-from pneutouch.units import KPA, ML
+from pneutouch.units import ML
 
 Progress = Callable[[str], None]
 
@@ -62,31 +60,12 @@ def build(evaluation: Evaluation, out: Path, progress: Progress = lambda step: N
     progress("STEP")
     files[f"{scene.name}.step"] = step(scene.name, assembly.solids, assembly.print_offset)
     progress("datasheet")
-    sheet = _sheet(evaluation)
-    files |= datasheet(sheet, evaluation.sensor, viewer_html(bodies))
+    sheet = sheet_data(evaluation, input_hash(evaluation))
+    files |= datasheet(sheet, viewer_html(bodies))
     files["print-sheet.md"] = print_sheet(sheet).encode()
     progress("files")
     write_folder(folder, with_manifest(files, scene.name, inputs(evaluation), **_measured(evaluation, bodies)))
     return folder
-
-
-def _sheet(evaluation: Evaluation) -> Datasheet:
-    """What the datasheet is made from; the air and the charts only where the atlas covers the sensor."""
-    prediction, sensor = evaluation.prediction, evaluation.sensor
-    sheet = Datasheet(
-        evaluation.scene, evaluation.assembly, prediction, evaluation.findings, input_hash(evaluation),
-        evaluation.resins, evaluation.uncertainty, evaluation.estimates,
-        published_kPa_per_N=published_sensitivities(sensor, evaluation.scene.membrane_material),
-    )  # fmt: skip
-    if unknown(sensor, prediction.model) is not None:
-        return sheet
-    # Through the atlas these load scipy, which a prediction by the membrane must not pay for.
-    from pneutouch.evaluation.charts import air, tradeoff, tuning
-
-    tuned = tuning(evaluation, sheet.rated_pressure_kPa() * KPA)
-    if tuned is not None:
-        tuned = replace(tuned, published_kPa_per_N=tuple(sheet.published_kPa_per_N.items()))
-    return replace(sheet, gas=air(evaluation), tradeoff=tradeoff(evaluation), tuning=tuned)
 
 
 def inputs(evaluation: Evaluation) -> dict[str, Any]:

@@ -1,0 +1,96 @@
+"""A datasheet's record made from an evaluation."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from pneutouch.catalogue import ResolvedDesign
+from pneutouch.errors import ComputationError
+from pneutouch.evaluation.chart_data import ComparedMembrane
+from pneutouch.evaluation.charts import air, tradeoff, tuning
+from pneutouch.evaluation.evaluate import Evaluation
+from pneutouch.evaluation.relaxation import ageing_data, viscous_data
+from pneutouch.evaluation.sheet_data import Rating, SheetData
+from pneutouch.evaluation.table_s1 import published_sensitivities
+from pneutouch.evaluation.uncertainty import unknown
+from pneutouch.evaluation.variants import resin_curves
+from pneutouch.mechanics import Sensor, SensorPrediction, SensorState
+from pneutouch.mechanics.limits import RATED_SHARE
+from pneutouch.mechanics.models import NUMERICAL
+from pneutouch.mechanics.uncertainty.gas_notes import ROOM
+from pneutouch.units import KPA
+
+_LEAST_SPAN = 22 * KPA
+"""The sensitivity plot reaches at least the paper's highest driving pressure."""
+
+
+def sheet_data(evaluation: Evaluation, input_hash: str) -> SheetData:
+    """Everything that a datasheet shows; gas, trade-off and tuning only inside the atlas."""
+    scene, sensor, prediction = evaluation.scene, evaluation.sensor, evaluation.prediction
+    material, states = scene.membrane_material, prediction.states
+    highest = max(states[-1].driving_pressure, _LEAST_SPAN)
+    rating = Rating(math.floor(10 * RATED_SHARE * prediction.limits.lowest / KPA) / 10, RATED_SHARE)
+    published = published_sensitivities(sensor, material)
+    sheet = SheetData(
+        scene=scene,
+        assembly=evaluation.assembly,
+        prediction=prediction,
+        findings=evaluation.findings,
+        input_hash=input_hash,
+        uncertainty=evaluation.uncertainty,
+        estimates=evaluation.estimates,
+        rating=rating,
+        numerical_error=NUMERICAL[prediction.model],
+        zero_drift_kPa_per_K=zero_drift_kPa_per_K(scene, prediction, states[0]),
+        resin_curves=resin_curves(sensor, evaluation.resins, highest, prediction.model, prediction.closure),
+        viscous=viscous_data(evaluation.viscous_runs),
+        ageing=ageing_data(prediction, material, sensor),
+        constants=constant_membranes(sensor, prediction),
+        published_kPa_per_N=published,
+    )
+    if unknown(sensor, prediction.model) is not None:
+        return sheet
+    tuned = tuning(evaluation, rating.driving_pressure_kPa * KPA)
+    if tuned is not None:
+        tuned = replace(tuned, published_kPa_per_N=tuple(published.items()))
+    return replace(sheet, gas=air(evaluation), tradeoff=tradeoff(evaluation), tuning=tuned)
+
+
+def zero_drift_kPa_per_K(scene: ResolvedDesign, prediction: SensorPrediction, state: SensorState) -> float:
+    """Pressure change of the shut-in gas by temperature without contact, kPa/K.
+
+    The dome yields as the gas warms: dp/dT = (p_abs/T) k/(k + p_abs/V), k = dp/dV of the dome and V the gas.
+    """
+    curve = prediction.inflation
+    slope = float(np.interp(state.cavity_volume, curve.volume, np.gradient(curve.pressure, curve.volume)))
+    absolute = scene.design.pneumatics.ambient_pressure_kPa * KPA + state.driving_pressure
+    gas = absolute / (state.cavity_volume + prediction.dead_volume)
+    return absolute / ROOM * slope / (slope + gas) / KPA
+
+
+def constant_membranes(sensor: Sensor, prediction: SensorPrediction) -> tuple[ComparedMembrane, ...]:
+    """For a graded wall the sensor with its least, mean and greatest modulus throughout; for others nothing."""
+    if sensor.wall.grade is None:
+        return ()
+    pressures = np.array([state.driving_pressure for state in prediction.states])
+    relative, membranes = sensor.wall.grade[1], []
+    for label, share in (("softest", min(relative)), ("mean", 1.0), ("stiffest", max(relative))):
+        modulus = share * sensor.wall.shear_modulus
+        constant = sensor.replace(shear_modulus=modulus, grade=None)
+        membranes.append(_constant(constant, pressures, f"{label} {modulus:.2f} MPa"))
+    return tuple(membrane for membrane in membranes if membrane is not None)
+
+
+def _constant(sensor: Sensor, pressures: np.ndarray, label: str) -> ComparedMembrane | None:
+    """A constant membrane at the pressures that it can be solved for; None where there are none."""
+    from pneutouch.mechanics.solid_states import solid_result
+
+    for count in range(pressures.size, 0, -1):
+        try:
+            return ComparedMembrane(label, solid_result(sensor, pressures[:count], past_limit=1.0).states)
+        except ComputationError:
+            continue
+    return None

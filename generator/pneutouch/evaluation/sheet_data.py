@@ -1,0 +1,137 @@
+"""The record that a datasheet is drawn from: everything on the sheet that is computed stands here."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from pneutouch.arrays import Array
+from pneutouch.catalogue import ResolvedDesign
+from pneutouch.evaluation.chart_data import ComparedMembrane, ResinCurve, TradeOff, TuningChart
+from pneutouch.mechanics.prediction import SensorPrediction
+from pneutouch.parts import Assembly
+from pneutouch.printability import Finding
+from pneutouch.printability.estimate import JobEstimate
+
+if TYPE_CHECKING:
+    from pneutouch.mechanics.uncertainty import GasNotes
+
+
+class Rating(NamedTuple):
+    """The greatest driving pressure to be used, kPa, rounded down, and its share of the binding limit."""
+
+    driving_pressure_kPa: float
+    share: float
+
+
+class RelaxationCurve(NamedTuple):
+    """Contact force and pressure rise in percent of their values at 1 s, over time since the press (s), (n,) each."""
+
+    time: Array
+    force: Array
+    rise: Array
+
+
+class LoadingLoop(NamedTuple):
+    """Contact force (N) and pressure rise (MPa), loading and unloading."""
+
+    force_in: Array
+    rise_in: Array
+    force_out: Array
+    rise_out: Array
+
+
+class ViscousRow(NamedTuple):
+    """One driving pressure in one series of relaxation data.
+
+    Attributes:
+        driving_pressure: MPa.
+        series: Index of the series.
+        losses: Shares of force and of pressure rise lost from 1 to 600 s, and of pressure rise per decade; or None.
+        hysteresis: Width of the loop over full scale by speed (mm/s); None without an unloading branch.
+        ended: By speed (mm/s), or "held": why a run could not be followed further.
+        contact_lost: Plate travel, mm, at which the dome leaves the plate, in the loops where it does.
+    """
+
+    driving_pressure: float
+    series: int
+    losses: tuple[float, float, float] | None
+    hysteresis: dict[float, float | None]
+    ended: dict[float | str, str]
+    contact_lost: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class ViscousData:
+    """Relaxation and hysteresis of a sensor; curves and loops (the quicker ones) at the highest driving pressure.
+
+    Attributes:
+        depth: Indentation of the runs, mm.
+        ramp_speed: Speed of the press before the hold, mm/s.
+        sources: One source a series.
+        basis: What the model assumes.
+        rows: One row a driving pressure and series.
+        held: One curve a series; None where the run ended before 1 s.
+        loops: One loop a series; None without an unloading branch.
+    """
+
+    depth: float
+    ramp_speed: float
+    sources: tuple[str, ...]
+    basis: tuple[str, ...]
+    rows: tuple[ViscousRow, ...]
+    held: tuple[RelaxationCurve | None, ...]
+    loops: tuple[LoadingLoop | None, ...]
+
+
+class AgeingData(NamedTuple):
+    """Ratio of the modulus after a year to the fresh one, and pairs of driving pressure (MPa) and change of sensitivity."""
+
+    modulus_ratio: float
+    sensitivity_change: tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True)
+class SheetData:
+    """Everything a datasheet is drawn from.
+
+    Attributes:
+        scene: The design with its names resolved.
+        assembly: Its bodies.
+        prediction: Its figures.
+        findings: Findings of the print rules.
+        input_hash: Hash of all inputs of the sheet.
+        uncertainty: One document a state, as `Evaluation.uncertainty`.
+        estimates: Resin, support and time of each print job.
+        rating: The rated driving pressure.
+        numerical_error: Stated relative error in sensitivity of the model.
+        zero_drift_kPa_per_K: Drift of the sealed gas without contact, at the lowest driving pressure.
+        resin_curves: The same sensor in every resin, by title.
+        viscous: Relaxation and hysteresis, or why they are not predicted.
+        ageing: Change after a year, or why it is unknown.
+        constants: Membranes of constant mix to compare a graded one with.
+        published_kPa_per_N: Published sensitivities of this sensor by driving pressure, kPa.
+        gas: Effect of the air, one entry a state; None outside the atlas.
+        tradeoff: The trade-off that the design is part of; None outside the atlas.
+        tuning: Its sensitivity over the driving pressure; None outside the atlas.
+    """
+
+    scene: ResolvedDesign
+    assembly: Assembly
+    prediction: SensorPrediction
+    findings: list[Finding]
+    input_hash: str
+    uncertainty: tuple[dict[str, Any], ...]
+    estimates: tuple[JobEstimate, ...]
+    rating: Rating
+    numerical_error: float
+    zero_drift_kPa_per_K: float
+    resin_curves: dict[str, ResinCurve]
+    viscous: ViscousData | str
+    ageing: AgeingData | str
+    constants: tuple[ComparedMembrane, ...] = ()
+    published_kPa_per_N: Mapping[float, float] = field(default_factory=dict)
+    gas: GasNotes | None = None
+    tradeoff: TradeOff | None = None
+    tuning: TuningChart | None = None
