@@ -143,8 +143,8 @@ def _performance(sheet: SheetData) -> list[list[str]]:
     ]  # fmt: skip
 
 
-def _published(sheet: SheetData, pressure: float) -> str:
-    value = sheet.published_kPa_per_N.get(round(pressure, 9))
+def _published(sheet: SheetData, pressure_kPa: float) -> str:
+    value = sheet.published_kPa_per_N.get(round(pressure_kPa, 9))
     return DASH if value is None else f"{value:.3f}"
 
 
