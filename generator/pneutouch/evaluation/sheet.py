@@ -20,7 +20,7 @@ from pneutouch.evaluation.variants import resin_curves
 from pneutouch.mechanics import Sensor, SensorPrediction, SensorState
 from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.mechanics.models import NUMERICAL
-from pneutouch.mechanics.uncertainty.gas_notes import ROOM
+from pneutouch.mechanics.uncertainty.gas_notes import REFERENCE_TEMPERATURE
 from pneutouch.units import KPA
 
 _LEAST_SPAN = 22 * KPA
@@ -68,7 +68,7 @@ def zero_drift_kPa_per_K(scene: ResolvedDesign, prediction: SensorPrediction, st
     slope = float(np.interp(state.cavity_volume, curve.volume, np.gradient(curve.pressure, curve.volume)))
     absolute = scene.design.pneumatics.ambient_pressure_kPa * KPA + state.driving_pressure
     gas = absolute / (state.cavity_volume + prediction.dead_volume)
-    return absolute / ROOM * slope / (slope + gas) / KPA
+    return absolute / REFERENCE_TEMPERATURE * slope / (slope + gas) / KPA
 
 
 def constant_membranes(sensor: Sensor, prediction: SensorPrediction) -> tuple[ComparedMembrane, ...]:

@@ -68,7 +68,7 @@ def _paint(image: Array, depth: Array, corners: Array, colours: Array) -> None:
     low = np.floor(corners[..., :2].min(axis=1)).astype(int)
     high = np.minimum(np.ceil(corners[..., :2].max(axis=1)).astype(int), np.array(depth.shape)[::-1] - 1)
     which, y = _counted(low[:, 1], high[:, 1])
-    left, right = _span(corners[which], whole[which], y + 0.5, low[which, 0], high[which, 0])
+    left, right = _span(corners[which], whole[which], np.asarray(y + 0.5), low[which, 0], high[which, 0])
     ends = np.cumsum(np.maximum(right - left + 1, 0))
     start = 0
     while start < y.size:
