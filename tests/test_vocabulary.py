@@ -13,7 +13,6 @@ NOT_YET_CLEAN = {
     "cli",
     "evaluation",
     "export",
-    "mechanics",
     "parts",
     "report",
     "workflows",

@@ -1,4 +1,4 @@
-"""How stiff a mix of a soft and a stiff incompressible solid can be: bounds, laws, and the fraction that a law gives a modulus.
+"""Stiffness of a mix of a soft and a stiff incompressible solid: bounds, laws, and the fraction for a modulus.
 
 Shear moduli in MPa, ``fraction`` the volume fraction of the stiff solid, arrays of any shape. Every law gives the soft
 modulus at 0 and the stiff one at 1, and rises between.
@@ -17,17 +17,17 @@ Law = Callable[[Array, float, float], Array]
 """Fraction, soft modulus, stiff modulus to the mix's modulus."""
 
 THRESHOLD = 0.163
-"""Volume fraction at which stiff droplets of random places touch all through: as the Abaqus/MATLAB mixture tool of Agilus30
-and VeroWhite has it (HELPER_MaterialsFE.m). It is the filling of spheres on a cubic lattice times that lattice's site
-threshold, pi/6 x 0.3116; Scher and Zallen (J. Chem. Phys. 53, 3759, 1970, DOI 10.1063/1.1674565) found near 0.16 for every
-lattice."""
+"""Volume fraction at which stiff droplets of random places touch all through, as in the Abaqus/MATLAB mixture tool of
+Agilus30 and VeroWhite (HELPER_MaterialsFE.m). It is the filling of spheres on a cubic lattice times the site threshold
+of that lattice, pi/6 x 0.3116; Scher and Zallen (J. Chem. Phys. 53, 3759, 1970, DOI 10.1063/1.1674565) found near 0.16
+for every lattice."""
 
 VOXEL_THRESHOLD = 0.3116
 """The same for voxels that fill their cells and touch by faces: site threshold of the simple cubic lattice."""
 
 EXPONENT = 0.4
-"""Exponent of the share of the stiff solid that is connected, in three dimensions (De Gennes, Scaling Concepts in Polymer
-Physics, 1979), as Ouali, Cavaille and Perez took it (Plast. Rubber Compos. Process. Appl. 16, 55-60, 1991)."""
+"""Exponent of the share of the stiff solid that is connected, in three dimensions (De Gennes, Scaling Concepts in
+Polymer Physics, 1979), as Ouali, Cavaille and Perez took it (Plast. Rubber Compos. Process. Appl. 16, 55-60, 1991)."""
 
 LONG_TERM = ((0.0, 0.30), (0.165, 1.08), (0.333, 3.04), (0.5, 5.34), (1.0, 8.47))
 """Fraction of VeroWhite in Agilus30 Black and the mix's long-term modulus, MPa: the Abaqus/MATLAB mixture tool
@@ -66,11 +66,11 @@ def logarithmic(fraction: Array, soft: float, stiff: float) -> Array:
 
 
 def percolation(fraction: Array, soft: float, stiff: float, threshold: float = THRESHOLD) -> Array:
-    """Droplets that stay apart until they touch all through: Takayanagi's series and parallel model (Ouali et al. 1991).
+    """Droplets that touch all through beyond a threshold: Takayanagi's series and parallel model (Ouali et al. 1991).
 
     With psi = f ((f - fc)/(1 - fc))^0.4 connected, and nothing below the threshold fc, the modulus is
-    ((1 - 2 psi + psi f) G1 G2 + (1 - f) psi G2^2) / ((1 - f) G2 + (f - psi) G1): below it that of `reuss`, which is less than
-    an isotropic mix can have.
+    ((1 - 2 psi + psi f) G1 G2 + (1 - f) psi G2^2) / ((1 - f) G2 + (f - psi) G1): below it that of `reuss`, which is
+    less than an isotropic mix can have.
     """
     f = np.asarray(fraction, float)
     joined = f * np.clip((f - threshold) / (1 - threshold), 0.0, None) ** EXPONENT
@@ -82,7 +82,7 @@ def percolation(fraction: Array, soft: float, stiff: float, threshold: float = T
 
 
 def like_agilus(fraction: Array, soft: float, stiff: float) -> Array:
-    """The soft modulus times what VeroWhite makes of Agilus30's, up to half; beyond by the last slope, whatever ``stiff`` is."""
+    """The soft modulus times the ratio of Agilus30 with VeroWhite, up to half; beyond by the last slope."""
     known = np.array(LONG_TERM[:-1])
     at, ratio = known[:, 0], np.log(known[:, 1] / known[0, 1])
     last = (ratio[-1] - ratio[-2]) / (at[-1] - at[-2])
@@ -118,7 +118,7 @@ def placings(modulus: float, soft: float, stiff: float) -> dict[str, float]:
 def stiff_moduli(material: Material) -> tuple[float, float]:
     """Least and greatest shear modulus in MPa of a rigid resin taken as incompressible: a third of its Young's modulus.
 
-    A glassy resin's Poisson ratio is nearer 0.4; its modulus is then 7 % more, which is little compared with the range of E.
+    A glassy resin's Poisson ratio is nearer 0.4; its modulus is then 7 % more, small compared with the range of E.
     Raises ValueError where the material has none.
     """
     young = material.young_modulus_MPa

@@ -1,4 +1,4 @@
-"""The paper's sensor in any resin: where measurements are known, and where a resin's mechanics is read from its file."""
+"""The paper's sensor in any resin: the one with measurements, and the wall that a material file gives."""
 
 from __future__ import annotations
 

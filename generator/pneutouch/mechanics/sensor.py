@@ -44,7 +44,7 @@ class WallMaterial:
 
 @dataclass(frozen=True, slots=True)
 class GasCircuit:
-    """The gas behind the membrane: absolute ``ambient_pressure``, ``dead_volume`` and the range of the pressure gauge."""
+    """The gas behind the membrane: absolute ``ambient_pressure``, ``dead_volume`` and the range of the gauge."""
 
     ambient_pressure: float
     dead_volume: float

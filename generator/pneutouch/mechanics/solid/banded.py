@@ -13,7 +13,7 @@ from pneutouch.arrays import Array, Index
 class AssemblyPattern:
     """Where block entries go: blocks (n_blocks, d, d) with dof tables (n_blocks, d), -1 for a fixed dof.
 
-    Several block families share one flat vector, in the order given.  Entries of one place are counted up by `bincount`:
+    Several block families share one flat vector, in the order given.  Entries of one place are summed by `bincount`:
     as fast as a product with a sparse 0/1 matrix, whose package costs a tenth of SciPy's import.
     """
 

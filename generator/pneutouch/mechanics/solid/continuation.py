@@ -54,7 +54,17 @@ def plate_state(scene: SolidScene, state: SolverState, height: float, iterations
     stiffness = float(np.vdot(contact.weight * active, 1.0 + touch.slope * r - z))
     rate = -state.filling.rate * float(tangent.step @ state.by_volume)
     force = float(np.vdot(contact.weight, touch.traction))
-    return PlateState(height, state, scene, iterations, force, stiffness, move, rate, tangent.stable)
+    return PlateState(
+        height=height,
+        state=state,
+        scene=scene,
+        iterations=iterations,
+        force=force,
+        stiffness=stiffness,
+        by_height=move,
+        pressure_rate=rate,
+        stable=tangent.stable,
+    )
 
 
 def lost_work(path: list[PlateState], after: PlateState) -> float:

@@ -53,7 +53,7 @@ def _sound(path: list[PlateState], after: PlateState) -> bool:
 def _close_in(follower: PathFollower, end: float) -> PathJump | None:
     """Bisect between the last sound state and a suspect one; None if the end is reached on one branch after all.
 
-    A suspect height may prove sound when approached in shorter steps, so the last bracket is repeated in short steps before it counts.
+    A suspect height may prove sound when approached in shorter steps, so the last bracket is repeated in short steps.
     """
     follower.path.pop()
     beyond: PlateState | NewtonFailure = NewtonFailure("no equilibrium follows without a jump")

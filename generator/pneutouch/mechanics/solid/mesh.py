@@ -8,8 +8,8 @@ import numpy as np
 
 from pneutouch.arrays import Array, Index
 
-#: Walls up to this share of R0 need one cell across (S within 0.2 % of a refined mesh), thicker ones two. The atlas begins
-#: above it, so that one family of meshes serves all of its box.
+#: Walls up to this share of R0 need one cell across (S within 0.2 % of a refined mesh), thicker ones two. The
+#: atlas begins above it, so that one family of meshes serves all of its box.
 _THIN = 0.055
 _TO_BENDING_LENGTH = 3.0
 _ARC_CELLS = (24, 48)
@@ -100,7 +100,8 @@ def _from_grid(grid: Array, n_columns: int, n_rows: int, order: int, scales: tup
     base, top = (renumber[x][renumber[x] >= 0] for x in (base, top))
     cells, inner, outer = (renumber[x] for x in (cells, inner, outer))
     none = np.zeros(0, dtype=np.intp)
-    return SolidMesh(nodes[keep], cells, inner, outer, base, top, none, *scales)
+    length, wall = scales
+    return SolidMesh(nodes[keep], cells, inner, outer, clamped=base, axis=top, sliding=none, length=length, wall=wall)
 
 
 def graded(n: int, ratio: float) -> Array:

@@ -49,8 +49,8 @@ class PointFields:
 
 
 class SolidModel:
-    """A wall on one mesh, of one law whose modulus may vary along the arc.  Positions are (n_nodes, 2) arrays in units of
-    the inner radius.
+    """A wall on one mesh, of one law whose modulus may vary along the arc.  Positions are (n_nodes, 2) arrays in units
+    of the inner radius.
 
     ``grade`` gives the modulus over the material's own at reference points (r, z), arrays of any one shape.
     """
@@ -196,7 +196,7 @@ def _number_dofs(mesh: SolidMesh) -> Index:
 
 
 def _narrower(cells: Index, n: int, span: int) -> Index:
-    """Rank of each of n nodes by reverse Cuthill-McKee where that spans less than ``span`` in a cell, else as they are."""
+    """Rank of each of n nodes by reverse Cuthill-McKee where that spans less than ``span`` in a cell."""
     # Only a flange needs these, which take a tenth of SciPy's import.
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import reverse_cuthill_mckee

@@ -101,7 +101,18 @@ def evaluate(scene: SolidScene, x: Array) -> SolverState | None:
     noise = solid.noise if touch is None else solid.noise + solid.contact.noise
     scale = load + 1.0e-3 * solid.wall + 10.0 * noise / RESIDUAL
     energy = local.energy + filling.energy + (0.0 if touch is None else touch.energy)
-    return SolverState(x, energy, inner + push, inner, scale, local, volume, by_volume, filling, touch)
+    return SolverState(
+        x=x,
+        energy=energy,
+        residual=inner + push,
+        inner=inner,
+        scale=scale,
+        local=local,
+        volume=volume,
+        by_volume=by_volume,
+        filling=filling,
+        touch=touch,
+    )
 
 
 def tangent(scene: SolidScene, state: SolverState) -> Array:

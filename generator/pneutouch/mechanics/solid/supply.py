@@ -71,7 +71,7 @@ class Gas:
     def at(self, volume: float) -> FillingState | None:
         """Potential -[C ln((V + dead)/(start + dead)) - ambient (V - start)].
 
-        Counted from the shut-in state: with a large dead volume the full potential would drown a step's work in rounding.
+        Counted from the shut-in state: with a large dead volume the rounding of the full potential would hide the work.
         """
         total = volume + self.dead
         if total <= 0.0:
