@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-import json
 import os
+import re
 import signal
 import subprocess
 import sys
-import time
+import threading
 from dataclasses import dataclass
 
 import pytest
 import xarray
+from distributed import Client
 
 from pneutouch.errors import ComputationError
 from pneutouch.spec.read import parse_changes
 from pneutouch.workflows.sweep import plan_of_flags, sweep, work
 from pneutouch.workflows.sweep.run import ComputeResources
+from tests.running import in_process
 
 OVER = [
     "membrane.material=TangoPlus,FLX9950",
@@ -24,8 +26,8 @@ OVER = [
     "pneumatics.driving_pressures_kPa=5,22",
 ]
 WORDS = ["--design", "paper-dome", *(word for over in OVER for word in ("--over", over)), "--model", "membrane"]
-POINTS, CHUNKS = 320, 10
-"""About two seconds of one core; the thinnest walls in TangoPlus are refused at 22 kPa."""
+POINTS = 320
+"""About two seconds of one core in ten chunks; the thinnest walls in TangoPlus are refused at 22 kPa."""
 
 
 ALONE = ComputeResources(workers=1)
@@ -54,23 +56,51 @@ def _listening():
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
-def started(out, *words, group=False):
-    """The command line as a process, returned as soon as it has kept its first chunk."""
+PATIENCE = 600
+"""Seconds to wait for what is there and comes: a loaded machine may be slow, a test must not fail by it."""
+
+HELD = """
+import os, sys
+from pneutouch.cli import run
+from pneutouch.workflows.sweep import cluster
+from pneutouch.workflows.sweep.journal import Journal
+cluster._PATIENCE = {patience}
+keep, left = Journal.append, iter([*[False] * ({after} - 1), True])
+def append(self, records):
+    keep(self, records)
+    if next(left, False):
+        os.write({pipe}, b"held")
+        sys.stdin.read()
+Journal.append = append
+sys.argv = {words!r}
+run()
+"""
+
+
+def held(out, *words, after=1, group=False):
+    """The command line as a process that stands still when it has kept ``after`` chunks, until its stdin is closed."""
+    reading, pipe = os.pipe()
+    command = ["pneutouch", "sweep", *WORDS, "--out", str(out), *words]
+    code = HELD.format(after=after, pipe=pipe, patience=PATIENCE, words=command)
     process = subprocess.Popen(
-        [sys.executable, "-m", "pneutouch", "sweep", *WORDS, "--out", str(out), *words],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=group,
-        preexec_fn=_listening,
+        [sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        pass_fds=[pipe], start_new_session=group, preexec_fn=_listening,
     )  # fmt: skip
-    before, deadline = journal_lines(out), time.monotonic() + 60
-    while journal_lines(out) <= before and process.poll() is None and time.monotonic() < deadline:
-        time.sleep(0.01)
+    os.close(pipe)
+    with os.fdopen(reading, "rb") as stream:
+        assert stream.read(4) == b"held", ended(process)
     return process
 
 
 def ended(process):
     """Exit code, stdout and stderr."""
-    stdout, stderr = process.communicate(timeout=60)
+    stdout, stderr = process.communicate()
     return process.returncode, stdout, stderr
+
+
+def resumed(out):
+    """What the command line says when it is called again for ``out``."""
+    return in_process(["sweep", *WORDS, "--out", str(out), "--workers", "1", "--json"], out.parent)
 
 
 def names(folder):
@@ -98,12 +128,13 @@ def single(monkeypatch):
 
 
 @pytest.fixture(scope="session")
-def undisturbed(library, tmp_path_factory) -> bytes:
-    """The file of the sweep of ``WORDS``, computed in this process in one go."""
-    out = tmp_path_factory.mktemp("undisturbed") / "sweep.nc"
-    plan = plan_of_flags("paper-dome", OVER, model="membrane")
-    sweep(plan, out, ComputeResources(workers=1), library=library)
-    return out.read_bytes()
+def undisturbed(library, shared) -> bytes:
+    """The file of the sweep of ``WORDS``, computed in one go."""
+
+    def fill(folder):
+        sweep(plan_of_flags("paper-dome", OVER, model="membrane"), folder / "sweep.nc", ALONE, library=library)
+
+    return (shared.folder("undisturbed-sweep", fill) / "sweep.nc").read_bytes()
 
 
 @dataclass
@@ -114,35 +145,36 @@ class Cluster:
 
 
 @pytest.fixture
-def cluster(tmp_path):
+def cluster(tmp_path, monkeypatch):
     """A scheduler and two workers, each a process of its own, in a folder that holds no designs."""
     folder, quiet = (
         tmp_path / "cluster",
-        {**os.environ, "OMP_NUM_THREADS": "1", "DASK_DISTRIBUTED__LOGGING__DISTRIBUTED": "error"},
+        {**os.environ, "OMP_NUM_THREADS": "1", "DASK_DISTRIBUTED__LOGGING__DISTRIBUTED": "info"},
     )
     folder.mkdir()
     options = {"cwd": folder, "env": quiet, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
 
-    def dask(*words):
-        return subprocess.Popen([sys.executable, "-m", "dask", *words], **options)
+    def dask(*words, **more):
+        return subprocess.Popen([sys.executable, "-m", "dask", *words], **{**options, **more})
 
     scheduler = dask(
-        "scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", "scheduler.json"
+        "scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", stderr=subprocess.PIPE, text=True
     )
-    workers = [
-        dask("worker", "--scheduler-file", "scheduler.json", "--nthreads", "1", "--no-nanny", "--no-dashboard")
-        for _ in range(2)
-    ]
+    workers = []
     try:
-        deadline = time.monotonic() + 30
-        while time.monotonic() < deadline:
-            try:
-                address = json.loads((folder / "scheduler.json").read_text())["address"]
-                break
-            except (OSError, ValueError):
-                time.sleep(0.05)
+        # Closed after the line that names the address, the pipe would break the scheduler.
+        address = next(found[0] for line in scheduler.stderr if (found := re.findall(r"Scheduler at: +(tcp\S+)", line)))
+        drain = threading.Thread(target=scheduler.stderr.read)
+        drain.start()
+        words = ("worker", address, "--nthreads", "1", "--no-nanny", "--no-dashboard")
+        workers += [dask(*words), dask(*words)]
+        with Client(address, timeout=PATIENCE, set_as_default=False) as client:
+            client.wait_for_workers(len(workers))
+        monkeypatch.setattr("pneutouch.workflows.sweep.cluster._PATIENCE", PATIENCE)
         yield Cluster(address, scheduler, workers)
     finally:
         for process in (*workers, scheduler):
             process.kill()
             process.wait()
+        drain.join()
+        scheduler.stderr.close()

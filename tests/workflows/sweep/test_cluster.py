@@ -5,21 +5,21 @@ from __future__ import annotations
 import signal
 import socket
 import sys
-import time
 
 import pytest
+from distributed import Client
 
 from pneutouch.errors import InputError
 from pneutouch.workflows.sweep import cluster as module
 from pneutouch.workflows.sweep import sweep
 from pneutouch.workflows.sweep.run import ComputeResources
-from tests.workflows.sweep.conftest import CHUNKS, ended, journal_lines, small, started
+from tests.workflows.sweep.conftest import PATIENCE, ended, held, journal_lines, resumed, small
 
 
 def test_a_lost_worker_changes_no_byte(undisturbed, cluster, tmp_path):
     out = tmp_path / "sweep.nc"
-    process = started(out, "--scheduler", cluster.address)
-    assert 0 < journal_lines(out) < CHUNKS - 2, "too late to lose work"
+    process = held(out, "--scheduler", cluster.address)
+    assert journal_lines(out) == 1
     cluster.workers[0].kill()
     assert cluster.workers[0].wait() == -signal.SIGKILL
     code, stdout, stderr = ended(process)
@@ -33,7 +33,7 @@ def test_a_lost_worker_changes_no_byte(undisturbed, cluster, tmp_path):
 
 def test_a_lost_cluster_is_said_and_the_sweep_goes_on_without_it(undisturbed, cluster, tmp_path):
     out = tmp_path / "sweep.nc"
-    process = started(out, "--scheduler", cluster.address)
+    process = held(out, "--scheduler", cluster.address)
     for worker in cluster.workers:
         worker.kill()
     cluster.scheduler.kill()
@@ -42,7 +42,7 @@ def test_a_lost_cluster_is_said_and_the_sweep_goes_on_without_it(undisturbed, cl
     assert f"--scheduler {cluster.address}" in stderr, stderr
     assert "Traceback" not in stderr
     assert "goes on from there" in stderr
-    assert ended(started(out))[0] == 0
+    assert resumed(out).returncode == 0
     assert out.read_bytes() == undisturbed
 
 
@@ -54,19 +54,17 @@ def listening():
     return silent
 
 
-def test_no_scheduler_is_an_input_error_within_ten_seconds(command, tmp_path):
+def test_no_scheduler_is_an_input_error(command, tmp_path):
     with socket.socket() as unused:
         unused.bind(("127.0.0.1", 0))
         address = f"tcp://127.0.0.1:{unused.getsockname()[1]}"
-        start = time.monotonic()
         words = ["--design", "paper-dome", "--over", "membrane.wall_thickness_mm=1,2", "--scheduler", address]
         result = command("sweep", *words)
-        seconds = time.monotonic() - start
     assert (result.returncode, result.stdout) == (2, "")
     assert result.stderr.startswith(f"error: --scheduler {address}: no Dask scheduler answers there (")
     assert len(result.stderr.splitlines()) == 1
-    assert seconds < 10
     assert list((tmp_path / "outputs").iterdir()) == []
+    assert module._PATIENCE < 10
 
 
 def test_what_is_no_scheduler_is_an_input_error(library, tmp_path, monkeypatch):
@@ -85,8 +83,17 @@ def test_a_cluster_without_workers_or_with_others_is_an_input_error(cluster, lib
     for worker in cluster.workers:
         worker.kill()
         worker.wait()
+
+    async def no_workers(dask_scheduler):
+        """Return when the scheduler has no worker left; local, so that the scheduler gets its code and not its name."""
+        import asyncio
+
+        while dask_scheduler.workers:
+            await asyncio.sleep(0)
+
+    with Client(cluster.address, timeout=PATIENCE, set_as_default=False) as client:
+        client.run_on_scheduler(no_workers)
     monkeypatch.setattr(module, "_PATIENCE", 2)
-    time.sleep(1)
     with pytest.raises(InputError, match="has no worker; start some with: dask worker"):
         sweep(small(), tmp_path / "x.nc", ComputeResources(scheduler=cluster.address), library=library)
 

@@ -6,7 +6,7 @@ import pytest
 
 from pneutouch.errors import ComputationError, InputError
 from pneutouch.workflows.sweep import sweep
-from tests.workflows.sweep.conftest import ALONE, ended, names, six, small, started
+from tests.workflows.sweep.conftest import ALONE, ended, held, names, resumed, six, small
 
 
 def test_a_finished_dataset_is_kept_and_no_other_is_overwritten(library, tmp_path):
@@ -54,10 +54,10 @@ def test_a_stopped_replacement_goes_on_and_the_old_dataset_stays_until_then(sing
 
 def test_two_sweeps_on_one_output_are_one_too_many(undisturbed, tmp_path):
     out = tmp_path / "sweep.nc"
-    first = started(out, "--workers", "1")
-    second = ended(started(out, "--workers", "1"))
-    assert second[:2] == (2, "")
-    assert f"--out: {out}: process {first.pid} is sweeping into it" in second[2]
+    first = held(out, "--workers", "1")
+    second = resumed(out)
+    assert (second.returncode, second.stdout) == (2, "")
+    assert f"--out: {out}: process {first.pid} is sweeping into it" in second.stderr
     assert ended(first)[0] == 0
     assert out.read_bytes() == undisturbed
 

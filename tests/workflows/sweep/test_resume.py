@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
 import os
 import random
 import signal
 import subprocess
 import sys
-import time
 
 import psutil
 import pytest
@@ -24,51 +22,47 @@ from tests.workflows.sweep.conftest import (
     POINTS,
     WORDS,
     ended,
+    held,
     journal_lines,
     load,
     names,
+    resumed,
     six,
     small,
-    started,
     stopped,
 )
 
 
 def test_three_kills_at_random_moments_change_no_byte(undisturbed, tmp_path):
-    out, luck, kept = tmp_path / "sweep.nc", random.Random(20261121), []
+    out, luck, kept = tmp_path / "sweep.nc", random.Random(20261121), 0
     for workers in (2, 1, 2):
-        process = started(out, "--workers", str(workers))
-        time.sleep(luck.uniform(0, 0.1))
+        chunks = luck.randint(1, 2)
+        process = held(out, "--workers", str(workers), after=chunks)
         children = psutil.Process(process.pid).children(recursive=True)
-        assert process.poll() is None, "ended before it was killed"
         process.kill()
         assert ended(process)[0] == -signal.SIGKILL
-        assert psutil.wait_procs(children, timeout=10)[1] == [], "workers outlive their parent"
-        kept.append(journal_lines(out))
+        # Returns when all have ended: workers that outlived their parent would be waited for.
+        psutil.wait_procs(children)
+        kept += chunks
+        assert journal_lines(out) == kept
         assert not out.exists()
-    assert 0 < kept[0] < kept[1] < kept[2]
-    code, stdout, stderr = ended(started(out, "--workers", "2", "--json"))
-    assert code == 0, stderr
-    # A line torn at its very newline is whole all the same.
-    assert POINTS - json.loads(stdout)["computed"] in {32 * kept[2], 32 * (kept[2] + 1)}
+    done = resumed(out)
+    assert done.returncode == 0, done.stderr
+    assert POINTS - json.loads(done.stdout)["computed"] == 32 * kept
     assert out.read_bytes() == undisturbed
     assert names(tmp_path) == ["sweep.nc"]
 
 
 def test_ctrl_c_says_how_to_go_on(undisturbed, tmp_path):
-    for attempt in range(8):
-        out = tmp_path / f"sweep-{attempt}.nc"
-        process = started(out, "--workers", "1", group=True)
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(process.pid, signal.SIGINT)
-        code, stdout, stderr = ended(process)
-        if code != 0:  # it may have been done before the signal came
-            break
+    out = tmp_path / "sweep.nc"
+    process = held(out, "--workers", "1", group=True)
+    os.killpg(process.pid, signal.SIGINT)
+    code, stdout, stderr = ended(process)
     assert (code, stdout) == (3, "")
     assert stderr.startswith("error: interrupted\n")
     assert f"of {POINTS} points are done and kept in {out}.parts; the same command" in stderr
     assert "Traceback" not in stderr
-    assert ended(started(out))[0] == 0
+    assert resumed(out).returncode == 0
     assert out.read_bytes() == undisturbed
 
 
@@ -224,7 +218,7 @@ def test_a_full_disk_is_said_and_the_progress_kept(single, library, tmp_path, mo
 
 def test_a_worker_that_dies_is_said_and_the_progress_kept(undisturbed, tmp_path):
     out = tmp_path / "sweep.nc"
-    process = started(out, "--workers", "2")
+    process = held(out, "--workers", "2")
     workers = [p for p in psutil.Process(process.pid).children() if "spawn_main" in " ".join(p.cmdline())]
     assert len(workers) == 2
     workers[0].kill()
@@ -232,7 +226,7 @@ def test_a_worker_that_dies_is_said_and_the_progress_kept(undisturbed, tmp_path)
     assert code == 3
     assert "a worker process died" in stderr
     assert "Traceback" not in stderr
-    assert ended(started(out))[0] == 0
+    assert resumed(out).returncode == 0
     assert out.read_bytes() == undisturbed
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pneutouch.catalogue import Library
-from pneutouch.errors import ComputationError, InputError
+from pneutouch.errors import ComputationError, InputError, joined
 from pneutouch.workflows.sweep.cluster import on_cluster
 from pneutouch.workflows.sweep.dataset import dataset, netcdf, stored_fingerprint, stored_states
 from pneutouch.workflows.sweep.journal import Journal
@@ -108,13 +108,13 @@ def _keeping(folder: WorkFolder, records: dict[int, Record], total: int) -> Iter
     try:
         yield
     except (KeyboardInterrupt, ComputationError, OSError) as error:
-        why = "interrupted" if isinstance(error, KeyboardInterrupt) else str(error)
         if isinstance(error, OSError):
-            why = f"{error.filename or folder.path}: cannot be written: {error.strerror or error}"
-        raise ComputationError(
-            f"{why}\n{len(records)} of {total} points are done and kept in {folder.path}",
-            remedy="the same command (without `fresh`) goes on from there",
-        ) from None
+            first = ComputationError(f"{error.filename or folder.path}: cannot be written: {error.strerror or error}")
+        else:
+            first = error if isinstance(error, ComputationError) else ComputationError("interrupted")
+        kept = f"{len(records)} of {total} points are done and kept in {folder.path}"
+        remedy = "the same command (without `fresh`) goes on from there"
+        raise joined((first, ComputationError(kept, remedy=remedy))) from None
 
 
 def _batches(
