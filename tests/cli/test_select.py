@@ -104,7 +104,7 @@ def test_a_bad_target_file_is_named_with_its_key(tmp_path, content, said):
         (["--tolerance", "much"], "--tolerance much"),
         (["--material", "Tango"], "given.materials"),
         (["--pick", "99"], "--pick 99"),
-        (["--write", "bad name"], "NAME"),
+        (["--write", "bad name"], "--write bad name"),
     ],
 )
 def test_bad_flags_exit_2(extra, said):
@@ -113,10 +113,10 @@ def test_bad_flags_exit_2(extra, said):
     assert said in result.stderr
 
 
-def test_no_wish_at_all_is_said():
+def test_no_target_is_an_error():
     result = run("select")
     assert result.exit_code == 2
-    assert "say what the sensor shall do" in result.stderr
+    assert "no target; give a target file, or --sensitivity" in result.stderr
 
 
 def test_no_kernel_is_loaded():

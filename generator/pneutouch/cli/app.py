@@ -36,9 +36,11 @@ def option(command: Any, parameter: str) -> str | None:
     if "." in parameter:
         return f"--set {parameter}" if "set" in known else None
     names = sorted((name for name in known if f"_{name}_" in f"_{parameter}_"), key=len)
-    if not names:
+    # An option may be named by what it takes: --write NAME.
+    named = [found for found in known.values() if found.metavar == parameter.upper()]
+    if not names and not named:
         return None
-    found = known[names[-1]]
+    found = known[names[-1]] if names else named[0]
     return str(found.metavar or found.name).upper() if found.param_type_name == "argument" else max(found.opts, key=len)
 
 

@@ -40,9 +40,7 @@ class TargetFigures(Table):
     same_within_percent: float = number(
         2.0, unit="%", low=0.01, high=100, help="How far the sensitivities at the two driving pressures may differ."
     )
-    widest_range: bool = Field(
-        default=False, description="Whether the force range shall be as wide as it can; for a grade."
-    )
+    widest_range: bool = Field(default=False, description="Make the force range as wide as a grade can.")
 
     @model_validator(mode="after")
     def _stiffness_is_ordered(self) -> TargetFigures:
@@ -93,7 +91,7 @@ class Given(Table):
         pattern=r"^[^+]+\+[^+]+$",
         description="SOFT+STIFF, two base resins to mix instead of a resin to choose.",
     )
-    graded: bool = Field(default=False, description="Whether the mix may differ between pole and rim.")
+    graded: bool = Field(default=False, description="Let the mix differ between pole and rim; the solid searches.")
 
     @model_validator(mode="after")
     def _wall_below_radius(self) -> Given:
@@ -125,9 +123,9 @@ class Setting(Table):
 class Weights(Table):
     """[weights]: what matters between designs that all meet the target."""
 
-    robustness: float = number(1.0, unit="", low=0, high=100, help="On a small uncertainty of the sensitivity.")
+    robustness: float = number(1.0, unit="", low=0, high=100, help="Weight on a small uncertainty of the sensitivity.")
     tunability: float = number(
-        0.0, unit="", low=0, high=100, help="On a sensitivity that moves with the driving pressure."
+        0.0, unit="", low=0, high=100, help="Weight on a sensitivity that moves with the driving pressure."
     )
 
 

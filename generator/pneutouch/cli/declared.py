@@ -1,0 +1,73 @@
+"""Options of a command made from the declared fields of a file, so that unit, type and help stand in one place."""
+
+from __future__ import annotations
+
+import inspect
+import types
+import typing
+from collections.abc import Callable, Mapping
+from typing import Annotated, Any, NamedTuple
+
+import typer
+from pydantic import BaseModel
+
+from pneutouch.spec.fields import Declaration, declaration, table_of
+
+
+class FieldOption(NamedTuple):
+    """The field ``table.key`` behind an option; ``parse`` where the option is a text in a form of its own, ``metavar``."""
+
+    table: str
+    key: str
+    parse: Callable[[str], Any] | None = None
+    metavar: str | None = None
+
+
+def with_fields(model: type[BaseModel], options: Mapping[str, FieldOption]) -> Callable[[Callable[..., None]], Any]:
+    """Give a command one option for each field, after its arguments; the command takes them as keywords, None where left out."""
+
+    def decorate(command: Callable[..., None]) -> Callable[..., None]:
+        hints = typing.get_type_hints(command, include_extras=True)
+        written = [p.replace(annotation=hints[p.name]) for p in inspect.signature(command).parameters.values()]
+        made = [_parameter(model, name, option) for name, option in options.items()]
+        arguments = [p for p in written if "ArgumentInfo" in str(p.annotation)]
+        others = [p for p in written if p not in arguments and p.kind is not inspect.Parameter.VAR_KEYWORD]
+        command.__signature__ = inspect.Signature([*arguments, *made, *others])  # type: ignore[attr-defined]
+        return command
+
+    return decorate
+
+
+def field_tables(options: Mapping[str, FieldOption], values: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+    """Tables of a file that holds the options given. Raises InputError where a text is not of its form."""
+    tables: dict[str, dict[str, Any]] = {}
+    for name, value in values.items():
+        if value is not None:
+            table, key, parse, _ = options[name]
+            tables.setdefault(table, {})[key] = parse(value) if parse else value
+    return tables
+
+
+def _parameter(model: type[BaseModel], name: str, option: FieldOption) -> inspect.Parameter:
+    table = table_of(model, option.table)
+    assert table is not None
+    field = declaration(table, option.key)
+    kind: Any = str if option.parse else _kind(table, option.key)
+    flags = [f"--{name.replace('_', '-')}"] if kind is bool else []
+    info = typer.Option(*flags, metavar=option.metavar, help=_help(field))
+    annotation: Any = Annotated[kind | None, info]
+    return inspect.Parameter(name, inspect.Parameter.POSITIONAL_OR_KEYWORD, default=None, annotation=annotation)
+
+
+def _kind(table: type[BaseModel], key: str) -> Any:
+    """The type of a field without None and without its bounds."""
+    annotation = table.model_fields[key].annotation
+    if typing.get_origin(annotation) in (typing.Union, types.UnionType):
+        (annotation,) = (kind for kind in typing.get_args(annotation) if kind is not types.NoneType)
+    return typing.get_args(annotation)[0] if typing.get_origin(annotation) is Annotated else annotation
+
+
+def _help(field: Declaration) -> str:
+    return (
+        f"{field.help.removesuffix('.')}, {field.unit}." if field.unit and field.unit not in field.help else field.help
+    )
