@@ -35,7 +35,11 @@ def renamed(key: str, path: Sequence[str], renames: Sequence[Rename]) -> str:
             return rename.new
         *above, last = rename.old.split(".")
         here = parents[-len(above) :]
-        if above and last == key and here in (above, [renamed(part, (), renames) for part in above]):
+        if (
+            above
+            and last == key
+            and here in (above, [renamed(part, above[:k], renames) for k, part in enumerate(above)])
+        ):
             return rename.new.rsplit(".", 1)[-1]
     return key
 

@@ -85,6 +85,16 @@ def test_a_dotted_key_is_found_where_its_parent_is_renamed_too():
     assert not list(differences(DOCUMENT, new, renames))
 
 
+def test_a_dotted_key_is_found_where_its_parent_has_a_dotted_key_of_its_own():
+    old, new = ({"inputs": {name: {key: [1.0]}}} for name, key in (("asked", "ages"), ("options", "ages_days")))
+    renames = [
+        Rename(("*",), "inputs.asked", "inputs.options"),
+        Rename(("*",), "inputs.asked.ages", "inputs.options.ages_days"),
+    ]
+    assert not list(differences(old, new, renames))
+    assert list(differences(old, new, renames[:1]))
+
+
 def test_a_name_that_stands_as_a_value_is_renamed_with_the_key():
     new = {**DOCUMENT, "states": [{**DOCUMENT["states"][0], "load_N": [0.0, 1.5], "figures": ["load_N"]}]}
     del new["states"][0]["force_N"]

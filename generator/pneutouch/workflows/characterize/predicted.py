@@ -64,29 +64,29 @@ def answers(
     found: dict[tuple[str, float], StatePrediction] = {}
     pairs = sorted(set(wanted))
     for resin in dict.fromkeys(resin for resin, _ in pairs):
-        pressures = [p for name, p in pairs if name == resin]
+        pressures_kPa = [p for name, p in pairs if name == resin]
         try:
-            evaluation = _evaluated(design, changes, resin, pressures, model, library)
-            found |= {(resin, p): StatePrediction(evaluation, k) for k, p in enumerate(pressures)}
+            evaluation = _evaluated(design, changes, resin, pressures_kPa, model, library)
+            found |= {(resin, p): StatePrediction(evaluation, k) for k, p in enumerate(pressures_kPa)}
         except PneutouchError:
-            found |= {(resin, p): _alone(design, changes, resin, p, model, library) for p in pressures}
+            found |= {(resin, p): _alone(design, changes, resin, p, model, library) for p in pressures_kPa}
     return found
 
 
 def _alone(
-    design: str | DesignSource, changes: Changes, resin: str, pressure: float, model: str, library: Library
+    design: str | DesignSource, changes: Changes, resin: str, pressure_kPa: float, model: str, library: Library
 ) -> StatePrediction:
     try:
-        return StatePrediction(_evaluated(design, changes, resin, [pressure], model, library), 0)
+        return StatePrediction(_evaluated(design, changes, resin, [pressure_kPa], model, library), 0)
     except PneutouchError as error:
         return StatePrediction(None, 0, str(error))
 
 
 def _evaluated(
-    design: str | DesignSource, changes: Changes, resin: str, pressures: list[float], model: str, library: Library
+    design: str | DesignSource, changes: Changes, resin: str, pressures_kPa: list[float], model: str, library: Library
 ) -> Evaluation:  # fmt: skip
     own = {} if resin == AS_DESIGNED else {"membrane.material": resin}
-    pressed = {"pneumatics.driving_pressures_kPa": pressures}
+    pressed = {"pneumatics.driving_pressures_kPa": pressures_kPa}
     return evaluate(design, {**changes, **own, **pressed}, model=model, library=library)
 
 
