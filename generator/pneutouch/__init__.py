@@ -1,3 +1,33 @@
-"""pneutouch: pneumatic touch sensors, from a design file to print files, a prediction and a datasheet."""
+"""pneutouch: pneumatic touch sensors, from a design file to print files, a prediction and a datasheet.
+
+The public names are loaded when they are first used: ``import pneutouch as pt``, then ``pt.Design(...).predict()``.
+"""
+
+from typing import Any
 
 __version__ = "0.1.0"
+
+_HOMES = {
+    "api.design": ("Design", "load"),
+    "api.prediction": ("FigureValue", "PredictedState", "Prediction"),
+    "api.results": ("CheckResult", "Result"),
+    "api.search": ("Selection", "select", "sweep"),
+    "api.comparison": ("Comparison", "compare"),
+    "api.measuring": ("calibrate", "characterize", "plan", "scan", "simulate"),
+    "api.listing": ("Listing", "designs", "materials", "printers"),
+    "errors": ("ComputationError", "InputError", "PneutouchError", "RuleBrokenError"),
+}
+__all__ = [*sorted(name for names in _HOMES.values() for name in names), "__version__"]
+
+
+def __getattr__(name: str) -> Any:
+    from importlib import import_module
+
+    for home, names in _HOMES.items():
+        if name in names:
+            return getattr(import_module(f"pneutouch.{home}"), name)
+    raise AttributeError(f"module 'pneutouch' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return __all__

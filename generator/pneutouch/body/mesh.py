@@ -12,7 +12,7 @@ from pneutouch.body.triangles import enclosed_volume, is_closed, welded
 from pneutouch.spec.material import Material
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Body:
     """A closed triangle mesh with a material and a role.
 
@@ -24,6 +24,9 @@ class Body:
     material: Material
     vertices: Array
     triangles: Indices
+
+    def __repr__(self) -> str:
+        return f"Body({self.name!r}, {len(self.triangles)} triangles, {self.volume:.6g} mm3 of {self.material.label})"
 
     @property
     def corners(self) -> Array:

@@ -132,6 +132,7 @@ def predict(
     with reporting():
         from pneutouch.evaluation.document import full_document
         from pneutouch.evaluation.evaluate import evaluate
+        from pneutouch.mechanics.models import model_options
 
         evaluation = evaluate(
             design, changes(set_), closure=closure, clamp=clamp, aged=aged, **model_options(model, tolerance)
@@ -154,7 +155,8 @@ def list_(
 ) -> None:
     """List designs, specimens, materials, mixing curves, printers and parts."""
     with reporting():
-        from pneutouch.cli.text import listing, listing_text
+        from pneutouch.catalogue.listing import listing
+        from pneutouch.cli.text import listing_text
 
         content = listing(kind)
         if json:
@@ -173,20 +175,6 @@ def new(
         from pneutouch.output.new import new_design
 
         typer.echo(str(new_design(name, out)))
-
-
-def model_options(model: str | None, tolerance: str | None) -> dict[str, Any]:
-    """The requested model; a tolerance alone selects the cheapest that meets it."""
-    from pneutouch.errors import InputError
-    from pneutouch.mechanics.models import DEFAULT_TOLERANCE, parse_tolerance
-
-    if tolerance is None:
-        return {"model": model or "solid", "tolerance": DEFAULT_TOLERANCE}
-    if model not in (None, "auto"):
-        raise InputError(
-            f"--tolerance {tolerance} with --model {model}: a tolerance is for --model auto; give one of both"
-        )
-    return {"model": "auto", "tolerance": parse_tolerance(tolerance)}
 
 
 def changes(set_: list[str] | None) -> dict[str, Any]:

@@ -20,7 +20,6 @@ from pneutouch.cli.app import (
     ToleranceOption,
     app,
     changes,
-    model_options,
     print_json,
     refuse_flags,
     reporting,
@@ -64,7 +63,7 @@ def build(
         else:
             evaluation = (
                 _from_3mf(design, context) if design.lower().endswith(".3mf")
-                else _evaluated(design, changes(set_), closure=closure, clamp=clamp, **model_options(model, tolerance))
+                else _evaluated(design, changes(set_), model, tolerance, closure=closure, clamp=clamp)
             )  # fmt: skip
             plan = _planned(evaluation, out, voxel_mode) if voxels or voxel_mode else None
             name, folder, findings = _build_sensor(evaluation, out)
@@ -111,10 +110,13 @@ def check(
             raise typer.Exit(1)
 
 
-def _evaluated(design: str, changed: dict[str, Any], **options: Any) -> Evaluation:
+def _evaluated(
+    design: str, changed: dict[str, Any], model: str | None = None, tolerance: str | None = None, **options: Any
+) -> Evaluation:
     from pneutouch.evaluation.evaluate import evaluate
+    from pneutouch.mechanics.models import model_options
 
-    return evaluate(design, changed, **options)
+    return evaluate(design, changed, **model_options(model, tolerance), **options)
 
 
 def _is_specimen(design: str) -> bool:

@@ -4,23 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from pneutouch.catalogue import KINDS, Library
-from pneutouch.errors import InputError, nearest
-from pneutouch.spec.design import DesignFile
-from pneutouch.spec.material import Material
-from pneutouch.spec.mixing import MixingCurve
-from pneutouch.spec.printer import Printer
-from pneutouch.spec.specimen import Specimen
-
-_GROUPS = {
-    "designs": ["designs"],
-    "specimens": ["specimens"],
-    "materials": ["materials"],
-    "mixing": ["mixing"],
-    "printers": ["printers"],
-    "parts": ["ports", "seats", "mounts", "tubes"],
-}
-
 
 def prediction_text(document: dict[str, Any]) -> str:
     """The prediction as a table, with limits, events, the interval of the sensitivity and the model's error."""
@@ -105,22 +88,6 @@ def findings_text(findings: list[dict[str, Any]]) -> str:
     return "\n".join(lines) if lines else "no findings"
 
 
-def listing(kind: str | None, library: Library | None = None) -> dict[str, list[dict[str, str]]]:
-    """Names and titles by kind; ``kind`` is one of designs, specimens, materials, mixing, printers, parts, or None for all."""
-    if kind is not None and kind not in _GROUPS:
-        raise InputError(f"KIND = {kind!r}: unknown.{nearest(kind, _GROUPS)}")
-    library = library or Library.default()
-    groups = _GROUPS if kind is None else {kind: _GROUPS[kind]}
-    return {
-        group: [
-            {"name": name, "title": _title(library.load(paths, name)), **({"kind": paths} if KINDS[paths].part else {})}
-            for paths in shelf_names
-            for name in library.paths(paths)
-        ]
-        for group, shelf_names in groups.items()
-    }
-
-
 def listing_text(content: dict[str, list[dict[str, str]]]) -> str:
     """The listing as text."""
     blocks = []
@@ -142,17 +109,3 @@ def columns(head: list[str], rows: list[list[str]], indent: str = "") -> str:
 
 def _optional(value: float | None, form: str) -> str:
     return "-" if value is None else format(value, form)
-
-
-def _title(thing: Any) -> str:
-    if isinstance(thing, DesignFile | Specimen):
-        return thing.document.title
-    if isinstance(thing, Material):
-        return f"{thing.label}, {thing.kind}"
-    if isinstance(thing, MixingCurve):
-        points, top = len(thing.points), 100 * thing.points[-1].fraction
-        known = "fractions assumed" if thing.is_assumed else "measured"
-        return f"{thing.title}: {points} points, 0 to {top:g} % {thing.stiff}, {known}"
-    if isinstance(thing, Printer):
-        return f"{thing.title}: {', '.join(thing.resins)}"
-    return str(thing.title)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from pneutouch.errors import InputError
 from pneutouch.mechanics.prediction import ErrorEstimate
@@ -75,6 +76,16 @@ def _outside(model: str, sensor: Sensor) -> str | None:
     ):
         return "it covers neither other laws, nor a clamped flange, nor a graded wall"
     return None
+
+
+def model_options(model: str | None, tolerance: str | None) -> dict[str, Any]:
+    """The model and the tolerance of a prediction; a tolerance alone asks for the cheapest model that meets it."""
+    if tolerance is None:
+        return {"model": model or "solid", "tolerance": DEFAULT_TOLERANCE}
+    if model not in (None, "auto"):
+        problem = f"with `model` {model}: a tolerance is for `model` auto"
+        raise InputError(problem, key="tolerance", value=tolerance, remedy="give one of both")
+    return {"model": "auto", "tolerance": parse_tolerance(tolerance)}
 
 
 def parse_tolerance(text: str) -> float:

@@ -11,7 +11,7 @@ from pneutouch.arrays import Array
 from pneutouch.body import Body, Bore, Solid
 from pneutouch.parts import Assembly
 from pneutouch.report.dimension import THIN, circle
-from pneutouch.report.style import INK, MUTED
+from pneutouch.report.style import INK, MUTED, figure, svg
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -35,6 +35,17 @@ def draw_section(ax: Axes, assembly: Assembly) -> None:
         ax.add_patch(PathPatch(shape, facecolor="none", edgecolor=INK, lw=_THICK, joinstyle="miter"))
         for bore in solid.bores:
             _turned_in(ax, bore, both_sides=assembly.layout.port_axis is None)
+
+
+def section_picture(assembly: Assembly) -> str:
+    """The section alone, without dimensions, as SVG."""
+    with figure(76, 50) as drawn:
+        ax = drawn.subplots()
+        draw_section(ax, assembly)
+        ax.set_aspect("equal")
+        ax.autoscale()
+        ax.axis("off")
+        return svg(drawn)
 
 
 def section(body: Body) -> list[Array]:

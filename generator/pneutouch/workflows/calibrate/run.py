@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pneutouch.catalogue import Library, load_scene
+from pneutouch.catalogue import DesignSource, Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.spec.read import parse_changes
 from pneutouch.workflows.calibrate.files import prepare, save, write_calibration
@@ -19,7 +19,7 @@ class CalibrationOptions:
     """What the flags ask for: see the command."""
 
     data: Path
-    design: str | None
+    design: str | DesignSource | None
     sensor: str | None
     names: tuple[str, ...]
     hold_out: tuple[float, ...]

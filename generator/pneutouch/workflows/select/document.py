@@ -99,13 +99,18 @@ def write_choice(selection: SelectionRun, choice: Candidate, name: str, folder: 
 
 def write_assigned(design: DesignFile, assignments: list[str], name: str, folder: Path) -> Path:
     """Save a design with ``table.key=value`` assignments as ``folder/name.toml``; never over a file."""
+    chosen = validate(DesignFile, assigned(design, assignments, name), name)
+    note = "Every key may be left out; it then takes its default."
+    return write_design(name, folder, design_template(name, chosen.model_dump(by_alias=True), note))
+
+
+def assigned(design: DesignFile, assignments: list[str], name: str) -> dict[str, Any]:
+    """The tables of a design with ``table.key=value`` assignments, titled ``name``."""
     base = design.model_dump(by_alias=True)
     content = override(base, parse_changes(assignments), DesignFile)
     content["document"] = {**base["document"], "title": name}
     content["pneumatics"]["driving_pressures_kPa"] = [float(p) for p in content["pneumatics"]["driving_pressures_kPa"]]
-    chosen = validate(DesignFile, content, name)
-    note = "Every key may be left out; it then takes its default."
-    return write_design(name, folder, design_template(name, chosen.model_dump(by_alias=True), note))
+    return content
 
 
 def pick(selection: SelectionRun, rank: int) -> Candidate:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from pneutouch.catalogue import DesignSource
 from pneutouch.errors import InputError, nearest
 from pneutouch.spec.over import MAX_VALUES, parse_over, spread
 from pneutouch.spec.read import Changes, read_toml
@@ -50,13 +52,23 @@ def plan_of_flags(
     design: str, over: list[str], changes: Changes | None = None, **options: str | None
 ) -> SweepPlan:  # fmt: skip
     """A grid from ``table.key=VALUES``: values with commas between, or ``from:to:count``."""
-    grid = {key: _values("over", key, _unwrapped(values)) for key, values in parse_over(over).items()}
+    return plan_of_grid(
+        design, {key: _unwrapped(values) for key, values in parse_over(over).items()}, changes, **options
+    )
+
+
+def plan_of_grid(
+    design: str | DesignSource, grid: Mapping[str, Any], changes: Changes | None = None, **options: str | None
+) -> SweepPlan:
+    """A grid over the values of each ``table.key``: a list, or a mapping of ``from``, ``to`` and ``count``."""
+    values = {key: _values("over", key, given) for key, given in grid.items()}
     words = {key: value for key, value in options.items() if value is not None}
-    return _plan(f"{Path(design).stem}-sweep", "over", design, _checked(changes), grid, (), words)
+    name = design.name if isinstance(design, DesignSource) else Path(design).stem
+    return _plan(f"{name}-sweep", "over", design, _checked(changes), values, (), words)
 
 
 def _plan(
-    name: str, where: str, design: str, fixed: Settings, grid: dict[str, list[Any]], points: tuple[Settings, ...],
+    name: str, where: str, design: str | DesignSource, fixed: Settings, grid: dict[str, list[Any]], points: tuple[Settings, ...],
     words: dict[str, str],
 ) -> SweepPlan:  # fmt: skip
     """The plan; a grid's driving pressures become those of every point, for they are a dimension already."""

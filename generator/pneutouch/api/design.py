@@ -1,0 +1,184 @@
+"""A design as an object: keyword arguments in, predictions, findings and print files out."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Iterable
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from pneutouch.api import show
+from pneutouch.api.fields import WHERE, changes, keywords, named_by_keyword, plain
+from pneutouch.api.prediction import Prediction
+from pneutouch.api.results import CheckResult
+from pneutouch.body import Body
+from pneutouch.catalogue import DesignSource, Library, load_scene
+from pneutouch.evaluation.evaluate import Evaluation, evaluate
+from pneutouch.mechanics.models import model_options
+from pneutouch.output.new import write_design
+from pneutouch.parts import Assembly, assemble
+from pneutouch.spec.design import DesignFile
+from pneutouch.spec.material import Material
+from pneutouch.spec.printer import Printer
+from pneutouch.spec.read import override
+from pneutouch.spec.template import design_template
+
+PRESSURES = "pneumatics.driving_pressures_kPa"
+
+
+class Design(show.Shown):
+    """A sensor's design. It does not change: `replace` gives another one.
+
+    Keyword arguments are the fields of a design file, with their units in their names; what is left out has its
+    default, and ``profile`` the first printer that runs the resin. A table may be given whole:
+    ``pneumatics={"tube_length_mm": 80}``. Raises InputError naming the keyword.
+    """
+
+    def __init__(self, name: str = "design", **fields: Any) -> None:
+        self._take(name, {}, fields)
+
+    def _take(self, name: str, content: Any, fields: dict[str, Any]) -> None:
+        with named_by_keyword():
+            whole = override(content, changes(DesignFile, fields), DesignFile)
+            self.file = DesignSource(name, whole, WHERE).changed({})
+            if "profile" not in whole.get("print", {}):
+                whole["print"] = {**whole.get("print", {}), "profile": _printer(self.file)}
+            self.source = DesignSource(name, whole, WHERE)
+            self.file = self.source.changed({})
+
+    @classmethod
+    def of(cls, source: DesignSource) -> Design:
+        """The design of a source, such as a file that was read. Raises InputError naming file, key and value."""
+        design = cls.__new__(cls)
+        design.source, design.file = source, source.changed({})
+        return design
+
+    @property
+    def name(self) -> str:
+        """Name of the design, and of its output folder."""
+        return self.source.name
+
+    def __getattr__(self, keyword: str) -> Any:
+        """The value of a field, by the keyword that sets it."""
+        field = None if keyword.startswith("_") else keywords(DesignFile).get(keyword)
+        if field is None:
+            raise AttributeError(f"a design has no {keyword!r}; it has {', '.join(keywords(DesignFile))}")
+        table, _, key = field.partition(".")
+        return getattr(getattr(self.file, table), key)
+
+    def __dir__(self) -> Iterable[str]:
+        return [*super().__dir__(), *keywords(DesignFile)]
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Design) and (self.name, self.file) == (other.name, other.file)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def replace(self, name: str | None = None, **fields: Any) -> Design:
+        """The design with fields changed, and under another name where one is given."""
+        design = type(self).__new__(type(self))
+        design._take(name or self.name, self.source.content, fields)
+        return design
+
+    def save(self, name_or_path: str | Path | None = None) -> Path:
+        """Write the design file, never over another; a bare name goes to ``designs/``. Returns its path."""
+        path = Path(name_or_path or self.name)
+        folder = path.parent if path.suffix == ".toml" or len(path.parts) > 1 else Path("designs")
+        text = design_template(self.name, self.file.model_dump(by_alias=True), "Every key may be left out.")
+        return write_design(path.name.removesuffix(".toml"), folder, text)
+
+    def predict(
+        self,
+        driving_pressures_kPa: Iterable[float] | None = None,
+        *,
+        model: str | None = None,
+        tolerance: float | str | None = None,
+        closure: str = "variational",
+        clamp: str = "base",
+        aged: bool = False,
+    ) -> Prediction:
+        """Predict the figures at driving pressures in kPa (None: the design's).
+
+        ``model`` is "membrane", "atlas", "solid" (None) or "auto": the cheapest whose error meets ``tolerance``, a
+        fraction. See `evaluation.evaluate` for the rest. Raises InputError where the design cannot work.
+        """
+        changed = {} if driving_pressures_kPa is None else {PRESSURES: plain(list(driving_pressures_kPa))}
+        options = model_options(model, None if tolerance is None else str(tolerance))
+        with named_by_keyword():
+            return Prediction(evaluate(self.source, changed, closure=closure, clamp=clamp, aged=aged, **options))
+
+    def check(self, *, deep: bool = False) -> CheckResult:
+        """Check printability and mechanical limits; ``deep`` has pymeshlab inspect the meshes as well."""
+        evaluation = self._evaluated
+        more = evaluation.deep_findings() if deep else []
+        return CheckResult(self.name, (*evaluation.findings, *more))
+
+    def build(self, out: str | Path = "outputs") -> Path:
+        """Write print files, prediction and datasheet into ``out/<name>/``; returns that folder.
+
+        Raises RuleBrokenError, with nothing written, where a rule is broken.
+        """
+        from pneutouch.workflows.build import build
+
+        with named_by_keyword():
+            return build(self._evaluated, Path(out))
+
+    @cached_property
+    def _evaluated(self) -> Evaluation:
+        with named_by_keyword():
+            return evaluate(self.source)
+
+    @cached_property
+    def assembly(self) -> Assembly:
+        """The bodies as exact solids, in the place where they are glued."""
+        with named_by_keyword():
+            return assemble(load_scene(self.source))
+
+    @property
+    def bodies(self) -> tuple[Body, ...]:
+        """The print meshes, lengths in mm."""
+        return tuple(self.assembly.bodies)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The tables of the design file, every field with its value."""
+        return self.file.model_dump(mode="json", by_alias=True)
+
+    def _head(self) -> str:
+        return f"Design {self.name!r}"
+
+    def _rows(self) -> list[Any]:
+        return show.table_rows(self.file)
+
+    def _cells(self) -> list[Any]:
+        return show.field_rows(self.file)
+
+    def _picture(self) -> Assembly:
+        return self.assembly
+
+
+def load(name_or_path: str | Path) -> Design:
+    """A design by its name (the user's ``designs/`` first, then the shipped ones) or by its path."""
+    return Design.of(DesignSource.of(str(name_or_path), Library.default()))
+
+
+def _printer(file: DesignFile) -> str:
+    """The default printer where it runs the resin, else the first that does."""
+    library, usual = Library.default(), file.print.profile
+    material = library.all("materials", Material).get(str(file.membrane.material))
+    printers = library.all("printers", Printer)
+    names = sorted(printers, key=lambda name: name != usual)
+    return next((name for name in names if material and printers[name].mode_for(material)), usual)
+
+
+def source_of(design: Design | str | Path) -> str | DesignSource:
+    """A design as the workflows take it."""
+    return design.source if isinstance(design, Design) else str(design)
+
+
+Design.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
+    [
+        inspect.Parameter("name", inspect.Parameter.POSITIONAL_OR_KEYWORD, default="design"),
+        *(inspect.Parameter(k, inspect.Parameter.KEYWORD_ONLY, default=...) for k in keywords(DesignFile)),
+    ]
+)

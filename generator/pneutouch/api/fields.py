@@ -1,0 +1,68 @@
+"""Fields of a file as keyword arguments: their names alone where they are unique, else with their table's in front."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from functools import cache
+from typing import Any
+
+from pydantic import BaseModel
+
+from pneutouch.errors import InputError, PneutouchError, nearest
+from pneutouch.spec.design import DesignFile
+from pneutouch.spec.fields import table_of
+
+WHERE = "the keyword arguments"
+"""Stands for the file of what was given as keywords, until an error is raised."""
+
+
+@cache
+def keywords(model: type[BaseModel]) -> dict[str, str]:
+    """Every field of a file's ``model`` as ``table.key``, by its keyword; the first table of a key keeps the bare name."""
+    fields: dict[str, str] = {}
+    for name in model.model_fields:
+        table = table_of(model, name)
+        for key in table.model_fields if table else ():
+            fields[f"{name}_{key}" if key in fields else key] = f"{name}.{key}"
+    return fields
+
+
+def plain(value: Any) -> Any:
+    """A value as a file holds it: arrays and tuples as lists, scalars of NumPy as Python's."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    return {key: plain(item) for key, item in value.items()} if isinstance(value, Mapping) else value
+
+
+def changes(model: type[BaseModel], given: Mapping[str, Any]) -> dict[str, Any]:
+    """Keyword arguments as values by ``table.key``; a table may be given whole, as a mapping. Raises InputError."""
+    known = keywords(model)
+    fields: dict[str, Any] = {}
+    for name, value in given.items():
+        if name in known:
+            entries = {known[name]: plain(value)}
+        elif name in model.model_fields and isinstance(value, Mapping):
+            entries = {f"{name}.{key}": item for key, item in plain(value).items()}
+        else:
+            raise InputError(f"unknown.{nearest(name, known)}", key=name, value=value)
+        for key in entries.keys() & fields.keys():
+            raise InputError(f"{key} is given twice", key=name, value=value)
+        fields |= entries
+    return fields
+
+
+@contextmanager
+def named_by_keyword(model: type[BaseModel] = DesignFile) -> Iterator[None]:
+    """Name the keyword, and no file, in an error about a value that was given as one."""
+    try:
+        yield
+    except PneutouchError as error:
+        names = {key: name for name, key in keywords(model).items()}
+        for each in (error, *error.others):
+            if each.file == WHERE:
+                key, bracket, index = (each.key or "").partition("[")
+                each.file, each.key = None, f"{names.get(key, key)}{bracket}{index}" or None
+        raise

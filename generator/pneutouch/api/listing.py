@@ -1,0 +1,37 @@
+"""What can be named: designs, materials and printers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pneutouch.api import show
+from pneutouch.catalogue.listing import listing
+
+
+class Listing(show.Shown, dict[str, str]):
+    """Titles by name."""
+
+    def _head(self) -> str:
+        return f"{len(self)} names"
+
+    def _rows(self) -> list[Any]:
+        return list(self.items())
+
+
+def designs() -> Listing:
+    """The designs: the user's and the shipped ones."""
+    return _listed("designs")
+
+
+def materials() -> Listing:
+    """The cured materials."""
+    return _listed("materials")
+
+
+def printers() -> Listing:
+    """The printers."""
+    return _listed("printers")
+
+
+def _listed(kind: str) -> Listing:
+    return Listing({entry["name"]: entry["title"] for entry in listing(kind)[kind]})

@@ -1,0 +1,144 @@
+"""Scans, and campaigns: planned, simulated, read and fitted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+from pneutouch.api.design import Design, source_of
+from pneutouch.api.fields import named_by_keyword
+from pneutouch.api.results import Result
+from pneutouch.units import KPA
+
+
+def scan(
+    specimen: str | Path,
+    design: Design | str | Path,
+    *,
+    driving_pressures_kPa: Iterable[float] = (0.0, 22.0),
+    preload_N: float = 0.5,
+    speed_mm_per_s: float | None = None,
+    control: str = "height",
+    noise_kPa: float | None = None,
+    seed: int = 0,
+    data: Sequence[str | Path] = (),
+) -> Result:
+    """Slide a sensor over a texture specimen, given by name or path, and read which pattern each state detects.
+
+    ``speed_mm_per_s`` None: the specimen's. ``noise_kPa`` is rms of a sample, None: a step of the recorder. ``data``
+    are measured signals (CSV). Raises InputError where the scan cannot be.
+    """
+    from pneutouch.texture.scan import NOISE
+    from pneutouch.workflows.scan.document import document
+    from pneutouch.workflows.scan.run import ScanOptions, run_scan
+    from pneutouch.workflows.scan.write import write_scan
+
+    pressures, noise = tuple(p * KPA for p in driving_pressures_kPa), NOISE if noise_kPa is None else noise_kPa * KPA
+    files = tuple(Path(file) for file in data)
+    with named_by_keyword():
+        options = ScanOptions(pressures, preload_N, speed_mm_per_s, control, noise, seed, files)
+        run = run_scan(str(specimen), source_of(design), options)
+    return Result(f"Scan {run.name}", document(run), lambda out: write_scan(run, out))
+
+
+def plan(
+    design: Design | str | Path, *, resins: Sequence[str] = (), specimens: int = 3, rig: str | Path | None = None
+) -> Result:
+    """Plan a measurement campaign: runs, steps, and what to expect. ``rig`` is a TOML file; None: the paper's rig."""
+    from pneutouch.workflows.plan.run import make_plan, rig_of, write_plan
+
+    file = None if rig is None else Path(rig)
+    with named_by_keyword():
+        outcome = make_plan(
+            source_of(design),
+            resins=tuple(resins),
+            specimens=specimens,
+            rig=rig_of(file),
+            rig_name="" if file is None else file.name,
+        )
+    return Result(f"Plan {outcome.name}", outcome.document, lambda out: write_plan(outcome, out))
+
+
+def simulate(
+    design: Design | str | Path,
+    out: str | Path = "outputs",
+    *,
+    resins: Sequence[str] = (),
+    specimens: int = 3,
+    driving_pressures_kPa: Iterable[float] | None = None,
+    runs: int = 3,
+    kinds: Sequence[str] = ("steps", "loop", "relaxation"),
+    rate_Hz: float = 100.0,
+    rest_s: float | None = None,
+    seed: int = 0,
+    ages_days: Sequence[float] = (0.0,),
+    model: str = "solid",
+    parquet: bool = False,
+) -> Path:
+    """Simulate a measurement campaign with known truth; returns its folder, which `characterize` and `calibrate` read."""
+    from pneutouch.bench.simulate import SimulationTruth
+    from pneutouch.workflows.simulate.run import SimulationOptions
+    from pneutouch.workflows.simulate.run import simulate as run
+
+    pressures_kPa = None if driving_pressures_kPa is None else _floats(driving_pressures_kPa)
+    options = SimulationOptions(
+        tuple(resins), specimens, pressures_kPa, runs, tuple(kinds), rate_Hz, seed, model, _floats(ages_days), parquet,
+        SimulationTruth(rest=rest_s),
+    )  # fmt: skip
+    with named_by_keyword():
+        return run(source_of(design), Path(out), None, options)
+
+
+def characterize(
+    data: str | Path,
+    design: Design | str | Path | None = None,
+    *,
+    target: str | Path | None = None,
+    model: str = "solid",
+    evidence: str = "doubtful",
+) -> Result:
+    """Figures of measured runs (a campaign's folder, its file or one run's) compared with the predicted ones.
+
+    ``target`` is a target file to compare with; ``evidence`` states of which runs `Result.save` plots the evidence:
+    "doubtful", "all" or "none". Files that cannot be read are listed under ``failures``.
+    """
+    from pneutouch.workflows.characterize.run import characterize as run
+    from pneutouch.workflows.characterize.run import write
+
+    target_file = None if target is None else Path(target)
+    with named_by_keyword():
+        outcome = run(Path(data), None if design is None else source_of(design), target=target_file, model=model)
+    return Result(f"Measured {outcome.name}", outcome.document, lambda out: write(outcome, out, evidence))
+
+
+def calibrate(
+    data: str | Path,
+    design: Design | str | Path | None = None,
+    *,
+    sensor: str | None = None,
+    fit: Sequence[str] = ("modulus", "dead-volume", "wall", "offset"),
+    hold_out_kPa: Sequence[float] = (),
+    priors: bool = True,
+    save: str | None = None,
+    shadow: bool = False,
+    out: str | Path = "outputs",
+) -> Result:
+    """Fit the model to the runs of one sensor of a campaign, and write the fit into ``out``.
+
+    ``hold_out_kPa`` are driving pressures to predict from the others. ``save`` names a resin and a design to be written
+    into the working folder, which ``shadow`` lets hide others of that name.
+    """
+    from pneutouch.workflows.calibrate.run import CalibrationOptions, run_calibration
+
+    given = None if design is None else source_of(design)
+    names, held = tuple(fit), _floats(hold_out_kPa)
+    with named_by_keyword():
+        options = CalibrationOptions(Path(data), given, sensor, names, held, priors, save, shadow, Path(out))
+        document: dict[str, Any] = run_calibration(options)
+    return Result("Calibration", document)
+
+
+def _floats(values: Iterable[float]) -> tuple[float, ...]:
+    """Numbers as the command line reads them: 0 and 0.0 are written differently."""
+    return tuple(float(value) for value in values)

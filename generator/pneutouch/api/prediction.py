@@ -1,0 +1,168 @@
+"""A prediction as an object: figures with interval and unit, curves as arrays, tables and pictures of itself."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pneutouch.api import show
+from pneutouch.arrays import Array
+from pneutouch.errors import InputError
+from pneutouch.evaluation.document import full_document, prediction_document
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from pandas import DataFrame
+
+    from pneutouch.evaluation.evaluate import Evaluation
+    from pneutouch.parts import Assembly
+
+_UNIT = re.compile(r"(.+?)_((?:mm|N|kPa|mL)(?:_per_(?:mm|N))?)$")
+
+_CLOSE = 1e-6
+"""Driving pressures nearer than this are one, kPa."""
+
+
+@dataclass(frozen=True)
+class FigureValue:
+    """A figure in its ``unit``; ``interval`` is its expanded one (coverage factor 2), None where it is not known."""
+
+    name: str
+    value: float
+    unit: str
+    interval: tuple[float, float] | None = None
+
+    def __float__(self) -> float:
+        return self.value
+
+    def __str__(self) -> str:
+        known = "" if self.interval is None else f" ({self.interval[0]:.4g} to {self.interval[1]:.4g})"
+        return f"{self.value:.4g}{known} {self.unit}".rstrip()
+
+
+class PredictedState(show.Shown):
+    """A sensor at one driving pressure: figures, and curves over the indentation as arrays of one length.
+
+    A figure without a unit in its name has value, interval and unit; it is None where it could not be computed.
+    """
+
+    driving_pressure_kPa: float
+    indentation_mm: Array
+    contact_force_N: Array
+    pressure_rise_kPa: Array
+    sensitivity: FigureValue | None
+    sensitivity_kPa_per_N: float | None
+    stiffness: FigureValue | None
+    stiffness_N_per_mm: float | None
+    force_at_range_end: FigureValue | None
+    range_end: FigureValue
+    range_end_mm: float
+    apex_height_inner: FigureValue
+    apex_height_inner_mm: float
+    apex_height_outer: FigureValue
+    apex_height_outer_mm: float
+    limit_pressure: FigureValue | None
+    r_squared: float | None
+    events: list[dict[str, Any]]
+    curve: dict[str, Array]
+    uncertainty: dict[str, Any]
+
+    def __init__(self, content: dict[str, Any]) -> None:
+        self.figures: dict[str, FigureValue] = {}
+        known = content["uncertainty"].get("figures", {})
+        curve = {name: np.array(values) for name, values in content["curve"].items()}
+        vars(self).update({**content, **curve, "curve": curve, "limit_pressure": None, "force_at_range_end": None})
+        for key, value in {**{name: entry["value"] for name, entry in known.items()}, **content}.items():
+            split = _UNIT.match(key)
+            if split is None or key == "driving_pressure_kPa" or not isinstance(value, float | None):
+                continue
+            name, unit = split[1], split[2].replace("_per_", "/")
+            setattr(self, name, None)
+            if value is not None:
+                interval = (known[key]["low"], known[key]["high"]) if key in known else None
+                self.figures[key] = FigureValue(name, value, unit, interval)
+                vars(self)[name] = self.figures[key]
+
+    def to_frame(self) -> DataFrame:
+        """The curves as a table, a column each."""
+        from pandas import DataFrame
+
+        return DataFrame(self.curve)
+
+    def _head(self) -> str:
+        return f"State at {self.driving_pressure_kPa:g} kPa"
+
+    def _rows(self) -> list[Any]:
+        return [(figure.name, str(figure)) for figure in self.figures.values()]
+
+
+class Prediction(show.Shown):
+    """What a model states of a design at its driving pressures."""
+
+    def __init__(self, evaluation: Evaluation) -> None:
+        self.evaluation = evaluation
+        self.name, self.model = evaluation.scene.name, evaluation.prediction.model
+
+    @cached_property
+    def states(self) -> tuple[PredictedState, ...]:
+        """The states in order of driving pressure."""
+        return tuple(PredictedState(state) for state in prediction_document(self.evaluation)["states"])
+
+    def at(self, pressure_kPa: float) -> PredictedState:
+        """The state at a driving pressure. Raises InputError for one that was not predicted."""
+        for state in self.states:
+            if abs(state.driving_pressure_kPa - pressure_kPa) < _CLOSE:
+                return state
+        known = ", ".join(f"{state.driving_pressure_kPa:g}" for state in self.states)
+        remedy = f"predicted: {known} kPa; give `driving_pressures_kPa` to predict others"
+        raise InputError("not predicted", key="pressure_kPa", value=pressure_kPa, remedy=remedy)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The whole prediction, as the command ``predict`` prints it as JSON."""
+        return full_document(self.evaluation)
+
+    def to_frame(self) -> DataFrame:
+        """A row a driving pressure; a column a figure, with ``_low`` and ``_high`` where its interval is known."""
+        from pandas import DataFrame, Index
+
+        rows = []
+        for state in self.states:
+            row: dict[str, float] = {}
+            for key, figure in state.figures.items():
+                low_high = dict(zip((f"{key}_low", f"{key}_high"), figure.interval or (), strict=False))
+                row |= {key: figure.value, **low_high}
+            rows.append(row)
+        return DataFrame(rows, Index([s.driving_pressure_kPa for s in self.states], name="driving_pressure_kPa"))
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the pressure rise over the contact force, a line a state; returns the axes."""
+        if ax is None:
+            from matplotlib import pyplot
+
+            ax = pyplot.subplots()[1]
+        for state in self.states:
+            ax.plot(state.contact_force_N, state.pressure_rise_kPa, label=f"{state.driving_pressure_kPa:g} kPa")
+        ax.set(title=self.name, xlabel="contact force, N", ylabel="pressure rise, kPa")
+        ax.legend(title="driving pressure")
+        return ax
+
+    _columns = ("driving pressure", "sensitivity", "stiffness", "range end")
+
+    def _head(self) -> str:
+        return f"Prediction of {self.name!r} by model {self.model}: sensitivity, stiffness, range"
+
+    def _rows(self) -> list[Any]:
+        return [
+            (
+                f"{s.driving_pressure_kPa:g} kPa",
+                *(str(each or "-") for each in (s.sensitivity, s.stiffness, s.range_end)),
+            )
+            for s in self.states
+        ]
+
+    def _picture(self) -> Assembly:
+        return self.evaluation.assembly

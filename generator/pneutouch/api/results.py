@@ -1,0 +1,67 @@
+"""What checks and workflows found: data with a short text of itself."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pneutouch.api import show
+from pneutouch.errors import InputError
+from pneutouch.printability import Finding
+
+
+@dataclass(frozen=True, repr=False)
+class CheckResult(show.Shown):
+    """The findings of a check; it is ``passed`` where none of them is an error."""
+
+    name: str
+    findings: tuple[Finding, ...]
+
+    @property
+    def passed(self) -> bool:
+        """Whether no rule is broken."""
+        return all(finding.severity != "error" for finding in self.findings)
+
+    def to_dict(self) -> dict[str, Any]:
+        """As the command ``check`` prints it as JSON."""
+        return {"design": self.name, "passed": self.passed, "findings": [f.document() for f in self.findings]}
+
+    def _head(self) -> str:
+        return f"Check of {self.name!r}: {'passed' if self.passed else 'not passed'}, {len(self.findings)} findings"
+
+    def _rows(self) -> list[Any]:
+        return [(f.severity, f.rule, f.body, f.message, f.fix) for f in self.findings]
+
+
+class Result(show.Shown):
+    """What a workflow found, by key as its command prints it as JSON; `save` writes its folder."""
+
+    def __init__(
+        self, title: str, document: dict[str, Any], write: Callable[[Path], Path] | None = None
+    ) -> None:  # fmt: skip
+        self.title, self._document, self._write = title, document, write
+
+    def __getitem__(self, key: str) -> Any:
+        return self._document[key]
+
+    def keys(self) -> list[str]:
+        """Keys of what was found."""
+        return list(self._document)
+
+    def to_dict(self) -> dict[str, Any]:
+        """As the command prints it as JSON."""
+        return dict(self._document)
+
+    def save(self, out: str | Path = "outputs") -> Path:
+        """Write the command's folder into ``out`` and return it."""
+        if self._write is None:
+            raise InputError(f"{self.title}: is written already")
+        return self._write(Path(out))
+
+    def _head(self) -> str:
+        return self.title
+
+    def _rows(self) -> list[Any]:
+        return list(self._document.items())

@@ -1,0 +1,115 @@
+"""Many designs: those that meet a target, and all those of a grid."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pneutouch.api import show
+from pneutouch.api.design import Design, source_of
+from pneutouch.api.fields import WHERE, changes, named_by_keyword
+from pneutouch.catalogue import DesignSource
+from pneutouch.spec.design import DesignFile
+from pneutouch.spec.read import override, read_toml, validate
+from pneutouch.spec.target import Target
+from pneutouch.workflows.select.document import assigned, document
+from pneutouch.workflows.select.graded import select_graded
+from pneutouch.workflows.select.graded_document import graded_document
+from pneutouch.workflows.select.run import select as run_select
+
+if TYPE_CHECKING:
+    import xarray
+
+    from pneutouch.parts import Assembly
+
+
+class Selection(show.Shown):
+    """Designs that meet a target, best first; empty where none does. `to_dict` states what each misses."""
+
+    def __init__(self, designs: tuple[Design, ...], content: dict[str, Any]) -> None:
+        self.designs, self._document = designs, content
+
+    @property
+    def met(self) -> bool:
+        """Whether a design meets the target."""
+        return bool(self.designs)
+
+    def to_dict(self) -> dict[str, Any]:
+        """As the command ``select`` prints it as JSON."""
+        return dict(self._document)
+
+    def _head(self) -> str:
+        return f"Selection: {len(self.designs)} designs meet the target"
+
+    def _picture(self) -> Assembly | None:
+        return self.designs[0].assembly if self.designs else None
+
+    def _rows(self) -> list[Any]:
+        keys = ("material", "inner_radius_mm", "wall_thickness_mm", "driving_pressures_kPa")
+        return [
+            (design.name, *(f"{key}={show.short(getattr(design, key))}" for key in keys)) for design in self.designs
+        ]
+
+
+def select(target: str | Path | None = None, **fields: Any) -> Selection:
+    """Designs for a target: a target file, keyword arguments named as its keys, or both (keywords first).
+
+    ``select(sensitivity_kPa_per_N=1.9, driving_pressure_kPa=12)``. Raises InputError naming the keyword.
+    """
+    with named_by_keyword(Target):
+        content = override({} if target is None else read_toml(Path(target)), changes(Target, fields), Target)
+        where = WHERE if target is None else str(target)
+        goal = validate(Target, {"target": {}, **content}, where)
+        where = "select" if target is None else where
+        if goal.given.graded:
+            graded = select_graded(goal, where)
+            sets, content = [graded.assignments()] if graded.search.met else [], graded_document(graded)
+            base = graded.base
+        else:
+            selection = run_select(goal, where)
+            sets = [selection.assignments(choice) for choice in selection.answer.designs]
+            content, base = document(selection), selection.base
+    stem = base.name if goal.setting.base else "selected"
+    names = [f"{stem}-{rank}" for rank in range(1, len(sets) + 1)]
+    sources = [
+        DesignSource(name, assigned(base.design, one, name), WHERE) for name, one in zip(names, sets, strict=True)
+    ]
+    return Selection(tuple(Design.of(source) for source in sources), content)
+
+
+def sweep(
+    design: Design | str | Path,
+    out: str | Path | None = None,
+    *,
+    model: str = "solid",
+    closure: str = "variational",
+    clamp: str = "base",
+    workers: int = 1,
+    fresh: bool = False,
+    **fields: Any,
+) -> xarray.Dataset:
+    """Predict every combination of values of a design's fields, given as lists or as ``{"from", "to", "count"}``.
+
+    A field with a single value has it in all designs. ``out`` (a netCDF file) keeps the dataset, and the progress of a
+    sweep that is interrupted. Raises InputError, and ComputationError where it stopped.
+    """
+    import xarray
+
+    from pneutouch.workflows.sweep import plan_of_grid
+    from pneutouch.workflows.sweep import sweep as run
+    from pneutouch.workflows.sweep.run import ComputeResources
+
+    with named_by_keyword(), tempfile.TemporaryDirectory() as folder:
+        given = changes(DesignFile, fields)
+        grid = {key: value for key, value in given.items() if isinstance(value, list) or _is_range(value)}
+        fixed = {key: value for key, value in given.items() if key not in grid}
+        plan = plan_of_grid(source_of(design), grid, fixed, model=model, closure=closure, clamp=clamp)
+        path = Path(folder) / "sweep.nc" if out is None else Path(out)
+        run(plan, path, ComputeResources(workers), fresh=fresh)
+        return xarray.load_dataset(path, engine="scipy")
+
+
+def _is_range(value: Any) -> bool:
+    return isinstance(value, Mapping) and "count" in value

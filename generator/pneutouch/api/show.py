@@ -1,0 +1,100 @@
+"""How objects show themselves: at most ten lines of text, or a table with a picture in a notebook."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+from pydantic import BaseModel
+
+from pneutouch.spec.fields import declarations
+
+if TYPE_CHECKING:
+    from pneutouch.parts import Assembly
+
+LINES, WIDTH, ROWS = 10, 110, 40
+"""Most lines of a text, their most letters, and most rows of a table in a notebook."""
+
+
+class Shown:
+    """Base of what shows itself: a head, rows of cells, and in a notebook the section of an assembly."""
+
+    _columns: Sequence[str] = ()
+
+    def _head(self) -> str:
+        raise NotImplementedError
+
+    def _rows(self) -> list[Any]:
+        raise NotImplementedError
+
+    def _cells(self) -> list[Any]:
+        """The rows in a notebook, which has space for more."""
+        return self._rows()
+
+    def _picture(self) -> Assembly | None:
+        return None
+
+    def __repr__(self) -> str:
+        return text(self._head(), self._rows())
+
+    def _repr_html_(self) -> str:
+        return html(self._head(), self._cells(), self._columns, self._picture())
+
+
+def short(value: Any) -> str:
+    """A value in a few letters: six digits of a number, the length of a long list."""
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, list | tuple) and len(value) > 8:
+        return f"[{len(value)} entries]"
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(short(item) for item in value)}]"
+    return f"{{{', '.join(value)}}}" if isinstance(value, dict) else str(value)
+
+
+def text(head: str, rows: Iterable[Sequence[Any]]) -> str:
+    """A head and a line a row, its cells two spaces apart; at most `LINES` lines of `WIDTH` letters."""
+    cells = [[short(cell) for cell in row] for row in rows]
+    cut = cells if len(cells) < LINES else cells[: LINES - 2]
+    widths = [
+        max((len(row[k]) for row in cut if k < len(row)), default=0) for k in range(max(map(len, cut), default=0))
+    ]
+    lines = [head, *("  " + "  ".join(cell.ljust(w) for cell, w in zip(row, widths, strict=False)) for row in cut)]
+    if len(cut) < len(cells):
+        lines.append(f"  ... and {len(cells) - len(cut)} more")
+    return "\n".join(shorten(line.rstrip()) for line in lines)
+
+
+def shorten(line: str) -> str:
+    """A line of at most `WIDTH` letters."""
+    return line if len(line) <= WIDTH else f"{line[: WIDTH - 3]}..."
+
+
+def html(head: str, rows: Iterable[Sequence[Any]], columns: Sequence[str], picture: Assembly | None) -> str:
+    """A table of ``rows``, with the section of an assembly above it."""
+    from pneutouch.report.section import section_picture
+
+    drawn = "" if picture is None else section_picture(picture)
+    top = f"<tr>{''.join(f'<th>{escape(name)}</th>' for name in columns)}</tr>" if columns else ""
+    cells = (f"<tr>{''.join(f'<td>{escape(short(cell))}</td>' for cell in row)}</tr>" for row in list(rows)[:ROWS])
+    return f"<div><b>{escape(head)}</b>{drawn}<table>{top}{''.join(cells)}</table></div>"
+
+
+def field_rows(file: BaseModel) -> list[tuple[str, Any, str]]:
+    """Key, value and unit of every field of a file that has a value."""
+    return [
+        (f"{table}.{entry.key}", getattr(content, entry.key), entry.unit)
+        for table, content in file
+        for entry in declarations(type(content))
+        if getattr(content, entry.key) is not None
+    ]
+
+
+def table_rows(file: BaseModel) -> list[tuple[str, str]]:
+    """A row a table of a file: its name and its fields."""
+    rows = field_rows(file)
+    return [
+        (name, ", ".join(f"{key.partition('.')[2]}={short(v)}" for key, v, _ in rows if key.startswith(f"{name}.")))
+        for name, _ in file
+    ]

@@ -1,0 +1,52 @@
+"""Names and titles of what can be named, by kind."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pneutouch.catalogue.library import KINDS, Library
+from pneutouch.errors import InputError, nearest
+from pneutouch.spec.design import DesignFile
+from pneutouch.spec.material import Material
+from pneutouch.spec.mixing import MixingCurve
+from pneutouch.spec.printer import Printer
+from pneutouch.spec.specimen import Specimen
+
+_GROUPS = {
+    "designs": ["designs"],
+    "specimens": ["specimens"],
+    "materials": ["materials"],
+    "mixing": ["mixing"],
+    "printers": ["printers"],
+    "parts": ["ports", "seats", "mounts", "tubes"],
+}
+
+
+def listing(kind: str | None, library: Library | None = None) -> dict[str, list[dict[str, str]]]:
+    """Names and titles by kind; ``kind`` is one of designs, specimens, materials, mixing, printers, parts, or None for all."""
+    if kind is not None and kind not in _GROUPS:
+        raise InputError(f"unknown.{nearest(kind, _GROUPS)}", key="kind", value=kind)
+    library = library or Library.default()
+    groups = _GROUPS if kind is None else {kind: _GROUPS[kind]}
+    return {
+        group: [
+            {"name": name, "title": _title(library.load(each, name)), **({"kind": each} if KINDS[each].part else {})}
+            for each in kinds
+            for name in library.paths(each)
+        ]
+        for group, kinds in groups.items()
+    }
+
+
+def _title(thing: Any) -> str:
+    if isinstance(thing, DesignFile | Specimen):
+        return thing.document.title
+    if isinstance(thing, Material):
+        return f"{thing.label}, {thing.kind}"
+    if isinstance(thing, MixingCurve):
+        points, top = len(thing.points), 100 * thing.points[-1].fraction
+        known = "fractions assumed" if thing.is_assumed else "measured"
+        return f"{thing.title}: {points} points, 0 to {top:g} % {thing.stiff}, {known}"
+    if isinstance(thing, Printer):
+        return f"{thing.title}: {', '.join(thing.resins)}"
+    return str(thing.title)

@@ -1,0 +1,85 @@
+"""Scans and campaigns: the documents that the commands print."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+import pneutouch as pt
+
+
+def without_folder(document):
+    return {key: value for key, value in document.items() if key != "folder"}
+
+
+@pytest.fixture(scope="module")
+def campaign(tmp_path_factory):
+    out = tmp_path_factory.mktemp("simulated")
+    return pt.simulate(
+        "paper-dome", out, specimens=1, runs=1, kinds=["steps"], driving_pressures_kPa=[0, 12], model="atlas"
+    )
+
+
+def test_a_simulated_campaign_has_the_bytes_of_the_command_lines(campaign, printed, tmp_path):
+    options = (
+        "--specimens",
+        1,
+        "--runs",
+        1,
+        "--kinds",
+        "steps",
+        "--pressures",
+        "0,12",
+        "--model",
+        "atlas",
+        "--out",
+        tmp_path,
+    )
+    printed("simulate", "paper-dome", *options)
+    theirs = tmp_path / campaign.name
+    for path in campaign.rglob("*"):
+        assert path.is_dir() or path.read_bytes() == (theirs / path.relative_to(campaign)).read_bytes(), path
+
+
+def test_figures_of_measured_runs_are_the_command_lines(campaign, printed, tmp_path):
+    found = pt.characterize(campaign, model="atlas")
+    said = printed("characterize", campaign, "--model", "atlas", "--out", tmp_path / "theirs")
+    assert json.loads(json.dumps(found.to_dict())) == without_folder(said)
+    assert (found.save(tmp_path / "ours") / "figures.json").is_file()
+    own = pt.characterize(campaign, pt.load("paper-dome").replace(wall_thickness_mm=2.0), model="atlas")
+    assert own.to_dict() != found.to_dict()
+
+
+def test_a_calibration_is_the_command_lines(campaign, printed, tmp_path):
+    found = pt.calibrate(campaign, fit=["modulus"], out=tmp_path / "ours")
+    said = printed("calibrate", campaign, "--fit", "modulus", "--out", tmp_path / "theirs")
+    drop = {"written"}
+    assert {k: v for k, v in found.to_dict().items() if k not in drop} == {
+        k: v for k, v in said.items() if k not in drop
+    }
+    with pytest.raises(pt.InputError, match="no such parameter") as caught:
+        pt.calibrate(campaign, fit=["moduls"])
+    assert (caught.value.key, caught.value.value) == ("fit", "moduls")
+
+
+def test_a_plan_is_the_command_lines(printed, tmp_path):
+    found = pt.plan(pt.load("paper-dome"), specimens=1)
+    assert json.loads(json.dumps(found.to_dict())) == without_folder(
+        printed("plan", "paper-dome", "--specimens", 1, "--out", tmp_path)
+    )
+    assert (found.save(tmp_path / "ours") / "campaign.toml").is_file()
+    with pytest.raises(pt.InputError) as caught:
+        pt.plan("paper-dome", specimens=0)
+    assert caught.value.key == "specimens"
+
+
+def test_a_scan_is_the_command_lines(printed, tmp_path):
+    found = pt.scan("texture-specimen", pt.load("paper-dome"), driving_pressures_kPa=[22], noise_kPa=0.02)
+    said = printed(
+        "scan", "texture-specimen", "--design", "paper-dome", "--pressures", "22", "--noise", 0.02, "--out", tmp_path
+    )
+    assert json.loads(json.dumps(found.to_dict())) == without_folder(said)
+    with pytest.raises(pt.InputError, match="must be from 0 to") as caught:
+        pt.scan("texture-specimen", "paper-dome", noise_kPa=-1.0)
+    assert caught.value.key == "noise_kPa"
