@@ -21,8 +21,9 @@ from pneutouch.output.manifest import input_hash as hash_of
 from pneutouch.output.manifest import versions, with_manifest
 from pneutouch.output.recipe import BuildRecipe
 from pneutouch.printability import refuse
-from pneutouch.report import datasheet, print_sheet
+from pneutouch.report.datasheet import datasheet
 from pneutouch.report.picture import picture
+from pneutouch.report.print_sheet import print_sheet
 from pneutouch.units import ML
 
 Progress = Callable[[str], None]
