@@ -7,27 +7,22 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from benchmarks.mixing_laws import (
+    LONG_TERM,
+    PLACING,
+    VOXEL_THRESHOLD,
+    fraction_of,
+    like_agilus,
+    logarithmic,
+    placings,
+    stiff_moduli,
+)
 from hypothesis import given
 from hypothesis import strategies as st
 
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.mixture import mixing
-from pneutouch.mechanics.mixing import (
-    LONG_TERM,
-    PLACING,
-    THRESHOLD,
-    VOXEL_THRESHOLD,
-    fraction_of,
-    hashin_shtrikman_high,
-    hashin_shtrikman_low,
-    like_agilus,
-    logarithmic,
-    percolation,
-    placings,
-    reuss,
-    stiff_moduli,
-    voigt,
-)
+from pneutouch.mechanics.mixing import THRESHOLD, hashin_shtrikman_high, hashin_shtrikman_low, percolation, reuss, voigt
 from tests.conftest import ROOT
 
 LIBRARY = Library((ROOT,))
