@@ -24,16 +24,15 @@ def public_classes(folder: Path) -> dict[str, list[str]]:
     return places
 
 
-def type_aliases(folder: Path) -> dict[str, list[str]]:
-    """Names in capitals and small letters that a module binds to anything but a class, by name."""
-    places = defaultdict(list)
+def type_aliases(folder: Path) -> dict[str, dict[str, str]]:
+    """Names in capitals and small letters that a module binds to anything but a class: by name, places by what they mean."""
+    meanings = defaultdict(dict)
     for path in sorted(folder.rglob("*.py")):
         for node in ast.parse(path.read_text(encoding="utf-8")).body:
-            targets = node.targets if isinstance(node, ast.Assign) else []
-            for target in targets:
+            for target in node.targets if isinstance(node, ast.Assign) else []:
                 if isinstance(target, ast.Name) and target.id[0].isupper() and not target.id.isupper():
-                    places[target.id].append(f"{path.relative_to(folder)}:{node.lineno}")
-    return places
+                    meanings[target.id][ast.unparse(node.value)] = f"{path.relative_to(folder)}:{node.lineno}"
+    return meanings
 
 
 def test_no_two_public_classes_share_a_name():
@@ -45,7 +44,11 @@ def test_no_two_public_classes_share_a_name():
 def test_no_type_alias_has_the_name_of_a_class():
     classes, aliases = public_classes(PACKAGE), type_aliases(PACKAGE)
     assert len(aliases) > 30
-    assert not {name: aliases[name] + classes[name] for name in classes.keys() & aliases.keys()}
+    assert not {name: [*aliases[name].values(), *classes[name]] for name in classes.keys() & aliases.keys()}
+
+
+def test_no_type_alias_has_two_meanings():
+    assert not {name: meanings for name, meanings in type_aliases(PACKAGE).items() if len(meanings) > 1}
 
 
 def test_a_name_that_two_classes_share_is_found(tmp_path):

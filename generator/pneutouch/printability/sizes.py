@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from pneutouch.printability.finding import Excess, Finding, Severity
 from pneutouch.printability.measure.thin import FeatureKind, ThinPlace
-from pneutouch.printability.subject import Point
+from pneutouch.printability.subject import Point3
 from pneutouch.printability.view import PrintPart, PrintView
 from pneutouch.spec.printer import FeatureSize
 
@@ -84,7 +84,7 @@ def _finding(
     return Finding(rule, severity, part.name, text, hint, source, places[0].where, Excess(size, limit))
 
 
-def spot(where: object) -> Point:
+def spot(where: object) -> Point3:
     """A point as findings carry it."""
     x, y, z = (float(value) for value in where)  # type: ignore[attr-defined]
     return x, y, z

@@ -27,7 +27,7 @@ from pneutouch.arrays import Array, Flags
 from pneutouch.body import Body
 from pneutouch.spec.printer import Mode, Printer
 
-Point = tuple[float, float, float]
+Point3 = tuple[float, float, float]
 
 
 class ExactShape(Protocol):
@@ -59,7 +59,7 @@ class PrintItem:
     printer: Printer
     mode: Mode
     solid: ExactShape | None = None
-    up: Point = (0.0, 0.0, 1.0)
+    up: Point3 = (0.0, 0.0, 1.0)
     job: str = ""
     sensing: Callable[[Array], Flags] | None = None
     hints: Mapping[str, str] = field(default_factory=dict)
@@ -72,7 +72,7 @@ class Joint:
     one: str
     other: str
     area: float
-    where: Point
+    where: Point3
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from pneutouch.printability.measure.shells import Hollow, voids
 from pneutouch.printability.measure.surface import SurfaceMesh
 from pneutouch.printability.measure.thin import ThinPlace, thin_places
 from pneutouch.printability.measure.voxels import PartVoxels, build_frame, fill
-from pneutouch.printability.subject import Point, PrintItem, PrintSubject
+from pneutouch.printability.subject import Point3, PrintItem, PrintSubject
 from pneutouch.spec.printer import FeatureSize, Printer
 
 if TYPE_CHECKING:
@@ -182,11 +182,11 @@ class PrintJob:
         joined = [shell for shell in voids(self.union, "") if not any(shell.alike(other) for other in parts_shells)]
         return parts_shells + [replace(shell, body=self.nearest(shell.where).name) for shell in joined]
 
-    def in_hollow(self, where: Point) -> bool:
+    def in_hollow(self, where: Point3) -> bool:
         """Whether a point lies in the box of a closed hollow."""
         return any(bool(((where >= h.bounds[0]) & (where <= h.bounds[1])).all()) for h in self.hollows)
 
-    def nearest(self, where: Point) -> PrintPart:
+    def nearest(self, where: Point3) -> PrintPart:
         """The part with a vertex nearest to a point."""
         point = np.asarray(where)
         return min(self.parts, key=lambda part: float(np.linalg.norm(part.item.body.vertices - point, axis=1).min()))

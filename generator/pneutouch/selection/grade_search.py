@@ -78,7 +78,7 @@ class GradeSearch:
 
 
 TryGrade = Callable[[float, float], GradeTrial]
-Progress = Callable[[GradeTrial, int, int], None]
+TrialReport = Callable[[GradeTrial, int, int], None]
 
 
 def shares(target: GradeTarget, trial: GradeTrial) -> dict[str, float]:
@@ -108,7 +108,7 @@ def cost(target: GradeTarget, trial: GradeTrial, spare: float = 1.0) -> float:
     return max(value for name, value in used.items() if name not in _LIMITS or value > 1.0)
 
 
-def grade_search(target: GradeTarget, levels: Array, solve: TryGrade, progress: Progress, most: int) -> GradeSearch:
+def grade_search(target: GradeTarget, levels: Array, solve: TryGrade, progress: TrialReport, most: int) -> GradeSearch:
     """Fractions at pole and rim between the ends of ``levels``, rising fractions (n,), that meet a target.
 
     A scan of all pairs of levels, soft ones first; then the best place on a surface through all trials is tried, and again

@@ -37,7 +37,7 @@ def _readings(low: float, high: float, unit: str, least: int = LEAST_READINGS) -
 
 
 Shore = Annotated[list[float], _readings(0, 100, "on the Shore scale")]
-Lengths = Annotated[list[float], _readings(0.01, 1000, "mm")]
+LengthReadings = Annotated[list[float], _readings(0.01, 1000, "mm")]
 Masses = Annotated[list[float], _readings(1e-4, 1e4, "g")]
 Pressures = Annotated[list[float], _readings(0.1, 1000, "kPa")]
 CurveReadings = Annotated[list[float], _readings(1e-6, 1e5, "", least=3)]
@@ -49,8 +49,8 @@ class Puck(Table):
     shore_a: Shore = Field(default_factory=list)
     shore_d: Shore = Field(default_factory=list)
     mass_g: Masses = Field(default_factory=list)
-    diameter_mm: Lengths = Field(default_factory=list)
-    thickness_mm: Lengths = Field(default_factory=list)
+    diameter_mm: LengthReadings = Field(default_factory=list)
+    thickness_mm: LengthReadings = Field(default_factory=list)
 
     @model_validator(mode="after")
     def _density_complete(self) -> Puck:
@@ -66,8 +66,8 @@ class Puck(Table):
 class DumbbellSpecimen(Table):
     """One dumbbell: its narrow part, and its curve point by point."""
 
-    width_mm: Lengths = Field(default_factory=list)
-    thickness_mm: Lengths = Field(default_factory=list)
+    width_mm: LengthReadings = Field(default_factory=list)
+    thickness_mm: LengthReadings = Field(default_factory=list)
     gauge_length_mm: float = Field(default=25.0, gt=0, le=1000, description="Distance of the bench marks.")
     extension_mm: CurveReadings = Field(default_factory=list)
     force_N: CurveReadings = Field(default_factory=list)
@@ -115,7 +115,7 @@ class GaugeSize(Table):
     """One feature of the gauge. ``came_out`` is false where it is missing, broken, blocked or grown together."""
 
     nominal_mm: float = Field(gt=0, le=100)
-    measured_mm: Lengths = Field(default_factory=list)
+    measured_mm: LengthReadings = Field(default_factory=list)
     came_out: bool | None = None
 
     @model_validator(mode="after")

@@ -10,10 +10,10 @@ import numpy as np
 from pneutouch.arrays import Array, Flags, Indices
 from pneutouch.errors import ComputationError
 
-Side = tuple[int, int]
+BoxSide = tuple[int, int]
 """A side of a box: axis, and 0 for its low or 1 for its high end."""
 
-SIDES: tuple[Side, ...] = tuple(itertools.product(range(3), range(2)))
+SIDES: tuple[BoxSide, ...] = tuple(itertools.product(range(3), range(2)))
 
 _LARGE = 400
 """Indices from which a region is cut into parts."""
@@ -54,7 +54,7 @@ def cut_places(spans: Array) -> list[float]:
     return places
 
 
-def rim(points: Array, ends: Array, side: Side) -> list[Indices]:
+def rim(points: Array, ends: Array, side: BoxSide) -> list[Indices]:
     """Vertices along the four edges of a box's side, counter-clockwise seen from outside; ``ends`` (2, 3) is the box.
 
     Each run ends with the corner that the next begins with, where the corners are among ``points`` (n, 3).
@@ -70,7 +70,7 @@ def rim(points: Array, ends: Array, side: Side) -> list[Indices]:
     return runs
 
 
-def plane(side: Side) -> tuple[int, int]:
+def plane(side: BoxSide) -> tuple[int, int]:
     """The two axes of a side, in the order that makes counter-clockwise face outwards."""
     axis, end = side
     return ((axis + 1) % 3, (axis + 2) % 3) if end else ((axis + 2) % 3, (axis + 1) % 3)

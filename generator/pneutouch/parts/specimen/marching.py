@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array, Flags, Indices
-from pneutouch.parts.specimen.faces import SIDES, Side, boundary, plane, rim, triangulated
+from pneutouch.parts.specimen.faces import SIDES, BoxSide, boundary, plane, rim, triangulated
 from pneutouch.parts.specimen.mesh import Box, Mesh
 
 _NEAREST = 0.01
@@ -22,7 +22,7 @@ _NEAREST = 0.01
 _REFINED = 1
 """Steps of regula falsi along the edges after the first guess."""
 
-Wave = Callable[[Array], Array]
+LevelFunction = Callable[[Array], Array]
 """Values (n,) of a function at points (n, 3), mm."""
 
 _PATHS = tuple(itertools.permutations(range(3)))
@@ -48,7 +48,7 @@ class MarchingGrid:
         return a + 1, b + 1, c + 1
 
 
-def level_set(grid: MarchingGrid, wave: Wave, values: Array, level: float) -> Mesh:
+def level_set(grid: MarchingGrid, wave: LevelFunction, values: Array, level: float) -> Mesh:
     """The surface on which a wave is ``level``, facing upwards; open on the box's sides.
 
     ``values`` are the wave's at the grid's nodes. Vertices lie on the surface itself, not on its interpolation.
@@ -63,7 +63,7 @@ def level_set(grid: MarchingGrid, wave: Wave, values: Array, level: float) -> Me
     return Mesh(_places(grid, wave, values, level, unique), triangles)
 
 
-def between(grid: MarchingGrid, wave: Wave, values: Array, low: float | None, high: float) -> Mesh:
+def between(grid: MarchingGrid, wave: LevelFunction, values: Array, low: float | None, high: float) -> Mesh:
     """The closed body in which a wave, ``values`` at the grid's nodes, is below ``high`` and, if given, not below ``low``."""
     top = level_set(grid, wave, values, high)
     inside = _corners(values) < high
@@ -135,7 +135,7 @@ def _key(node: Indices, steps: Indices, strides: Indices, low: int, high: int) -
     return key
 
 
-def _places(grid: MarchingGrid, wave: Wave, values: Array, level: float, keys: Indices) -> Array:
+def _places(grid: MarchingGrid, wave: LevelFunction, values: Array, level: float, keys: Indices) -> Array:
     lower = np.stack(np.unravel_index(keys // 8, grid.shape), axis=1)
     step = np.stack([keys >> 2 & 1, keys >> 1 & 1, keys & 1], axis=1)
     upper = lower + step
@@ -166,7 +166,7 @@ def _closed(surface: Mesh, box: Box, inside: Flags) -> Mesh:
     return Mesh(points, np.concatenate([surface.triangles, *caps])).compact()
 
 
-def _cap(points: Array, ends: Array, open_edges: Indices, side: Side, inside: Flags, first: int) -> Indices:
+def _cap(points: Array, ends: Array, open_edges: Indices, side: BoxSide, inside: Flags, first: int) -> Indices:
     """Indices of the body on one side of the box."""
     axis, end = side
     on = (points[open_edges][:, :, axis] == ends[end, axis]).all(axis=1)

@@ -9,15 +9,15 @@ import numpy as np
 from pneutouch.arrays import Array, Indices
 from pneutouch.body.triangles import enclosed_volume, is_closed, welded
 
-Point = tuple[float, float, float]
+Point3 = tuple[float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
 class Box:
     """A box along the axes between two corners, mm."""
 
-    low: Point
-    high: Point
+    low: Point3
+    high: Point3
 
     @property
     def volume(self) -> float:

@@ -11,8 +11,8 @@ import itertools
 import numpy as np
 
 from pneutouch.arrays import Array, Indices
-from pneutouch.parts.specimen.faces import SIDES, Side, boundary, cut_places, plane, rim, triangulated
-from pneutouch.parts.specimen.mesh import Box, Mesh, Point
+from pneutouch.parts.specimen.faces import SIDES, BoxSide, boundary, cut_places, plane, rim, triangulated
+from pneutouch.parts.specimen.mesh import Box, Mesh, Point3
 
 
 def complement(box: Box, inclusion: Mesh) -> Mesh:
@@ -32,7 +32,7 @@ class _Partition:
         corners = np.array(list(itertools.product(*self._ends.T)))
         self._vertices = _with(inclusion.vertices, corners, self._ends)
         self._footprints = {side: self._on(side) for side in SIDES}
-        self._extra: dict[Point, int] = {}
+        self._extra: dict[Point3, int] = {}
         self._cuts = {side: self._cut(side) for side in SIDES}
         self._vertices = np.concatenate([self._vertices, np.array(list(self._extra)).reshape(-1, 3)])
 
@@ -44,16 +44,16 @@ class _Partition:
         parts = [self._inclusion.triangles[~own][:, ::-1], *(self._rest(side) for side in SIDES)]
         return Mesh(self._vertices, np.concatenate(parts)).compact()
 
-    def _on(self, side: Side) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
+    def _on(self, side: BoxSide) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
         axis, end = side
         at = self._inclusion.vertices[:, axis] == self._ends[end, axis]
         return np.asarray(at[self._inclusion.triangles].all(axis=1))
 
-    def _outline(self, side: Side) -> Indices:
+    def _outline(self, side: BoxSide) -> Indices:
         """Directed edges of the footprints on a side."""
         return boundary(self._inclusion.triangles[self._footprints[side]], len(self._inclusion.vertices))
 
-    def _cut(self, side: Side) -> list[tuple[int, int]]:
+    def _cut(self, side: BoxSide) -> list[tuple[int, int]]:
         """Straight cuts along z or y through a side that x runs along: pairs of vertices on its opposite edges."""
         axis, end = side
         if axis == 0:
@@ -73,7 +73,7 @@ class _Partition:
         """Number of an extra vertex; two sides that are cut at one place share it."""
         return self._extra.setdefault((point[0], point[1], point[2]), len(self._vertices) + len(self._extra))
 
-    def _rest(self, side: Side) -> Indices:
+    def _rest(self, side: BoxSide) -> Indices:
         """Indices of a side around the footprints, facing outwards."""
         size, outline = len(self._vertices), self._outline(side)
         runs = rim(self._vertices, self._ends, side)

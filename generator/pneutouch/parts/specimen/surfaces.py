@@ -13,7 +13,7 @@ from pneutouch.arrays import Array
 from pneutouch.parts.specimen.marching import MarchingGrid, between, level_set
 from pneutouch.parts.specimen.mesh import Box, Mesh
 
-Wave = Callable[[Array, Array, Array], Array]
+PeriodicFunction = Callable[[Array, Array, Array], Array]
 Form = Literal["sheet", "network"]
 
 
@@ -32,7 +32,7 @@ def _diamond(x: Array, y: Array, z: Array) -> Array:
     return found
 
 
-SURFACES: dict[str, Wave] = {"gyroid": _gyroid, "schwarz-p": _schwarz_p, "diamond": _diamond}
+SURFACES: dict[str, PeriodicFunction] = {"gyroid": _gyroid, "schwarz-p": _schwarz_p, "diamond": _diamond}
 """First nodal approximations; x, y and z in radians, one cell being 2 pi (von Schnering and Nesper 1991)."""
 
 PINCHED: dict[str, float] = {"gyroid": math.sqrt(2.0), "schwarz-p": 1.0, "diamond": math.sqrt(0.5)}

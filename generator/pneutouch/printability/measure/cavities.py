@@ -10,7 +10,7 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.printability.measure.voxels import PartVoxels
-from pneutouch.printability.subject import Point
+from pneutouch.printability.subject import Point3
 
 NARROW = 0.7
 """Share of a hollow's width below which its opening is a neck."""
@@ -36,7 +36,7 @@ class Pocket:
     width: float
     volume: float
     depth: float
-    where: Point
+    where: Point3
     region: Flags
 
     @property

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.printability.subject import Point
+from pneutouch.printability.subject import Point3
 
 _NOTHING = 1e-6
 """Volume in mm3 below which a shell is rounding."""
@@ -23,7 +23,7 @@ class Hollow:
     bounds: Array
 
     @property
-    def where(self) -> Point:
+    def where(self) -> Point3:
         """Middle of its box."""
         x, y, z = (float(value) for value in self.bounds.mean(axis=0))
         return x, y, z

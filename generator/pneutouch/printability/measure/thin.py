@@ -15,7 +15,7 @@ import numpy as np
 from pneutouch.arrays import Array, Flags, Indices
 from pneutouch.printability.measure.chords import FLANK, Chords, Side, continues, described
 from pneutouch.printability.measure.surface import SurfaceMesh
-from pneutouch.printability.subject import Point
+from pneutouch.printability.subject import Point3
 
 FeatureKind = Literal["wall", "pin", "hole", "channel", "gap", "raised", "engraved"]
 
@@ -54,7 +54,7 @@ class ThinPlace:
 
     kind: FeatureKind
     size: float
-    where: Point
+    where: Point3
     length: float
     turn: float = 0.0
 
@@ -139,7 +139,7 @@ def _length(some: _Sized, row: int, faces: int) -> float:
     return bent if bent > _BENT * extent else extent
 
 
-def _spot(some: _Sized, row: int) -> Point:
+def _spot(some: _Sized, row: int) -> Point3:
     x, y, z = (float(value) for value in some.chords.middle[row])
     return x, y, z
 

@@ -8,7 +8,7 @@ from pneutouch.arrays import Flags, Indices
 from pneutouch.printability.finding import Excess, Finding, Severity
 from pneutouch.printability.measure.cavities import NARROW, Pocket, overhangs
 from pneutouch.printability.measure.rays import first_hits
-from pneutouch.printability.subject import Point
+from pneutouch.printability.subject import Point3
 from pneutouch.printability.view import PrintJob, PrintView
 
 _VENDOR = "vendor, objet.com Tips and Tricks: a confined hollow is not cleanable; "
@@ -126,7 +126,7 @@ def _slender(job: PrintJob) -> list[Finding]:
 
 
 def _finding(
-    job: PrintJob, severity: Severity, text: str, fix: str, source: str, where: Point, excess: Excess
+    job: PrintJob, severity: Severity, text: str, fix: str, source: str, where: Point3, excess: Excess
 ) -> Finding:  # fmt: skip
     part = job.nearest(where)
     fix = part.item.hints.get("cleaning", fix)

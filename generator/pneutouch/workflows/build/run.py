@@ -26,7 +26,7 @@ from pneutouch.report.picture import picture
 from pneutouch.report.print_sheet import print_sheet
 from pneutouch.units import ML
 
-Progress = Callable[[str], None]
+StepReport = Callable[[str], None]
 
 STEPS = ("rules", "meshes", "3MF", "STL", "GLB", "STEP", "datasheet", "files")
 """The steps that a build reports, in order."""
@@ -35,7 +35,7 @@ _THUMBNAIL_PIXELS = 256
 """Width and height of the picture in the 3MF."""
 
 
-def build(evaluation: Evaluation, out: Path, progress: Progress = lambda step: None) -> Path:
+def build(evaluation: Evaluation, out: Path, progress: StepReport = lambda step: None) -> Path:
     """Write everything a design gives into ``out/<name>/`` and return that folder.
 
     Raises RuleBrokenError, with nothing written, where a rule is broken. The same input gives the same bytes.

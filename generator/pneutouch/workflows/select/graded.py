@@ -14,7 +14,7 @@ from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.parts import assemble
-from pneutouch.selection.grade_search import GradeSearch, GradeTarget, GradeTrial, Progress, grade_search, shares
+from pneutouch.selection.grade_search import GradeSearch, GradeTarget, GradeTrial, TrialReport, grade_search, shares
 from pneutouch.selection.graded import UniformMembrane, middle_wall, nearest_fraction, trial_of
 from pneutouch.selection.mixes import levels
 from pneutouch.selection.problem import SelectionProblem
@@ -80,7 +80,7 @@ class GradedSelectionRun:
 
 
 def select_graded(
-    target: Target, where: str, library: Library | None = None, progress: Progress = lambda trial, done, most: None,
+    target: Target, where: str, library: Library | None = None, progress: TrialReport = lambda trial, done, most: None,
     trials: int | None = None,
 ) -> GradedSelectionRun:  # fmt: skip
     """Answer a target that requires a grade. Raises InputError where it names what there is not.

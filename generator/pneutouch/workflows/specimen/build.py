@@ -25,7 +25,7 @@ from pneutouch.workflows.specimen.load import ResolvedSpecimen, load_specimen
 from pneutouch.workflows.specimen.sheet import sheet
 from pneutouch.workflows.specimen.truth import truth
 
-Progress = Callable[[str], None]
+StepReport = Callable[[str], None]
 
 STEPS = ("bodies", "rules", "3MF", "STL", "GLB", "STEP", "drawing", "files")
 """The steps that a build reports, in order."""
@@ -33,7 +33,7 @@ STEPS = ("bodies", "rules", "3MF", "STL", "GLB", "STEP", "drawing", "files")
 
 def build_specimen(
     name: str, out: Path, changes: Changes | None = None, library: Library | None = None,
-    progress: Progress = lambda step: None,
+    progress: StepReport = lambda step: None,
 ) -> tuple[Path, list[Finding]]:  # fmt: skip
     """Write everything a specimen, by name or path, gives into ``out/<name>/``; that folder and the findings.
 
@@ -106,7 +106,7 @@ def _polygon(corners: list[tuple[float, float]]) -> tuple[Line, ...]:
     return tuple(Line(a, b, "") for a, b in pairwise([*corners, corners[0]]))
 
 
-def _files(drawn: SpecimenBodies, checked: list[Finding], progress: Progress) -> dict[str, bytes]:
+def _files(drawn: SpecimenBodies, checked: list[Finding], progress: StepReport) -> dict[str, bytes]:
     scene, bodies = drawn.scene, drawn.printed
     whole = input_hash(inputs(scene))
     progress("3MF")

@@ -21,7 +21,7 @@ from pneutouch.workflows.tray.expand import ExpandedTray, TrayPiece, TrayVariant
 from pneutouch.workflows.tray.order import TrayOrder
 from pneutouch.workflows.tray.resins import changes, jobs
 
-Progress = Callable[[str], None]
+StepReport = Callable[[str], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +118,7 @@ class TrayLayout:
         return name if len(self.jobs) == 1 else f"{name}-{self.jobs.index(job) + 1}"
 
 
-def lay(order: TrayOrder, library: Library | None = None, progress: Progress = lambda step: None) -> TrayLayout:
+def lay(order: TrayOrder, library: Library | None = None, progress: StepReport = lambda step: None) -> TrayLayout:
     """Draw, group, mesh, mark and pack the parts of a tray. Raises InputError where it cannot be or does not fit."""
     progress("designs")
     expanded = expand(order, library)

@@ -16,12 +16,12 @@ from pneutouch.output.manifest import short_digest, with_manifest
 from pneutouch.output.recipe import scene_kinds
 from pneutouch.printability import refuse
 from pneutouch.workflows.tray.labels import labels_csv, labels_md, rows
-from pneutouch.workflows.tray.lay import Progress, TrayJob, TrayLayout, TrayPart, counted, fill
+from pneutouch.workflows.tray.lay import StepReport, TrayJob, TrayLayout, TrayPart, counted, fill
 from pneutouch.workflows.tray.rules import TrayFinding, findings
 from pneutouch.workflows.tray.view import tray_svg
 
 
-def write_tray(layout: TrayLayout, folder: Path, progress: Progress = lambda step: None) -> Path:
+def write_tray(layout: TrayLayout, folder: Path, progress: StepReport = lambda step: None) -> Path:
     """Write everything of a tray into ``folder`` and return it. The same input gives the same bytes.
 
     Raises RuleBrokenError, with nothing written, where a part breaks a print rule.
