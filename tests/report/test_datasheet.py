@@ -12,7 +12,7 @@ import pytest
 from pneutouch.report import curves
 
 SECTIONS = [
-    "Performance", "How sure", "Absolute maximum ratings", "Operating conditions", "What limits the driving pressure", "Environment",
+    "Performance", "Uncertainty", "Absolute maximum ratings", "Operating conditions", "What limits the driving pressure", "Environment",
     "Mechanical drawing", "Material and print", "Reliability", "Ordering code", "How to measure it", "Handling",
     "Assumptions of the prediction", "Definitions", "Revisions",
 ]  # fmt: skip
@@ -102,15 +102,15 @@ def test_the_air_on_the_sheet_is_computed_and_no_longer_a_fixed_factor(evaluated
 def test_model_and_why_it_was_taken_stand_on_the_sheet(evaluated):
     from pneutouch.evaluation import evaluate
     from pneutouch.evaluation.sheet import sheet_data
-    from pneutouch.report.certainty import how_sure
+    from pneutouch.report.certainty import uncertainty_section
 
     chosen = evaluate("paper-dome", model="auto", tolerance=0.02)
-    model = dict(how_sure(sheet_data(chosen, ""))["model"])
+    model = dict(uncertainty_section(sheet_data(chosen, ""))["model"])
     assert model["Model"] == "atlas"
     assert model["Numerical error"] == "within 1.8% in sensitivity"
     assert "passed over membrane" in model["Why this model"]
     asked = evaluated("paper-dome", model="atlas")
-    assert "asked for" in dict(how_sure(sheet_data(asked, ""))["model"])["Why this model"]
+    assert "requested" in dict(uncertainty_section(sheet_data(asked, ""))["model"])["Why this model"]
 
 
 def test_without_the_solid_the_sheet_says_where_shapes_come_from(evaluated, tmp_path):

@@ -171,7 +171,7 @@ def test_a_mix_on_no_curve_is_refused(library):
     other = scene.membrane_material.model_copy(update={"base_resins": ["Agilus30", "VeroClear"]})
     assembly = assemble(replace(scene, membrane_material=other))
     with pytest.raises(
-        InputError, match=r"membrane\.material = 'FLX9960': nobody publishes how much VeroClear is in it"
+        InputError, match=r"membrane\.material = 'FLX9960': no vendor publishes how much VeroClear is in it"
     ):
         plan_voxels(assembly, library=library)
 

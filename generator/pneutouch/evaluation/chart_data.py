@@ -72,8 +72,8 @@ class TradeOff:
         fronts: One a resin; empty ones are left out.
         driving_pressure_kPa: Driving pressure, kPa.
         gauge_kPa: Pressure rise that the pressure sensor has left, kPa.
-        window_kPa_per_N: Least and greatest sensitivity wanted (kPa/N), None where free.
-        force: Least force range wanted, N; None where free.
+        window_kPa_per_N: Least and greatest required sensitivity (kPa/N), None where free.
+        force: Least required force range, N; None where free.
         spots: Designs, the first picked out.
     """
 

@@ -1,4 +1,4 @@
-"""What a datasheet sets one design in: its air, its trade-off and its tuning, by the atlas, which must know the sensor."""
+"""Effect of the air, trade-off and tuning of one design, for its datasheet, by the atlas, which must cover the sensor."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def tuning(evaluation: Evaluation, highest: float) -> TuningChart | None:
 
 
 def tradeoff(evaluation: Evaluation) -> TradeOff | None:
-    """Fronts at the design's highest driving pressure in every resin that its printer runs and the atlas knows.
+    """Fronts at the design's highest driving pressure in every resin that its printer runs and the atlas covers.
 
     None where the prediction has no figures there.
     """
@@ -73,10 +73,12 @@ def _problem(evaluation: Evaluation, pressure: float) -> SelectionProblem:
 
 
 def _resins(evaluation: Evaluation) -> tuple[CandidateResin, ...]:
-    found = []
+    candidates = []
     for name, material in evaluation.resins.items():
         runs = evaluation.scene.printer.mode_for(material) is not None
         if runs and outside_atlas(in_resin(evaluation.sensor, material)) is None:
-            own = material_sensor(material)
-            found.append(CandidateResin(name, material, own.wall.shear_modulus, own.wall.break_stretch or np.inf))
-    return tuple(found)
+            paper = material_sensor(material)
+            candidates.append(
+                CandidateResin(name, material, paper.wall.shear_modulus, paper.wall.break_stretch or np.inf)
+            )
+    return tuple(candidates)

@@ -1,4 +1,4 @@
-"""What relaxation does to a predicted sensor, and what a prediction says with it."""
+"""The documents of a prediction: with its uncertainty, with relaxation and ageing."""
 
 from __future__ import annotations
 
@@ -24,14 +24,16 @@ def viscous(evaluation: Evaluation) -> dict[str, Any]:
 def prediction_document(evaluation: Evaluation, samples: int = 0) -> dict[str, Any]:
     """The prediction as ``predict`` prints it, every state with its ``uncertainty``."""
     content = evaluation.prediction.document()
-    found = evaluation.uncertainty
+    uncertainty = evaluation.uncertainty
     if samples:
-        found = documents(
+        uncertainty = documents(
             evaluation.prediction, evaluation.sensor, evaluation.scene, lambda: evaluation.resins, samples
         )
     return {
         **content,
-        "states": [{**state, "uncertainty": own} for state, own in zip(content["states"], found, strict=True)],
+        "states": [
+            {**state, "uncertainty": entry} for state, entry in zip(content["states"], uncertainty, strict=True)
+        ],
     }
 
 

@@ -39,7 +39,7 @@ Resins = dict[str, Material]
 class PredictionOptions:
     """Options of a prediction: the model, the membrane's closure, the clamp and what ``auto`` must meet.
 
-    ``aged`` asks for the sensor after a year; a recipe does not carry it: what is printed is fresh.
+    ``aged`` requests the sensor after a year; a recipe does not carry it: what is printed is fresh.
     """
 
     model: str = "solid"
@@ -67,7 +67,7 @@ class Evaluation:
 
     @cached_property
     def findings(self) -> list[Finding]:
-        """What the rules say."""
+        """Findings of the print rules."""
         from pneutouch.evaluation.subject import subject_of
         from pneutouch.printability import SensorContext, check
 
@@ -82,7 +82,7 @@ class Evaluation:
         return tuple(estimate(subject_of(self.assembly)))
 
     def deep_findings(self) -> list[Finding]:
-        """What pymeshlab, an independent reader, says of the meshes. Raises InputError where it is not installed."""
+        """Findings of pymeshlab, an independent reader, on the meshes. Raises InputError where it is not installed."""
         from pneutouch.printability.deep import inspect
 
         tolerance, solids = self.scene.mesh_tolerance, self.assembly.solids
@@ -91,7 +91,7 @@ class Evaluation:
 
     @cached_property
     def uncertainty(self) -> tuple[dict[str, Any], ...]:
-        """How sure the figures of each state are; a sweep that does not ask does not pay."""
+        """Uncertainty of the figures of each state; computed on first use, so that a sweep without it saves the time."""
         from pneutouch.evaluation.uncertainty import documents
 
         return documents(self.prediction, self.sensor, self.scene, lambda: self.resins)
@@ -111,7 +111,8 @@ def evaluate(
 ) -> Evaluation:  # fmt: skip
     """Load, draw and predict a design given by name, by path or as a source. Raises InputError where it cannot work.
 
-    ``tolerance`` is what ``model="auto"`` must meet. ``clamp`` says where the solid is held: at the "base" plane, as in the paper, or at the "flange", as printed.
+    ``tolerance`` is what ``model="auto"`` must meet. ``clamp`` is where the solid is held: at the
+    "base" plane, as in the paper, or at the "flange", as printed.
     ``aged`` shifts the resin's modulus by its hardness after a year (docs/ageing.md).
     """
     if clamp not in CLAMPS:
@@ -182,9 +183,9 @@ def _aged(scene: ResolvedDesign, sensor: Sensor) -> tuple[Sensor, str]:
     except InputError as error:
         raise InputError(f"{scene.where}: membrane.material = {scene.design.membrane.material!r}: {error}") from None
     assert material.shore_a is not None and material.shore_a_one_year is not None
-    said = f"Shore A {material.shore_a.nominal:g} to {material.shore_a_one_year.nominal:g}"
+    hardness = f"Shore A {material.shore_a.nominal:g} to {material.shore_a_one_year.nominal:g}"
     shifted = sensor.replace(shear_modulus=ratio * sensor.wall.shear_modulus)
-    return shifted, f"aged one year: {said}, modulus times {ratio:.3f}. {AGED}"
+    return shifted, f"aged one year: {hardness}, modulus times {ratio:.3f}. {AGED}"
 
 
 def _beyond_limit(scene: ResolvedDesign, error: BeyondLimitError) -> InputError:

@@ -1,6 +1,6 @@
-"""How sure the prediction of a graded wall is: the figures of the solid, the uncertainty of an even wall like it.
+"""Uncertainty of a graded wall: the figures of the solid, the relative uncertainty of the even wall of its mean modulus.
 
-The atlas knows even walls alone. Differences of the solid would take two presses for each of six inputs, half a second
+The atlas covers even walls alone. Differences of the solid would take two presses for each of six inputs, half a second
 each and state, and on meshes coarse enough to be quick they are noise: at 12 cells the derivative of the sensitivity by the
 wall of `designs/graded-dome.toml`, unpressurised, is +0.05, on the usual mesh -0.47. So the derivatives are those of the
 even wall of the same mean modulus, -0.47 too.
@@ -12,13 +12,13 @@ from pneutouch.mechanics import Sensor
 
 GAP, STEEP_GAP = 0.2, 0.45
 """How far the derivatives d ln sensitivity / d ln modulus and wall of the even wall were found from those of the graded solid,
-with the paper's sensor: with 0 to 25 % of the stiff resin either way round, and with 0 to 40 %
+with the paper's sensor: with 0 to 25 % of the stiff resin in either direction, and with 0 to 40 %
 (`tests/evaluation/test_graded_uncertainty.py`)."""
 
 _NOTE = (
     "the wall is graded: the figures are the solid's, their relative uncertainty is that of an even wall of its mean modulus, "
     f"whose logarithmic derivatives by modulus and wall were found within {GAP:g} of a graded one's (0 to 25 % of the stiff "
-    f"resin; {STEEP_GAP:g} for 0 to 40 %); all of the wall is taken stiffer, or all of it softer, than its mixing curve says"
+    f"resin; {STEEP_GAP:g} for 0 to 40 %); all of the wall is taken stiffer, or all of it softer, than its mixing curve states"
 )
 
 
@@ -28,5 +28,5 @@ def even_wall(sensor: Sensor) -> Sensor:
 
 
 def notes_on(sensor: Sensor) -> tuple[str, ...]:
-    """What must be said of the uncertainty of this sensor."""
+    """Notes on the uncertainty of this sensor."""
     return () if sensor.wall.grade is None else (_NOTE,)

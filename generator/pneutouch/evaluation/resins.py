@@ -38,15 +38,15 @@ def resins_of(
 ) -> list[SimulatedResin]:  # fmt: skip
     """The design in each resin; none given: its own, "all": those of the paper's Table S1. Raises InputError."""
     library = library or Library.default()
-    own = load_scene(design, changes, library)
+    given = load_scene(design, changes, library)
     known = elastomers(library)
-    names = list(resins) or [resin_of(own)]
+    names = list(resins) or [resin_of(given)]
     if tuple(names) == ALL:
         names = sorted(
             (name for name, material in known.items() if material.measured is not None),
             key=lambda name: known[name].shear_modulus_MPa.nominal,  # type: ignore[union-attr]
         )
-    found = []
+    simulated = []
     for name in names:
         if name not in known and name != AS_DESIGNED:
             raise InputError(f"no such elastomer.{nearest(name, known)}", key="resins", value=name)
@@ -58,8 +58,8 @@ def resins_of(
         new, old = material.shore_a, material.shore_a_one_year
         ageing = 0.0 if new is None or old is None else logarithmic_change(new.nominal, old.nominal)
         scatter = replace(truth.scatter, wall=scene.printer.accuracy_mm.nominal, ageing=ageing)
-        found.append(SimulatedResin(name, scene, sensor_of(assemble(scene)), replace(truth, scatter=scatter)))
-    return found
+        simulated.append(SimulatedResin(name, scene, sensor_of(assemble(scene)), replace(truth, scatter=scatter)))
+    return simulated
 
 
 def name_of(design: str | DesignSource) -> str:
@@ -74,7 +74,7 @@ def resin_of(scene: ResolvedDesign) -> str:
 
 
 def pressed(resin: str, sensor: Sensor, pressures: Sequence[float], depth: float, model: str) -> PressCurves:
-    """`press_curves` at ascending pressures in MPa; beyond the limit point InputError says how far one may go."""
+    """`press_curves` at ascending pressures in MPa; beyond the limit point InputError states the greatest allowed pressure."""
     try:
         return press_curves(sensor, pressures, depth, model)
     except BeyondLimitError as error:

@@ -25,7 +25,7 @@ _HINTS = {
         "resins": "take another connector.material or print.connector_profile",
     },
 }
-"""What in the design would fix what a rule finds, by body; a ring and a plug are designed as the connector is."""
+"""Remedies in the design for each kind of finding, by body; a ring and a plug are designed as the connector is."""
 
 
 def subject_of(assembly: Assembly) -> PrintSubject:
@@ -52,7 +52,7 @@ def _outer_wall(assembly: Assembly) -> Callable[[Array], Flags]:
     radius, slack = assembly.layout.outer_radius, 2 * assembly.scene.mesh_tolerance
 
     def on_wall(points: Array) -> Flags:
-        found: Flags = np.abs(np.linalg.norm(points, axis=1) - radius) <= slack
-        return found & (points[:, 2] > slack)
+        on_sphere: Flags = np.abs(np.linalg.norm(points, axis=1) - radius) <= slack
+        return on_sphere & (points[:, 2] > slack)
 
     return on_wall

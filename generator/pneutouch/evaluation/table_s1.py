@@ -30,10 +30,10 @@ NEAR_WALL, NEAR_DEAD_VOLUME = (0.10, 0.25), 0.2
 
 def measured(material: Material) -> tuple[float, float] | None:
     """The sensitivities of Table S1 for a resin, kPa/N, or None."""
-    found = material.measured
-    if found is None:
+    published = material.measured
+    if published is None:
         return None
-    return found.sensitivity_0kPa_kPa_per_N.nominal, found.sensitivity_22kPa_kPa_per_N.nominal
+    return published.sensitivity_0kPa_kPa_per_N.nominal, published.sensitivity_22kPa_kPa_per_N.nominal
 
 
 def published_sensitivities(sensor: Sensor, material: Material) -> dict[float, float]:
@@ -71,7 +71,7 @@ def fingerprint(material: Material) -> str:
 
 
 def is_near_paper(sensor: Sensor) -> bool:
-    """Whether a sensor is near enough to the paper's for its error to say something."""
+    """Whether a sensor is near enough to the paper's that its error applies."""
     low, high = NEAR_WALL
     cavity = 2 / 3 * np.pi * sensor.dome.inner_radius**3
     close = low <= sensor.dome.wall_thickness / sensor.dome.inner_radius <= high

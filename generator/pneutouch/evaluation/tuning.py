@@ -48,8 +48,8 @@ def interval(
     ``materials`` are all that there are; ``model`` gives the numerical error.
     """
     at = np.linspace(drawn.driving_pressure_kPa[0], drawn.driving_pressure_kPa[-1], _BUDGETS)
-    found = known(sensor, (at * KPA).tolist(), material, materials, printer, model)
-    widths = found.budget.expanded[_SENSITIVITY]
+    estimate = known(sensor, (at * KPA).tolist(), material, materials, printer, model)
+    widths = estimate.budget.expanded[_SENSITIVITY]
     good = np.isfinite(widths)
     width = np.interp(drawn.driving_pressure_kPa, at[good], widths[good])
     return drawn.sensitivity_kPa_per_N * np.exp(-width), drawn.sensitivity_kPa_per_N * np.exp(width)

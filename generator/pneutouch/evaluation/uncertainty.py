@@ -1,4 +1,4 @@
-"""How sure a prediction is, state by state: the budget at its driving pressures, with the figures of its own model."""
+"""Uncertainty of a prediction, state by state: the budget at its driving pressures, with the figures of its model."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class SensorBudget:
 
 
 def unknown(sensor: Sensor, model: str) -> str | None:
-    """Why nothing can be said of how sure a model's prediction is, or None where it can."""
+    """Why the uncertainty of a model's prediction is unknown, or None where it is known."""
     if model == "membrane":
         return _TREND
     from pneutouch.mechanics.atlas_states import outside_atlas
@@ -66,13 +66,13 @@ def known(
     from pneutouch.mechanics.uncertainty import batch_of, budget, model_errors
 
     batch = batch_of(sensor, pressures)
-    found = budget(
+    estimate = budget(
         batch, material, printer, near_paper=is_near_paper(sensor), errors=model_errors(material, materials),
         numerical={
             "sensitivity_kPa_per_N": NUMERICAL[model], "limit_pressure_kPa": DISCRETISATION["limit_pressure_relative"]
         },
     )  # fmt: skip
-    return SensorBudget(batch, found)
+    return SensorBudget(batch, estimate)
 
 
 def documents(
@@ -93,24 +93,24 @@ def documents(
         return tuple({"unknown": why} for _ in states)
     from pneutouch.mechanics.uncertainty import document, gas_text, text
 
-    found = known(
+    estimate = known(
         sensor, [state.driving_pressure for state in states], scene.membrane_material,
         list(resins().values()), scene.printer, model,
     )  # fmt: skip
     content = []
-    for row, (state, notes) in enumerate(zip(states, gas_text(found.batch), strict=True)):
+    for row, (state, notes) in enumerate(zip(states, gas_text(estimate.batch), strict=True)):
         values = _values(prediction, state)
-        said = document(found.budget, row, values, (*notes_of_wall, *notes))
-        lacking = said["figures"].keys() - values.keys()
-        for name in lacking:
-            del said["figures"][name], said["elasticities"][name]
-        more = {"monte_carlo": _sampled(found, row, samples, said["figures"])} if samples else {}
-        content.append(rounded({**said, "summary": text(found.budget, row), **more}, _DIGITS, _NOTHING))
+        entry = document(estimate.budget, row, values, (*notes_of_wall, *notes))
+        missing = entry["figures"].keys() - values.keys()
+        for name in missing:
+            del entry["figures"][name], entry["elasticities"][name]
+        more = {"monte_carlo": _sampled(estimate, row, samples, entry["figures"])} if samples else {}
+        content.append(rounded({**entry, "summary": text(estimate.budget, row), **more}, _DIGITS, _NOTHING))
     return tuple(content)
 
 
 def _values(prediction: SensorPrediction, state: SensorState) -> dict[str, float]:
-    """The figures of the budget as the model has them; without those it lacks."""
+    """The figures of the budget as the model has them; without those that it does not compute."""
     peak, figures = prediction.limits.limit_point, state.figures
     return {
         **({} if peak is None else {"limit_pressure_kPa": peak / KPA}),
@@ -123,15 +123,15 @@ def _values(prediction: SensorPrediction, state: SensorState) -> dict[str, float
     }  # fmt: skip
 
 
-def _sampled(found: SensorBudget, row: int, samples: int, figures: Document) -> Document:
+def _sampled(estimate: SensorBudget, row: int, samples: int, figures: Document) -> Document:
     """The 95.45 % intervals of the samples about the model's figures, and the share of samples without a figure."""
     from pneutouch.mechanics.uncertainty import FIGURES, monte_carlo
 
-    drawn = monte_carlo(found.batch, found.budget.sources, row, samples)
+    drawn = monte_carlo(estimate.batch, estimate.budget.sources, row, samples)
     intervals = {}
     for i, name in enumerate(FIGURES):
         if name in figures and drawn.lost[i] < 1:
-            scale = figures[name]["value"] / float(found.budget.values[i, row])
+            scale = figures[name]["value"] / float(estimate.budget.values[i, row])
             intervals[name] = {
                 "low": scale * float(drawn.low[i]), "high": scale * float(drawn.high[i]), "lost": float(drawn.lost[i]),
             }  # fmt: skip

@@ -40,14 +40,14 @@ def resin_curves(
     model = "membrane" if model == "membrane" else "solid"
     curves = {}
     for title, variant in variants.items():
-        found = looked_up.get(title) or _by_model(variant, highest, model, closure)
-        if found is not None:
-            curves[title] = found
+        curve = looked_up.get(title) or _by_model(variant, highest, model, closure)
+        if curve is not None:
+            curves[title] = curve
     return curves
 
 
 def _by_atlas(variants: dict[str, Sensor], highest: float) -> dict[str, ResinCurve]:
-    """Curves of the resins that the atlas knows, all in one call; without points that it does not."""
+    """Curves of the resins that the atlas covers, all in one call; without points outside it."""
     from pneutouch.mechanics.atlas.batches import batch_of
     from pneutouch.mechanics.atlas.respond import EDGE, OUTSIDE, respond
     from pneutouch.mechanics.atlas.table import shipped

@@ -27,7 +27,7 @@ _UUIDS = uuid.UUID("6d0f1d2e-6f5c-5d0b-9d3a-3f1c7b0f7a11")
 def threemf(name: str, bodies: tuple[Body, ...], metadata: dict[str, str], thumbnail: bytes | None = None) -> bytes:
     """Write bodies (in the print frame, mm) as one assembly called ``name``; ``thumbnail`` is a PNG of the package.
 
-    ``metadata`` keys that the specification knows (Title, Application ...) are written as they are, all others in our
+    ``metadata`` keys that the specification defines (Title, Application ...) are written as they are, all others in our
     own namespace (see `threemf_metadata`). Raises ComputationError for a body that is
     not closed, and where the file cannot be read back strictly.
     """
@@ -54,7 +54,7 @@ def threemf(name: str, bodies: tuple[Body, ...], metadata: dict[str, str], thumb
 
 
 def mesh_object(wrapper: Any, model: Any, materials: Materials, body: Body, identity: str) -> Any:
-    """A body as a mesh object with its material and what it says of itself. Raises ComputationError where it is not closed."""
+    """A body as a mesh object with its material and metadata. Raises ComputationError where it is not closed."""
     mesh = model.AddMeshObject()
     mesh.SetName(body.name)
     mesh.SetUUID(identity)
@@ -119,7 +119,7 @@ def set_geometry(wrapper: Any, mesh: Any, body: Body) -> None:
 
 
 def facts_of(body: Body) -> dict[str, str]:
-    """What a body says of itself: a composite has no name of its own that could state the intent."""
+    """Metadata of a body: a composite has no name of its own that could state the intent."""
     mix = body.material.mix
     return {
         "role": body.role,

@@ -9,7 +9,7 @@ from pneutouch.spec.material import Material
 
 
 class Materials:
-    """The material resources of one model, made as bodies ask for them.
+    """The material resources of one model, made as bodies need them.
 
     Args:
         wrapper: lib3mf.

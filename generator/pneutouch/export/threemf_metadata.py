@@ -14,7 +14,7 @@ from urllib.parse import unquote
 NAMESPACE = "https://pneutouch.org/3mf/2026"
 
 WELL_KNOWN = frozenset({"Title", "Designer", "Description", "Copyright", "LicenseTerms", "Application"})
-"""Names of metadata that the specification knows; they have no namespace."""
+"""Names of metadata that the specification defines; they have no namespace."""
 
 _LONGEST = 60_000
 """Bytes of one entry."""
@@ -40,12 +40,12 @@ def metadata_of(owner: Any) -> dict[tuple[str, str], str]:
     """Values by namespace and name of a model or an object; ours decoded, and continued ones joined."""
     group = owner.GetMetaDataGroup()
     entries = [group.GetMetaData(k) for k in range(group.GetMetaDataCount())]
-    found = {(entry.GetNameSpace(), entry.GetName()): entry.GetValue() for entry in entries}
-    ours = {name: value for (space, name), value in found.items() if space == NAMESPACE}
-    theirs = {key: value for key, value in found.items() if key[0] != NAMESPACE}
-    for name in list(ours):
+    values = {(entry.GetNameSpace(), entry.GetName()): entry.GetValue() for entry in entries}
+    local = {name: value for (space, name), value in values.items() if space == NAMESPACE}
+    foreign = {key: value for key, value in values.items() if key[0] != NAMESPACE}
+    for name in list(local):
         k = 2
-        while name in ours and f"{name}-{k}" in ours:
-            ours[name] += ours.pop(f"{name}-{k}")
+        while name in local and f"{name}-{k}" in local:
+            local[name] += local.pop(f"{name}-{k}")
             k += 1
-    return {**theirs, **{(NAMESPACE, name): unquote(value) for name, value in ours.items()}}
+    return {**foreign, **{(NAMESPACE, name): unquote(value) for name, value in local.items()}}

@@ -106,14 +106,14 @@ def _mesh_objects(model: Any) -> Iterator[Any]:
 
 
 def _body(wrapper: Any, model: Any, mesh: Any, scale: float) -> StoredBody:
-    said = metadata_of(mesh)
+    metadata = metadata_of(mesh)
     material, colour, mix = _material(wrapper, model, mesh)
     positions = np.empty((mesh.GetVertexCount(), 3), np.float32)
     corners = np.empty((mesh.GetTriangleCount(), 3), np.uint32)
     _fill(wrapper, mesh, "getvertices", positions)
     _fill(wrapper, mesh, "gettriangleindices", corners)
     return StoredBody(
-        name=mesh.GetName(), material=said.get((NAMESPACE, "material"), material), colour=colour, mix=mix,
+        name=mesh.GetName(), material=metadata.get((NAMESPACE, "material"), material), colour=colour, mix=mix,
         vertices=positions.astype(np.float64) * scale, triangles=corners.astype(np.int64),
     )  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""The section "How sure" of a datasheet: intervals, sources and the model, as plain data."""
+"""The section "Uncertainty" of a datasheet: intervals, sources and the model, as plain data."""
 
 from __future__ import annotations
 
@@ -33,39 +33,39 @@ def ends(prediction: SensorPrediction, documents: tuple[Document, ...]) -> dict[
 
 def interval(document: Document, figure: str = SENSITIVITY) -> str:
     """The k = 2 interval of a figure, such as ``1.57 to 2.38``; empty where it is not known."""
-    found = document.get("figures", {}).get(figure)
-    return "" if found is None else f"{_digits(found['low'])} to {_digits(found['high'])}"
+    estimate = document.get("figures", {}).get(figure)
+    return "" if estimate is None else f"{_digits(estimate['low'])} to {_digits(estimate['high'])}"
 
 
-def shares(found: dict[str, Document]) -> dict[str, dict[str, float]]:
+def shares(covered: dict[str, Document]) -> dict[str, dict[str, float]]:
     """Shares of the variance of the sensitivity by label of the driving pressure."""
-    return {label: document["figures"][SENSITIVITY]["shares"] for label, document in found.items()}
+    return {label: document["figures"][SENSITIVITY]["shares"] for label, document in covered.items()}
 
 
-def how_sure(sheet: SheetData) -> dict[str, Any]:
-    """Everything that the section says; every leaf is text or a flag."""
+def uncertainty_section(sheet: SheetData) -> dict[str, Any]:
+    """Everything in the section; every leaf is text or a flag."""
     documents = sheet.uncertainty
-    found = ends(sheet.prediction, documents)
+    covered = ends(sheet.prediction, documents)
     why = next((document["unknown"] for document in documents if "unknown" in document), None)
-    last = list(found.values())[-1] if found else {}
+    last = list(covered.values())[-1] if covered else {}
     return {
-        "known": bool(found),
+        "known": bool(covered),
         "why": why or "no interval of the sensitivity can be given: the atlas has no state at these driving pressures",
-        "summary": _summary(found),
-        "head": ["Figure", "Unit", *(cell for label in found for cell in (f"at {label}", "k = 2"))],
-        "figures": _figures(found),
+        "summary": _summary(covered),
+        "head": ["Figure", "Unit", *(cell for label in covered for cell in (f"at {label}", "k = 2"))],
+        "figures": _figures(covered),
         "sources": [_source(source) for source in last.get("sources", []) if source["standard_uncertainty"] > 0],
         "notes": [_plain(f"{note}.") for note in last.get("notes", [])],
         "model": _model_rows(sheet),
     }
 
 
-def _summary(found: dict[str, Document]) -> list[str]:
-    """What to measure first, one line for driving pressures at which the same is to be said."""
-    said: dict[str, list[str]] = {}
-    for label, document in found.items():
-        said.setdefault(document["summary"], []).append(label)
-    return [f"At {' and '.join(labels)}: {text[0].lower() + text[1:]}" for text, labels in said.items()]
+def _summary(covered: dict[str, Document]) -> list[str]:
+    """What to measure first, one line for driving pressures with the same result."""
+    labels_of: dict[str, list[str]] = {}
+    for label, document in covered.items():
+        labels_of.setdefault(document["summary"], []).append(label)
+    return [f"At {' and '.join(labels)}: {text[0].lower() + text[1:]}" for text, labels in labels_of.items()]
 
 
 def _plain(text: str) -> str:
@@ -75,11 +75,11 @@ def _plain(text: str) -> str:
     return text.replace("+-", "±")
 
 
-def _figures(found: dict[str, Document]) -> list[list[str]]:
+def _figures(covered: dict[str, Document]) -> list[list[str]]:
     rows = []
     for name, (title, unit) in _FIGURES.items():
         cells = []
-        for document in found.values():
+        for document in covered.values():
             figure = document["figures"].get(name)
             cells += ["–", ""] if figure is None else [_digits(figure["value"]), _width(document, name)]
         rows.append([title, unit, *cells])
@@ -107,7 +107,7 @@ def _model_rows(sheet: SheetData) -> list[list[str]]:
     exact = f"within {error:.1%} in sensitivity"
     if prediction.model == "membrane":
         exact = f"up to {1 + error:.0f} times off the solid's sensitivity"
-    why = prediction.error_estimate.get("model_choice", "asked for by name, or the default")
+    why = prediction.error_estimate.get("model_choice", "requested by name, or the default")
     return [["Model", prediction.model], ["Numerical error", exact], ["Why this model", why]]
 
 

@@ -1,4 +1,4 @@
-"""The plots of the datasheet. Every axis carries its quantity and unit; line style and marker tell curves apart."""
+"""The plots of the datasheet. Every axis carries its quantity and unit; curves differ by line style and marker."""
 
 from __future__ import annotations
 
@@ -58,13 +58,13 @@ def _mark_limits(ax: Axes, prediction: SensorPrediction) -> None:
             color=MUTED,
             fontsize=6.5,
         )
-    torn = prediction.limits.break_strain
-    if torn is not None:
+    ruptured = prediction.limits.break_strain
+    if ruptured is not None:
         rising = slice(0, int(np.argmax(p)) + 1)
-        height = float(np.interp(torn / KPA, p[rising], curve.apex_inner[rising]))
-        ax.plot(height, torn / KPA, "X", color=INK, ms=5)
+        height = float(np.interp(ruptured / KPA, p[rising], curve.apex_inner[rising]))
+        ax.plot(height, ruptured / KPA, "X", color=INK, ms=5)
         ax.annotate(
-            "break strain", (height, torn / KPA), xytext=(0, -7), textcoords="offset points", ha="center", va="top",
+            "break strain", (height, ruptured / KPA), xytext=(0, -7), textcoords="offset points", ha="center", va="top",
             fontsize=6.5,
         )  # fmt: skip
 
@@ -148,14 +148,14 @@ def sensitivities(curves: dict[str, ResinCurve], chosen: str, published_kPa_per_
         ax = drawn.add_subplot()
         ends = []
         for k, (label, (pressures, values, _)) in enumerate(curves.items()):
-            mine = label == chosen
+            picked = label == chosen
             look: dict[str, Any] = {
-                "color": ACCENT if mine else MUTED,
-                "lw": 2.0 if mine else 0.8,
-                "ls": LINES[0] if mine else LINES[k % 4],
+                "color": ACCENT if picked else MUTED,
+                "lw": 2.0 if picked else 0.8,
+                "ls": LINES[0] if picked else LINES[k % 4],
             }
-            ax.plot(pressures, values, zorder=3 if mine else 2, **look)
-            style = {"fontsize": 6.5, "color": INK, **BOLD} if mine else {"fontsize": 6.5, "color": MUTED}
+            ax.plot(pressures, values, zorder=3 if picked else 2, **look)
+            style = {"fontsize": 6.5, "color": INK, **BOLD} if picked else {"fontsize": 6.5, "color": MUTED}
             ends.append((float(pressures[-1]), float(values[-1]), label, style))
         if published_kPa_per_N:
             ax.plot(list(published_kPa_per_N), list(published_kPa_per_N.values()), "D", color=INK, mfc="white", ms=4.5, zorder=5,

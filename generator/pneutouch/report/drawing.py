@@ -82,15 +82,15 @@ class _Section:
         text, port = port_note(self.assembly.scene), layout.port
         if layout.port_axis is None:
             tip = (0.9 * port.outside[0][0][0], layout.under - 0.7 * port.length)
-            beside = (max(6.5 * unit, port.reach + 2 * unit), layout.under - max(0.7 * port.length, 4 * unit))
-            leader(ax, tip, beside, text, "left")
+            label_at = (max(6.5 * unit, port.reach + 2 * unit), layout.under - max(0.7 * port.length, 4 * unit))
+            leader(ax, tip, label_at, text, "left")
         else:
             tip = (layout.plate_radius + 0.7 * port.length, layout.port_axis + 0.9 * port.root)
             leader(ax, tip, (self.side - unit, layout.outer_radius + 3.5 * unit), text, "left")
         self._extra()
 
     def _extra(self) -> None:
-        """What a ring, a plug, a boss or a sleeve has to be told apart by."""
+        """Labels of a ring, a plug, a boss or a sleeve."""
         layout, unit, seat, mount = self.layout, self.unit, self.assembly.scene.seat, self.assembly.scene.mount
         at = (-6.5 * unit, self.bottom - 1.0 * unit)
         if isinstance(seat, ClampedFlange):

@@ -43,15 +43,20 @@ def _mark(ax: Axes, curve: MeasuredCurve) -> None:
         ax.axvspan(*indent.read, color=ACCENT, alpha=0.35, lw=0)
         if np.isfinite(indent.contact):
             ax.axvline(indent.contact, color=MUTED, lw=0.5, ls=":")
-    for doubt in _told(curve):
+    for interval in _marked(curve):
         ax.axvspan(
-            doubt.start, max(doubt.end, doubt.start + 1e-3), facecolor="none", edgecolor=INK, hatch="////", lw=0.3
+            interval.start,
+            max(interval.end, interval.start + 1e-3),
+            facecolor="none",
+            edgecolor=INK,
+            hatch="////",
+            lw=0.3,
         )
 
 
-def _told(curve: MeasuredCurve) -> list[SuspectInterval]:
+def _marked(curve: MeasuredCurve) -> list[SuspectInterval]:
     """What is marked: a note is of all the run, and would hide it."""
-    return [doubt for doubt in curve.warnings if doubt.kind != "note"]
+    return [interval for interval in curve.warnings if interval.kind != "note"]
 
 
 def _key(ax: Axes, curve: MeasuredCurve) -> None:
@@ -61,6 +66,6 @@ def _key(ax: Axes, curve: MeasuredCurve) -> None:
     handles = [
         Patch(facecolor=ACCENT, alpha=0.35, label="read"), Line2D([], [], color=MUTED, lw=0.8, ls=":", label="first contact"),
     ]  # fmt: skip
-    if _told(curve):
+    if _marked(curve):
         handles.append(Patch(facecolor="none", edgecolor=FAINT, hatch="////", label="doubtful"))
     ax.legend(handles=handles, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, borderaxespad=0.2)

@@ -1,4 +1,4 @@
-"""The ordering code: every letter of a part number says something that can be read back."""
+"""The ordering code: every field of a part number has a meaning that can be read back."""
 
 from __future__ import annotations
 

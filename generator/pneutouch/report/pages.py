@@ -43,7 +43,7 @@ def pdf(
 ) -> bytes:  # fmt: skip
     """Set a PDF with Typst, a compiler in one wheel: no system packages, no system fonts.
 
-    ``content`` becomes sheet.json, ``figures`` SVG files, ``images`` files of their own names beside the template.
+    ``content`` becomes sheet.json, ``figures`` SVG files, ``images`` files of their own names next to the template.
     """
     import typst
 

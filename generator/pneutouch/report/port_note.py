@@ -1,4 +1,4 @@
-"""What a drawing, a print sheet and a datasheet say about a port."""
+"""Notes on a port for drawing, print sheet and datasheet."""
 
 from __future__ import annotations
 

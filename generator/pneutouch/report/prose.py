@@ -122,7 +122,7 @@ def _print_membrane(scene: ResolvedDesign, grown: bool) -> str:
 
 
 def _assembly(scene: ResolvedDesign) -> list[str]:
-    """How membrane and rigid bodies go together, one way a seat."""
+    """How membrane and rigid bodies go together, for each kind of seat."""
     seat, fit = scene.seat, f"Fit: {scene.fit_clearance:.2f} mm a side"
     if isinstance(seat, ClampedFlange):
         return [

@@ -21,7 +21,7 @@ _SHADES = (INK, ACCENT, MUTED)
 def residual_chart(runs: Sequence[RunResiduals], size: tuple[float, float]) -> str:
     """Model less measured: force and pressure over indentation, and pressure over injected volume where there are injections.
 
-    Pressures differ by marker, line and shade, so that they are told apart in grayscale. SVG, ``size`` in mm.
+    Pressures differ by marker, line and shade, so that they can be distinguished in grayscale. SVG, ``size`` in mm.
     """
     curves, pushed = [run for run in runs if run.force.size], [run for run in runs if not run.force.size]
     panels = 2 * bool(curves) + bool(pushed)

@@ -38,9 +38,9 @@ class ScannedState:
 
 
 def scalogram_chart(
-    states: Sequence[ScannedState], asked: Mapping[str, float], size: tuple[float, float] = SIZE
+    states: Sequence[ScannedState], expected: Mapping[str, float], size: tuple[float, float] = SIZE
 ) -> str:  # fmt: skip
-    """States side by side as SVG, colours on one scale; ``asked`` maps labels to frequencies in Hz, ``size`` is in mm.
+    """States side by side as SVG, colours on one scale; ``expected`` maps labels to frequencies in Hz, ``size`` is in mm.
 
     What the record's ends reach (the cone of influence) is hatched. The scalograms are one PNG each inside.
     """
@@ -51,7 +51,7 @@ def scalogram_chart(
         for (above, below), state in zip(axes.T, states, strict=True):
             _draw_signal(above, state)
             mesh = _draw_scalogram(below, state.scalogram, top)
-            for frequency in asked.values():
+            for frequency in expected.values():
                 below.axhline(frequency, color=INK, lw=0.7, ls=LINES[1])
             below.set_xlabel("time  (s)")
         axes[0, 0].set_ylabel("pressure  (kPa)")
@@ -60,15 +60,15 @@ def scalogram_chart(
         right = axes[1, -1]
         end = float(right.get_xlim()[1])
         look = {"fontsize": 6.5, "color": INK}
-        label_ends(right, [(end, f, f"{text}\n{f:.3g} Hz", look) for text, f in asked.items()], gap=0.13)
+        label_ends(right, [(end, f, f"{text}\n{f:.3g} Hz", look) for text, f in expected.items()], gap=0.13)
         drawn.colorbar(mesh, ax=list(axes[1]), label="amplitude  (kPa)", fraction=0.05, pad=0.02, aspect=22)
         return svg(drawn)
 
 
-def _loudest(found: Scalogram) -> float:
+def _loudest(scalogram: Scalogram) -> float:
     """Greatest amplitude outside the cone of influence, kPa; of all where the cone covers everything."""
-    inside = found.amplitude[found.inside]
-    return float((inside if inside.size else found.amplitude).max()) / KPA or 1.0
+    inside = scalogram.amplitude[scalogram.inside]
+    return float((inside if inside.size else scalogram.amplitude).max()) / KPA or 1.0
 
 
 def _draw_signal(ax: Axes, state: ScannedState) -> None:
@@ -87,18 +87,18 @@ def _outline(given: Signal) -> tuple[Array, Array]:
     return np.repeat(given.time[starts], 2), ends.ravel()
 
 
-def _draw_scalogram(ax: Axes, found: Scalogram, top: float) -> QuadMesh:
+def _draw_scalogram(ax: Axes, scalogram: Scalogram, top: float) -> QuadMesh:
     """Amplitudes in kPa over time and frequency, the cone of influence hatched."""
-    kept = np.unique(np.linspace(0, len(found.time) - 1, _COLUMNS).round().astype(int))
-    time, frequency = found.time[kept], found.frequency
-    amplitude_kPa = found.amplitude[:, kept] / KPA
+    kept = np.unique(np.linspace(0, len(scalogram.time) - 1, _COLUMNS).round().astype(int))
+    time, frequency = scalogram.time[kept], scalogram.frequency
+    amplitude_kPa = scalogram.amplitude[:, kept] / KPA
     mesh = ax.pcolormesh(
         time, frequency, amplitude_kPa, cmap=_colours(), vmin=0, vmax=top, shading="gouraud", rasterized=True
     )
     # The e-folding time is inverse to the frequency: at one time, voices below its inverse are reached.
-    room = np.minimum(time - time[0], time[-1] - time)
-    at_one = float(found.wavelet.e_folding(np.float64(1.0)))
-    edge = np.clip(at_one / np.maximum(room, 1e-9), frequency[0], frequency[-1])
+    distance = np.minimum(time - time[0], time[-1] - time)
+    at_one = float(scalogram.wavelet.e_folding(np.float64(1.0)))
+    edge = np.clip(at_one / np.maximum(distance, 1e-9), frequency[0], frequency[-1])
     look: dict[str, Any] = {"facecolor": (1, 1, 1, 0.55), "edgecolor": MUTED, "lw": 0, "hatch": "////"}
     ax.fill_between(time, frequency[0], edge, **look)
     ax.plot(time, edge, color=MUTED, lw=0.7)
@@ -111,4 +111,4 @@ def _colours() -> Colormap:
     """White to ink, evenly darker, so that it reads in grayscale as in colour."""
     from matplotlib.colors import LinearSegmentedColormap
 
-    return LinearSegmentedColormap.from_list("house", ["#FFFFFF", "#A9CBE0", ACCENT, INK])
+    return LinearSegmentedColormap.from_list("pneutouch", ["#FFFFFF", "#A9CBE0", ACCENT, INK])

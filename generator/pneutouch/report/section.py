@@ -52,7 +52,7 @@ def section(body: Body) -> list[Array]:
     """Loops (n, 2) of (x, z) where the plane y = 0 cuts a body, mm."""
     from manifold3d import Manifold, Mesh64
 
-    # The plane is a hair off, since whole rows of vertices lie on y = 0 itself.
+    # The plane is slightly off, since whole rows of vertices lie on y = 0 itself.
     upright = body.vertices[:, [0, 2, 1]] * np.array([1.0, 1.0, -1.0])
     cut = Manifold(Mesh64(np.ascontiguousarray(upright), body.triangles.astype(np.uint64))).slice(1e-4)
     return [np.asarray(loop) for loop in cut.to_polygons()]

@@ -13,12 +13,12 @@ OTHERS = "all others"
 
 def ranked(shares: list[dict[str, float]]) -> dict[str, list[float]]:
     """Shares of each state by source, greatest mean first; small ones added up as `OTHERS`. Each state sums to 1."""
-    names = {name for own in shares for name in own}
-    order = sorted(names, key=lambda name: (-sum(own.get(name, 0.0) for own in shares), name))
-    found = {name: [own.get(name, 0.0) for own in shares] for name in order[:_MOST]}
+    names = {name for local in shares for name in local}
+    order = sorted(names, key=lambda name: (-sum(local.get(name, 0.0) for local in shares), name))
+    rows_of = {name: [local.get(name, 0.0) for local in shares] for name in order[:_MOST]}
     if order[_MOST:]:
-        found[OTHERS] = [sum(own.get(name, 0.0) for name in order[_MOST:]) for own in shares]
-    return found
+        rows_of[OTHERS] = [sum(local.get(name, 0.0) for name in order[_MOST:]) for local in shares]
+    return rows_of
 
 
 def share_bars(shares: dict[str, dict[str, float]]) -> str:
@@ -33,9 +33,9 @@ def share_bars(shares: dict[str, dict[str, float]]) -> str:
                 ax.barh(height, 100 * value, _THICK, lw=0.6, color=fills[k], ec=INK)
                 text = f"{100 * value:.0f} %" if value >= 0.005 else "< 1 %"
                 style = {"color": INK, **BOLD} if row == 0 else {"color": MUTED}
-                said = f"{text}  at {label}" if row == 0 else text
+                text_of = f"{text}  at {label}" if row == 0 else text
                 ax.annotate(
-                    said, (100 * value, height), xytext=(3, -0.3), textcoords="offset points", va="center", fontsize=6.5,
+                    text_of, (100 * value, height), xytext=(3, -0.3), textcoords="offset points", va="center", fontsize=6.5,
                     **style,
                 )  # fmt: skip
         ax.set_yticks(range(len(rows)), list(rows))

@@ -1,4 +1,4 @@
-"""What a datasheet says, as plain data: both the page and the PDF are set from it."""
+"""Contents of a datasheet as plain data: both the page and the PDF are set from it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pneutouch import __version__
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.report import ordering, prose
-from pneutouch.report.certainty import how_sure, interval
+from pneutouch.report.certainty import interval, uncertainty_section
 from pneutouch.report.environment import NOT_TESTED, environment
 from pneutouch.units import KPA, ML
 
@@ -34,7 +34,7 @@ def content_of(sheet: SheetData) -> dict[str, Any]:
         "operating": _operating(sheet),
         "performance": _performance(sheet),
         "model_error": _model_error(sheet),
-        "how_sure": how_sure(sheet),
+        "uncertainty": uncertainty_section(sheet),
         "captions": _captions(sheet),
         "limits": _limits(sheet),
         "environment": environment(sheet),
@@ -59,8 +59,8 @@ def _key_figures(sheet: SheetData) -> list[list[str]]:
     mass = sum(solid.mass for solid in sheet.assembly.solids)
     wide = 2 * sheet.assembly.layout.plate_radius
     return [
-        ["Sensitivity", _sensitivity(first), "kPa/N", _sure(sheet, 0)],
-        ["Sensitivity", _sensitivity(last), "kPa/N", _sure(sheet, -1)],
+        ["Sensitivity", _sensitivity(first), "kPa/N", _condition(sheet, 0)],
+        ["Sensitivity", _sensitivity(last), "kPa/N", _condition(sheet, -1)],
         ["Force range", _range(last), "N", f"at {last.driving_pressure / KPA:g} kPa"],
         [
             "Max. driving pressure",
@@ -73,11 +73,11 @@ def _key_figures(sheet: SheetData) -> list[list[str]]:
     ]
 
 
-def _sure(sheet: SheetData, k: int) -> str:
+def _condition(sheet: SheetData, k: int) -> str:
     """Condition and interval of a state's sensitivity."""
     width = interval(sheet.uncertainty[k])
-    said = f"{width} (k = 2)" if width else "interval not known, see How sure"
-    return f"at {sheet.prediction.states[k].driving_pressure / KPA:g} kPa; {said}"
+    text = f"{width} (k = 2)" if width else "interval not known, see Uncertainty"
+    return f"at {sheet.prediction.states[k].driving_pressure / KPA:g} kPa; {text}"
 
 
 def _captions(sheet: SheetData) -> dict[str, str]:
@@ -135,11 +135,11 @@ def _performance(sheet: SheetData) -> list[list[str]]:
     return [
         [
             f"{s.driving_pressure / KPA:g}", f"{s.apex_inner:.2f}", f"{s.apex_outer:.2f}", _sensitivity(s),
-            interval(sure) or DASH, _published(sheet, s.driving_pressure / KPA), f"{s.figures.r_squared:.4f}" if s.figures else DASH,
+            interval(document) or DASH, _published(sheet, s.driving_pressure / KPA), f"{s.figures.r_squared:.4f}" if s.figures else DASH,
             f"{100 * s.figures.nonlinearity:.1f}" if s.figures else DASH,
             f"{s.figures.stiffness:.2f}" if s.figures else DASH, _range(s), _ends(s),
         ]
-        for s, sure in zip(sheet.prediction.states, sheet.uncertainty, strict=True)
+        for s, document in zip(sheet.prediction.states, sheet.uncertainty, strict=True)
     ]  # fmt: skip
 
 

@@ -43,7 +43,7 @@ _SVG_DPI = 72.0
 
 @contextmanager
 def figure(width_mm: float, height_mm: float) -> Iterator[Figure]:
-    """A figure of a size in mm under the house style; nothing global changes."""
+    """A figure of a size in mm in the style of the project; nothing global changes."""
     import matplotlib
     from matplotlib import font_manager
     from matplotlib.figure import Figure as MplFigure
@@ -94,7 +94,7 @@ def label_ends(ax: Axes, ends: list[Label], gap: float = 0.062) -> None:
 
 
 def label_points(ax: Axes, points: list[Label], shift: tuple[float, float], gap: float = 0.055) -> None:
-    """Write labels beside points, ``shift`` away (shares of width and height), at least ``gap`` apart in height.
+    """Write labels next to points, ``shift`` away (shares of width and height), at least ``gap`` apart in height.
 
     Call it once the limits and scales of the axes stand.
     """
@@ -106,19 +106,19 @@ def label_points(ax: Axes, points: list[Label], shift: tuple[float, float], gap:
 def _spread(ax: Axes, labels: list[Label], gap: float) -> list[tuple[float, float]]:
     """Places in shares of the axes: heights moved apart to ``gap``, in the middle where the points' own are."""
     to_axes = ax.transData + ax.transAxes.inverted()
-    own = [tuple(map(float, to_axes.transform((x, y)))) for x, y, *_ in labels]
-    order = sorted(range(len(own)), key=lambda k: (own[k][1], k))
+    native = [tuple(map(float, to_axes.transform((x, y)))) for x, y, *_ in labels]
+    order = sorted(range(len(native)), key=lambda k: (native[k][1], k))
     placed: dict[int, float] = {}
     for before, k in zip([None, *order], order, strict=False):
-        placed[k] = own[k][1] if before is None else max(own[k][1], placed[before] + gap)
-    shift = sum(placed[k] - own[k][1] for k in order) / max(len(order), 1)
-    return [(own[k][0], placed[k] - shift) for k in range(len(own))]
+        placed[k] = native[k][1] if before is None else max(native[k][1], placed[before] + gap)
+    shift = sum(placed[k] - native[k][1] for k in order) / max(len(order), 1)
+    return [(native[k][0], placed[k] - shift) for k in range(len(native))]
 
 
 def _labelled(
     ax: Axes, at: tuple[float, float], text: str, place: tuple[float, float], side: str, look: dict[str, Any]
 ) -> None:
-    """One label with a hair line to its point."""
+    """One label with a thin line to its point."""
     ax.annotate(
         text, at, xytext=place, textcoords="axes fraction", ha=side, va="center", annotation_clip=False, zorder=5,
         path_effects=halo(), arrowprops={

@@ -25,13 +25,13 @@ def tradeoff_chart(tradeoff: TradeOff, size: tuple[float, float]) -> str:
         starts: list[Label] = []
         for k, front in enumerate(tradeoff.known):
             s, force, title = front.sensitivity_kPa_per_N, front.force, front.resin.material.title
-            mine = title == chosen
+            picked = title == chosen
             ax.plot(
-                s, force, color=ACCENT if mine else INK, lw=2.0 if mine else 0.8, zorder=4 if mine else 3,
-                ls=LINES[0] if mine else LINES[k % len(LINES)],
+                s, force, color=ACCENT if picked else INK, lw=2.0 if picked else 0.8, zorder=4 if picked else 3,
+                ls=LINES[0] if picked else LINES[k % len(LINES)],
             )  # fmt: skip
-            ax.plot(s[0], force[0], "o", color=ACCENT if mine else INK, ms=2.2, zorder=4)
-            look = {"fontsize": 6.5, "color": INK, **BOLD} if mine else {"fontsize": 6.5, "color": INK}
+            ax.plot(s[0], force[0], "o", color=ACCENT if picked else INK, ms=2.2, zorder=4)
+            look = {"fontsize": 6.5, "color": INK, **BOLD} if picked else {"fontsize": 6.5, "color": INK}
             starts.append((float(s[0]), float(force[0]), f"{title}  {s[0]:.2g} to {s[-1]:.2g}", look))
         label_points(ax, starts, (0.06, 0.05))
         _spots(ax, tradeoff.spots)

@@ -1,4 +1,4 @@
-"""The tuning chart: how far the driving pressure moves the sensitivity, and how sure that is."""
+"""The tuning chart: how far the driving pressure moves the sensitivity, with its interval."""
 
 from __future__ import annotations
 

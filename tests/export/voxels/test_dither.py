@@ -105,7 +105,7 @@ def test_a_mixed_disc_is_soft_at_every_face_and_holds_its_fraction(fraction):
     assert tally.realised == stiff.sum()
     assert tally.voxels == (soft | stiff).sum()
     assert tally.skin == (soft | stiff).sum() - inner.sum()
-    assert tally.given == pytest.approx(tally.asked, rel=1e-5)
+    assert tally.given == pytest.approx(tally.requested, rel=1e-5)
     assert abs(tally.realised / tally.voxels - fraction) < 1e-3
     assert tally.worst < 0.005 and tally.cubes > 5
 
@@ -117,8 +117,8 @@ def test_a_wall_too_thin_for_its_fraction_is_said_to_fall_short():
     slicer = VoxelSlicer(thin)
     stack(slicer)
     (line,) = shortfalls(thin, slicer)
-    assert line.startswith("block: ") and "90.00% asked for" in line
-    assert slicer.tallies["block"].given < 0.8 * slicer.tallies["block"].asked
+    assert line.startswith("block: ") and "90.00% requested" in line
+    assert slicer.tallies["block"].given < 0.8 * slicer.tallies["block"].requested
     full = job((block(0, 1.5, 2.0), even(0.3)))
     slicer = VoxelSlicer(full)
     stack(slicer)

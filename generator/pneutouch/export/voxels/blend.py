@@ -22,7 +22,7 @@ Share = Callable[[Array, Array], Array]
 class ResinBlend:
     """The resins of a body, soft one first; ``share`` is of the second, None where there is one alone.
 
-    ``most`` is its greatest value. ``assumed`` says what the share rests on where nobody has measured or asked for it.
+    ``most`` is its greatest value. ``assumed`` states what the share rests on where it was neither measured nor requested.
     """
 
     resins: tuple[str, ...]
@@ -32,7 +32,7 @@ class ResinBlend:
 
 
 def blend(material: Material, name: str, library: Library, where: str) -> ResinBlend:
-    """The blend of a material; ``name`` is its own in the catalogue, ``where`` the file and key that asked for it.
+    """The blend of a material; ``name`` is its own in the catalogue, ``where`` the file and key that request it.
 
     A digital material of the catalogue has no published mix: its fraction is taken from the mixing curve that it is a
     point of. Raises InputError where there is none, and for more than two resins.
@@ -66,6 +66,6 @@ def _assumed(name: str, resins: tuple[str, ...], library: Library, where: str) -
             if point.material == name:
                 return point.fraction, point.source
     raise InputError(
-        f"{where} = {name!r}: nobody publishes how much {resins[1]} is in it, and printprofiles/mixing/{curve_name}.toml "
+        f"{where} = {name!r}: no vendor publishes how much {resins[1]} is in it, and printprofiles/mixing/{curve_name}.toml "
         f"has no point for it; give {{ from = {resins[0]!r}, to = {resins[1]!r}, fraction = .. }} instead"
     )

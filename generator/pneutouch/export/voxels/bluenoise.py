@@ -1,7 +1,7 @@
 """Blue noise in three dimensions: thresholds for which any share of the voxels below lies evenly and without pattern.
 
 Void and cluster (R. Ulichney, Proc. SPIE 1913, 332-343, 1993, DOI 10.1117/12.152707) on a block that closes on itself, with
-distances in mm: voxels are not cubes. Energies are whole numbers, so that every machine ranks alike. Block stands beside
+distances in mm: voxels are not cubes. Energies are whole numbers, so that every machine ranks alike. Block stands next to
 block, each rolled by an amount of its own: side by side as they are they would show as a pattern of the block's size.
 """
 
@@ -15,7 +15,7 @@ import numpy as np
 from pneutouch.arrays import Array, Indices
 
 BLOCK = (48, 16, 32)
-"""Voxels of the block along z, y, x: at 27 um layers about 1.3 mm each way; our choice, ranked in about a second."""
+"""Voxels of the block along z, y, x: at 27 um layers about 1.3 mm in each direction; our choice, ranked in about a second."""
 
 _WIDTH = 1.5
 """Standard deviation of the energy's Gaussian over the mean pitch: Ulichney's choice."""
@@ -104,7 +104,7 @@ class Thresholds:
     seed: int = 0
 
     def layer(self, number: int, rows: slice, columns: slice) -> Array:
-        """Thresholds (rows, columns) of part of a layer; the same whatever part is asked for."""
+        """Thresholds (rows, columns) of part of a layer; the same whatever part is requested."""
         depth, height, width = self.values.shape
         row, column = np.arange(rows.start, rows.stop), np.arange(columns.start, columns.stop)
         blocks = row[0] // height, column[0] // width

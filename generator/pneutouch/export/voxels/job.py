@@ -17,7 +17,7 @@ PALETTE = (
     (230, 159, 0, 255), (86, 180, 233, 255), (0, 158, 115, 255), (240, 228, 66, 255), (0, 114, 178, 255),
     (213, 94, 0, 255), (204, 121, 167, 255), (255, 255, 255, 255),
 )  # fmt: skip
-"""Colours that people of any colour vision tell apart (M. Okabe and K. Ito, Color Universal Design, 2008), and white."""
+"""Colours that people of any colour vision distinguish (M. Okabe and K. Ito, Color Universal Design, 2008), and white."""
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ FORMAT = 1
 METHOD = "void and cluster: thresholds of blue noise in three dimensions, block by block rolled, soft skin made up for beneath"
 
 SHORT = 1e-3
-"""Difference of fractions over a body beyond which it is said that what was asked for is not met."""
+"""Difference of fractions over a body beyond which a warning states that the request is not met."""
 
 
 def slice_name(prefix: str, number: int) -> str:
@@ -69,10 +69,10 @@ def shortfalls(job: VoxelJob, slicer: VoxelSlicer) -> list[str]:
     lines = []
     for body in job.bodies:
         tally = slicer.tallies[body.solid.name]
-        if tally.voxels and abs(tally.realised - tally.asked) > SHORT * tally.voxels:
-            asked, got = tally.asked / tally.voxels, tally.realised / tally.voxels
+        if tally.voxels and abs(tally.realised - tally.requested) > SHORT * tally.voxels:
+            requested, got = tally.requested / tally.voxels, tally.realised / tally.voxels
             lines.append(
-                f"{body.solid.name}: {got:.2%} {body.blend.resins[1]} of the {asked:.2%} asked for: "
+                f"{body.solid.name}: {got:.2%} {body.blend.resins[1]} of the {requested:.2%} requested: "
                 f"{tally.skin / tally.voxels:.0%} of its voxels are skin, which stays {body.blend.resins[0]}"
             )
     return lines
@@ -88,7 +88,7 @@ def _body(body: VoxelBody, tally: VoxelCounts, pitch: tuple[float, float, float]
         return entry
     return {
         **entry, "made_up_within_mm": round(reach_for(body.blend.most, pitch), 6), "stiff_resin": body.blend.resins[1], "skin_voxels": tally.skin,
-        "fraction_requested": round(tally.asked / tally.voxels, 9), "fraction_given": round(tally.given / tally.voxels, 9),
+        "fraction_requested": round(tally.requested / tally.voxels, 9), "fraction_given": round(tally.given / tally.voxels, 9),
         "fraction_realised": round(tally.realised / tally.voxels, 9),
         "worst_cube": round(tally.worst, 9), "cubes": tally.cubes,
     }  # fmt: skip
@@ -98,7 +98,7 @@ def _assumptions(job: VoxelJob) -> list[str]:
     lines = [f"{body.solid.name}: {body.blend.assumed}" for body in job.bodies if body.blend.assumed]
     return [
         *lines,
-        "row 0 of a slice is at the greatest y, seen from above; slice 0 lies on the tray: our choice, the vendor says neither",
+        "row 0 of a slice is at the greatest y, seen from above; slice 0 lies on the tray: our choice, the vendor states neither",
         "colours stand for resins by this file alone; the operator maps them in the utility",
         "a voxel is of the body that its centre lies in",
         "a voxel of a mixed body with a neighbour outside it stays the soft resin",

@@ -93,7 +93,7 @@ def _pixels(data: bytes, rows: int, columns: int, where: str) -> Pixels:
     size = rows * (1 + 4 * columns)
     try:
         unpacker = zlib.decompressobj()
-        # One byte more than there should be tells too much from enough, and no bomb is unpacked.
+        # One byte more than there should be shows that there is too much, and no bomb is unpacked.
         raw = unpacker.decompress(data, size + 1)
     except zlib.error:
         raise InputError(f"{where}: the PNG is damaged: its pixels do not unpack") from None
@@ -101,5 +101,7 @@ def _pixels(data: bytes, rows: int, columns: int, where: str) -> Pixels:
         raise InputError(f"{where}: the PNG is damaged: {len(raw)} bytes of pixels; there must be {size}")
     lines = np.frombuffer(raw, np.uint8).reshape(rows, 1 + 4 * columns)
     if lines[:, 0].any():
-        raise InputError(f"{where}: the PNG was saved by another program (it has filtered lines); write the stack anew")
+        raise InputError(
+            f"{where}: the PNG was saved by another program (it has filtered lines); write the stack again"
+        )
     return np.ascontiguousarray(lines[:, 1:]).view(np.uint32)

@@ -19,7 +19,7 @@ from pneutouch.export.voxels.png import decode, table
 
 LEAST_SLICES = 30
 MOST_COLOURS = 6
-"""Of the utility (GrabCAD Voxel Print guide), whatever a manifest says."""
+"""Of the utility (GrabCAD Voxel Print guide), whatever a manifest states."""
 
 _NEEDED: dict[str, type | tuple[type, ...]] = {
     "format": int, "prefix": str, "dpi": list, "pixels": list, "layers": int, "layer_um": (int, float), "pixel_um": list,
@@ -82,19 +82,21 @@ def _manifest(folder: Path) -> dict[str, Any]:
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from None
     except ValueError:
-        raise InputError(f"{path}: not JSON; write the stack anew") from None
+        raise InputError(f"{path}: not JSON; write the stack again") from None
     content: dict[str, Any] = document if isinstance(document, dict) else {}
     for key, kind in _NEEDED.items():
         if not isinstance(content.get(key), kind):
-            raise InputError(f"{path}: {key} is missing or of another type; write the stack anew")
+            raise InputError(f"{path}: {key} is missing or of another type; write the stack again")
     if content["format"] != FORMAT:
         raise InputError(f"{path}: format = {content['format']}; this version reads {FORMAT}")
     try:
         colours = _colours(content)
     except (ValueError, TypeError, KeyError, OverflowError):
-        raise InputError(f"{path}: the colours are not four numbers from 0 to 255 each; write the stack anew") from None
+        raise InputError(
+            f"{path}: the colours are not four numbers from 0 to 255 each; write the stack again"
+        ) from None
     if len(set(colours.tolist())) != len(colours):
-        raise InputError(f"{path}: two of the colours are the same; write the stack anew")
+        raise InputError(f"{path}: two of the colours are the same; write the stack again")
     if len(content["resins"]) > MOST_COLOURS:
         raise InputError(f"{path}: {len(content['resins'])} colours; the utility takes {MOST_COLOURS}")
     if whole_hash([str(one) for one in content["slices"]]) != content["sha256"]:
@@ -110,22 +112,22 @@ def _colours(manifest: dict[str, Any]) -> Pixels:
 
 
 def _check_names(folder: Path, manifest: dict[str, Any]) -> None:
-    """Slices from 0 without gaps, as many as the manifest says, and no other PNG."""
+    """Slices from 0 without gaps, as many as the manifest states, and no other PNG."""
     prefix, layers = manifest["prefix"], manifest["layers"]
     pattern = re.compile(re.escape(prefix) + r"(0|[1-9][0-9]*)\.png")
-    found = set()
+    numbers = set()
     for path in folder.glob("*.png"):
         match = pattern.fullmatch(path.name)
         if match is None:
             raise InputError(
                 f"{path}: is no slice; they are called {slice_name(prefix, 0)}, {slice_name(prefix, 1)} ..."
             )
-        found.add(int(match[1]))
-    for number in range(max(layers, max(found, default=-1) + 1)):
-        if number not in found:
+        numbers.add(int(match[1]))
+    for number in range(max(layers, max(numbers, default=-1) + 1)):
+        if number not in numbers:
             raise InputError(f"{folder}: {slice_name(prefix, number)} is missing; slices must be numbered without gaps")
-    if len(found) != layers or len(manifest["slices"]) != layers:
-        raise InputError(f"{folder}: {len(found)} slices; {MANIFEST} says {layers}")
+    if len(numbers) != layers or len(manifest["slices"]) != layers:
+        raise InputError(f"{folder}: {len(numbers)} slices; {MANIFEST} states {layers}")
     if layers < LEAST_SLICES:
         raise InputError(f"{folder}: {layers} slices; the utility takes no fewer than {LEAST_SLICES}")
 
@@ -145,7 +147,7 @@ def _labels(content: bytes, manifest: dict[str, Any], where: str) -> Labels:
         raise InputError(f"{where}: {columns} x {rows} pixels; all slices must be {wide} x {tall}")
     if read.dpi is None or list(read.dpi) != manifest["dpi"]:
         stated = "no pitch" if read.dpi is None else f"{read.dpi[0]} x {read.dpi[1]} dpi"
-        raise InputError(f"{where}: says {stated}; must be {manifest['dpi'][0]} x {manifest['dpi'][1]} dpi")
+        raise InputError(f"{where}: states {stated}; must be {manifest['dpi'][0]} x {manifest['dpi'][1]} dpi")
     labels, known = np.zeros(read.pixels.shape, np.uint8), np.zeros(read.pixels.shape, bool)
     for k, colour in enumerate(_colours(manifest)):
         same = read.pixels == colour

@@ -1,7 +1,7 @@
-"""The skin of a mixed body: its outermost voxels stay soft resin, and what they lack is made up for just beneath.
+"""The skin of a mixed body: its outermost voxels stay soft resin, and their share of the other resin goes to the voxels just beneath.
 
 A voxel is skin where one of its six neighbours lies outside the body, whatever is there: so no stiff droplet lies at a
-face, where it would be a way for air to leak along, and the membrane's faces are as smooth as the soft resin's.
+face, where air could leak along it, and the membrane's faces are as smooth as the soft resin's.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pneutouch.arrays import Flags, Singles
 Item = TypeVar("Item")
 
 LEAST_REACH, MOST_REACH = 0.12, 0.4
-"""How far in mm from a skin voxel its lack is made up for, and two voxels at least: less than a wall; our choice."""
+"""How far in mm from a skin voxel its share may go, and two voxels at least: less than a wall; our choice."""
 
 
 def interior(below: Flags | None, here: Flags, above: Flags | None) -> Flags:
@@ -33,12 +33,12 @@ def interior(below: Flags | None, here: Flags, above: Flags | None) -> Flags:
 
 
 def reach_for(most: float, pitch: tuple[float, float, float]) -> float:
-    """How far in mm to make up for what the skin lacks where the share is ``most`` at most.
+    """How far in mm the share of a skin voxel goes where the share is ``most`` at most.
 
-    Far enough that an edge, where two faces' lack comes together, is not filled beyond one.
+    Far enough that an edge, where the shares of two faces come together, is not filled beyond one.
     """
-    wanted = 2 * most * max(pitch) / (1 - most) if most < 1 else MOST_REACH
-    return min(max(wanted, LEAST_REACH), MOST_REACH)
+    required = 2 * most * max(pitch) / (1 - most) if most < 1 else MOST_REACH
+    return min(max(required, LEAST_REACH), MOST_REACH)
 
 
 class RecentLayers(Generic[Item]):
@@ -58,9 +58,9 @@ class RecentLayers(Generic[Item]):
 
 
 class SkinCompensation:
-    """What is added to the share of every interior voxel, so that what the skin lacks is in the body all the same.
+    """What is added to the share of every interior voxel, so that the body keeps the share of its skin.
 
-    The share asked for in a skin voxel goes in equal parts to the interior voxels of the box of ``reach`` mm around it: the
+    The share requested in a skin voxel goes in equal parts to the interior voxels of the box of ``reach`` mm around it: the
     sum over the body is kept, and so is that of any region much larger than the reach. What has no interior near is lost.
     """
 
@@ -70,7 +70,7 @@ class SkinCompensation:
         """``parts`` gives the interior and the skin's shares (0 elsewhere) of a layer, None beyond the body's."""
         x, y, z = (max(2, round(reach / step)) for step in pitch)
         self._parts, self._plane, self._up = parts, (y, x), z
-        self._room = RecentLayers(self._rooms, 2 * z + 2)
+        self._capacity = RecentLayers(self._capacities, 2 * z + 2)
         self._given = RecentLayers(self._gifts, 2 * z + 2)
 
     @property
@@ -85,17 +85,17 @@ class SkinCompensation:
     def _around(self, number: int) -> range:
         return range(number - self._up, number + self._up + 1)
 
-    def _rooms(self, number: int) -> Singles | None:
-        found = self._parts(number)
-        return None if found is None else _boxed(found[0].astype(np.float32), self._plane)
+    def _capacities(self, number: int) -> Singles | None:
+        parts = self._parts(number)
+        return None if parts is None else _boxed(parts[0].astype(np.float32), self._plane)
 
     def _gifts(self, number: int) -> Singles | None:
-        found = self._parts(number)
-        room = _sum(self._room(k) for k in self._around(number))
-        if found is None or room is None:
+        parts = self._parts(number)
+        capacity = _sum(self._capacity(k) for k in self._around(number))
+        if parts is None or capacity is None:
             return None
-        lacking = found[1]
-        return _boxed(np.divide(lacking, room, out=np.zeros_like(lacking), where=room > 0), self._plane)
+        deficit = parts[1]
+        return _boxed(np.divide(deficit, capacity, out=np.zeros_like(deficit), where=capacity > 0), self._plane)
 
 
 def _sum(layers: Iterable[Singles | None]) -> Singles | None:
@@ -107,7 +107,7 @@ def _sum(layers: Iterable[Singles | None]) -> Singles | None:
 
 
 def _boxed(values: Singles, reach: tuple[int, int]) -> Singles:
-    """Sums over the box of so many rows and columns each way."""
+    """Sums over the box of so many rows and columns in each direction."""
     for axis, far in enumerate(reach):
         lines = np.moveaxis(values, axis, 0)
         total = values.copy()

@@ -18,12 +18,12 @@ CUBE = 1.0
 """Edge in mm of the cubes in which the dither is held against what it was given."""
 
 FULL = 0.5
-"""Share of a cube that must lie in the body for it to count: the error of a few voxels says nothing; our choice."""
+"""Share of a cube that must lie in the body for it to count: the error of a few voxels has no meaning; our choice."""
 
 
 @dataclass
 class VoxelCounts:
-    """What a body became: voxels, skin voxels, the sums of the second resin's share asked for and realised.
+    """What a body became: voxels, skin voxels, the sums of the second resin's share requested and realised.
 
     ``given`` is what was left for the dither: the skin's share made up for beneath it, less what did not fit because the
     interior was full. ``worst`` is the greatest difference of the given and the realised fraction over the body's voxels
@@ -32,7 +32,7 @@ class VoxelCounts:
 
     voxels: int = 0
     skin: int = 0
-    asked: float = 0.0
+    requested: float = 0.0
     given: float = 0.0
     realised: int = 0
     worst: float = 0.0
@@ -85,7 +85,7 @@ class _Layers:
 
     @property
     def window(self) -> Window:
-        """Rows and columns that the body lies in, and one more each way where there is one."""
+        """Rows and columns that the body lies in, and one more in each direction where there is one."""
         return self._window
 
     @property
@@ -133,7 +133,7 @@ class _Mixed:
         self._given_in, self._got_in, self._voxels_in = (self._cubes.empty() for _ in range(3))
 
     def _parts_of(self, number: int) -> tuple[Flags, Singles] | None:
-        """A layer's interior, and the shares asked for, 0 outside."""
+        """A layer's interior, and the requested shares, 0 outside."""
         below, here, above = self.here(number - 1), self.here(number), self.here(number + 1)
         if here is None:
             return None
@@ -144,21 +144,21 @@ class _Mixed:
         return interior(below, here, above), share
 
     def _skin(self, number: int) -> tuple[Flags, Singles] | None:
-        found = self._parts(number)
-        if found is None:
+        parts = self._parts(number)
+        if parts is None:
             return None
-        inner, share = found
+        inner, share = parts
         return inner, np.where(inner, np.float32(0), share)
 
     def stiff(self, number: int, tally: VoxelCounts) -> Flags:
         """Where the second resin goes in a layer of the body."""
-        found, here, more = self._parts(number), self.here(number), self._made_up.layer(number)
-        assert found is not None and here is not None
-        inner, share = found
+        parts, here, more = self._parts(number), self.here(number), self._made_up.layer(number)
+        assert parts is not None and here is not None
+        inner, share = parts
         target = share if more is None else share + more
         chosen: Flags = inner & (target > self._noise.layer(number, *self._layers.place))
         tally.skin += int(np.count_nonzero(here)) - int(np.count_nonzero(inner))
-        tally.asked += float(share.sum(dtype=np.float64))
+        tally.requested += float(share.sum(dtype=np.float64))
         tally.realised += int(np.count_nonzero(chosen))
         given = np.where(inner, np.minimum(target, np.float32(1)), np.float32(0))
         tally.given += float(given.sum(dtype=np.float64))
