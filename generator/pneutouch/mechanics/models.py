@@ -79,7 +79,7 @@ def _outside(model: str, sensor: Sensor) -> str | None:
 
 
 def model_options(model: str | None, tolerance: str | None) -> dict[str, Any]:
-    """The model and the tolerance of a prediction; a tolerance alone asks for the cheapest model that meets it."""
+    """The model and the tolerance of a prediction; a tolerance alone requires the cheapest model that meets it."""
     if tolerance is None:
         return {"model": model or "solid", "tolerance": DEFAULT_TOLERANCE}
     if model not in (None, "auto"):
