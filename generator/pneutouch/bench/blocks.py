@@ -25,10 +25,15 @@ MISSED, GAP = 1.5, 0.1
 """A step of more than so many sampling periods has lost samples; one longer than this, in s, is a gap of its own."""
 
 ISOLATED, RARE = 2, 1e-3
-"""Missed samples of which never more than the first are missed together, and in all less than the second as a share of the
-run's, are a note: our choice. No block loses more than a few of its samples, and its mean moves within its noise."""
+"""Missed samples of which never more than the first are missed together, and in all less than the second as a share of
+the run's, are a note: our choice. No block loses more than a few of its samples, and its mean moves within its
+noise."""
 
 _NAMES = {"time": "time", "position": "position", "force": "force", "pressure": "pressure"}
+_EXTREMES = ("force_spread", "pressure_spread", "force_extreme", "pressure_extreme")
+_COLUMNS = ("first_row", "time", "position", "force", "pressure", *_EXTREMES)
+"""Fields of `Blocks` in the order of the averaged rows."""
+
 _ROUNDING = 1e-6
 """Share of a block by which a time may miss the beginning of its block for rounding."""
 
@@ -37,9 +42,8 @@ _ROUNDING = 1e-6
 class BlockCollector:
     """Takes samples in internal units (s, mm, N, MPa) chunk by chunk, gives `Blocks`.
 
-    ``rate`` in Hz and samples a block ``size``: left out, found from the first chunk (the median step of time; `BLOCK_RATE`);
-    ``total`` is about how many samples will come. ``names`` are the columns' names for messages.
-    """
+    ``rate`` in Hz and samples a block ``size``: left out, found from the first chunk (the median step of time;
+    `BLOCK_RATE`); ``total`` is about how many samples will come. ``names`` are the columns' names for messages."""
 
     file: Path
     rate: float | None = None
@@ -55,7 +59,8 @@ class BlockCollector:
     _short: list[int] = field(default_factory=lambda: [0, 0, 0])
 
     def take(self, rows: Array, samples: Array) -> None:
-        """Takes samples (4, n): time, position, force, pressure, and their rows (n,). Raises InputError where time does not run on."""
+        """Takes samples (4, n): time, position, force, pressure, and their rows (n,). Raises InputError where time does
+        not run on."""
         if not rows.size:
             return
         time = samples[0]
@@ -120,7 +125,8 @@ class BlockCollector:
         self._parts.append(np.vstack([samples[:1, starts], means, spreads, extremes]))
 
     def blocks(self, warnings: tuple[SuspectInterval, ...] = ()) -> Blocks:
-        """The blocks, with the gaps among their warnings. Raises InputError where more than half of the record is missing."""
+        """The blocks, with the gaps among their warnings. Raises InputError where more than half of the record is
+        missing."""
         if self.rate is None or self.size is None or self._first is None:
             raise InputError(f"{self.file}: no samples")
         if self._held.size:
@@ -128,26 +134,11 @@ class BlockCollector:
         lost = self._short[0] + sum(count for *_, count in self._missed)
         if lost > self._samples:
             raise InputError(
-                f"{self.file}: {self._samples} samples are there and {lost} are missing, at {self.rate:.4g} Hz: more than half; "
-                f"column {self.names['time']} must be that of one recording"
+                f"{self.file}: {self._samples} samples are there and {lost} are missing, at {self.rate:.4g} Hz: more "
+                f"than half; column {self.names['time']} must be that of one recording"
             )
-        row, time, position, force, pressure, *more = np.concatenate(self._parts, axis=1)
-        force_spread, pressure_spread, force_extreme, pressure_extreme = more
-        return Blocks(
-            self.file,
-            self.rate,
-            self.size,
-            row,
-            time,
-            position,
-            force,
-            pressure,
-            force_spread,
-            pressure_spread,
-            force_extreme,
-            pressure_extreme,
-            (*self._gaps(), *warnings),
-        )
+        columns = dict(zip(_COLUMNS, np.concatenate(self._parts, axis=1), strict=True))
+        return Blocks(self.file, self.rate, self.size, warnings=(*self._gaps(), *warnings), **columns)
 
     def _gaps(self) -> list[SuspectInterval]:
         warnings = [
@@ -171,7 +162,8 @@ def blocks_of(
     rate: float | None = None,
     size: int | None = None,
 ) -> Blocks:
-    """Blocks of samples in memory, (n,) each, s, mm, N, MPa; no range is checked. Raises InputError as `BlockCollector`."""
+    """Blocks of samples in memory, (n,) each, s, mm, N, MPa; no range is checked. Raises InputError as
+    `BlockCollector`."""
     collector = BlockCollector(file, rate, size, len(time))
     collector.take(np.arange(len(time), dtype=float) + 2, np.vstack([time, position, force, pressure]).astype(float))
     return collector.blocks()

@@ -21,13 +21,13 @@ LEAST_FORCE = 1e-3
 """The same as a share of the run's greatest force, for a channel with next to no noise."""
 
 FIRST, CLEARLY = 0.01, 20.0
-"""The loading is fitted up to this share of the run's greatest force, or this many noise standard deviations if that is more. A
-dome's force grows a hundredfold over its range, and only its first hundredth is of one power of the travel."""
+"""The loading is fitted up to this share of the run's greatest force, or this many noise standard deviations if that is
+more. A dome's force grows a hundredfold over its range, and only its first hundredth is of one power of the travel."""
 
 BENDS = tuple(np.linspace(0.0, 1.0, 21).tolist())
-"""F ~ (1 - w) x + w x^2 near contact, x the travel over that of the fitted stretch: w = 0 for a shell or an inflated membrane,
-which begin straight, w = 1 for a dome whose stiffness grows from none; between them lies a solid sphere (Hertz, x^1.5) to a
-few hundredths of the stretch. One w is fitted for all of a run."""
+"""F ~ (1 - w) x + w x^2 near contact, x the travel over that of the fitted stretch: w = 0 for a shell or an inflated
+membrane, which begin straight, w = 1 for a dome whose stiffness grows from none; between them lies a solid sphere
+(Hertz, x^1.5) to a few hundredths of the stretch. One w is fitted for all of a run."""
 
 UNSURE = 4.0
 """An onset whose standard error is this many times the run's median one is that of a contact too light to be fitted:
@@ -52,7 +52,8 @@ class Baseline(NamedTuple):
 
 
 class ContactOnset(NamedTuple):
-    """First contact: its time and plate position; ``fitted`` is False where the position is the median of the run's others."""
+    """First contact: its time and plate position; ``fitted`` is False where the position is the median of the run's
+    others."""
 
     time: float
     position: float
@@ -79,7 +80,8 @@ def baseline(blocks: Blocks, start: int, end: int) -> Baseline:
 
 
 def first_baseline(blocks: Blocks, one: Excursion) -> Baseline:
-    """The last `BEFORE` seconds with the plate at its clear end, at most the later half of them, so that a reset is over."""
+    """The last `BEFORE` seconds with the plate at its clear end, at most the later half of them, so that a reset is
+    over."""
     start, end = one.clear
     late = int(np.searchsorted(blocks.time[start:end], blocks.time[end - 1] - BEFORE)) + start
     begin = max(late, (start + end) // 2)
@@ -87,7 +89,8 @@ def first_baseline(blocks: Blocks, one: Excursion) -> Baseline:
 
 
 def threshold(blocks: Blocks, bases: list[Baseline], parts: list[Excursion]) -> tuple[float, int]:
-    """Force in N that is contact, and the sign that the force has when pressed (+1, or -1 where the column's is wrong)."""
+    """Force in N that is contact, and the sign that the force has when pressed (+1, or -1 where the column's is
+    wrong)."""
     noise = float(np.sqrt(np.mean([base.between[0] for base in bases])))
     off = [blocks.force[one.clear[1] : one.hold[1]] - base.mean[0] for one, base in zip(parts, bases, strict=True)]
     high, low = max(float(part.max()) for part in off), min(float(part.min()) for part in off)
@@ -99,16 +102,15 @@ def onsets(
 ) -> list[ContactOnset | None]:
     """First contact of each loading; None where there is none.
 
-    Contact begins in the block after the last one of the loading that is within ``least`` N of the force without contact.
-    From there F = c ((1 - w) x + w x^2), x = position - onset, is fitted up to a small force (`FIRST`), with a stretch without
-    contact before it, by least squares with onset and c free for each loading and w common to all. Where a hold presses but
-    its loading is too light to be fitted (`UNSURE`), the onset is the median of the others.
+    Contact begins in the block after the last one of the loading that is within ``least`` N of the force without
+    contact. From there F = c ((1 - w) x + w x^2), x = position - onset, is fitted up to a small force (`FIRST`), with a
+    stretch without contact before it, by least squares with onset and c free for each loading and w common to all.
+    Where a hold presses but its loading is too light to be fitted (`UNSURE`), the onset is the median of the others.
 
-    Bias, as tested, at 5 mm/s with 0.02 N of noise a sample at 4 kHz, in the median of a run: below 0.01 mm for a
-    force that grows evenly, 0.04 mm for one that begins evenly and grows a hundredfold as a dome's does, 0.05 mm for
-    travel^1.5 and 0.09 mm for travel^1.8, which begins with next to no force. A force that lags by a time constant T comes
-    out late by at most speed times T.
-    """
+    Bias, as tested, at 5 mm/s with 0.02 N of noise a sample at 4 kHz, in the median of a run: below 0.01 mm for a force
+    that grows evenly, 0.04 mm for one that begins evenly and grows a hundredfold as a dome's does, 0.05 mm for
+    travel^1.5 and 0.09 mm for travel^1.8, which begins with next to no force. A force that lags by a time constant T
+    comes out late by at most speed times T."""
     crossed = [_crossing(blocks, one, base, least, sign) for one, base in zip(parts, bases, strict=True)]
     top = max(
         float((sign * (blocks.force[one.hold[0] : one.hold[1]] - base.mean[0])).max())
@@ -178,7 +180,8 @@ def _crossing(blocks: Blocks, one: Excursion, base: Baseline, least: float, sign
 
 
 class _Loading(NamedTuple):
-    """The first part of a loading: position, force less that without contact, the onset's bounds, the travel pressed."""
+    """The first part of a loading: position, force less that without contact, the onset's bounds, the travel
+    pressed."""
 
     position: Array
     force: Array

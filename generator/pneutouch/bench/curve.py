@@ -24,10 +24,10 @@ _BEYOND_TRAVEL = 1.05
 def curve_of(run: CampaignRun, blocks: Blocks, rig: Rig) -> MeasuredCurve:
     """The curve of a run with a plate; its first point is the origin.
 
-    Steps and saturation: one point for each indentation, sorted by depth. Loop and relaxation: the loading, averaged over
-    the cycles, at `LOADING_POINTS` even depths. A force or rise that falls as the sensor is pressed stays negative
-    (see `plausible.check_plausible`). Noise is that of single samples without contact, from the spread within blocks and
-    that between their means about a straight line; drift is the slope before the first contact.
+    Steps and saturation: one point for each indentation, sorted by depth. Loop and relaxation: the loading, averaged
+    over the cycles, at `LOADING_POINTS` even depths. A force or rise that falls as the sensor is pressed stays negative
+    (see `plausible.check_plausible`). Noise is that of single samples without contact, from the spread within blocks
+    and that between their means about a straight line; drift is the slope before the first contact.
 
     Raises InputError where the plate does not move or moves backwards, or there is no contact.
     """
@@ -61,15 +61,17 @@ def curve_of(run: CampaignRun, blocks: Blocks, rig: Rig) -> MeasuredCurve:
 
 def _no_contact(blocks: Blocks, indentations: RunIndentations) -> str:
     if not indentations.parts:
-        return f"{blocks.file}: no contact: the plate never goes in and out; from {blocks.position.min():.4g} to {blocks.position.max():.4g} mm"
+        span = f"from {blocks.position.min():.4g} to {blocks.position.max():.4g} mm"
+        return f"{blocks.file}: no contact: the plate never goes in and out; {span}"
     noise = _noise(indentations.bases, 0)
     over = max(
         float(np.abs(blocks.force[one.clear[1] : one.hold[1]] - base.mean[0]).max())
         for one, base in zip(indentations.parts, indentations.bases, strict=True)
     )
     return (
-        f"{blocks.file}: no contact: the force never leaves its noise: at most {over:.3g} N beyond what it is without, with "
-        f"{noise:.3g} N of noise, in {len(indentations.parts)} indentations; did the plate reach the sensor, is columns.force the right column?"
+        f"{blocks.file}: no contact: the force never leaves its noise: at most {over:.3g} N beyond what it is "
+        f"without, with {noise:.3g} N of noise, in {len(indentations.parts)} indentations; did the plate reach the "
+        "sensor, is columns.force the right column?"
     )
 
 

@@ -75,13 +75,14 @@ RESOLVED = 3.0
 """Noise standard deviations that count as resolved: the limit of detection of IUPAC (Gold Book, L03540)."""
 
 _CURVE, _GAP = 8, 4
-"""Coefficients of a loop's middle line and of the gap between its branches, over the root of the force, which is nearer to travel
-than force is: the least that follow the solid's loops."""
+"""Coefficients of a loop's middle line and of the gap between its branches, over the root of the force, which is nearer
+to travel than force is: the least that follow the solid's loops."""
 
 _LEAST_SAMPLES = 40
 
 _ENDS = 0.15
-"""Decades at either end of a hold over which a line gives the value at the end: one block at 1 s would give it its noise."""
+"""Decades at either end of a hold over which a line gives the value at the end: one block at 1 s would give it its
+noise."""
 
 _GRID = 200
 
@@ -131,15 +132,15 @@ def _loop(curve: MeasuredCurve) -> dict[str, float]:
     coefficients = np.linalg.lstsq(np.hstack(_branches(force / force.max(), direction)), rise, rcond=None)[0]
     lowest = max(min(cycle[k].min() for cycle in curve.loop) for k in (0, 2))
     grid = np.linspace(max(lowest, 0.0) / force.max(), 1.0, _GRID)
-    line, gap = (
-        part @ c for part, c in zip(_branches(grid, np.ones(_GRID)), np.split(coefficients, [_CURVE]), strict=True)
-    )
+    middle, half = _branches(grid, np.ones(_GRID))
+    line, gap = middle @ coefficients[:_CURVE], half @ coefficients[_CURVE:]
     width, area = hysteresis(grid, line + gap, grid, line - gap)
     return {"hysteresis_width_percent": 100 * width, "hysteresis_area_percent": 100 * area}
 
 
 def _branches(share: Array, direction: Array) -> tuple[Array, Array]:
-    """Columns of the middle line and of half the gap at shares of the greatest force, in loading (direction 1) or unloading (-1)."""
+    """Columns of the middle line and of half the gap at shares of the greatest force, in loading (direction 1) or
+    unloading (-1)."""
     root = np.sqrt(np.clip(share, 0.0, None))
     half = 0.5 * direction * (1 - root)
     place = 2 * root - 1

@@ -13,8 +13,9 @@ from pneutouch.bench.record import Blocks, MeasuredIndentation
 from pneutouch.bench.segment import Excursion, excursions
 
 READ, READ_LONGEST = 0.25, 1.0
-"""The read window is the last quarter of the hold, at most its last second: our choice, the paper does not state it. A dome
-settles as an exponential does, most at first, and of the paper's 4 s the last one changes least; its 100 blocks leave no noise."""
+"""The read window is the last quarter of the hold, at most its last second: our choice, the paper does not state it. A
+dome settles as an exponential does, most at first, and of the paper's 4 s the last one changes least; its 100 blocks
+leave no noise."""
 
 MARGIN = 0.01
 """Share of the hold, at least one block, that is left between window and release, so that no motion gets in."""
@@ -25,8 +26,9 @@ RELEASED = 0.01
 _STAYS = 3
 
 EARLY = 3
-"""Indentations whose first contacts, in the median, are the run's: the wall stays behind after deep ones, so that later contacts
-come deeper, while the model counts from the dome as it was. Enough that noise of one does not matter: our choice."""
+"""Indentations whose first contacts, in the median, are the run's: the wall stays behind after deep ones, so that later
+contacts come deeper, while the model counts from the dome as it was. Enough that noise of one does not matter: our
+choice."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +85,8 @@ def read_window(blocks: Blocks, hold: tuple[int, int]) -> tuple[int, int]:
 
 
 def _read_times(blocks: Blocks, hold: tuple[int, int]) -> tuple[float, float]:
-    """When the window read in a hold begins and ends, s: of the blocks that are there, or before a gap that swallows its begin."""
+    """When the window read in a hold begins and ends, s: of the blocks that are there, or before a gap that swallows
+    its begin."""
     start, end = read_window(blocks, hold)
     length = min(READ * float(blocks.time[hold[1] - 1] - blocks.time[hold[0]]), READ_LONGEST)
     first, last = float(blocks.time[start]), float(blocks.time[end - 1])

@@ -20,7 +20,8 @@ LEAST_POINTS = 3
 
 _LEAST_BLOCKS = 10
 _BATCHES = 10
-"""Parts of a leak run whose means give the slope's error: noise that is alike from sample to sample would else make it small."""
+"""Parts of a leak run whose means give the slope's error: noise that is alike from sample to sample would else make it
+small."""
 
 _ABSOLUTE = 0.7
 """Share of the ambient pressure above which a table that begins there is taken for one of absolute pressures."""
@@ -42,8 +43,8 @@ def read_injection(path: Path, columns: ColumnMap) -> tuple[Array, Array]:
         )
     if np.ptp(pressure) <= 0 or float(np.corrcoef(volume, pressure)[0, 1]) <= 0:
         raise InputError(
-            f"{path}: column {columns.pressure.name}: does not rise with {columns.volume.name}; are the columns swapped, or a sign "
-            "wrong (columns.volume.sign)?"
+            f"{path}: column {columns.pressure.name}: does not rise with {columns.volume.name}; are the columns "
+            "swapped, or a sign wrong (columns.volume.sign)?"
         )
     return volume, pressure
 
@@ -52,9 +53,8 @@ def dead_volume_of_cap(volume: Array, pressure: Array, ambient: float) -> Mean:
     """Volume behind a rigid cap, mm3, from injected volumes (mm3, at ambient pressure) and gauge pressures (MPa).
 
     Boyle: pressure = pressure_0 + ambient / V volume, by least squares with both free (a gauge's zero, or a first push
-    that was lost, does not matter). ``value`` is V, ``spread`` its standard error (count 1). Raises ValueError for fewer
-    than three points and where the pressure does not rise.
-    """
+    that was lost, does not matter). ``value`` is V, ``spread`` its standard error (count 1). Raises ValueError for
+    fewer than three points and where the pressure does not rise."""
     if volume.size < LEAST_POINTS:
         raise ValueError(f"{volume.size} points of injected volume; at least {LEAST_POINTS}")
     centred = volume - volume.mean()
@@ -71,8 +71,8 @@ def dead_volume_of_cap(volume: Array, pressure: Array, ambient: float) -> Mean:
 
 
 class Leak(NamedTuple):
-    """How fast a closed line loses pressure: rate and its standard error (MPa/s, positive where pressure is lost), its 95 %
-    interval, and the time constant in s of an exponential decay (infinite where nothing is lost)."""
+    """How fast a closed line loses pressure: rate and its standard error (MPa/s, positive where pressure is lost), its
+    95 % interval, and the time constant in s of an exponential decay (infinite where nothing is lost)."""
 
     rate: float
     error: float

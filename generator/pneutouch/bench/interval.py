@@ -1,13 +1,12 @@
 """Intervals of few measurements: of a mean over specimens by Student's t, of a standard deviation by chi-square.
 
-Three specimens with three runs each are what a lab has. The percentile bootstrap of three values covers far less than it
-states (tests/bench/test_interval.py measures about 75 % for 95 %). What Hesterberg (Am. Stat. 69, 371-386, 2015, DOI
+Three specimens with three runs each are what a lab has. The percentile bootstrap of three values covers far less than
+it states (tests/bench/test_interval.py measures about 75 % for 95 %). What Hesterberg (Am. Stat. 69, 371-386, 2015, DOI
 10.1080/00031305.2015.1089789, sections 4.5 and 5.3) makes of it for few values is its standard error, widened by
 sqrt(n/(n-1)), times t with n - 1 degrees of freedom. Of a mean the bootstrap's standard error is known without a draw,
-sqrt((n-1)/n) s/sqrt(n), so that this is s/sqrt(n) times t. Specimens are what is drawn, with all their runs: drawing runs as
-well would count their scatter twice (Davison & Hinkley, Bootstrap Methods, 1997, section 3.8). The bootstrap of a standard
-deviation of three is no better for being widened; chi-square is exact for normal values.
-"""
+sqrt((n-1)/n) s/sqrt(n), so that this is s/sqrt(n) times t. Specimens are what is drawn, with all their runs: drawing
+runs as well would count their scatter twice (Davison & Hinkley, Bootstrap Methods, 1997, section 3.8). The bootstrap of
+a standard deviation of three is no better for being widened; chi-square is exact for normal values."""
 
 from __future__ import annotations
 

@@ -23,8 +23,8 @@ _SLIP = 0.1
 """A length of the block that is off its nominal by more than this share counts as a writing error."""
 
 _FINE_SLIP, _FINE_SLIP_MM = 0.5, 0.3
-"""So does a wall, pin, hole or slot that is off by more than this share and by more than this many mm: our choice, several
-times the tolerance that vendors state for small features."""
+"""So does a wall, pin, hole or slot that is off by more than this share and by more than this many mm: our choice,
+several times the tolerance that vendors state for small features."""
 
 _ROUNDING = 1e-9
 """Differences of lengths may miss a limit by this, mm."""
@@ -84,8 +84,9 @@ def _check_slip(row: str, size: GaugeSize, where: str) -> None:
         if abs(reading - nominal) > limit + _ROUNDING:
             share = "a tenth" if row in _AXES else f"{_FINE_SLIP_MM:g} mm and half"
             raise InputError(
-                f"{where}.{row}: nominal_mm = {nominal:g}: measured_mm = {reading:g}: more than {share} off; must be from "
-                f"{max(nominal - limit, 0):g} to {nominal + limit:g} mm; read in another unit, or entered in the wrong row?"
+                f"{where}.{row}: nominal_mm = {nominal:g}: measured_mm = {reading:g}: more than {share} off; must be "
+                f"from {max(nominal - limit, 0):g} to {nominal + limit:g} mm; read in another unit, or entered in the "
+                "wrong row?"
             )
 
 
@@ -130,7 +131,8 @@ def _smaller(hole: GaugeSize, where: str) -> float:
 
 
 def smallest_sound(sizes: Sequence[GaugeSize]) -> float | None:
-    """The smallest size that is sound together with all larger ones, mm; None where the largest is not, or none was judged."""
+    """The smallest size that is sound together with all larger ones, mm; None where the largest is not, or none was
+    judged."""
     least = None
     for size in sorted(sizes, key=lambda size: -size.nominal_mm):
         if size.sound is False:

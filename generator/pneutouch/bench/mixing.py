@@ -1,4 +1,5 @@
-"""Coupons of two resins in known fractions: the modulus of each mix, by dumbbells or by hardness relative to the soft resin."""
+"""Coupons of two resins in known fractions: the modulus of each mix, by dumbbells or by hardness relative to the soft
+resin."""
 
 from __future__ import annotations
 
@@ -17,8 +18,8 @@ from pneutouch.spec.coupon import MixedCoupons
 from pneutouch.spec.material import Material
 
 _HARDEST = 95.0
-"""Greatest Shore A that a modulus is derived from: above it the scale is compressed and Gent's relation diverges. ASTM D2240
-uses the D scale for readings above 90 A; our choice allows for the scatter of a puck of 90."""
+"""Greatest Shore A that a modulus is derived from: above it the scale is compressed and Gent's relation diverges. ASTM
+D2240 uses the D scale for readings above 90 A; our choice allows for the scatter of a puck of 90."""
 
 _DUMBBELLS, _HARDNESS = "dumbbells", "hardness, by ratio"
 
@@ -49,10 +50,9 @@ def stiffness(
 ) -> list[MixModulus]:
     """Modulus of every fraction that was measured.
 
-    By its dumbbells, else by its hardness: Gent's relation (1958) is used for ratios alone, so the modulus is that of the
-    soft resin, measured or from the catalogue, times the ratio to the modulus at fraction 0 of the same set.
-    Raises InputError for readings that cannot be used, and where the modulus falls with the fraction.
-    """
+    By its dumbbells, else by its hardness: Gent's relation (1958) is used for ratios alone, so the modulus is that of
+    the soft resin, measured or from the catalogue, times the ratio to the modulus at fraction 0 of the same set. Raises
+    InputError for readings that cannot be used, and where the modulus falls with the fraction."""
     where = f"{source.where}: mixing.{pair}"
     moduli, by_hardness = [], []
     for k, one in enumerate(measured, start=1):
@@ -86,8 +86,8 @@ def _base(soft: Material, measured: Sequence[MixedCoupons], moduli: Sequence[Mix
     at_zero = next((one for one in measured if one.fraction == 0 and one.shore_a), None)
     if at_zero is None:
         raise InputError(
-            f"{where}: hardness gives a modulus by its ratio to the soft resin's alone; shore_a at fraction = 0 is missing; "
-            "measure it on the same day, or pull dumbbells"
+            f"{where}: hardness gives a modulus by its ratio to the soft resin's alone; shore_a at fraction = 0 is "
+            "missing; measure it on the same day, or pull dumbbells"
         )
     shore = mean(at_zero.shore_a)
     if moduli and moduli[0].fraction == 0:
@@ -112,8 +112,8 @@ def _by_hardness(place: str, one: MixedCoupons, base: _Base) -> MixModulus:
     if one.fraction > 0:
         relative += [logarithmic_slope(each.value) * each.spread for each in (shore, base.shore)]
     how = (
-        f"Shore A {shore.value:.3g} over {base.shore.value:.3g} of the soft resin by Gent 1958, ratio {ratio:.3g}, times "
-        f"{base.modulus:.3g} MPa, {base.origin}; weaker than dumbbells"
+        f"Shore A {shore.value:.3g} over {base.shore.value:.3g} of the soft resin by Gent 1958, ratio {ratio:.3g}, "
+        f"times {base.modulus:.3g} MPa, {base.origin}; weaker than dumbbells"
     )
     return MixModulus(one.fraction, modulus, modulus * math.hypot(*relative), shore.count, _HARDNESS, how)
 
@@ -125,6 +125,7 @@ def _check_rising(moduli: Sequence[MixModulus], where: str, soft: Material, stif
     for (f, low, by), (g, high, how) in pairwise(points):
         if high <= low:
             raise InputError(
-                f"{where}: {high:.3g} MPa at fraction = {g:g} ({how}) after {low:.3g} MPa at {f:g} ({by}); it must rise with "
-                f"{stiff.title}: were two mixes changed over? Leave the worse reading out where they differ by scatter alone"
+                f"{where}: {high:.3g} MPa at fraction = {g:g} ({how}) after {low:.3g} MPa at {f:g} ({by}); it must "
+                f"rise with {stiff.title}: were two mixes changed over? Leave the worse reading out where they differ "
+                "by scatter alone"
             )

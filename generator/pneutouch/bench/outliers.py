@@ -11,8 +11,8 @@ from pneutouch.mechanics.response import figures
 from pneutouch.units import KPA
 
 APART = 0.15
-"""Share by which runs of one sensor may differ: our choice. The paper's three runs differ by 1 % in sensitivity, its three
-identical sensors by 2 to 10 % (Fig. 7 and S2)."""
+"""Share by which runs of one sensor may differ: our choice. The paper's three runs differ by 1 % in sensitivity, its
+three identical sensors by 2 to 10 % (Fig. 7 and S2)."""
 
 TIMES = 5.0
 """Factor on the scatter of the others (1.4826 times their median deviation) that must be exceeded too."""

@@ -1,4 +1,5 @@
-"""Plausibility of a run against its campaign: wrong units, signs and columns are reported as questions, never corrected."""
+"""Plausibility of a run against its campaign: wrong units, signs and columns are reported as questions, never
+corrected."""
 
 from __future__ import annotations
 
@@ -18,17 +19,19 @@ from pneutouch.units import KPA
 __all__ = ["ExpectedRun", "check_leak", "check_plausible"]
 
 FAR = 3.0
-"""Factor from the prediction beyond which a question is reported: our choice. The solid's predictions meet the paper's table with a
-median error of 8 % and are off by two for its stiffest resin."""
+"""Factor from the prediction beyond which a question is reported: our choice. The solid's predictions meet the paper's
+table with a median error of 8 % and are off by two for its stiffest resin."""
 
 UNIT_NEAR = 1.8
-"""Factor within which another unit must bring a reading to the prediction, to be named: our choice, below half of `FAR`."""
+"""Factor within which another unit must bring a reading to the prediction, to be named: our choice, below half of
+`FAR`."""
 
 RESET_KPA, RESET_SHARE = 1.0, 0.1
 """How far the pressure before contact may be from the driving pressure: our choice, a regulator's scatter."""
 
 SWAP_MARGIN = math.log(2.0)
-"""How much nearer to the prediction the swapped reading must be (logarithm of a factor) where there is no driving pressure."""
+"""How much nearer to the prediction the swapped reading must be (logarithm of a factor) where there is no driving
+pressure."""
 
 _RESTS = 0.05
 """Share of the greatest force or rise by which points may be negative: noise about the origin."""
@@ -40,7 +43,8 @@ _START = 1.0
 """Seconds in which a leaking line loses little, long enough to average the noise of a gauge: our choice."""
 
 _SHAPE = 1.5
-"""Exponent of force and rise over depth with which a prediction without a curve is scaled to a shallower depth (Hertz)."""
+"""Exponent of force and rise over depth with which a prediction without a curve is scaled to a shallower depth
+(Hertz)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,10 +74,9 @@ def check_plausible(
 ) -> tuple[str, ...]:
     """Questions about a run that may nevertheless be correct.
 
-    Without a prediction (``expected`` None) only signs, times and the driving pressure are checked. Raises InputError for
-    what is impossible: a sign that is wrong, force and pressure swapped, a magnitude that is off by more than `FAR` and right in
-    another unit of `spec.campaign.UNITS`.
-    """
+    Without a prediction (``expected`` None) only signs, times and the driving pressure are checked. Raises InputError
+    for what is impossible: a sign that is wrong, force and pressure swapped, a magnitude that is off by more than `FAR`
+    and right in another unit of `spec.campaign.UNITS`."""
     _check_signs(curve, columns, file)
     if expected is not None:
         _check_swap(curve, columns, expected, file)
@@ -83,18 +86,19 @@ def check_plausible(
 
 
 def check_leak(blocks: Blocks, run: CampaignRun, rig: Rig) -> tuple[str, ...]:
-    """Questions about a leak run that may nevertheless be correct; its pressure is the median of the first `_START` seconds.
+    """Questions about a leak run that may nevertheless be correct; its pressure is the median of the first `_START`
+    seconds.
 
-    Raises InputError where the pressure is at the end of the gauge's range (`reading.CLIPPED`) or at a flat top for more than
-    half of the run, or begins at more than `FAR` times or less than 1 / `FAR` of the driving pressure in the campaign.
-    """
+    Raises InputError where the pressure is at the end of the gauge's range (`reading.CLIPPED`) or at a flat top for
+    more than half of the run, or begins at more than `FAR` times or less than 1 / `FAR` of the driving pressure in the
+    campaign."""
     questions: list[str] = []
     lost = [warning for warning in blocks.warnings if warning.kind == "clipped"]
     length, at = float(np.ptp(blocks.time)), sum(warning.end - warning.start for warning in lost)
     if at > 0.5 * length:
         raise InputError(
-            f"{blocks.file}: a leak run of {length:.3g} s of which {at:.3g} s are clipped ({lost[0].why}); the gauge has a range of "
-            f"{rig.pressure_range_kPa:g} kPa; must be run within it"
+            f"{blocks.file}: a leak run of {length:.3g} s of which {at:.3g} s are clipped ({lost[0].why}); the gauge "
+            f"has a range of {rig.pressure_range_kPa:g} kPa; must be run within it"
         )
     if lost:
         questions.append(
@@ -104,7 +108,8 @@ def check_leak(blocks: Blocks, run: CampaignRun, rig: Rig) -> tuple[str, ...]:
     read_kPa, stated_kPa = float(np.median(blocks.pressure[: max(count, 1)])) / KPA, run.driving_pressure_kPa
     if abs(read_kPa - stated_kPa) <= max(RESET_KPA, RESET_SHARE * stated_kPa):
         return tuple(questions)
-    problem = f"{blocks.file}: a leak run that begins at {read_kPa:.3g} kPa; the campaign states driving_pressure_kPa = {stated_kPa:g}"
+    stated = f"the campaign states driving_pressure_kPa = {stated_kPa:g}"
+    problem = f"{blocks.file}: a leak run that begins at {read_kPa:.3g} kPa; {stated}"
     if stated_kPa > 0 and not stated_kPa / FAR <= read_kPa <= stated_kPa * FAR:
         raise InputError(f"{problem}; the unit of the pressure (columns.pressure.unit), or another run's file?")
     return (*questions, f"{problem}; was it left out, is the gauge not zeroed, or does the line lose it at once?")
@@ -168,8 +173,8 @@ def _check_signs(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> None:
         deep = float(values[np.argmax(np.abs(values))])
         if deep < 0 and float(values.max()) <= _RESTS * -deep:
             raise InputError(
-                f"{file}: column {column.name}: falls by {_number(-deep / unit)} {name} as the sensor is pressed; it must rise: set "
-                f"columns.{key}.sign = {-column.sign}"
+                f"{file}: column {column.name}: falls by {_number(-deep / unit)} {name} as the sensor is pressed; it "
+                f"must rise: set columns.{key}.sign = {-column.sign}"
             )
     if curve.indentation[-1] <= 0:
         raise InputError(
@@ -179,7 +184,8 @@ def _check_signs(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> None:
 
 
 def _check_swap(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun, file: Path) -> None:
-    """Force and pressure exchanged: each has the magnitude of the other, and the pressure before contact is in the force.
+    """Force and pressure exchanged: each has the magnitude of the other, and the pressure before contact is in the
+    force.
 
     The numbers in the columns are compared. At a driving pressure the values before contact decide, otherwise the
     magnitudes, where they differ enough.
@@ -203,14 +209,16 @@ def _check_swap(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun,
     if swapped < 2 * math.log(FAR) and ((driven and rests) or (not driven and swapped + SWAP_MARGIN < as_stated)):
         before = f", and {_number(in_force / KPA)} before contact, the driving pressure" if driven else ""
         raise InputError(
-            f"{file}: columns {columns.force.name} and {columns.pressure.name} look swapped: {columns.force.name} rises by {force:.3g} "
-            f"where {expected_force:.3g} {columns.force.unit} are predicted and {expected_rise:.3g} {columns.pressure.unit} of pressure{before}; "
-            "exchange columns.force.name and columns.pressure.name"
+            f"{file}: columns {columns.force.name} and {columns.pressure.name} look swapped: {columns.force.name} "
+            f"rises by {force:.3g} where {expected_force:.3g} {columns.force.unit} are predicted and "
+            f"{expected_rise:.3g} {columns.pressure.unit} of pressure{before}; exchange columns.force.name and "
+            "columns.pressure.name"
         )
 
 
 def _check_time(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> str | None:
-    """The length of holds reveals a unit of time that is wrong by far; holds may be a few times as long as the paper's."""
+    """The length of holds reveals a unit of time that is wrong by far; holds may be a few times as long as the
+    paper's."""
     if curve.run.kind == "loop" or not curve.indents:
         return None
     length = float(np.median([one.hold[1] - one.hold[0] for one in curve.indents]))
@@ -226,6 +234,6 @@ def _driving(curve: MeasuredCurve, file: Path, columns: ColumnMap) -> str | None
     if abs(read_kPa - stated_kPa) <= max(RESET_KPA, RESET_SHARE * stated_kPa):
         return None
     return (
-        f"{file}: column {columns.pressure.name}: {read_kPa:.3g} kPa before contact; the campaign states driving_pressure_kPa = {stated_kPa:g}; "
-        "another run's file, a gauge not zeroed, or absolute pressure?"
+        f"{file}: column {columns.pressure.name}: {read_kPa:.3g} kPa before contact; the campaign states "
+        f"driving_pressure_kPa = {stated_kPa:g}; another run's file, a gauge not zeroed, or absolute pressure?"
     )

@@ -20,8 +20,8 @@ CLIPPED = 0.98
 """Share of an instrument's range at which it is taken for clipped: our choice, makers specify up to the range."""
 
 BEYOND = 1.2
-"""No instrument reads beyond this share of its range: where a channel does for long, its unit or the stated range is wrong
-and nothing is clipped at that range; where it does for a moment, that is a fault of the line."""
+"""No instrument reads beyond this share of its range: where a channel does for long, its unit or the stated range is
+wrong and nothing is clipped at that range; where it does for a moment, that is a fault of the line."""
 
 SPIKE, FEW = 0.1, 3
 """A moment is shorter than this, in s, or than this many blocks if that is longer: our choice, a plate stays longer."""
@@ -30,8 +30,8 @@ GREATEST = 1e100
 """In internal units; no instrument reads more, and its square would overflow."""
 
 FLAT, ALIKE = 0.1, 0.05
-"""A flat top lasts longer than this, in s, and less than this share of the other blocks repeats the one before: a coarse
-or noiseless channel repeats everywhere. Our choice."""
+"""A flat top lasts longer than this, in s, and less than this share of the other blocks repeats the one before: a
+coarse or noiseless channel repeats everywhere. Our choice."""
 
 _PRESSED = 30.0
 """Noise standard deviations by which the force must change as evidence of movement: our choice."""
@@ -46,14 +46,14 @@ def read_blocks(
 ) -> Blocks:
     """Blocks of a CSV or parquet file, in s, mm, N, MPa; ``progress`` is called with the share read, 0 to 1.
 
-    About `blocks.BLOCK_RATE` blocks a second, or one sample each up to `blocks.SLOW` Hz. The file is read in one pass and never
-    is in memory as a whole. Gaps, clipped stretches and a last row that may be cut are among the warnings.
+    About `blocks.BLOCK_RATE` blocks a second, or one sample each up to `blocks.SLOW` Hz. The file is read in one pass
+    and never is in memory as a whole. Gaps, clipped stretches and a last row that may be cut are among the warnings.
 
     Of a run without a plate (``plate`` False: a leak run) only time and pressure are read; position and force are zero.
 
     Raises InputError, naming file, column and row, as `tables.read.chunks`, for time that does not increase, more than
-    half of the samples missing, and a channel that is dead; a run in which nothing moves, as a leak run, has no dead channel.
-    """
+    half of the samples missing, and a channel that is dead; a run in which nothing moves, as a leak run, has no dead
+    channel."""
     names = {key: getattr(columns, key).name for key in _CHANNELS}
     read = [place for place, key in enumerate(_CHANNELS) if plate or key in ("time", "pressure")]
     keys = [_CHANNELS[place] for place in read]
@@ -83,7 +83,8 @@ def read_blocks(
 
 
 def scaled(path: Path, columns: ColumnMap, keys: Sequence[str], rows: Array, values: Array) -> Array:
-    """Values (k, n) of the columns ``keys`` in internal units and with their signs; ``rows`` (n,) are their row numbers.
+    """Values (k, n) of the columns ``keys`` in internal units and with their signs; ``rows`` (n,) are their row
+    numbers.
 
     Raises InputError, naming column and row, for a number beyond `GREATEST`.
     """
@@ -94,14 +95,15 @@ def scaled(path: Path, columns: ColumnMap, keys: Sequence[str], rows: Array, val
         place, at = np.argwhere(~(np.abs(values_inside) <= GREATEST))[0]
         column = getattr(columns, keys[place])
         raise InputError(
-            f"{path}: row {rows[at]:.0f}: column {column.name}: {values[place, at]:.3g} {column.unit}: no instrument reads that; must "
-            "be a measured number"
+            f"{path}: row {rows[at]:.0f}: column {column.name}: {values[place, at]:.3g} {column.unit}: no instrument "
+            "reads that; must be a measured number"
         )
     return values_inside
 
 
 def _check_alive(blocks: Blocks, names: dict[str, str]) -> None:
-    """Force and pressure are checked while the plate moves, the position where the force shows that it must have moved."""
+    """Force and pressure are checked while the plate moves, the position where the force shows that it must have
+    moved."""
     problem = f"dead: reads one and the same number from row {blocks.first_row[0]:.0f} on"
     question = "; was the right column named, the sensor connected?"
     moved = np.abs(np.diff(blocks.position, prepend=blocks.position[0]))
@@ -131,8 +133,8 @@ def _clipped(
     spikes = _short(blocks, beyond)
     if (beyond & ~spikes).any():
         why = (
-            f"{key} goes to {extreme.max() / unit:.4g} {name}, beyond the rig's range of {top:g}: is its unit right, or the "
-            "rig's range?"
+            f"{key} goes to {extreme.max() / unit:.4g} {name}, beyond the rig's range of {top:g}: is its unit right, "
+            "or the rig's range?"
         )
         return [SuspectInterval(float(blocks.time[0]), float(blocks.time[-1]), why, True)]
     warnings = [
@@ -173,7 +175,8 @@ def _spikes(blocks: Blocks, key: str, extreme: Array, spikes: Flags, excess: str
 
 
 def _flat_top(blocks: Blocks, values: Array, spread: Array, extreme: Array) -> Flags:
-    """Which blocks hold nothing but the extreme value, (n,) of bool; none where the channel is coarse or without noise."""
+    """Which blocks hold nothing but the extreme value, (n,) of bool; none where the channel is coarse or without
+    noise."""
     close = _EXACT * extreme.max()
     quiet = spread <= close
     again = quiet & (np.abs(np.diff(values, prepend=np.nan)) <= close)

@@ -15,9 +15,8 @@ SuspectKind = Literal["gap", "clipped", "spike", "note", "other"]
 class SuspectInterval(NamedTuple):
     """A time interval (s) of a run that may be wrong, and the reason.
 
-    ``used``: whether it is used nevertheless.  ``kind``: a gap, a channel at the end of its range, a reading beyond that,
-    a note of a usual defect, or another.
-    """
+    ``used``: whether it is used nevertheless.  ``kind``: a gap, a channel at the end of its range, a reading beyond
+    that, a note of a usual defect, or another."""
 
     start: float
     end: float
@@ -30,9 +29,9 @@ class SuspectInterval(NamedTuple):
 class Blocks:
     """A file's samples averaged over blocks of ``size``, in the file's order; s, mm, N, MPa, arrays (n,).
 
-    ``spread`` are standard deviations (ddof 0) within the blocks, ``extreme`` the greatest magnitude in them, ``first_row`` the row of
-    the file (the header is row 1) with which each begins. ``rate`` is the sampling rate of the file, Hz.
-    """
+    ``spread`` are standard deviations (ddof 0) within the blocks, ``extreme`` the greatest magnitude in them,
+    ``first_row`` the row of the file (the header is row 1) with which each begins. ``rate`` is the sampling rate of the
+    file, Hz."""
 
     file: Path
     rate: float
@@ -89,8 +88,8 @@ class MeasuredCurve:
         indents: The indentations behind the points.
         loop: Of a loop run: force and rise going in, force and rise coming out, of each cycle.
         relaxation: Of a relaxation run: seconds since the hold began, force, rise.
-        noise: Standard deviations of a sample of force (N) and pressure (MPa) without contact, trend taken out; NaN where
-            nothing was without contact.
+        noise: Standard deviations of a sample of force (N) and pressure (MPa) without contact, trend taken out; NaN
+            where nothing was without contact.
         drift: Slope of the pressure before the first contact, MPa/s, and of the force, N/s.
         warnings: Intervals that may be wrong.
     """

@@ -51,8 +51,9 @@ def puck(name: str, material: Material, measured: Puck, source: ReadingSource, r
     for place, density in enumerate(densities, start=1):
         if not _DENSITIES[0] <= density <= _DENSITIES[1]:
             raise InputError(
-                f"{source.where}: puck.{name}: puck {place}: mass_g = {mass[place - 1]:g}, diameter_mm = {diameter[place - 1]:g} and "
-                f"thickness_mm = {thickness[place - 1]:g} make {density:.3g} g/cm3; must be from {_DENSITIES[0]:g} to {_DENSITIES[1]:g}"
+                f"{source.where}: puck.{name}: puck {place}: mass_g = {mass[place - 1]:g}, diameter_mm = "
+                f"{diameter[place - 1]:g} and thickness_mm = {thickness[place - 1]:g} make {density:.3g} g/cm3; must "
+                f"be from {_DENSITIES[0]:g} to {_DENSITIES[1]:g}"
             )
     how = "mass over measured volume of pucks"
     _add(results, source, name, "density_g_per_cm3", mean(densities.tolist()), how, "density, g/cm3")
@@ -126,7 +127,8 @@ def pulled(measured: Dumbbell, where: str) -> DumbbellModuli | None:
 
 
 def dumbbell(name: str, material: Material, measured: Dumbbell, source: ReadingSource, results: CouponFindings) -> None:
-    """Shear modulus by the neo-Hookean fit. Raises InputError for too few specimens or points, and for a rigid material."""
+    """Shear modulus by the neo-Hookean fit. Raises InputError for too few specimens or points, and for a rigid
+    material."""
     where = f"{source.where}: dumbbell.{name}"
     if material.kind != "elastomer" and any(specimen.force_N for specimen in measured.specimen):
         raise InputError(f"{where}: {material.label} is rigid; die C is for an elastomer")
@@ -138,8 +140,8 @@ def dumbbell(name: str, material: Material, measured: Dumbbell, source: ReadingS
     secants = [shear_from_young(young, ratio) for young in fit.secants]
     compared = f"; E at 10 % over 2(1+nu) gives {np.mean(secants):.3g} MPa" if secants else ""
     how = (
-        f"dumbbells {fit.how}; low and high: least and greatest dumbbell; standard error of the mean {over.error:.2g} MPa, of "
-        f"the fits {max(fit.errors):.2g} MPa at most{compared}"
+        f"dumbbells {fit.how}; low and high: least and greatest dumbbell; standard error of the mean {over.error:.2g} "
+        f"MPa, of the fits {max(fit.errors):.2g} MPa at most{compared}"
     )
     value, low, high, spread = (rounded(x) for x in (over.value, min(fit.moduli), max(fit.moduli), fit.spread))
     text, keys = source.source(how, over.count), ("shear_modulus_MPa",)
@@ -150,7 +152,8 @@ def dumbbell(name: str, material: Material, measured: Dumbbell, source: ReadingS
     _compare_modulus(name, over.value, material.shear_modulus_MPa, results)
     if material.law is not None:
         results.notes.append(
-            f"{name} has a hyperelastic law ({material.law.name}), which predictions use; the shear modulus does not change it"
+            f"{name} has a hyperelastic law ({material.law.name}), which predictions use; the shear modulus does not "
+            "change it"
         )
 
 
@@ -172,8 +175,8 @@ def _check_rising(specimen: DumbbellSpecimen, where: str) -> None:
     for k, ((before, lower), (after, higher)) in enumerate(pairs, start=1):
         if higher < lower or (k == len(pairs) and higher == lower):
             raise InputError(
-                f"{where}.force_N: {lower:g} N at extension_mm = {before:g}, {higher:g} N at {after:g}; it must rise with "
-                "extension_mm; give the points of the loading, none after a break"
+                f"{where}.force_N: {lower:g} N at extension_mm = {before:g}, {higher:g} N at {after:g}; it must rise "
+                "with extension_mm; give the points of the loading, none after a break"
             )
 
 
@@ -186,13 +189,13 @@ def _fit(specimen: DumbbellSpecimen, most: float, where: str) -> tuple[float, fl
     near = stretch - 1 <= most * (1 + 1e-9)
     if near.sum() < _LEAST_POINTS:
         raise InputError(
-            f"{where}: {near.sum()} points up to a strain of {most:g} (extension_mm = {most * specimen.gauge_length_mm:g}); "
-            f"at least {_LEAST_POINTS}"
+            f"{where}: {near.sum()} points up to a strain of {most:g} (extension_mm = "
+            f"{most * specimen.gauge_length_mm:g}); at least {_LEAST_POINTS}"
         )
     modulus, error = neo_hookean(stretch[near], stress[near])
     if not _MODULI[0] <= modulus <= _MODULI[1]:
         raise InputError(
-            f"{where}: force_N over width_mm and thickness_mm makes a shear modulus of {modulus:.4g} MPa; an elastomer has "
-            f"from {_MODULI[0]:g} to {_MODULI[1]:g} MPa; must be forces in N and lengths in mm"
+            f"{where}: force_N over width_mm and thickness_mm makes a shear modulus of {modulus:.4g} MPa; an "
+            f"elastomer has from {_MODULI[0]:g} to {_MODULI[1]:g} MPa; must be forces in N and lengths in mm"
         )
     return modulus, error, secant_modulus(stretch, stress, _SECANT)

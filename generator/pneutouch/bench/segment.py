@@ -18,10 +18,12 @@ TURN = 0.05
 (0.5 mm of 6.9 mm, and the clearance) is three times as long."""
 
 NEAR, STAY = 0.02, 0.005
-"""Shares of an indentation's travel: within the first of its end an actuator may overshoot and settle; within the second it stays."""
+"""Shares of an indentation's travel: within the first of its end an actuator may overshoot and settle; within the
+second it stays."""
 
 WIDE, FEW = 0.05, 8
-"""Where fewer than `FEW` blocks are at the clear end, as where a loop turns without rest, those within `WIDE` of it count."""
+"""Where fewer than `FEW` blocks are at the clear end, as where a loop turns without rest, those within `WIDE` of it
+count."""
 
 _LEAST_SHARE = 20.0
 """The plate moves where its travel is more than so many standard deviations of its position."""
@@ -48,10 +50,10 @@ class Excursion(NamedTuple):
 def excursions(blocks: Blocks) -> tuple[list[Excursion], bool]:
     """All loadings and unloadings, and whether the record begins with the plate in (that one is left out).
 
-    No speed and no length is presumed: all limits are shares of the travel or multiples of the position's noise, so that
-    a run in a wrong unit is still segmented correctly, and its magnitude reveals the unit. Missed samples do not matter, as no differences
-    of neighbours are taken. Raises InputError where the plate does not move, or moves out of the sensor when it presses.
-    """
+    No speed and no length is presumed: all limits are shares of the travel or multiples of the position's noise, so
+    that a run in a wrong unit is still segmented correctly, and its magnitude reveals the unit. Missed samples do not
+    matter, as no differences of neighbours are taken. Raises InputError where the plate does not move, or moves out of
+    the sensor when it presses."""
     place = _smooth(blocks.position)
     noise, span = position_noise(blocks.position), float(np.ptp(place))
     if span <= _LEAST_SHARE * noise or place.size < FEW:
@@ -107,8 +109,8 @@ def _check_direction(blocks: Blocks, place: Array, span: float) -> None:
         return
     if low.std() > _ACTIVE * high.std() and np.ptp(low) > TURN * np.ptp(blocks.force):
         raise InputError(
-            f"{blocks.file}: the force changes where position is low ({place.min():.4g} mm) and is constant where it is high "
-            f"({place.max():.4g} mm); position must count into the sensor: invert columns.position.sign"
+            f"{blocks.file}: the force changes where position is low ({place.min():.4g} mm) and is constant where it "
+            f"is high ({place.max():.4g} mm); position must count into the sensor: invert columns.position.sign"
         )
 
 

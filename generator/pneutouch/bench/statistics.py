@@ -62,10 +62,10 @@ def shear_from_young(modulus: float, poisson_ratio: float) -> float:
 def dead_volume(cavity: Mean, over_cap_kPa: Mean, over_plug_kPa: Mean, gauge_kPa: float = 0.0) -> Mean:
     """Dead volume from the pressures that the same push of air makes over a cap and over a plug with a cavity.
 
-    Boyle: p_a V_d = p_b (V_d + V_c), so V_d = V_c p_b / (p_a - p_b); syringe and ambient pressure cancel. Volumes in one
-    unit, gauge pressures in one unit, ``gauge_kPa`` the gauge's own standard uncertainty. ``spread`` is the standard
-    uncertainty of the result, by the derivatives (JCGM 100, 5.1.2). Raises ValueError where the plug's is not the lower.
-    """
+    Boyle: p_a V_d = p_b (V_d + V_c), so V_d = V_c p_b / (p_a - p_b); syringe and ambient pressure cancel. Volumes in
+    one unit, gauge pressures in one unit, ``gauge_kPa`` the gauge's own standard uncertainty. ``spread`` is the
+    standard uncertainty of the result, by the derivatives (JCGM 100, 5.1.2). Raises ValueError where the plug's is not
+    the lower."""
     a, b, volume = over_cap_kPa.value, over_plug_kPa.value, cavity.value
     if b >= a:
         raise ValueError("the pressure over the plug must be lower than over the cap")

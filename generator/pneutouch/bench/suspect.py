@@ -23,13 +23,16 @@ SETTLED = 0.01
 """Share of the force or the rise by which the two halves of a read window may differ: our choice."""
 
 LEAK = 0.02
-"""Share of the greatest rise that a leak may take during a hold: our choice, about the difference between three runs of a sensor."""
+"""Share of the greatest rise that a leak may take during a hold: our choice, about the difference between three runs of
+a sensor."""
 
 SAME_DEPTH = 0.03
-"""mm within which two indentations are of one depth: some standard deviations of an onset (0.004 to 0.01 mm in the tests)."""
+"""mm within which two indentations are of one depth: some standard deviations of an onset (0.004 to 0.01 mm in the
+tests)."""
 
 MOST = 20
-"""Gaps, clipped stretches and spikes that are listed one by one, of each kind: our choice, so that a list can be read."""
+"""Gaps, clipped stretches and spikes that are listed one by one, of each kind: our choice, so that a list can be
+read."""
 
 _MANY = MappingProxyType({"gap": "gaps", "clipped": "clipped stretches", "spike": "spikes"})
 
@@ -38,7 +41,8 @@ _SIGNIFICANT = 4.0
 
 
 def untrusted(blocks: Blocks, indent: MeasuredIndentation, before: float) -> str | None:
-    """Why an indentation cannot be used: a channel clipped before contact or while read, or half of the samples missing."""
+    """Why an indentation cannot be used: a channel clipped before contact or while read, or half of the samples
+    missing."""
     lost = 0.0
     for warning in blocks.warnings:
         if warning.used:
@@ -160,8 +164,9 @@ def _leak(blocks: Blocks, indentations: RunIndentations) -> list[SuspectInterval
         return []
     first, last = touched[0][0], touched[-1][0]
     why = (
-        f"pressure without contact drifts by {60 * slope / KPA:.3g} kPa a minute, {100 * abs(slope) * longest / top:.2g} % of the "
-        "greatest rise during an indentation: a leak, or a reset that has not settled"
+        f"pressure without contact drifts by {60 * slope / KPA:.3g} kPa a minute, "
+        f"{100 * abs(slope) * longest / top:.2g} % of the greatest rise during an indentation: a leak, or a reset "
+        "that has not settled"
     )
     return [SuspectInterval(float(blocks.time[first.start]), float(blocks.time[last.end - 1]), why, True)]
 

@@ -21,15 +21,17 @@ _ROUNDING = 1e-9
 
 
 def leak(name: str, cap: LeakCap, accuracy_kPa: float, source: ReadingSource, results: CouponFindings) -> None:
-    """Leak rate, kPa a minute. Raises InputError where pressure rises by more than the gauge's ``accuracy_kPa``, kPa."""
+    """Leak rate, kPa a minute. Raises InputError where pressure rises by more than the gauge's ``accuracy_kPa``,
+    kPa."""
     for run, (start, end) in enumerate(zip(cap.start_kPa, cap.end_kPa, strict=True), start=1):
         rise = end - start
         if rise > accuracy_kPa + _ROUNDING:
             raise InputError(
-                f"run {run}: {end:g} kPa is above start_kPa = {start:g}; must be at most that, for a cap gains no pressure",
+                f"run {run}: {end:g} kPa is above start_kPa = {start:g}; must be at most that, for a cap gains no "
+                "pressure",
                 file=source.where,
                 key=f"leak-cap.{name}.end_kPa",
-                remedy=f"swapped, or is the gauge less accurate than gauge_accuracy_kPa = {accuracy_kPa:g} of volume-plug.{name}?",
+                remedy=f"swapped, or is gauge_accuracy_kPa = {accuracy_kPa:g} of volume-plug.{name} too small?",
             )
         if rise > 0:
             within = f"pressure rose by {rise:.2g} kPa, within the gauge's accuracy of {accuracy_kPa:g} kPa"
@@ -68,7 +70,8 @@ def volume(
     results.figure(name, "dead volume as drawn, mL", drawn_mL)
     results.figure(name, "air in the syringe, mL", dead.value * over_cap_kPa.value / cap.ambient_pressure_kPa)
     results.notes.append(
-        f"put dead_volume_mL = {dead.value:.3f} under [pneumatics] of {name}; it is {dead.value:.3f} ± {dead.spread:.3f}"
+        f"put dead_volume_mL = {dead.value:.3f} under [pneumatics] of {name}; it is {dead.value:.3f} ± "
+        f"{dead.spread:.3f}"
     )
 
 

@@ -1,4 +1,5 @@
-"""CSV files in chunks of bytes that end at a line end, so that every row keeps its number and every fault its location."""
+"""CSV files in chunks of bytes that end at a line end, so that every row keeps its number and every fault its
+location."""
 
 from __future__ import annotations
 
@@ -43,9 +44,8 @@ def _fault(path: Path, row: int, problem: str, remedy: str | None = None) -> Inp
 def csv_chunks(path: Path, names: Sequence[str]) -> Iterator[RowChunk]:
     """Chunks of a UTF-8 file with commas, semicolons or tabs and decimal points; see `read.chunks`.
 
-    Comment lines (``#``) before the header and a byte order mark are skipped, empty lines skipped but counted. A complete
-    last row without a line end is returned as `RowChunk.last`, because its last number may be cut.
-    """
+    Comment lines (``#``) before the header and a byte order mark are skipped, empty lines skipped but counted. A
+    complete last row without a line end is returned as `RowChunk.last`, because its last number may be cut."""
     size = path.stat().st_size
     with path.open("rb") as stream:
         layout = _header(path, stream, names)

@@ -15,7 +15,8 @@ from pneutouch.tables.parquet_table import parquet_chunks
 
 
 def chunks(path: Path, names: Sequence[str]) -> Iterator[RowChunk]:
-    """The columns ``names`` of a CSV or (suffix .parquet) parquet file in chunks, at least one row in all (it may be `RowChunk.last`).
+    """The columns ``names`` of a CSV or (suffix .parquet) parquet file in chunks, at least one row in all (it may be
+    `RowChunk.last`).
 
     Raises InputError, naming file, column and row, for a file that cannot be read, is cut off or has no rows, for a
     missing or doubled column, and for a cell that is not a finite number.
@@ -41,8 +42,8 @@ def chunks(path: Path, names: Sequence[str]) -> Iterator[RowChunk]:
 def whole(path: Path, names: Sequence[str]) -> tuple[Array, Array]:
     """Row numbers (n,) and columns (k, n) of a small file. Raises InputError as `chunks`.
 
-    A complete last row without a line end is kept: a table typed by hand often ends so, and its last row is often the greatest.
-    """
+    A complete last row without a line end is kept: a table typed by hand often ends so, and its last row is often the
+    greatest."""
     rows, values = [], []
     for part in chunks(path, names):
         rows.append(part.rows)

@@ -1,9 +1,9 @@
 """Model discrepancy, common to all runs, and the error of the first contact of each run.
 
-Both are unknowns with a standard deviation, estimated with the parameters. The first is the model discrepancy of Kennedy and O'Hagan
-(J. R. Stat. Soc. B 63, 2001, 425-464, DOI 10.1111/1467-9868.00294): without it a calibrated parameter has too small an interval around a wrong value
-(Brynjarsdottir and O'Hagan, Inverse Problems 30, 2014, 114007).
-"""
+Both are unknowns with a standard deviation, estimated with the parameters. The first is the model discrepancy of
+Kennedy and O'Hagan (J. R. Stat. Soc. B 63, 2001, 425-464, DOI 10.1111/1467-9868.00294): without it a calibrated
+parameter has too small an interval around a wrong value (Brynjarsdottir and O'Hagan, Inverse Problems 30, 2014,
+114007)."""
 
 from __future__ import annotations
 
@@ -15,11 +15,12 @@ from pneutouch.arrays import Array
 from pneutouch.bench.calibrate.observations import ObservationPoints
 
 FLOOR = np.array([0.01, 0.005, 0.005])
-"""Least standard deviation of the model discrepancy, as a share of force, of pressure rise and of an injection's pressure.
+"""Least standard deviation of the model discrepancy, as a share of force, of pressure rise and of an injection's
+pressure.
 
-A share that is the same everywhere is a modulus to the model, so no residual shows it. Our choice: a wall that relaxes carries
-more at the end of a 4 s hold than at rest; no Prony data of these resins are published, the paper's Fig. S1 calls relaxation
-low, and what the air reads of it is less than what the plate does."""
+A share that is the same everywhere is a modulus to the model, so no residual shows it. Our choice: a wall that relaxes
+carries more at the end of a 4 s hold than at rest; no Prony data of these resins are published, the paper's Fig. S1
+calls relaxation low, and what the air reads of it is less than what the plate does."""
 
 _LARGEST = 0.3
 """Greatest size considered: our choice, no longer a model of the sensor."""
@@ -37,8 +38,8 @@ TRAVEL = 3
 
 @dataclass(frozen=True, slots=True)
 class SharedUnknowns:
-    """Unknowns that move many values together: ``columns`` (N, q) for size one, in N and MPa; ``kind`` (q,) of each, as `FLOOR`, or
-    `TRAVEL`, whose size is one already."""
+    """Unknowns that move many values together: ``columns`` (N, q) for size one, in N and MPa; ``kind`` (q,) of each, as
+    `FLOOR`, or `TRAVEL`, whose size is one already."""
 
     columns: Array
     kind: Array
@@ -51,9 +52,8 @@ class SharedUnknowns:
 def shared_of(points: ObservationPoints) -> SharedUnknowns:
     """Columns for points.
 
-    Of each channel one share of all its readings, whatever the pressure, and at each pressure a smooth share along the travel; of
-    each curve one error of its travel, which moves force and rise together.
-    """
+    Of each channel one share of all its readings, whatever the pressure, and at each pressure a smooth share along the
+    travel; of each curve one error of its travel, which moves force and rise together."""
     m, values, channels = points.travel.shape[1], points.values, points.channels
     travel = points.travel / points.travel.max(axis=1, initial=1e-9)[:, None]
     shape = _shape(
@@ -81,12 +81,12 @@ def shared_of(points: ObservationPoints) -> SharedUnknowns:
 def sizes_of(
     shared: SharedUnknowns, jacobian: Array, residual: Array, prior_weight: Array, pull: Array, floor: Array
 ) -> Array:
-    """Sizes (3,) that the residuals make most likely, the parameters taken out (restricted likelihood: Patterson and Thompson,
-    Biometrika 58, 1971, 545-554); at least ``floor``.
+    """Sizes (3,) that the residuals make most likely, the parameters taken out (restricted likelihood: Patterson and
+    Thompson, Biometrika 58, 1971, 545-554); at least ``floor``.
 
-    Rows are those used, over their standard deviations: ``shared`` (n, q), ``jacobian`` (n, k), ``residual`` (n,); ``prior_weight`` (k,) are
-    the weights of the parameters, ``pull`` (k,) how many standard deviations each is off it. Where the likelihood is greatest is sought kind by kind on a grid, twice round.
-    """
+    Rows are those used, over their standard deviations: ``shared`` (n, q), ``jacobian`` (n, k), ``residual`` (n,);
+    ``prior_weight`` (k,) are the weights of the parameters, ``pull`` (k,) how many standard deviations each is off it.
+    Where the likelihood is greatest is sought kind by kind on a grid, twice round."""
     k, q = jacobian.shape[1], shared.kind.size
     rows = np.hstack([jacobian, shared.columns, residual[:, None]])
     gram = rows.T @ rows
@@ -111,7 +111,8 @@ def sizes_of(
 
 
 def _unlikely(gram: Array, weight: Array) -> float:
-    """Minus twice the restricted log likelihood but for a constant; the last row and column of ``gram`` are the residuals'."""
+    """Minus twice the restricted log likelihood but for a constant; the last row and column of ``gram`` are the
+    residuals'."""
     normal = gram[:-1, :-1] + np.diag(weight)
     right = gram[:-1, -1]
     return float(np.linalg.slogdet(normal)[1] + gram[-1, -1] - right @ np.linalg.solve(normal, right))

@@ -21,10 +21,12 @@ _START_SHARE = 0.9
 """The search begins where the greatest driving pressure is at most this share of the limit pressure: our choice."""
 
 _ROUNDS = 2
-"""How often errors and sizes are estimated from the residuals and the fit is repeated: our choice, a third time changes nothing."""
+"""How often errors and sizes are estimated from the residuals and the fit is repeated: our choice, a third time changes
+nothing."""
 
 _SMOOTH = 0.1
-"""Smooth share of a reading that may be anything while the scatter of single points is looked at: our choice, generous."""
+"""Smooth share of a reading that may be anything while the scatter of single points is looked at: our choice,
+generous."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,8 +38,8 @@ class CalibrationFit:
         problem, solution: As solved, weights with the scatter of the runs.
         covariance: Its uncertainty.
         half_width: Of the 95 % intervals, (k,); NaN on a bound.
-        chi_squared, freedom: Sum of squared residuals by the covariance of reading, atlas, first contact and what the model leaves
-            out, and its degrees of freedom.
+        chi_squared, freedom: Sum of squared residuals by the covariance of reading, atlas, first contact and what the
+            model leaves out, and its degrees of freedom.
         channel_factor: Standard deviations of points over their stated ones: force, rise, injection.
         sizes: Of what the model leaves out of all runs alike, share of the reading: force, rise, injection.
         run_factor: Variance by which runs scatter more than independent points would.
@@ -80,18 +82,17 @@ def fit(
 ) -> CalibrationFit:
     """Fit ``parameters`` of ``sensor`` to observations.
 
-    First with the errors stated for reading and atlas; then with those that the residuals show, channel by channel, and with
-    the scatter between runs, so that the priors are weighed against the information in the data. The model discrepancy is as large as
-    the residuals show, at least ``floor`` (see `discrepancy`). Raises InputError for too few points, ComputationError where no
-    fit is found.
-    """
+    First with the errors stated for reading and atlas; then with those that the residuals show, channel by channel, and
+    with the scatter between runs, so that the priors are weighed against the information in the data. The model
+    discrepancy is as large as the residuals show, at least ``floor`` (see `discrepancy`). Raises InputError for too few
+    points, ComputationError where no fit is found."""
     sensor = sensor.replace(ambient_pressure=observations.ambient)
     points = points_of(observations)
     fitted = len(parameters.fitted)
     if not parameters.priors and int(points.use.sum()) <= fitted:
         raise InputError(
-            f"calibrate: {int(points.use.sum())} values for {fitted} parameters without priors; there must be more values, or "
-            "fewer parameters with `fit`"
+            f"calibrate: {int(points.use.sum())} values for {fitted} parameters without priors; there must be more "
+            "values, or fewer parameters with `fit`"
         )
     model = AtlasModel(sensor, points)
     # A start that trusts neither the shape of the model nor single points: all errors alike, as shares of full scale.
@@ -100,7 +101,7 @@ def fit(
         LeastSquaresProblem(model, parameters, rough, np.zeros((rough.size, 0))), _start(sensor, points, parameters)
     )
     for _ in range(_ROUNDS):
-        # A share of what was read would pull the fit below the readings (Peelle's puzzle); of what is fitted it does not.
+        # A share of the readings would pull the fit below them (Peelle's puzzle); one of the fitted values does not.
         shared = shared_of(points.with_values(np.where(solution.use, solution.model, points.values)))
         channels = _channel_factors(
             LeastSquaresProblem(model, parameters, points.errors, shared.sized(np.full(3, _SMOOTH))), solution
@@ -112,24 +113,12 @@ def fit(
     runs = factor(seen, solution)
     last = LeastSquaresProblem(model, parameters, errors * np.sqrt(runs), shared.sized(sizes))
     solution = solve(last, solution.at)
-    certain = covariance(last, solution, runs, _others(last, solution) * parameters.prior_spread)
+    spread = covariance(last, solution, runs, _others(last, solution) * parameters.prior_spread)
     read = LeastSquaresProblem(model, parameters, points.errors, shared.sized(sizes))
-    squares = read.whitened((solution.residual * last.errors / points.errors)[:, None], solution.use) ** 2
-    return CalibrationFit(
-        observations,
-        points,
-        parameters,
-        sensor,
-        last,
-        solution,
-        certain,
-        half_widths(certain),
-        float(squares.sum()),
-        max(int(solution.use.sum()) - fitted, 0),
-        channels,
-        sizes,
-        runs,
-    )
+    stated = read.whitened((solution.residual * last.errors / points.errors)[:, None], solution.use)
+    squares, freedom = float((stated**2).sum()), max(int(solution.use.sum()) - fitted, 0)
+    fitting = observations, points, parameters, sensor, last, solution, spread, half_widths(spread)
+    return CalibrationFit(*fitting, squares, freedom, channels, sizes, run_factor=runs)
 
 
 def _others(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> Array:
@@ -171,7 +160,8 @@ def _start(sensor: Sensor, points: ObservationPoints, parameters: CalibrationPar
 
 
 def _channel_factors(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> Array:
-    """Root mean square by channel of what no smooth share explains, at least 1: what reading and atlas do not either."""
+    """Root mean square by channel of what no smooth share explains, at least 1: what reading and atlas do not
+    either."""
     factors, use = np.ones(3), solution.use
     residual, shared = problem.look(solution.at)[0], problem.shared[use]
     explained = shared.T @ shared

@@ -122,25 +122,16 @@ def _evaluated(fit: CalibrationFit, full: Array, points: ObservationPoints) -> t
     return np.where(known, values[0], 0.0), np.where(known[:, None], derivatives, 0.0)
 
 
+def _planned(travel: Array, driving: Array, volume: Array) -> ObservationPoints:
+    """Points of a planned test at travels (c, m), driving pressures (c,) and injected volumes (i, n)."""
+    t, v, runs = np.ones_like(travel), np.ones_like(volume), np.zeros(len(travel))
+    return ObservationPoints(travel, t, t, t, t, t > 0, driving, volume, v, v, v > 0, runs, runs.astype(int))
+
+
 def _indented(fit: CalibrationFit, full: Array, pressure: float, depth: float) -> Array:
     """Repeated runs at one pressure, scattering as the runs measured do."""
     row = np.linspace(0.0, depth, _STEPS + 1)[None, 1:]
-    one, none = np.ones_like(row), np.zeros((0, 0))
-    points = ObservationPoints(
-        row,
-        one,
-        one,
-        one,
-        one,
-        one > 0,
-        np.array([pressure]),
-        none,
-        none,
-        none,
-        none > 0,
-        np.zeros(1),
-        np.zeros(1, dtype=int),
-    )
+    points = _planned(row, np.array([pressure]), np.zeros((0, 0)))
     values, derivatives = _evaluated(fit, full, points)
     half = row.size
     force = np.hypot(fit.observations.rig.force_resolution_N / np.sqrt(12.0), ATLAS_FORCE * np.abs(values[:half]).max())
@@ -159,19 +150,14 @@ def _volume(fit: CalibrationFit, full: Array, pressure: float) -> float:
     pressures, _ = free_pressure(slices, np.zeros(nodes.size, dtype=np.intp), nodes)
     nu = float(np.interp(pressure / mu, pressures, nodes))
     grown = nu * float(slices.reach(np.zeros(1, dtype=np.intp))[0]) * size**3
-    volume = REST_VOLUME * size**3 + full[DEAD]
-    return float(
-        (pressure + fit.sensor.gas.ambient_pressure) * (volume + grown) / fit.sensor.gas.ambient_pressure - volume
-    )
+    volume, ambient = REST_VOLUME * size**3 + full[DEAD], fit.sensor.gas.ambient_pressure
+    return float((pressure + ambient) * (volume + grown) / ambient - volume)
 
 
 def _injected(fit: CalibrationFit, full: Array, volume: float) -> Array:
     """An injection in steps, all its volumes wrong by one factor."""
     row = np.linspace(0.0, volume, _STEPS + 1)[None, 1:]
-    one, none = np.ones_like(row), np.zeros((0, 0))
-    points = ObservationPoints(
-        none, none, none, none, none, none > 0, np.zeros(0), row, one, one, one > 0, np.zeros(0), np.zeros(0, dtype=int)
-    )
+    points = _planned(np.zeros((0, 0)), np.zeros(0), row)
     values, derivatives = _evaluated(fit, full, points)
     by_volume = np.gradient(values, row[0]) * row[0] * SYRINGE
     error = np.hypot(READING, ATLAS_PRESSURE * np.abs(values).max()) * fit.channel_factor[2]
@@ -182,6 +168,7 @@ def _injected(fit: CalibrationFit, full: Array, volume: float) -> Array:
 def _information(
     fit: CalibrationFit, points: ObservationPoints, values: Array, derivatives: Array, noise: Array
 ) -> Array:
-    """Information of values with errors ``noise``, (N, N), and with what the model leaves out as the runs measured show it."""
+    """Information of values with errors ``noise``, (N, N), and with what the model leaves out as the runs measured show
+    it."""
     shared = shared_of(points.with_values(values)).sized(fit.sizes)
     return np.asarray(derivatives.T @ np.linalg.solve(noise + shared @ shared.T, derivatives))

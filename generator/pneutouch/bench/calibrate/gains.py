@@ -12,7 +12,8 @@ GAIN = 0.01
 
 
 def gain_shifts(fit: CalibrationFit) -> tuple[Array, Array]:
-    """How the estimates move, (k,) coordinates each, where force and where pressure read 1 % more than they are; 0 on a bound.
+    """How the estimates move, (k,) coordinates each, where force and where pressure read 1 % more than they are; 0 on a
+    bound.
 
     The gauge reads the driving pressure too.
     """

@@ -49,8 +49,8 @@ class RunResiduals:
 
 @dataclass(frozen=True, slots=True)
 class SystematicDeviation:
-    """A stretch where the runs at a driving pressure (kPa) all deviate alike: ``channel`` force or pressure, travels mm, the
-    greatest mean residual over full scale with its sign."""
+    """A stretch where the runs at a driving pressure (kPa) all deviate alike: ``channel`` force or pressure, travels
+    mm, the greatest mean residual over full scale with its sign."""
 
     driving_pressure_kPa: float
     channel: str
@@ -66,30 +66,14 @@ def residuals(fit: CalibrationFit) -> tuple[RunResiduals, ...]:
     gap = np.where(fit.solution.use, fit.solution.model - p.values, np.nan)
     force, rise = gap[:size].reshape(p.there.shape), gap[size : 2 * size].reshape(p.there.shape)
     pressure = gap[2 * size :].reshape(p.known.shape)
-    runs = [
-        RunResiduals(
-            curve.run.label,
-            curve.run.driving_pressure_kPa,
-            p.travel[i][p.there[i]],
-            force[i][p.there[i]],
-            rise[i][p.there[i]],
-            _scale(p.force[i]),
-            _scale(p.rise[i]),
-        )
-        for i, curve in enumerate(fit.observations.curves)
-    ]
-    runs += [
-        RunResiduals(
-            injection.label,
-            float("nan"),
-            p.volume[i][p.known[i]],
-            np.zeros(0),
-            pressure[i][p.known[i]],
-            1.0,
-            _scale(p.pressure[i]),
-        )
-        for i, injection in enumerate(fit.observations.injections)
-    ]
+    runs = []
+    for i, curve in enumerate(fit.observations.curves):
+        at, f, r = (part[i][p.there[i]] for part in (p.travel, force, rise))
+        scales = _scale(p.force[i]), _scale(p.rise[i])
+        runs.append(RunResiduals(curve.run.label, curve.run.driving_pressure_kPa, at, f, r, *scales))
+    for i, injection in enumerate(fit.observations.injections):
+        volume, rest = (part[i][p.known[i]] for part in (p.volume, pressure))
+        runs.append(RunResiduals(injection.label, np.nan, volume, np.zeros(0), rest, 1.0, _scale(p.pressure[i])))
     return tuple(runs)
 
 

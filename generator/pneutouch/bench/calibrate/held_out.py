@@ -50,9 +50,8 @@ def predict_held_out(
 ) -> HeldOutPrediction:
     """Leave out a driving pressure (kPa), fit to the rest, predict it.
 
-    Raises InputError for a pressure that was not measured, where nothing is left to fit, and where the model has too few of
-    its points to compare.
-    """
+    Raises InputError for a pressure that was not measured, where nothing is left to fit, and where the model has too
+    few of its points to compare."""
     known_kPa = observations.driving_pressures_kPa
     if driving_pressure_kPa not in known_kPa:
         problem = f"no run at this driving pressure; measured: {_listed(known_kPa)} kPa"
@@ -69,25 +68,17 @@ def predict_held_out(
     use = ok[0][: points.there.size].reshape(shape) & points.there
     if (use.sum(axis=1) < 2).any():
         problem = (
-            "the model fitted to the rest has fewer than two points of a run at this pressure (beyond its limit point or "
-            "buckled)"
+            "the model fitted to the rest has fewer than two points of a run at this pressure (beyond its limit "
+            "point or buckled)"
         )
         raise InputError(problem, key="hold_out_kPa", value=driving_pressure_kPa, remedy="hold out another")
     force, rise = (part.reshape(shape) for part in (values[0][: use.size], values[0][use.size : 2 * use.size]))
     rows = [_row(points.travel[i], points.force[i], points.rise[i], force[i], rise[i], use[i]) for i in range(len(use))]
-    mean = np.mean(rows, axis=0)
-    worst = np.max(rows, axis=0)
-    return HeldOutPrediction(
-        driving_pressure_kPa,
-        float(mean[0]),
-        float(mean[1]),
-        float(mean[2]),
-        float(mean[3]),
-        float(worst[4]),
-        float(worst[5]),
-        int(use.sum()),
-        int((points.there & ~use).sum()),
-    )
+    measured_kPa_per_N, predicted_kPa_per_N, *errors = (float(x) for x in np.mean(rows, axis=0)[:4])
+    errors += [float(x) for x in np.max(rows, axis=0)[4:]]
+    sensitivities = measured_kPa_per_N, predicted_kPa_per_N
+    counts = int(use.sum()), int((points.there & ~use).sum())
+    return HeldOutPrediction(driving_pressure_kPa, *sensitivities, errors[0], errors[1], errors[2], errors[3], *counts)
 
 
 def _row(travel: Array, force: Array, rise: Array, model_force: Array, model_rise: Array, use: Array) -> list[float]:

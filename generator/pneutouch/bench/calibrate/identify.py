@@ -12,17 +12,17 @@ from pneutouch.bench.calibrate.intervals import information
 from pneutouch.bench.calibrate.parameters import LOGARITHMIC
 
 CORRELATED = 0.95
-"""Correlation above which two parameters count as strongly correlated: our choice; the standard deviation of each is then
-3 times that with the other known."""
+"""Correlation above which two parameters count as strongly correlated: our choice; the standard deviation of each is
+then 3 times that with the other known."""
 
 UNSEEN = 0.7
-"""Share of the prior standard deviation that remains, above which a parameter counts as not determined by the data: our choice;
-they then weigh no more than the prior."""
+"""Share of the prior standard deviation that remains, above which a parameter counts as not determined by the data: our
+choice; they then weigh no more than the prior."""
 
 _LEAST = 1e-12
 _NEEDED = 0.5
-"""Share of the prior standard deviation that the data alone leave, above which more than two parameters count as strongly
-correlated: our choice."""
+"""Share of the prior standard deviation that the data alone leave, above which more than two parameters count as
+strongly correlated: our choice."""
 _MEMBER = 0.3
 _NAMED = 0.25
 """Least weight of a parameter in a correlated group, and of one in a named combination."""
@@ -35,8 +35,8 @@ class CorrelatedParameters:
     Attributes:
         members: Their numbers.
         correlation: Greatest correlation among them, in the data alone, with its sign.
-        alone: Standard deviation of each by the scatter of the data alone, were the model true; of modulus and wall relative, of the dead volume mm3, of the
-            offset mm.
+        alone: Standard deviation of each by the scatter of the data alone, were the model true; of modulus and wall
+            relative, of the dead volume mm3, of the offset mm.
         given: The same were the others known.
         combination: Exponents of modulus and wall in the product that is known, where they are the members; else None.
     """
@@ -110,15 +110,9 @@ def _groups(curves: Array, known: Array, numbers: Array, prior_spread: Array) ->
             continue
         inner = correlation[np.ix_(places, places)]
         strongest = float(inner.ravel()[np.abs(inner).argmax()])
-        groups.append(
-            CorrelatedParameters(
-                tuple(int(numbers[p]) for p in places),
-                strongest,
-                spread[places],
-                1.0 / scale[places],
-                _product(covariance[np.ix_(places, places)], numbers[places]),
-            )
-        )
+        numbered = tuple(int(numbers[p]) for p in places)
+        product = _product(covariance[np.ix_(places, places)], numbers[places])
+        groups.append(CorrelatedParameters(numbered, strongest, spread[places], 1.0 / scale[places], product))
     return groups
 
 

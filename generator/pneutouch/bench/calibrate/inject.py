@@ -15,8 +15,8 @@ _NEWTON = 4
 def injected(slices: AtlasSlices, k: Index, ambient: Array, dead: Array, volume: Array) -> tuple[Array, Flags]:
     """Pressures of s sensors after injected volumes (n,) and whether the atlas covers them, (s, n).
 
-    Solves (p + pa)(V(p) + Vd) = pa (V0 + Vd + dV), V the free dome's volume, by V: the injected volume rises with it through
-    the limit point, where a driven pressure would not. All nondimensional; ambient and dead (s,), by slices k.
+    Solves (p + pa)(V(p) + Vd) = pa (V0 + Vd + dV), V the free dome's volume, by V: the injected volume rises with it
+    through the limit point, where a driven pressure would not. All nondimensional; ambient and dead (s,), by slices k.
     """
     s, n = k.size, volume.size
     content = ambient[:, None] * (REST_VOLUME + dead[:, None] + volume)

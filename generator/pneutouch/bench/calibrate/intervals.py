@@ -53,8 +53,9 @@ class Covariance:
 
 
 class WeightedRows(NamedTuple):
-    """Values used, (N,), with derivatives (N, j) by free parameters and shared unknowns, the local residuals, and the prior
-    weights (j,) of the unknowns; all in units of ``scale`` (j,), in which data and priors together have unit information."""
+    """Values used, (N,), with derivatives (N, j) by free parameters and shared unknowns, the local residuals, and the
+    prior weights (j,) of the unknowns; all in units of ``scale`` (j,), in which data and priors together have unit
+    information."""
 
     residual: Array
     jacobian: Array
@@ -69,8 +70,9 @@ class WeightedRows(NamedTuple):
 
 
 class RunScatter(NamedTuple):
-    """Scatter between runs: ``score`` the covariance of the slopes (k, k); ``held`` the directions that one run alone holds, a
-    projection in coordinates of unit information (k, k); ``alone`` that run by parameter, -1 without one (k,)."""
+    """Scatter between runs: ``score`` the covariance of the slopes (k, k); ``held`` the directions that one run alone
+    holds, a projection in coordinates of unit information (k, k); ``alone`` that run by parameter, -1 without one
+    (k,)."""
 
     score: Array
     held: Array
@@ -85,9 +87,9 @@ def information(jacobian: Array) -> Array:
 def scatter(clusters: Array, part: WeightedRows, normal: Array) -> RunScatter:
     """How the slopes scatter between runs whose points move together.
 
-    Cluster-robust with the leverage correction of Bell and McCaffrey (Survey Methodology 28, 2002, 169-181): a run's residuals
-    are too small by what it pulls the fit towards itself. ``normal``, (j, j), is the information of all runs and priors.
-    """
+    Cluster-robust with the leverage correction of Bell and McCaffrey (Survey Methodology 28, 2002, 169-181): a run's
+    residuals are too small by what it pulls the fit towards itself. ``normal``, (j, j), is the information of all runs
+    and priors."""
     root = _root(normal)
     total, held = np.zeros_like(normal), np.zeros_like(normal)
     alone = np.full(len(normal), -1)
@@ -109,7 +111,8 @@ def scatter(clusters: Array, part: WeightedRows, normal: Array) -> RunScatter:
 
 
 def factor(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> float:
-    """By how much more than of independent points the variance of the data's slopes is, on average over directions; at least 1."""
+    """By how much more than of independent points the variance of the data's slopes is, on average over directions; at
+    least 1."""
     free = np.flatnonzero(~solution.bound & (np.abs(solution.jacobian).max(axis=0) > 0))
     if not free.size or _freedom(problem, solution) < 1:
         return 1.0
@@ -124,9 +127,9 @@ def covariance(
 ) -> Covariance:
     """Covariances at a solution whose weights hold ``run_factor`` (`factor`).
 
-    ``others``, (N, 4), are derivatives by the parameters that are not fitted but uncertain, times their standard deviations: they
-    move the estimates although they are not estimated (consider covariance: Schmidt, in Advances in Control Systems 3, 1966).
-    """
+    ``others``, (N, 4), are derivatives by the parameters that are not fitted but uncertain, times their standard
+    deviations: they move the estimates although they are not estimated (consider covariance: Schmidt, in Advances in
+    Control Systems 3, 1966)."""
     k, runs = solution.at.size, _runs(problem, solution)
     free = np.flatnonzero(~solution.bound)
     part, freedom = _rows(problem, solution, free), _freedom(problem, solution)
@@ -143,25 +146,19 @@ def covariance(
     whole[blank, :] = whole[:, blank] = np.nan
     considered = np.zeros((k, others.shape[1]))
     considered[free] = moved
-    known = problem.whitened(solution.jacobian, solution.use)
-    return Covariance(
-        _placed(whole, free, k),
-        information(known),
-        float(freedom) if freedom >= 1 else np.inf,
-        _spread(np.diag(of_data) / np.diag(whole), free, k),
-        considered,
-        problem.chosen.even,
-        runs,
-        _spread(seen.alone[parameters], free, k, -1.0).astype(int),
-    )
+    known = information(problem.whitened(solution.jacobian, solution.use))
+    share = _spread(np.diag(of_data) / np.diag(whole), free, k)
+    alone = _spread(seen.alone[parameters], free, k, -1.0).astype(int)
+    between = float(freedom) if freedom >= 1 else np.inf
+    return Covariance(_placed(whole, free, k), known, between, share, considered, problem.chosen.even, runs, alone)
 
 
 def half_widths(estimate: Covariance) -> Array:
     """Half widths of the 95 % intervals in the coordinates, (k,); NaN where there is none.
 
-    Student's t with the degrees of freedom of Welch and Satterthwaite: of priors they are infinite (JCGM 100, G.4). The contribution
-    of a parameter with a uniform prior is not normal: there the interval is that of the sum (JCGM 101, 5.3).
-    """
+    Student's t with the degrees of freedom of Welch and Satterthwaite: of priors they are infinite (JCGM 100, G.4). The
+    contribution of a parameter with a uniform prior is not normal: there the interval is that of the sum (JCGM 101,
+    5.3)."""
     from scipy.stats import t
 
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -202,7 +199,8 @@ def _runs(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> int:
 
 
 def _freedom(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> int:
-    """Runs beyond the first of each driving pressure: errors that all runs of one share do not show in their differences."""
+    """Runs beyond the first of each driving pressure: errors that all runs of one share do not show in their
+    differences."""
     points = problem.model.points
     clusters = np.unique(points.clusters[solution.use])
     curves = clusters[clusters < points.group.size].astype(int)

@@ -22,7 +22,8 @@ _GAP = 0.08
 
 
 class AtlasModel:
-    """The atlas at ``points``. Parameter sets are (s, 4) coordinates, values (s, N) in the order of `ObservationPoints.values`.
+    """The atlas at ``points``. Parameter sets are (s, 4) coordinates, values (s, N) in the order of
+    `ObservationPoints.values`.
 
     Raises InputError where the atlas does not cover the sensor.
     """
@@ -77,21 +78,12 @@ class AtlasModel:
         return at(force), at((track.point.pressure - press.pressure[:, None]) * mu), at(ok)
 
     def _batch(self, sets: Array, driving: Array) -> SensorBatch:
-        def all_of(value: float) -> Array:
-            return np.full(len(sets), value)
-
-        return SensorBatch(
-            all_of(self.sensor.dome.inner_radius),
-            np.exp(sets[:, WALL]),
-            np.exp(sets[:, MODULUS]),
-            all_of(self.sensor.gas.ambient_pressure),
-            sets[:, DEAD],
-            driving,
-            all_of(self.sensor.protocol.depth),
-            all_of(self.sensor.protocol.plate_radius),
-            all_of(np.inf),
-            all_of(np.inf),
-        )
+        dome, gas, protocol = self.sensor.dome, self.sensor.gas, self.sensor.protocol
+        alike = dome.inner_radius, gas.ambient_pressure, protocol.depth, protocol.plate_radius, np.inf
+        size, ambient, depth, plate, unlimited = (np.full(len(sets), value) for value in alike)
+        wall, modulus = np.exp(sets[:, WALL]), np.exp(sets[:, MODULUS])
+        loads = ambient, sets[:, DEAD], driving, depth, plate
+        return SensorBatch(size, wall, modulus, *loads, unlimited, unlimited)
 
     def _injections(self, sets: Array, slices: AtlasSlices, k: Index) -> tuple[Array, Flags]:
         """Gauge pressures after the injections, (s, i n)."""

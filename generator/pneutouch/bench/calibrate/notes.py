@@ -45,16 +45,9 @@ def fit_notes(
     held_out: Sequence[HeldOutPrediction],
 ) -> list[str]:
     """The notes that belong to the numbers: at most one sentence of a kind."""
-    kinds = (
-        _left_out(fit),
-        _bounds(fit),
-        _far(fit),
-        _counted(fit) + _basis(fit),
-        _open(fit, identified),
-        _tests(fit, identified, further),
-        _fitness(fit, missed),
-        [_held(one) for one in held_out],
-    )
+    estimates = _left_out(fit), _bounds(fit), _far(fit), _counted(fit) + _basis(fit)
+    tests = _open(fit, identified), _tests(fit, identified, further)
+    kinds = *estimates, *tests, _fitness(fit, missed), [_held(one) for one in held_out]
     return ["; ".join(kind) for kind in kinds if kind]
 
 
@@ -83,8 +76,8 @@ def _left_out(fit: CalibrationFit) -> list[str]:
     for curve, lost, travel in zip(fit.observations.curves, fit.left_out, fit.points.travel, strict=True):
         if lost.any():
             notes.append(
-                f"{curve.run.label}: {int(lost.sum())} points from {travel[lost].min():.2f} mm on are left out: the model's "
-                "range ends before them (buckling, the plate's edge, or a depth beyond the atlas)"
+                f"{curve.run.label}: {int(lost.sum())} points from {travel[lost].min():.2f} mm on are left out: the "
+                "model's range ends before them (buckling, the plate's edge, or a depth beyond the atlas)"
             )
     for injection, lost in zip(fit.observations.injections, fit.injections_left_out, strict=True):
         if lost.any():
@@ -109,8 +102,8 @@ def _far(fit: CalibrationFit) -> list[str]:
         away = abs(fit.solution.at[place] - fit.parameters.start[k]) / fit.parameters.prior_spread[k]
         if away > _FAR and fit.parameters.priors:
             notes.append(
-                f"{WORDS[k]}: the estimate is {away:.1f} prior standard deviations from the design's value; where the design is "
-                "not what was built, correct it or fit without priors"
+                f"{WORDS[k]}: the estimate is {away:.1f} prior standard deviations from the design's value; where the "
+                "design is not what was built, correct it or fit without priors"
             )
     return notes
 
@@ -121,8 +114,8 @@ def _basis(fit: CalibrationFit) -> list[str]:
         runs = fit.covariance.runs
         why = f"{runs} run{'s'[: runs != 1]}, fewer than {LEAST_RUNS}" if runs < LEAST_RUNS else "no pressure twice"
         notes.append(
-            f"they rest on the scatter of the points and the instruments alone ({why}): the differences between runs are not in them; measure "
-            "more runs"
+            f"they rest on the scatter of the points and the instruments alone ({why}): the differences between runs "
+            "are not in them; measure more runs"
         )
     labels = [curve.run.label for curve in fit.observations.curves]
     labels += [injection.label for injection in fit.observations.injections]
@@ -139,7 +132,8 @@ def _open(fit: CalibrationFit, identified: Identifiability) -> list[str]:
     for k in identified.unseen:
         what = "the estimate is the prior" if fit.parameters.priors else "the estimate means nothing"
         notes.append(
-            f"{WORDS[k]}: the data do not determine it (more than {UNSEEN:.0%} of its prior standard deviation remains); {what}"
+            f"{WORDS[k]}: the data do not determine it (more than {UNSEEN:.0%} of its prior standard deviation "
+            f"remains); {what}"
         )
     return notes
 
@@ -153,8 +147,8 @@ def _apart(group: CorrelatedParameters) -> str:
     )
     wider = float(np.max(group.alone / group.given))
     return (
-        f"{names}: strongly correlated parameters (correlation {group.correlation:+.3f}, intervals {_times(wider)} as wide as with the "
-        f"other{'s'[: len(group.members) > 2]} known){product}"
+        f"{names}: strongly correlated parameters (correlation {group.correlation:+.3f}, intervals {_times(wider)} as "
+        f"wide as with the other{'s'[: len(group.members) > 2]} known){product}"
     )
 
 
@@ -163,7 +157,8 @@ def _tests(fit: CalibrationFit, identified: Identifiability, further: Sequence[S
         return []
     helpful = [test for test in further if test.gain > _WORTH][:2]
     return [
-        f"{'to separate them, measure' if place == 0 else 'or'}: {test.what} (the widest interval would shrink {_times(test.gain)})"
+        f"{'to separate them, measure' if place == 0 else 'or'}: {test.what} (the widest interval would shrink "
+        f"{_times(test.gain)})"
         for place, test in enumerate(helpful)
     ]
 
@@ -178,8 +173,8 @@ def _fitness(fit: CalibrationFit, missed: Sequence[SystematicDeviation]) -> list
     for pressure_kPa in sorted({miss.driving_pressure_kPa for miss in missed}):
         miss = max((m for m in missed if m.driving_pressure_kPa == pressure_kPa), key=lambda m: abs(m.share))
         parts.append(
-            f"{pressure_kPa:g} kPa: {miss.channel} {abs(miss.share):.1%} of full scale too {'high' if miss.share > 0 else 'low'} "
-            f"from {miss.start:.2f} to {miss.end:.2f} mm"
+            f"{pressure_kPa:g} kPa: {miss.channel} {abs(miss.share):.1%} of full scale too "
+            f"{'high' if miss.share > 0 else 'low'} from {miss.start:.2f} to {miss.end:.2f} mm"
         )
     return [f"the model deviates in all runs alike, {'; '.join(parts)}"] if parts else []
 
@@ -203,8 +198,9 @@ def _few(labels: Sequence[str]) -> str:
 
 def _held(one: HeldOutPrediction) -> str:
     return (
-        f"held out {one.driving_pressure_kPa:g} kPa: sensitivity {one.predicted_kPa_per_N:.4g} kPa/N predicted, {one.measured_kPa_per_N:.4g} measured "
-        f"({one.error:+.1%}); force within {one.force_worst:.1%} and pressure within {one.rise_worst:.1%} of full scale"
+        f"held out {one.driving_pressure_kPa:g} kPa: sensitivity {one.predicted_kPa_per_N:.4g} kPa/N predicted, "
+        f"{one.measured_kPa_per_N:.4g} measured ({one.error:+.1%}); force within {one.force_worst:.1%} and pressure "
+        f"within {one.rise_worst:.1%} of full scale"
     )
 
 

@@ -19,8 +19,8 @@ ATLAS_FORCE, ATLAS_PRESSURE = 0.0011, 0.0004
 """The atlas's own error over full scale: medians of 500 presses at their worst state (docs/atlas.md)."""
 
 READING = 0.05 * KPA
-"""Least standard deviation of a pressure point, MPa: our choice, half of the 0.1 kPa that such gauges show; the paper gives
-the resolution of its force sensor alone."""
+"""Least standard deviation of a pressure point, MPa: our choice, half of the 0.1 kPa that such gauges show; the paper
+gives the resolution of its force sensor alone."""
 
 _RANGE = 0.99
 """Share of the force sensor's range from which on a reading may be cut off: our choice, the zero is taken off it."""
@@ -68,10 +68,9 @@ class Observations:
 class ObservationPoints(NamedTuple):
     """Observations as arrays; c curves of at most m points, i injections of at most n, padded by repetition.
 
-    travel, force, rise, force_error, rise_error, there: (c, m) mm, N, MPa, standard deviations, and whether it is a point.
-    driving: (c,). volume, pressure, pressure_error, known: (i, n) mm3, MPa, MPa, and whether it is a point.
-    travel_error, group: (c,) standard deviation of the run's first contact, mm, and number of its driving pressure.
-    """
+    travel, force, rise, force_error, rise_error, there: (c, m) mm, N, MPa, standard deviations, and whether it is a
+    point. driving: (c,). volume, pressure, pressure_error, known: (i, n) mm3, MPa, MPa, and whether it is a point.
+    travel_error, group: (c,) standard deviation of the run's first contact, mm, and number of its driving pressure."""
 
     travel: Array
     force: Array
@@ -150,29 +149,15 @@ def points_of(observations: Observations) -> ObservationPoints:
             "calibrate: no curves and no injections; there must be at least one run of kind steps or injection"
         )
     curves = [_curve(curve, observations.rig) for curve in observations.curves]
-    travel, force, rise, force_error, rise_error, there = _padded(curves, 5)
+    *curve_columns, there = _padded(curves, 5)
     injections = [_injection(injection) for injection in observations.injections]
-    volume, pressure, pressure_error, known = _padded(injections, 3)
+    *injected, known = _padded(injections, 3)
     # What a gauge reads a little below zero before contact is zero: the dome is not sucked in.
     driving = np.array([max(curve.driving, 0.0) for curve in observations.curves])
-    group = np.array(
-        [observations.driving_pressures_kPa.index(curve.run.driving_pressure_kPa) for curve in observations.curves]
-    )
-    points = ObservationPoints(
-        travel,
-        force,
-        rise,
-        force_error,
-        rise_error,
-        there.astype(bool),
-        driving,
-        volume,
-        pressure,
-        pressure_error,
-        known.astype(bool),
-        _travel_errors(observations.curves),
-        group,
-    )
+    pressures_kPa = observations.driving_pressures_kPa
+    group = np.array([pressures_kPa.index(curve.run.driving_pressure_kPa) for curve in observations.curves])
+    there, known, errors = there.astype(bool), known.astype(bool), _travel_errors(observations.curves)
+    points = ObservationPoints._make((*curve_columns, there, driving, *injected, known, errors, group))
     if points.there.sum() + points.known.sum() < 2:
         raise InputError("calibrate: one point is not enough; there must be at least two without the origin")
     return points

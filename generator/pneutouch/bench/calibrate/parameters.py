@@ -32,10 +32,12 @@ LOGARITHMIC = np.array([True, True, False, False])
 _OUTSIDE = np.array([1.0, 1.0, ML, 1.0])
 
 OFFSET_BOUND = 0.5
-"""Greatest contact offset, mm: our choice, one step of the paper's protocol; more is not an offset but a missed contact."""
+"""Greatest contact offset, mm: our choice, one step of the paper's protocol; more is not an offset but a missed
+contact."""
 
 OFFSET_PRIOR = 0.05
-"""Standard deviation of the contact offset beforehand, mm: our choice, what is lost of the first touch below the noise."""
+"""Standard deviation of the contact offset beforehand, mm: our choice, what is lost of the first touch below the
+noise."""
 
 _STIFFEST = 100.0
 """Greatest shear modulus fitted, MPa: our choice, far above any elastomer."""
@@ -114,22 +116,14 @@ def parameters(
     high = [np.log(_STIFFEST), np.log(recipe.thickest * size), _LARGEST, OFFSET_BOUND]
     start = [np.log(sensor.wall.shear_modulus), np.log(sensor.dome.wall_thickness), sensor.gas.dead_volume, 0.0]
     prior_spread, even, origin = _priors(sensor, material, printer)
-    return CalibrationParameters(
-        parse_names(names),
-        np.array(start),
-        np.array(low),
-        np.array(high),
-        prior_spread,
-        even,
-        np.array([1e-3, 1e-3, 1e-3 * (rest + sensor.gas.dead_volume), 1e-3 * size]),
-        origin,
-        priors,
-    )
+    step = np.array([1e-3, 1e-3, 1e-3 * (rest + sensor.gas.dead_volume), 1e-3 * size])
+    bounds = np.array(start), np.array(low), np.array(high)
+    return CalibrationParameters(parse_names(names), *bounds, prior_spread, even, step, origin, priors)
 
 
 def _priors(sensor: Sensor, material: Material, printer: Printer) -> tuple[Array, Flags, tuple[str, ...]]:
-    """Standard deviations in the coordinates, which are even, and where they come from: the sources of every prediction's
-    uncertainty."""
+    """Standard deviations in the coordinates, which are even, and where they come from: the sources of every
+    prediction's uncertainty."""
     built = build_sources(batch_of(sensor, [0.0]), printer)
     groups = (
         modulus_sources(material, np.zeros(1, dtype=bool)),

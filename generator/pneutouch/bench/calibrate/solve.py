@@ -15,8 +15,8 @@ _ROUNDS = 60
 _DAMPING = 1e-3
 _MOST = 1e9
 _SETTLED = 1e-4
-"""The search ends where a step would lower the sum of squares by less, a hundredth of a standard deviation. The criterion is the
-sum, not the step: along an undetermined direction steps stay long."""
+"""The search ends where a step would lower the sum of squares by less, a hundredth of a standard deviation. The
+criterion is the sum, not the step: along an undetermined direction steps stay long."""
 _MOST_LOST = 0.5
 """A step that loses more than this share of a run's points is too long: our choice; else runs could vanish unseen."""
 
@@ -47,8 +47,8 @@ class LeastSquaresSolution:
 
 
 class LeastSquaresProblem:
-    """Residuals and derivatives; ``errors`` (N,) are the standard deviations that weigh the values, each for itself, ``shared``
-    (N, q) what unknowns of unit variance add to many of them together."""
+    """Residuals and derivatives; ``errors`` (N,) are the standard deviations that weigh the values, each for itself,
+    ``shared`` (N, q) what unknowns of unit variance add to many of them together."""
 
     def __init__(self, model: AtlasModel, chosen: CalibrationParameters, errors: Array, shared: Array) -> None:
         self.model, self.chosen, self.errors = model, chosen, errors
@@ -116,8 +116,8 @@ def _descend(problem: LeastSquaresProblem, at: Array) -> LeastSquaresSolution:
     use = known & problem.model.points.use
     if not use.any():
         raise ComputationError(
-            "calibrate: the model of the design has none of the measured states (beyond its limit point or buckled); give the "
-            "design a modulus or wall nearer to the sensor's"
+            "calibrate: the model of the design has none of the measured states (beyond its limit point or buckled); "
+            "give the design a modulus or wall nearer to the sensor's"
         )
     damping = _DAMPING
     rounds = 0

@@ -16,7 +16,8 @@ def line_pressure(pushed: Array, dead_volume: float, ambient: float) -> Array:
 
 
 def sensor_pressure(pushed: Array, inflation: InflationCurve, dead_volume: float, ambient: float) -> Array:
-    """Gauge pressure (MPa) after ``pushed`` mm3 of room air into the closed, unpressed sensor; NaN past the limit point.
+    """Gauge pressure (MPa) after ``pushed`` mm3 of room air into the closed, unpressed sensor; NaN past the limit
+    point.
 
     Boyle with a cavity that swells: (p + pa)(V(p) + Vd) = pa (V0 + Vd + pushed), with V(p) of the free inflation.
     """

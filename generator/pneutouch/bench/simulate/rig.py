@@ -21,7 +21,8 @@ class RigModel:
     force_noise: float = parameter(
         0.02,
         "N rms",
-        "white noise of a sample before the filter: the resolution of the ATI SI-40-2 (paper, Supplement C), taken as rms",
+        "white noise of a sample before the filter: the resolution of the ATI SI-40-2 (paper, Supplement C), taken "
+        "as rms",
     )
     pressure_noise: float = parameter(
         NOISE, "MPa rms", "white noise of a sample before the filter: one step of the recorder"

@@ -17,8 +17,8 @@ from pneutouch.bench.simulate.wall import WallMemory
 WALL, SCATTER = WallMemory(), ScatterModel()
 
 VENT, REFILL, SHUT, VALVE = 0.2, 0.4, 0.6, 0.02
-"""Shares of a rest: when the cavity is vented, filled again and shut in, and the time constant of both: our choice. Shut in, it
-is within 0.005 % of its driving pressure."""
+"""Shares of a rest: when the cavity is vented, filled again and shut in, and the time constant of both: our choice.
+Shut in, it is within 0.005 % of its driving pressure."""
 
 
 class RecordSamples(NamedTuple):
@@ -49,9 +49,8 @@ def simulate_run(
 ) -> RecordSamples:
     """Simulate one run at ``rate`` Hz.
 
-    Memory of the wall lasts over the whole run; without contact there is no force. Raises ValueError for a protocol that
-    leaves the curve (see `within`).
-    """
+    Memory of the wall lasts over the whole run; without contact there is no force. Raises ValueError for a protocol
+    that leaves the curve (see `within`)."""
     if not curve.covers(max(protocol.depths)):
         raise ValueError(f"depth {max(protocol.depths):g} mm is beyond the curve, {curve.reach:g} mm")
     knots, travels = protocol.knots()

@@ -34,7 +34,8 @@ class ScatterModel:
     dead_volume: float = parameter(
         20.0,
         "mm3",
-        "most extra air behind a specimen, even from none: 4 mm of a 2.5 mm bore, how far a tube is pushed on; our choice",
+        "most extra air behind a specimen, even from none: 4 mm of a 2.5 mm bore, how far a tube is pushed on; our "
+        "choice",
     )
     ageing: float = parameter(
         0.0,

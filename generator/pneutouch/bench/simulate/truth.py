@@ -91,8 +91,8 @@ def specimen_figures(
 ) -> dict[str, float | None]:
     """Figures of one specimen at one driving pressure without noise, by key.
 
-    Relaxation is as the rig reads it, its drift in it. Drift is the rig's alone: the wall's recovery after a press is not in it.
-    """
+    Relaxation is as the rig reads it, its drift in it. Drift is the rig's alone: the wall's recovery after a press is
+    not in it."""
     steps = truth.protocol("steps", inner_radius, curve.reach)
     depth, force, rise = loading(curve, steps, truth.wall)
     loading_figures = _by_key(lines(depth, force, rise / KPA))
@@ -161,10 +161,9 @@ def relaxation_figures(curve: PressCurve, truth: SimulationTruth, inner_radius: 
 def population(pressed: PressCurves, k: int, truth: SimulationTruth, rate: float, seed: tuple[int, ...]) -> Population:
     """The population around a nominal sensor, pressed at its k-th driving pressure.
 
-    Specimens come from the atlas in one batch. Mean and spread of each figure are then scaled by the nominal sensor's own
-    figure over the atlas's, so that they belong to the model behind the records. Outside the atlas, the
-    figures are the nominal sensor's and there is no spread but the runs'.
-    """
+    Specimens come from the atlas in one batch. Mean and spread of each figure are then scaled by the nominal sensor's
+    own figure over the atlas's, so that they belong to the model behind the records. Outside the atlas, the figures are
+    the nominal sensor's and there is no spread but the runs'."""
     sensor, curve = pressed.sensor, pressed.curves[k]
     nominal = specimen_figures(curve, truth, sensor.dome.inner_radius, rate)
     steps = truth.protocol("steps", sensor.dome.inner_radius, curve.reach)

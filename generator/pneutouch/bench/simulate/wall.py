@@ -1,8 +1,7 @@
 """The memory of the wall: force and pressure above the relaxed curve, as a sum of decaying terms.
 
-A standard linear solid on the curve: each term follows q' + q/tau = share f', with f the relaxed force or pressure rise.
-No Prony data of TangoPlus or its digital materials are published: shares and times are the simulator's own.
-"""
+A standard linear solid on the curve: each term follows q' + q/tau = share f', with f the relaxed force or pressure
+rise. No Prony data of TangoPlus or its digital materials are published: shares and times are the simulator's own."""
 
 from __future__ import annotations
 
@@ -49,10 +48,11 @@ class WallMemory:
         return terms
 
     def held(self, protocol: RunProtocol, nodes: Array) -> tuple[Array, Array]:
-        """Contribution of the memory at the end of every hold, as matrices (depths, nodes) on relaxed values at travels ``nodes``.
+        """Contribution of the memory at the end of every hold, as matrices (depths, nodes) on relaxed values at travels
+        ``nodes``.
 
-        The first is for the force, the second for the rise, which counts from before the plate moves in. Between the nodes the curve counts as straight.
-        """
+        The first is for the force, the second for the rise, which counts from before the plate moves in. Between the
+        nodes the curve counts as straight."""
         knots, travels = protocol.knots()
         count = round(float(knots[-1]) * _RATE) + 1
         travel = np.clip(np.interp(np.arange(count) / _RATE, knots, travels), 0.0, nodes[-1])
