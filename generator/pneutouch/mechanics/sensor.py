@@ -74,9 +74,8 @@ class Sensor:
 
         Raises TypeError for a name that no part has.
         """
-        parts = {}
-        for name in ("dome", "wall", "gas", "protocol"):
-            part = getattr(self, name)
+        parts = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
+        for name, part in parts.items():
             new = {field: changes.pop(field) for field in part.__dataclass_fields__ if field in changes}
             parts[name] = dataclasses.replace(part, **new)
         return dataclasses.replace(self, **{**parts, **changes})

@@ -23,11 +23,11 @@ LAWS: dict[str, Callable[..., Hyperelastic]] = {
 def hyperelastic(name: str, constants: tuple[float, ...], poisson_ratio: float) -> Hyperelastic:
     """Build a law by name. Raises InputError for an unknown name or constants it cannot take."""
     if name not in LAWS:
-        raise InputError(f"law = {name!r}: unknown.{nearest(name, LAWS)}")
+        raise InputError(f"unknown.{nearest(name, LAWS)}", key="law", value=name)
     try:
         return LAWS[name](*constants, poisson_ratio=poisson_ratio)
     except (TypeError, ValueError):
-        raise InputError(f"law {name}: cannot take the constants {list(constants)}") from None
+        raise InputError(f"cannot take the constants {list(constants)}", key="law", value=name) from None
 
 
 __all__ = ["LAWS", "Hyperelastic", "hyperelastic", "mooney_rivlin", "neo_hookean", "ogden", "yeoh"]

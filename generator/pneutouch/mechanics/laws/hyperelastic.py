@@ -28,7 +28,8 @@ class Hyperelastic:
 
     def __post_init__(self) -> None:
         if not 0.0 < self.poisson_ratio < 0.5:
-            raise InputError(f"poisson_ratio = {self.poisson_ratio:g}: must lie between 0 and 0.5, both excluded")
+            text = "must lie between 0 and 0.5, both excluded"
+            raise InputError(text, key="poisson_ratio", value=self.poisson_ratio)
         one = np.ones(1)
         # In pure shear j = h = 1 and a = l^2 + l^-2, whose second derivative is 8: W'' = 8 W_a = 4 mu.
         mu = 2.0 * float(self.energy(Strain(2.0 * one, one, one)).data[BY_A, 0])

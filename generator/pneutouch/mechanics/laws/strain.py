@@ -22,14 +22,8 @@ GRADIENT = slice(BY_A, BY_H + 1)
 HESSIAN = ((BY_AA, BY_AJ, BY_AH), (BY_AJ, BY_JJ, BY_JH), (BY_AH, BY_JH, BY_HH))
 """Rows of the second derivatives as a symmetric matrix."""
 
-_PRODUCTS = (
-    (BY_AA, BY_A, BY_A),
-    (BY_AJ, BY_A, BY_J),
-    (BY_AH, BY_A, BY_H),
-    (BY_JJ, BY_J, BY_J),
-    (BY_JH, BY_J, BY_H),
-    (BY_HH, BY_H, BY_H),
-)
+_FIRST = (BY_A, BY_J, BY_H)
+_PRODUCTS = tuple((HESSIAN[i][k], _FIRST[i], _FIRST[k]) for i in range(3) for k in range(i, 3))
 """Each second derivative with the two first derivatives whose product it contains by the chain rule."""
 
 
