@@ -107,13 +107,13 @@ def measured_of(
                             )  # fmt: skip
                             factor = factors[n] * (1.1 if age else 1.0)
                             curves.append(curve_of(run, every[resin][pressure], factor, rng))
-    besides = tuple(beside_of(group, every[group.key.resin] if predicted else {}) for group in summarize(curves))
+    comparisons = tuple(beside_of(group, every[group.key.resin] if predicted else {}) for group in summarize(curves))
     campaign = Campaign(
         title=f"Resins under pressure: {len(resins)} at {len(pressures)}", lab="Test bench 3", design="paper-dome", simulated=simulated,
         runs=[curve.run for curve in curves],
     )  # fmt: skip
     return CampaignReport(
-        campaign, load_scene("paper-dome", library=library), Path("campaign"), besides, tuple(curves), (), (), (), (),
+        campaign, load_scene("paper-dome", library=library), Path("campaign"), comparisons, tuple(curves), (), (), (), (),
         _ageing(resins, pressures) if len(ages) > 1 else (), "atlas", "0123456789ab",
     )  # fmt: skip
 

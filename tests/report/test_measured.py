@@ -73,7 +73,7 @@ def least(library):
 
 
 def test_page_and_pdf_have_every_section_resin_and_plot(said):
-    sections = ("Leak and dead volume", "Failures", "Questions", "Doubts", "Specimens", "Conditions", "Definitions")
+    sections = ("Leak and dead volume", "Failures", "Questions", "Warnings", "Specimens", "Conditions", "Definitions")
     for text in said:
         for word in (*PLOTS, *sections, *(f"Figures of {resin}" for resin in RESINS)):
             assert word in text
@@ -88,7 +88,7 @@ def test_every_figure_stands_on_the_sheet_with_its_meaning(said):
 
 def test_figures_are_those_of_the_groups_with_interval_and_difference(campaign, said):
     page, _ = said
-    for beside in campaign.besides:
+    for beside in campaign.comparisons:
         found, predicted = beside.group.figures["sensitivity_kPa_per_N"], beside.predicted["sensitivity_kPa_per_N"]
         row = (
             f"{number(found.value, 4)} {between((found.value, found.low, found.high), 4)} 3 / 9 "
@@ -96,7 +96,7 @@ def test_figures_are_those_of_the_groups_with_interval_and_difference(campaign, 
         )
         for text in said:
             assert row in text
-    assert page.count(" 3 / 9 ") >= 6 * len(campaign.besides)
+    assert page.count(" 3 / 9 ") >= 6 * len(campaign.comparisons)
 
 
 def test_simulated_data_says_so_on_every_page_and_measured_data_does_not(files, least):
@@ -115,7 +115,7 @@ def test_failures_questions_doubts_and_leaks_are_listed(said):
         assert f"doubt number {MOST - 1} in a row" in text
         assert f"doubt number {MOST} in a row" not in text
         assert "and 7 more: see figures.json" in text
-        assert f"{MOST + 7} stretches are in doubt" in text
+        assert f"{MOST + 7} stretches are suspect" in text
         assert "1 of 252 runs could not be read" in text
         assert "0.02130 0.0031 kPa/min" in text
 
@@ -156,7 +156,7 @@ def test_one_run_is_shown_without_interval_and_without_empty_headings(least):
             "Not measured: Repeatability of the sensitivity; Part to part, of the sensitivity; Saturation force;"
             in text
         )
-        for word in ("Failures", "Questions", "Doubts stretches", "Ageing", "Figures of FLX9940", "Leak and dead"):
+        for word in ("Failures", "Questions", "Warnings parts", "Ageing", "Figures of FLX9940", "Leak and dead"):
             assert word not in text
     assert files["measured-datasheet.html"].decode().count("<svg") == 3
 
@@ -173,7 +173,7 @@ def test_ageing_stands_beside_the_papers(library):
 
 def test_without_a_prediction_the_sheet_says_why_and_invents_none(library):
     found = measured_of(library, resins=("TangoPlus",), pressures=(0.0,), kinds=("steps",), predicted=False)
-    table = resin_table(panels_of(found.besides)[0])
+    table = resin_table(panels_of(found.comparisons)[0])
     assert table["why"] == ["No prediction at 0 kPa: beyond the limit point of this resin"]
     assert all(row[5:] == ["", "", "", ""] for figure in table["figures"] for row in figure["rows"])
     files = measured_datasheet(found)
@@ -182,7 +182,7 @@ def test_without_a_prediction_the_sheet_says_why_and_invents_none(library):
 
 
 def test_a_campaign_of_which_nothing_could_be_read_still_gives_a_sheet(least):
-    files = measured_datasheet(replace(least, besides=(), curves=(), failures=(FAILURE,)))
+    files = measured_datasheet(replace(least, comparisons=(), curves=(), failures=(FAILURE,)))
     text = text_of(files["measured-datasheet.pdf"])
     assert "1 of 1 run could not be read" in text
     assert FAILURE[1] in text
@@ -203,19 +203,19 @@ def test_what_a_user_writes_stays_text(least):
 
 
 def test_a_resin_of_any_title_can_be_drawn(least):
-    beside = replace(least.besides[0], label="Resin $5 _a")
+    beside = replace(least.comparisons[0], label="Resin $5 _a")
     other = replace(
-        least.besides[0], label="$", group=replace(beside.group, key=replace(beside.group.key, resin="other"))
+        least.comparisons[0], label="$", group=replace(beside.group, key=replace(beside.group.key, resin="other"))
     )
-    files = measured_datasheet(replace(least, besides=(beside, other)))
+    files = measured_datasheet(replace(least, comparisons=(beside, other)))
     assert "Figures of Resin $5 _a" in words_of(files["measured-datasheet.html"])
 
 
 def test_specimen_rows_are_means_over_runs(campaign):
-    rows, more = specimens(panels_of(campaign.besides))
+    rows, more = specimens(panels_of(campaign.comparisons))
     assert more == ""
     assert len(rows) == 7 * 3 * 2
-    beside = campaign.besides[0]
+    beside = campaign.comparisons[0]
     name = beside.group.sensors[0]
     own = [
         found["sensitivity_kPa_per_N"] for curve, found in zip(beside.group.curves, beside.group.each, strict=True)
@@ -230,7 +230,7 @@ def test_tiles_name_the_worst_group(campaign):
     gaps = {
         (b.label, b.group.key.driving_pressure_kPa): difference(
             b.group.figures["sensitivity_kPa_per_N"].value, b.predicted["sensitivity_kPa_per_N"][0]
-        ) for b in campaign.besides
+        ) for b in campaign.comparisons
     }  # fmt: skip
     (label, pressure), gap = max(gaps.items(), key=lambda item: abs(item[1]))
     assert by_name["Off the predicted sensitivity"][3] == f"median; most {signed(gap)} % at {label}, {pressure:g} kPa"
@@ -259,7 +259,7 @@ def test_a_verdict_of_its_own_words_is_printed(least):
 def test_a_plot_of_one_resin_among_several_is_narrow_and_named(campaign):
     without = tuple(
         beside if beside.label == "TangoPlus" else replace(beside, group=_only(beside.group, "steps"))
-        for beside in campaign.besides
+        for beside in campaign.comparisons
     )
     panels = panels_of(without)
     loop, response = loops(panels), responses(panels)

@@ -40,14 +40,14 @@ def simulate(
         from pneutouch.bench.simulate import SimulationTruth
         from pneutouch.workflows.simulate.run import SimulationOptions, simulate
 
-        asked = SimulationOptions(
+        options = SimulationOptions(
             resins=words(resins), specimens=specimens, runs=runs, kinds=words(kinds), rate=rate, seed=seed, model=model,
             driving_pressures_kPa=None if pressures is None else numbers("--pressures", pressures), ages_days=numbers("--ages", ages),
             parquet=parquet, truth=SimulationTruth(rest=rest),
         )  # fmt: skip
         with bar("specimens") as progress:
-            folder = simulate(design, out, changes(set_), asked, progress=progress)
-        _tell(folder, asked, json=json)
+            folder = simulate(design, out, changes(set_), options, progress=progress)
+        _tell(folder, options, json=json)
 
 
 def words(text: str) -> tuple[str, ...]:
@@ -65,7 +65,7 @@ def numbers(flag: str, text: str) -> tuple[float, ...]:
         raise InputError(f"{flag} {text}: must be numbers with commas between, such as 0,22") from None
 
 
-def _tell(folder: Path, asked: SimulationOptions, *, json: bool) -> None:
+def _tell(folder: Path, options: SimulationOptions, *, json: bool) -> None:
     """The folder on stdout; on stderr where runs stop short of their depth."""
     from json import loads
 
@@ -76,7 +76,7 @@ def _tell(folder: Path, asked: SimulationOptions, *, json: bool) -> None:
     if json:
         print_json({
             "folder": str(folder), "simulated": True, "runs": len(files), "specimens": len(truth["specimens"]),
-            "seed": asked.seed, "populations": truth["populations"], "notes": truth["notes"],
+            "seed": options.seed, "populations": truth["populations"], "notes": truth["notes"],
         })  # fmt: skip
         return
     typer.echo(f"{len(files)} simulated runs of {len(truth['specimens'])} specimens", err=True)

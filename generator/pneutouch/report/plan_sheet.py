@@ -80,21 +80,21 @@ def _instruments(plan: dict[str, Any]) -> list[str]:
 def _order(plan: dict[str, Any]) -> list[str]:
     """The runs of the first specimen by kind; the others have the same."""
     first = plan["sensors"][0]["sensor"]
-    mine = [run for run in plan["runs"] if run["sensor"] == first]
+    all_runs = [run for run in plan["runs"] if run["sensor"] == first]
     lines = ["Each specimen in this order; let it rest 5 minutes between kinds of test.", ""]
     lines += [
         "| | test | kind | driving pressure, kPa | runs at each | one run | together |",
         "|---|---|---|---|---|---|---|",
     ]
-    for place, (kind, group) in enumerate(groupby(mine, key=lambda run: run["kind"]), start=1):
+    for place, (kind, group) in enumerate(groupby(all_runs, key=lambda run: run["kind"]), start=1):
         runs = list(group)
         at = sorted({run["driving_pressure_kPa"] for run in runs})
         lines.append(
             f"| {place} | {_WORDS[kind]} | `{kind}` | {_list(at)} | {len(runs) // len(at)} | {_time(runs[0]['duration_s'])} | "
             f"{_time(sum(run['duration_s'] for run in runs))} |"
         )
-    each = _time(sum(run["duration_s"] for run in mine))
-    return [*lines, f"| | one specimen | | | {len(mine)} runs | | **{each}** |"]
+    each = _time(sum(run["duration_s"] for run in all_runs))
+    return [*lines, f"| | one specimen | | | {len(all_runs)} runs | | **{each}** |"]
 
 
 def _before(plan: dict[str, Any]) -> list[str]:
@@ -103,8 +103,8 @@ def _before(plan: dict[str, Any]) -> list[str]:
         "2. ☐ Clean and dry plate and dome; dust them with talc (the prediction has no friction).",
         "3. ☐ Plate square to the base within half a degree; dome on the plate's axis within 0.5 mm.",
         f"4. ☐ Zero the force sensor with the plate {plan['clearance_mm']:g} mm clear, the gauge with the cavity vented.",
-        "5. ☐ Find first contact: lower slowly until the force has left zero by three resolutions; that place is depth 0. "
-        "Find it anew at each driving pressure: the dome grows.",
+        "5. ☐ Find first contact: lower slowly until the force has left zero by three resolutions; that position is depth 0. "
+        "Find it again at each driving pressure: the dome grows.",
         f"6. ☐ Try the program once with the plate {plan['clearance_mm'] + 20:g} mm clear.",
     ]
 
@@ -155,7 +155,7 @@ def _steps(plan: dict[str, Any]) -> list[str]:
     for kind, test in plan["tests"].items():
         depths, hold = test["depths_mm"], test["hold_s"]
         reset = (
-            "vent, then set the driving pressure anew, and let it settle"
+            "vent, then set the driving pressure again, and let it settle"
             if test["reset"]
             else "leave the pressure as it is"
         )
@@ -179,8 +179,8 @@ def _steps(plan: dict[str, Any]) -> list[str]:
 
 def _expected(plan: dict[str, Any]) -> list[str]:
     lines = [
-        "Predictions, to be set beside the readings at the end of each hold; force and pressure rise count from before contact. "
-        "How sure they are: `pneutouch predict`. A dash: beyond the predicted range. An exclamation mark: beyond an instrument's range, do not go there.", "",
+        "Predictions, to be compared with the readings at the end of each hold; force and pressure rise count from before contact. "
+        "Their uncertainty: `pneutouch predict`. A dash: beyond the predicted range. An exclamation mark: beyond an instrument's range, do not go there.", "",
     ]  # fmt: skip
     for resin in plan["resins"]:
         states = resin["states"]

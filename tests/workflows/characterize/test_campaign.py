@@ -110,7 +110,7 @@ def test_an_injection_in_absolute_pressure_fails_alone(folder, library):
     frame["pressure_kPa"] += 101.325
     written(frame, folder, name)
     outcome = run(folder, library)
-    assert [file for file, _ in outcome.measured.failures] == [name] and len(outcome.measured.besides) == 2
+    assert [file for file, _ in outcome.measured.failures] == [name] and len(outcome.measured.comparisons) == 2
 
 
 def test_a_leak_run_that_is_clipped_is_refused_and_one_at_another_pressure_asked_about(folder, library):
@@ -136,7 +136,7 @@ def test_a_wrong_sign_is_seen_where_nothing_is_predicted(folder, library):
 
     rewritten(folder, change)
     outcome = run(folder, library)
-    assert not outcome.measured.besides
+    assert not outcome.measured.comparisons
     failures = dict(outcome.measured.failures)
     for k in (1, 2):
         assert "columns.pressure.sign = 1" in failures[f"runs/TangoPlus-{k}-22kPa-steps-1.csv"]
@@ -165,7 +165,10 @@ def test_aged_runs_are_not_set_beside_a_fresh_prediction(folder, library):
         folder, lambda content: [entry.update(age_days=365.0) for entry in content["runs"] if "-2-" in entry["file"]]
     )
     outcome = run(folder, library)
-    assert {b.group.key.age: bool(b.predicted) for b in outcome.measured.besides} == {"fresh": True, "12 months": False}
+    assert {b.group.key.age: bool(b.predicted) for b in outcome.measured.comparisons} == {
+        "fresh": True,
+        "12 months": False,
+    }
     published = {row[6] for row in outcome.measured.ageing}
     assert published == {14.76}
 

@@ -31,7 +31,7 @@ LINES = {
 """By key of `bench.figure.FIGURES`."""
 
 TERMS = (
-    ("95 % interval", "Of a mean: over specimens, Student's t; with one specimen over its runs, which says nothing of other specimens. Of a standard deviation: chi-square."),
+    ("95 % interval", "Of a mean: over specimens, Student's t; with one specimen over its runs, which does not include other specimens. Of a standard deviation: chi-square."),
     ("n", "Specimens / runs behind a value."),
     ("Predicted band", "The interval that holds the figure of a printed sensor with 95 %, as the predicted datasheet states it."),
     ("Difference", "Measured less predicted, in percent of the predicted."),

@@ -9,8 +9,8 @@ from typing import Any
 
 from pneutouch import __version__
 from pneutouch.bench.interval import Estimate
-from pneutouch.report.measured.beside import CampaignReport, GroupComparison, Verdict
-from pneutouch.report.measured.words import between, difference, listed, number, overlap, said, signed
+from pneutouch.report.measured.comparison import CampaignReport, GroupComparison, Verdict
+from pneutouch.report.measured.words import between, difference, listed, number, overlap, signed, word_of
 from pneutouch.units import KPA
 
 SIMULATED = "SIMULATED DATA"
@@ -52,27 +52,27 @@ def dates(measured: CampaignReport) -> str:
 
 
 def verdict(measured: CampaignReport) -> dict[str, Any]:
-    """Whether the target is met, wish by wish, and how many runs gave nothing."""
+    """Whether the target is met, requirement by requirement, and how many runs gave nothing."""
     return {
         "word": _whole(measured.verdicts),
-        "rows": [[v.what, v.wanted, v.measured, said(v.passed, _WORDS)] for v in measured.verdicts],
+        "rows": [[v.what, v.required, v.measured, word_of(v.passed, _WORDS)] for v in measured.verdicts],
         "notes": " ".join(_notes(measured)),
     }
 
 
 def _notes(measured: CampaignReport) -> list[str]:
-    """What is to be said under the verdicts."""
+    """Notes under the verdicts."""
     failed, runs = len(measured.failures), len(measured.campaign.runs)
-    doubts = sum(doubt.kind != "note" for curve in measured.curves for doubt in curve.warnings)
+    warnings_ = sum(warning.kind != "note" for curve in measured.curves for warning in curve.warnings)
     notes = []
     if any(v.passed is None for v in measured.verdicts):
-        notes.append("Not decided: the interval holds values on both sides of the limit; more specimens would tell.")
+        notes.append("Not decided: the interval holds values on both sides of the limit; more specimens would decide.")
     if failed:
         notes.append(f"{failed} of {counted(runs, 'run')} could not be read: see Failures.")
     else:
         notes.append(f"All {runs} runs were read." if runs > 1 else "The run was read.")
-    if doubts:
-        notes.append(f"{doubts} {'stretches are' if doubts > 1 else 'stretch is'} in doubt: see Doubts.")
+    if warnings_:
+        notes.append(f"{warnings_} {'stretches are' if warnings_ > 1 else 'stretch is'} suspect: see Warnings.")
     return notes
 
 
@@ -80,47 +80,51 @@ def _whole(verdicts: tuple[Verdict, ...]) -> str:
     if not verdicts:
         return "No target given"
     passed = [v.passed for v in verdicts]
-    return f"Target {said(False if False in passed else None if None in passed else True, _WORDS)}"
+    return f"Target {word_of(False if False in passed else None if None in passed else True, _WORDS)}"
 
 
 def tiles(measured: CampaignReport) -> list[Tile]:
     """Name, value, unit, condition of the figures that count; those that were not measured are left out."""
-    found = [_extent(measured, _SENSITIVITY, "Sensitivity", "kPa/N"), *_against(measured)]
+    tiles = [_extent(measured, _SENSITIVITY, "Sensitivity", "kPa/N"), *_against(measured)]
     for key, name in (("repeatability_kPa_per_N", "Repeatability"), ("part_to_part_kPa_per_N", "Part to part")):
-        found.append(_worst(measured, key, name, "kPa/N", "standard deviation of the sensitivity"))
-    found.append(_worst(measured, "hysteresis_width_percent", "Hysteresis", "% FS", "greatest width of the loop"))
-    found.append(
+        tiles.append(_worst(measured, key, name, "kPa/N", "standard deviation of the sensitivity"))
+    tiles.append(_worst(measured, "hysteresis_width_percent", "Hysteresis", "% FS", "greatest width of the loop"))
+    tiles.append(
         _worst(measured, "relaxation_force_percent", "Relaxation of the force", "%", "from 1 s to the end of the hold")
     )
-    found.append(_worst(measured, "resolution_N", "Resolution", "N", "three standard deviations of the noise"))
-    found.append(_extent(measured, "stiffness_N_per_mm", "Mean stiffness", "N/mm"))
-    found.append(_extent(measured, "force_range_N", "Force at the greatest depth", "N"))
-    return [tile for tile in found if tile is not None][:6]
+    tiles.append(_worst(measured, "resolution_N", "Resolution", "N", "three standard deviations of the noise"))
+    tiles.append(_extent(measured, "stiffness_N_per_mm", "Mean stiffness", "N/mm"))
+    tiles.append(_extent(measured, "force_range_N", "Force at the greatest depth", "N"))
+    return [tile for tile in tiles if tile is not None][:6]
 
 
 def _with(measured: CampaignReport, key: str) -> list[tuple[GroupComparison, Estimate]]:
-    return [(beside, beside.group.figures[key]) for beside in measured.besides if key in beside.group.figures]
+    return [
+        (comparison, comparison.group.figures[key])
+        for comparison in measured.comparisons
+        if key in comparison.group.figures
+    ]
 
 
-def _where(measured: CampaignReport, beside: GroupComparison) -> str:
+def _where(measured: CampaignReport, comparison: GroupComparison) -> str:
     """A group in words: its resin and age where there are several."""
-    key, keys = beside.group.key, [other.group.key for other in measured.besides]
-    resin = [beside.label] if len({other.resin for other in keys}) > 1 else []
+    key, keys = comparison.group.key, [other.group.key for other in measured.comparisons]
+    resin = [comparison.label] if len({other.resin for other in keys}) > 1 else []
     age = [key.age] if key.age_days or len({other.age_days for other in keys}) > 1 else []
     return ", ".join([*resin, f"{key.driving_pressure_kPa:g} kPa", *age])
 
 
 def _extent(measured: CampaignReport, key: str, name: str, unit: str) -> Tile | None:
     """The one value that there is, or the extent from the least to the greatest group."""
-    found = _with(measured, key)
-    if not found:
+    pairs = _with(measured, key)
+    if not pairs:
         return None
-    low, high = min(found, key=lambda pair: pair[1].value), max(found, key=lambda pair: pair[1].value)
-    if len(found) == 1:
+    low, high = min(pairs, key=lambda pair: pair[1].value), max(pairs, key=lambda pair: pair[1].value)
+    if len(pairs) == 1:
         estimate = low[1]
         width = between((estimate.value, estimate.low, estimate.high))
-        sure = f"; {width} (95 %)" if estimate.low is not None else "; one value, no interval"
-        return [name, number(estimate.value), unit, f"{_where(measured, low[0])}{sure}"]
+        interval = f"; {width} (95 %)" if estimate.low is not None else "; one value, no interval"
+        return [name, number(estimate.value), unit, f"{_where(measured, low[0])}{interval}"]
     ends = f"{number(low[1].value)} to {number(high[1].value)}"
     return [name, ends, unit, f"least at {_where(measured, low[0])}, greatest at {_where(measured, high[0])}"]
 
@@ -142,11 +146,11 @@ def _against(measured: CampaignReport) -> list[Tile]:
             "%",
             f"median; most {signed(worst[0])} % at {_where(measured, worst[1])}",
         ]
-    known = [found for _, e, p in pairs if (found := overlap((e.value, e.low, e.high), p)) is not None]
+    known = [within for _, e, p in pairs if (within := overlap((e.value, e.low, e.high), p)) is not None]
     if not known:
         return [first]
     if len(known) == 1:
-        return [first, ["In the predicted band", said(known[0]), "", "95 % interval or value against 95 % band"]]
+        return [first, ["In the predicted band", word_of(known[0]), "", "95 % interval or value against 95 % band"]]
     return [
         first,
         ["In the predicted band", f"{sum(known)} of {len(known)}", "", "groups whose 95 % interval meets the band"],
@@ -155,12 +159,12 @@ def _against(measured: CampaignReport) -> list[Tile]:
 
 def _worst(measured: CampaignReport, key: str, name: str, unit: str, what: str) -> Tile | None:
     """The greatest of a figure over the groups."""
-    found = [pair for pair in _with(measured, key) if math.isfinite(pair[1].value)]
-    if not found:
+    pairs = [pair for pair in _with(measured, key) if math.isfinite(pair[1].value)]
+    if not pairs:
         return None
-    beside, estimate = max(found, key=lambda pair: pair[1].value)
-    most = "greatest, " if len(found) > 1 else ""
-    return [name, number(estimate.value), unit, f"{what}; {most}{_where(measured, beside)}"]
+    comparison, estimate = max(pairs, key=lambda pair: pair[1].value)
+    most = "greatest, " if len(pairs) > 1 else ""
+    return [name, number(estimate.value), unit, f"{what}; {most}{_where(measured, comparison)}"]
 
 
 def conditions(measured: CampaignReport) -> list[list[str]]:
@@ -182,14 +186,14 @@ def conditions(measured: CampaignReport) -> list[list[str]]:
         ["Sampling", f"{rig.rate_Hz:g} Hz"],
         ["Ambient pressure", air],
         ["Runs", listed([f"{count} {kind}" for kind, count in sorted(kinds.items())])],
-        ["Ages", listed(list({b.group.key.age_days: b.group.key.age for b in sorted(measured.besides, key=_age)}.values())) or "none"],
+        ["Ages", listed(list({b.group.key.age_days: b.group.key.age for b in sorted(measured.comparisons, key=_age)}.values())) or "none"],
         ["Driving pressure as read", _as_read(measured)],
         ["Predicted by", measured.model],
     ]  # fmt: skip
 
 
-def _age(beside: GroupComparison) -> float:
-    return beside.group.key.age_days
+def _age(comparison: GroupComparison) -> float:
+    return comparison.group.key.age_days
 
 
 def _as_read(measured: CampaignReport) -> str:

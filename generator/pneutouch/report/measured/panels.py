@@ -1,4 +1,4 @@
-"""Small multiples: one panel a resin, one way of telling specimens, pressures and ages apart on every plot.
+"""Small multiples: one panel a resin, specimens, pressures and ages distinguished alike on every plot.
 
 Marker: specimen. Line and tone: driving pressure. Filled: the youngest age; open: older. Nothing rests on colour alone.
 """
@@ -13,7 +13,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pneutouch.bench.record import MeasuredCurve
-from pneutouch.report.measured.beside import GroupComparison
+from pneutouch.report.measured.comparison import GroupComparison
 from pneutouch.report.style import FAINT, INK, LINES, MARKERS, MUTED, figure, svg
 
 if TYPE_CHECKING:
@@ -49,53 +49,53 @@ class Plot(NamedTuple):
 class Panel:
     """The groups of one resin in the order of age and pressure.
 
-    ``campaign_pressures_kPa`` are the driving pressures of every resin, kPa; ``alone`` says that there is no other resin.
+    ``campaign_pressures_kPa`` are the driving pressures of every resin, kPa; ``alone`` states that there is no other resin.
     """
 
     label: str
-    besides: tuple[GroupComparison, ...]
+    comparisons: tuple[GroupComparison, ...]
     campaign_pressures_kPa: tuple[float, ...]
     alone: bool
 
     @cached_property
     def sensors(self) -> list[str]:
         """Names of the specimens; their places are their markers."""
-        return sorted({name for beside in self.besides for name in beside.group.sensors})
+        return sorted({name for comparison in self.comparisons for name in comparison.group.sensors})
 
     @cached_property
     def driving_pressures_kPa(self) -> list[float]:
         """Driving pressures, kPa, ascending."""
-        return sorted({beside.group.key.driving_pressure_kPa for beside in self.besides})
+        return sorted({comparison.group.key.driving_pressure_kPa for comparison in self.comparisons})
 
     @cached_property
     def ages(self) -> list[float]:
         """Ages in days, ascending."""
-        return sorted({beside.group.key.age_days for beside in self.besides})
+        return sorted({comparison.group.key.age_days for comparison in self.comparisons})
 
-    def tone(self, beside: GroupComparison) -> tuple[str, Any]:
+    def tone(self, comparison: GroupComparison) -> tuple[str, Any]:
         """Colour and line style of a group's driving pressure: the same in every panel."""
-        return _tone(self.campaign_pressures_kPa.index(beside.group.key.driving_pressure_kPa))
+        return _tone(self.campaign_pressures_kPa.index(comparison.group.key.driving_pressure_kPa))
 
-    def spots(self, beside: GroupComparison, curve: MeasuredCurve) -> dict[str, Any]:
+    def spots(self, comparison: GroupComparison, curve: MeasuredCurve) -> dict[str, Any]:
         """How the points of a run are drawn."""
-        color, _ = self.tone(beside)
-        young = beside.group.key.age_days == self.ages[0]
+        color, _ = self.tone(comparison)
+        young = comparison.group.key.age_days == self.ages[0]
         marker = MARKERS[self.sensors.index(curve.run.sensor) % len(MARKERS)]
         return {"ls": "", "marker": marker, "ms": 2.6, "mew": 0.5, "mec": color, "mfc": color if young else "white"}
 
     def has(self, kind: str) -> bool:
         """Whether there are runs of a kind."""
-        return any(beside.group.of_kind(kind) for beside in self.besides)
+        return any(comparison.group.of_kind(kind) for comparison in self.comparisons)
 
 
 def _tone(k: int) -> tuple[str, Any]:
     return TONES[k % len(TONES)], LINES[k % len(LINES)]
 
 
-def panels_of(besides: Sequence[GroupComparison]) -> list[Panel]:
+def panels_of(comparisons: Sequence[GroupComparison]) -> list[Panel]:
     """Groups by resin, in their order."""
-    every_kPa = tuple(sorted({beside.group.key.driving_pressure_kPa for beside in besides}))
-    by_resin = [tuple(some) for _, some in groupby(besides, key=lambda beside: beside.group.key.resin)]
+    every_kPa = tuple(sorted({comparison.group.key.driving_pressure_kPa for comparison in comparisons}))
+    by_resin = [tuple(some) for _, some in groupby(comparisons, key=lambda comparison: comparison.group.key.resin)]
     return [Panel(members[0].label, members, every_kPa, len(by_resin) == 1) for members in by_resin]
 
 
@@ -153,25 +153,25 @@ def key(panels: Sequence[Panel]) -> dict[str, Any]:
     """Legend of a plot of runs: markers of the specimens, fill of the ages."""
     from matplotlib.lines import Line2D
 
-    found: dict[str, Any] = {}
+    handles: dict[str, Any] = {}
     for k in range(min(max((len(panel.sensors) for panel in panels), default=0), len(MARKERS))):
-        found[f"specimen {k + 1}"] = Line2D([], [], ls="", marker=MARKERS[k], color=INK, ms=3.4)
+        handles[f"specimen {k + 1}"] = Line2D([], [], ls="", marker=MARKERS[k], color=INK, ms=3.4)
     ages = sorted({age for panel in panels for age in panel.ages})
     if len(ages) > 1:
-        found["youngest"] = Line2D([], [], ls="", marker="o", color=INK, ms=3.4)
-        found["older"] = Line2D([], [], ls="", marker="o", mec=INK, mfc="white", ms=3.4)
-    return found
+        handles["youngest"] = Line2D([], [], ls="", marker="o", color=INK, ms=3.4)
+        handles["older"] = Line2D([], [], ls="", marker="o", mec=INK, mfc="white", ms=3.4)
+    return handles
 
 
 def lines_of(panels: Sequence[Panel], driving_pressures_kPa: Sequence[float]) -> dict[str, Any]:
     """Legend of the driving pressures, kPa, that are drawn."""
     from matplotlib.lines import Line2D
 
-    found = {}
+    handles = {}
     for pressure_kPa in driving_pressures_kPa:
         color, style = _tone(panels[0].campaign_pressures_kPa.index(pressure_kPa))
-        found[f"{pressure_kPa:g} kPa"] = Line2D([], [], color=color, ls=style, lw=1.1)
-    return found
+        handles[f"{pressure_kPa:g} kPa"] = Line2D([], [], color=color, ls=style, lw=1.1)
+    return handles
 
 
 def band_of() -> dict[str, Any]:

@@ -10,7 +10,7 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.mechanics.prediction import SensorState
-from pneutouch.report.measured.beside import GroupComparison
+from pneutouch.report.measured.comparison import GroupComparison
 from pneutouch.report.measured.panels import Panel, Plot, band_of, ends_of, key, lines_of, multiples, some
 from pneutouch.report.style import FAINT, INK, LINES, MARKERS, MUTED
 from pneutouch.units import KPA
@@ -34,12 +34,12 @@ class _Axes(NamedTuple):
 
 def sensitivities(panels: Sequence[Panel]) -> Plot | None:
     """Sensitivity over driving pressure, means of the specimens with their intervals in the predicted band."""
-    panels = [p for p in panels if any(SENSITIVITY in b.group.figures for b in p.besides)]
+    panels = [p for p in panels if any(SENSITIVITY in b.group.figures for b in p.comparisons)]
     if not panels:
         return None
     from matplotlib.lines import Line2D
 
-    known = any(SENSITIVITY in b.predicted for p in panels for b in p.besides)
+    known = any(SENSITIVITY in b.predicted for p in panels for b in p.comparisons)
     legend = {"predicted": Line2D([], [], color=INK, lw=1.0), **band_of()} if known else {}
     for k, age in enumerate(_ages(panels)):
         legend[f"measured, {age}"] = Line2D([], [], ls="", **_spot(k))
@@ -47,9 +47,10 @@ def sensitivities(panels: Sequence[Panel]) -> Plot | None:
     span_kPa = pressures_kPa[-1] - pressures_kPa[0]
     slack = 0.08 * max(span_kPa, _LEAST_SPAN)
     apart = min(np.diff(pressures_kPa), default=span_kPa) > 0.15 * span_kPa
-    top = 1.12 * max(_greatest(beside) for panel in panels for beside in panel.besides)
+    top = 1.12 * max(_greatest(comparison) for panel in panels for comparison in panel.comparisons)
     bottom = min(
-        0.0, *(b.group.figures[SENSITIVITY].value for p in panels for b in p.besides if SENSITIVITY in b.group.figures)
+        0.0,
+        *(b.group.figures[SENSITIVITY].value for p in panels for b in p.comparisons if SENSITIVITY in b.group.figures),
     )
 
     def draw(ax: Axes, panel: Panel) -> None:
@@ -65,20 +66,22 @@ def sensitivities(panels: Sequence[Panel]) -> Plot | None:
 
 def _ages(panels: Sequence[Panel]) -> list[str]:
     """Ages in words, the youngest first."""
-    return list({b.group.key.age_days: b.group.key.age for p in panels for b in sorted(p.besides, key=_age)}.values())
+    return list(
+        {b.group.key.age_days: b.group.key.age for p in panels for b in sorted(p.comparisons, key=_age)}.values()
+    )
 
 
-def _age(beside: GroupComparison) -> float:
-    return beside.group.key.age_days
+def _age(comparison: GroupComparison) -> float:
+    return comparison.group.key.age_days
 
 
 def _spot(k: int) -> dict[str, Any]:
     return {"marker": MARKERS[k % len(MARKERS)], "ms": 3.6, "mec": INK, "mfc": INK if k == 0 else "white", "color": INK}
 
 
-def _greatest(beside: GroupComparison) -> float:
+def _greatest(comparison: GroupComparison) -> float:
     """Upper end of what is drawn of a group."""
-    measured, predicted = beside.group.figures.get(SENSITIVITY), beside.predicted.get(SENSITIVITY)
+    measured, predicted = comparison.group.figures.get(SENSITIVITY), comparison.predicted.get(SENSITIVITY)
     ends = [] if measured is None else [measured.value, measured.high]
     return max((end for end in (*ends, *(predicted or ())) if end is not None), default=0.0)
 
@@ -87,7 +90,7 @@ def _predicted_sensitivity(ax: Axes, panel: Panel, half: float) -> None:
     """The band between driving pressures; of one alone a bar of ``half`` its width."""
     known = {
         b.group.key.driving_pressure_kPa: b.predicted[SENSITIVITY]
-        for b in reversed(panel.besides)
+        for b in reversed(panel.comparisons)
         if SENSITIVITY in b.predicted
     }
     pressures = np.array(sorted(known))
@@ -107,17 +110,17 @@ def _predicted_sensitivity(ax: Axes, panel: Panel, half: float) -> None:
 
 
 def _measured_sensitivity(ax: Axes, panel: Panel, ages: list[str], aside: float) -> None:
-    """Means with error bars; ages stand beside one another."""
-    for beside in panel.besides:
-        found = beside.group.figures.get(SENSITIVITY)
-        if found is None:
+    """Means with error bars; ages stand next to one another."""
+    for comparison in panel.comparisons:
+        estimate = comparison.group.figures.get(SENSITIVITY)
+        if estimate is None:
             continue
-        k = ages.index(beside.group.key.age)
-        place_kPa = beside.group.key.driving_pressure_kPa + aside * (k - 0.5 * (len(ages) - 1))
-        low, high = (found.value if end is None else end for end in (found.low, found.high))
+        k = ages.index(comparison.group.key.age)
+        place_kPa = comparison.group.key.driving_pressure_kPa + aside * (k - 0.5 * (len(ages) - 1))
+        low, high = (estimate.value if end is None else end for end in (estimate.low, estimate.high))
         # Drawn by hand: caps of an error bar that is a point would hide the marker.
         ax.plot([place_kPa, place_kPa], [low, high], color=INK, lw=0.9, marker="_", ms=4 if high > low else 0, zorder=4)
-        ax.plot(place_kPa, found.value, ls="", zorder=5, **_spot(k))
+        ax.plot(place_kPa, estimate.value, ls="", zorder=5, **_spot(k))
 
 
 def responses(panels: Sequence[Panel]) -> Plot | None:
@@ -142,7 +145,7 @@ def _curves(panels: Sequence[Panel], over: _Axes, labels: tuple[str, str]) -> Pl
     panels = [panel for panel in panels if panel.has("steps")]
     if not panels:
         return None
-    drawn = [b for p in panels for b in p.besides if b.group.of_kind("steps")]
+    drawn = [b for p in panels for b in p.comparisons if b.group.of_kind("steps")]
     pressures_kPa = sorted({b.group.key.driving_pressure_kPa for b in drawn})
     legend = {**key(panels), **lines_of(panels, pressures_kPa)}
     if any(b.state is not None and _ends(b, over.figure) for b in drawn):
@@ -154,34 +157,34 @@ def _draw(ax: Axes, panel: Panel, over: _Axes) -> None:
     """Bands of two driving pressures at most: more cover one another. Of several ages the youngest's prediction."""
     shaded_kPa = ends_of(panel.driving_pressures_kPa)
     done: set[float] = set()
-    for beside in panel.besides:
-        runs, pressure_kPa = some(beside.group.of_kind("steps")), beside.group.key.driving_pressure_kPa
-        color, line = panel.tone(beside)
+    for comparison in panel.comparisons:
+        runs, pressure_kPa = some(comparison.group.of_kind("steps")), comparison.group.key.driving_pressure_kPa
+        color, line = panel.tone(comparison)
         for curve in runs:
-            joined = {"ls": line, "lw": 0.5, "color": color} if beside.state is None else {}
-            ax.plot(*over.measured(curve), zorder=4, **{**panel.spots(beside, curve), **joined})
-        if runs and beside.state is not None and pressure_kPa not in done:
+            joined = {"ls": line, "lw": 0.5, "color": color} if comparison.state is None else {}
+            ax.plot(*over.measured(curve), zorder=4, **{**panel.spots(comparison, curve), **joined})
+        if runs and comparison.state is not None and pressure_kPa not in done:
             done.add(pressure_kPa)
-            _predicted(ax, panel, beside, beside.state, over, shade=pressure_kPa in shaded_kPa)
+            _predicted(ax, panel, comparison, comparison.state, over, shade=pressure_kPa in shaded_kPa)
     ax.set(xlim=(0, None), ylim=(0, None))
 
 
 def _predicted(
-    ax: Axes, panel: Panel, beside: GroupComparison, state: SensorState, over: _Axes, *, shade: bool
+    ax: Axes, panel: Panel, comparison: GroupComparison, state: SensorState, over: _Axes, *, shade: bool
 ) -> None:
     """The predicted curve up to the end of its range, and its band where it is to be shaded."""
     kept = state.indentation <= state.range_end * (1 + 1e-12)
     x, y = (values[kept] for values in over.predicted(state))
-    color, line = panel.tone(beside)
+    color, line = panel.tone(comparison)
     ax.plot(x, y, color=color, ls=line, lw=1.0, zorder=3)
-    ends = _ends(beside, over.figure)
+    ends = _ends(comparison, over.figure)
     if shade and ends:
         ax.fill_between(x, ends[0] * y, ends[1] * y, fc=FAINT, alpha=0.45, ec="none", zorder=1)
         for end in ends:
             ax.plot(x, end * y, color=color, ls=LINES[0], lw=0.35, zorder=2)
 
 
-def _ends(beside: GroupComparison, figure: str) -> tuple[float, float] | None:
+def _ends(comparison: GroupComparison, figure: str) -> tuple[float, float] | None:
     """Ends of a figure's band over its value."""
-    value, low, high = beside.predicted.get(figure, (0.0, None, None))
+    value, low, high = comparison.predicted.get(figure, (0.0, None, None))
     return None if not value or low is None or high is None else (low / value, high / value)

@@ -7,7 +7,7 @@ from typing import Any
 
 from pneutouch.report import pages
 from pneutouch.report.measured import definition, head, plots, slow, tables
-from pneutouch.report.measured.beside import CampaignReport
+from pneutouch.report.measured.comparison import CampaignReport
 from pneutouch.report.measured.panels import MOST_RUNS, Panel, Plot, panels_of
 
 _RUNS_ONLY = ("steps", "saturation", "loop", "relaxation")
@@ -15,7 +15,7 @@ _RUNS_ONLY = ("steps", "saturation", "loop", "relaxation")
 
 def measured_datasheet(measured: CampaignReport) -> dict[str, bytes]:
     """``measured-datasheet.html`` and ``measured-datasheet.pdf``; the same bytes for the same campaign."""
-    panels = panels_of(measured.besides)
+    panels = panels_of(measured.comparisons)
     drawn = _figures(measured, panels)
     entries = [
         {"name": n, "title": title, "caption": words, "wide": plot.wide} for n, (title, words, plot) in drawn.items()
@@ -41,15 +41,15 @@ def _content(measured: CampaignReport, panels: Sequence[Panel]) -> dict[str, Any
         "specimens": _listed(tables.specimens(panels)),
         "failures": _listed(tables.failures(measured)),
         "questions": _listed(tables.questions(measured)),
-        "doubts": _listed(tables.doubts(measured)),
+        "warnings": _listed(tables.warning_rows(measured)),
         "conditions": head.conditions(measured),
         "definitions": definition.rows(),
         "where": definition.WHERE,
     }
 
 
-def _listed(found: tuple[list[list[str]], str]) -> dict[str, Any]:
-    return {"rows": found[0], "more": found[1]}
+def _listed(listed: tuple[list[list[str]], str]) -> dict[str, Any]:
+    return {"rows": listed[0], "more": listed[1]}
 
 
 DrawnPlots = dict[str, tuple[str, str, Plot]]
@@ -57,16 +57,16 @@ DrawnPlots = dict[str, tuple[str, str, Plot]]
 
 def _figures(measured: CampaignReport, panels: Sequence[Panel]) -> DrawnPlots:
     """Title, caption and plot by name; plots without data are left out, wide ones stand first."""
-    thinned = any(len(b.group.of_kind(kind)) > MOST_RUNS for b in measured.besides for kind in _RUNS_ONLY)
+    thinned = any(len(b.group.of_kind(kind)) > MOST_RUNS for b in measured.comparisons for kind in _RUNS_ONLY)
     some = f" At most {MOST_RUNS} runs a group are drawn." if thinned else ""
     many = panels and len(panels[0].campaign_pressures_kPa) > 2
     ends = " at the lowest and the highest driving pressure" if many else ""
     joined = (
         " Thin lines join the points of runs without a prediction."
-        if any(b.state is None for b in measured.besides)
+        if any(b.state is None for b in measured.comparisons)
         else ""
     )
-    found = {
+    listed = {
         "sensitivity": ("Sensitivity over driving pressure", "Mean over specimens with its 95 % interval, in the predicted band.", plots.sensitivities(panels)),
         "response": ("Response", f"Pressure rise over contact force. Markers: every run; lines: predicted, with the band of the sensitivity{ends}.{joined}{some}", plots.responses(panels)),
         "indentation": ("Force over indentation", f"Contact force over indentation. Markers: every run; lines: predicted, with the band of the stiffness{ends}.{joined}{some}", plots.indentations(panels)),
@@ -74,5 +74,5 @@ def _figures(measured: CampaignReport, panels: Sequence[Panel]) -> DrawnPlots:
         "relaxation": ("Relaxation", f"Force and pressure rise in a long hold, in percent of their value at 1 s; every driving pressure.{some}", slow.relaxations(panels)),
         "ageing": ("Ageing", "Change of the sensitivity since fresh, in percent of the aged one, with its 95 % interval.", slow.ageings(measured)),
     }  # fmt: skip
-    drawn = {name: (title, caption, plot) for name, (title, caption, plot) in found.items() if plot is not None}
+    drawn = {name: (title, caption, plot) for name, (title, caption, plot) in listed.items() if plot is not None}
     return dict(sorted(drawn.items(), key=lambda item: not item[1][2].wide))

@@ -10,7 +10,7 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.bench.figure import FIRST
 from pneutouch.bench.record import MeasuredCurve
-from pneutouch.report.measured.beside import CampaignReport
+from pneutouch.report.measured.comparison import CampaignReport
 from pneutouch.report.measured.panels import NARROW, TONES, Panel, Plot, ends_of, key, multiples, some
 from pneutouch.report.style import INK, LINES, MARKERS, MUTED, figure, plain_ticks, svg
 from pneutouch.units import KPA
@@ -64,8 +64,8 @@ def loops(panels: Sequence[Panel]) -> Plot | None:
 def _loop_of(panel: Panel, driving_pressure_kPa: float) -> MeasuredCurve | None:
     """The first loop run at a driving pressure."""
     runs = (
-        curve for beside in panel.besides if beside.group.key.driving_pressure_kPa == driving_pressure_kPa
-        for curve in beside.group.of_kind("loop") if curve.loop
+        curve for comparison in panel.comparisons if comparison.group.key.driving_pressure_kPa == driving_pressure_kPa
+        for curve in comparison.group.of_kind("loop") if curve.loop
     )  # fmt: skip
     return next(runs, None)
 
@@ -89,9 +89,9 @@ def relaxations(panels: Sequence[Panel]) -> Plot | None:
 
     def draw(ax: Axes, panel: Panel) -> None:
         ax.set_xscale("log")
-        for beside in panel.besides:
-            for curve in some(beside.group.of_kind("relaxation")):
-                _relaxation(ax, curve, panel.spots(beside, curve))
+        for comparison in panel.comparisons:
+            for curve in some(comparison.group.of_kind("relaxation")):
+                _relaxation(ax, curve, panel.spots(comparison, curve))
         plain_ticks(ax.xaxis)
 
     return multiples(
@@ -100,7 +100,7 @@ def relaxations(panels: Sequence[Panel]) -> Plot | None:
 
 
 def _relaxed(panel: Panel) -> list[MeasuredCurve]:
-    return [curve for beside in panel.besides for curve in beside.group.of_kind("relaxation")]
+    return [curve for comparison in panel.comparisons for curve in comparison.group.of_kind("relaxation")]
 
 
 def _relaxation(ax: Axes, curve: MeasuredCurve, look: dict[str, Any]) -> None:
@@ -130,7 +130,7 @@ def _relaxation(ax: Axes, curve: MeasuredCurve, look: dict[str, Any]) -> None:
 
 
 def ageings(measured: CampaignReport) -> Plot | None:
-    """Change of sensitivity between ages with its interval, one row a group; what the paper found in a year beside it."""
+    """Change of sensitivity between ages with its interval, one row a group; compared with the paper's change in a year."""
     rows = measured.ageing
     if not rows:
         return None

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from pneutouch.bench.figure import FIGURES, FigureDefinition
-from pneutouch.report.measured.beside import CampaignReport, GroupComparison
+from pneutouch.report.measured.comparison import CampaignReport, GroupComparison
 from pneutouch.report.measured.panels import Panel
 from pneutouch.report.measured.words import (
     DASH,
@@ -18,13 +18,13 @@ from pneutouch.report.measured.words import (
     difference,
     number,
     overlap,
-    said,
     signed,
+    word_of,
 )
 from pneutouch.report.style import MARKERS
 
 MOST = 40
-"""Entries of a list of doubts, questions, failures, leaks or volumes that are printed."""
+"""Entries of a list of warnings, questions, failures, leaks or volumes that are printed."""
 MOST_SPECIMENS = 120
 """Rows of the specimen table that are printed."""
 
@@ -37,7 +37,7 @@ Row = list[str]
 
 
 def resin_table(panel: Panel) -> dict[str, Any]:
-    """Every figure of a resin over driving pressure and age: measured beside predicted.
+    """Every figure of a resin over driving pressure and age: measured and predicted.
 
     A figure has its name, unit and rows of driving pressure, age, measured, interval, n, predicted, band, difference, overlap.
     ``absent`` names what was not measured, ``why`` driving pressures without a prediction.
@@ -45,13 +45,13 @@ def resin_table(panel: Panel) -> dict[str, Any]:
     groups: list[dict[str, Any]] = []
     absent: list[str] = []
     for figure in FIGURES:
-        found = [beside for beside in panel.besides if figure.key in beside.group.figures]
-        if not found:
+        compared = [comparison for comparison in panel.comparisons if figure.key in comparison.group.figures]
+        if not compared:
             absent.append(f"{figure.name}, {figure.unit}" if _NAMES.count(figure.name) > 1 else figure.name)
             continue
-        rows = [[*_condition(beside), *_figure(figure, beside)] for beside in found]
+        rows = [[*_condition(comparison), *_figure(figure, comparison)] for comparison in compared]
         groups.append({"name": figure.name, "unit": figure.unit, "rows": rows})
-    unknown = {b.group.key.driving_pressure_kPa: b.why for b in panel.besides if b.why}
+    unknown = {b.group.key.driving_pressure_kPa: b.why for b in panel.comparisons if b.why}
     return {
         "title": panel.label,
         "figures": groups,
@@ -60,15 +60,15 @@ def resin_table(panel: Panel) -> dict[str, Any]:
     }
 
 
-def _condition(beside: GroupComparison) -> Row:
-    return [f"{beside.group.key.driving_pressure_kPa:g}", beside.group.key.age]
+def _condition(comparison: GroupComparison) -> Row:
+    return [f"{comparison.group.key.driving_pressure_kPa:g}", comparison.group.key.age]
 
 
-def _figure(figure: FigureDefinition, beside: GroupComparison) -> Row:
-    estimate, digits = beside.group.figures[figure.key], figure.digits
+def _figure(figure: FigureDefinition, comparison: GroupComparison) -> Row:
+    estimate, digits = comparison.group.figures[figure.key], figure.digits
     measured: Bounds = (estimate.value, estimate.low, estimate.high)
     cells = [number(estimate.value, digits), between(measured, digits), f"{estimate.specimens} / {estimate.runs}"]
-    predicted = beside.predicted.get(figure.key)
+    predicted = comparison.predicted.get(figure.key)
     if predicted is None:
         return [*cells, "", "", "", ""]
     apart = signed(difference(estimate.value, predicted[0]))
@@ -77,7 +77,7 @@ def _figure(figure: FigureDefinition, beside: GroupComparison) -> Row:
         number(predicted[0], digits),
         between(predicted, digits),
         apart,
-        said(overlap(measured, predicted), ("yes", "no", "")),
+        word_of(overlap(measured, predicted), ("yes", "no", "")),
     ]
 
 
@@ -86,27 +86,27 @@ def specimens(panels: Sequence[Panel]) -> tuple[list[Row], str]:
     rows = []
     for panel in panels:
         for k, sensor in enumerate(panel.sensors):
-            for beside in panel.besides:
-                values = _of_sensor(beside, sensor)
+            for comparison in panel.comparisons:
+                values = _of_sensor(comparison, sensor)
                 if values:
                     marker = f"{k + 1}, {_SHAPES[MARKERS[k % len(MARKERS)]]}"
-                    rows.append([panel.label, sensor, marker, *_condition(beside), *values])
+                    rows.append([panel.label, sensor, marker, *_condition(comparison), *values])
     return cut(rows, MOST_SPECIMENS)
 
 
-def _of_sensor(beside: GroupComparison, sensor: str) -> Row:
-    group = beside.group
-    each = [found for curve, found in zip(group.curves, group.each, strict=True) if curve.run.sensor == sensor]
+def _of_sensor(comparison: GroupComparison, sensor: str) -> Row:
+    group = comparison.group
+    each = [figures for curve, figures in zip(group.curves, group.each, strict=True) if curve.run.sensor == sensor]
     cells: Row = []
     for key, digits in (("sensitivity_kPa_per_N", 4), ("stiffness_N_per_mm", 3)):
-        values = np.array([found[key] for found in each if key in found])
+        values = np.array([figures[key] for figures in each if key in figures])
         if not values.size:
             cells += [DASH, DASH]
             continue
         mean = float(values.mean())
         spread = number(float(values.std(ddof=1)), 2) if values.size > 1 else DASH
         cells += [number(mean, digits), spread]
-    count = sum("sensitivity_kPa_per_N" in found for found in each)
+    count = sum("sensitivity_kPa_per_N" in figures for figures in each)
     return [str(count), *cells] if set(cells) != {DASH} else []
 
 
@@ -131,18 +131,18 @@ def injections(measured: CampaignReport) -> tuple[list[Row], str]:
     return cut(rows, MOST)
 
 
-def doubts(measured: CampaignReport) -> tuple[list[Row], str]:
+def warning_rows(measured: CampaignReport) -> tuple[list[Row], str]:
     """Stretches not to be trusted: file, seconds, why, used or not; mere notes are in figures.json."""
     rows = [
-        [curve.run.file, f"{doubt.start:.2f} to {doubt.end:.2f}", doubt.why, said(doubt.used)]
-        for curve in measured.curves for doubt in curve.warnings if doubt.kind != "note"
+        [curve.run.file, f"{warning.start:.2f} to {warning.end:.2f}", warning.why, word_of(warning.used)]
+        for curve in measured.curves for warning in curve.warnings if warning.kind != "note"
     ]  # fmt: skip
     return cut(rows, MOST)
 
 
 def failures(measured: CampaignReport) -> tuple[list[Row], str]:
     """Files that could not be read, and why."""
-    # The message begins with the file's path, which stands beside it.
+    # The message begins with the file's path, which is printed next to it.
     return cut([[file, why.split(f"{file}: ", 1)[-1]] for file, why in measured.failures], MOST)
 
 

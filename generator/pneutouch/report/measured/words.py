@@ -1,4 +1,4 @@
-"""Numbers as the sheet prints them, and what two intervals say of each other."""
+"""Numbers as the sheet prints them, and the relation of two intervals."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def overlap(measured: Bounds, predicted: Bounds) -> bool | None:
     return (value if low is None else low) <= most and least <= (value if high is None else high)
 
 
-def said(yes: bool | None, words: tuple[str, str, str] = ("yes", "no", DASH)) -> str:
+def word_of(yes: bool | None, words: tuple[str, str, str] = ("yes", "no", DASH)) -> str:
     """A finding in words: yes, no, not known."""
     return words[2] if yes is None else words[0] if yes else words[1]
 

@@ -38,20 +38,22 @@ class SavedCalibration:
         return [str(file.path) for file in self.files]
 
 
-def write_calibration(found: Calibration, out: Path) -> Path:
+def write_calibration(calibration: Calibration, out: Path) -> Path:
     """Write calibration.json and residuals.svg into ``out/<design>-<sensor>-calibration``. Raises InputError."""
-    name = re.sub(r"[^A-Za-z0-9_-]+", "-", f"{found.scene.name}-{found.sensor or 'sensor'}-calibration")
+    name = re.sub(r"[^A-Za-z0-9_-]+", "-", f"{calibration.scene.name}-{calibration.sensor or 'sensor'}-calibration")
     folder = out / name
     check_writable(folder)
     files = {
-        "calibration.json": json_bytes(found.document), "residuals.svg": residual_chart(found.residuals, _CHART).encode(),
+        "calibration.json": json_bytes(calibration.document), "residuals.svg": residual_chart(calibration.residuals, _CHART).encode(),
     }  # fmt: skip
     listed = {path: digest(content) for path, content in sorted(files.items())}
     write_folder(folder, {**files, MANIFEST: json_bytes({"files": listed})})
     return folder
 
 
-def prepare(found: Calibration, name: str, root: Path, library: Library, *, shadow: bool = False) -> SavedCalibration:
+def prepare(
+    calibration: Calibration, name: str, root: Path, library: Library, *, shadow: bool = False
+) -> SavedCalibration:
     """Check and word the files of ``name`` under ``root``: the resin where its modulus was fitted, and the design.
 
     Nothing is written. Raises InputError for a bad name, one that would hide another resin or design (unless ``shadow``), a file
@@ -59,11 +61,13 @@ def prepare(found: Calibration, name: str, root: Path, library: Library, *, shad
     """
     if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]*", name):
         raise InputError("use letters, digits, - and _, starting with a letter or digit", key="save", value=name)
-    by_name = {estimate["parameter"]: estimate for estimate in found.estimates}
+    by_name = {estimate["parameter"]: estimate for estimate in calibration.estimates}
     files = []
     if "modulus" in by_name:
-        files.append(_material(found, by_name["modulus"], _place("materials", name, root, library, shadow), library))
-    files.append(_design(found, by_name, name, _place("designs", name, root, library, shadow)))
+        files.append(
+            _material(calibration, by_name["modulus"], _place("materials", name, root, library, shadow), library)
+        )
+    files.append(_design(calibration, by_name, name, _place("designs", name, root, library, shadow)))
     return SavedCalibration(tuple(files))
 
 
@@ -83,8 +87,8 @@ def _place(kind: str, name: str, root: Path, library: Library, shadow: bool) -> 
             remedy="give another name, or `shadow` to hide it",
         )
     if path.is_symlink() or path.exists():
-        ours = path.is_file() and not path.is_symlink() and _is_ours(path)
-        if not ours:
+        generated = path.is_file() and not path.is_symlink() and _is_generated(path)
+        if not generated:
             raise InputError(
                 "was not written by pneutouch calibrate, so it is left as it is",
                 file=path,
@@ -93,29 +97,31 @@ def _place(kind: str, name: str, root: Path, library: Library, shadow: bool) -> 
     return path
 
 
-def _is_ours(path: Path) -> bool:
+def _is_generated(path: Path) -> bool:
     with path.open(encoding="utf-8", errors="replace") as file:
         return file.readline().startswith(HEAD)
 
 
-def _head(found: Calibration, lines: list[str]) -> str:
-    first = f"{HEAD} from {_origin(found)}. Edit this line away and the command will no longer overwrite the file."
+def _head(calibration: Calibration, lines: list[str]) -> str:
+    first = (
+        f"{HEAD} from {_origin(calibration)}. Edit this line away and the command will no longer overwrite the file."
+    )
     return "".join(f"{line}\n" for line in [first, *(f"# {line}" for line in lines)])
 
 
-def _origin(found: Calibration) -> str:
-    runs, pushed = len(found.fit.observations.curves), len(found.fit.observations.injections)
+def _origin(calibration: Calibration) -> str:
+    runs, pushed = len(calibration.fit.observations.curves), len(calibration.fit.observations.injections)
     counts = f"{runs} curves" + (f", {pushed} injections" if pushed else "")
-    return f"sensor {found.sensor or 'unnamed'}, {found.title or 'unnamed campaign'}, {counts}"
+    return f"sensor {calibration.sensor or 'unnamed'}, {calibration.title or 'unnamed campaign'}, {counts}"
 
 
-def _material(found: Calibration, estimate: dict[str, Any], path: Path, library: Library) -> MeasuredProfile:
+def _material(calibration: Calibration, estimate: dict[str, Any], path: Path, library: Library) -> MeasuredProfile:
     interval = estimate["interval_95"]
     if interval is None:
         raise InputError(
             "the shear modulus has no interval (on its bound, or not seen): there is no resin to save", key="save"
         )
-    base = found.scene.design.membrane.material
+    base = calibration.scene.design.membrane.material
     if not isinstance(base, str):
         raise InputError(
             f"{base.label} is a mix of two resins",
@@ -127,24 +133,24 @@ def _material(found: Calibration, estimate: dict[str, Any], path: Path, library:
     # A material file holds one standard deviation; read with k = 2 it gives this interval back.
     spread = 0.5 * (interval[1] - interval[0]) / _TWO_SIDED
     wording = (
-        f"calibrated on {_origin(found)}; 95 % interval {interval[0]:.4g} to {interval[1]:.4g} MPa; "
-        f"{'priors counted' if found.fit.parameters.priors else 'no priors'}; before {before.get('value', 'a range')}: {base}.toml"
+        f"calibrated on {_origin(calibration)}; 95 % interval {interval[0]:.4g} to {interval[1]:.4g} MPa; "
+        f"{'priors counted' if calibration.fit.parameters.priors else 'no priors'}; before {before.get('value', 'a range')}: {base}.toml"
     )
     content["shear_modulus_MPa"] = {"value": rounded(estimate["value"]), "spread": rounded(spread), "source": wording}
     content["title"] = f"{content['title']}, {path.stem}"
-    # What the paper measured was measured on another print: it says nothing of the error of this modulus.
+    # The paper measured another print: its values do not bear on the error of this modulus.
     content.pop("measured", None)
     KINDS["materials"].validate(content, str(path))
     head = _head(
-        found,
+        calibration,
         [f"{base} with the shear modulus of the sensor in hand; the paper's measurements of {base} are not in it."],
     )
     changes = [{"file": str(path), "key": "shear_modulus_MPa", "before": before, "after": content["shear_modulus_MPa"]}]
     return MeasuredProfile(path, head + toml_text(content), changes)
 
 
-def _design(found: Calibration, by_name: dict[str, dict[str, Any]], name: str, path: Path) -> MeasuredProfile:
-    design = found.scene.design
+def _design(calibration: Calibration, by_name: dict[str, dict[str, Any]], name: str, path: Path) -> MeasuredProfile:
+    design = calibration.scene.design
     content = design.model_dump(exclude_none=True)
     lines, changes = [], []
     for parameter, table, key, value in (
@@ -152,22 +158,22 @@ def _design(found: Calibration, by_name: dict[str, dict[str, Any]], name: str, p
         ("dead-volume", "pneumatics", "dead_volume_mL", lambda x: round(x, _SMALL)),
     ):
         if parameter in by_name:
-            lines.append(_said(by_name[parameter]))
+            lines.append(_sentence(by_name[parameter]))
             before = content[table].get(key)
             content[table][key] = value(by_name[parameter]["value"])
             changes.append({"file": str(path), "key": f"{table}.{key}", "before": before, "after": content[table][key]})
     if "offset" in by_name:
-        lines.append(f"{_said(by_name['offset'])}; of the measurement, not of the sensor: not in this file.")
+        lines.append(f"{_sentence(by_name['offset'])}; of the measurement, not of the sensor: not in this file.")
     if "modulus" in by_name:
         changes.append(
             {"file": str(path), "key": "membrane.material", "before": design.membrane.material, "after": name}
         )
         content["membrane"]["material"] = name
     KINDS["designs"].validate(content, str(path))
-    return MeasuredProfile(path, _head(found, lines) + toml_text(content), changes)
+    return MeasuredProfile(path, _head(calibration, lines) + toml_text(content), changes)
 
 
-def _said(estimate: dict[str, Any]) -> str:
+def _sentence(estimate: dict[str, Any]) -> str:
     interval = estimate["interval_95"]
-    sure = "no interval" if interval is None else f"95 % interval {interval[0]:.4g} to {interval[1]:.4g}"
-    return f"{estimate['key']} = {estimate['value']:.4g}, {sure}; designed {estimate['designed']:.4g}"
+    interval_text = "no interval" if interval is None else f"95 % interval {interval[0]:.4g} to {interval[1]:.4g}"
+    return f"{estimate['key']} = {estimate['value']:.4g}, {interval_text}; designed {estimate['designed']:.4g}"

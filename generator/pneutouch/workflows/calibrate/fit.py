@@ -1,4 +1,4 @@
-"""A campaign and a design to the sensor in hand: what its modulus, wall, dead volume and contact offset are, and how sure."""
+"""A campaign and a design to the sensor in hand: its modulus, wall, dead volume and contact offset with their uncertainty."""
 
 from __future__ import annotations
 
@@ -56,8 +56,8 @@ class Calibration:
     notes: tuple[str, ...] = ()
 
     @property
-    def told(self) -> list[str]:
-        """What a reader must know beside the numbers."""
+    def notes_for_reader(self) -> list[str]:
+        """Notes for the reader in addition to the numbers."""
         return [*self.notes, *fit_notes(self.fit, self.identified, self.further, self.misses, self.held_out)]
 
     @property
@@ -82,7 +82,7 @@ class Calibration:
             "strongly_correlated": [_ambiguity(group) for group in self.identified.ambiguities],
             "unidentified": [NAMES[k] for k in self.identified.unseen],
             "further_tests": [_further(self.fit, test) for test in self.further],
-            "held_out": [_held_out(one) for one in self.held_out], "notes": self.told,
+            "held_out": [_held_out(one) for one in self.held_out], "notes": self.notes_for_reader,
         }  # fmt: skip
 
 
@@ -95,22 +95,22 @@ def calibrate(
     Raises InputError for what cannot be fitted, ComputationError where no fit is found.
     """
     built = sensor_of(assemble(scene))
-    # The depth is the design's wish; what the atlas has of the measured travels is decided point by point.
+    # The depth is the design's; what the atlas has of the measured travels is decided point by point.
     built = built.replace(
         ambient_pressure=observations.ambient, depth=min(built.protocol.depth, 0.75 * built.dome.inner_radius)
     )
     chosen = parameters(built, scene.membrane_material, scene.printer, names, priors=priors)
-    found = fit(observations, built, chosen)
+    fitted = fit(observations, built, chosen)
     held = tuple(predict_held_out(observations, built, chosen, pressure_kPa) for pressure_kPa in hold_out_kPa)
     return Calibration(
         scene,
         sensor,
         title,
-        found,
-        residuals(found),
-        misses(found),
-        identify(found),
-        further_tests(found),
+        fitted,
+        residuals(fitted),
+        misses(fitted),
+        identify(fitted),
+        further_tests(fitted),
         held,
         tuple(notes),
     )
@@ -133,7 +133,7 @@ def observations_of(
             "no such sensor in the campaign", key="sensor", value=chosen, remedy=f"there are {', '.join(known)}"
         )
     steps = tuple(curve for curve in curves if curve.run.sensor == chosen and curve.run.kind == "steps")
-    pushed = [found for found in injections if found[0].sensor == chosen]
+    pushed = [fitted for fitted in injections if fitted[0].sensor == chosen]
     for run, _, _ in pushed:
         if run.driving_pressure_kPa:
             raise InputError(
@@ -154,56 +154,56 @@ def observations_of(
 
 def _remarks(campaign: Campaign, scene: ResolvedDesign, sensor: str) -> list[str]:
     resin = next(run.resin for run in campaign.runs if run.sensor == sensor)
-    found = ["the campaign's files are simulated, not measured"] if campaign.simulated else []
+    fitted = ["the campaign's files are simulated, not measured"] if campaign.simulated else []
     if resin != scene.design.membrane.material:
-        found.append(
-            f"the campaign says that {sensor} is of {resin}, the design says {scene.design.membrane.material}: the design's resin "
+        fitted.append(
+            f"the campaign states {sensor} to be of {resin}, the design states {scene.design.membrane.material}: the design's resin "
             "gives the start and the prior of the modulus"
         )
-    return found
+    return fitted
 
 
-def _estimate(found: CalibrationFit, place: int) -> dict[str, Any]:
-    k = found.parameters.fitted[place]
-    at, half = float(found.solution.at[place]), float(found.half_width[place])
+def _estimate(fitted: CalibrationFit, place: int) -> dict[str, Any]:
+    k = fitted.parameters.fitted[place]
+    at, half = float(fitted.solution.at[place]), float(fitted.half_width[place])
     interval = None
     if np.isfinite(half):
         low = at - half if k != DEAD else max(at - half, 0.0)
         interval = [outside_value(k, low), outside_value(k, at + half)]
-    belief = float(found.parameters.prior_spread[k])
+    prior_spread = float(fitted.parameters.prior_spread[k])
     return {
         "parameter": NAMES[k], "key": KEYS[k], "unit": UNITS[k], "value": outside_value(k, at), "interval_95": interval,
-        "on_bound": bool(found.solution.bound[place]), "designed": outside_value(k, float(found.parameters.start[k])),
+        "on_bound": bool(fitted.solution.bound[place]), "designed": outside_value(k, float(fitted.parameters.start[k])),
         "prior": {
-            "counted": found.parameters.priors, "standard_deviation": belief / (ML if k == DEAD else 1.0),
-            "relative": bool(LOGARITHMIC[k]), "source": found.parameters.origin[k],
+            "counted": fitted.parameters.priors, "standard_deviation": prior_spread / (ML if k == DEAD else 1.0),
+            "relative": bool(LOGARITHMIC[k]), "source": fitted.parameters.origin[k],
         },
     }  # fmt: skip
 
 
-def _correlation(found: CalibrationFit) -> dict[str, Any]:
-    matrix = found.covariance.matrix
+def _correlation(fitted: CalibrationFit) -> dict[str, Any]:
+    matrix = fitted.covariance.matrix
     spread = np.sqrt(np.diag(matrix))
     scaled = matrix / np.outer(spread, spread)
     return {
-        "parameters": list(found.parameters.names),
+        "parameters": list(fitted.parameters.names),
         "matrix": [[float(x) if np.isfinite(x) else None for x in row] for row in scaled],
     }
 
 
-def _goodness(found: CalibrationFit) -> dict[str, Any]:
-    force, rise, injection = (float(x) for x in found.channel_factor)
+def _goodness(fitted: CalibrationFit) -> dict[str, Any]:
+    force, rise, injection = (float(x) for x in fitted.channel_factor)
     return {
-        "chi_squared": found.chi_squared, "degrees_of_freedom": found.freedom,
-        "chi_squared_per_degree": found.chi_squared / found.freedom if found.freedom else None,
-        "points_used": int(found.solution.use.sum()),
-        "points_left_out": int(found.left_out.sum() + found.injections_left_out.sum()),
+        "chi_squared": fitted.chi_squared, "degrees_of_freedom": fitted.freedom,
+        "chi_squared_per_degree": fitted.chi_squared / fitted.freedom if fitted.freedom else None,
+        "points_used": int(fitted.solution.use.sum()),
+        "points_left_out": int(fitted.left_out.sum() + fitted.injections_left_out.sum()),
         "scatter_over_stated": {"force": force, "pressure": rise, "injection": injection},
         "model_leaves_out_share_of_reading": dict(
-            zip(("force", "pressure", "injection"), (float(x) for x in found.sizes), strict=True)
+            zip(("force", "pressure", "injection"), (float(x) for x in fitted.sizes), strict=True)
         ),
-        "considered": [NAMES[k] for k in found.parameters.others],
-        "variance_of_runs_over_points": found.run_factor, "interval_from_runs": found.covariance.clustered,
+        "considered": [NAMES[k] for k in fitted.parameters.others],
+        "variance_of_runs_over_points": fitted.run_factor, "interval_from_runs": fitted.covariance.clustered,
     }  # fmt: skip
 
 
@@ -223,8 +223,8 @@ def _ambiguity(group: CorrelatedParameters) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _further(found: CalibrationFit, test: SuggestedTest) -> dict[str, Any]:
-    widths = zip(found.parameters.fitted, test.half_width, strict=True)
+def _further(fitted: CalibrationFit, test: SuggestedTest) -> dict[str, Any]:
+    widths = zip(fitted.parameters.fitted, test.half_width, strict=True)
     return {
         "test": test.what, "widest_interval_shrinks": test.gain,
         "expected_half_widths": {NAMES[k]: _leaving(k, width) for k, width in widths},

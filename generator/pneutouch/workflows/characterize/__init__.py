@@ -1,4 +1,4 @@
-"""Measured data to figures, beside the predicted ones."""
+"""Measured data to figures, compared with the predicted ones."""
 
 from pneutouch.workflows.characterize.load import CampaignData, Progress, load_curves
 from pneutouch.workflows.characterize.predicted import answers

@@ -16,8 +16,8 @@ def document(measured: CampaignReport) -> dict[str, Any]:
     return {
         "title": campaign.title, "lab": campaign.lab, "simulated": campaign.simulated, "design": measured.scene.name,
         "input_hash": measured.input_hash, "model": measured.model, "level": LEVEL,
-        "groups": [_group(beside) for beside in measured.besides],
-        "runs": [_run(curve, values) for b in measured.besides for curve, values in zip(b.group.curves, b.group.each, strict=True)],
+        "groups": [_group(comparison) for comparison in measured.comparisons],
+        "runs": [_run(curve, values) for b in measured.comparisons for curve, values in zip(b.group.curves, b.group.each, strict=True)],
         "injections": [
             {"sensor": sensor, "figure": name, "value": value, "standard_error": error, "unit": unit}
             for sensor, name, value, error, unit in measured.injections
@@ -30,32 +30,32 @@ def document(measured: CampaignReport) -> dict[str, Any]:
             for resin, pressure_kPa, age, value, low, high, published in measured.ageing
         ],
         "target": [
-            {"what": v.what, "required": v.wanted, "measured": v.measured, "passed": v.passed} for v in measured.verdicts
+            {"what": v.what, "required": v.required, "measured": v.measured, "passed": v.passed} for v in measured.verdicts
         ],
         "questions": [{"file": file, "question": text} for file, text in measured.questions],
         "failures": [{"file": file, "message": text} for file, text in measured.failures],
     }  # fmt: skip
 
 
-def _group(beside: GroupComparison) -> dict[str, Any]:
-    group = beside.group
+def _group(comparison: GroupComparison) -> dict[str, Any]:
+    group = comparison.group
     return {
         "resin": group.key.resin, "age": group.key.age, "driving_pressure_kPa": group.key.driving_pressure_kPa,
-        "sensors": group.sensors, "why_not_predicted": beside.why or None,
-        "figures": {key: _figure(key, estimate, beside) for key, estimate in group.figures.items()},
+        "sensors": group.sensors, "why_not_predicted": comparison.why or None,
+        "figures": {key: _figure(key, estimate, comparison) for key, estimate in group.figures.items()},
     }  # fmt: skip
 
 
-def _figure(key: str, estimate: Estimate, beside: GroupComparison) -> dict[str, Any]:
-    found: dict[str, Any] = {
+def _figure(key: str, estimate: Estimate, comparison: GroupComparison) -> dict[str, Any]:
+    figure: dict[str, Any] = {
         "value": estimate.value, "low": estimate.low, "high": estimate.high, "unit": BY_KEY[key].unit,
         "specimens": estimate.specimens, "runs": estimate.runs, "interval_over": estimate.over or None,
     }  # fmt: skip
-    if key in beside.predicted:
-        value, low, high = beside.predicted[key]
+    if key in comparison.predicted:
+        value, low, high = comparison.predicted[key]
         off = 100 * (estimate.value / value - 1) if value else None
-        found["predicted"] = {"value": value, "low": low, "high": high, "measured_off_percent": off}
-    return found
+        figure["predicted"] = {"value": value, "low": low, "high": high, "measured_off_percent": off}
+    return figure
 
 
 def _run(curve: MeasuredCurve, values: dict[str, float]) -> dict[str, Any]:

@@ -23,7 +23,7 @@ from pneutouch.units import KPA
 CAMPAIGN = "campaign.toml"
 
 Progress = Callable[[int, int], None]
-"""Told the megabytes read and the megabytes there are."""
+"""Receives the megabytes read and the megabytes in all."""
 
 _MEGABYTE = 1e6
 _LONGEST = 60
@@ -111,7 +111,7 @@ def load_curves(
 
 
 class _Meter:
-    """Bytes read of all files, told in megabytes."""
+    """Bytes read of all files, reported in megabytes."""
 
     def __init__(self, progress: Progress, total: int) -> None:
         self._progress, self._total, self._before = progress, total, 0
@@ -119,14 +119,14 @@ class _Meter:
     def within(self, size: int) -> Callable[[float], None]:
         """Takes the share read of the file at work."""
         before = self._before
-        return lambda share: self._tell(before + share * size)
+        return lambda share: self._report(before + share * size)
 
     def past(self, size: int) -> None:
         """The file at work is done with."""
         self._before += size
-        self._tell(self._before)
+        self._report(self._before)
 
-    def _tell(self, done: float) -> None:
+    def _report(self, done: float) -> None:
         self._progress(round(done / _MEGABYTE), max(round(self._total / _MEGABYTE), 1))
 
 

@@ -1,4 +1,4 @@
-"""The prediction beside each group of runs, and what the files look like against it."""
+"""The prediction for each group of runs, and the plausibility of the files against it."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _OF_STATE = ("sensitivity_kPa_per_N", "stiffness_N_per_mm")
 
 @dataclass(frozen=True)
 class StatePrediction:
-    """What the model says of a resin at a driving pressure (kPa); ``why`` where it says nothing."""
+    """The model's state for a resin at a driving pressure (kPa); ``why`` where there is none."""
 
     evaluation: Evaluation | None
     place: int
@@ -45,32 +45,32 @@ class StatePrediction:
         state = self.state
         if state is None or state.figures is None:
             return None
-        own, kept = state.figures, state.indentation <= state.range_end * (1 + 1e-12)
+        state_figures, kept = state.figures, state.indentation <= state.range_end * (1 + 1e-12)
         return ExpectedRun(
-            depth=float(state.indentation[kept][-1]), force=own.force_range[1],
-            rise=float(state.pressure_rise[kept][-1]), sensitivity=own.sensitivity_kPa_per_N * KPA,
+            depth=float(state.indentation[kept][-1]), force=state_figures.force_range[1],
+            rise=float(state.pressure_rise[kept][-1]), sensitivity=state_figures.sensitivity_kPa_per_N * KPA,
             curve=(state.indentation[kept], state.force[kept], state.pressure_rise[kept]),
         )  # fmt: skip
 
 
 def answers(
-    design: str | DesignSource, changes: Changes, wanted: Iterable[tuple[str, float]], model: str, library: Library
+    design: str | DesignSource, changes: Changes, pairs_of: Iterable[tuple[str, float]], model: str, library: Library
 ) -> dict[tuple[str, float], StatePrediction]:
-    """Predict the design in every (resin, driving pressure in kPa) wanted, resin by resin.
+    """Predict the design in every (resin, driving pressure in kPa) given, resin by resin.
 
     Where a resin's pressures cannot be predicted together each is tried alone; one beyond the limit has a reason in the
     place of a state.
     """
-    found: dict[tuple[str, float], StatePrediction] = {}
-    pairs = sorted(set(wanted))
+    predictions: dict[tuple[str, float], StatePrediction] = {}
+    pairs = sorted(set(pairs_of))
     for resin in dict.fromkeys(resin for resin, _ in pairs):
         pressures_kPa = [p for name, p in pairs if name == resin]
         try:
             evaluation = _evaluated(design, changes, resin, pressures_kPa, model, library)
-            found |= {(resin, p): StatePrediction(evaluation, k) for k, p in enumerate(pressures_kPa)}
+            predictions |= {(resin, p): StatePrediction(evaluation, k) for k, p in enumerate(pressures_kPa)}
         except PneutouchError:
-            found |= {(resin, p): _alone(design, changes, resin, p, model, library) for p in pressures_kPa}
-    return found
+            predictions |= {(resin, p): _alone(design, changes, resin, p, model, library) for p in pressures_kPa}
+    return predictions
 
 
 def _alone(
@@ -85,21 +85,21 @@ def _alone(
 def _evaluated(
     design: str | DesignSource, changes: Changes, resin: str, pressures_kPa: list[float], model: str, library: Library
 ) -> Evaluation:  # fmt: skip
-    own = {} if resin == AS_DESIGNED else {"membrane.material": resin}
+    material = {} if resin == AS_DESIGNED else {"membrane.material": resin}
     pressed = {"pneumatics.driving_pressures_kPa": pressures_kPa}
-    return evaluate(design, {**changes, **own, **pressed}, model=model, library=library)
+    return evaluate(design, {**changes, **material, **pressed}, model=model, library=library)
 
 
-def beside(group: RunGroup, answer: StatePrediction) -> GroupComparison:
-    """A group beside its prediction, which is of a fresh print."""
+def compared(group: RunGroup, answer: StatePrediction) -> GroupComparison:
+    """A group compared with its prediction, which is of a fresh print."""
     state = answer.state
     if state is None or answer.evaluation is None:
         return GroupComparison(group, group.key.resin, None, {}, {}, answer.why)
     label = answer.evaluation.scene.membrane_material.title
     if group.key.age_days > 0:
         return GroupComparison(group, label, None, {}, {}, "predictions are of fresh prints; see aged predictions")
-    sure = answer.evaluation.uncertainty[answer.place]
-    return GroupComparison(group, label, state, sure, _figures(state, sure, depths_of(group)))
+    uncertainty = answer.evaluation.uncertainty[answer.place]
+    return GroupComparison(group, label, state, uncertainty, _figures(state, uncertainty, depths_of(group)))
 
 
 def depths_of(group: RunGroup) -> Array | None:
@@ -123,24 +123,24 @@ def read_at(state: SensorState, depths: Array) -> Figures | None:
 
 
 def _figures(
-    state: SensorState, sure: dict[str, Any], depths: Array | None
+    state: SensorState, uncertainty: dict[str, Any], depths: Array | None
 ) -> dict[str, tuple[float, float | None, float | None]]:
-    own, known = state.figures, sure.get("figures", {})
-    got = own if depths is None else read_at(state, depths)
-    if got is None or own is None:
+    state_figures, known = state.figures, uncertainty.get("figures", {})
+    figures_there = state_figures if depths is None else read_at(state, depths)
+    if figures_there is None or state_figures is None:
         return {}
     plain = {
-        "sensitivity_kPa_per_N": got.sensitivity_kPa_per_N, "sensitivity_through_origin_kPa_per_N": got.sensitivity_through_origin_kPa_per_N,
-        "r_squared": got.r_squared, "nonlinearity_percent": 100 * got.nonlinearity, "stiffness_N_per_mm": got.stiffness,
-        "force_range_N": got.force_range[1],
+        "sensitivity_kPa_per_N": figures_there.sensitivity_kPa_per_N, "sensitivity_through_origin_kPa_per_N": figures_there.sensitivity_through_origin_kPa_per_N,
+        "r_squared": figures_there.r_squared, "nonlinearity_percent": 100 * figures_there.nonlinearity, "stiffness_N_per_mm": figures_there.stiffness,
+        "force_range_N": figures_there.force_range[1],
     }  # fmt: skip
-    if got.saturation_force is not None:
-        plain["saturation_force_N"] = got.saturation_force
+    if figures_there.saturation_force is not None:
+        plain["saturation_force_N"] = figures_there.saturation_force
     names = {**{name: name for name in _OF_STATE}, "force_range_N": "force_at_range_end_N"}
-    found: dict[str, tuple[float, float | None, float | None]] = {}
+    predictions: dict[str, tuple[float, float | None, float | None]] = {}
     for key, value in plain.items():
         ends = known.get(names.get(key, ""))
         # The relative uncertainty is that of the whole range.
         scale = 0.0 if ends is None else value / ends["value"]
-        found[key] = (value, None, None) if ends is None else (value, scale * ends["low"], scale * ends["high"])
-    return found
+        predictions[key] = (value, None, None) if ends is None else (value, scale * ends["low"], scale * ends["high"])
+    return predictions

@@ -1,4 +1,4 @@
-"""A campaign characterized: read, made figures, set beside the prediction, written."""
+"""A campaign characterized: read, reduced to figures, compared with the prediction, written."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ from pneutouch.spec.read import Changes, parse_changes, read_toml, validate
 from pneutouch.spec.target import Target
 from pneutouch.workflows.characterize.document import document
 from pneutouch.workflows.characterize.load import CampaignData, Progress, campaign_of, load_curves
-from pneutouch.workflows.characterize.predicted import StatePrediction, answers, beside
+from pneutouch.workflows.characterize.predicted import StatePrediction, answers, compared
 from pneutouch.workflows.characterize.tables import injections, points_csv, segments_csv
 from pneutouch.workflows.characterize.verdict import ageing, verdicts
 
 EVIDENCE = ("doubtful", "all", "none")
-"""Of which runs the evidence is plotted: of those with doubts and one of each group, of all, of none."""
+"""Of which runs the evidence is plotted: of those with warnings and one of each group, of all, of none."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class CharacterizationResult:
 
     @property
     def missed(self) -> bool:
-        """Whether a wish of the target was not shown to be met."""
+        """Whether a requirement of the target was not shown to be met."""
         return any(verdict.passed is not True for verdict in self.measured.verdicts)
 
 
@@ -59,30 +59,30 @@ def characterize(
     data: Path, design: str | DesignSource | None = None, changes: Changes | None = None, *, target: Path | None = None,
     model: str = "solid", library: Library | None = None, progress: Progress = lambda done, total: None,
 ) -> CharacterizationResult:  # fmt: skip
-    """Read a campaign's folder or one file, and set its figures beside the prediction of its design.
+    """Read a campaign's folder or one file, and compare its figures with the prediction of its design.
 
     ``design`` comes before the one that the campaign names; ``changes`` are laid over either. Raises InputError where nothing can
     be read; files that fail are listed in the outcome.
     """
     library = library or Library.default()
-    name, own = (design, {}) if design is not None else _design_of(data)
-    wanted = None if target is None else validate(Target, read_toml(target), str(target))
-    given = {**own, **(changes or {})}
+    name, named = (design, {}) if design is not None else _design_of(data)
+    request = None if target is None else validate(Target, read_toml(target), str(target))
+    given = {**named, **(changes or {})}
     loaded = load_curves(data, load_scene(name, given, library), progress)
     if loaded.campaign.ambient_pressure_kPa is not None:
         given.setdefault("pneumatics.ambient_pressure_kPa", loaded.campaign.ambient_pressure_kPa)
     _check_resins(data, loaded, library)
     pairs = [(curve.run.resin, curve.run.driving_pressure_kPa) for curve in loaded.curves]
-    model_says = answers(name, given, pairs, model, library)
-    curves, failures, questions = sound(loaded, model_says)
+    answer_of = answers(name, given, pairs, model, library)
+    curves, failures, questions = sound(loaded, answer_of)
     groups = summarize(curves)
     scene = load_scene(name, given, library)
     pushed, unread = injections(loaded, scene)
     measured = CampaignReport(
         campaign=loaded.campaign, scene=scene, folder=loaded.folder,
-        besides=tuple(beside(group, _answer(model_says, group.key.resin, group.key.driving_pressure_kPa)) for group in groups),
+        comparisons=tuple(compared(group, _answer(answer_of, group.key.resin, group.key.driving_pressure_kPa)) for group in groups),
         curves=tuple(curves), failures=(*loaded.failures, *failures, *unread), questions=questions,
-        verdicts=() if wanted is None else verdicts(wanted, groups), injections=pushed,
+        verdicts=() if request is None else verdicts(request, groups), injections=pushed,
         ageing=ageing(groups, library), model=model, input_hash=_hash(loaded, scene.design.model_dump(mode="json")),
     )  # fmt: skip
     return CharacterizationResult(measured, loaded.traces, f"{_stem(data)}-measured")
@@ -99,8 +99,8 @@ def _design_of(data: Path) -> tuple[str, dict[str, Any]]:
         raise InputError(
             "the campaign names no design", file=folder, remedy='give `design`, or design = "..." in its file'
         )
-    beside = folder / campaign.design
-    name = str(beside) if beside.suffix == ".toml" and beside.is_file() else campaign.design
+    design_file = folder / campaign.design
+    name = str(design_file) if design_file.suffix == ".toml" and design_file.is_file() else campaign.design
     return name, parse_changes(campaign.assignments)
 
 
@@ -116,24 +116,24 @@ def _check_resins(data: Path, loaded: CampaignData, library: Library) -> None:
 
 
 def _answer(
-    found: Mapping[tuple[str, float], StatePrediction], resin: str, driving_pressure_kPa: float
+    predictions: Mapping[tuple[str, float], StatePrediction], resin: str, driving_pressure_kPa: float
 ) -> StatePrediction:
-    return found.get((resin, driving_pressure_kPa), StatePrediction(None, 0, "not predicted"))
+    return predictions.get((resin, driving_pressure_kPa), StatePrediction(None, 0, "not predicted"))
 
 
 def sound(
-    loaded: CampaignData, model_says: Mapping[tuple[str, float], StatePrediction]
+    loaded: CampaignData, answer_of: Mapping[tuple[str, float], StatePrediction]
 ) -> tuple[list[MeasuredCurve], list[tuple[str, str]], tuple[tuple[str, str], ...]]:
-    """Curves that may be what they say, those that cannot with the reason, and what is to be asked of the others."""
+    """Plausible curves, implausible ones with the reason, and questions on the others."""
     kept: list[MeasuredCurve] = []
     failures: list[tuple[str, str]] = []
     questions: list[tuple[str, str]] = []
     for curve in loaded.curves:
         run = curve.run
-        expected = _answer(model_says, run.resin, run.driving_pressure_kPa).expected()
+        expected = _answer(answer_of, run.resin, run.driving_pressure_kPa).expected()
         try:
-            asked = check_plausible(curve, loaded.campaign.columns, expected, loaded.folder / run.file)
-            questions += [(run.file, text) for text in asked]
+            suspect = check_plausible(curve, loaded.campaign.columns, expected, loaded.folder / run.file)
+            questions += [(run.file, text) for text in suspect]
             kept.append(curve)
         except InputError as error:
             failures.append((run.file, str(error)))
@@ -182,8 +182,10 @@ def _shown(measured: CampaignReport, evidence: str) -> list[MeasuredCurve]:
         return list(measured.curves)
     if evidence == "none":
         return []
-    first = {(b.group.key, curve.run.kind): curve for b in measured.besides for curve in reversed(b.group.curves)}
-    doubtful = {curve.run.file for curve in measured.curves if any(doubt.kind != "note" for doubt in curve.warnings)}
-    asked = {file for file, _ in measured.questions}
-    chosen = {curve.run.file for curve in first.values()} | doubtful | asked
+    first = {(b.group.key, curve.run.kind): curve for b in measured.comparisons for curve in reversed(b.group.curves)}
+    doubtful = {
+        curve.run.file for curve in measured.curves if any(warning.kind != "note" for warning in curve.warnings)
+    }
+    suspect = {file for file, _ in measured.questions}
+    chosen = {curve.run.file for curve in first.values()} | doubtful | suspect
     return [curve for curve in measured.curves if curve.run.file in chosen]

@@ -1,4 +1,4 @@
-"""The small tables of a characterization: points, segments, and what leak and injection runs say."""
+"""The small tables of a characterization: points, segments, and the results of leak and injection runs."""
 
 from __future__ import annotations
 
@@ -44,17 +44,17 @@ def segments_csv(curves: Iterable[MeasuredCurve]) -> bytes:
                     "",
                 ]
             )
-        for doubt in curve.warnings:
+        for warning in curve.warnings:
             blank = [""] * 6
             rows.append(
                 [
                     *_of(curve),
                     "warning",
-                    f"{doubt.start:.4f}",
-                    f"{doubt.end:.4f}",
+                    f"{warning.start:.4f}",
+                    f"{warning.end:.4f}",
                     *blank,
-                    doubt.why,
-                    "used" if doubt.used else "left out",
+                    warning.why,
+                    "used" if warning.used else "left out",
                 ]
             )
     head = (
@@ -81,13 +81,13 @@ InjectionRow = tuple[str, str, float, float | None, str]
 
 
 def injections(loaded: CampaignData, scene: ResolvedDesign) -> tuple[tuple[InjectionRow, ...], list[tuple[str, str]]]:
-    """Leak rates, and the dead volume that an injection would mean if the line were rigid; files that say neither, and why.
+    """Leak rates, and the dead volume that an injection would mean if the line were rigid; files that give neither, and why.
 
-    An injection into a sensor swells the dome, so that what it says of the dead volume alone is an upper bound; `calibrate`
+    An injection into a sensor swells the dome, so that its dead volume is an upper bound; `calibrate`
     takes the dome into account.
     """
     failures = []
-    found: list[InjectionRow] = [
+    rows: list[InjectionRow] = [
         (run.sensor, f"leak, {_when(run)}", 60 * rate / KPA, 60 * error / KPA, "kPa/min")
         for run, rate, error in loaded.leaks
     ]
@@ -99,10 +99,10 @@ def injections(loaded: CampaignData, scene: ResolvedDesign) -> tuple[tuple[Injec
             failures.append((run.file, f"{loaded.folder / run.file}: {error}"))
             continue
         name = f"gas volume as if rigid, {_when(run)}"
-        found.append((run.sensor, name, total.value / ML, total.spread / ML, "mL"))
-    return tuple(found), failures
+        rows.append((run.sensor, name, total.value / ML, total.spread / ML, "mL"))
+    return tuple(rows), failures
 
 
 def _when(run: CampaignRun) -> str:
-    """What tells runs of one sensor and kind apart."""
+    """What distinguishes runs of one sensor and kind."""
     return f"{run.driving_pressure_kPa:g} kPa, run {run.run}" + (f", {run.age_days:g} d" if run.age_days else "")

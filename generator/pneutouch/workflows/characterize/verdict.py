@@ -20,18 +20,18 @@ _INFINITE = float("inf")
 _SAME_KPA = 1e-6
 
 _YEAR = 300.0, 430.0
-"""Ages in days beside which the paper's change in a year is set."""
+"""Ages in days that are compared with the paper's change in a year."""
 
 
 def verdicts(target: Target, groups: Sequence[RunGroup]) -> tuple[Verdict, ...]:
-    """Every wish of a target against every group it speaks of; a size is no matter of measurement here.
+    """Every requirement of a target against every group it applies to; a size is not measured here.
 
-    A wish that no group answers is not decided.
+    A requirement that no group measures is not decided.
     """
-    wanted = target.target
-    found = []
-    for what, key, low, high, text in _wishes(wanted):
-        only_kPa = wanted.driving_pressure_kPa
+    figures = target.target
+    verdicts_ = []
+    for what, key, low, high, text in _requirements(figures):
+        only_kPa = figures.driving_pressure_kPa
         answers = [
             group for group in groups
             if key in group.figures and (only_kPa is None or np.isclose(only_kPa, group.key.driving_pressure_kPa, atol=_SAME_KPA))
@@ -39,34 +39,34 @@ def verdicts(target: Target, groups: Sequence[RunGroup]) -> tuple[Verdict, ...]:
         for group in answers:
             where = f"{group.key.resin}, {group.key.age}, {group.key.driving_pressure_kPa:g} kPa"
             estimate = group.figures[key]
-            found.append(Verdict(f"{what}, {where}", text, _said(estimate), _passed(estimate, low, high)))
+            verdicts_.append(Verdict(f"{what}, {where}", text, _interval(estimate), _passed(estimate, low, high)))
         if not answers:
             where = "" if only_kPa is None else f", {only_kPa:g} kPa"
-            found.append(Verdict(f"{what}{where}", text, "not measured", None))
-    return tuple(found)
+            verdicts_.append(Verdict(f"{what}{where}", text, "not measured", None))
+    return tuple(verdicts_)
 
 
-def _wishes(wanted: TargetFigures) -> list[tuple[str, str, float, float, str]]:
-    """What is wished: name, figure, least, most, in words."""
-    found = []
-    if (s := wanted.sensitivity_kPa_per_N) is not None:
-        part = wanted.tolerance_percent / 100
-        text = f"{s:g} kPa/N within {wanted.tolerance_percent:g} %"
-        found.append(("Sensitivity", "sensitivity_kPa_per_N", s * (1 - part), s * (1 + part), text))
-    if (f := wanted.force_range_N) is not None:
-        found.append(("Force range", "force_range_N", f, _INFINITE, f"at least {f:g} N"))
-    if (k := wanted.stiffness_least_N_per_mm) is not None:
-        found.append(("Stiffness", "stiffness_N_per_mm", k, _INFINITE, f"at least {k:g} N/mm"))
-    if (k := wanted.stiffness_most_N_per_mm) is not None:
-        found.append(("Stiffness", "stiffness_N_per_mm", 0.0, k, f"at most {k:g} N/mm"))
-    return found
+def _requirements(figures: TargetFigures) -> list[tuple[str, str, float, float, str]]:
+    """The requirements: name, figure, least, most, in words."""
+    rows = []
+    if (s := figures.sensitivity_kPa_per_N) is not None:
+        part = figures.tolerance_percent / 100
+        text = f"{s:g} kPa/N within {figures.tolerance_percent:g} %"
+        rows.append(("Sensitivity", "sensitivity_kPa_per_N", s * (1 - part), s * (1 + part), text))
+    if (f := figures.force_range_N) is not None:
+        rows.append(("Force range", "force_range_N", f, _INFINITE, f"at least {f:g} N"))
+    if (k := figures.stiffness_least_N_per_mm) is not None:
+        rows.append(("Stiffness", "stiffness_N_per_mm", k, _INFINITE, f"at least {k:g} N/mm"))
+    if (k := figures.stiffness_most_N_per_mm) is not None:
+        rows.append(("Stiffness", "stiffness_N_per_mm", 0.0, k, f"at most {k:g} N/mm"))
+    return rows
 
 
-def _said(estimate: Estimate) -> str:
+def _interval(estimate: Estimate) -> str:
     if estimate.low is None or estimate.high is None:
         return f"{estimate.value:.4g} (one run: no interval)"
-    own = "" if estimate.over == "specimens" else ", this specimen alone"
-    return f"{estimate.value:.4g} ({estimate.low:.4g} to {estimate.high:.4g}{own})"
+    remark = "" if estimate.over == "specimens" else ", this specimen alone"
+    return f"{estimate.value:.4g} ({estimate.low:.4g} to {estimate.high:.4g}{remark})"
 
 
 def _passed(estimate: Estimate, low: float, high: float) -> bool | None:
@@ -88,14 +88,14 @@ def ageing(groups: Sequence[RunGroup], library: Library) -> tuple[AgeingChange, 
     """
     known = [group for group in groups if "sensitivity_kPa_per_N" in group.figures]
     by_sensor: Callable[[RunGroup], tuple[str, float]] = lambda group: (group.key.resin, group.key.driving_pressure_kPa)  # noqa: E731
-    found: list[AgeingChange] = []
+    changes: list[AgeingChange] = []
     for (resin, pressure), some in groupby(sorted(known, key=by_sensor), key=by_sensor):
         fresh, *aged = sorted(some, key=lambda group: group.key.age_days)
         if fresh.key.age_days == 0:
             for group in aged:
                 published = _published(resin, library) if _YEAR[0] <= group.key.age_days <= _YEAR[1] else None
-                found.append((resin, pressure, group.key.age, *_change(fresh, group), published))
-    return tuple(found)
+                changes.append((resin, pressure, group.key.age, *_change(fresh, group), published))
+    return tuple(changes)
 
 
 def _published(resin: str, library: Library) -> float | None:

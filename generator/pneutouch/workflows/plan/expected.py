@@ -16,13 +16,13 @@ from pneutouch.spec.campaign import Rig
 from pneutouch.units import KPA, ML
 
 RESOLVED = 3.0
-"""A first step below this many resolutions of the force sensor is not told from nothing (IUPAC's limit of detection)."""
+"""A first step below this many resolutions of the force sensor is not distinguished from zero (IUPAC's limit of detection)."""
 
 ROUND = tuple(ML * digit * 10.0**power for power in (-2, -1, 0, 1) for digit in (1, 2, 5))
 """Round volumes that a syringe can push, mm3."""
 
 MORE = 0.1 * ML
-"""Extra dead volume whose effect is shown beside, mm3: 20 mm of a 2.5 mm bore, our choice."""
+"""Extra dead volume whose effect is shown as well, mm3: 20 mm of a 2.5 mm bore, our choice."""
 
 _OF_RATED, _OF_RANGE = 0.5, 0.8
 """Air pushed into the sensor may take it to this share of its rated pressure, into the line to this share of the gauge's
@@ -34,7 +34,7 @@ _LEAK_SHARE = 0.01
 
 @dataclass(frozen=True)
 class PlanViolation:
-    """Where the rig or the sensor would be asked for more than it has."""
+    """Where the plan exceeds the rig or the sensor."""
 
     rule: str
     message: str
@@ -51,13 +51,13 @@ def points(curve: PressCurve, depths: tuple[float, ...]) -> list[dict[str, float
     """Expected force, pressure rise and cavity pressure at plate travels; null beyond the predicted range."""
     known = [depth for depth in depths if curve.covers(depth)]
     force, rise = curve.at(np.minimum(known, curve.reach)) if known else (np.zeros(0), np.zeros(0))
-    found = {d: (float(f), float(r) / KPA) for d, f, r in zip(known, force, rise, strict=True)}
+    known_points = {d: (float(f), float(r) / KPA) for d, f, r in zip(known, force, rise, strict=True)}
     driving_kPa = curve.driving / KPA
     return [
         {
-            "depth_mm": depth, "force_N": found[depth][0] if depth in found else None,
-            "pressure_rise_kPa": found[depth][1] if depth in found else None,
-            "cavity_pressure_kPa": driving_kPa + found[depth][1] if depth in found else None,
+            "depth_mm": depth, "force_N": known_points[depth][0] if depth in known_points else None,
+            "pressure_rise_kPa": known_points[depth][1] if depth in known_points else None,
+            "cavity_pressure_kPa": driving_kPa + known_points[depth][1] if depth in known_points else None,
         }
         for depth in depths
     ]  # fmt: skip
@@ -70,7 +70,7 @@ def curve_warnings(
     driving_kPa = curve.driving / KPA
     depths = tuple(sorted({depth for test in tests.values() for depth in test.depths}))
     expected = points(curve, depths)
-    found = []
+    violations = []
 
     def over(rule: str, key: str, limit: float, text: str) -> None:
         beyond = [p for p in expected if p[key] is not None and p[key] > limit]  # type: ignore[operator]
@@ -78,12 +78,12 @@ def curve_warnings(
             first, last = beyond[0], beyond[-1]
             before = depths[depths.index(float(first["depth_mm"] or 0.0)) - 1] if first is not expected[0] else None
             stop = "leave this pressure out" if before is None else f"stop at {before:g} mm"
-            say(rule, first["depth_mm"], text.format(limit=limit, least=first[key], most=last[key], stop=stop))
+            report(rule, first["depth_mm"], text.format(limit=limit, least=first[key], most=last[key], stop=stop))
 
-    def say(rule: str, depth: float | None, text: str) -> None:
+    def report(rule: str, depth: float | None, text: str) -> None:
         kinds = "" if depth is None else f" ({', '.join(k for k, t in tests.items() if max(t.depths) >= depth)})"
         at = "" if depth is None else f", from {depth:.2f} mm on{kinds}"
-        found.append(PlanViolation(rule, f"{resin}, {driving_kPa:g} kPa{at}: {text}", resin, driving_kPa, depth))
+        violations.append(PlanViolation(rule, f"{resin}, {driving_kPa:g} kPa{at}: {text}", resin, driving_kPa, depth))
 
     over(
         "force range",
@@ -99,26 +99,26 @@ def curve_warnings(
     )
     lost = [depth for depth in depths if not curve.covers(depth)]
     if lost and curve.ends is not None:
-        say(
+        report(
             "range end",
             lost[0],
             f"predicted range ends at {curve.ends[1]:.2f} mm ({curve.ends[0]}); readings beyond belong to no figure",
         )
     rated = RATED_SHARE * pressed.limits.lowest
     if curve.driving > rated:
-        say(
+        report(
             "rated pressure",
             None,
             f"driving pressure is above {rated / KPA:.1f} kPa, {RATED_SHARE:.0%} of the limit ({pressed.limits.binding})",
         )
     first = expected[0]["force_N"]
     if first is not None and first < RESOLVED * rig.force_resolution_N:
-        say(
+        report(
             "force resolution",
             None,
             f"expected force of {first:.3f} N at the first step, {depths[0]:g} mm, is below {RESOLVED:g} resolutions of {rig.force_resolution_N:g} N",
         )
-    return found  # fmt: skip
+    return violations  # fmt: skip
 
 
 def travel_warnings(depths: tuple[float, ...], rig: Rig) -> list[PlanViolation]:

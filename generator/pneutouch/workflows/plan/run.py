@@ -105,7 +105,7 @@ def write_plan(plan: CampaignPlan, out: Path) -> Path:
     """Write ``out/<design>-plan/``: plan.json, plan.md, campaign.toml, manifest; the same input, the same bytes."""
     folder = out / plan.name
     check_writable(folder)
-    note = "# Fill in lab, and date and age_days of every run; measured files go where `file` says."
+    note = "# Fill in lab, and date and age_days of every run; measured files go to the path in `file`."
     files = {
         "plan.json": json_bytes(plan.document), "plan.md": plan.sheet.encode(),
         "campaign.toml": campaign_toml(plan.campaign, note),
@@ -139,57 +139,57 @@ def _pressed(subject: SimulatedResin, tests: Tests) -> PressCurves:
     return pressed(subject.name, subject.sensor, [p * KPA for p in pressures_kPa], depth, "auto")
 
 
-def _warnings(subject: SimulatedResin, found: PressCurves, tests: Tests, rig: Rig) -> Iterator[Any]:
-    for curve in found.curves:
+def _warnings(subject: SimulatedResin, pressed_curves: PressCurves, tests: Tests, rig: Rig) -> Iterator[Any]:
+    for curve in pressed_curves.curves:
         here: dict[str, RunProtocol] = {
             k: t for k, (t, at) in tests.items() if any(abs(p * KPA - curve.driving) < 1e-12 for p in at)
         }
-        yield from curve_warnings(subject.name, found, curve, here, rig)
+        yield from curve_warnings(subject.name, pressed_curves, curve, here, rig)
 
 
-def _expected(subject: SimulatedResin, found: PressCurves, tests: Tests, rig: Rig) -> dict[str, Any]:
+def _expected(subject: SimulatedResin, pressed_curves: PressCurves, tests: Tests, rig: Rig) -> dict[str, Any]:
     """What one resin must read: at every depth of every kind, after injected air, and the leak it may have."""
     depths = tuple(sorted({depth for test, _ in tests.values() for depth in test.depths}))
     states = [
         {
             "driving_pressure_kPa": curve.driving / KPA, "points": points(curve, depths), "range_end_mm": curve.reach,
             "range_ends_by": None if curve.ends is None else curve.ends[0],
-        } for curve in found.curves
+        } for curve in pressed_curves.curves
     ]  # fmt: skip
     steps = tests["steps"][0]
-    rises = [points(curve, steps.depths[:1])[0]["pressure_rise_kPa"] for curve in found.curves]
+    rises = [points(curve, steps.depths[:1])[0]["pressure_rise_kPa"] for curve in pressed_curves.curves]
     least = min((rise for rise in rises if rise is not None), default=None)
     return {
-        "resin": subject.name, "model": found.model, "states": states, "injection": injection(found, rig),
-        "limit_kPa": found.limits.lowest / KPA, "limit_by": found.limits.binding,
+        "resin": subject.name, "model": pressed_curves.model, "states": states, "injection": injection(pressed_curves, rig),
+        "limit_kPa": pressed_curves.limits.lowest / KPA, "limit_by": pressed_curves.limits.binding,
         "leak_limit_kPa_per_min": None if least is None else leak_limit(least, steps),
     }  # fmt: skip
 
 
 def _runs(
-    subject: SimulatedResin, sensor: str, tests: Tests, found: PressCurves, rig: Rig, before: int
+    subject: SimulatedResin, sensor: str, tests: Tests, pressed_curves: PressCurves, rig: Rig, before: int
 ) -> list[dict[str, Any]]:
     """Every run of one specimen in order: leak and dead volume first, relaxation last, for it strains the wall longest."""
     top_kPa = max(subject.scene.design.pneumatics.driving_pressures_kPa)
-    volume = injection(found, rig)["sensor_volume_mL"]
+    volume = injection(pressed_curves, rig)["sensor_volume_mL"]
     planned: list[tuple[str, float, int, list[dict[str, Any]], list[Any]]] = [
         ("leak", top_kPa, 1, _leak(top_kPa, rig), [])
     ]
     if volume is not None:
         planned.append(("injection", 0.0, 1, _inject(volume), []))
-    curves = {round(curve.driving / KPA, 9): curve for curve in found.curves}
+    curves = {round(curve.driving / KPA, 9): curve for curve in pressed_curves.curves}
     for kind, (test, pressures_kPa) in tests.items():
         for pressure_kPa in pressures_kPa:
-            said = points(curves[round(pressure_kPa, 9)], tuple(dict.fromkeys(test.depths)))
+            expected = points(curves[round(pressure_kPa, 9)], tuple(dict.fromkeys(test.depths)))
             planned += [
-                (kind, pressure_kPa, n + 1, steps_of(test, pressure_kPa, rig), said) for n in range(_times(kind))
+                (kind, pressure_kPa, n + 1, steps_of(test, pressure_kPa, rig), expected) for n in range(_times(kind))
             ]
     return [
         {
             "number": before + place, "kind": kind, "sensor": sensor, "resin": subject.name, "driving_pressure_kPa": pressure_kPa, "run": n,
-            "file": f"runs/{sensor}-{pressure_kPa:g}kPa-{kind}-{n}.csv", "steps": steps, "expected": said,
+            "file": f"runs/{sensor}-{pressure_kPa:g}kPa-{kind}-{n}.csv", "steps": steps, "expected": expected,
             "duration_s": sum(step["seconds"] for step in steps),
-        } for place, (kind, pressure_kPa, n, steps, said) in enumerate(planned, start=1)
+        } for place, (kind, pressure_kPa, n, steps, expected) in enumerate(planned, start=1)
     ]  # fmt: skip
 
 

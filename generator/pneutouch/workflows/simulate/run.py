@@ -42,7 +42,7 @@ PRESSED = ("steps", "saturation", "loop", "relaxation")
 """Kinds of run with a plate."""
 
 REPEATED = ("steps", "saturation")
-"""Kinds that are run as often as asked for; the others once."""
+"""Kinds that are run as often as requested; the others once."""
 
 PUSHED = np.linspace(0.0, 0.5, 11) * ML
 """Volumes of an injection run, mm3: 0 to 0.5 mL, our choice."""
@@ -69,21 +69,21 @@ Progress = Callable[[int, int], None]
 
 
 def simulate(
-    design: str | DesignSource, out: Path, changes: Changes | None = None, asked: SimulationOptions = SimulationOptions(), library: Library | None = None,
+    design: str | DesignSource, out: Path, changes: Changes | None = None, options: SimulationOptions = SimulationOptions(), library: Library | None = None,
     progress: Progress = lambda done, total: None,
 ) -> Path:  # fmt: skip
     """Write ``out/<design>-campaign/``: campaign.toml, runs, truth.json, manifest; the same input, the same bytes.
 
-    Runs are written to a hidden folder beside as they are made. Raises InputError for what cannot be.
+    Runs are written to a hidden folder next to it as they are made. Raises InputError for what cannot be.
     """
-    _check(asked)
-    subjects = resins_of(design, changes, asked.resins, asked.truth, library)
+    _check(options)
+    subjects = resins_of(design, changes, options.resins, options.truth, library)
     name = f"{subjects[0].scene.name}-campaign"
     folder = out / name
     with replacing(folder) as fresh:
         writer = _Writer(fresh)
-        _write_all((name_of(design), assignments(changes or {})), subjects, asked, writer, progress)
-        inputs = _inputs(subjects, asked)
+        _write_all((name_of(design), assignments(changes or {})), subjects, options, writer, progress)
+        inputs = _inputs(subjects, options)
         listed = dict(sorted(writer.files.items()))
         writer.put(MANIFEST, manifest(listed, name, inputs=inputs, input_hash=input_hash(inputs)))
     return folder
@@ -106,18 +106,18 @@ class _Writer:
 def _write_all(
     named: tuple[str, list[str]],
     subjects: list[SimulatedResin],
-    asked: SimulationOptions,
+    options: SimulationOptions,
     writer: _Writer,
     progress: Progress,
 ) -> None:
     runs: list[CampaignRun] = []
     truth: dict[str, Any] = {"specimens": {}, "populations": [], "notes": []}
-    total = len(subjects) * asked.specimens * len(asked.ages_days)
+    total = len(subjects) * options.specimens * len(options.ages_days)
     for subject in subjects:
-        for age in asked.ages_days:
-            truth["populations"] += _populations(subject, age, asked)
-            for k in range(asked.specimens):
-                for run, content in _specimen(subject, age, k, asked, truth):
+        for age in options.ages_days:
+            truth["populations"] += _populations(subject, age, options)
+            for k in range(options.specimens):
+                for run, content in _specimen(subject, age, k, options, truth):
                     runs.append(run)
                     writer.put(run.file, content)
                 progress(truth["done"], total)
@@ -126,10 +126,10 @@ def _write_all(
     writer.put("campaign.toml", campaign_toml(Campaign(
         title=f"Simulated campaign of {scene.name}"[:120], lab="none: simulated by pneutouch", design=named[0], assignments=named[1], simulated=True,
         ambient_pressure_kPa=scene.design.pneumatics.ambient_pressure_kPa,
-        rig=Rig(name="simulated: the paper's instruments", rate_Hz=asked.rate), runs=runs,
+        rig=Rig(name="simulated: the paper's instruments", rate_Hz=options.rate), runs=runs,
     ), MARK))  # fmt: skip
     writer.put("truth.json", json_bytes({
-        **truth, "simulated": True, "design": scene.name, "model": asked.model, "seed": asked.seed, "rate_Hz": asked.rate,
+        **truth, "simulated": True, "design": scene.name, "model": options.model, "seed": options.seed, "rate_Hz": options.rate,
         "parameters": {
             subject.name: {part: parameters(getattr(subject.truth, part)) for part in ("scatter", "rig", "wall")}
             for subject in subjects
@@ -145,114 +145,127 @@ def campaign_toml(campaign: Campaign, comment: str) -> bytes:
     return f"{comment}\n{toml_text(content)}".encode()
 
 
-def _driving_pressures_kPa(subject: SimulatedResin, asked: SimulationOptions) -> list[float]:
+def _driving_pressures_kPa(subject: SimulatedResin, options: SimulationOptions) -> list[float]:
     """Driving pressures in kPa."""
     given_kPa = (
         subject.scene.design.pneumatics.driving_pressures_kPa
-        if asked.driving_pressures_kPa is None
-        else asked.driving_pressures_kPa
+        if options.driving_pressures_kPa is None
+        else options.driving_pressures_kPa
     )
     return sorted(given_kPa)
 
 
-def _depth(subject: SimulatedResin, asked: SimulationOptions) -> float:
-    """The deepest plate travel of the kinds asked for, mm."""
+def _depth(subject: SimulatedResin, options: SimulationOptions) -> float:
+    """The deepest plate travel of the requested kinds, mm."""
     reach = subject.sensor.dome.inner_radius
-    kinds = [kind for kind in asked.kinds if kind in PRESSED] or ["steps"]
+    kinds = [kind for kind in options.kinds if kind in PRESSED] or ["steps"]
     return max(max(subject.truth.protocol(kind, reach, np.inf).depths) for kind in kinds)
 
 
-def _pressed(subject: SimulatedResin, sensor: Sensor, asked: SimulationOptions, who: str) -> PressCurves:
+def _pressed(subject: SimulatedResin, sensor: Sensor, options: SimulationOptions, who: str) -> PressCurves:
     return pressed(
-        who, sensor, [p * KPA for p in _driving_pressures_kPa(subject, asked)], _depth(subject, asked), asked.model
+        who,
+        sensor,
+        [p * KPA for p in _driving_pressures_kPa(subject, options)],
+        _depth(subject, options),
+        options.model,
     )
 
 
-def _populations(subject: SimulatedResin, age: float, asked: SimulationOptions) -> Iterator[dict[str, Any]]:
-    nominal = _pressed(subject, aged(subject.sensor, subject.truth, age), asked, subject.name)
-    for k, pressure_kPa in enumerate(_driving_pressures_kPa(subject, asked)):
-        found: Population = population(nominal, k, subject.truth, asked.rate, (asked.seed, _number(subject.name)))
+def _populations(subject: SimulatedResin, age: float, options: SimulationOptions) -> Iterator[dict[str, Any]]:
+    nominal = _pressed(subject, aged(subject.sensor, subject.truth, age), options, subject.name)
+    for k, pressure_kPa in enumerate(_driving_pressures_kPa(subject, options)):
+        spread_of: Population = population(
+            nominal, k, subject.truth, options.rate, (options.seed, _number(subject.name))
+        )
         yield {
-            "resin": subject.name, "age_days": age, "driving_pressure_kPa": pressure_kPa, "figures": found.figures,
-            "spread": found.spread, "count": found.count, "basis": found.basis,
+            "resin": subject.name, "age_days": age, "driving_pressure_kPa": pressure_kPa, "figures": spread_of.figures,
+            "spread": spread_of.spread, "count": spread_of.count, "basis": spread_of.basis,
         }  # fmt: skip
 
 
 def _specimen(
-    subject: SimulatedResin, age: float, k: int, asked: SimulationOptions, truth: dict[str, Any]
+    subject: SimulatedResin, age: float, k: int, options: SimulationOptions, truth: dict[str, Any]
 ) -> Iterator[tuple[CampaignRun, bytes]]:
     """Every run of one specimen at one age, and what is true of it."""
     name = f"{subject.name}-{k + 1}"
     drawn = SimulatedSpecimens.draw(
-        subject.truth.scatter, 1, np.random.default_rng([asked.seed, _number(subject.name), k])
+        subject.truth.scatter, 1, np.random.default_rng([options.seed, _number(subject.name), k])
     )
     sensor = aged(drawn.sensor(subject.sensor, 0), subject.truth, age)
-    found = _pressed(subject, sensor, asked, name)
+    pressed_curves = _pressed(subject, sensor, options, name)
     known: dict[str, Any] = {
         "resin": subject.name, "age_days": age, "shear_modulus_MPa": sensor.wall.hyperelastic.mu, "pressures": {},
-        "wall_thickness_mm": sensor.dome.wall_thickness, "dead_volume_mL": sensor.gas.dead_volume / ML, "model": found.model,
+        "wall_thickness_mm": sensor.dome.wall_thickness, "dead_volume_mL": sensor.gas.dead_volume / ML, "model": pressed_curves.model,
     }  # fmt: skip
-    truth["specimens"][_label(name, age, asked)] = known
+    truth["specimens"][_label(name, age, options)] = known
     truth["done"] = truth.get("done", 0) + 1
-    for place, (pressure, curve) in enumerate(zip(_driving_pressures_kPa(subject, asked), found.curves, strict=True)):
+    for place, (pressure, curve) in enumerate(
+        zip(_driving_pressures_kPa(subject, options), pressed_curves.curves, strict=True)
+    ):
         known["pressures"][f"{pressure:g}"] = {
-            **specimen_figures(curve, subject.truth, sensor.dome.inner_radius, asked.rate),
+            **specimen_figures(curve, subject.truth, sensor.dome.inner_radius, options.rate),
             "range_end_mm": curve.reach, "range_ends_by": None if curve.ends is None else curve.ends[0],
         }  # fmt: skip
-        for kind in asked.kinds:
+        for kind in options.kinds:
             if kind == "injection" and place > 0:
                 continue
-            for number in range(1, (asked.runs if kind in REPEATED else 1) + 1):
+            for number in range(1, (options.runs if kind in REPEATED else 1) + 1):
                 at = 0.0 if kind == "injection" else pressure
                 run = CampaignRun(
-                    file=f"runs/{_label(name, age, asked)}-{at:g}kPa-{kind}-{number}.{'parquet' if asked.parquet else 'csv'}",
+                    file=f"runs/{_label(name, age, options)}-{at:g}kPa-{kind}-{number}.{'parquet' if options.parquet else 'csv'}",
                     kind=kind,  # type: ignore[arg-type]
                     sensor=name, resin=subject.name, driving_pressure_kPa=at, run=number, age_days=age,
                 )  # fmt: skip
                 key = [_number(subject.name), k, round(1e3 * age), round(1e6 * pressure), KINDS.index(kind), number]
-                rng = np.random.default_rng([asked.seed, *key])
+                rng = np.random.default_rng([options.seed, *key])
                 if kind in PRESSED:
                     _note_end(run, subject, curve.reach, curve.ends, truth)
-                yield run, encoded(_columns(kind, subject, found, place, asked, rng), parquet=asked.parquet)
+                yield (
+                    run,
+                    encoded(_columns(kind, subject, pressed_curves, place, options, rng), parquet=options.parquet),
+                )
 
 
 def _note_end(
     run: CampaignRun, subject: SimulatedResin, reach: float, ends: tuple[str, float] | None, truth: dict[str, Any]
 ) -> None:
-    wanted = max(subject.truth.protocol(run.kind, subject.sensor.dome.inner_radius, np.inf).depths)
-    if ends is not None and wanted > reach * (1 + 1e-9):
-        truth["notes"].append(f"{run.label}: stops at {reach:.2f} mm instead of {wanted:.2f} mm, before {ends[0]}")
+    deepest = max(subject.truth.protocol(run.kind, subject.sensor.dome.inner_radius, np.inf).depths)
+    if ends is not None and deepest > reach * (1 + 1e-9):
+        truth["notes"].append(f"{run.label}: stops at {reach:.2f} mm instead of {deepest:.2f} mm, before {ends[0]}")
 
 
 def _columns(
     kind: str,
     subject: SimulatedResin,
-    found: PressCurves,
+    pressed_curves: PressCurves,
     place: int,
-    asked: SimulationOptions,
+    options: SimulationOptions,
     rng: np.random.Generator,
 ) -> dict[str, Array]:
     """The columns of one run in the units of its file."""
-    truth, curve, sensor = subject.truth, found.curves[place], found.sensor
+    truth, curve, sensor = subject.truth, pressed_curves.curves[place], pressed_curves.sensor
     if kind == "injection":
-        pressure = sensor_pressure(PUSHED, found.inflation, sensor.gas.dead_volume, sensor.gas.ambient_pressure)
-        read = pressure + truth.rig.noise(asked.rate)[1] * rng.standard_normal(PUSHED.size)
+        pressure = sensor_pressure(
+            PUSHED, pressed_curves.inflation, sensor.gas.dead_volume, sensor.gas.ambient_pressure
+        )
+        read = pressure + truth.rig.noise(options.rate)[1] * rng.standard_normal(PUSHED.size)
         keep = np.isfinite(pressure)
         return {"volume_mL": PUSHED[keep] / ML, "pressure_kPa": truth.rig.stepped(read[keep]) / KPA}
     if kind == "leak":
-        still = simulate_leak(curve.driving, LEAK_SECONDS, truth.rig, asked.rate, rng)
+        still = simulate_leak(curve.driving, LEAK_SECONDS, truth.rig, options.rate, rng)
         return {"time_s": still.time, "pressure_kPa": still.pressure / KPA}
-    asked_for = truth.protocol(kind, sensor.dome.inner_radius, curve.reach)
+    protocol = truth.protocol(kind, sensor.dome.inner_radius, curve.reach)
     record: RecordSamples = simulate_run(
-        curve, asked_for, truth.rig, asked.rate, rng, wall=truth.wall, scatter=truth.scatter
+        curve, protocol, truth.rig, options.rate, rng, wall=truth.wall, scatter=truth.scatter
     )
     return {
         "time_s": record.time, "position_mm": record.position, "force_N": record.force, "pressure_kPa": record.pressure / KPA,
     }  # fmt: skip
 
 
-def _label(name: str, age: float, asked: SimulationOptions) -> str:
-    return name if asked.ages_days == (0.0,) else f"{name}-{age:g}d"
+def _label(name: str, age: float, options: SimulationOptions) -> str:
+    return name if options.ages_days == (0.0,) else f"{name}-{age:g}d"
 
 
 def _number(name: str) -> int:
@@ -260,15 +273,15 @@ def _number(name: str) -> int:
     return zlib.crc32(name.encode())
 
 
-def _inputs(subjects: list[SimulatedResin], asked: SimulationOptions) -> dict[str, Any]:
+def _inputs(subjects: list[SimulatedResin], options: SimulationOptions) -> dict[str, Any]:
     first = subjects[0]
     return {
         "design": first.scene.design.model_dump(mode="json"),
         "resins": {subject.name: subject.scene.membrane_material.model_dump(mode="json") for subject in subjects},
         "options": {
             key: value for key, value in {
-                "specimens": asked.specimens, "driving_pressures_kPa": asked.driving_pressures_kPa, "runs": asked.runs, "kinds": asked.kinds,
-                "rate": asked.rate, "seed": asked.seed, "model": asked.model, "ages_days": asked.ages_days, "parquet": asked.parquet,
+                "specimens": options.specimens, "driving_pressures_kPa": options.driving_pressures_kPa, "runs": options.runs, "kinds": options.kinds,
+                "rate": options.rate, "seed": options.seed, "model": options.model, "ages_days": options.ages_days, "parquet": options.parquet,
             }.items() if value is not None
         },
         "parameters": {part: parameters(getattr(first.truth, part)) for part in ("scatter", "rig", "wall")},
@@ -276,23 +289,23 @@ def _inputs(subjects: list[SimulatedResin], asked: SimulationOptions) -> dict[st
     }  # fmt: skip
 
 
-def _check(asked: SimulationOptions) -> None:
+def _check(options: SimulationOptions) -> None:
     """Raise InputError for what cannot be simulated."""
     bounds = (
-        ("specimens", asked.specimens, 1, 1000), ("runs", asked.runs, 1, 1000), ("rate_Hz", asked.rate, 10.0, 1e5),
-        *(("driving_pressures_kPa", p, 0.0, 1000.0) for p in asked.driving_pressures_kPa or ()), *(("ages", a, 0.0, 36_500.0) for a in asked.ages_days),
-        *((("rest", asked.truth.rest, 0.2, 3600.0),) if asked.truth.rest is not None else ()),
+        ("specimens", options.specimens, 1, 1000), ("runs", options.runs, 1, 1000), ("rate_Hz", options.rate, 10.0, 1e5),
+        *(("driving_pressures_kPa", p, 0.0, 1000.0) for p in options.driving_pressures_kPa or ()), *(("ages", a, 0.0, 36_500.0) for a in options.ages_days),
+        *((("rest", options.truth.rest, 0.2, 3600.0),) if options.truth.rest is not None else ()),
     )  # fmt: skip
     for key, value, low, high in bounds:
         if not low <= value <= high:
             raise InputError(f"must be from {low:g} to {high:g}", key=key, value=value)
     for key, values in (
-        ("driving_pressures_kPa", asked.driving_pressures_kPa),
-        ("ages", asked.ages_days),
-        ("kinds", asked.kinds),
+        ("driving_pressures_kPa", options.driving_pressures_kPa),
+        ("ages", options.ages_days),
+        ("kinds", options.kinds),
     ):
         if values is not None and (not values or len(set(values)) != len(values)):
             raise InputError("must name at least one, and each once", key=key, value=",".join(map(str, values)))
-    for kind in asked.kinds:
+    for kind in options.kinds:
         if kind not in KINDS:
             raise InputError(f"unknown.{nearest(kind, KINDS)}", key="kinds", value=kind)

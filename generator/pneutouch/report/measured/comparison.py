@@ -1,4 +1,4 @@
-"""What the measured datasheet is made from: groups of runs, each beside its prediction."""
+"""What the measured datasheet is made from: groups of runs, each compared with its prediction."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from pneutouch.spec.campaign import Campaign
 
 @dataclass(frozen=True)
 class GroupComparison:
-    """A group beside its prediction.
+    """A group compared with its prediction.
 
     Attributes:
         group: The runs and their figures.
         label: Title of the resin.
         state: The predicted state at the group's driving pressure; None where there is none.
-        uncertainty: How sure it is, as `Evaluation.uncertainty` has it for a state.
+        uncertainty: Its uncertainty, as `Evaluation.uncertainty` has it for a state.
         predicted: Predicted figures by key of `bench.figure.FIGURES`, with the ends of their 95 % band where known:
             value, low, high.
         why: Why there is no prediction; empty where there is one.
@@ -37,13 +37,13 @@ class GroupComparison:
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """A wish of the target against what was measured.
+    """A requirement of the target against what was measured.
 
-    ``passed`` is None where the interval holds values on both sides of the limit: more specimens would tell.
+    ``passed`` is None where the interval holds values on both sides of the limit: more specimens would decide.
     """
 
     what: str
-    wanted: str
+    required: str
     measured: str
     passed: bool | None
 
@@ -56,7 +56,7 @@ class CampaignReport:
         campaign: The campaign file.
         scene: The design that it is compared with.
         folder: Where the campaign lies, as the user gave it.
-        besides: Groups in the order of resin, age and pressure.
+        comparisons: Groups in the order of resin, age and pressure.
         curves: Every curve read, injections aside.
         failures: Files that could not be read, with the message.
         questions: What looks wrong and was not changed: file or run, and the question.
@@ -71,7 +71,7 @@ class CampaignReport:
     campaign: Campaign
     scene: ResolvedDesign
     folder: Path
-    besides: tuple[GroupComparison, ...]
+    comparisons: tuple[GroupComparison, ...]
     curves: tuple[MeasuredCurve, ...]
     failures: tuple[tuple[str, str], ...]
     questions: tuple[tuple[str, str], ...]
