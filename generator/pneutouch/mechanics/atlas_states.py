@@ -89,7 +89,7 @@ def _state(sensor: Sensor, press: AtlasPress, track: PressTrack, i: int, end: in
     known = int(np.argmin(track.ok[i])) if not track.ok[i].all() else track.ok.shape[1]
     one = track.each(lambda part: part[i : i + 1, :known])
     row = press.rows(np.array([i]))
-    field = {name: row.field(name, one)[0] for name in FIELDS}
+    field = {name: values[0] for name, values in zip(FIELDS, row.several(FIELDS, one), strict=True)}
     depth = (press.apex[i] - one.height[0]) * length
     range_end = range_end if np.isfinite(range_end) else 0.0
     force, rise = one.point.force[0] * mu * length**2, (one.point.pressure[0] - press.pressure[i]) * mu

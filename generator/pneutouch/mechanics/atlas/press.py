@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, NamedTuple
 
@@ -122,9 +122,9 @@ class AtlasPress:
 
         The wall's pressure is that of the atlas times ``stiffening``, plus ``memory``. The last step is so small that the values follow it along their tangents, to its square.
         """
-        reached = np.zeros(nu.size, dtype=bool)
+        at, reached = nu, np.zeros(nu.size, dtype=bool)
         for _ in range(iterations):
-            point = self.slices.point(self.k, nu, height)
+            at, point = nu, self.slices.point(self.k, nu, height, with_folded=False)
             gas_volume = self.volume(nu) + self.dead
             gas = self.content / gas_volume
             margin = stiffening * point.by_volume + gas / gas_volume
@@ -137,7 +137,9 @@ class AtlasPress:
         step = np.where(reached, step, 0.0)
         swell = step * self.reach
         point = point._replace(
-            pressure=point.pressure + point.by_volume * swell, force=point.force - point.by_height * swell
+            pressure=point.pressure + point.by_volume * swell,
+            force=point.force - point.by_height * swell,
+            folded=self.slices.folded(self.k, at, height),
         )
         return AtlasSolution(nu + step, point, margin, reached & (margin > 0))
 
@@ -164,9 +166,13 @@ class AtlasPress:
 
     def field(self, name: str, track: PressTrack) -> Array:
         """A tabulated field along a track, (n, m)."""
+        return self.several((name,), track)[0]
+
+    def several(self, names: Sequence[str], track: PressTrack) -> list[Array]:
+        """Tabulated fields along a track, (n, m) each."""
         k = np.repeat(self.k, track.nu.shape[1])
-        flat = self.slices.field(name, k, track.nu.ravel(), track.height.ravel())
-        return flat.reshape(track.nu.shape)
+        flat = self.slices.several(names, k, track.nu.ravel(), track.height.ravel())
+        return [values.reshape(track.nu.shape) for values in flat]
 
     @property
     def flat_radius(self) -> Array:

@@ -126,7 +126,7 @@ def parts(name: str) -> tuple[str, ...]:
     return STRETCHES if name == "stretch" else (name,)
 
 
-_SATURATING = (*STRETCHES, "von_mises", "fold")
+_SATURATING = ("stretch", *STRETCHES, "von_mises", "fold")
 _HALF = 2.0
 _MOST = 0.9
 

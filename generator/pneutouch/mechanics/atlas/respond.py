@@ -141,9 +141,8 @@ def _margins(press: AtlasPress, track: PressTrack) -> Array:
     """What turns positive where a range ends, in the order of `ENDS` from EDGE to BREAK; (3, n, m)."""
     batch = press.batch
     gauge = (track.point.pressure - (batch.gauge_limit / batch.shear_modulus)[:, None]) / press.limit[:, None]
-    edge = press.field("contact_radius", track) - press.flat_radius[:, None]
-    tear = press.field("stretch", track) - batch.break_stretch[:, None]
-    return np.stack([edge, gauge, tear])
+    stretch, radius = press.several(_FIELDS, track)
+    return np.stack([radius - press.flat_radius[:, None], gauge, stretch - batch.break_stretch[:, None]])
 
 
 def _first_end(press: AtlasPress, indentation: Array, track: PressTrack) -> tuple[Array, Index]:

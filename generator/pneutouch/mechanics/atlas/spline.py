@@ -81,20 +81,30 @@ class SplineAxis:
 
         Beyond the ends the last cell's polynomial goes on.
         """
-        z = self._stretched(x)
-        u = z / self._spacing
-        cell = np.clip(np.floor(u), 0, self.cells - 1).astype(np.intp)
-        u = u - cell
-        powers = np.empty((u.size, self.degree + 1))
-        powers[:, 0] = 1.0
-        for k in range(1, self.degree + 1):
-            powers[:, k] = powers[:, k - 1] * u
-        weight = (powers @ self._derivatives).reshape(u.size, 3, self.degree + 1)
+        z, cell, powers = self._powers(x)
+        weight = (powers @ self._derivatives).reshape(cell.size, 3, self.degree + 1)
         if self.stretch is not None:
             rate = (0.5 / (z + self.stretch))[:, None]
             weight[:, 2] = rate**2 * (weight[:, 2] - 2.0 * rate * weight[:, 1])
             weight[:, 1] *= rate
         return cell, weight
+
+    def values(self, x: Array) -> tuple[Index, Array]:
+        """First coefficient of each x and the weights of the value alone: (n,) and (n, degree + 1)."""
+        _, cell, powers = self._powers(x)
+        return cell, powers @ pieces(self.degree)
+
+    def _powers(self, x: Array) -> tuple[Array, Index, Array]:
+        """z, its cell (n,) and the powers of the place in the cell, (n, degree + 1)."""
+        z = self._stretched(x)
+        u = z / self._spacing
+        cell = np.minimum(np.maximum(np.floor(u), 0), self.cells - 1).astype(np.intp)
+        u = u - cell
+        powers = np.empty((u.size, self.degree + 1))
+        powers[:, 0] = 1.0
+        for k in range(1, self.degree + 1):
+            np.multiply(powers[:, k - 1], u, out=powers[:, k])
+        return z, cell, powers
 
     def rows(self, x: Array, order: int = 0) -> Array:
         """The weights of one derivative as full rows, (n, size)."""

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -72,20 +72,30 @@ class AtlasSlices:
         values: Array = np.matmul(weight, block[..., None])[..., 0]
         return values
 
-    def point(self, k: Index, nu: Array, height: Array) -> AtlasPoint:
-        """Pressure, force and their slopes at volumes nu and plate heights, (n,) each."""
+    def point(self, k: Index, nu: Array, height: Array, *, with_folded: bool = True) -> AtlasPoint:
+        """Pressure, force and their slopes at volumes nu and plate heights, (n,) each.
+
+        ``with_folded`` left out, a search for a state asks `folded` at its end alone; the point says False until then.
+        """
         cell, by_nu = self.grid.volume.basis(nu)
         apex = self._apex(k, cell, by_nu)
         depth, by_w = self.grid.depth.basis(apex[:, 0] - height)
-        jet = _contract(self.potential, k, cell, depth, by_nu, by_w)
+        jet = np.matmul(np.matmul(by_nu, self._windows[k, cell, depth]), np.swapaxes(by_w, 1, 2))
         rise, bend, reach = apex[:, 1], apex[:, 2], self.reach(k)
         force = jet[:, 0, 1]
         mixed = (jet[:, 1, 1] + jet[:, 0, 2] * rise) / reach
         along = jet[:, 2, 0] + 2 * jet[:, 1, 1] * rise + jet[:, 0, 2] * rise**2 + force * bend
+        folded = self.folded(k, nu, height) if with_folded else np.zeros(nu.size, dtype=bool)
         return AtlasPoint(
             (jet[:, 1, 0] + force * rise) / reach, force, along / reach**2, -mixed, -jet[:, 0, 2],
-            self.support[k, cell, depth], self.folded(k, nu, height),
+            self.support[k, cell, depth], folded,
         )  # fmt: skip
+
+    @cached_property
+    def _windows(self) -> Array:
+        """The potential's coefficients that live in each cell, (k, volume cells, depth cells, coefficients, coefficients)."""
+        size = self.grid.volume.degree + 1, self.grid.depth.degree + 1
+        return np.lib.stride_tricks.sliding_window_view(self.potential, size, axis=(1, 2))
 
     def folded(self, k: Index, nu: Array, height: Array) -> Flags:
         """Whether the wall has buckled before volumes nu and plate heights, (n,)."""
@@ -102,22 +112,23 @@ class AtlasSlices:
 
     def field(self, name: str, k: Index, nu: Array, height: Array) -> Array:
         """A tabulated field (see `recipe.FIELDS`) at volumes nu and plate heights, (n,)."""
+        return self.several((name,), k, nu, height)[0]
+
+    def several(self, names: Sequence[str], k: Index, nu: Array, height: Array) -> list[Array]:
+        """Tabulated fields at volumes nu and plate heights, (n,) each."""
         cell, by_nu = self.grid.volume.basis(nu)
-        depth, by_w = self.grid.depth.basis(self._apex(k, cell, by_nu)[:, 0] - height)
-        weight = (by_nu[:, 0, :, None] * by_w[:, 0, None, :]).reshape(nu.size, -1)
+        depth, by_w = self.grid.depth.values(self._apex(k, cell, by_nu)[:, 0] - height)
+        weight = (by_nu[:, 0, :, None] * by_w[:, None, :]).reshape(nu.size, -1)
         rows, columns = self.grid.volume.size, self.grid.depth.size
         side = np.arange(self.grid.depth.degree + 1)
         offsets = (side[:, None] * columns + side).ravel()
         where = ((k * rows + cell) * columns + depth)[:, None] + offsets
-        values = [unflattened(part, (self.fields[part].ravel()[where] * weight).sum(axis=1)) for part in parts(name)]
-        return np.asarray(np.max(values, axis=0))
 
+        def looked_up(part: str) -> Array:
+            return np.asarray((self.fields[part].take(where) * weight).sum(axis=1))
 
-def _contract(table: Array, k: Index, cell: Index, depth: Index, by_nu: Array, by_w: Array) -> Array:
-    """Weights times the coefficients of one cell each, (n, orders, orders)."""
-    size = by_nu.shape[2], by_w.shape[2]
-    window = np.lib.stride_tricks.sliding_window_view(table, size, axis=(1, 2))
-    return np.asarray(np.matmul(np.matmul(by_nu, window[k, cell, depth]), np.swapaxes(by_w, 1, 2)))
+        # The saturation of a part rises with it: the greatest of a field's parts is found before it is taken off.
+        return [unflattened(name, np.max([looked_up(part) for part in parts(name)], axis=0)) for name in names]
 
 
 class Atlas:
