@@ -32,7 +32,10 @@ class Springs:
 
     a, b, c = 2.0, 0.7, 3.0
 
-    def point(self, k, nu, height):
+    def folded(self, k, nu, height):
+        return np.zeros(nu.size, dtype=bool)
+
+    def point(self, k, nu, height, *, with_folded=True):
         x, one = 1.0 - height, np.ones_like(nu)
         yes = np.ones(nu.size, dtype=bool)
         return AtlasPoint(

@@ -75,7 +75,7 @@ class AtlasSlices:
     def point(self, k: Index, nu: Array, height: Array, *, with_folded: bool = True) -> AtlasPoint:
         """Pressure, force and their slopes at volumes nu and plate heights, (n,) each.
 
-        ``with_folded`` left out, a search for a state asks `folded` at its end alone; the point says False until then.
+        ``with_folded`` False leaves ``folded`` at False: an iteration needs it at its end alone.
         """
         cell, by_nu = self.grid.volume.basis(nu)
         apex = self._apex(k, cell, by_nu)
