@@ -3,8 +3,6 @@
 The public names are loaded when they are first used: ``import pneutouch as pt``, then ``pt.Design(...).predict()``.
 """
 
-from typing import Any
-
 __version__ = "0.1.0"
 
 _HOMES = {
@@ -20,7 +18,7 @@ _HOMES = {
 __all__ = [*sorted(name for names in _HOMES.values() for name in names), "__version__"]
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> object:
     from importlib import import_module
 
     for home, names in _HOMES.items():
