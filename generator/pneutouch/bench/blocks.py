@@ -59,8 +59,7 @@ class BlockCollector:
     _short: list[int] = field(default_factory=lambda: [0, 0, 0])
 
     def take(self, rows: Array, samples: Array) -> None:
-        """Takes samples (4, n): time, position, force, pressure, and their rows (n,). Raises InputError where time does
-        not run on."""
+        """Take samples (4, n) and their rows (n,). Raises InputError where time does not increase."""
         if not rows.size:
             return
         time = samples[0]
@@ -125,8 +124,7 @@ class BlockCollector:
         self._parts.append(np.vstack([samples[:1, starts], means, spreads, extremes]))
 
     def blocks(self, warnings: tuple[SuspectInterval, ...] = ()) -> Blocks:
-        """The blocks, with the gaps among their warnings. Raises InputError where more than half of the record is
-        missing."""
+        """The blocks, with gaps as warnings. Raises InputError where more than half of the record is missing."""
         if self.rate is None or self.size is None or self._first is None:
             raise InputError(f"{self.file}: no samples")
         if self._held.size:
@@ -162,8 +160,7 @@ def blocks_of(
     rate: float | None = None,
     size: int | None = None,
 ) -> Blocks:
-    """Blocks of samples in memory, (n,) each, s, mm, N, MPa; no range is checked. Raises InputError as
-    `BlockCollector`."""
+    """Blocks of samples in memory, (n,) each, s, mm, N, MPa, without range checks. Raises as `BlockCollector`."""
     collector = BlockCollector(file, rate, size, len(time))
     collector.take(np.arange(len(time), dtype=float) + 2, np.vstack([time, position, force, pressure]).astype(float))
     return collector.blocks()

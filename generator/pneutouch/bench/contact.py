@@ -30,8 +30,7 @@ membrane, which begin straight, w = 1 for a dome whose stiffness grows from none
 (Hertz, x^1.5) to a few hundredths of the stretch. One w is fitted for all of a run."""
 
 UNSURE = 4.0
-"""An onset whose standard error is this many times the run's median one is that of a contact too light to be fitted:
-our choice."""
+"""Standard error of an onset over the median of the run above which a contact is too light for a fit: our choice."""
 
 _LEAST_POINTS, _MOST_POINTS = 6, 200
 _BACK = 3
@@ -52,8 +51,7 @@ class Baseline(NamedTuple):
 
 
 class ContactOnset(NamedTuple):
-    """First contact: its time and plate position; ``fitted`` is False where the position is the median of the run's
-    others."""
+    """First contact: time and plate position; ``fitted`` is False where the position is the median of the others."""
 
     time: float
     position: float
@@ -80,8 +78,7 @@ def baseline(blocks: Blocks, start: int, end: int) -> Baseline:
 
 
 def first_baseline(blocks: Blocks, one: Excursion) -> Baseline:
-    """The last `BEFORE` seconds with the plate at its clear end, at most the later half of them, so that a reset is
-    over."""
+    """The last `BEFORE` seconds at the clear end, at most the later half of them, so that a reset is over."""
     start, end = one.clear
     late = int(np.searchsorted(blocks.time[start:end], blocks.time[end - 1] - BEFORE)) + start
     begin = max(late, (start + end) // 2)
@@ -89,8 +86,7 @@ def first_baseline(blocks: Blocks, one: Excursion) -> Baseline:
 
 
 def threshold(blocks: Blocks, bases: list[Baseline], parts: list[Excursion]) -> tuple[float, int]:
-    """Force in N that is contact, and the sign that the force has when pressed (+1, or -1 where the column's is
-    wrong)."""
+    """Force in N that is contact, and the sign of the pressed force (-1 where the sign of the column is wrong)."""
     noise = float(np.sqrt(np.mean([base.between[0] for base in bases])))
     off = [blocks.force[one.clear[1] : one.hold[1]] - base.mean[0] for one, base in zip(parts, bases, strict=True)]
     high, low = max(float(part.max()) for part in off), min(float(part.min()) for part in off)
@@ -180,8 +176,7 @@ def _crossing(blocks: Blocks, one: Excursion, base: Baseline, least: float, sign
 
 
 class _Loading(NamedTuple):
-    """The first part of a loading: position, force less that without contact, the onset's bounds, the travel
-    pressed."""
+    """The first part of a loading: position, force less that without contact, bounds of the onset, travel."""
 
     position: Array
     force: Array

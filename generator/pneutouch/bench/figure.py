@@ -81,8 +81,7 @@ to travel than force is: the least that follow the solid's loops."""
 _LEAST_SAMPLES = 40
 
 _ENDS = 0.15
-"""Decades at either end of a hold over which a line gives the value at the end: one block at 1 s would give it its
-noise."""
+"""Decades at either end of a hold over which a line gives the value at the end: one block would give its noise."""
 
 _GRID = 200
 
@@ -139,8 +138,7 @@ def _loop(curve: MeasuredCurve) -> dict[str, float]:
 
 
 def _branches(share: Array, direction: Array) -> tuple[Array, Array]:
-    """Columns of the middle line and of half the gap at shares of the greatest force, in loading (direction 1) or
-    unloading (-1)."""
+    """Columns of the middle line and of half the gap at shares of the greatest force, loading (1) or unloading (-1)."""
     root = np.sqrt(np.clip(share, 0.0, None))
     half = 0.5 * direction * (1 - root)
     place = 2 * root - 1

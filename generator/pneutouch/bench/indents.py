@@ -85,8 +85,7 @@ def read_window(blocks: Blocks, hold: tuple[int, int]) -> tuple[int, int]:
 
 
 def _read_times(blocks: Blocks, hold: tuple[int, int]) -> tuple[float, float]:
-    """When the window read in a hold begins and ends, s: of the blocks that are there, or before a gap that swallows
-    its begin."""
+    """Begin and end of the window read in a hold, s: of its blocks, or before a gap that covers its begin."""
     start, end = read_window(blocks, hold)
     length = min(READ * float(blocks.time[hold[1] - 1] - blocks.time[hold[0]]), READ_LONGEST)
     first, last = float(blocks.time[start]), float(blocks.time[end - 1])

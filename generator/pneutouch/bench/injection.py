@@ -20,8 +20,7 @@ LEAST_POINTS = 3
 
 _LEAST_BLOCKS = 10
 _BATCHES = 10
-"""Parts of a leak run whose means give the slope's error: noise that is alike from sample to sample would else make it
-small."""
+"""Parts of a leak run whose means give the slope's error: correlated noise would make it too small."""
 
 _ABSOLUTE = 0.7
 """Share of the ambient pressure above which a table that begins there is taken for one of absolute pressures."""

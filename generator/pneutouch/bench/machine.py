@@ -131,8 +131,7 @@ def _smaller(hole: GaugeSize, where: str) -> float:
 
 
 def smallest_sound(sizes: Sequence[GaugeSize]) -> float | None:
-    """The smallest size that is sound together with all larger ones, mm; None where the largest is not, or none was
-    judged."""
+    """The smallest size that is sound together with all larger ones, mm; None where there is none."""
     least = None
     for size in sorted(sizes, key=lambda size: -size.nominal_mm):
         if size.sound is False:

@@ -1,5 +1,4 @@
-"""Coupons of two resins in known fractions: the modulus of each mix, by dumbbells or by hardness relative to the soft
-resin."""
+"""Coupons of two resins in known fractions: the modulus of each mix, by dumbbells or by hardness ratio."""
 
 from __future__ import annotations
 

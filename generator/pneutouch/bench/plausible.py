@@ -1,5 +1,4 @@
-"""Plausibility of a run against its campaign: wrong units, signs and columns are reported as questions, never
-corrected."""
+"""Plausibility of a run against its campaign: wrong units, signs and columns are questioned, never corrected."""
 
 from __future__ import annotations
 
@@ -23,15 +22,13 @@ FAR = 3.0
 table with a median error of 8 % and are off by two for its stiffest resin."""
 
 UNIT_NEAR = 1.8
-"""Factor within which another unit must bring a reading to the prediction, to be named: our choice, below half of
-`FAR`."""
+"""Factor within which another unit must bring a reading to the prediction: our choice, below half of `FAR`."""
 
 RESET_KPA, RESET_SHARE = 1.0, 0.1
 """How far the pressure before contact may be from the driving pressure: our choice, a regulator's scatter."""
 
 SWAP_MARGIN = math.log(2.0)
-"""How much nearer to the prediction the swapped reading must be (logarithm of a factor) where there is no driving
-pressure."""
+"""How much nearer to the prediction the swapped reading must be (log of a factor) at no driving pressure."""
 
 _RESTS = 0.05
 """Share of the greatest force or rise by which points may be negative: noise about the origin."""
@@ -43,8 +40,7 @@ _START = 1.0
 """Seconds in which a leaking line loses little, long enough to average the noise of a gauge: our choice."""
 
 _SHAPE = 1.5
-"""Exponent of force and rise over depth with which a prediction without a curve is scaled to a shallower depth
-(Hertz)."""
+"""Exponent of force and rise over depth that scales a prediction without a curve to a shallower depth (Hertz)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,16 +114,8 @@ def check_leak(blocks: Blocks, run: CampaignRun, rig: Rig) -> tuple[str, ...]:
 def _magnitudes(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun, file: Path) -> list[str | None]:
     depth = float(curve.indentation[-1])
     ratio = depth / expected.depth
-    questions = [
-        _magnitude(
-            file,
-            columns,
-            "position",
-            ratio,
-            f"goes to {_number(depth)} mm in",
-            f"the prediction goes to {_number(expected.depth)} mm",
-        )
-    ]
+    goes, predicted = f"goes to {_number(depth)} mm in", f"the prediction goes to {_number(expected.depth)} mm"
+    questions = [_magnitude(file, columns, "position", ratio, goes, predicted)]
     # Where the travel itself is suspect, the ends are compared.
     reach = min(depth, expected.depth) if questions[0] is None else depth
     force, rise = expected.at(reach) if questions[0] is None else (expected.force, expected.rise)
@@ -138,11 +126,8 @@ def _magnitudes(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun,
         measured = float(np.interp(reach, curve.indentation, values))
         what = "reads" if key == "force" else "rises by"
         reads = f"{what} {_number(measured / unit)} {name} at {_number(reach)} mm"
-        questions.append(
-            _magnitude(
-                file, columns, key, measured / target, reads, f"the prediction has {_number(target / unit)} {name}"
-            )
-        )
+        predicted = f"the prediction has {_number(target / unit)} {name}"
+        questions.append(_magnitude(file, columns, key, measured / target, reads, predicted))
     return questions
 
 
@@ -217,8 +202,7 @@ def _check_swap(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun,
 
 
 def _check_time(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> str | None:
-    """The length of holds reveals a unit of time that is wrong by far; holds may be a few times as long as the
-    paper's."""
+    """The length of holds reveals a wrong unit of time; holds may be a few times as long as in the paper."""
     if curve.run.kind == "loop" or not curve.indents:
         return None
     length = float(np.median([one.hold[1] - one.hold[0] for one in curve.indents]))

@@ -13,8 +13,7 @@ STEP, SHARE = 0.5, 0.75
 """Step in mm, and the depth as a share of R0 (paper, section 3-B)."""
 
 HOLD, REST, SHORT_REST, RELAXATION = 4.0, 30.0, 2.0, 600.0
-"""Seconds: hold and rest of the sensitivity test (3-B), rest of the saturation test (3-C), relaxation (Supplement
-D)."""
+"""Seconds: hold and rest of the sensitivity test (3-B), rest of the saturation test (3-C), relaxation (Suppl. D)."""
 
 REPETITIONS = 3
 """Runs at each driving pressure (paper, section 3-B)."""

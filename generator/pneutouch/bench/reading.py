@@ -68,42 +68,35 @@ def read_blocks(
         progress(chunk.share)
     blocks = collector.blocks()
     end = float(blocks.time[-1])
-    warnings = (
-        [SuspectInterval(end, end, "last row left out: no line end, so its last number may be cut", False)]
-        if cut
-        else []
-    )
+    warnings = [SuspectInterval(end, end, "last row left out: no line end, so its last number may be cut", False)][:cut]
     if plate:
         _check_alive(blocks, names)
         warnings += _clipped(blocks, "force", blocks.force, blocks.force_extreme, rig.force_range_N, 1.0, "N")
-    warnings += _clipped(
-        blocks, "pressure", blocks.pressure, blocks.pressure_extreme, rig.pressure_range_kPa, KPA, "kPa"
-    )
+    top = rig.pressure_range_kPa
+    warnings += _clipped(blocks, "pressure", blocks.pressure, blocks.pressure_extreme, top, KPA, "kPa")
     return replace(blocks, warnings=(*blocks.warnings, *warnings))
 
 
 def scaled(path: Path, columns: ColumnMap, keys: Sequence[str], rows: Array, values: Array) -> Array:
-    """Values (k, n) of the columns ``keys`` in internal units and with their signs; ``rows`` (n,) are their row
-    numbers.
+    """Values (k, n) of the columns ``keys`` in internal units, with their signs; ``rows`` (n,) are row numbers.
 
     Raises InputError, naming column and row, for a number beyond `GREATEST`.
     """
     factor = np.array([[UNITS[key][getattr(columns, key).unit] * getattr(columns, key).sign] for key in keys])
     with np.errstate(over="ignore"):
-        values_inside: Array = values * factor
-    if not (np.abs(values_inside) <= GREATEST).all():
-        place, at = np.argwhere(~(np.abs(values_inside) <= GREATEST))[0]
+        converted: Array = values * factor
+    if not (np.abs(converted) <= GREATEST).all():
+        place, at = np.argwhere(~(np.abs(converted) <= GREATEST))[0]
         column = getattr(columns, keys[place])
         raise InputError(
             f"{path}: row {rows[at]:.0f}: column {column.name}: {values[place, at]:.3g} {column.unit}: no instrument "
             "reads that; must be a measured number"
         )
-    return values_inside
+    return converted
 
 
 def _check_alive(blocks: Blocks, names: dict[str, str]) -> None:
-    """Force and pressure are checked while the plate moves, the position where the force shows that it must have
-    moved."""
+    """Check force and pressure while the plate moves, the position where the force shows that it must have moved."""
     problem = f"dead: reads one and the same number from row {blocks.first_row[0]:.0f} on"
     question = "; was the right column named, the sensor connected?"
     moved = np.abs(np.diff(blocks.position, prepend=blocks.position[0]))
@@ -175,8 +168,7 @@ def _spikes(blocks: Blocks, key: str, extreme: Array, spikes: Flags, excess: str
 
 
 def _flat_top(blocks: Blocks, values: Array, spread: Array, extreme: Array) -> Flags:
-    """Which blocks hold nothing but the extreme value, (n,) of bool; none where the channel is coarse or without
-    noise."""
+    """Blocks that hold nothing but the extreme value, (n,); none where the channel is coarse or without noise."""
     close = _EXACT * extreme.max()
     quiet = spread <= close
     again = quiet & (np.abs(np.diff(values, prepend=np.nan)) <= close)

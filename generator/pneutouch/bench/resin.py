@@ -127,8 +127,7 @@ def pulled(measured: Dumbbell, where: str) -> DumbbellModuli | None:
 
 
 def dumbbell(name: str, material: Material, measured: Dumbbell, source: ReadingSource, results: CouponFindings) -> None:
-    """Shear modulus by the neo-Hookean fit. Raises InputError for too few specimens or points, and for a rigid
-    material."""
+    """Shear modulus by the neo-Hookean fit. Raises InputError for too few specimens or points or a rigid material."""
     where = f"{source.where}: dumbbell.{name}"
     if material.kind != "elastomer" and any(specimen.force_N for specimen in measured.specimen):
         raise InputError(f"{where}: {material.label} is rigid; die C is for an elastomer")

@@ -18,12 +18,10 @@ TURN = 0.05
 (0.5 mm of 6.9 mm, and the clearance) is three times as long."""
 
 NEAR, STAY = 0.02, 0.005
-"""Shares of an indentation's travel: within the first of its end an actuator may overshoot and settle; within the
-second it stays."""
+"""Shares of an indentation's travel: the first for overshoot at its end, the second for the hold."""
 
 WIDE, FEW = 0.05, 8
-"""Where fewer than `FEW` blocks are at the clear end, as where a loop turns without rest, those within `WIDE` of it
-count."""
+"""With fewer than `FEW` blocks at the clear end, as in a loop without rest, those within `WIDE` of it count."""
 
 _LEAST_SHARE = 20.0
 """The plate moves where its travel is more than so many standard deviations of its position."""

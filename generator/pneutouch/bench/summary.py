@@ -46,8 +46,7 @@ class GroupKey:
 
 @dataclass(frozen=True, slots=True)
 class RunGroup:
-    """Runs of one resin, age and driving pressure. ``figures`` are by key, ``each`` by curve in the order of
-    ``curves``."""
+    """Runs of one resin, age and driving pressure; ``figures`` by key, ``each`` by curve in the order of ``curves``."""
 
     key: GroupKey
     curves: tuple[MeasuredCurve, ...]

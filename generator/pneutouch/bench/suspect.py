@@ -23,16 +23,13 @@ SETTLED = 0.01
 """Share of the force or the rise by which the two halves of a read window may differ: our choice."""
 
 LEAK = 0.02
-"""Share of the greatest rise that a leak may take during a hold: our choice, about the difference between three runs of
-a sensor."""
+"""Share of the greatest rise that a leak may take in a hold: our choice, about the difference between three runs."""
 
 SAME_DEPTH = 0.03
-"""mm within which two indentations are of one depth: some standard deviations of an onset (0.004 to 0.01 mm in the
-tests)."""
+"""mm within which two indentations have one depth: some standard deviations of an onset (0.004 to 0.01 mm)."""
 
 MOST = 20
-"""Gaps, clipped stretches and spikes that are listed one by one, of each kind: our choice, so that a list can be
-read."""
+"""Gaps, clipped stretches and spikes that are listed one by one, of each kind: our choice, for a readable list."""
 
 _MANY = MappingProxyType({"gap": "gaps", "clipped": "clipped stretches", "spike": "spikes"})
 
@@ -41,8 +38,7 @@ _SIGNIFICANT = 4.0
 
 
 def untrusted(blocks: Blocks, indent: MeasuredIndentation, before: float) -> str | None:
-    """Why an indentation cannot be used: a channel clipped before contact or while read, or half of the samples
-    missing."""
+    """Why an indentation cannot be used: a channel clipped before contact or while read, or half of it missing."""
     lost = 0.0
     for warning in blocks.warnings:
         if warning.used:
@@ -65,9 +61,8 @@ def listed(warnings: Sequence[SuspectInterval]) -> list[SuspectInterval]:
         if more:
             lasts = sum(warning.end - warning.start for warning in more)
             first, last = min(warning.start for warning in more), max(warning.end for warning in more)
-            shown.append(
-                SuspectInterval(first, last, f"{len(more)} more {name}: {lasts:.3g} s in all", False, more[0].kind)
-            )
+            why = f"{len(more)} more {name}: {lasts:.3g} s in all"
+            shown.append(SuspectInterval(first, last, why, False, more[0].kind))
     return shown
 
 
@@ -76,11 +71,8 @@ def run_warnings(run: CampaignRun, blocks: Blocks, indentations: RunIndentations
     warnings: list[SuspectInterval] = []
     if indentations.pressed:
         end = indentations.parts[0].clear[0] if indentations.parts else blocks.time.size - 1
-        warnings.append(
-            SuspectInterval(
-                float(blocks.time[0]), float(blocks.time[end]), "the record begins with the plate in; left out", False
-            )
-        )
+        why = "the record begins with the plate in; left out"
+        warnings.append(SuspectInterval(float(blocks.time[0]), float(blocks.time[end]), why, False))
     usual = RELAXATION if run.kind == "relaxation" else HOLD
     for number, indent in enumerate(indentations.indents, start=1):
         warnings += _of_one(number, indent, blocks, indentations, usual, run.kind != "loop")
@@ -101,19 +93,13 @@ def _of_one(
         light = "too light for an onset by itself; its onset is the median of the others"
         warnings.append(SuspectInterval(indent.contact, begin, f"indentation {number}: {light}", True))
     if held and end - begin < SHORT * usual:
-        warnings.append(
-            SuspectInterval(
-                begin, end, f"indentation {number}: held for {end - begin:.3g} s, usual are {usual:g} s", True
-            )
-        )
+        short = f"indentation {number}: held for {end - begin:.3g} s, usual are {usual:g} s"
+        warnings.append(SuspectInterval(begin, end, short, True))
     elif held and (why := _unsettled(blocks, indentations, number - 1)):
         warnings.append(SuspectInterval(*indent.read, f"indentation {number}: {why}", True))
     if math.isnan(indent.release):
-        warnings.append(
-            SuspectInterval(
-                end, float(blocks.time[-1]), f"indentation {number}: no release: the force does not go back", True
-            )
-        )
+        lasting = f"indentation {number}: no release: the force does not go back"
+        warnings.append(SuspectInterval(end, float(blocks.time[-1]), lasting, True))
     return warnings
 
 

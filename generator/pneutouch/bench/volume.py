@@ -21,8 +21,7 @@ _ROUNDING = 1e-9
 
 
 def leak(name: str, cap: LeakCap, accuracy_kPa: float, source: ReadingSource, results: CouponFindings) -> None:
-    """Leak rate, kPa a minute. Raises InputError where pressure rises by more than the gauge's ``accuracy_kPa``,
-    kPa."""
+    """Leak rate, kPa/min. Raises InputError where pressure rises by more than the gauge's ``accuracy_kPa``."""
     for run, (start, end) in enumerate(zip(cap.start_kPa, cap.end_kPa, strict=True), start=1):
         rise = end - start
         if rise > accuracy_kPa + _ROUNDING:

@@ -1,5 +1,4 @@
-"""CSV files in chunks of bytes that end at a line end, so that every row keeps its number and every fault its
-location."""
+"""CSV files in chunks of bytes that end at a line end, so that every row and every fault has its row number."""
 
 from __future__ import annotations
 

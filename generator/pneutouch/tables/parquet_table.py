@@ -52,8 +52,7 @@ def parquet_chunks(path: Path, names: Sequence[str]) -> Iterator[RowChunk]:
 
 
 def _floats(path: Path, name: str, column: Any, row: int) -> Array:
-    """A column (n,) of which the first number is in ``row``. Raises InputError for whole numbers that a float cannot
-    hold."""
+    """A column (n,) whose first number is in ``row``. Raises InputError for whole numbers that a float cannot hold."""
     import pyarrow as pa
 
     try:

@@ -111,8 +111,7 @@ def sizes_of(
 
 
 def _unlikely(gram: Array, weight: Array) -> float:
-    """Minus twice the restricted log likelihood but for a constant; the last row and column of ``gram`` are the
-    residuals'."""
+    """Minus twice the restricted log likelihood up to a constant; the last row of ``gram`` is the residuals'."""
     normal = gram[:-1, :-1] + np.diag(weight)
     right = gram[:-1, -1]
     return float(np.linalg.slogdet(normal)[1] + gram[-1, -1] - right @ np.linalg.solve(normal, right))

@@ -21,12 +21,10 @@ _START_SHARE = 0.9
 """The search begins where the greatest driving pressure is at most this share of the limit pressure: our choice."""
 
 _ROUNDS = 2
-"""How often errors and sizes are estimated from the residuals and the fit is repeated: our choice, a third time changes
-nothing."""
+"""Repetitions of the fit with errors and sizes estimated from the residuals: our choice, a third changes nothing."""
 
 _SMOOTH = 0.1
-"""Smooth share of a reading that may be anything while the scatter of single points is looked at: our choice,
-generous."""
+"""Smooth share of a reading that may be anything while the scatter of points is estimated: our choice, generous."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,8 +158,7 @@ def _start(sensor: Sensor, points: ObservationPoints, parameters: CalibrationPar
 
 
 def _channel_factors(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> Array:
-    """Root mean square by channel of what no smooth share explains, at least 1: what reading and atlas do not
-    either."""
+    """Root mean square by channel, at least 1, of the residuals that no smooth share explains."""
     factors, use = np.ones(3), solution.use
     residual, shared = problem.look(solution.at)[0], problem.shared[use]
     explained = shared.T @ shared

@@ -168,7 +168,6 @@ def _injected(fit: CalibrationFit, full: Array, volume: float) -> Array:
 def _information(
     fit: CalibrationFit, points: ObservationPoints, values: Array, derivatives: Array, noise: Array
 ) -> Array:
-    """Information of values with errors ``noise``, (N, N), and with what the model leaves out as the runs measured show
-    it."""
+    """Information of values with errors ``noise``, (N, N), and with the model discrepancy of the fit."""
     shared = shared_of(points.with_values(values)).sized(fit.sizes)
     return np.asarray(derivatives.T @ np.linalg.solve(noise + shared @ shared.T, derivatives))

@@ -111,8 +111,7 @@ def scatter(clusters: Array, part: WeightedRows, normal: Array) -> RunScatter:
 
 
 def factor(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> float:
-    """By how much more than of independent points the variance of the data's slopes is, on average over directions; at
-    least 1."""
+    """Variance of the data's slopes over that of independent points, mean over directions; at least 1."""
     free = np.flatnonzero(~solution.bound & (np.abs(solution.jacobian).max(axis=0) > 0))
     if not free.size or _freedom(problem, solution) < 1:
         return 1.0
@@ -199,8 +198,7 @@ def _runs(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> int:
 
 
 def _freedom(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> int:
-    """Runs beyond the first of each driving pressure: errors that all runs of one share do not show in their
-    differences."""
+    """Runs beyond the first of each driving pressure: an error that all runs share is in none of their differences."""
     points = problem.model.points
     clusters = np.unique(points.clusters[solution.use])
     curves = clusters[clusters < points.group.size].astype(int)

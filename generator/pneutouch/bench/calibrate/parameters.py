@@ -32,12 +32,10 @@ LOGARITHMIC = np.array([True, True, False, False])
 _OUTSIDE = np.array([1.0, 1.0, ML, 1.0])
 
 OFFSET_BOUND = 0.5
-"""Greatest contact offset, mm: our choice, one step of the paper's protocol; more is not an offset but a missed
-contact."""
+"""Greatest contact offset, mm: our choice, one step of the paper's protocol; more is a missed contact."""
 
 OFFSET_PRIOR = 0.05
-"""Standard deviation of the contact offset beforehand, mm: our choice, what is lost of the first touch below the
-noise."""
+"""Prior standard deviation of the contact offset, mm: our choice, the part of the first touch below the noise."""
 
 _STIFFEST = 100.0
 """Greatest shear modulus fitted, MPa: our choice, far above any elastomer."""
@@ -122,8 +120,7 @@ def parameters(
 
 
 def _priors(sensor: Sensor, material: Material, printer: Printer) -> tuple[Array, Flags, tuple[str, ...]]:
-    """Standard deviations in the coordinates, which are even, and where they come from: the sources of every
-    prediction's uncertainty."""
+    """Standard deviations, which are uniform, and origins: the sources of every prediction's uncertainty."""
     built = build_sources(batch_of(sensor, [0.0]), printer)
     groups = (
         modulus_sources(material, np.zeros(1, dtype=bool)),

@@ -50,8 +50,7 @@ class PressCurve:
         return depth <= self.reach * (1 + _ROUNDING)
 
     def at(self, travel: Array) -> tuple[Array, Array]:
-        """Force and rise at plate travels (n,) from zero to the reach; monotone between the points (Fritsch and
-        Carlson)."""
+        """Force and rise at plate travels (n,) up to the reach; monotone between points (Fritsch and Carlson)."""
         from scipy.interpolate import PchipInterpolator
 
         values = PchipInterpolator(self.indentation, np.stack([self.force, self.rise], axis=1))(travel)
@@ -84,8 +83,7 @@ def press_curves(
 
 
 def _curve(sensor: Sensor, state: SensorState, model: str) -> PressCurve:
-    """The curve of a state up to the end of its range; where that comes early, pressed again so that the points reach
-    it."""
+    """The curve of a state to the end of its range; where that comes early, pressed again so that points reach it."""
     ending = next((event for event in state.events if event.ends_range), None)
     ends = None if ending is None else (ending.kind, state.range_end)
     if ends is not None and state.range_end > 0:
