@@ -57,3 +57,11 @@ def test_the_membrane_has_figures_without_intervals():
     state = pt.load("paper-dome").predict([12], model="membrane").at(12)
     assert state.sensitivity.interval is None and state.limit_pressure is None
     assert str(state.sensitivity).endswith(" kPa/N")
+
+
+def test_what_a_prediction_is_made_of_shows_itself_in_a_line(prediction):
+    evaluation = prediction.evaluation
+    parts = (evaluation, evaluation.prediction, evaluation.prediction.states[0], evaluation.assembly, evaluation.scene)
+    for part in (*parts, *evaluation.assembly.solids, *evaluation.assembly.bodies):
+        assert type(part).__name__ in repr(part)
+        assert len(repr(part)) < 120 + len(evaluation.scene.where)

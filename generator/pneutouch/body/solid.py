@@ -34,6 +34,9 @@ class Solid:
     adds: tuple[Feature, ...] = ()
     cuts: tuple[Feature, ...] = ()
 
+    def __repr__(self) -> str:
+        return f"Solid({self.name!r} of {self.material.label})"
+
     @property
     def meridian(self) -> Meridian:
         """The base of a turned body. Raises TypeError for a prism."""

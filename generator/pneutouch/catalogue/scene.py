@@ -34,6 +34,9 @@ class ResolvedDesign:
     seat: AnySeat
     mount: AnyMount
 
+    def __repr__(self) -> str:
+        return f"ResolvedDesign({self.name!r}, {self.where!r})"
+
     @property
     def membrane_mode(self) -> Mode:
         """Print mode of the membrane; load_scene has checked that there is one."""

@@ -60,6 +60,9 @@ class Evaluation:
     options: PredictionOptions
     find_resins: Callable[[], Resins]
 
+    def __repr__(self) -> str:
+        return f"Evaluation({self.scene.name!r}, {self.prediction!r})"
+
     @cached_property
     def resins(self) -> Resins:
         """Elastomers by name that the design is compared with and the model's error is taken from."""

@@ -66,6 +66,9 @@ class SensorState:
     max_von_mises: Array | None = None
     shapes: tuple[DeformedShape, ...] = ()
 
+    def __repr__(self) -> str:
+        return f"SensorState({self.driving_pressure / KPA:g} kPa, {len(self.indentation)} points)"
+
     def document(self) -> dict[str, Any]:
         """The state as ``predict`` prints it."""
         f = self.figures
@@ -129,6 +132,9 @@ class SensorPrediction:
     inflation: InflationCurve
     states: tuple[SensorState, ...]
     assumptions: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        return f"SensorPrediction({self.design!r}, model {self.model}, {len(self.states)} states)"
 
     def document(self) -> dict[str, Any]:
         """The prediction as ``predict`` prints it and ``prediction.json`` keeps it."""

@@ -33,6 +33,9 @@ class Assembly:
     layout: Layout
     solids: tuple[Solid, ...]
 
+    def __repr__(self) -> str:
+        return f"Assembly({self.scene.name!r}: {', '.join(solid.name for solid in self.solids)})"
+
     @cached_property
     def bodies(self) -> tuple[Body, ...]:
         """Print meshes within the scene's tolerance, in the design frame."""
