@@ -14,6 +14,7 @@ from hypothesis import settings
 from pneutouch.catalogue import Library
 from pneutouch.evaluation import Evaluation, evaluate
 from pneutouch.spec.read import parse_changes
+from pneutouch.workflows.build import build
 from tests.running import Shared, in_new_process, in_process
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -49,30 +50,31 @@ def evaluated(library: Library) -> Callable[..., Evaluation]:
 
 
 @pytest.fixture(scope="session")
-def built_as_a_user(shared: Shared) -> Callable[[str], tuple[subprocess.CompletedProcess[str], Path]]:
-    """What ``pneutouch build NAME --json`` prints in a process and folder of its own, and that folder; run once for all tests."""
+def built_as_a_user(shared: Shared) -> tuple[subprocess.CompletedProcess[str], Path]:
+    """What ``pneutouch build paper-dome --json`` prints in a process and folder of its own, and that folder."""
+    words = ("build", "paper-dome", "--json")
 
-    @cache
-    def run(name: str) -> tuple[subprocess.CompletedProcess[str], Path]:
-        words = ("build", name, "--json")
+    def fill(folder: Path) -> None:
+        done = in_new_process(words, folder, {"PYTHONHASHSEED": "1"})
+        (folder / "done.json").write_text(json.dumps([done.returncode, done.stdout, done.stderr]))
 
-        def fill(folder: Path) -> None:
-            done = in_new_process(words, folder, {"PYTHONHASHSEED": "1"})
-            (folder / "done.json").write_text(json.dumps([done.returncode, done.stdout, done.stderr]))
-
-        folder = shared.folder(f"build-{name}", fill)
-        return subprocess.CompletedProcess(words, *json.loads((folder / "done.json").read_text())), folder
-
-    return run
+    folder = shared.folder("build-paper-dome", fill)
+    return subprocess.CompletedProcess(words, *json.loads((folder / "done.json").read_text())), folder
 
 
 @pytest.fixture(scope="session")
-def built(built_as_a_user: Callable[[str], tuple[subprocess.CompletedProcess[str], Path]]) -> Callable[[str], Path]:
-    """The output folder of a design, built once for all tests: to be read, not written."""
+def built(
+    request: pytest.FixtureRequest, evaluated: Callable[..., Evaluation], shared: Shared
+) -> Callable[[str], Path]:
+    """The output folder of a design, built once for all tests: to be read, not written. The paper's is built by a process."""
 
+    @cache
     def run(name: str) -> Path:
-        done, folder = built_as_a_user(name)
-        assert done.returncode == 0, done.stderr
+        if name == "paper-dome":
+            done, folder = request.getfixturevalue("built_as_a_user")
+            assert done.returncode == 0, done.stderr
+        else:
+            folder = shared.folder(f"build-{name}", lambda fresh: build(evaluated(name), fresh / "outputs"))
         return folder / "outputs" / name
 
     return run

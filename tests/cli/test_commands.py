@@ -81,7 +81,7 @@ def test_new_writes_a_design_that_predicts_and_never_overwrites(command, tmp_pat
 
 
 def test_build_prints_the_folder_and_nothing_else_on_stdout(built_as_a_user):
-    result, folder = built_as_a_user("paper-dome")
+    result, folder = built_as_a_user
     assert result.returncode == 0, result.stderr
     document = json.loads(result.stdout)
     assert document["folder"] == "outputs/paper-dome"

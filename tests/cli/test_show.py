@@ -82,7 +82,11 @@ def test_build_from_a_3mf_gives_the_same_bytes_in_a_folder_whose_library_changed
     assert {p.relative_to(again): p.read_bytes() for p in again.rglob("*") if p.is_file()} == ours
 
 
-def test_another_version_is_said_on_stderr(command, built_file, tmp_path):
+def test_another_version_is_said_on_stderr(command, built_file, tmp_path, monkeypatch):
+    """What a rebuild writes is tested above: here nothing is written."""
+    monkeypatch.setattr(
+        "pneutouch.workflows.build.run.build", lambda evaluation, out, report: out / evaluation.scene.name
+    )
     with_recipe(tmp_path / "sensor.3mf", tmp_path / "old.3mf", lambda recipe: recipe.update(version="0.0.7"))
     result = command("build", "old.3mf", "--json")
     assert result.returncode == 0, result.stderr

@@ -118,48 +118,59 @@ def test_a_recipe_with_a_hundred_resins_comes_back(tmp_path, library):
     assert back.text() == recipe.text()
 
 
-def rebuilt(path: Path, out: Path) -> dict[str, bytes]:
-    return content(build(evaluate_recipe(read_recipe(read_threemf(path))), out))
+OPTIONS = ["membrane.material=FLX9940", "pneumatics.driving_pressures_kPa=[0]", "document.date=2026-11-21"]
 
 
-def test_a_3mf_builds_again_to_the_same_bytes_without_any_library(built, tmp_path, monkeypatch):
-    path = built("fingertip-dome") / "fingertip-dome.3mf"
-
-    def refuse(*_, **__):
-        raise AssertionError("the library was looked at")
-
-    for method in ("paths", "load", "all", "default", "design_file"):
-        monkeypatch.setattr(Library, method, refuse)
-    copy = tmp_path / "renamed by a user.3MF"
-    copy.write_bytes(path.read_bytes())
-    assert rebuilt(copy, tmp_path / "out") == content(path.parent)
+def lab_evaluation(folder: Path):
+    """By `auto`, of a resin of the lab's own where ``folder`` holds its file."""
+    library = Library((folder, ROOT))
+    return evaluate("paper-dome", parse_changes(OPTIONS), model="auto", tolerance=0.03, library=library)
 
 
-def test_what_was_asked_of_auto_is_asked_again(library, tmp_path):
-    changes = ["pneumatics.driving_pressures_kPa=[0, 5]", "document.date=2026-11-21"]
-    evaluation = evaluate("paper-dome", parse_changes(changes), model="auto", tolerance=0.03, library=library)
-    assert evaluation.prediction.model == "atlas"
-    folder = build(evaluation, tmp_path / "one")
-    again = rebuilt(folder / "paper-dome.3mf", tmp_path / "two")
-    assert again == content(folder)
-    assert "meets 3.0%" in json.loads(again["prediction.json"])["error_estimate"]["model_choice"]
-
-
-def test_a_changed_library_does_not_change_a_rebuild_but_does_change_a_build(tmp_path, library):
-    """A lab's own resin with a mix: its file is changed after the build, and every other material thrown out."""
-    folder = tmp_path / "printprofiles/materials"
-    folder.mkdir(parents=True)
+@pytest.fixture(scope="module")
+def lab(tmp_path_factory) -> Path:
+    """A folder with a lab's own resin and mix, and what was built with it, which is the only build of the tests here."""
+    folder = tmp_path_factory.mktemp("lab")
+    shelf = folder / "printprofiles/materials"
+    shelf.mkdir(parents=True)
     text = (ROOT / "printprofiles/materials/FLX9940.toml").read_text()
     mix = '\n[mix]\nsource = "weighed cartridges"\n[mix.fractions]\nTangoPlus = 0.75\nVeroClear = 0.25\n'
-    (folder / "FLX9940.toml").write_text(text + mix)
-    shelves = Library((tmp_path, ROOT))
-    changes = ["membrane.material=FLX9940", "pneumatics.driving_pressures_kPa=[0]"]
-    before = build(evaluate("paper-dome", parse_changes(changes), model="atlas", library=shelves), tmp_path / "before")
-    assert sorted(read_threemf(before / "paper-dome.3mf").bodies[0].mix.values()) == [0.25, 0.75]
-    (folder / "FLX9940.toml").write_text(text)
-    after = build(evaluate("paper-dome", parse_changes(changes), model="atlas", library=shelves), tmp_path / "after")
-    assert (after / "paper-dome.3mf").read_bytes() != (before / "paper-dome.3mf").read_bytes()
-    assert rebuilt(before / "paper-dome.3mf", tmp_path / "again") == content(before)
+    (shelf / "FLX9940.toml").write_text(text + mix)
+    evaluation = lab_evaluation(folder)
+    assert evaluation.prediction.model == "atlas"
+    build(evaluation, folder / "before")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def again(lab) -> Path:
+    """The 3MF alone built again, under another name, where any look at a library fails."""
+
+    def refuse(*_, **__):
+        raise AssertionError("the library was read")
+
+    copy = lab / "renamed by a user.3MF"
+    copy.write_bytes((lab / "before/paper-dome/paper-dome.3mf").read_bytes())
+    with pytest.MonkeyPatch.context() as patch:
+        for method in ("paths", "load", "all", "default", "design_file"):
+            patch.setattr(Library, method, refuse)
+        return build(evaluate_recipe(read_recipe(read_threemf(copy))), lab / "again")
+
+
+def test_a_3mf_builds_again_to_the_same_bytes_without_any_library(lab, again):
+    assert content(again) == content(lab / "before/paper-dome")
+
+
+def test_what_was_asked_of_auto_is_asked_again(again):
+    assert "meets 3.0%" in json.loads((again / "prediction.json").read_text())["error_estimate"]["model_choice"]
+
+
+def test_a_changed_library_changes_a_build(lab, tmp_path):
+    """Its mix is in the 3MF; without it the inputs, which the 3MF holds as well, are others."""
+    before = read_threemf(lab / "before/paper-dome/paper-dome.3mf")
+    assert sorted(before.bodies[0].mix.values()) == [0.25, 0.75]
+    assert before.metadata["input-hash"] == input_hash(lab_evaluation(lab))
+    assert before.metadata["input-hash"] != input_hash(lab_evaluation(tmp_path))
 
 
 def test_without_a_recipe_there_is_nothing_to_rebuild(tmp_path, evaluated):

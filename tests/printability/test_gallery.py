@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import pytest
 
 from pneutouch.printability import check
@@ -10,11 +12,16 @@ from tests.printability.gallery import BAD, GOOD
 from tests.printability.working import WORKING
 
 
+@cache
+def findings(name):
+    """What the rules say of a bad part, checked once."""
+    return tuple(check(BAD[name].make()))
+
+
 @pytest.mark.parametrize("name", BAD)
 def test_a_bad_part_breaks_the_rules_it_was_made_for_and_no_other(name):
-    exhibit = BAD[name]
-    found = check(exhibit.make())
-    assert {finding.rule: finding.severity for finding in reversed(found)} == exhibit.breaks, found
+    found = findings(name)
+    assert {finding.rule: finding.severity for finding in reversed(found)} == BAD[name].breaks, found
 
 
 @pytest.mark.parametrize("name", GOOD)
@@ -28,7 +35,7 @@ def test_every_rule_has_an_exhibit():
 
 @pytest.mark.parametrize("name", [name for name in BAD if name not in ("fine", "coarse", "open mesh", "inside out")])
 def test_a_finding_says_how_far_off_where_and_why(name):
-    for finding in check(BAD[name].make()):
+    for finding in findings(name):
         document = finding.document()
         assert document["message"]
         assert len(document["source"]) >= 8

@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 from pneutouch.errors import InputError, RuleBrokenError
-from pneutouch.output.files import check_writable, write_folder
-from pneutouch.workflows.build import build
+from pneutouch.output.files import check_writable, replacing, write_folder
+from pneutouch.workflows.build import STEPS, build
 
 FILES = {
     "paper-dome.3mf", "stl/membrane.stl", "stl/connector.stl", "paper-dome.step", "paper-dome.glb", "datasheet.html",
@@ -37,9 +37,21 @@ def test_every_named_file_is_there_and_in_the_manifest(built):
         assert 0 < mesh["measured_deviation_mm"] <= mesh["tolerance_mm"]
 
 
-def test_two_builds_in_two_processes_give_the_same_bytes(built, evaluated, tmp_path):
+OLD = {"manifest.json": b'{"files": {"old.txt": {}}}', "old.txt": b"old"}
+
+
+def test_a_build_touches_nothing_before_it_writes_and_repeats_the_bytes_of_another_process(built, evaluated, tmp_path):
     """The other process has a hash seed of its own."""
-    build(evaluated("paper-dome"), tmp_path)
+    write_folder(tmp_path / "paper-dome", OLD)
+    steps = []
+
+    def untouched(step: str) -> None:
+        steps.append(step)
+        assert content(tmp_path / "paper-dome") == OLD
+        assert len(list(tmp_path.iterdir())) == 1
+
+    build(evaluated("paper-dome"), tmp_path, untouched)
+    assert steps == list(STEPS)
     assert content(tmp_path / "paper-dome") == content(built("paper-dome"))
 
 
@@ -50,18 +62,13 @@ def test_a_broken_rule_writes_nothing(evaluated, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_build_that_fails_half_way_leaves_the_previous_output_whole(evaluated, tmp_path, monkeypatch):
-    evaluation = evaluated("paper-dome")
+def test_a_build_that_fails_while_it_writes_leaves_the_previous_output_whole(tmp_path, monkeypatch):
     folder = tmp_path / "paper-dome"
-    write_folder(folder, {"manifest.json": b'{"files": {"old.txt": {}}}', "old.txt": b"old"})
+    write_folder(folder, OLD)
     before = content(tmp_path)
-
-    def stop(step: str) -> None:
-        if step == "files":
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        build(evaluation, tmp_path, stop)
+    with pytest.raises(KeyboardInterrupt), replacing(folder) as fresh:
+        (fresh / "new.txt").write_bytes(b"new")
+        raise KeyboardInterrupt
     assert content(tmp_path) == before
 
     original = Path.write_bytes
@@ -91,7 +98,7 @@ KILLS = {
 def test_a_build_killed_while_it_writes_leaves_the_previous_output_whole(moment, tmp_path):
     """Before it writes, a build touches nothing: see above."""
     folder = tmp_path / "paper-dome"
-    write_folder(folder, {"manifest.json": b'{"files": {"old.txt": {}}}', "old.txt": b"old"})
+    write_folder(folder, OLD)
     code = (
         "import os\nfrom pathlib import Path\nfrom pneutouch.output import files\n"
         f"def die(*_): os.kill(os.getpid(), 9)\n{KILLS[moment]}\n"
@@ -99,7 +106,7 @@ def test_a_build_killed_while_it_writes_leaves_the_previous_output_whole(moment,
     )
     killed = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
     assert killed.returncode == -signal.SIGKILL, killed.stderr
-    assert content(folder) == {"manifest.json": b'{"files": {"old.txt": {}}}', "old.txt": b"old"}
+    assert content(folder) == OLD
 
 
 def test_a_new_build_replaces_our_files_and_keeps_other_peoples(tmp_path):

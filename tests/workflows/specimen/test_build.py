@@ -123,7 +123,7 @@ def test_a_specimen_is_known_by_its_block():
     assert specimen_file("no-such-thing", LIBRARY) is None
 
 
-@pytest.mark.parametrize("kind", ["octet", "gyroid"])
+@pytest.mark.parametrize("kind", [pytest.param("octet", marks=pytest.mark.slow), "gyroid"])
 def test_a_lattice_is_built_whole(kind, tmp_path):
     layer = f'[[layer]]\nkind = "{kind}"\ncell_mm = 5\nvolume_fraction = 0.4\ndepth_mm = 1\nheight_mm = 5\n'
     folder, _ = build_specimen(written(tmp_path, layer), tmp_path / "out", library=LIBRARY)
