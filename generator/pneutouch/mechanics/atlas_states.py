@@ -17,7 +17,7 @@ from pneutouch.mechanics.events import Event
 from pneutouch.mechanics.limits import LimitPoint, Limits
 from pneutouch.mechanics.prediction import InflationCurve, ModelResult, SensorState
 from pneutouch.mechanics.response import figures
-from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.sensor import Sensor, WallMaterial
 from pneutouch.mechanics.solid.events import CREASE, DETAIL, OVERHANG, PathPoint, crossing
 from pneutouch.units import KPA
 
@@ -42,6 +42,15 @@ def outside_atlas(sensor: Sensor, atlas: Atlas | None = None) -> str | None:
         (gas > recipe.stiffest, f"ambient pressure {gas:.3g} mu, more than {recipe.stiffest:g}"),
     ]
     return next((why for applies, why in reasons if applies), None)
+
+
+def resin_outside_atlas(wall: WallMaterial, ambient_pressure: float) -> str | None:
+    """Why the atlas covers no dome of a resin, or None where it does; ``ambient_pressure`` in MPa."""
+    recipe = shipped().recipe
+    if wall.law is not None or wall.poisson_ratio != recipe.poisson_ratio:
+        return "the atlas covers neither its law nor its Poisson ratio"
+    too_soft = ambient_pressure > recipe.stiffest * wall.shear_modulus
+    return "it is too soft for the atlas in so high an ambient pressure" if too_soft else None
 
 
 class AnswerLimitation(NamedTuple):

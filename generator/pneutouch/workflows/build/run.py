@@ -51,9 +51,7 @@ def build(evaluation: Evaluation, out: Path, progress: StepReport = lambda step:
     bodies = tuple(body.moved(assembly.print_offset) for body in assembly.bodies)
     files: dict[str, bytes] = {"prediction.json": json_bytes(full_document(evaluation))}
     progress("3MF")
-    files[f"{scene.name}.3mf"] = threemf(
-        scene.name, bodies, _metadata(evaluation, bodies), _thumbnail(evaluation)
-    )  # fmt: skip
+    files[f"{scene.name}.3mf"] = threemf(scene.name, bodies, _metadata(evaluation, bodies), _thumbnail(evaluation))
     progress("STL")
     files |= {f"stl/{body.name}.stl": stl(body) for body in bodies}
     progress("GLB")

@@ -68,9 +68,12 @@ def plan_voxels(
         mixed = blend(solid.material, str(names[table_name]), library, f"{scene.where}: {table_name}.material")
         bodies.append(VoxelBody(solid, mixed))
     grid = raster(
-        [body.inside for body in bodies], printer.resolution.dpi, chosen.layer_height_um,
-        upright=assembly.stands_up("membrane"), coarser=coarser,
-    )  # fmt: skip
+        [body.inside for body in bodies],
+        printer.resolution.dpi,
+        chosen.layer_height_um,
+        upright=assembly.stands_up("membrane"),
+        coarser=coarser,
+    )
     job = VoxelJob(tuple(bodies), grid, tuple(printer.resins), SEED)
     findings = check_stack(printer, chosen, job.used, len(grid.z), grid.size, "membrane")
     return VoxelPlan(assembly, job, chosen, tuple(findings))
@@ -93,10 +96,14 @@ def write_voxels(
     scene = plan.assembly.scene
     printer, _ = plan.assembly.machine("membrane")
     about = {
-        "name": scene.name, "input_hash": input_hash, "printer": printer.title, "mode": plan.mode.name,
-        "orientation": scene.design.print.orientation, "versions": {"pneutouch": __version__, "zlib": zlib.ZLIB_RUNTIME_VERSION},
+        "name": scene.name,
+        "input_hash": input_hash,
+        "printer": printer.title,
+        "mode": plan.mode.name,
+        "orientation": scene.design.print.orientation,
+        "versions": {"pneutouch": __version__, "zlib": zlib.ZLIB_RUNTIME_VERSION},
         "print_frame_offset_mm": plan.assembly.print_offset.tolist(),
-    }  # fmt: skip
+    }
     folder = stack_folder(out, scene.name)
     slicer = write_stack(plan.job, folder, f"{scene.name}_", about, progress)
     return folder, shortfalls(plan.job, slicer)

@@ -54,13 +54,16 @@ def inputs(ordered: CouponOrder) -> dict[str, Any]:
         "design": None if scene is None else scene.design.model_dump(mode="json"),
         "items": [
             {
-                "coupon": item.coupon.name, "about": item.about, "copies": item.copies, "printer": item.printer_name,
+                "coupon": item.coupon.name,
+                "about": item.about,
+                "copies": item.copies,
+                "printer": item.printer_name,
                 "material": item.material.model_dump(mode="json"),
             }
             for item in ordered.items
         ],
         "printers": {name: items[0].printer.model_dump(mode="json") for name, items in ordered.machines().items()},
-    }  # fmt: skip
+    }
 
 
 def _check_unfilled(folder: Path) -> None:
@@ -85,10 +88,17 @@ def _metadata(ordered: CouponOrder, name: str, bodies: tuple[Body, ...]) -> dict
 def _coupons(trays: Mapping[str, tuple[CouponPiece, ...]]) -> list[dict[str, Any]]:
     return [
         {
-            "coupon": piece.item.coupon.name, "piece": piece.body.name, "material": piece.item.material.title,
-            "printer": name, "copies": len(piece.places), "places_mm": [list(place) for place in piece.places],
-            "size_mm": [round(length, 3) for length in piece.size], "exact_volume_mm3": round(piece.solid.volume, 3),
-            "volume_mm3": round(piece.body.volume, 3), "measured_deviation_mm": round(piece.deviation, 6),
+            "coupon": piece.item.coupon.name,
+            "piece": piece.body.name,
+            "material": piece.item.material.title,
+            "printer": name,
+            "copies": len(piece.places),
+            "places_mm": [list(place) for place in piece.places],
+            "size_mm": [round(length, 3) for length in piece.size],
+            "exact_volume_mm3": round(piece.solid.volume, 3),
+            "volume_mm3": round(piece.body.volume, 3),
+            "measured_deviation_mm": round(piece.deviation, 6),
         }
-        for name, pieces in trays.items() for piece in pieces
-    ]  # fmt: skip
+        for name, pieces in trays.items()
+        for piece in pieces
+    ]

@@ -51,9 +51,15 @@ def local_curve(
     check_ours(path, f"points of {', '.join(f'{point.fraction:g}' for point in known)}")
     KINDS["mixing"].validate(content, str(path))
     results.figures += [
-        MeasuredFigure(f"{pair}, {100 * point.fraction:g} %", f"shear modulus, MPa ({point.by})", point.modulus, point.spread, point.count)
+        MeasuredFigure(
+            f"{pair}, {100 * point.fraction:g} %",
+            f"shear modulus, MPa ({point.by})",
+            point.modulus,
+            point.spread,
+            point.count,
+        )
         for point in known
-    ]  # fmt: skip
+    ]
     results.notes.append(
         f"{pair}: elongation at break was not measured; add elongation_at_break_percent to the points, or no prediction "
         "has a break strain of a mixed wall"
@@ -89,8 +95,12 @@ def _changes(path: Path, content: dict[str, Any], pair: str, library: Library) -
         old = None
         if before is not None and fraction <= before.fraction[-1]:
             old = {"value": float(f"{float(before.modulus_at(fraction)):.4g}")}
-        rows.append({
-            "file": str(path), "key": f"shear_modulus_MPa at {100 * fraction:g} %", "before": old,
-            "after": {"value": point["shear_modulus_MPa"], "source": point["source"]},
-        })  # fmt: skip
+        rows.append(
+            {
+                "file": str(path),
+                "key": f"shear_modulus_MPa at {100 * fraction:g} %",
+                "before": old,
+                "after": {"value": point["shear_modulus_MPa"], "source": point["source"]},
+            }
+        )
     return rows

@@ -148,9 +148,10 @@ def _of_mixing(
 ) -> list[CouponItem]:
     """The mixing set: every fraction of each pair; pucks alone unless dumbbells are requested, which take a large tray."""
     chosen = [
-        coupon for coupon in families
+        coupon
+        for coupon in families
         if coupon.name in MIXED and (coupon.name in options.only or (not options.only and coupon.name == MIXED[0]))
-    ]  # fmt: skip
+    ]
     items = []
     for pair in dict.fromkeys(options.mixing):
         for blend in blends(pair, library):
@@ -163,11 +164,16 @@ def _of_mixing(
                 )
             items += [
                 CouponItem(
-                    coupon, blend.about, profile, printer, CouponContext(blend.material),
-                    options.copies.get(coupon.name, MIXED_COPIES), blend,
+                    coupon,
+                    blend.about,
+                    profile,
+                    printer,
+                    CouponContext(blend.material),
+                    options.copies.get(coupon.name, MIXED_COPIES),
+                    blend,
                 )
                 for coupon in chosen
-            ]  # fmt: skip
+            ]
     return items
 
 

@@ -15,12 +15,16 @@ _CELLS = 5
 def sheet(order: CouponOrder, trays: Mapping[str, tuple[CouponPiece, ...]]) -> str:
     """Markdown for the operator and the bench."""
     lines = [
-        f"# Coupons: print and measure ({order.name})", "",
+        f"# Coupons: print and measure ({order.name})",
+        "",
         "Print, measure, write the readings into `results.toml`, then run `pneutouch coupons --results results.toml` in the "
-        "folder of your designs: it writes profiles of your own machine and resins, which come before the shipped ones.", "",
-        "Lab: ______________________  Date: ______________  Room: _____ °C  Printed on: ______________", "",
-        "## Print", "",
-    ]  # fmt: skip
+        "folder of your designs: it writes profiles of your own machine and resins, which come before the shipped ones.",
+        "",
+        "Lab: ______________________  Date: ______________  Room: _____ °C  Printed on: ______________",
+        "",
+        "## Print",
+        "",
+    ]
     for name, pieces in trays.items():
         lines += _printing(name, pieces, order)
     lines += ["## Measure", ""]
@@ -38,14 +42,20 @@ def _printing(name: str, pieces: tuple[CouponPiece, ...], order: CouponOrder) ->
         for piece in pieces
     ]
     return [
-        f"### {printer.title} (`{name}`)", "",
+        f"### {printer.title} (`{name}`)",
+        "",
         f"`{order.name if name == order.profile else name}.3mf`: all copies in place, one material an object; mode {mode.name}, "
         f"{mode.layer_height_um:g} µm. **Choose the material of each object by hand**; pieces of one shape differ by "
-        "their place on the tray alone, so bag and label them as they come off.", "",
+        "their place on the tray alone, so bag and label them as they come off.",
+        "",
         "| piece | copies | file | material | size, mm | mass each | middle of each on the tray, mm |",
-        "|---|---|---|---|---|---|---|", *rows, "",
-        *_mixes(pieces), f"Support: {printer.support}. Do not turn the pieces.", "",
-    ]  # fmt: skip
+        "|---|---|---|---|---|---|---|",
+        *rows,
+        "",
+        *_mixes(pieces),
+        f"Support: {printer.support}. Do not turn the pieces.",
+        "",
+    ]
 
 
 def _mixes(pieces: tuple[CouponPiece, ...]) -> list[str]:
@@ -55,8 +65,9 @@ def _mixes(pieces: tuple[CouponPiece, ...]) -> list[str]:
     return [
         "Mixed pieces are composites of two base resins in the 3MF, in volume fractions. No catalogue material has a known "
         "fraction: do not choose one in their place. Where the machine's program takes no composites, print them droplet by "
-        "droplet from voxel slices of the same fractions.", "",
-    ]  # fmt: skip
+        "droplet from voxel slices of the same fractions.",
+        "",
+    ]
 
 
 def stl_name(piece: CouponPiece, order: CouponOrder) -> str:

@@ -35,14 +35,21 @@ _DIGITS = 7
 def document(run: ScanRun) -> dict[str, Any]:
     """All results of a scan; names carry their units."""
     content = {
-        "specimen": run.specimen.name, "design": run.design.name, "control": run.options.control,
-        "preload_N": run.options.preload, "speed_mm_per_s": run.path.speed, "path_mm": [run.path.start, run.path.end],
-        "sampling_Hz": RATE, "kept_Hz": 5 * run.kept, "noise_kPa": run.options.noise / KPA, "seed": run.options.seed,
+        "specimen": run.specimen.name,
+        "design": run.design.name,
+        "control": run.options.control,
+        "preload_N": run.options.preload,
+        "speed_mm_per_s": run.path.speed,
+        "path_mm": [run.path.start, run.path.end],
+        "sampling_Hz": RATE,
+        "kept_Hz": 5 * run.kept,
+        "noise_kPa": run.options.noise / KPA,
+        "seed": run.options.seed,
         "range_kPa": GAUGE_LIMIT / KPA,
         "patterns": [_pattern(run, row) for row in run.bars],
         "states": [_state(run, number, seen) for number, seen in enumerate(run.seen)],
         "assumptions": list(ASSUMPTIONS),
-    }  # fmt: skip
+    }
     return rounded(content, _DIGITS)  # type: ignore[no-any-return]
 
 
@@ -51,12 +58,18 @@ def inputs(run: ScanRun) -> dict[str, Any]:
     design = run.design
     options = run.options
     return {
-        "specimen": specimen_inputs(run.specimen), "design": design.design.model_dump(mode="json"),
-        "membrane": design.membrane_material.model_dump(mode="json"), "dead_volume_mm3": rounded(run.sensor.gas.dead_volume, _DIGITS),
-        "pressures_kPa": [rounded(p / KPA, _DIGITS) for p in options.pressures], "preload_N": options.preload, "control": options.control,
-        "speed_mm_per_s": run.path.speed, "noise_kPa": options.noise / KPA, "seed": options.seed,
+        "specimen": specimen_inputs(run.specimen),
+        "design": design.design.model_dump(mode="json"),
+        "membrane": design.membrane_material.model_dump(mode="json"),
+        "dead_volume_mm3": rounded(run.sensor.gas.dead_volume, _DIGITS),
+        "pressures_kPa": [rounded(p / KPA, _DIGITS) for p in options.pressures],
+        "preload_N": options.preload,
+        "control": options.control,
+        "speed_mm_per_s": run.path.speed,
+        "noise_kPa": options.noise / KPA,
+        "seed": options.seed,
         "data": [path.name for path in options.data],
-    }  # fmt: skip
+    }
 
 
 def spectra(run: ScanRun) -> str:
@@ -85,11 +98,17 @@ def _pattern(run: ScanRun, row: BarRow) -> dict[str, Any]:
     frequency = run.frequencies[row.name]
     young = run.specimen.inclusion.young_modulus_MPa
     return {
-        "name": row.name, "pitch_mm": row.pitch, "width_mm": row.width, "height_mm": row.height, "depth_mm": row.depth,
-        "from_mm": float(row.edges.min()), "to_mm": float(row.edges.max()), "frequency_Hz": frequency,
+        "name": row.name,
+        "pitch_mm": row.pitch,
+        "width_mm": row.width,
+        "height_mm": row.height,
+        "depth_mm": row.depth,
+        "from_mm": float(row.edges.min()),
+        "to_mm": float(row.edges.max()),
+        "frequency_Hz": frequency,
         "bending_length_mm": None if young is None else row.bending_length(young.nominal, run.matrix.shear_modulus),
         "noise_amplitude_kPa": noise_amplitude(frequency, run.options.noise) / KPA,
-    }  # fmt: skip
+    }
 
 
 def _state(run: ScanRun, number: int, seen: AnalysedSignal) -> dict[str, Any]:
@@ -101,13 +120,17 @@ def _state(run: ScanRun, number: int, seen: AnalysedSignal) -> dict[str, Any]:
     at = seen.touch
     if at is not None and seen.substrate is not None and seen.scan is not None:
         content |= {
-            "driving_pressure_kPa": at.driving_pressure / KPA, "contact_radius_mm": at.contact_radius,
-            "indentation_mm": at.indentation, "stiffness_N_per_mm": at.stiffness,
-            "pressure_slope_kPa_per_mm": at.pressure_slope / KPA, "pressure_kPa": at.pressure / KPA, "model": at.model,
+            "driving_pressure_kPa": at.driving_pressure / KPA,
+            "contact_radius_mm": at.contact_radius,
+            "indentation_mm": at.indentation,
+            "stiffness_N_per_mm": at.stiffness,
+            "pressure_slope_kPa_per_mm": at.pressure_slope / KPA,
+            "pressure_kPa": at.pressure / KPA,
+            "model": at.model,
             "specimen_compliance_mm_per_N": float(seen.substrate.compliance(4096).mean()),
             "clipped": bool(abs(seen.signal.pressure).max() >= GAUGE_LIMIT),
             "notes": _notes(run.bars, at.contact_radius),
-        }  # fmt: skip
+        }
     detections: Sequence[Detection | None] = seen.detections or [None] * len(run.bars)
     content["patterns"] = [_detection(run, seen, row, one) for row, one in zip(run.bars, detections, strict=True)]
     return content
@@ -129,11 +152,16 @@ def _detection(run: ScanRun, seen: AnalysedSignal, row: BarRow, detection: Detec
     if detection is None:
         return text | {"detected": False}
     return text | {
-        "detected": detection.detected, "detected_frequency_Hz": detection.frequency, "amplitude_kPa": detection.amplitude / KPA,
-        "noise_floor_kPa": detection.floor / KPA, "detection_figure": detection.ratio, "threshold": detection.threshold,
-        "p_value": detection.p_value, "level": detection.level,
+        "detected": detection.detected,
+        "detected_frequency_Hz": detection.frequency,
+        "amplitude_kPa": detection.amplitude / KPA,
+        "noise_floor_kPa": detection.floor / KPA,
+        "detection_figure": detection.ratio,
+        "threshold": detection.threshold,
+        "p_value": detection.p_value,
+        "level": detection.level,
         "frequency_error_relative": detection.frequency / detection.target - 1.0,
-    }  # fmt: skip
+    }
 
 
 def _notes(bars: Sequence[BarRow], radius: float) -> list[str]:

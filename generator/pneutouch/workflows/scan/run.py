@@ -90,8 +90,12 @@ class ScanRun:
 
 
 def run_scan(
-    specimen: str, design: str | DesignSource, options: ScanOptions = ScanOptions(), changes: Changes | None = None, library: Library | None = None
-) -> ScanRun:  # fmt: skip
+    specimen: str,
+    design: str | DesignSource,
+    options: ScanOptions = ScanOptions(),
+    changes: Changes | None = None,
+    library: Library | None = None,
+) -> ScanRun:
     """Scan a specimen with a sensor, both by name or path; ``changes`` are of the design.
 
     Raises InputError for what cannot be: see `texture.contact`, `texture.scan`, `texture.detect`.
@@ -176,8 +180,10 @@ def _at_speed(context: ResolvedSpecimen, speed: float) -> Any:
     given = context.specimen.scan.speed_mm_per_s
     layers = [
         layer.model_copy(update={"pitch_mm": layer.pitch(given), "target_frequency_Hz": None})
-        if isinstance(layer, Bars) else layer for layer in context.specimen.layer
-    ]  # fmt: skip
+        if isinstance(layer, Bars)
+        else layer
+        for layer in context.specimen.layer
+    ]
     update = {"scan": context.specimen.scan.model_copy(update={"speed_mm_per_s": speed}), "layer": layers}
     return context.specimen.model_copy(update=update)
 

@@ -14,6 +14,7 @@ from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import elastomers
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.table import shipped
+from pneutouch.mechanics.atlas_states import resin_outside_atlas
 from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
@@ -57,9 +58,13 @@ def parse_patterns(text: str) -> tuple[BarPattern, BarPattern]:
 
 
 def separating(
-    specimen: str, design: str | DesignSource, text: str, options: ScanOptions, changes: Changes | None = None,
+    specimen: str,
+    design: str | DesignSource,
+    text: str,
+    options: ScanOptions,
+    changes: Changes | None = None,
     library: Library | None = None,
-) -> dict[str, Any]:  # fmt: skip
+) -> dict[str, Any]:
     """The domes that best distinguish two patterns, as a document; the specimen gives matrix and speed, the design the rest."""
     library = library or Library.default()
     check_options(options)
@@ -70,23 +75,33 @@ def separating(
     domes = candidates(scene, sensor, library)
     separation = separate(domes.batch, domes.dome, options.preload, matrix_of(context), patterns, (floor[0], floor[1]))
     return {
-        "patterns": [{"pitch_mm": p.pitch, "depth_mm": p.depth, "frequency_Hz": speed / p.pitch,
-                      "noise_amplitude_kPa": f / KPA} for p, f in zip(patterns, floor, strict=True)],
-        "candidates": len(domes.batch), "preload_N": options.preload,
+        "patterns": [
+            {"pitch_mm": p.pitch, "depth_mm": p.depth, "frequency_Hz": speed / p.pitch, "noise_amplitude_kPa": f / KPA}
+            for p, f in zip(patterns, floor, strict=True)
+        ],
+        "candidates": len(domes.batch),
+        "preload_N": options.preload,
         "domes": [_dome(domes, separation, k) for k in range(min(_SHOWN, len(separation.dome)))],
-    }  # fmt: skip
+    }
 
 
 def _dome(domes: DomeCandidates, separation: Separation, k: int) -> dict[str, Any]:
     row = int(np.flatnonzero(domes.dome == separation.dome[k])[0])
     return {
-        "rank": k + 1, "resin": domes.names[int(domes.resin[row])], "inner_radius_mm": float(round(domes.radius[row], 2)),
-        "wall_thickness_mm": float(round(domes.wall[row], 2)), "contrast": float(f"{separation.contrast[k]:.4g}"),
+        "rank": k + 1,
+        "resin": domes.names[int(domes.resin[row])],
+        "inner_radius_mm": float(round(domes.radius[row], 2)),
+        "wall_thickness_mm": float(round(domes.wall[row], 2)),
+        "contrast": float(f"{separation.contrast[k]:.4g}"),
         "states": [
-            {"driving_pressure_kPa": float(f"{separation.pressures[k, i] / KPA:.4g}"), "for_pattern": i + 1,
-             "amplitudes_kPa": [float(f"{a / KPA:.4g}") for a in separation.amplitudes[k, i]]} for i in (0, 1)
+            {
+                "driving_pressure_kPa": float(f"{separation.pressures[k, i] / KPA:.4g}"),
+                "for_pattern": i + 1,
+                "amplitudes_kPa": [float(f"{a / KPA:.4g}") for a in separation.amplitudes[k, i]],
+            }
+            for i in (0, 1)
         ],
-    }  # fmt: skip
+    }
 
 
 def candidates(scene: ResolvedDesign, sensor: Sensor, library: Library) -> DomeCandidates:
@@ -94,18 +109,21 @@ def candidates(scene: ResolvedDesign, sensor: Sensor, library: Library) -> DomeC
     recipe, feature = shipped().recipe, scene.printer.smallest.wall("elastomer")
     least = feature.least or feature.recommended
     resins = {
-        name: alone for name, material in sorted(elastomers(library).items())
-        if scene.printer.mode_for(material) is not None and (alone := material_sensor(material)).wall.law is None
-        and alone.wall.poisson_ratio == recipe.poisson_ratio and sensor.gas.ambient_pressure <= recipe.stiffest * alone.wall.shear_modulus
-    }  # fmt: skip
+        name: wall.shear_modulus
+        for name, material in sorted(elastomers(library).items())
+        if scene.printer.mode_for(material) is not None
+        and resin_outside_atlas(wall := material_sensor(material).wall, sensor.gas.ambient_pressure) is None
+    }
     if not resins:
         raise InputError(f"{scene.where}: print.profile: the {scene.printer.title} runs no resin that the atlas covers")
     ratios = np.geomspace(recipe.thinnest, recipe.thickest, _RATIOS)
-    mu = np.array([alone.wall.shear_modulus for alone in resins.values()])
+    mu = np.array([*resins.values()])
     resin, ratio, radius, share = _grid(
-        np.arange(len(resins), dtype=float), ratios, np.geomspace(_SMALLEST, _LARGEST, _RADII),
+        np.arange(len(resins), dtype=float),
+        ratios,
+        np.geomspace(_SMALLEST, _LARGEST, _RADII),
         np.linspace(0.0, RATED_SHARE, _PRESSURES),
-    )  # fmt: skip
+    )
     limit = np.interp(ratio, ratios, shipped().slices(ratios, ()).limit_pressure) * mu[resin.astype(int)]
     pressure = share * np.minimum(limit, sensor.gas.gauge_limit)
     keep = ratio * radius >= least
@@ -113,10 +131,17 @@ def candidates(scene: ResolvedDesign, sensor: Sensor, library: Library) -> DomeC
     resin, ratio, radius, pressure = resin[keep], ratio[keep], radius[keep], pressure[keep]
     ones = np.ones(radius.size)
     batch = SensorBatch(
-        radius, ratio * radius, mu[resin.astype(int)], ones * sensor.gas.ambient_pressure, ones * sensor.gas.dead_volume, pressure,
-        radius * min(sensor.protocol.depth / sensor.dome.inner_radius, recipe.deepest), ones * sensor.protocol.plate_radius,
-        ones * sensor.gas.gauge_limit, ones * np.inf,
-    )  # fmt: skip
+        radius,
+        ratio * radius,
+        mu[resin.astype(int)],
+        ones * sensor.gas.ambient_pressure,
+        ones * sensor.gas.dead_volume,
+        pressure,
+        radius * min(sensor.protocol.depth / sensor.dome.inner_radius, recipe.deepest),
+        ones * sensor.protocol.plate_radius,
+        ones * sensor.gas.gauge_limit,
+        ones * np.inf,
+    )
     return DomeCandidates(tuple(resins), resin, radius, ratio * radius, dome, batch)
 
 

@@ -53,11 +53,15 @@ def tradeoff(selection: SelectionRun) -> TradeOff:
     mixed = any(resin.grade is not None for resin in problem.resins)
     resins = tuple(choice.resin for choice in designs) if mixed and designs else problem.resins
     return TradeOff(
-        tuple(front(replace(problem, driving_pressure=pressure, resins=resins))), pressure / KPA, (problem.gauge_limit - pressure) / KPA,
+        tuple(front(replace(problem, driving_pressure=pressure, resins=resins))),
+        pressure / KPA,
+        (problem.gauge_limit - pressure) / KPA,
         tuple(_spot(rank, choice) for rank, choice in enumerate(designs, start=1)),
-        None if target_kPa_per_N is None else (target_kPa_per_N * (1 - problem.tolerance), target_kPa_per_N * (1 + problem.tolerance)),
+        None
+        if target_kPa_per_N is None
+        else (target_kPa_per_N * (1 - problem.tolerance), target_kPa_per_N * (1 + problem.tolerance)),
         problem.force_range,
-    )  # fmt: skip
+    )
 
 
 def tuning(selection: SelectionRun, library: Library, chosen: Candidate | None = None) -> TuningChart | None:
@@ -71,9 +75,13 @@ def tuning(selection: SelectionRun, library: Library, chosen: Candidate | None =
     if drawn is None:
         return None
     low, high = interval(
-        selection.sensor_of(chosen), drawn, material, list(library.all("materials", Material).values()),
-        selection.base.printer, "atlas",
-    )  # fmt: skip
+        selection.sensor_of(chosen),
+        drawn,
+        material,
+        list(library.all("materials", Material).values()),
+        selection.base.printer,
+        "atlas",
+    )
     others = (
         curve(selection.sensor_of(choice), min(choice.rated, chosen.rated), choice.resin.material.title)
         for choice in designs

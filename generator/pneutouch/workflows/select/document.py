@@ -33,11 +33,15 @@ def document(selection: SelectionRun) -> dict[str, Any]:
         ],
         "nearest": None if answer.nearest is None else _choice(selection, answer.nearest, None),
         "dropped_requirements": [
-            {"requirement": dropped.requirement, "attainable": would_need(selection, dropped), "design": _choice(selection, dropped.best, None)}
+            {
+                "requirement": dropped.requirement,
+                "attainable": would_need(selection, dropped),
+                "design": _choice(selection, dropped.best, None),
+            }
             for dropped in answer.dropped
         ],
         "left_out": selection.left_out,
-    }  # fmt: skip
+    }
 
 
 def _is_runner_up(designs: list[Candidate], index: int) -> bool:
@@ -71,11 +75,11 @@ def _choice(selection: SelectionRun, choice: Candidate, solid: Confirmation | No
         "margins": {name: margin if np.isfinite(margin) else None for name, margin in choice.margins.items()},
         "binding": choice.binding,
         "model": "atlas",
-        "solid": None if solid is None else {
-            "sensitivity_kPa_per_N": solid.sensitivity_kPa_per_N, "within_expanded_uncertainty": solid.within,
-        },
+        "solid": None
+        if solid is None
+        else {"sensitivity_kPa_per_N": solid.sensitivity_kPa_per_N, "within_expanded_uncertainty": solid.within},
         "set": selection.assignments(choice),
-    }  # fmt: skip
+    }
 
 
 def would_need(selection: SelectionRun, dropped: DroppedRequirement) -> str:

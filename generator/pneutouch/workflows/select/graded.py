@@ -23,7 +23,7 @@ from pneutouch.spec.material import Material
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA
 from pneutouch.workflows.select.mix import ResinPair
-from pneutouch.workflows.select.run import base_scene, grade_text, problem_of, requested_pair
+from pneutouch.workflows.select.run import base_scene, grade_text, problem_of, requested_pair, setting_changes
 
 _LEVELS = 4
 """Fractions of the scan at pole and rim: moduli 3 times apart for TangoPlus and VeroClear, 16 trials."""
@@ -68,21 +68,23 @@ class GradedSelectionRun:
 
     def assignments(self) -> list[str]:
         """What turns the base design into the graded one, as ``table.key=value``."""
-        setting = self.target.setting
         pressures_kPa = sorted({0.0, *(round(p / KPA, 6) for p in self.grade_target.pressures)})
         values = {
-            "membrane.material": grade_text(self.grade), "membrane.inner_radius_mm": f"{self.sensor.dome.inner_radius:.6g}",
+            "membrane.material": grade_text(self.grade),
+            "membrane.inner_radius_mm": f"{self.sensor.dome.inner_radius:.6g}",
             "membrane.wall_thickness_mm": f"{self.sensor.dome.wall_thickness:.6g}",
-            "pneumatics.driving_pressures_kPa": pressures_kPa, "print.profile": setting.profile,
-            "pneumatics.tube_length_mm": setting.tube_length_mm, "pneumatics.dead_volume_mL": setting.dead_volume_mL,
-        }  # fmt: skip
-        return [f"{key}={value}" for key, value in values.items() if value is not None]
+            "pneumatics.driving_pressures_kPa": pressures_kPa,
+        }
+        return [f"{key}={value}" for key, value in {**values, **setting_changes(self.target)}.items()]
 
 
 def select_graded(
-    target: Target, where: str, library: Library | None = None, progress: TrialReport = lambda trial, done, most: None,
+    target: Target,
+    where: str,
+    library: Library | None = None,
+    progress: TrialReport = lambda trial, done, most: None,
     trials: int | None = None,
-) -> GradedSelectionRun:  # fmt: skip
+) -> GradedSelectionRun:
     """Answer a target that requires a grade. Raises InputError where it names what there is not.
 
     ``where`` names the file in messages; ``trials`` bounds the solid solves of the search.
@@ -110,9 +112,13 @@ def _grade_target(target: Target) -> GradeTarget:
     both_kPa = required.same_sensitivity_at_kPa
     pressures_kPa = both_kPa if both_kPa is not None else [required.driving_pressure_kPa or 0.0]
     return GradeTarget(
-        required.sensitivity_kPa_per_N, required.tolerance_percent / 100, tuple(p * KPA for p in pressures_kPa),
-        None if both_kPa is None else required.same_within_percent / 100, required.force_range_N, required.widest_range,
-    )  # fmt: skip
+        required.sensitivity_kPa_per_N,
+        required.tolerance_percent / 100,
+        tuple(p * KPA for p in pressures_kPa),
+        None if both_kPa is None else required.same_within_percent / 100,
+        required.force_range_N,
+        required.widest_range,
+    )
 
 
 def _wall(target: Target, where: str, grade_target: GradeTarget, problem: SelectionProblem, base: Sensor) -> float:

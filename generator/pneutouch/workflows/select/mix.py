@@ -9,7 +9,7 @@ import numpy as np
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.mixture import ResolvedMixingCurve, mixed_material, mixing
 from pneutouch.errors import InputError
-from pneutouch.mechanics.atlas.recipe import AtlasRecipe
+from pneutouch.mechanics.atlas_states import resin_outside_atlas
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.selection.mixes import levels
 from pneutouch.selection.problem import CandidateResin
@@ -71,18 +71,14 @@ def pair_of(name: str, printer: Printer, library: Library, where: str, named: bo
     return pair
 
 
-def mix_resins(
-    pair: ResinPair, ambient_pressure: float, recipe: AtlasRecipe
-) -> tuple[tuple[CandidateResin, ...], dict[str, str]]:
+def mix_resins(pair: ResinPair, ambient_pressure: float) -> tuple[tuple[CandidateResin, ...], dict[str, str]]:
     """Mixes of a pair that the atlas covers, and why the others are left out."""
     resins, out = [], {}
     for fraction in levels(pair.law):
         resin = pair.resin(round(float(fraction), 4))
-        sensor = material_sensor(resin.material)
-        if sensor.wall.law is not None or sensor.wall.poisson_ratio != recipe.poisson_ratio:
-            out[resin.name] = "the atlas covers neither its law nor its Poisson ratio"
-        elif ambient_pressure > recipe.stiffest * sensor.wall.shear_modulus:
-            out[resin.name] = "it is too soft for the atlas in so high an ambient pressure"
-        else:
+        why = resin_outside_atlas(material_sensor(resin.material).wall, ambient_pressure)
+        if why is None:
             resins.append(resin)
+        else:
+            out[resin.name] = why
     return tuple(resins), out

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.evaluation.table_s1 import is_near_paper
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.table import shipped
+from pneutouch.mechanics.atlas_states import resin_outside_atlas
 from pneutouch.mechanics.models import NUMERICAL
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
@@ -73,25 +74,19 @@ class SelectionRun:
         if self.base.design.indentation.depth_mm is not None:
             # A depth in millimetres belongs to the base's own dome: it goes with the radius.
             values.append(f"indentation.depth_mm={self.problem.depth_share * float(choice.pool.radius[0]):.8g}")
-        return values + self._setting
+        return values + [f"{key}={value}" for key, value in setting_changes(self.target).items()]
 
     def sensor_of(self, choice: Candidate) -> Sensor:
         """A choice as a sensor, in everything else the base design's."""
         pool, resin = choice.pool, choice.resin
         batch = self.problem.batch(pool.resin, pool.radius, pool.wall, pool.pressure)
-        return _like(self.sensor, batch, 0).replace(depth=float(batch.depth[0]), shear_modulus=resin.shear_modulus, law=None,
+        return _like(self.sensor, batch, 0).replace(
+            depth=float(batch.depth[0]),
+            shear_modulus=resin.shear_modulus,
+            law=None,
             poisson_ratio=self.problem.recipe.poisson_ratio,
             break_stretch=None if np.isinf(resin.break_stretch) else resin.break_stretch,
-        )  # fmt: skip
-
-    @cached_property
-    def _setting(self) -> list[str]:
-        setting = self.target.setting
-        values = {
-            "print.profile": setting.profile, "pneumatics.tube_length_mm": setting.tube_length_mm,
-            "pneumatics.dead_volume_mL": setting.dead_volume_mL,
-        }  # fmt: skip
-        return [f"{key}={value}" for key, value in values.items() if value is not None]
+        )
 
 
 def select(target: Target, where: str, library: Library | None = None) -> SelectionRun:
@@ -103,14 +98,27 @@ def select(target: Target, where: str, library: Library | None = None) -> Select
     if pair is None:
         resins, left_out = _resins(target, where, scene, sensor, library)
     else:
-        resins, left_out = mix_resins(pair, sensor.gas.ambient_pressure, shipped().recipe)
+        resins, left_out = mix_resins(pair, sensor.gas.ambient_pressure)
     problem = problem_of(target, scene, sensor, resins)
     answer = choose(
-        problem, (target.weights.robustness, target.weights.tunability), _uncertainty(scene, sensor, library),
+        problem,
+        (target.weights.robustness, target.weights.tunability),
+        _uncertainty(scene, sensor, library),
         None if pair is None else _refined(pair),
-    )  # fmt: skip
+    )
     run = SelectionRun(target, scene, sensor, problem, answer, left_out, ())
     return replace(run, confirmed=tuple(_confirm(run, choice) for choice in answer.designs[:_CONFIRMED]))
+
+
+def setting_changes(target: Target) -> dict[str, Any]:
+    """What a target's setting changes in the base design, by ``table.key``."""
+    setting = target.setting
+    values = {
+        "print.profile": setting.profile,
+        "pneumatics.tube_length_mm": setting.tube_length_mm,
+        "pneumatics.dead_volume_mL": setting.dead_volume_mL,
+    }
+    return {key: value for key, value in values.items() if value is not None}
 
 
 def _written(resin: CandidateResin) -> str:
@@ -137,16 +145,12 @@ def _refined(pair: ResinPair) -> Callable[[SelectionProblem, CandidatePool], tup
 
 def base_scene(target: Target, where: str, library: Library) -> ResolvedDesign:
     """The scene that gives everything the target does not; its own dome is replaced by the candidates'."""
-    setting, given = target.setting, target.given
-    values = {
-        "print.profile": setting.profile, "pneumatics.tube_length_mm": setting.tube_length_mm,
-        "pneumatics.dead_volume_mL": setting.dead_volume_mL, "membrane.inner_radius_mm": given.inner_radius_mm,
-        "membrane.wall_thickness_mm": given.wall_thickness_mm,
-    }  # fmt: skip
-    changes = {key: value for key, value in values.items() if value is not None}
-    changes["membrane.material"] = _some_resin(target, where, library)
+    given = target.given
+    changes = {**setting_changes(target), "membrane.material": _some_resin(target, where, library)}
+    sizes = {"inner_radius_mm": given.inner_radius_mm, "wall_thickness_mm": given.wall_thickness_mm}
+    changes |= {f"membrane.{key}": size for key, size in sizes.items() if size is not None}
     try:
-        return load_scene(setting.base or DEFAULT, changes, library)
+        return load_scene(target.setting.base or DEFAULT, changes, library)
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
 
@@ -180,18 +184,16 @@ def _resins(
     """Resins the printer runs and the atlas covers, and why the others are left out."""
     known = library.all("materials", Material)
     names = target.given.materials or sorted(name for name, m in known.items() if m.kind == "elastomer")
-    recipe, resins, out = shipped().recipe, [], {}
+    resins, out = [], {}
     for name in names:
         material = library.load("materials", name, file=where, key="given.materials")
-        alone = material_sensor(material)
+        wall = material_sensor(material).wall
         if scene.printer.mode_for(material) is None:
             out[name] = f"the {scene.printer.title} cannot run it"
-        elif alone.wall.law is not None or alone.wall.poisson_ratio != recipe.poisson_ratio:
-            out[name] = "the atlas covers neither its law nor its Poisson ratio"
-        elif sensor.gas.ambient_pressure > recipe.stiffest * alone.wall.shear_modulus:
-            out[name] = "it is too soft for the atlas in so high an ambient pressure"
+        elif (why := resin_outside_atlas(wall, sensor.gas.ambient_pressure)) is not None:
+            out[name] = why
         else:
-            resins.append(CandidateResin(name, material, alone.wall.shear_modulus, alone.wall.break_stretch or np.inf))
+            resins.append(CandidateResin(name, material, wall.shear_modulus, wall.break_stretch or np.inf))
     return tuple(resins), out
 
 
@@ -202,15 +204,24 @@ def problem_of(
     required, given = target.target, target.given
     feature = scene.printer.smallest.wall("elastomer")
     return SelectionProblem(
-        resins=resins, sensitivity_kPa_per_N=required.sensitivity_kPa_per_N, tolerance=required.tolerance_percent / 100,
+        resins=resins,
+        sensitivity_kPa_per_N=required.sensitivity_kPa_per_N,
+        tolerance=required.tolerance_percent / 100,
         driving_pressure=None if required.driving_pressure_kPa is None else required.driving_pressure_kPa * KPA,
-        force_range=required.force_range_N, stiffness=(required.stiffness_least_N_per_mm, required.stiffness_most_N_per_mm),
-        max_diameter=required.max_diameter_mm, inner_radius=given.inner_radius_mm, wall_thickness=given.wall_thickness_mm,
-        least_wall=feature.least or feature.recommended, ambient_pressure=sensor.gas.ambient_pressure,
-        dead_volume=_dead_volume(scene, sensor), plate_radius=sensor.protocol.plate_radius, gauge_limit=sensor.gas.gauge_limit,
-        depth_share=min(sensor.protocol.depth / sensor.dome.inner_radius, shipped().recipe.deepest), steps=sensor.protocol.steps,
+        force_range=required.force_range_N,
+        stiffness=(required.stiffness_least_N_per_mm, required.stiffness_most_N_per_mm),
+        max_diameter=required.max_diameter_mm,
+        inner_radius=given.inner_radius_mm,
+        wall_thickness=given.wall_thickness_mm,
+        least_wall=feature.least or feature.recommended,
+        ambient_pressure=sensor.gas.ambient_pressure,
+        dead_volume=_dead_volume(scene, sensor),
+        plate_radius=sensor.protocol.plate_radius,
+        gauge_limit=sensor.gas.gauge_limit,
+        depth_share=min(sensor.protocol.depth / sensor.dome.inner_radius, shipped().recipe.deepest),
+        steps=sensor.protocol.steps,
         recipe=shipped().recipe,
-    )  # fmt: skip
+    )
 
 
 def _dead_volume(scene: ResolvedDesign, sensor: Sensor) -> Callable[[Array], Array]:
@@ -227,9 +238,7 @@ def _dead_volume(scene: ResolvedDesign, sensor: Sensor) -> Callable[[Array], Arr
 
 def _drawn(scene: ResolvedDesign, radius: float) -> float | None:
     """Dead volume of the scene's connector on another dome, or None where it cannot be drawn."""
-    membrane = scene.design.membrane.model_copy(
-        update={"inner_radius_mm": radius, "wall_thickness_mm": 0.15 * radius}
-    )  # fmt: skip
+    membrane = scene.design.membrane.model_copy(update={"inner_radius_mm": radius, "wall_thickness_mm": 0.15 * radius})
     try:
         return assemble(replace(scene, design=scene.design.model_copy(update={"membrane": membrane}))).dead_volume
     except PneutouchError:
@@ -248,18 +257,25 @@ def _uncertainty(
         errors = known.get(resin.name) or ModelErrors(pool=next(iter(known.values())).pool if known else ())
         near = np.array([is_near_paper(_like(sensor, batch, i)) for i in range(len(batch))])
         uncertainty = budget(
-            batch, resin.material, scene.printer, near_paper=near, errors=errors,
+            batch,
+            resin.material,
+            scene.printer,
+            near_paper=near,
+            errors=errors,
             numerical={FIGURES[SENSITIVITY]: NUMERICAL["atlas"]},
-        )  # fmt: skip
+        )
         return np.asarray(uncertainty.expanded[SENSITIVITY])
 
     return relative
 
 
 def _like(sensor: Sensor, batch: SensorBatch, i: int) -> Sensor:
-    return sensor.replace(inner_radius=float(batch.inner_radius[i]), wall_thickness=float(batch.wall_thickness[i]),
-        dead_volume=float(batch.dead_volume[i]), flange=None,
-    )  # fmt: skip
+    return sensor.replace(
+        inner_radius=float(batch.inner_radius[i]),
+        wall_thickness=float(batch.wall_thickness[i]),
+        dead_volume=float(batch.dead_volume[i]),
+        flange=None,
+    )
 
 
 def _confirm(selection: SelectionRun, choice: Candidate) -> Confirmation:

@@ -35,11 +35,15 @@ def show(path: Path) -> dict[str, Any]:
 
 def _body(body: StoredBody) -> dict[str, Any]:
     return {
-        "name": body.name, "material": body.material, "colour": body.colour, "mix": body.mix,
+        "name": body.name,
+        "material": body.material,
+        "colour": body.colour,
+        "mix": body.mix,
         "size_mm": [round(float(length), _DIGITS) for length in body.size],
         "volume_mm3": round(body.volume, _DIGITS),
-        "vertices": len(body.vertices), "triangles": len(body.triangles),
-    }  # fmt: skip
+        "vertices": len(body.vertices),
+        "triangles": len(body.triangles),
+    }
 
 
 def _recipe(package: Package) -> dict[str, Any]:

@@ -33,19 +33,36 @@ def show_stack(folder: Path, picture: Path | None = None) -> dict[str, Any]:
 def document(stack: VoxelStack) -> dict[str, Any]:
     """Sizes, counts, volumes and fractions; those of the slices, not of the manifest."""
     held, filled = stack.manifest, max(1, sum(stack.counts.values()))
-    keys = ("name", "printer", "mode", "prefix", "pixels", "layers", "dpi", "pixel_um", "layer_um", "size_mm", "bodies",
-            "dither", "assumptions", "input_hash", "sha256")  # fmt: skip
+    keys = (
+        "name",
+        "printer",
+        "mode",
+        "prefix",
+        "pixels",
+        "layers",
+        "dpi",
+        "pixel_um",
+        "layer_um",
+        "size_mm",
+        "bodies",
+        "dither",
+        "assumptions",
+        "input_hash",
+        "sha256",
+    )
     return {
         "stack": str(stack.folder),
         **{key: held[key] for key in keys if key in held},
         "resins": {
             resin: {
-                "rgba": held["resins"][resin]["rgba"], "voxels": count, "volume_mm3": round(count * stack.voxel, 6),
+                "rgba": held["resins"][resin]["rgba"],
+                "voxels": count,
+                "volume_mm3": round(count * stack.voxel, 6),
                 "share_of_the_print": round(count / filled, 9),
             }
             for resin, count in stack.counts.items()
         },
-    }  # fmt: skip
+    }
 
 
 def draw(stack: VoxelStack, path: Path) -> None:

@@ -32,9 +32,12 @@ STEPS = ("bodies", "rules", "3MF", "STL", "GLB", "STEP", "drawing", "files")
 
 
 def build_specimen(
-    name: str, out: Path, changes: Changes | None = None, library: Library | None = None,
+    name: str,
+    out: Path,
+    changes: Changes | None = None,
+    library: Library | None = None,
     progress: StepReport = lambda step: None,
-) -> tuple[Path, list[Finding]]:  # fmt: skip
+) -> tuple[Path, list[Finding]]:
     """Write everything a specimen, by name or path, gives into ``out/<name>/``; that folder and the findings.
 
     Raises InputError for what cannot be, RuleBrokenError, with nothing written, where a rule is broken. The same input
@@ -147,9 +150,11 @@ def _measured(drawn: SpecimenBodies, checked: list[Finding]) -> dict[str, Any]:
         "print_frame_offset_mm": drawn.offset.tolist(),
         "mesh": {
             body.name: {
-                "tolerance_mm": scene.tolerance, "triangles": len(body.triangles), "volume_mm3": round(body.volume, 3),
+                "tolerance_mm": scene.tolerance,
+                "triangles": len(body.triangles),
+                "volume_mm3": round(body.volume, 3),
             }
             for body in drawn.bodies
         },
         "findings": [finding.document() for finding in checked],
-    }  # fmt: skip
+    }

@@ -74,9 +74,12 @@ def _patterns(scene: ResolvedSpecimen) -> tuple[PatternGeometry, ...]:
             if gap < 1e-3:
                 meet = "overlaps" if gap < 0 else "touches" if gap == 0 else "comes within a micrometre of"
                 raise context.refuse(
-                    number, "depth_mm", layer.depth_mm, f"{meet} layer[{other}], which reaches from {_span(earlier.low)} to "
+                    number,
+                    "depth_mm",
+                    layer.depth_mm,
+                    f"{meet} layer[{other}], which reaches from {_span(earlier.low)} to "
                     f"{_span(earlier.high)} mm; change depth_mm, start_mm or end_mm until matrix lies between them",
-                )  # fmt: skip
+                )
         boxes.append(box)
     patterns = tuple(FAMILIES[layer.kind].draw(layer, context, number) for number, layer in enumerate(layers))
     total = sum(len(pattern.mesh.triangles) for pattern in patterns)

@@ -105,17 +105,27 @@ def _label(ax: Axes, number: int, pattern: PatternGeometry) -> None:
     low, high = pattern.box.low, pattern.box.high
     middle = 0.5 * (low[2] + high[2])
     ax.text(
-        0.5 * (low[0] + high[0]), middle, str(number + 1), ha="center", va="center", fontsize=8, zorder=6,
-        path_effects=halo(), **BOLD,
-    )  # fmt: skip
+        0.5 * (low[0] + high[0]),
+        middle,
+        str(number + 1),
+        ha="center",
+        va="center",
+        fontsize=8,
+        zorder=6,
+        path_effects=halo(),
+        **BOLD,
+    )
     pitch = pattern.pitches[0]
     if low[0] + pitch > high[0]:
         return
     height = low[2] - 0.75
     ax.annotate(
-        "", (low[0] + pitch, height), (low[0], height), zorder=5,
+        "",
+        (low[0] + pitch, height),
+        (low[0], height),
+        zorder=5,
         arrowprops={"arrowstyle": "<|-|>", "color": INK, "lw": 0.5, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 5},
-    )  # fmt: skip
+    )
     for x in (low[0], low[0] + pitch):
         ax.plot([x, x], [height - 0.25, low[2]], color=INK, lw=0.4, zorder=5)
     ax.text(low[0] + pitch + 0.4, height, f"{pitch:.4g}", va="center", fontsize=6.5, zorder=6, path_effects=halo())
@@ -132,10 +142,17 @@ def _table(ax: Axes, drawn: SpecimenBodies) -> None:
     lines = [heads]
     for number, (layer, pattern) in enumerate(zip(drawn.scene.specimen.layer, drawn.patterns, strict=True)):
         low, high = pattern.box.low, pattern.box.high
-        lines.append((
-            str(number + 1), title(layer, number), layer.kind, _several(list(pattern.pitches)),
-            _several(frequencies(drawn, pattern)), f"{top - high[2]:.4g} to {top - low[2]:.4g}", f"{low[0]:.4g} to {high[0]:.4g}",
-        ))  # fmt: skip
+        lines.append(
+            (
+                str(number + 1),
+                title(layer, number),
+                layer.kind,
+                _several(list(pattern.pitches)),
+                _several(frequencies(drawn, pattern)),
+                f"{top - high[2]:.4g} to {top - low[2]:.4g}",
+                f"{low[0]:.4g} to {high[0]:.4g}",
+            )
+        )
     for k, line in enumerate(lines):
         for x, text in zip(columns, line, strict=True):
             ax.text(x, -k, text, fontsize=7, va="center", color=MUTED if k == 0 else INK, parse_math=False)

@@ -95,11 +95,16 @@ def _bonded(finding: Finding) -> Finding:
 def _unmeasured(drawn: SpecimenBodies) -> list[Finding]:
     return [
         Finding(
-            "mesh", "note", body.name, f"{len(body.triangles)} triangles: closed, but thin places were not measured",
-            "see the struts and sheets in the layer table, which were checked before drawing", "own: rays take a minute and more",
+            "mesh",
+            "note",
+            body.name,
+            f"{len(body.triangles)} triangles: closed, but thin places were not measured",
+            "see the struts and sheets in the layer table, which were checked before drawing",
+            "own: rays take a minute and more",
         )
-        for body in drawn.bodies if len(body.triangles) > _MOST_CHECKED
-    ]  # fmt: skip
+        for body in drawn.bodies
+        if len(body.triangles) > _MOST_CHECKED
+    ]
 
 
 def _box(box: Box) -> tuple[Array, Indices]:

@@ -64,9 +64,7 @@ def specimen_file(name: str, library: Library) -> Path | None:
     return path if path.is_file() and is_specimen(read_toml(path)) else None
 
 
-def load_specimen(
-    name: str, changes: Changes | None = None, library: Library | None = None
-) -> ResolvedSpecimen:  # fmt: skip
+def load_specimen(name: str, changes: Changes | None = None, library: Library | None = None) -> ResolvedSpecimen:
     """Load a specimen by name or path, change fields and resolve its names.
 
     Raises InputError that names file, key and value.

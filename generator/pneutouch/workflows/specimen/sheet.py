@@ -13,20 +13,38 @@ def sheet(drawn: SpecimenBodies, findings: list[Finding], input_hash: str) -> st
     scene, document = drawn.scene, drawn.scene.specimen.document
     speed = scene.specimen.scan.speed_mm_per_s
     listed = [f"- {f.severity}: {f.rule}: {f.body}: {f.message}; {f.fix}." for f in findings] or ["- none"]
-    return "\n".join([
-        f"# Print sheet: {_escaped(document.title)}", "",
-        f"Texture specimen {scene.name}, revision {document.revision}, input {input_hash}", "",
-        "| body | file | material | size, mm | volume, mm3 | mass |", "|---|---|---|---|---|---|", *_bodies(drawn), "",
-        f"Machine: {scene.printer.title}, {scene.mode.name}, {scene.mode.layer_height_um:g} µm. All bodies are **one job**: load "
-        f"them as one assembly (`{scene.name}.3mf`, or all STL files together), never one by one. They share one frame, in "
-        "millimetres, all coordinates positive. Colours carry no meaning: **choose the resin of each body by hand**.", "",
-        "## Layers", "",
-        f"Depths are from the scanned surface to the pattern's top; frequencies at {speed:g} mm/s.", "",
-        "| layer | kind | pitch, mm | frequency, Hz | depth, mm | along the path, mm | volume, mm3 | share of its box |",
-        "|---|---|---|---|---|---|---|---|", *_layers(drawn), "",
-        "## Steps", "", *(f"{k}. {line}" for k, line in enumerate(_steps(drawn), start=1)), "",
-        "## Findings of the rules", "", *listed, "",
-    ])  # fmt: skip
+    return "\n".join(
+        [
+            f"# Print sheet: {_escaped(document.title)}",
+            "",
+            f"Texture specimen {scene.name}, revision {document.revision}, input {input_hash}",
+            "",
+            "| body | file | material | size, mm | volume, mm3 | mass |",
+            "|---|---|---|---|---|---|",
+            *_bodies(drawn),
+            "",
+            f"Machine: {scene.printer.title}, {scene.mode.name}, {scene.mode.layer_height_um:g} µm. All bodies are **one job**: load "
+            f"them as one assembly (`{scene.name}.3mf`, or all STL files together), never one by one. They share one frame, in "
+            "millimetres, all coordinates positive. Colours carry no meaning: **choose the resin of each body by hand**.",
+            "",
+            "## Layers",
+            "",
+            f"Depths are from the scanned surface to the pattern's top; frequencies at {speed:g} mm/s.",
+            "",
+            "| layer | kind | pitch, mm | frequency, Hz | depth, mm | along the path, mm | volume, mm3 | share of its box |",
+            "|---|---|---|---|---|---|---|---|",
+            *_layers(drawn),
+            "",
+            "## Steps",
+            "",
+            *(f"{k}. {line}" for k, line in enumerate(_steps(drawn), start=1)),
+            "",
+            "## Findings of the rules",
+            "",
+            *listed,
+            "",
+        ]
+    )
 
 
 def _bodies(drawn: SpecimenBodies) -> list[str]:

@@ -19,7 +19,9 @@ def truth(drawn: SpecimenBodies) -> dict[str, Any]:
         "name": scene.name,
         "title": scene.specimen.document.title,
         "block": {
-            "length_mm": block.length_mm, "width_mm": block.width_mm, "height_mm": block.height_mm,
+            "length_mm": block.length_mm,
+            "width_mm": block.width_mm,
+            "height_mm": block.height_mm,
             "volume_mm3": _rounded(scene.block.volume),
         },
         "materials": {body.name: body.material.label for body in drawn.bodies},
@@ -28,10 +30,9 @@ def truth(drawn: SpecimenBodies) -> dict[str, Any]:
         "block_to_print_frame_mm": drawn.offset.tolist(),
         "scan": {"speed_mm_per_s": scene.specimen.scan.speed_mm_per_s, "axis": "x", "surface_z_mm": block.height_mm},
         "layers": [
-            _layer(drawn, layer, pattern)
-            for layer, pattern in zip(scene.specimen.layer, drawn.patterns, strict=True)
+            _layer(drawn, layer, pattern) for layer, pattern in zip(scene.specimen.layer, drawn.patterns, strict=True)
         ],
-    }  # fmt: skip
+    }
 
 
 def title(layer: Layer, number: int) -> str:
@@ -54,12 +55,15 @@ def _layer(drawn: SpecimenBodies, layer: Layer, pattern: PatternGeometry) -> dic
         "frequencies_Hz": [_rounded(frequency) for frequency in frequencies(drawn, pattern)],
         "depth_mm": _rounded(top - high[2]),
         "bottom_depth_mm": _rounded(top - low[2]),
-        "start_mm": _rounded(low[0]), "end_mm": _rounded(high[0]),
+        "start_mm": _rounded(low[0]),
+        "end_mm": _rounded(high[0]),
         "width_mm_range": [_rounded(low[1]), _rounded(high[1])],
         "volume_mm3": _rounded(pattern.mesh.volume),
         "exact_volume_mm3": None if pattern.volume is None else _rounded(pattern.volume),
-        "pattern": {key: _rounded(value) if isinstance(value, float) else value for key, value in pattern.truth.items()},
-    }  # fmt: skip
+        "pattern": {
+            key: _rounded(value) if isinstance(value, float) else value for key, value in pattern.truth.items()
+        },
+    }
 
 
 def _rounded(value: float) -> float:

@@ -49,9 +49,13 @@ def dataset(study: SweepStudy, records: dict[int, Record]) -> xarray.Dataset:
         values = [records[i]["values"].get(variable.name) for i in range(plan.count)]
         content[variable.name] = _variable(variable, values, shape, dims)
     coordinates = {
-        PRESSURE: (PRESSURE, np.array(pressures_kPa), {"units": "kPa", "long_name": "gauge pressure before contact", "key": PRESSURES}),
+        PRESSURE: (
+            PRESSURE,
+            np.array(pressures_kPa),
+            {"units": "kPa", "long_name": "gauge pressure before contact", "key": PRESSURES},
+        ),
         **_coordinates(study),
-    }  # fmt: skip
+    }
     return xarray.Dataset(content, coordinates, _attributes(study, rows, content))
 
 
@@ -87,7 +91,7 @@ def stored_states(path: Path) -> list[str]:
 
 def _by_pressure(
     requested_kPa: list[tuple[float, ...]], pressures_kPa: list[float], records: dict[int, Record]
-) -> list[list[dict[str, Any]]]:  # fmt: skip
+) -> list[list[dict[str, Any]]]:
     """States of every point, one for each pressure of the dimension; empty where a point does not have it."""
     rows = []
     for index, pressures_of in enumerate(requested_kPa):

@@ -55,8 +55,10 @@ class SweepPlan:
     def __post_init__(self) -> None:
         """Raise InputError where the plan contradicts itself or names what does not exist."""
         for option, value, known in (
-            ("model", self.model, MODEL_CHOICES), ("closure", self.closure, CLOSURES), ("clamp", self.clamp, CLAMPS),
-        ):  # fmt: skip
+            ("model", self.model, MODEL_CHOICES),
+            ("closure", self.closure, CLOSURES),
+            ("clamp", self.clamp, CLAMPS),
+        ):
             if value not in known:
                 raise InputError(f"{self.where}: {option} = {value!r}: unknown.{nearest(value, known)}")
         if bool(self.axes) == bool(self.points):

@@ -48,9 +48,7 @@ def plan_of_file(path: Path, changes: Changes | None = None, **options: str | No
     return _plan(path.stem, where, design, fixed, grid, points, words)
 
 
-def plan_of_flags(
-    design: str, over: list[str], changes: Changes | None = None, **options: str | None
-) -> SweepPlan:  # fmt: skip
+def plan_of_flags(design: str, over: list[str], changes: Changes | None = None, **options: str | None) -> SweepPlan:
     """A grid from ``table.key=VALUES``: values with commas between, or ``from:to:count``."""
     return plan_of_grid(
         design, {key: _unwrapped(values) for key, values in parse_over(over).items()}, changes, **options
@@ -68,9 +66,14 @@ def plan_of_grid(
 
 
 def _plan(
-    name: str, where: str, design: str | DesignSource, fixed: Settings, grid: dict[str, list[Any]], points: tuple[Settings, ...],
+    name: str,
+    where: str,
+    design: str | DesignSource,
+    fixed: Settings,
+    grid: dict[str, list[Any]],
+    points: tuple[Settings, ...],
     words: dict[str, str],
-) -> SweepPlan:  # fmt: skip
+) -> SweepPlan:
     """The plan; a grid's driving pressures become those of every point, for they are a dimension already."""
     if PRESSURES in grid:
         if PRESSURES in fixed:

@@ -44,9 +44,14 @@ class ComputeResources:
 
 
 def sweep(
-    plan: SweepPlan, out: Path, machines: ComputeResources = ComputeResources(), *,
-    fresh: bool = False, progress: Progress = lambda done, total: None, library: Library | None = None,
-) -> SweepResult:  # fmt: skip
+    plan: SweepPlan,
+    out: Path,
+    machines: ComputeResources = ComputeResources(),
+    *,
+    fresh: bool = False,
+    progress: Progress = lambda done, total: None,
+    library: Library | None = None,
+) -> SweepResult:
     """Compute every point of a plan and write the dataset to ``out``; returns what was done.
 
     Progress is kept in ``out`` with ``.parts`` added. A sweep that was stopped, however that happened, goes on there and
@@ -90,8 +95,13 @@ def _is_there(study: SweepStudy, out: Path, *, fresh: bool, resumed: bool) -> bo
 
 
 def _compute(
-    study: SweepStudy, machines: ComputeResources, folder: WorkFolder, journal: Journal, records: dict[int, Record], progress: Progress
-) -> None:  # fmt: skip
+    study: SweepStudy,
+    machines: ComputeResources,
+    folder: WorkFolder,
+    journal: Journal,
+    records: dict[int, Record],
+    progress: Progress,
+) -> None:
     """Fill ``records`` with every point, each kept in the journal as soon as it is done."""
     total = study.plan.count
     progress(len(records), total)

@@ -68,10 +68,17 @@ def study(plan: SweepPlan, library: Library) -> SweepStudy:
         files[f"{KINDS[kind].folder}/{name}.toml"] = path.read_text(encoding="utf-8-sig")
         things[f"{kind}/{name}"] = library.load(kind, name).model_dump(mode="json")
     facts = {
-        "version": __version__, "model": plan.model, "closure": plan.closure, "clamp": plan.clamp,
-        "name": source.name, "design": base.model_dump(mode="json"), "things": things, "settings": plan.settings,
-        "axes": [[axis.key, axis.values] for axis in plan.axes], "points": plan.points,
-    }  # fmt: skip
+        "version": __version__,
+        "model": plan.model,
+        "closure": plan.closure,
+        "clamp": plan.clamp,
+        "name": source.name,
+        "design": base.model_dump(mode="json"),
+        "things": things,
+        "settings": plan.settings,
+        "axes": [[axis.key, axis.values] for axis in plan.axes],
+        "points": plan.points,
+    }
     return SweepStudy(plan, source.name, base, files, digest(json_bytes(facts)))
 
 

@@ -45,7 +45,13 @@ def _range_event(state: Document) -> str:
 
 
 STATE: tuple[SweepVariable, ...] = (
-    SweepVariable("status", "", "ok, refused (not possible), failed (not computed); empty where not requested", lambda _: "ok", True),
+    SweepVariable(
+        "status",
+        "",
+        "ok, refused (not possible), failed (not computed); empty where not requested",
+        lambda _: "ok",
+        True,
+    ),
     SweepVariable("message", "", "why a state is refused or failed", lambda _: "", True),
     _number("sensitivity_kPa_per_N", "kPa/N", "slope of pressure rise over contact force, first contact to range end"),
     _number("sensitivity_through_origin_kPa_per_N", "kPa/N", "the same slope of a line through the origin"),
@@ -60,27 +66,57 @@ STATE: tuple[SweepVariable, ...] = (
     _number("apex_height_inner_mm", "mm", "apex height of the inner surface, inflated, before contact"),
     _number("apex_height_outer_mm", "mm", "apex height of the outer surface, inflated, before contact"),
     _number("cavity_volume_mL", "mL", "gas under the inflated dome, before contact"),
-)  # fmt: skip
+)
 """Variables of every point and driving pressure."""
 
 POINT: tuple[SweepVariable, ...] = (
     _number("limit_point_kPa", "kPa", "driving pressure of the limit point; none: NaN", "limits", "limit_point_kPa"),
-    _number("break_strain_kPa", "kPa", "driving pressure at which the resin may tear; not before the limit point: NaN",
-            "limits", "break_strain_kPa"),
+    _number(
+        "break_strain_kPa",
+        "kPa",
+        "driving pressure at which the resin may tear; not before the limit point: NaN",
+        "limits",
+        "break_strain_kPa",
+    ),
     _number("gauge_range_kPa", "kPa", "range of the pressure sensor", "limits", "gauge_range_kPa"),
     SweepVariable("binding_limit", "", "the limit that is met first", _at("limits", "binding"), True),
-    _number("limit_point_apex_height_inner_mm", "mm", "apex height of the inner surface at the limit point",
-            "limit_point", "apex_height_inner_mm"),
-    _number("limit_point_apex_height_outer_mm", "mm", "apex height of the outer surface at the limit point",
-            "limit_point", "apex_height_outer_mm"),
+    _number(
+        "limit_point_apex_height_inner_mm",
+        "mm",
+        "apex height of the inner surface at the limit point",
+        "limit_point",
+        "apex_height_inner_mm",
+    ),
+    _number(
+        "limit_point_apex_height_outer_mm",
+        "mm",
+        "apex height of the outer surface at the limit point",
+        "limit_point",
+        "apex_height_outer_mm",
+    ),
     _number("dead_volume_mL", "mL", "gas behind the cavity"),
-    _number("error_sensitivity_relative", "1", "greatest known error of the sensitivity; unknown: NaN",
-            "error_estimate", "sensitivity_relative"),
-    _number("error_limit_pressure_relative", "1", "known error of the limit pressure; unknown: NaN",
-            "error_estimate", "limit_pressure_relative"),
-    SweepVariable("error_sensitivity_basis", "", "what the error of the sensitivity rests on",
-             _at("error_estimate", "sensitivity_basis"), True),
-)  # fmt: skip
+    _number(
+        "error_sensitivity_relative",
+        "1",
+        "greatest known error of the sensitivity; unknown: NaN",
+        "error_estimate",
+        "sensitivity_relative",
+    ),
+    _number(
+        "error_limit_pressure_relative",
+        "1",
+        "known error of the limit pressure; unknown: NaN",
+        "error_estimate",
+        "limit_pressure_relative",
+    ),
+    SweepVariable(
+        "error_sensitivity_basis",
+        "",
+        "what the error of the sensitivity rests on",
+        _at("error_estimate", "sensitivity_basis"),
+        True,
+    ),
+)
 """Variables of every point."""
 
 

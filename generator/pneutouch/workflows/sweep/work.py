@@ -41,11 +41,14 @@ def chunks(study: SweepStudy, indices: list[int]) -> list[SweepChunk]:
     plan, size = study.plan, CHUNK_POINTS.get(study.plan.model, 1)
     return [
         SweepChunk(
-            tuple(study.point(i) for i in indices[start : start + size]), study.name,
-            plan.model, plan.closure, plan.clamp,
+            tuple(study.point(i) for i in indices[start : start + size]),
+            study.name,
+            plan.model,
+            plan.closure,
+            plan.clamp,
         )
         for start in range(0, len(indices), size)
-    ]  # fmt: skip
+    ]
 
 
 def unpack(files: dict[str, str], folder: Path) -> None:
@@ -101,8 +104,8 @@ def _record(chunk: SweepChunk, point: SweepPoint, library: Library) -> Record:
 def _predicted(chunk: SweepChunk, point: SweepPoint, library: Library) -> tuple[list[dict[str, Any]], dict[str, Any]]:
     changes = {**point.settings, PRESSURES: list(point.driving_pressures_kPa)}
     prediction = evaluate(
-        chunk.design, changes, model=chunk.model, closure=chunk.closure, clamp=chunk.clamp, library=library,
-    ).prediction.document()  # fmt: skip
+        chunk.design, changes, model=chunk.model, closure=chunk.closure, clamp=chunk.clamp, library=library
+    ).prediction.document()
     return [state_values(state) for state in prediction["states"]], point_values(prediction)
 
 

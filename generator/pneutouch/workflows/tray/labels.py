@@ -11,25 +11,18 @@ from pneutouch.units import grams
 from pneutouch.workflows.tray.lay import TrayJob, TrayLayout, TrayPart, counted, fill, layers
 from pneutouch.workflows.tray.rules import TrayFinding
 
-COLUMNS = (
-    "label", "body", "file", "design", "varied", "value", "copy", "material", "base_resins", "job", "mode", "layers",
-    "x_mm", "y_mm", "turned_deg", "size_x_mm", "size_y_mm", "height_mm", "mass_g", "mark", "mark_face", "mark_depth_mm",
-    "mark_stroke_mm", "mark_note",
-)  # fmt: skip
-"""Columns of labels.csv; x and y are the middle of the part on the tray."""
-
 
 def rows(layout: TrayLayout) -> list[dict[str, Any]]:
-    """One row a body, in the order of the labels within each job."""
+    """One row a body, in the order of the labels within each job; x and y are the middle of the part on the tray."""
     return [row for job in layout.jobs for part in job.parts for row in _rows(layout, job, part)]
 
 
 def labels_csv(layout: TrayLayout) -> bytes:
     """The list for a spreadsheet or a label printer."""
-    text = io.StringIO()
-    writer = csv.DictWriter(text, COLUMNS, lineterminator="\n")
+    text, listed = io.StringIO(), rows(layout)
+    writer = csv.DictWriter(text, list(listed[0]), lineterminator="\n")
     writer.writeheader()
-    writer.writerows(rows(layout))
+    writer.writerows(listed)
     return text.getvalue().encode()
 
 
@@ -37,10 +30,12 @@ def labels_md(layout: TrayLayout, findings: tuple[TrayFinding, ...] = ()) -> byt
     """The list to print and stick: a head, a table a job, and what the print rules found."""
     printer, head = layout.printer, layout.order.tray.tray
     lines = [
-        f"# {_escaped(head.title)}", "",
-        f"{printer.title}: {counted(layout.parts)}, **{layout.resin_note}**. Support: {printer.support}.", "",
+        f"# {_escaped(head.title)}",
+        "",
+        f"{printer.title}: {counted(layout.parts)}, **{layout.resin_note}**. Support: {printer.support}.",
+        "",
         *(f"Not on this tray: {_escaped(note)}." for note in layout.expanded.left_out),
-    ]  # fmt: skip
+    ]
     for number, job in enumerate(layout.jobs, start=1):
         lines += ["", *_job_lines(layout, job, number)]
     lines += ["", "## Reading the marks", "", *_marks(layout), ""]
@@ -53,18 +48,33 @@ def _rows(layout: TrayLayout, job: TrayJob, part: TrayPart) -> list[dict[str, An
     rows = []
     for solid, body, mark in zip(part.solids, part.bodies, part.marks, strict=True):
         value, low, high = part.value, *body.bounds
-        rows.append({
-            "label": part.label, "body": solid.name, "file": f"stl/{body.name}.stl", "design": value.design,
-            "varied": value.key or "", "value": "" if value.value is None else value.value, "copy": part.copy,
-            "material": solid.material.title, "base_resins": " + ".join(solid.material.base_resins),
-            "job": layout.jobs.index(job) + 1, "mode": job.mode.name, "layers": layers(float(high[2]), job.mode),
-            "x_mm": round(part.place.x + 0.5 * across, 3), "y_mm": round(part.place.y + 0.5 * along, 3),
-            "turned_deg": 90 if part.place.turned else 0, "size_x_mm": round(float(high[0] - low[0]), 2),
-            "size_y_mm": round(float(high[1] - low[1]), 2), "height_mm": round(float(high[2] - low[2]), 2),
+        row = {
+            "label": part.label,
+            "body": solid.name,
+            "file": f"stl/{body.name}.stl",
+            "design": value.design,
+            "varied": value.key or "",
+            "value": "" if value.value is None else value.value,
+            "copy": part.copy,
+            "material": solid.material.title,
+            "base_resins": " + ".join(solid.material.base_resins),
+            "job": layout.jobs.index(job) + 1,
+            "mode": job.mode.name,
+            "layers": layers(float(high[2]), job.mode),
+            "x_mm": round(part.place.x + 0.5 * across, 3),
+            "y_mm": round(part.place.y + 0.5 * along, 3),
+            "turned_deg": 90 if part.place.turned else 0,
+            "size_x_mm": round(float(high[0] - low[0]), 2),
+            "size_y_mm": round(float(high[1] - low[1]), 2),
+            "height_mm": round(float(high[2] - low[2]), 2),
             "mass_g": round(grams(body.volume, solid.material.density_g_per_cm3.nominal), 3),
-            "mark": f"{mark.kind}, raised" if mark.raised else mark.kind, "mark_face": mark.face,
-            "mark_depth_mm": round(mark.depth, 3), "mark_stroke_mm": round(mark.stroke, 3), "mark_note": mark.note,
-        })  # fmt: skip
+            "mark": f"{mark.kind}, raised" if mark.raised else mark.kind,
+            "mark_face": mark.face,
+            "mark_depth_mm": round(mark.depth, 3),
+            "mark_stroke_mm": round(mark.stroke, 3),
+            "mark_note": mark.note,
+        }
+        rows.append(row)
     return rows
 
 
@@ -73,16 +83,22 @@ def _job_lines(layout: TrayLayout, job: TrayJob, number: int) -> list[str]:
     table = [
         f"| **{row['label']}** | {row['body']} | {_value(row)} | {_resin(row)} | "
         f"{row['x_mm']:.1f}, {row['y_mm']:.1f} | {row['mass_g']:.2f} | {_mark(row)} |"
-        for part in job.parts for row in _rows(layout, job, part)
-    ]  # fmt: skip
+        for part in job.parts
+        for row in _rows(layout, job, part)
+    ]
     mass = sum(row["mass_g"] for part in job.parts for row in _rows(layout, job, part))
     return [
-        f"## Job {number}: `{layout.name(job)}.3mf`", "",
+        f"## Job {number}: `{layout.name(job)}.3mf`",
+        "",
         f"Load {' and '.join(job.resins)}. Mode {job.mode.name}, {job.mode.layer_height_um:g} µm, {job.layers} layers, "
         f"{job.height:.1f} mm; {mass:.1f} g of model material. Bounding boxes take {shares['bounding_boxes']:.1%} of the "
-        f"envelope's footprint, outlines {shares['outlines']:.1%}.", "", *(line for note in _coarser(layout, job) for line in (note, "")),
-        "| label | body | design | resin | middle x, y mm | mass g | mark |", "|---|---|---|---|---|---|---|", *table,
-    ]  # fmt: skip
+        f"envelope's footprint, outlines {shares['outlines']:.1%}.",
+        "",
+        *(line for note in _coarser(layout, job) for line in (note, "")),
+        "| label | body | design | resin | middle x, y mm | mass g | mark |",
+        "|---|---|---|---|---|---|---|",
+        *table,
+    ]
 
 
 def _value(row: dict[str, Any]) -> str:
@@ -100,8 +116,9 @@ def _coarser(layout: TrayLayout, job: TrayJob) -> list[str]:
     """Materials that a job of their own would print in a finer mode."""
     modes = {
         solid.material.label: layout.printer.mode_for(*(s.material for s in part.solids))
-        for part in job.parts for solid in part.solids
-    }  # fmt: skip
+        for part in job.parts
+        for solid in part.solids
+    }
     return [
         f"{label} alone would print in {mode.name}, {mode.layer_height_um:g} µm: the other resins of the job take that from it."
         for label, mode in modes.items()

@@ -32,8 +32,10 @@ def tray_svg(layout: TrayLayout, job: TrayJob) -> bytes:
             _part(ax, part, outlines[key], envelope.x)
         ax.set_title(
             f"{layout.printer.title}, seen from above: {layout.name(job)}, {counted(job.parts)}, {' + '.join(job.resins)}",
-            loc="left", fontsize=7.5, color=INK,
-        )  # fmt: skip
+            loc="left",
+            fontsize=7.5,
+            color=INK,
+        )
         return svg(drawn).encode()
 
 
@@ -79,7 +81,4 @@ def _part(ax: Axes, part: TrayPart, polygons: list[Any], width: float) -> None:
     names = " + ".join(solid.role for solid in part.solids)
     resins = " + ".join(dict.fromkeys(solid.material.title for solid in part.solids))
     small = min(5.5, 1.6 * space / max(len(resins), len(names), 8))
-    ax.text(
-        *middle, f"{resins}\n{names}", ha="center", va="top", fontsize=small, color=INK,
-        linespacing=1.15,
-    )  # fmt: skip
+    ax.text(*middle, f"{resins}\n{names}", ha="center", va="top", fontsize=small, color=INK, linespacing=1.15)

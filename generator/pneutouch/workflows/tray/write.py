@@ -52,10 +52,15 @@ def write_tray(layout: TrayLayout, folder: Path, progress: StepReport = lambda s
 def document(layout: TrayLayout, folder: Path) -> dict[str, Any]:
     """What ``pneutouch tray --json`` prints."""
     return {
-        "tray": layout.order.name, "folder": str(folder), "printer": layout.printer.title, "parts": len(layout.parts),
-        "resin_changes": layout.resin_note, "left_out": list(layout.expanded.left_out),
-        "jobs": [_job_document(layout, job) for job in layout.jobs], "labels": rows(layout),
-    }  # fmt: skip
+        "tray": layout.order.name,
+        "folder": str(folder),
+        "printer": layout.printer.title,
+        "parts": len(layout.parts),
+        "resin_changes": layout.resin_note,
+        "left_out": list(layout.expanded.left_out),
+        "jobs": [_job_document(layout, job) for job in layout.jobs],
+        "labels": rows(layout),
+    }
 
 
 def inputs(layout: TrayLayout) -> dict[str, Any]:
@@ -79,9 +84,13 @@ def inputs(layout: TrayLayout) -> dict[str, Any]:
         for letter, value in values.items()
     }
     return {
-        "tray": layout.order.tray.model_dump(mode="json"), "overrides": list(layout.order.overrides),
-        "printer": kept(layout.printer), "version": __version__, "values": scenes, "things": things,
-    }  # fmt: skip
+        "tray": layout.order.tray.model_dump(mode="json"),
+        "overrides": list(layout.order.overrides),
+        "printer": kept(layout.printer),
+        "version": __version__,
+        "values": scenes,
+        "things": things,
+    }
 
 
 def _item(part: TrayPart) -> TrayItem:
@@ -110,17 +119,23 @@ def _metadata(layout: TrayLayout, job: TrayJob, recipe: str) -> dict[str, str]:
 
 def _job_document(layout: TrayLayout, job: TrayJob) -> dict[str, Any]:
     return {
-        "name": layout.name(job), "mode": job.mode.name, "layer_height_um": job.mode.layer_height_um,
-        "layers": job.layers, "height_mm": round(job.height, 3), "resins": list(job.resins), "parts": len(job.parts),
+        "name": layout.name(job),
+        "mode": job.mode.name,
+        "layer_height_um": job.mode.layer_height_um,
+        "layers": job.layers,
+        "height_mm": round(job.height, 3),
+        "resins": list(job.resins),
+        "parts": len(job.parts),
         "mesh_tolerance_mm": layout.printer.finest_step(job.mode),
         "fill": {key: round(share, 4) for key, share in fill(job, layout.printer).items()},
-    }  # fmt: skip
+    }
 
 
 def _jobs(layout: TrayLayout, checked: tuple[TrayFinding, ...]) -> dict[str, Any]:
     """Entries of the manifest on jobs and findings."""
     return {
         "jobs": [_job_document(layout, job) for job in layout.jobs],
-        "left_out": list(layout.expanded.left_out), "resin_changes": layout.resin_note,
+        "left_out": list(layout.expanded.left_out),
+        "resin_changes": layout.resin_note,
         "findings": [{"labels": list(one.labels), **one.finding.document()} for one in checked],
-    }  # fmt: skip
+    }
