@@ -11,26 +11,29 @@ from pneutouch.workflows.coupons.order import CouponItem, CouponOrder
 _CELLS = 5
 """Readings on one line."""
 
+_MIXES = (
+    "Mixed pieces are composites of two base resins in the 3MF, in volume fractions. No catalogue material has a known "
+    "fraction: do not choose one in their place. Where the machine's program takes no composites, print them droplet by "
+    "droplet from voxel slices of the same fractions."
+)
+"""How a machine that takes catalogue materials alone gets a mix."""
+
 
 def sheet(order: CouponOrder, trays: Mapping[str, tuple[CouponPiece, ...]]) -> str:
     """Markdown for the operator and the bench."""
-    lines = [
+    parts = [
         f"# Coupons: print and measure ({order.name})",
-        "",
         "Print, measure, write the readings into `results.toml`, then run `pneutouch coupons --results results.toml` in the "
         "folder of your designs: it writes profiles of your own machine and resins, which come before the shipped ones.",
-        "",
         "Lab: ______________________  Date: ______________  Room: _____ °C  Printed on: ______________",
-        "",
         "## Print",
-        "",
     ]
     for name, pieces in trays.items():
-        lines += _printing(name, pieces, order)
-    lines += ["## Measure", ""]
+        parts += _printing(name, pieces, order)
+    parts.append("## Measure")
     for coupon in dict.fromkeys(item.coupon for item in order.items):
-        lines += _measuring(coupon, [item for item in order.items if item.coupon is coupon])
-    return "\n".join(lines)
+        parts += _measuring(coupon, [item for item in order.items if item.coupon is coupon])
+    return "\n\n".join(parts) + "\n"
 
 
 def _printing(name: str, pieces: tuple[CouponPiece, ...], order: CouponOrder) -> list[str]:
@@ -41,32 +44,16 @@ def _printing(name: str, pieces: tuple[CouponPiece, ...], order: CouponOrder) ->
         f"{' x '.join(f'{length:.1f}' for length in piece.size)} | {piece.solid.mass:.2f} g | {_places(piece)} |"
         for piece in pieces
     ]
+    head = "| piece | copies | file | material | size, mm | mass each | middle of each on the tray, mm |"
+    mixes = [_MIXES] if any(piece.item.blend is not None for piece in pieces) else []
     return [
         f"### {printer.title} (`{name}`)",
-        "",
-        f"`{order.name if name == order.profile else name}.3mf`: all copies in place, one material an object; mode {mode.name}, "
-        f"{mode.layer_height_um:g} µm. **Choose the material of each object by hand**; pieces of one shape differ by "
-        "their place on the tray alone, so bag and label them as they come off.",
-        "",
-        "| piece | copies | file | material | size, mm | mass each | middle of each on the tray, mm |",
-        "|---|---|---|---|---|---|---|",
-        *rows,
-        "",
-        *_mixes(pieces),
+        f"`{order.name if name == order.profile else name}.3mf`: all copies in place, one material an object; mode "
+        f"{mode.name}, {mode.layer_height_um:g} µm. **Choose the material of each object by hand**; pieces of one shape "
+        "differ by their place on the tray alone, so bag and label them as they come off.",
+        "\n".join([head, "|---|---|---|---|---|---|---|", *rows]),
+        *mixes,
         f"Support: {printer.support}. Do not turn the pieces.",
-        "",
-    ]
-
-
-def _mixes(pieces: tuple[CouponPiece, ...]) -> list[str]:
-    """How a machine that takes catalogue materials alone gets a mix."""
-    if not any(piece.item.blend is not None for piece in pieces):
-        return []
-    return [
-        "Mixed pieces are composites of two base resins in the 3MF, in volume fractions. No catalogue material has a known "
-        "fraction: do not choose one in their place. Where the machine's program takes no composites, print them droplet by "
-        "droplet from voxel slices of the same fractions.",
-        "",
     ]
 
 
@@ -84,12 +71,12 @@ def _places(piece: CouponPiece) -> str:
 
 
 def _measuring(coupon: Coupon, items: list[CouponItem]) -> list[str]:
-    lines = [f"### {coupon.title[0].upper()}{coupon.title[1:]}", ""]
-    lines += [*(f"{k}. {step}" for k, step in enumerate(coupon.steps, start=1)), ""]
+    steps = "\n".join(f"{k}. {step}" for k, step in enumerate(coupon.steps, start=1))
+    parts = [f"### {coupon.title[0].upper()}{coupon.title[1:]}", steps]
     for item in items:
         on = f" on {item.printer_name}" if coupon.belongs == "printer" else ""
-        lines += [f"**{item.about}**{on}", "", *_table(item), ""]
-    return [*lines, "Formulas:", "", *(f"- {formula}" for formula in coupon.formulas), ""]
+        parts += [f"**{item.about}**{on}", "\n".join(_table(item))]
+    return [*parts, "Formulas:", "\n".join(f"- {formula}" for formula in coupon.formulas)]
 
 
 def _table(item: CouponItem) -> list[str]:

@@ -13,42 +13,27 @@ def sheet(drawn: SpecimenBodies, findings: list[Finding], input_hash: str) -> st
     scene, document = drawn.scene, drawn.scene.specimen.document
     speed = scene.specimen.scan.speed_mm_per_s
     listed = [f"- {f.severity}: {f.rule}: {f.body}: {f.message}; {f.fix}." for f in findings] or ["- none"]
-    return "\n".join(
-        [
-            f"# Print sheet: {_escaped(document.title)}",
-            "",
-            f"Texture specimen {scene.name}, revision {document.revision}, input {input_hash}",
-            "",
-            "| body | file | material | size, mm | volume, mm3 | mass |",
-            "|---|---|---|---|---|---|",
-            *_bodies(drawn),
-            "",
-            f"Machine: {scene.printer.title}, {scene.mode.name}, {scene.mode.layer_height_um:g} µm. All bodies are **one job**: load "
-            f"them as one assembly (`{scene.name}.3mf`, or all STL files together), never one by one. They share one frame, in "
-            "millimetres, all coordinates positive. Colours carry no meaning: **choose the resin of each body by hand**.",
-            "",
-            "## Layers",
-            "",
-            f"Depths are from the scanned surface to the pattern's top; frequencies at {speed:g} mm/s.",
-            "",
-            "| layer | kind | pitch, mm | frequency, Hz | depth, mm | along the path, mm | volume, mm3 | share of its box |",
-            "|---|---|---|---|---|---|---|---|",
-            *_layers(drawn),
-            "",
-            "## Steps",
-            "",
-            *(f"{k}. {line}" for k, line in enumerate(_steps(drawn), start=1)),
-            "",
-            "## Findings of the rules",
-            "",
-            *listed,
-            "",
-        ]
+    steps = (f"{k}. {line}" for k, line in enumerate(_steps(drawn), start=1))
+    parts = (
+        f"# Print sheet: {_escaped(document.title)}",
+        f"Texture specimen {scene.name}, revision {document.revision}, input {input_hash}",
+        "\n".join(_bodies(drawn)),
+        f"Machine: {scene.printer.title}, {scene.mode.name}, {scene.mode.layer_height_um:g} µm. All bodies are **one job**: "
+        f"load them as one assembly (`{scene.name}.3mf`, or all STL files together), never one by one. They share one frame, "
+        "in millimetres, all coordinates positive. Colours carry no meaning: **choose the resin of each body by hand**.",
+        "## Layers",
+        f"Depths are from the scanned surface to the pattern's top; frequencies at {speed:g} mm/s.",
+        "\n".join(_layers(drawn)),
+        "## Steps",
+        "\n".join(steps),
+        "## Findings of the rules",
+        "\n".join(listed),
     )
+    return "\n\n".join(parts) + "\n"
 
 
 def _bodies(drawn: SpecimenBodies) -> list[str]:
-    rows = []
+    rows = ["| body | file | material | size, mm | volume, mm3 | mass |", "|---|---|---|---|---|---|"]
     for body in drawn.bodies:
         size = " x ".join(f"{length:.1f}" for length in body.bounds[1] - body.bounds[0])
         mass = grams(body.volume, body.material.density_g_per_cm3.nominal)
@@ -59,7 +44,11 @@ def _bodies(drawn: SpecimenBodies) -> list[str]:
 
 
 def _layers(drawn: SpecimenBodies) -> list[str]:
-    rows, top = [], drawn.scene.block.high[2]
+    top = drawn.scene.block.high[2]
+    rows = [
+        "| layer | kind | pitch, mm | frequency, Hz | depth, mm | along the path, mm | volume, mm3 | share of its box |",
+        "|---|---|---|---|---|---|---|---|",
+    ]
     for number, (layer, pattern) in enumerate(zip(drawn.scene.specimen.layer, drawn.patterns, strict=True)):
         low, high = pattern.box.low, pattern.box.high
         pitches = ", ".join(f"{pitch:.4g}" for pitch in pattern.pitches)
