@@ -89,7 +89,7 @@ def _swap(folder: Path, fresh: Path) -> None:
 
 
 def exchange(folder: Path, fresh: Path) -> None:
-    """Rename ``fresh`` to ``folder``, which is there already and is removed; an interruption leaves one of the two whole."""
+    """Rename ``fresh`` to ``folder``, which is there and is removed; an interruption leaves one of the two whole."""
     aside = fresh.with_name(f"{fresh.name}.old")
     folder.rename(aside)
     try:

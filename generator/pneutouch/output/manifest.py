@@ -37,7 +37,7 @@ def entry(content: bytes) -> dict[str, Any]:
 
 
 def with_manifest(files: Mapping[str, bytes], name: str, inputs: Mapping[str, Any], **more: Any) -> dict[str, bytes]:
-    """The files of a folder and their manifest. ``more`` are further entries; an ``input_hash`` among them stands as it is."""
+    """The files of a folder and their manifest. ``more`` are further entries; an ``input_hash`` among them is kept."""
     listed = {path: entry(content) for path, content in sorted(files.items())}
     return {**files, MANIFEST: manifest(listed, name, inputs=inputs, **{"input_hash": input_hash(inputs), **more})}
 

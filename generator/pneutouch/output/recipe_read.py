@@ -30,7 +30,8 @@ def read_recipe(package: Package) -> BuildRecipe:
     where = str(package.path)
     if package.recipe is None:
         raise InputError(
-            f"{where}: holds no recipe, so it cannot be rebuilt; give a 3MF that pneutouch build wrote, or a design file"
+            f"{where}: holds no recipe, so it cannot be rebuilt; give a 3MF that pneutouch build wrote, or a design "
+            "file"
         )
     head = _head(package.recipe, f"{where}: recipe")
     inputs, kinds = head.inputs, scene_kinds()
@@ -148,7 +149,8 @@ def _check_steps(scene: ResolvedDesign, where: str) -> None:
     """Steps that no printer makes would make meshes without bounds."""
     if scene.mesh_tolerance < FINEST_STEP:
         raise InputError(
-            f"{where}: the printers step by {scene.mesh_tolerance:g} mm; their steps must be at least {FINEST_STEP:g} mm"
+            f"{where}: the printers step by {scene.mesh_tolerance:g} mm; their steps must be at least "
+            f"{FINEST_STEP:g} mm"
         )
 
 

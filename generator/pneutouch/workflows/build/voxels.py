@@ -89,8 +89,8 @@ def write_voxels(
 ) -> tuple[Path, list[str]]:
     """Write the stack into ``out/<name>-voxels/``; returns the folder, and a line for each fraction that is not met.
 
-    The folder appears whole or not at all. Raises RuleBrokenError, with nothing written, where a rule is broken, and InputError
-    where the folder cannot be written.
+    The folder appears whole or not at all. Raises RuleBrokenError, with nothing written, where a rule is broken,
+    and InputError where the folder cannot be written.
     """
     plan.refuse()
     scene = plan.assembly.scene

@@ -11,8 +11,8 @@ from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
 
 FRACTIONS = (0.0, 0.05, 0.1, 0.15, 0.2, 0.3, 0.45, 0.6)
-"""Volume fractions of the stiff resin that are printed: our own choice, close together about 16.3 %, where the laws of mixing
-differ most (docs/mixing.md)."""
+"""Volume fractions of the stiff resin that are printed: our own choice, close together about 16.3 %, where the laws of
+mixing differ most (docs/mixing.md)."""
 
 
 @dataclass(frozen=True, slots=True)

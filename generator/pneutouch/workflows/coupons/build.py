@@ -26,7 +26,8 @@ RESULTS = "results.toml"
 def build_coupons(options: CouponOptions, out: Path, library: Library | None = None) -> tuple[Path, dict[str, Any]]:
     """Write the requested coupons into ``out/coupons-<printer>/``; the folder and what lies in it, as data.
 
-    Raises InputError for what is unknown or does not fit the tray, and rather than lose readings in the folder. The same input gives the same bytes.
+    Raises InputError for what is unknown or does not fit the tray, and where readings in the folder would be lost.
+    The same input gives the same bytes.
     """
     ordered = order(options, library)
     folder = out / ordered.name

@@ -13,7 +13,7 @@ from pneutouch.spec.printer import Mode, Printer
 from pneutouch.workflows.coupons.order import CouponItem
 
 MARGIN, SPACING = 5.0, 5.0
-"""mm around the tray, and between bounding boxes: space for a spatula; Objet trays refuse boxes that touch (DOC-37004)."""
+"""mm around the tray, and between bounding boxes: space for a spatula; Objet refuses boxes that touch (DOC-37004)."""
 
 
 @dataclass(frozen=True)

@@ -29,8 +29,8 @@ def local_curve(
 ) -> MeasuredProfile | None:
     """The lab's mixing curve of a pair, checked but not written; None where nothing was measured.
 
-    Figures and remarks go to ``found``. Raises InputError for unknown resins, for moduli that do not rise with the fraction,
-    and where a curve of that name was not written by the command.
+    Figures and notes go to ``results``. Raises InputError for unknown resins, for moduli that do not rise with the
+    fraction, and where a curve of that name was not written by the command.
     """
     where = f"{source.where}: mixing"
     soft_name, stiff_name = resins_of(pair, file=source.where, key="mixing")
@@ -61,7 +61,8 @@ def local_curve(
         for point in known
     ]
     results.notes.append(
-        f"{pair}: elongation at break was not measured; add elongation_at_break_percent to the points, or no prediction "
+        f"{pair}: elongation at break was not measured; add elongation_at_break_percent to the points, or no "
+        "prediction "
         "has a break strain of a mixed wall"
     )
     text = head(replace(source, where=Path(source.where).name), "the mixing curve as measured") + toml_text(content)

@@ -146,7 +146,7 @@ def _materials(
 def _of_mixing(
     options: CouponOptions, profile: str, printer: Printer, families: list[Coupon], library: Library
 ) -> list[CouponItem]:
-    """The mixing set: every fraction of each pair; pucks alone unless dumbbells are requested, which take a large tray."""
+    """The mixing set: every fraction of each pair; pucks, and dumbbells where requested (they take a large tray)."""
     chosen = [
         coupon
         for coupon in families

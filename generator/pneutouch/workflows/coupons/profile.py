@@ -68,7 +68,7 @@ def head(source: ReadingSource, what: str) -> str:
 
 
 def write_profiles(profiles: Sequence[MeasuredProfile]) -> None:
-    """Write every profile to a temporary file in its folder and rename it. Raises InputError where a folder cannot be written."""
+    """Write every profile to a temporary file and rename it. Raises InputError where a folder cannot be written."""
     fresh: list[tuple[Path, Path]] = []
     try:
         for profile in profiles:
@@ -102,7 +102,7 @@ def _earlier(path: Path, changes: Sequence[ProfileChange]) -> dict[str, Any]:
 
 
 def check_ours(path: Path, keys: str) -> bool:
-    """Whether there is a file that the command wrote. Raises InputError where the file is another; ``keys`` is what would go into it."""
+    """Whether the command wrote the file. Raises InputError where it did not; ``keys`` is what would go into it."""
     if not (path.exists() or path.is_symlink()):
         return False
     if path.is_file() and not path.is_symlink() and _is_ours(path):

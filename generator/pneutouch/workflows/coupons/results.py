@@ -66,7 +66,8 @@ def _gauges(
         material = _material(material_name, source.where, f"gauge.{name}", library)
         if printer.mode_for(material) is None:
             raise InputError(
-                f"{source.where}: gauge.{name}.{material_name}: the {printer.title} cannot run {material.label}; it runs "
+                f"{source.where}: gauge.{name}.{material_name}: the {printer.title} cannot run {material.label}; it "
+                "runs "
                 f"{', '.join(printer.resins)}"
             )
         measured.append((material_name, material, gauge))

@@ -13,7 +13,8 @@ _CELLS = 5
 
 _MIXES = (
     "Mixed pieces are composites of two base resins in the 3MF, in volume fractions. No catalogue material has a known "
-    "fraction: do not choose one in their place. Where the machine's program takes no composites, print them droplet by "
+    "fraction: do not choose one in their place. Where the machine's program takes no composites, print them droplet "
+    "by "
     "droplet from voxel slices of the same fractions."
 )
 """How a machine that takes catalogue materials alone gets a mix."""
@@ -23,8 +24,10 @@ def sheet(order: CouponOrder, trays: Mapping[str, tuple[CouponPiece, ...]]) -> s
     """Markdown for the operator and the bench."""
     parts = [
         f"# Coupons: print and measure ({order.name})",
-        "Print, measure, write the readings into `results.toml`, then run `pneutouch coupons --results results.toml` in the "
-        "folder of your designs: it writes profiles of your own machine and resins, which come before the shipped ones.",
+        "Print, measure, write the readings into `results.toml`, then run `pneutouch coupons --results results.toml` "
+        "in the "
+        "folder of your designs: it writes profiles of your own machine and resins, which come before the shipped "
+        "ones.",
         "Lab: ______________________  Date: ______________  Room: _____ °C  Printed on: ______________",
         "## Print",
     ]
@@ -49,7 +52,8 @@ def _printing(name: str, pieces: tuple[CouponPiece, ...], order: CouponOrder) ->
     return [
         f"### {printer.title} (`{name}`)",
         f"`{order.name if name == order.profile else name}.3mf`: all copies in place, one material an object; mode "
-        f"{mode.name}, {mode.layer_height_um:g} µm. **Choose the material of each object by hand**; pieces of one shape "
+        f"{mode.name}, {mode.layer_height_um:g} µm. **Choose the material of each object by hand**; pieces of one "
+        "shape "
         "differ by their place on the tray alone, so bag and label them as they come off.",
         "\n".join([head, "|---|---|---|---|---|---|---|", *rows]),
         *mixes,

@@ -22,10 +22,13 @@ from pneutouch.workflows.specimen import inputs as specimen_inputs
 
 ASSUMPTIONS = (
     "the dome's flat-plate contact, frictionless; uniform pressure over the patch; no inertia, no relaxation",
-    "the specimen is linear elastic and bonded to a rigid floor; its bars stand still and its surface is flat: no relief",
-    "amplitudes of single patterns are 1.15 to 1.35 times those of finite elements at pitch 6 mm under a small patch and up to 4.4 times at "
+    "the specimen is linear elastic and bonded to a rigid floor; its bars stand still and its surface is flat: no "
+    "relief",
+    "amplitudes of single patterns are 1.15 to 1.35 times those of finite elements at pitch 6 mm under a small patch "
+    "and up to 4.4 times at "
     "3 mm; near a zero of the patch filter they mean no more than 'small' (docs/texture.md)",
-    f"noise: white, {NOISE / KPA:g} kPa rms a sample unless given, in steps of {STEP / KPA:.4f} kPa: assumed, the paper states none",
+    f"noise: white, {NOISE / KPA:g} kPa rms a sample unless given, in steps of {STEP / KPA:.4f} kPa: assumed, the "
+    "paper states none",
     "air at constant temperature (Boyle) with the design's dead volume",
 )
 
@@ -73,7 +76,7 @@ def inputs(run: ScanRun) -> dict[str, Any]:
 
 
 def spectra(run: ScanRun) -> str:
-    """Signals and scalograms side by side, SVG; the signals as the voices see them: less their mean, slow enough to show."""
+    """Signals, less their mean and decimated, and scalograms side by side; SVG."""
     frequencies = sorted(set(run.frequencies.values()))
     low, high = frequencies[0] / 2.0, frequencies[-1] * 2.0
     states = []
@@ -171,6 +174,7 @@ def _notes(bars: Sequence[BarRow], radius: float) -> list[str]:
         return []
     blind = 2.0 * math.pi / FIRST_ZERO * radius
     return [
-        f"pitches {', '.join(f'{pitch:g}' for pitch in near)} mm are below twice the patch ({4 * radius:.2f} mm), which averages "
+        f"pitches {', '.join(f'{pitch:g}' for pitch in near)} mm are below twice the patch ({4 * radius:.2f} mm), "
+        "which averages "
         f"over them; of bars at the surface it feels nothing at a pitch of {blind:.2f} mm"
     ]

@@ -27,7 +27,7 @@ from pneutouch.units import KPA
 from pneutouch.workflows.specimen import ResolvedSpecimen, draw, load_specimen, specimen_file
 
 KEPT = 20.0
-"""Highest frequency of the signals in CSV files, Hz, or twice the highest pattern's; they keep five times as many samples."""
+"""Highest frequency of signals in CSV files, Hz, or twice the highest pattern's; with five times as many samples."""
 
 SPEEDS = (0.01, 1000.0)
 """Slowest and fastest scan, mm/s: a 60 mm path then lasts 1.7 h and 0.06 s."""
@@ -142,14 +142,15 @@ def load_both(
 
 
 def bars_of(context: ResolvedSpecimen) -> tuple[BarRow, ...]:
-    """The specimen's rows of bars. Raises InputError for layers of another kind, which the scan model does not cover."""
+    """The specimen's rows of bars. Raises InputError for layers of another kind: the scan model does not cover them."""
     rows = []
     for number, layer in enumerate(context.specimen.layer):
         if not isinstance(layer, Bars):
             problem, remedy = (
                 "the scan model covers bars alone",
                 (
-                    "with `data`, measured signals of any specimen can be read against a specimen of bars with the same pitches"
+                    "with `data`, measured signals of any specimen can be read against a specimen of bars with the "
+                    "same pitches"
                 ),
             )
             raise InputError(problem, file=context.where, key=f"layer[{number}].kind", value=layer.kind, remedy=remedy)
@@ -209,8 +210,10 @@ def _check_length(context: ResolvedSpecimen, scan_path: ScanPath, frequencies: d
         needed = least_duration(frequency)
         if lasts < needed:
             raise InputError(
-                f"{context.where}: {name}: {frequency:.4g} Hz at {scan_path.speed:g} mm/s: the path of {max(scan_path.end - scan_path.start, 0):.4g} mm "
-                f"between the block's ends lasts {max(lasts, 0):.4g} s and must last {needed:.4g} s; block.length_mm must be at least "
+                f"{context.where}: {name}: {frequency:.4g} Hz at {scan_path.speed:g} mm/s: the path of "
+                f"{max(scan_path.end - scan_path.start, 0):.4g} mm "
+                f"between the block's ends lasts {max(lasts, 0):.4g} s and must last {needed:.4g} s; block.length_mm "
+                "must be at least "
                 f"{needed * scan_path.speed + 2 * scan_path.start:.4g}"
             )
 

@@ -65,7 +65,7 @@ def separating(
     changes: Changes | None = None,
     library: Library | None = None,
 ) -> dict[str, Any]:
-    """The domes that best distinguish two patterns, as a document; the specimen gives matrix and speed, the design the rest."""
+    """The domes that best distinguish two patterns; the specimen gives matrix and speed, the design the rest."""
     library = library or Library.default()
     check_options(options)
     patterns = parse_patterns(text)

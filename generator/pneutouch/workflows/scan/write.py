@@ -18,7 +18,7 @@ from pneutouch.workflows.scan.run import AnalysedSignal, ScanRun
 
 
 def write_scan(run: ScanRun, out: Path) -> Path:
-    """Write signals, document, figure and manifest into ``out/<specimen>-<design>-scan/``; the same input, the same bytes."""
+    """Write signals, document, figure and manifest into ``out/<specimen>-<design>-scan/``."""
     folder = out / run.name
     check_writable(folder)
     files = {"scan.json": json_bytes(document(run)), "scan.svg": spectra(run).encode()}

@@ -43,7 +43,7 @@ def write_charts(
 
 
 def tradeoff(selection: SelectionRun) -> TradeOff:
-    """Fronts at the target's driving pressure, the best design's where that is free; its window and the designs in it."""
+    """Fronts at the target's driving pressure, else the best design's; the target's window and the designs in it."""
     problem, designs = selection.problem, _best(selection)
     pressure = problem.driving_pressure
     if pressure is None:

@@ -1,4 +1,4 @@
-"""A graded selection: for a target that no constant mix meets, a grade that does, and the constant mixes of its size."""
+"""A graded selection: a grade for a target that no constant mix meets, and the constant mixes of its size."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _TRIALS = 48
 class GradedSelectionRun:
     """A search for a grade with everything needed to show and write it.
 
-    sensor: the base's, with the radius and wall searched at. constants: catalogue resins and, last, the nearest constant mix.
+    sensor: the base's, with the radius and wall searched at. constants: catalogue resins, then the nearest mix.
     solves: solid solves in all.
     """
 

@@ -62,8 +62,10 @@ def missed(selection: GradedSelectionRun) -> list[str]:
     grade_target, best = selection.grade_target, selection.search.best
     values = ", ".join(f"{value:.3f}" for value in best.sensitivity_kPa_per_N)
     texts = {
-        "sensitivity": f"{values} kPa/N instead of {grade_target.sensitivity_kPa_per_N:g} within {100 * grade_target.tolerance:g} %",
-        "same sensitivity": f"{100 * best.difference:+.1f} % apart instead of {100 * (grade_target.same_within or 0):g} %",
+        "sensitivity": f"{values} kPa/N instead of {grade_target.sensitivity_kPa_per_N:g} within "
+        f"{100 * grade_target.tolerance:g} %",
+        "same sensitivity": f"{100 * best.difference:+.1f} % apart instead of "
+        f"{100 * (grade_target.same_within or 0):g} %",
         "rated pressure": f"{best.rated / KPA:.1f} kPa, less than {max(grade_target.pressures) / KPA:g} kPa",
         "force range": f"{best.reach:.3g} N instead of {grade_target.force or 0:g}",
         "no figures": best.note or "no straight part to fit",
@@ -78,7 +80,8 @@ def missed(selection: GradedSelectionRun) -> list[str]:
     )
     if known_kPa_per_N.size:
         lines.append(
-            f"all grades tried of this size have {known_kPa_per_N[:, 0].min():.2f} to {known_kPa_per_N[:, 0].max():.2f} kPa/N at "
+            f"all grades tried of this size have {known_kPa_per_N[:, 0].min():.2f} to "
+            f"{known_kPa_per_N[:, 0].max():.2f} kPa/N at "
             f"{grade_target.pressures[0] / KPA:g} kPa"
         )
     return lines

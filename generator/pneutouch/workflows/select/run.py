@@ -156,7 +156,7 @@ def base_scene(target: Target, where: str, library: Library) -> ResolvedDesign:
 
 
 def _some_resin(target: Target, where: str, library: Library) -> str:
-    """A resin that the base can be drawn with: the first of those allowed that its printer runs, else simply the first."""
+    """A resin that the base can be drawn with: the first of those allowed that its printer runs, else the first."""
     setting = target.setting
     profile = setting.profile
     if profile is None:

@@ -17,7 +17,7 @@ _BACKGROUND = np.uint32(0xFFFFFFFF)
 
 
 def show_stack(folder: Path, picture: Path | None = None) -> dict[str, Any]:
-    """The content of a stack, all its rules checked, voxels counted in the slices; ``picture`` takes a PNG of two sections.
+    """The content of a stack, its rules checked, voxels counted in the slices; ``picture`` takes a PNG of two sections.
 
     Raises InputError for a stack that breaks a rule and for a picture that cannot be written.
     """
@@ -66,7 +66,7 @@ def document(stack: VoxelStack) -> dict[str, Any]:
 
 
 def draw(stack: VoxelStack, path: Path) -> None:
-    """A PNG of the section through the middle (x across, z up) above the middle slice (x across, y up), to one scale."""
+    """A PNG of the middle section (x across, z up) above the middle slice (x across, y up), to one scale."""
     x, y = stack.manifest["pixel_um"]
     upper = _stretched(stack.section[::-1], stack.manifest["layer_um"] / x)
     lower = _stretched(stack.labels(stack.manifest["layers"] // 2), y / x)

@@ -1,4 +1,4 @@
-"""Build a specimen: 3MF, STL, GLB, STEP where the shapes are exact, drawing, print sheet, pattern truth and manifest."""
+"""Build a specimen: 3MF, STL, GLB, STEP of exact shapes, drawing, print sheet, true patterns and manifest."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def build_specimen(
 def check_specimen(
     name: str, changes: Changes | None = None, library: Library | None = None, *, deep: bool = False
 ) -> list[Finding]:
-    """The findings of the print rules on a specimen; with ``deep`` those of pymeshlab too. Raises InputError for what cannot be."""
+    """The findings on a specimen; with ``deep`` those of pymeshlab too. Raises InputError for what cannot be."""
     drawn = draw(load_specimen(name, changes, library))
     checked = findings(drawn)
     if deep:

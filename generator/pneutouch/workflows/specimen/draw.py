@@ -58,7 +58,8 @@ def draw(scene: ResolvedSpecimen) -> SpecimenBodies:
     for body in bodies:
         if not body.is_closed() or not body.welded().is_closed():
             raise ComputationError(
-                f"{scene.where}: the {body.name} does not come out closed; change a pitch, cell or depth by 0.01 mm, or report it"
+                f"{scene.where}: the {body.name} does not come out closed; change a pitch, cell or depth by 0.01 mm, "
+                "or report it"
             )
     return SpecimenBodies(scene, patterns, bodies)
 
@@ -102,7 +103,8 @@ def _frame(scene: ResolvedSpecimen, frame: FramePlate, material: Material, bodie
     least = smallest.wall(material.kind).least or smallest.wall(material.kind).recommended
     if land < least:
         raise InputError(
-            f"{where}: frame.hole_diameter_mm = {frame.hole_diameter_mm:g}: leaves {land:.3g} mm next to the hole; it must be at most "
+            f"{where}: frame.hole_diameter_mm = {frame.hole_diameter_mm:g}: leaves {land:.3g} mm next to the hole; "
+            "it must be at most "
             f"{frame.border_mm - 2 * least:.3g} mm, or raise frame.border_mm"
         )
     letters, depth = _letters(scene, frame)
@@ -128,12 +130,14 @@ def _letters(scene: ResolvedSpecimen, frame: FramePlate) -> tuple[list[Array], f
     free = scene.block.high[0]
     if high - low > free or top - bottom > space or space < 2.0:
         raise InputError(
-            f"{scene.where}: frame.mark = {frame.mark!r}: {high - low:.1f} x {top - bottom:.1f} mm do not fit on {free:g} x {space:g} mm; "
+            f"{scene.where}: frame.mark = {frame.mark!r}: {high - low:.1f} x {top - bottom:.1f} mm do not fit on "
+            f"{free:g} x {space:g} mm; "
             "take fewer letters, or raise frame.border_mm"
         )
     if frame.thickness_mm - depth < least:
         raise InputError(
-            f"{scene.where}: frame.thickness_mm = {frame.thickness_mm:g}: letters {depth:g} mm deep need at least {depth + least:g} mm"
+            f"{scene.where}: frame.thickness_mm = {frame.thickness_mm:g}: letters {depth:g} mm deep need at least "
+            f"{depth + least:g} mm"
         )
     middle = np.array([0.5 * free, -0.5 * frame.border_mm])
     return [np.asarray(line) + middle for line in shape.to_polygons()], depth

@@ -44,7 +44,8 @@ def drawing_svg(drawn: SpecimenBodies) -> bytes:
 def _head(page: Figure, drawn: SpecimenBodies) -> None:
     document, block = drawn.scene.specimen.document, drawn.scene.specimen.block
     text = (
-        f"{document.title}, revision {document.revision}: {block.length_mm:g} x {block.width_mm:g} x {block.height_mm:g} mm, "
+        f"{document.title}, revision {document.revision}: {block.length_mm:g} x {block.width_mm:g} x "
+        f"{block.height_mm:g} mm, "
         f"section along the path at y = {0.5 * block.width_mm:g} mm"
     )
     page.suptitle(text, x=0.01, ha="left", fontsize=8.5, **BOLD)

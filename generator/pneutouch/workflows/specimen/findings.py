@@ -1,4 +1,4 @@
-"""A specimen before the print rules. Bodies that fill one another leave no open space, so two subjects are looked at."""
+"""The print rules on a specimen. Bodies that fill one another leave no open space, so two subjects are checked."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def _joint(drawn: SpecimenBodies) -> Joint:
 
 
 def _rounding(drawn: SpecimenBodies, finding: Finding) -> bool:
-    """Whether an overlap is the kernel's rounding on coincident facets: the faces are one and the same by construction."""
+    """Whether an overlap is the kernel's rounding on coincident facets: the faces are the same by construction."""
     excess = finding.excess
     if finding.rule != "contact faces" or excess is None or excess.unit != "mm3":
         return False

@@ -1,4 +1,4 @@
-"""A specimen's file with every name in it resolved: its materials, its printer and the context its patterns are drawn in."""
+"""A specimen's file with every name resolved: its materials, its printer and the context of its patterns."""
 
 from __future__ import annotations
 
@@ -93,7 +93,8 @@ def _resolved(name: str, where: str, specimen: Specimen, library: Library) -> Re
     if mode is None:
         labels = ", ".join(dict.fromkeys(material.label for material in together))
         raise InputError(
-            f"{where}: print.profile = {specimen.print.profile!r}: the {printer.title} cannot hold {labels} together; it runs "
+            f"{where}: print.profile = {specimen.print.profile!r}: the {printer.title} cannot hold {labels} "
+            "together; it runs "
             f"{', '.join(printer.resins)}, {printer.resins_at_once} at once"
         )
     return ResolvedSpecimen(name, where, specimen, matrix, inclusion, frame, printer, mode)

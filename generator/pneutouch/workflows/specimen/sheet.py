@@ -1,4 +1,4 @@
-"""The print sheet of a specimen: resins, orientation, cleaning, the layers with their frequencies, the rules' findings."""
+"""The print sheet of a specimen: resins, orientation, cleaning, layers with their frequencies, findings."""
 
 from __future__ import annotations
 
@@ -18,9 +18,12 @@ def sheet(drawn: SpecimenBodies, findings: list[Finding], input_hash: str) -> st
         f"# Print sheet: {_escaped(document.title)}",
         f"Texture specimen {scene.name}, revision {document.revision}, input {input_hash}",
         "\n".join(_bodies(drawn)),
-        f"Machine: {scene.printer.title}, {scene.mode.name}, {scene.mode.layer_height_um:g} µm. All bodies are **one job**: "
-        f"load them as one assembly (`{scene.name}.3mf`, or all STL files together), never one by one. They share one frame, "
-        "in millimetres, all coordinates positive. Colours carry no meaning: **choose the resin of each body by hand**.",
+        f"Machine: {scene.printer.title}, {scene.mode.name}, {scene.mode.layer_height_um:g} µm. All bodies are **one "
+        "job**: "
+        f"load them as one assembly (`{scene.name}.3mf`, or all STL files together), never one by one. They share "
+        "one frame, "
+        "in millimetres, all coordinates positive. Colours carry no meaning: **choose the resin of each body by "
+        "hand**.",
         "## Layers",
         f"Depths are from the scanned surface to the pattern's top; frequencies at {speed:g} mm/s.",
         "\n".join(_layers(drawn)),
@@ -46,7 +49,8 @@ def _bodies(drawn: SpecimenBodies) -> list[str]:
 def _layers(drawn: SpecimenBodies) -> list[str]:
     top = drawn.scene.block.high[2]
     rows = [
-        "| layer | kind | pitch, mm | frequency, Hz | depth, mm | along the path, mm | volume, mm3 | share of its box |",
+        "| layer | kind | pitch, mm | frequency, Hz | depth, mm | along the path, mm | volume, mm3 | share of its "
+        "box |",
         "|---|---|---|---|---|---|---|---|",
     ]
     for number, (layer, pattern) in enumerate(zip(drawn.scene.specimen.layer, drawn.patterns, strict=True)):
@@ -55,7 +59,8 @@ def _layers(drawn: SpecimenBodies) -> list[str]:
         hertz = ", ".join(f"{frequency:.3g}" for frequency in frequencies(drawn, pattern))
         rows.append(
             f"| {_escaped(title(layer, number))} | {layer.kind} | {pitches} | {hertz} | {top - high[2]:.4g} | "
-            f"{low[0]:.4g} to {high[0]:.4g} | {pattern.mesh.volume:.1f} | {pattern.mesh.volume / pattern.box.volume:.3f} |"
+            f"{low[0]:.4g} to {high[0]:.4g} | {pattern.mesh.volume:.1f} | "
+            f"{pattern.mesh.volume / pattern.box.volume:.3f} |"
         )
     return rows
 
@@ -65,10 +70,12 @@ def _steps(drawn: SpecimenBodies) -> list[str]:
     under = "the frame" if scene.frame is not None else "the bottom"
     marked = " The cut corner of the frame is at x = y = 0, the start of the path." if scene.frame is not None else ""
     return [
-        f"Orient it as in the file: {under} on the tray, the scanned surface up. Set the surface finish to glossy: no support "
+        f"Orient it as in the file: {under} on the tray, the scanned surface up. Set the surface finish to glossy: "
+        "no support "
         f"then touches the scanned surface.{marked}",
         f"Assign {', '.join(f'{body.material.label} to {body.name}' for body in drawn.bodies)}.",
-        f"Remove support from the sides: {scene.printer.support}. The patterns are embedded: nothing has to come out from inside.",
+        f"Remove support from the sides: {scene.printer.support}. The patterns are embedded: nothing has to come out "
+        "from inside.",
         "Keep a high-pressure jet off the soft surface; rinse, dry, and let it rest lying flat.",
         "Scan along x from the start of the path; specimen.json holds where each pattern begins and ends.",
     ]

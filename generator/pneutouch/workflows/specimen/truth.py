@@ -12,7 +12,7 @@ _DECIMALS = 6
 
 
 def truth(drawn: SpecimenBodies) -> dict[str, Any]:
-    """Block, path and layers in the block's frame: x along the path from its start, depths below the scanned surface; mm."""
+    """Block, path and layers in the block's frame, mm: x along the path, depths below the scanned surface."""
     scene, block = drawn.scene, drawn.scene.specimen.block
     volumes = {body.name: body.volume for body in drawn.bodies}
     return {

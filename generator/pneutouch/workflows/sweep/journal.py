@@ -39,7 +39,8 @@ class Journal:
             assert content is not None
             if content["sweep"] != self.fingerprint:
                 problem = (
-                    "holds the progress of another sweep: the design, a material, the printer, the model, the values or "
+                    "holds the progress of another sweep: the design, a material, the printer, the model, the values "
+                    "or "
                     "the version has changed"
                 )
                 remedy = "`fresh` starts over, or give another `out`"

@@ -54,7 +54,7 @@ def sweep(
 ) -> SweepResult:
     """Compute every point of a plan and write the dataset to ``out``; returns what was done.
 
-    Progress is kept in ``out`` with ``.parts`` added. A sweep that was stopped, however that happened, goes on there and
+    Progress is kept in ``out`` with ``.parts`` added. A stopped sweep, however it was stopped, goes on there and
     ends with the same bytes. ``fresh`` forgets progress and replaces another sweep's dataset.
 
     Raises InputError before any work starts, ComputationError where it stopped half way, its progress kept.

@@ -23,7 +23,7 @@ MOST_PARTS = 2000
 
 @dataclass(frozen=True)
 class TrayVariant:
-    """One design of a tray. ``index`` counts from 1 and ``letter`` is it in letters; ``key`` and ``value`` are what was varied."""
+    """One design of a tray. ``index`` counts from 1, ``letter`` is it in letters; ``key`` and ``value`` vary."""
 
     index: int
     letter: str
@@ -58,7 +58,7 @@ class ExpandedTray:
 
 
 def expand(order: TrayOrder, library: Library | None = None) -> ExpandedTray:
-    """Load and draw every design of a tray; nothing is predicted. Raises InputError where one is wrong or none is left."""
+    """Load and draw every design of a tray, without prediction. Raises InputError where one is wrong or none left."""
     library = library or Library.default()
     values = [value for entry in order.tray.entry for value in _values(order, entry, library)]
     values = [
@@ -75,7 +75,8 @@ def expand(order: TrayOrder, library: Library | None = None) -> ExpandedTray:
     left_out = tuple(dict.fromkeys(notes))
     if not pieces:
         raise InputError(
-            f"{order.where}: nothing is left for the {printer.title}: {'; '.join(left_out) or 'no design has such a body'}; "
+            f"{order.where}: nothing is left for the {printer.title}: "
+            f"{'; '.join(left_out) or 'no design has such a body'}; "
             f"give another tray.profile or tray.bodies, or set print.profile to {profile!r}"
         )
     if sum(len(piece.solids) * piece.value.copies for piece in pieces) > MOST_PARTS:

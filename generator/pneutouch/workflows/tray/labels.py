@@ -91,7 +91,8 @@ def _job_lines(layout: TrayLayout, job: TrayJob, number: int) -> list[str]:
         f"## Job {number}: `{layout.name(job)}.3mf`",
         "",
         f"Load {' and '.join(job.resins)}. Mode {job.mode.name}, {job.mode.layer_height_um:g} µm, {job.layers} layers, "
-        f"{job.height:.1f} mm; {mass:.1f} g of model material. Bounding boxes take {shares['bounding_boxes']:.1%} of the "
+        f"{job.height:.1f} mm; {mass:.1f} g of model material. Bounding boxes take {shares['bounding_boxes']:.1%} of "
+        "the "
         f"envelope's footprint, outlines {shares['outlines']:.1%}.",
         "",
         *(line for note in _coarser(layout, job) for line in (note, "")),
@@ -120,7 +121,8 @@ def _coarser(layout: TrayLayout, job: TrayJob) -> list[str]:
         for solid in part.solids
     }
     return [
-        f"{label} alone would print in {mode.name}, {mode.layer_height_um:g} µm: the other resins of the job take that from it."
+        f"{label} alone would print in {mode.name}, {mode.layer_height_um:g} µm: the other resins of the job take "
+        "that from it."
         for label, mode in modes.items()
         if mode is not None and mode.layer_height_um < job.mode.layer_height_um
     ]

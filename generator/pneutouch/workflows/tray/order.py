@@ -15,7 +15,7 @@ from pneutouch.spec.tray import LEAST_COPIES, MOST_COPIES, Tray
 
 @dataclass(frozen=True)
 class TrayOrder:
-    """A tray with the name of its output, the file or flags it is from (for messages), and overrides for all entries."""
+    """A tray with the name of its output, the file or flags it is from (for messages), and overrides of all entries."""
 
     name: str
     where: str
@@ -29,7 +29,7 @@ class TrayOrder:
 
 
 def is_tray_file(path: Path) -> bool:
-    """Whether a path is a TOML file with the tables of a tray; designs have none of them. A missing ``.toml`` is not."""
+    """Whether a path is a TOML file with the tables of a tray; designs have none, and a missing file neither."""
     return path.suffix == ".toml" and path.is_file() and not {"tray", "entry"}.isdisjoint(read_toml(path))
 
 

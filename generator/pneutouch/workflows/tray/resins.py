@@ -46,7 +46,7 @@ def changes(loads: Sequence[frozenset[str]]) -> int:
 
 
 def _fewest(count: int, fits: Callable[[list[int]], bool]) -> list[list[list[int]]]:
-    """All partitions of ``range(count)`` into fewest groups that fit; one by first fit where there are too many to try."""
+    """All partitions of ``range(count)`` into fewest groups that fit; one by first fit where there are too many."""
     if count > _EXACT:
         groups: list[list[int]] = []
         for k in range(count):

@@ -31,7 +31,8 @@ def tray_svg(layout: TrayLayout, job: TrayJob) -> bytes:
                 outlines[key] = outline(part.bodies).to_polygons()
             _part(ax, part, outlines[key], envelope.x)
         ax.set_title(
-            f"{layout.printer.title}, seen from above: {layout.name(job)}, {counted(job.parts)}, {' + '.join(job.resins)}",
+            f"{layout.printer.title}, seen from above: {layout.name(job)}, {counted(job.parts)}, "
+            f"{' + '.join(job.resins)}",
             loc="left",
             fontsize=7.5,
             color=INK,

@@ -110,7 +110,8 @@ def _metadata(layout: TrayLayout, job: TrayJob, recipe: str) -> dict[str, str]:
     return {
         "Title": layout.order.tray.tray.title,
         "Application": f"pneutouch {__version__}",
-        "Description": f"Tray {layout.name(job)} for the {layout.printer.title}: {counted(job.parts)}, mode {job.mode.name}",
+        "Description": f"Tray {layout.name(job)} for the {layout.printer.title}: {counted(job.parts)}, "
+        f"mode {job.mode.name}",
         TRAY_RECIPE: recipe,
         "resins": " + ".join(job.resins),
         "mesh-tolerance-mm": f"{layout.printer.finest_step(job.mode):g}",
