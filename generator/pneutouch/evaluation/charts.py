@@ -52,10 +52,13 @@ def tradeoff(evaluation: Evaluation) -> TradeOff | None:
     problem = _problem(evaluation, state.driving_pressure)
     saturation, end = state.figures.saturation_force, state.figures.force_range[1]
     force = end if saturation is None else min(end, saturation)
+    title = evaluation.scene.membrane_material.title
     return TradeOff(
-        tuple(front(problem)), state.driving_pressure / KPA, (problem.gauge_limit - state.driving_pressure) / KPA,
-        (ChartPoint(evaluation.scene.membrane_material.title, f"this design, {force:.3g} N", state.figures.sensitivity_kPa_per_N, force),),
-    )  # fmt: skip
+        tuple(front(problem)),
+        state.driving_pressure / KPA,
+        (problem.gauge_limit - state.driving_pressure) / KPA,
+        (ChartPoint(title, f"this design, {force:.3g} N", state.figures.sensitivity_kPa_per_N, force),),
+    )
 
 
 def _problem(evaluation: Evaluation, pressure: float) -> SelectionProblem:
@@ -63,13 +66,24 @@ def _problem(evaluation: Evaluation, pressure: float) -> SelectionProblem:
     sensor, printer, recipe = evaluation.sensor, evaluation.scene.printer, shipped().recipe
     wall = printer.smallest.wall("elastomer")
     return SelectionProblem(
-        resins=_resins(evaluation), sensitivity_kPa_per_N=None, tolerance=1.0, driving_pressure=pressure, force_range=None,
-        stiffness=(None, None), max_diameter=None, inner_radius=None, wall_thickness=None,
-        least_wall=wall.least or wall.recommended, ambient_pressure=sensor.gas.ambient_pressure,
-        dead_volume=lambda radius: np.full_like(radius, sensor.gas.dead_volume), plate_radius=sensor.protocol.plate_radius,
-        gauge_limit=sensor.gas.gauge_limit, depth_share=min(sensor.protocol.depth / sensor.dome.inner_radius, recipe.deepest),
-        steps=sensor.protocol.steps, recipe=recipe,
-    )  # fmt: skip
+        resins=_resins(evaluation),
+        sensitivity_kPa_per_N=None,
+        tolerance=1.0,
+        driving_pressure=pressure,
+        force_range=None,
+        stiffness=(None, None),
+        max_diameter=None,
+        inner_radius=None,
+        wall_thickness=None,
+        least_wall=wall.least or wall.recommended,
+        ambient_pressure=sensor.gas.ambient_pressure,
+        dead_volume=lambda radius: np.full_like(radius, sensor.gas.dead_volume),
+        plate_radius=sensor.protocol.plate_radius,
+        gauge_limit=sensor.gas.gauge_limit,
+        depth_share=min(sensor.protocol.depth / sensor.dome.inner_radius, recipe.deepest),
+        steps=sensor.protocol.steps,
+        recipe=recipe,
+    )
 
 
 def _resins(evaluation: Evaluation) -> tuple[CandidateResin, ...]:

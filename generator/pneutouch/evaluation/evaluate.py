@@ -108,10 +108,16 @@ class Evaluation:
 
 
 def evaluate(
-    design: str | DesignSource, changes: Changes | None = None, *,
-    model: str = "solid", closure: str = "variational", clamp: str = "base", tolerance: float = DEFAULT_TOLERANCE,
-    library: Library | None = None, aged: bool = False,
-) -> Evaluation:  # fmt: skip
+    design: str | DesignSource,
+    changes: Changes | None = None,
+    *,
+    model: str = "solid",
+    closure: str = "variational",
+    clamp: str = "base",
+    tolerance: float = DEFAULT_TOLERANCE,
+    library: Library | None = None,
+    aged: bool = False,
+) -> Evaluation:
     """Load, draw and predict a design given by name, by path or as a source. Raises InputError where it cannot work.
 
     ``tolerance`` is what ``model="auto"`` must meet. ``clamp`` is where the solid is held: at the
@@ -137,9 +143,14 @@ def evaluate_scene(scene: ResolvedDesign, find_resins: Callable[[], Resins], opt
     pressures = [p * KPA for p in scene.design.pneumatics.driving_pressures_kPa]
     try:
         prediction = predict(
-            scene.name, sensor, pressures, model=options.model, closure=options.closure, tolerance=options.tolerance,
+            scene.name,
+            sensor,
+            pressures,
+            model=options.model,
+            closure=options.closure,
+            tolerance=options.tolerance,
             sensitivity_error=lambda model: sensitivity_error(scene.membrane_material, sensor, model, options.closure),
-        )  # fmt: skip
+        )
     except BeyondLimitError as error:
         raise _beyond_limit(scene, error) from None
     _check_plate(scene, prediction)

@@ -34,8 +34,12 @@ class SimulatedResin:
 
 
 def resins_of(
-    design: str | DesignSource, changes: Changes | None, resins: Sequence[str], truth: SimulationTruth = TRUTH, library: Library | None = None
-) -> list[SimulatedResin]:  # fmt: skip
+    design: str | DesignSource,
+    changes: Changes | None,
+    resins: Sequence[str],
+    truth: SimulationTruth = TRUTH,
+    library: Library | None = None,
+) -> list[SimulatedResin]:
     """The design in each resin; none given: its own, "all": those of the paper's Table S1. Raises InputError."""
     library = library or Library.default()
     given = load_scene(design, changes, library)

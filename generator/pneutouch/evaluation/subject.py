@@ -36,11 +36,16 @@ def subject_of(assembly: Assembly) -> PrintSubject:
         printer, mode = assembly.machine(body.name)
         items.append(
             PrintItem(
-                body, printer, mode, solid, up=(0.0, 0.0, 1.0 if assembly.stands_up(body.name) else -1.0), job=assembly.job(body.name),
+                body,
+                printer,
+                mode,
+                solid,
+                up=(0.0, 0.0, 1.0 if assembly.stands_up(body.name) else -1.0),
+                job=assembly.job(body.name),
                 sensing=_outer_wall(assembly) if body.name == "membrane" else None,
                 hints=_HINTS.get(body.name, _HINTS["connector"]),
             )
-        )  # fmt: skip
+        )
     where = (layout.flange_radius, 0.0, layout.plate_high)
     area = assembly.seat_area
     joints = (Joint("membrane", "connector", area, where),) if area > 0 else ()

@@ -55,9 +55,13 @@ def unknown(sensor: Sensor, model: str) -> str | None:
 
 
 def known(
-    sensor: Sensor, pressures: Sequence[float], material: Material, materials: Sequence[Material], printer: Printer,
+    sensor: Sensor,
+    pressures: Sequence[float],
+    material: Material,
+    materials: Sequence[Material],
+    printer: Printer,
     model: str,
-) -> SensorBudget:  # fmt: skip
+) -> SensorBudget:
     """The budget of a sensor inside the atlas at driving pressures (MPa).
 
     ``materials`` are all that there are: the model's error is taken from those that were measured. ``model`` gives the
@@ -66,13 +70,10 @@ def known(
     from pneutouch.mechanics.uncertainty import batch_of, budget, model_errors
 
     batch = batch_of(sensor, pressures)
-    estimate = budget(
-        batch, material, printer, near_paper=is_near_paper(sensor), errors=model_errors(material, materials),
-        numerical={
-            "sensitivity_kPa_per_N": NUMERICAL[model], "limit_pressure_kPa": DISCRETISATION["limit_pressure_relative"]
-        },
-    )  # fmt: skip
-    return SensorBudget(batch, estimate)
+    limit_error = DISCRETISATION["limit_pressure_relative"]
+    numerical = {"sensitivity_kPa_per_N": NUMERICAL[model], "limit_pressure_kPa": limit_error}
+    near, errors = is_near_paper(sensor), model_errors(material, materials)
+    return SensorBudget(batch, budget(batch, material, printer, near_paper=near, errors=errors, numerical=numerical))
 
 
 def documents(
@@ -93,10 +94,8 @@ def documents(
         return tuple({"unknown": why} for _ in states)
     from pneutouch.mechanics.uncertainty import document, gas_text, text
 
-    estimate = known(
-        sensor, [state.driving_pressure for state in states], scene.membrane_material,
-        list(resins().values()), scene.printer, model,
-    )  # fmt: skip
+    pressures, materials = [state.driving_pressure for state in states], list(resins().values())
+    estimate = known(sensor, pressures, scene.membrane_material, materials, scene.printer, model)
     content = []
     for row, (state, notes) in enumerate(zip(states, gas_text(estimate.batch), strict=True)):
         values = _values(prediction, state)
@@ -111,16 +110,19 @@ def documents(
 
 def _values(prediction: SensorPrediction, state: SensorState) -> dict[str, float]:
     """The figures of the budget as the model has them; without those that it does not compute."""
-    peak, figures = prediction.limits.limit_point, state.figures
+    peak, figures, of_contact = prediction.limits.limit_point, state.figures, {}
+    if figures is not None:
+        of_contact = {
+            "sensitivity_kPa_per_N": figures.sensitivity_kPa_per_N,
+            "stiffness_N_per_mm": figures.stiffness,
+            "force_at_range_end_N": figures.force_range[1],
+        }
     return {
         **({} if peak is None else {"limit_pressure_kPa": peak / KPA}),
-        **({} if figures is None else {
-            "sensitivity_kPa_per_N": figures.sensitivity_kPa_per_N, "stiffness_N_per_mm": figures.stiffness,
-            "force_at_range_end_N": figures.force_range[1],
-        }),
+        **of_contact,
         "range_end_mm": state.range_end,
         "apex_height_outer_mm": state.apex_outer,
-    }  # fmt: skip
+    }
 
 
 def _sampled(estimate: SensorBudget, row: int, samples: int, figures: Document) -> Document:
@@ -133,6 +135,8 @@ def _sampled(estimate: SensorBudget, row: int, samples: int, figures: Document) 
         if name in figures and drawn.lost[i] < 1:
             scale = figures[name]["value"] / float(estimate.budget.values[i, row])
             intervals[name] = {
-                "low": scale * float(drawn.low[i]), "high": scale * float(drawn.high[i]), "lost": float(drawn.lost[i]),
-            }  # fmt: skip
+                "low": scale * float(drawn.low[i]),
+                "high": scale * float(drawn.high[i]),
+                "lost": float(drawn.lost[i]),
+            }
     return {"samples": samples, "figures": intervals}

@@ -72,8 +72,10 @@ def _by_atlas(variants: dict[str, Sensor], highest: float) -> dict[str, ResinCur
         strict=True,
     )
     return {
-        title: ResinCurve(grid[kept] / KPA, values[kept], "atlas") for title, grid, values, kept in rows if kept.sum() > 1
-    }  # fmt: skip
+        title: ResinCurve(grid[kept] / KPA, values[kept], "atlas")
+        for title, grid, values, kept in rows
+        if kept.sum() > 1
+    }
 
 
 def _by_model(variant: Sensor, highest: float, model: str, closure: str | None) -> ResinCurve | None:

@@ -21,9 +21,7 @@ from pneutouch.export.threemf_package import checked_package
 RECIPE = "recipe"
 """Name of the metadata entry that holds the recipe."""
 
-_MILLIMETRES = {
-    "MicroMeter": 1e-3, "MilliMeter": 1.0, "CentiMeter": 10.0, "Inch": 25.4, "Foot": 304.8, "Meter": 1000.0,
-}  # fmt: skip
+_MILLIMETRES = {"MicroMeter": 1e-3, "MilliMeter": 1.0, "CentiMeter": 10.0, "Inch": 25.4, "Foot": 304.8, "Meter": 1000.0}
 
 
 @dataclass(frozen=True)
@@ -89,10 +87,13 @@ def _package(path: Path, wrapper: Any, model: Any, reader: Any) -> Package:
     scale = _MILLIMETRES[model.GetUnit().name]
     bodies = tuple(_body(wrapper, model, mesh, scale) for mesh in _mesh_objects(model))
     return Package(
-        path=path, bodies=bodies, metadata={_shown(*key): value for key, value in metadata.items()},
-        recipe=metadata.get((NAMESPACE, RECIPE)), thumbnail=bool(model.HasPackageThumbnailAttachment()),
+        path=path,
+        bodies=bodies,
+        metadata={_shown(*key): value for key, value in metadata.items()},
+        recipe=metadata.get((NAMESPACE, RECIPE)),
+        thumbnail=bool(model.HasPackageThumbnailAttachment()),
         warnings=tuple(reader.GetWarning(k)[1] for k in range(reader.GetWarningCount())),
-    )  # fmt: skip
+    )
 
 
 def _shown(space: str, name: str) -> str:
@@ -113,9 +114,13 @@ def _body(wrapper: Any, model: Any, mesh: Any, scale: float) -> StoredBody:
     _fill(wrapper, mesh, "getvertices", positions)
     _fill(wrapper, mesh, "gettriangleindices", corners)
     return StoredBody(
-        name=mesh.GetName(), material=metadata.get((NAMESPACE, "material"), material), colour=colour, mix=mix,
-        vertices=positions.astype(np.float64) * scale, triangles=corners.astype(np.int64),
-    )  # fmt: skip
+        name=mesh.GetName(),
+        material=metadata.get((NAMESPACE, "material"), material),
+        colour=colour,
+        mix=mix,
+        vertices=positions.astype(np.float64) * scale,
+        triangles=corners.astype(np.int64),
+    )
 
 
 def _fill(wrapper: Any, mesh: Any, what: str, target: NDArray[Any]) -> None:

@@ -13,15 +13,22 @@ Document = dict[str, Any]
 SENSITIVITY = "sensitivity_kPa_per_N"
 
 _FIGURES = {
-    SENSITIVITY: ("Sensitivity", "kPa/N"), "limit_pressure_kPa": ("Limit pressure", "kPa"),
-    "stiffness_N_per_mm": ("Stiffness", "N/mm"), "force_at_range_end_N": ("Force at the range's end", "N"),
-    "range_end_mm": ("Range ends at", "mm"), "apex_height_outer_mm": ("Apex height, outside", "mm"),
-}  # fmt: skip
+    SENSITIVITY: ("Sensitivity", "kPa/N"),
+    "limit_pressure_kPa": ("Limit pressure", "kPa"),
+    "stiffness_N_per_mm": ("Stiffness", "N/mm"),
+    "force_at_range_end_N": ("Force at the range's end", "N"),
+    "range_end_mm": ("Range ends at", "mm"),
+    "apex_height_outer_mm": ("Apex height, outside", "mm"),
+}
 
 _INPUTS = {
-    "shear_modulus": "shear modulus", "wall_thickness": "wall", "inner_radius": "inner radius",
-    "dead_volume": "dead volume", "ambient_pressure": "ambient pressure", "driving_pressure": "driving pressure",
-}  # fmt: skip
+    "shear_modulus": "shear modulus",
+    "wall_thickness": "wall",
+    "inner_radius": "inner radius",
+    "dead_volume": "dead volume",
+    "ambient_pressure": "ambient pressure",
+    "driving_pressure": "driving pressure",
+}
 
 
 def ends(prediction: SensorPrediction, documents: tuple[Document, ...]) -> dict[str, Document]:

@@ -10,7 +10,7 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.evaluation.chart_data import ResinCurve
 from pneutouch.mechanics.prediction import SensorPrediction, SensorState
-from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MARKERS, MUTED, figure, label_ends, svg
+from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MARKERS, MUTED, figure, label_ends, note, svg
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
@@ -63,10 +63,7 @@ def _mark_limits(ax: Axes, prediction: SensorPrediction) -> None:
         rising = slice(0, int(np.argmax(p)) + 1)
         height = float(np.interp(ruptured / KPA, p[rising], curve.apex_inner[rising]))
         ax.plot(height, ruptured / KPA, "X", color=INK, ms=5)
-        ax.annotate(
-            "break strain", (height, ruptured / KPA), xytext=(0, -7), textcoords="offset points", ha="center", va="top",
-            fontsize=6.5,
-        )  # fmt: skip
+        note(ax, "break strain", (height, ruptured / KPA), (0, -7), ha="center", va="top")
 
 
 def shapes(prediction: SensorPrediction) -> str:
@@ -131,10 +128,9 @@ def _plot_states(ax: Axes, prediction: SensorPrediction, curve: Callable[[Sensor
     for k, state in enumerate(prediction.states):
         kept = state.indentation <= state.range_end * (1 + 1e-12)
         x, y = curve(state)
-        ax.plot(
-            x[kept], y[kept], marker=MARKERS[k % len(MARKERS)], mfc="white", mew=0.8, color=INK if k % 2 == 0 else ACCENT,
-            ls=LINES[k % len(LINES)], label=f"{state.driving_pressure / KPA:g} kPa",
-        )  # fmt: skip
+        look: dict[str, Any] = {"marker": MARKERS[k % len(MARKERS)], "mfc": "white", "mew": 0.8}
+        look |= {"color": INK if k % 2 == 0 else ACCENT, "ls": LINES[k % len(LINES)]}
+        ax.plot(x[kept], y[kept], label=f"{state.driving_pressure / KPA:g} kPa", **look)
     ax.legend(title="driving pressure", title_fontsize=7, loc="upper left", handlelength=3)
 
 
@@ -158,8 +154,8 @@ def sensitivities(curves: dict[str, ResinCurve], chosen: str, published_kPa_per_
             style = {"fontsize": 6.5, "color": INK, **BOLD} if picked else {"fontsize": 6.5, "color": MUTED}
             ends.append((float(pressures[-1]), float(values[-1]), label, style))
         if published_kPa_per_N:
-            ax.plot(list(published_kPa_per_N), list(published_kPa_per_N.values()), "D", color=INK, mfc="white", ms=4.5, zorder=5,
-                    label="published measurement")  # fmt: skip
+            points = list(published_kPa_per_N), list(published_kPa_per_N.values())
+            ax.plot(*points, "D", color=INK, mfc="white", ms=4.5, zorder=5, label="published measurement")
             ax.legend(loc="lower left")
         right = max(float(pressures[-1]) for pressures, *_ in curves.values())
         highest = max([float(np.max(values)) for _, values, _ in curves.values()] + list(published_kPa_per_N.values()))

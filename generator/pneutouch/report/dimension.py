@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pneutouch.report.style import INK
+from pneutouch.report.style import INK, note
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -63,16 +63,13 @@ def vertical(ax: Axes, x: float, y0: float, y1: float, feature: float, text: str
     for y in (y0, y1):
         ax.plot([feature, reach], [y, y], color=INK, lw=0.25)
     _arrow(ax, (x, y0), (x, y1))
-    ax.annotate(
-        text, (x, 0.5 * (y0 + y1)), xytext=(3 if x > 0 else -3, 0), textcoords="offset points",
-        ha="left" if x > 0 else "right", va="center", fontsize=_SIZE,
-    )  # fmt: skip
+    side = "left" if x > 0 else "right"
+    note(ax, text, (x, 0.5 * (y0 + y1)), (3 if x > 0 else -3, 0), ha=side, va="center", fontsize=_SIZE)
 
 
 def leader(ax: Axes, at: tuple[float, float], to: tuple[float, float], text: str, ha: str) -> None:
     """A note with an arrow to the point ``at``."""
     arrow = {"arrowstyle": "-|>,head_width=0.12,head_length=0.3", "lw": THIN, "color": INK, "shrinkA": 1, "shrinkB": 0}
-    ax.annotate(
-        text, at, xytext=to, arrowprops=arrow, ha=ha, va="center", fontsize=_SIZE, multialignment="left",
-        bbox={"fc": "white", "ec": "none", "pad": 0.6},
-    )  # fmt: skip
+    box = {"fc": "white", "ec": "none", "pad": 0.6}
+    look: dict[str, Any] = {"va": "center", "fontsize": _SIZE, "multialignment": "left", "bbox": box}
+    ax.annotate(text, at, xytext=to, arrowprops=arrow, ha=ha, **look)

@@ -69,9 +69,7 @@ class _Section:
         layout, ax, low = self.layout, self.ax, self.low
         flange, plate = layout.flange_radius, layout.plate_radius
         horizontal(ax, low, -flange, flange, layout.plate_high, f"Ø{2 * flange:.2f} {self.soft}")
-        horizontal(
-            ax, low - 4.5 * self.unit, -plate, plate, layout.plate_low, f"Ø{2 * plate:.2f} {self.rigid}"
-        )  # fmt: skip
+        horizontal(ax, low - 4.5 * self.unit, -plate, plate, layout.plate_low, f"Ø{2 * plate:.2f} {self.rigid}")
 
     def _leaders(self) -> None:
         layout, unit, ax = self.layout, self.unit, self.ax
@@ -101,8 +99,13 @@ class _Section:
             spot = (-layout.opening_radius + 0.6 * unit, layout.under + 0.5 * seat.shoulder_thickness)
             leader(self.ax, spot, at, f"plug, opening Ø{2 * layout.opening_radius:g}", "right")
         if isinstance(mount, Sleeve):
-            leader(self.ax, (-0.5 * mount.finger_diameter, layout.plate_low - 0.8 * mount.sleeve_length),
-                   (self.left - 0.5 * unit, layout.plate_low - 0.8 * mount.sleeve_length), f"finger Ø{mount.finger_diameter:g}", "right")  # fmt: skip
+            leader(
+                self.ax,
+                (-0.5 * mount.finger_diameter, layout.plate_low - 0.8 * mount.sleeve_length),
+                (self.left - 0.5 * unit, layout.plate_low - 0.8 * mount.sleeve_length),
+                f"finger Ø{mount.finger_diameter:g}",
+                "right",
+            )
         if isinstance(mount, RobotFlange):
             text = f"centring Ø{mount.boss_diameter:g}\n{mount.boss_height:g} high"
             leader(

@@ -64,8 +64,9 @@ def _key(ax: Axes, curve: MeasuredCurve) -> None:
     from matplotlib.patches import Patch
 
     handles = [
-        Patch(facecolor=ACCENT, alpha=0.35, label="read"), Line2D([], [], color=MUTED, lw=0.8, ls=":", label="first contact"),
-    ]  # fmt: skip
+        Patch(facecolor=ACCENT, alpha=0.35, label="read"),
+        Line2D([], [], color=MUTED, lw=0.8, ls=":", label="first contact"),
+    ]
     if _marked(curve):
         handles.append(Patch(facecolor="none", edgecolor=FAINT, hatch="////", label="doubtful"))
     ax.legend(handles=handles, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, borderaxespad=0.2)

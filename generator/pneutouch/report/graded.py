@@ -39,9 +39,13 @@ def grade_section(material: Material, scene: ResolvedDesign, size: tuple[float, 
         if mean is not None:
             right.axhline(mean.nominal, color=INK, lw=0.8, ls=LINES[1])
             right.annotate(
-                f"mean {mean.nominal:.2f} MPa", (0.5, mean.nominal), xytext=(0, 3), textcoords="offset points",
-                fontsize=6.5, ha="center",
-            )  # fmt: skip
+                f"mean {mean.nominal:.2f} MPa",
+                (0.5, mean.nominal),
+                xytext=(0, 3),
+                textcoords="offset points",
+                fontsize=6.5,
+                ha="center",
+            )
         right.set(ylabel="shear modulus  (MPa)", ylim=(0, None))
         for ax in (middle, right):
             ax.set(xlim=(0, 1), xticks=[0, 0.5, 1], xticklabels=["pole", "arc", "rim"])

@@ -38,9 +38,12 @@ def html(template: str, content: Mapping[str, Any], figures: Mapping[str, str], 
 
 
 def pdf(
-    template: str, content: Mapping[str, Any], figures: Mapping[str, str], date: datetime.date | None = None,
+    template: str,
+    content: Mapping[str, Any],
+    figures: Mapping[str, str],
+    date: datetime.date | None = None,
     images: Mapping[str, bytes] | None = None,
-) -> bytes:  # fmt: skip
+) -> bytes:
     """Set a PDF with Typst, a compiler in one wheel: no system packages, no system fonts.
 
     ``content`` becomes sheet.json, ``figures`` SVG files, ``images`` files of their own names next to the template.

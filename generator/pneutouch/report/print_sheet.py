@@ -20,24 +20,40 @@ def print_sheet(sheet: SheetData) -> str:
             f"{mode.layer_height_um:g} µm | {_size(body)} | {solid.mass:.2f} g |"
         )
     deviation = max(assembly.deviation(body) for body in assembly.bodies)
-    findings = [f"- {f.severity}: {f.body}: {f.message}; {f.fix}." for f in sheet.findings] or ["- none"]
-    return "\n".join([
-        f"# Print sheet: {_escaped(scene.design.document.title)}", "",
-        f"{part_number(scene)}, revision {scene.design.document.revision}, input {sheet.input_hash}", "",
-        "| body | file | material | machine | mode | size, mm | mass |",
-        "|---|---|---|---|---|---|---|", *rows, "",
-        f"All files share one frame, in millimetres, all coordinates positive. `{scene.name}.3mf` holds the bodies as one "
-        "assembly with material names and display colours; colours carry no meaning and the machine's software may ignore "
-        "the names: **choose the resin of each body by hand**.", "",
-        f"Chord tolerance {1e3 * scene.mesh_tolerance:g} µm, the finest step of the machines; greatest measured distance "
-        f"between mesh and exact surface {1e3 * deviation:.1f} µm.", "",
-        "## Steps", "", *(f"{k}. {line}" for k, line in enumerate(prose.printing(scene), start=1)), "",
-        "## What it takes", "", *_takes(sheet), "",
-        "## Findings of the rules", "", *findings, "",
-    ])  # fmt: skip
+    findings = "\n".join([f"- {f.severity}: {f.body}: {f.message}; {f.fix}." for f in sheet.findings] or ["- none"])
+    table = "\n".join(rows)
+    steps = "\n".join(f"{k}. {line}" for k, line in enumerate(prose.printing(scene), start=1))
+    return f"""\
+# Print sheet: {_escaped(scene.design.document.title)}
+
+{part_number(scene)}, revision {scene.design.document.revision}, input {sheet.input_hash}
+
+| body | file | material | machine | mode | size, mm | mass |
+|---|---|---|---|---|---|---|
+{table}
+
+All files share one frame, in millimetres, all coordinates positive. `{scene.name}.3mf` holds the bodies as one \
+assembly with material names and display colours; colours carry no meaning and the machine's software may ignore \
+the names: **choose the resin of each body by hand**.
+
+Chord tolerance {1e3 * scene.mesh_tolerance:g} µm, the finest step of the machines; greatest measured distance \
+between mesh and exact surface {1e3 * deviation:.1f} µm.
+
+## Steps
+
+{steps}
+
+## What it takes
+
+{_takes(sheet)}
+
+## Findings of the rules
+
+{findings}
+"""
 
 
-def _takes(sheet: SheetData) -> list[str]:
+def _takes(sheet: SheetData) -> str:
     """Resin, support, layers and a rough time of each job, with what they rest on."""
     rows, notes = [], []
     for job in sheet.estimates:
@@ -48,10 +64,9 @@ def _takes(sheet: SheetData) -> list[str]:
         )
         notes += [f"- {job.name}: {note}." for note in job.assumptions]
     glue_mL = sheet.assembly.glue_volume / ML
-    return [
-        "| job | mode | resin | support | layers | time, rough |", "|---|---|---|---|---|---|", *rows, "",
-        *([f"Glue: about {glue_mL:.2f} mL fills the gaps.", ""] if glue_mL else []), *dict.fromkeys(notes),
-    ]  # fmt: skip
+    glue = f"Glue: about {glue_mL:.2f} mL fills the gaps.\n\n" if glue_mL else ""
+    head = "| job | mode | resin | support | layers | time, rough |\n|---|---|---|---|---|---|\n"
+    return head + "\n".join(rows) + "\n\n" + glue + "\n".join(dict.fromkeys(notes))
 
 
 def _time(seconds: float | None) -> str:

@@ -17,8 +17,12 @@ LIMITS_OF_USE = (
 )
 
 RELIABILITY = (
-    "Cycles to failure", "Tear under edge contact", "Leak rate of the joints", "Storage life", "Drop and shock",
-)  # fmt: skip
+    "Cycles to failure",
+    "Tear under edge contact",
+    "Leak rate of the joints",
+    "Storage life",
+    "Drop and shock",
+)
 
 HANDLING = (
     "The figures assume a rim that does not move: glue or clamp the flange all round.",
@@ -29,14 +33,20 @@ HANDLING = (
 )
 
 DEFINITIONS = (
-    ["Sensitivity S", "kPa/N; slope of the least-squares line of pressure rise over force, at a stated driving pressure, dead volume and range"],
-    ["k = 2", "interval of a figure: value over and times e to the twofold standard uncertainty (JCGM 100); about 95 % where many sources add up"],
+    [
+        "Sensitivity S",
+        "kPa/N; slope of the least-squares line of pressure rise over force, at a stated driving pressure, dead volume and range",
+    ],
+    [
+        "k = 2",
+        "interval of a figure: value over and times e to the twofold standard uncertainty (JCGM 100); about 95 % where many sources add up",
+    ],
     ["Force range", "from first contact to the first event that ends the range, or to the stated depth"],
     ["Non-linearity", "greatest distance from that line over the full-scale pressure rise"],
     ["Stiffness", "mean slope of force over indentation in the range"],
     ["Apex height", "above the base plane; inside and outside differ by the thinned wall"],
     ["Limit point", "greatest driving pressure of the inflation curve; beyond it the dome snaps"],
-)  # fmt: skip
+)
 
 TUNING = (
     "Tuning: sensitivity of this design from no driving pressure to its rated one, by the atlas, with its k = 2 interval "

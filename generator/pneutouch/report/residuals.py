@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -40,10 +40,9 @@ def _curves(top: Axes, bottom: Axes, curves: Sequence[RunResiduals]) -> None:
     pressures_kPa = sorted({run.driving_pressure_kPa for run in curves})
     for k, pressure_kPa in enumerate(pressures_kPa):
         group = [run for run in curves if run.driving_pressure_kPa == pressure_kPa]
-        for ax, rows, label in (
-            (top, [run.force for run in group], f"{pressure_kPa:g} kPa"), (bottom, [run.rise / KPA for run in group], None),
-        ):  # fmt: skip
-            _group(ax, k, [run.at for run in group], rows, label)
+        at = [run.at for run in group]
+        _group(top, k, at, [run.force for run in group], f"{pressure_kPa:g} kPa")
+        _group(bottom, k, at, [run.rise / KPA for run in group], None)
     top.set(ylabel="force, model less\nmeasured  (N)")
     bottom.set(ylabel="pressure, model less\nmeasured  (kPa)", xlabel="indentation  (mm)")
     top.legend(loc="best", ncols=min(len(pressures_kPa), 4), title="driving pressure", title_fontsize=7)
@@ -59,12 +58,11 @@ def _injections(ax: Axes, runs: Sequence[RunResiduals]) -> None:
 def _group(ax: Axes, k: int, at: Sequence[Array], rows: Sequence[Array], label: str | None) -> None:
     """Runs as points; the first carries the label, and a line joins their mean where they share their travels."""
     shade, marker = _SHADES[k % len(_SHADES)], MARKERS[k % len(MARKERS)]
+    look: dict[str, Any] = {"ls": "none", "marker": marker, "ms": 2.8, "color": shade, "mew": 0.6, "zorder": 3}
+    look["mfc"] = "white" if k % 2 else shade
     ax.axhline(0.0, color=FAINT, lw=0.8, zorder=1)
     for place, (x, y) in enumerate(zip(at, rows, strict=True)):
-        ax.plot(
-            x, y, ls="none", marker=marker, ms=2.8, color=shade, mfc="white" if k % 2 else shade, mew=0.6,
-            label=label if place == 0 else None, zorder=3,
-        )  # fmt: skip
+        ax.plot(x, y, label=label if place == 0 else None, **look)
     shortest = min(at, key=len)
     mean = np.mean([np.interp(shortest, x, y) for x, y in zip(at, rows, strict=True)], axis=0)
     ax.plot(shortest, mean, color=shade, ls=LINES[k % len(LINES)], lw=0.9, zorder=2)

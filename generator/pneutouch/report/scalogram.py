@@ -39,7 +39,7 @@ class ScannedState:
 
 def scalogram_chart(
     states: Sequence[ScannedState], expected: Mapping[str, float], size: tuple[float, float] = SIZE
-) -> str:  # fmt: skip
+) -> str:
     """States side by side as SVG, colours on one scale; ``expected`` maps labels to frequencies in Hz, ``size`` is in mm.
 
     What the record's ends reach (the cone of influence) is hatched. The scalograms are one PNG each inside.

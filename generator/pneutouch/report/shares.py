@@ -35,9 +35,14 @@ def share_bars(shares: dict[str, dict[str, float]]) -> str:
                 style = {"color": INK, **BOLD} if row == 0 else {"color": MUTED}
                 text_of = f"{text}  at {label}" if row == 0 else text
                 ax.annotate(
-                    text_of, (100 * value, height), xytext=(3, -0.3), textcoords="offset points", va="center", fontsize=6.5,
+                    text_of,
+                    (100 * value, height),
+                    xytext=(3, -0.3),
+                    textcoords="offset points",
+                    va="center",
+                    fontsize=6.5,
                     **style,
-                )  # fmt: skip
+                )
         ax.set_yticks(range(len(rows)), list(rows))
         ax.invert_yaxis()
         ax.grid(False, axis="y")

@@ -18,12 +18,13 @@ DASH = "–"
 def content_of(sheet: SheetData) -> dict[str, Any]:
     """The sections of the sheet; every leaf is text, ready to be printed."""
     document = sheet.scene.design.document
+    date = document.date.isoformat() if document.date else "undated"
     return {
         "title": document.title,
         "name": sheet.scene.name,
         "part_number": ordering.part_number(sheet.scene),
         "revision": document.revision,
-        "date": document.date.isoformat() if document.date else "undated",
+        "date": date,
         "tool": f"pneutouch {__version__}",
         "input_hash": sheet.input_hash,
         "status": "Predicted. No unit has been built or tested.",
@@ -48,8 +49,8 @@ def content_of(sheet: SheetData) -> dict[str, Any]:
         "assumptions": list(sheet.prediction.assumptions),
         "findings": [[f.severity, f.rule, f.message, f.fix] for f in sheet.findings],
         "sources": _sources(sheet),
-        "revisions": [[document.revision, document.date.isoformat() if document.date else "undated", "As predicted; first issue of this revision."]],
-    }  # fmt: skip
+        "revisions": [[document.revision, date, "As predicted; first issue of this revision."]],
+    }
 
 
 def _key_figures(sheet: SheetData) -> list[list[str]]:
@@ -98,35 +99,32 @@ def _ratings(sheet: SheetData) -> list[list[str]]:
     """Absolute maximum ratings: quantity, value, unit, basis."""
     limits = sheet.prediction.limits
     basis = f"{sheet.rating.share:.0%} of the {limits.binding} ({limits.lowest / KPA:.2f} kPa, model {sheet.prediction.model})"
+    gauge = f"{NOT_TESTED}; the pressure sensor (SMC PSE543-R06) reads to 100 kPa"
     return [
         ["Driving pressure", f"{sheet.rating.driving_pressure_kPa:.1f}", "kPa gauge", basis],
-        ["Cavity pressure while pressed", DASH, "kPa gauge", f"{NOT_TESTED}; the pressure sensor (SMC PSE543-R06) reads to 100 kPa"],
+        ["Cavity pressure while pressed", DASH, "kPa gauge", gauge],
         ["Overload force", DASH, "N", NOT_TESTED],
         ["Burst pressure", DASH, "kPa", NOT_TESTED],
         ["Temperature", DASH, "°C", NOT_TESTED + "; the paper's tests ran at 18 to 26 °C"],
-    ]  # fmt: skip
+    ]
 
 
 def _operating(sheet: SheetData) -> list[list[str]]:
     """Operating conditions that the figures hold for."""
     design = sheet.scene.design
     pressures = ", ".join(f"{p:g}" for p in design.pneumatics.driving_pressures_kPa)
-    stated = "stated in the design" if design.pneumatics.dead_volume_mL is not None else (
-        f"connector {sheet.assembly.internal_volume / ML:.3f} mL and {design.pneumatics.tube_length_mm:g} mm of "
-        f"{sheet.scene.tube.outer_diameter:g} x {sheet.scene.tube.inner_diameter:g} mm tube"
-    )  # fmt: skip
+    stated = "stated in the design"
+    if design.pneumatics.dead_volume_mL is None:
+        tube = f"{sheet.scene.tube.outer_diameter:g} x {sheet.scene.tube.inner_diameter:g} mm tube"
+        length = f"{design.pneumatics.tube_length_mm:g} mm of {tube}"
+        stated = f"connector {sheet.assembly.internal_volume / ML:.3f} mL and {length}"
     return [
         ["Driving pressure", pressures, "kPa gauge", "before contact"],
         ["Medium", "air", "", "trapped, isothermal"],
         ["Ambient pressure", f"{design.pneumatics.ambient_pressure_kPa:g}", "kPa", "absolute"],
         ["Dead volume", f"{sheet.prediction.dead_volume / ML:.3f}", "mL", stated],
         ["Contact body", f"Ø{design.indentation.plate_diameter_mm:g}", "mm", "rigid, flat, frictionless plate"],
-        [
-            "Indentation",
-            f"0 to {design.depth_mm:.2f}",
-            "mm",
-            f"{design.indentation.steps} steps from first contact",
-        ],
+        ["Indentation", f"0 to {design.depth_mm:.2f}", "mm", f"{design.indentation.steps} steps from first contact"],
     ]
 
 
@@ -134,13 +132,20 @@ def _performance(sheet: SheetData) -> list[list[str]]:
     """One row a driving pressure."""
     return [
         [
-            f"{s.driving_pressure / KPA:g}", f"{s.apex_inner:.2f}", f"{s.apex_outer:.2f}", _sensitivity(s),
-            interval(document) or DASH, _published(sheet, s.driving_pressure / KPA), f"{s.figures.r_squared:.4f}" if s.figures else DASH,
+            f"{s.driving_pressure / KPA:g}",
+            f"{s.apex_inner:.2f}",
+            f"{s.apex_outer:.2f}",
+            _sensitivity(s),
+            interval(document) or DASH,
+            _published(sheet, s.driving_pressure / KPA),
+            f"{s.figures.r_squared:.4f}" if s.figures else DASH,
             f"{100 * s.figures.nonlinearity:.1f}" if s.figures else DASH,
-            f"{s.figures.stiffness:.2f}" if s.figures else DASH, _range(s), _ends(s),
+            f"{s.figures.stiffness:.2f}" if s.figures else DASH,
+            _range(s),
+            _ends(s),
         ]
         for s, document in zip(sheet.prediction.states, sheet.uncertainty, strict=True)
-    ]  # fmt: skip
+    ]
 
 
 def _published(sheet: SheetData, pressure_kPa: float) -> str:
@@ -158,15 +163,15 @@ def _limits(sheet: SheetData) -> list[list[str]]:
     limits, point = sheet.prediction.limits, sheet.prediction.limit_point
     broken = DASH if limits.break_strain is None else f"{limits.break_strain / KPA:.1f}"
     where = "the resin's least elongation at break" + ("; not met before the limit point" if broken == DASH else "")
-    reach = "none: the pressure goes on rising" if point is None else (
-        f"dome snaps at {point.apex_inner:.2f} mm inside, {point.apex_outer:.2f} mm outside"
-    )  # fmt: skip
+    reach = "none: the pressure goes on rising"
+    if point is not None:
+        reach = f"dome snaps at {point.apex_inner:.2f} mm inside, {point.apex_outer:.2f} mm outside"
     peak = DASH if limits.limit_point is None else f"{limits.limit_point / KPA:.2f}"
     rows = [
         ["limit point", peak, reach],
         ["break strain", broken, where],
         ["gauge range", f"{limits.gauge / KPA:g}", "pressure sensor of ±100 kPa"],
-    ]  # fmt: skip
+    ]
     return [[*row, "binds" if row[0] == limits.binding else ""] for row in rows]
 
 
@@ -175,10 +180,9 @@ def _bodies(sheet: SheetData) -> list[list[str]]:
     rows = []
     for solid in sheet.assembly.solids:
         printer, mode = sheet.assembly.machine(solid.name)
-        rows.append([
-            solid.name, solid.material.label, f"{solid.volume / ML:.3f} mL, {solid.mass:.2f} g",
-            f"{printer.title}, {mode.name}, {mode.layer_height_um:g} µm", printer.support,
-        ])  # fmt: skip
+        size, layers = f"{solid.volume / ML:.3f} mL, {solid.mass:.2f} g", f"{mode.layer_height_um:g} µm"
+        machine = f"{printer.title}, {mode.name}, {layers}"
+        rows.append([solid.name, solid.material.label, size, machine, printer.support])
     return rows
 
 
@@ -186,10 +190,13 @@ def _sources(sheet: SheetData) -> list[list[str]]:
     """Where the resin's numbers come from: quantity, value, source."""
     m = sheet.scene.membrane_material
     entries = [
-        ("Shear modulus, MPa", m.shear_modulus_MPa), ("Poisson ratio", m.poisson_ratio),
-        ("Density, g/cm³", m.density_g_per_cm3), ("Shore A", m.shore_a),
-        ("Tensile strength, MPa", m.tensile_strength_MPa), ("Elongation at break, %", m.elongation_at_break_percent),
-    ]  # fmt: skip
+        ("Shear modulus, MPa", m.shear_modulus_MPa),
+        ("Poisson ratio", m.poisson_ratio),
+        ("Density, g/cm³", m.density_g_per_cm3),
+        ("Shore A", m.shore_a),
+        ("Tensile strength, MPa", m.tensile_strength_MPa),
+        ("Elongation at break, %", m.elongation_at_break_percent),
+    ]
     rows = [[what, quantity.text(), quantity.source] for what, quantity in entries if quantity is not None]
     if m.measured is not None:
         rows.append(

@@ -7,6 +7,7 @@ import io
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pneutouch.parts.lettering.glyphs import FONTS
@@ -23,18 +24,7 @@ MM = 1 / 25.4
 LINES = ("-", (0, (5, 1.6)), (0, (2.5, 1.2)), (0, (5, 1.2, 1, 1.2)), (0, (1, 1.1)))
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 
-_SETTINGS: dict[Any, Any] = {
-    "font.family": "Inter", "font.size": 7.5, "text.color": INK,
-    "axes.edgecolor": INK, "axes.labelcolor": INK, "axes.linewidth": 0.6, "axes.labelsize": 7.5,
-    "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "axes.axisbelow": True,
-    "grid.color": "#E4E9ED", "grid.linewidth": 0.5,
-    "xtick.color": INK, "ytick.color": INK, "xtick.labelsize": 7, "ytick.labelsize": 7,
-    "xtick.major.width": 0.6, "ytick.major.width": 0.6, "xtick.major.size": 2.5, "ytick.major.size": 2.5,
-    "lines.linewidth": 1.2, "lines.markersize": 3.2, "legend.fontsize": 7, "legend.frameon": False,
-    "hatch.linewidth": 0.35, "svg.hashsalt": "pneutouch", "svg.fonttype": "path",
-    "mathtext.fontset": "custom", "mathtext.rm": "Inter", "mathtext.it": "Inter", "mathtext.bf": "Inter",
-    "mathtext.cal": "Inter",
-}  # fmt: skip
+_SETTINGS = Path(__file__).with_name("figures.mplstyle")
 
 
 _SVG_DPI = 72.0
@@ -50,7 +40,7 @@ def figure(width_mm: float, height_mm: float) -> Iterator[Figure]:
 
     for name in ("Inter-Regular.otf", "Inter-SemiBold.otf"):
         font_manager.fontManager.addfont(FONTS / name)
-    with matplotlib.rc_context(_SETTINGS):
+    with matplotlib.rc_context(fname=_SETTINGS):
         yield MplFigure(figsize=(width_mm * MM, height_mm * MM), layout="constrained")
 
 
@@ -119,13 +109,15 @@ def _labelled(
     ax: Axes, at: tuple[float, float], text: str, place: tuple[float, float], side: str, look: dict[str, Any]
 ) -> None:
     """One label with a thin line to its point."""
-    ax.annotate(
-        text, at, xytext=place, textcoords="axes fraction", ha=side, va="center", annotation_clip=False, zorder=5,
-        path_effects=halo(), arrowprops={
-            "arrowstyle": "-", "lw": 0.4, "color": MUTED, "relpos": (0 if side == "left" else 1, 0.5), "shrinkA": 2, "shrinkB": 1,
-        },
-        **look,
-    )  # fmt: skip
+    arrow: dict[str, Any] = {"arrowstyle": "-", "lw": 0.4, "color": MUTED, "shrinkA": 2, "shrinkB": 1}
+    arrow["relpos"] = (0 if side == "left" else 1, 0.5)
+    style: dict[str, Any] = {"va": "center", "annotation_clip": False, "zorder": 5, "path_effects": halo(), **look}
+    ax.annotate(text, at, xytext=place, textcoords="axes fraction", ha=side, arrowprops=arrow, **style)
+
+
+def note(ax: Axes, text: str, at: tuple[float, float], offset: tuple[float, float], **look: Any) -> None:
+    """A small text ``offset`` points from a point of the data."""
+    ax.annotate(text, at, xytext=offset, textcoords="offset points", **{"fontsize": 6.5, **look})
 
 
 def halo() -> list[AbstractPathEffect]:

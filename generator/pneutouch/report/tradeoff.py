@@ -16,21 +16,17 @@ def tradeoff_chart(tradeoff: TradeOff, size: tuple[float, float]) -> str:
     chosen = tradeoff.spots[0].resin if tradeoff.spots else ""
     with figure(*size) as drawn:
         ax = drawn.add_subplot()
-        ax.set(
-            xscale="log", yscale="log", xlabel=f"sensitivity at {tradeoff.driving_pressure_kPa:g} kPa  (kPa/N)",
-            ylabel="greatest force range  (N)", **_limits(tradeoff),
-        )  # fmt: skip
+        sensitivity = f"sensitivity at {tradeoff.driving_pressure_kPa:g} kPa  (kPa/N)"
+        ax.set(xscale="log", yscale="log", xlabel=sensitivity, ylabel="greatest force range  (N)", **_limits(tradeoff))
         _window(ax, tradeoff)
         _gauge(ax, tradeoff)
         starts: list[Label] = []
         for k, front in enumerate(tradeoff.known):
             s, force, title = front.sensitivity_kPa_per_N, front.force, front.resin.material.title
             picked = title == chosen
-            ax.plot(
-                s, force, color=ACCENT if picked else INK, lw=2.0 if picked else 0.8, zorder=4 if picked else 3,
-                ls=LINES[0] if picked else LINES[k % len(LINES)],
-            )  # fmt: skip
-            ax.plot(s[0], force[0], "o", color=ACCENT if picked else INK, ms=2.2, zorder=4)
+            colour, line = ACCENT if picked else INK, LINES[0] if picked else LINES[k % len(LINES)]
+            ax.plot(s, force, color=colour, lw=2.0 if picked else 0.8, zorder=4 if picked else 3, ls=line)
+            ax.plot(s[0], force[0], "o", color=colour, ms=2.2, zorder=4)
             look = {"fontsize": 6.5, "color": INK, **BOLD} if picked else {"fontsize": 6.5, "color": INK}
             starts.append((float(s[0]), float(force[0]), f"{title}  {s[0]:.2g} to {s[-1]:.2g}", look))
         label_points(ax, starts, (0.06, 0.05))
@@ -55,8 +51,10 @@ def _limits(tradeoff: TradeOff) -> dict[str, tuple[float, float]]:
     y = [float(value) for front in tradeoff.known for value in front.force]
     x += [spot.sensitivity_kPa_per_N for spot in tradeoff.spots] + list(tradeoff.window_kPa_per_N or ())
     y += [spot.force for spot in tradeoff.spots] + ([] if tradeoff.force is None else [tradeoff.force])
-    return {"xlim": (min(x, default=0.1) / 1.3, max(x, default=10.0) * 1.3),
-            "ylim": (min(y, default=0.1) / 1.4, max(y, default=10.0) * 2.0)}  # fmt: skip
+    return {
+        "xlim": (min(x, default=0.1) / 1.3, max(x, default=10.0) * 1.3),
+        "ylim": (min(y, default=0.1) / 1.4, max(y, default=10.0) * 2.0),
+    }
 
 
 def _window(ax: Axes, tradeoff: TradeOff) -> None:
@@ -80,7 +78,5 @@ def _gauge(ax: Axes, tradeoff: TradeOff) -> None:
     """Where the cavity pressure reaches the end of the pressure sensor's range: no design is beyond."""
     low, high = ax.get_xlim()
     ax.plot([low, high], [tradeoff.gauge_kPa / low, tradeoff.gauge_kPa / high], color=FAINT, lw=5, zorder=2)
-    ax.text(
-        0.02, 0.03, f"grey band: end of the gauge's range,\nforce × sensitivity = {tradeoff.gauge_kPa:g} kPa",
-        transform=ax.transAxes, fontsize=6.5, color=MUTED, va="bottom",
-    )  # fmt: skip
+    text = f"grey band: end of the gauge's range,\nforce × sensitivity = {tradeoff.gauge_kPa:g} kPa"
+    ax.text(0.02, 0.03, text, transform=ax.transAxes, fontsize=6.5, color=MUTED, va="bottom")

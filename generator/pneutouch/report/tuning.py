@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pneutouch.evaluation.chart_data import TuningChart
-from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MUTED, Label, figure, halo, label_ends, svg
+from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MUTED, Label, figure, halo, label_ends, note, svg
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,21 +18,12 @@ def tuning_chart(tuning: TuningChart, size: tuple[float, float]) -> str:
     chosen = tuning.chosen
     with figure(*size) as drawn:
         ax = drawn.add_subplot()
-        ax.fill_between(
-            chosen.driving_pressure_kPa,
-            tuning.low_kPa_per_N,
-            tuning.high_kPa_per_N,
-            fc=FAINT,
-            alpha=0.55,
-            ec="none",
-            zorder=1,
-        )
+        look: dict[str, Any] = {"fc": FAINT, "alpha": 0.55, "ec": "none", "zorder": 1}
+        ax.fill_between(chosen.driving_pressure_kPa, tuning.low_kPa_per_N, tuning.high_kPa_per_N, **look)
         for edge in (tuning.low_kPa_per_N, tuning.high_kPa_per_N):
             ax.plot(chosen.driving_pressure_kPa, edge, color=MUTED, lw=0.6, zorder=2)
-        ends: list[Label] = [(
-            float(chosen.driving_pressure_kPa[-1]), float(chosen.sensitivity_kPa_per_N[-1]), chosen.label,
-            {"fontsize": 6.5, "color": INK, **BOLD},
-        )]  # fmt: skip
+        at = float(chosen.driving_pressure_kPa[-1]), float(chosen.sensitivity_kPa_per_N[-1])
+        ends: list[Label] = [(*at, chosen.label, {"fontsize": 6.5, "color": INK, **BOLD})]
         for k, other in enumerate(tuning.others):
             ax.plot(
                 other.driving_pressure_kPa,
@@ -54,10 +45,8 @@ def tuning_chart(tuning: TuningChart, size: tuple[float, float]) -> str:
             *(float(other.sensitivity_kPa_per_N.max()) for other in tuning.others),
         ]
         top = 1.12 * max(most + [value for _, value in tuning.published_kPa_per_N])
-        ax.set(
-            xlabel="driving pressure  (kPa)", ylabel="sensitivity  (kPa/N)", ylim=(0, top),
-            xlim=(0, float(max(chosen.driving_pressure_kPa[-1], *tuning.working_kPa_per_N))),
-        )  # fmt: skip
+        right = float(max(chosen.driving_pressure_kPa[-1], *tuning.working_kPa_per_N))
+        ax.set(xlabel="driving pressure  (kPa)", ylabel="sensitivity  (kPa/N)", ylim=(0, top), xlim=(0, right))
         _mark(ax, tuning)
         if tuning.others:
             label_ends(ax, ends)
@@ -71,21 +60,10 @@ def _mark(ax: Axes, tuning: TuningChart) -> None:
         ax.plot(pressure, value, "o", color=INK, mfc="white", ms=4.5, zorder=5, clip_on=False)
     last, value = list(tuning.working_kPa_per_N.items())[-1]
     side = -1 if last > 0.5 * ax.get_xlim()[1] else 1
-    ax.annotate(
-        f"{value:.2f} kPa/N\nat {last:g} kPa", (last, 0.0), xytext=(4 * side, 5), textcoords="offset points", va="bottom",
-        ha="right" if side < 0 else "left", fontsize=6.5,
-    )  # fmt: skip
-    ax.annotate(
-        "k = 2", (tuning.chosen.driving_pressure_kPa[-1], tuning.high_kPa_per_N[-1]), xytext=(-4, -3), textcoords="offset points", va="top",
-        ha="right", fontsize=6.5, color=INK,
-    )  # fmt: skip
+    text, ha = f"{value:.2f} kPa/N\nat {last:g} kPa", "right" if side < 0 else "left"
+    note(ax, text, (last, 0.0), (4 * side, 5), va="bottom", ha=ha)
+    end = (tuning.chosen.driving_pressure_kPa[-1], tuning.high_kPa_per_N[-1])
+    note(ax, "k = 2", end, (-4, -3), va="top", ha="right", color=INK)
     if tuning.published_kPa_per_N:
-        ax.annotate(
-            "published measurement",
-            tuning.published_kPa_per_N[0],
-            xytext=(7, 2),
-            textcoords="offset points",
-            va="bottom",
-            fontsize=6.5,
-            path_effects=halo(),
-        )
+        first = tuning.published_kPa_per_N[0]
+        note(ax, "published measurement", first, (7, 2), va="bottom", path_effects=halo())

@@ -35,9 +35,7 @@ class _Field:
 
     def __init__(self, shape: tuple[int, int, int], pitch: tuple[float, float, float], seed: int) -> None:
         width = _WIDTH * float(np.prod(pitch)) ** (1 / 3)
-        reach = [
-            min(int(np.ceil(_REACH * width / step)), (n - 1) // 2) for step, n in zip(pitch, shape, strict=True)
-        ]  # fmt: skip
+        reach = [min(int(np.ceil(_REACH * width / step)), (n - 1) // 2) for step, n in zip(pitch, shape, strict=True)]
         grid = np.meshgrid(*(np.arange(-r, r + 1) for r in reach), indexing="ij")
         offsets = np.stack(grid, axis=-1).reshape(-1, 3)
         square = ((offsets * np.array(pitch)) ** 2).sum(axis=1)

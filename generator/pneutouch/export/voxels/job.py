@@ -14,9 +14,15 @@ BACKGROUND = (0, 0, 0, 255)
 """Opaque black: the background of the utility's own files (BackGroundMaterialRGBA)."""
 
 PALETTE = (
-    (230, 159, 0, 255), (86, 180, 233, 255), (0, 158, 115, 255), (240, 228, 66, 255), (0, 114, 178, 255),
-    (213, 94, 0, 255), (204, 121, 167, 255), (255, 255, 255, 255),
-)  # fmt: skip
+    (230, 159, 0, 255),
+    (86, 180, 233, 255),
+    (0, 158, 115, 255),
+    (240, 228, 66, 255),
+    (0, 114, 178, 255),
+    (213, 94, 0, 255),
+    (204, 121, 167, 255),
+    (255, 255, 255, 255),
+)
 """Colours that people of any colour vision distinguish (M. Okabe and K. Ito, Color Universal Design, 2008), and white."""
 
 

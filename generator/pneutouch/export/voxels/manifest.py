@@ -39,29 +39,38 @@ def manifest(
     """The manifest of a stack that has been sliced; ``about`` goes in as it is: design, printer, mode, input hash."""
     voxel = job.raster.voxel
     return {
-        **about, "format": FORMAT, "prefix": prefix, **raster_entry(job.raster),
+        **about,
+        "format": FORMAT,
+        "prefix": prefix,
+        **raster_entry(job.raster),
         "background_rgba": list(BACKGROUND),
         "resins": {
-            resin: {"rgba": list(colour), "voxels": slicer.counts[resin], "volume_mm3": round(slicer.counts[resin] * voxel, 6)}
+            resin: {"rgba": list(colour), "voxels": count, "volume_mm3": round(count * voxel, 6)}
             for resin, colour in job.colours.items()
+            for count in [slicer.counts[resin]]
         },
-        "bodies": {body.solid.name: _body(body, slicer.tallies[body.solid.name], job.raster.pitch) for body in job.bodies},
-        "dither": {"method": METHOD, "seed": job.seed,  "cube_mm": CUBE, "least_share_of_a_cube": FULL},
+        "bodies": {
+            body.solid.name: _body(body, slicer.tallies[body.solid.name], job.raster.pitch) for body in job.bodies
+        },
+        "dither": {"method": METHOD, "seed": job.seed, "cube_mm": CUBE, "least_share_of_a_cube": FULL},
         "assumptions": _assumptions(job),
         "sha256": whole_hash(hashes),
         "slices": list(hashes),
-    }  # fmt: skip
+    }
 
 
 def raster_entry(raster: Raster) -> dict[str, Any]:
     """The raster's entries."""
     x, y, z = (step / UM for step in raster.pitch)
     return {
-        "dpi": list(raster.dpi), "pixel_um": [round(x, 6), round(y, 6)], "layer_um": round(z, 6),
-        "pixels": [len(raster.x), len(raster.y)], "layers": len(raster.z),
+        "dpi": list(raster.dpi),
+        "pixel_um": [round(x, 6), round(y, 6)],
+        "layer_um": round(z, 6),
+        "pixels": [len(raster.x), len(raster.y)],
+        "layers": len(raster.z),
         "size_mm": [round(length, 6) for length in raster.size],
         "first_voxel_mm": [round(float(axis[0]), 6) for axis in (raster.x, raster.y, raster.z)],
-    }  # fmt: skip
+    }
 
 
 def shortfalls(job: VoxelJob, slicer: VoxelSlicer) -> list[str]:
@@ -81,17 +90,25 @@ def shortfalls(job: VoxelJob, slicer: VoxelSlicer) -> list[str]:
 def _body(body: VoxelBody, tally: VoxelCounts, pitch: tuple[float, float, float]) -> dict[str, Any]:
     exact = body.solid.volume
     entry: dict[str, Any] = {
-        "material": body.solid.material.label, "resins": list(body.blend.resins), "voxels": tally.voxels,
-        "volume_mm3": round(tally.voxels * math.prod(pitch), 6), "exact_volume_mm3": round(exact, 6),
-    }  # fmt: skip
+        "material": body.solid.material.label,
+        "resins": list(body.blend.resins),
+        "voxels": tally.voxels,
+        "volume_mm3": round(tally.voxels * math.prod(pitch), 6),
+        "exact_volume_mm3": round(exact, 6),
+    }
     if body.blend.share is None or not tally.voxels:
         return entry
     return {
-        **entry, "made_up_within_mm": round(reach_for(body.blend.most, pitch), 6), "stiff_resin": body.blend.resins[1], "skin_voxels": tally.skin,
-        "fraction_requested": round(tally.requested / tally.voxels, 9), "fraction_given": round(tally.given / tally.voxels, 9),
+        **entry,
+        "made_up_within_mm": round(reach_for(body.blend.most, pitch), 6),
+        "stiff_resin": body.blend.resins[1],
+        "skin_voxels": tally.skin,
+        "fraction_requested": round(tally.requested / tally.voxels, 9),
+        "fraction_given": round(tally.given / tally.voxels, 9),
         "fraction_realised": round(tally.realised / tally.voxels, 9),
-        "worst_cube": round(tally.worst, 9), "cubes": tally.cubes,
-    }  # fmt: skip
+        "worst_cube": round(tally.worst, 9),
+        "cubes": tally.cubes,
+    }
 
 
 def _assumptions(job: VoxelJob) -> list[str]:

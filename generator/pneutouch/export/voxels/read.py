@@ -22,9 +22,19 @@ MOST_COLOURS = 6
 """Of the utility (GrabCAD Voxel Print guide), whatever a manifest states."""
 
 _NEEDED: dict[str, type | tuple[type, ...]] = {
-    "format": int, "prefix": str, "dpi": list, "pixels": list, "layers": int, "layer_um": (int, float), "pixel_um": list,
-    "background_rgba": list, "resins": dict, "bodies": dict, "slices": list, "sha256": str,
-}  # fmt: skip
+    "format": int,
+    "prefix": str,
+    "dpi": list,
+    "pixels": list,
+    "layers": int,
+    "layer_um": (int, float),
+    "pixel_um": list,
+    "background_rgba": list,
+    "resins": dict,
+    "bodies": dict,
+    "slices": list,
+    "sha256": str,
+}
 
 
 @dataclass(frozen=True)
