@@ -1,4 +1,5 @@
-"""Effect of the air, trade-off and tuning of one design, for its datasheet, by the atlas, which must cover the sensor."""
+"""Effect of the air, trade-off and tuning of one design, for its datasheet, by the atlas, which must cover the
+sensor."""
 
 from __future__ import annotations
 

@@ -94,7 +94,8 @@ class Evaluation:
 
     @cached_property
     def uncertainty(self) -> tuple[dict[str, Any], ...]:
-        """Uncertainty of the figures of each state; computed on first use, so that a sweep without it saves the time."""
+        """Uncertainty of the figures of each state; computed on first use, so that a sweep without it saves the
+        time."""
         from pneutouch.evaluation.uncertainty import documents
 
         return documents(self.prediction, self.sensor, self.scene, lambda: self.resins)
@@ -190,7 +191,8 @@ def _material_sensor(scene: ResolvedDesign) -> Sensor:
 
 
 def _aged(scene: ResolvedDesign, sensor: Sensor) -> tuple[Sensor, str]:
-    """The sensor after a year, and what is assumed of it. Raises InputError where the resin's hardness then is not known."""
+    """The sensor after a year, and what is assumed of it. Raises InputError where the resin's hardness then is not
+    known."""
     material = scene.membrane_material
     try:
         ratio = ageing_ratio(material)
@@ -218,8 +220,8 @@ def _check_plate(scene: ResolvedDesign, prediction: SensorPrediction) -> None:
         ending = [event for event in state.events if event.ends_range]
         if ending and ending[0].kind == "plate edge":
             raise InputError(
-                f"{scene.where}: indentation.plate_diameter_mm = {scene.design.indentation.plate_diameter_mm:g}: the contact "
-                f"reaches the plate's edge at {ending[0].indentation:.2f} mm of indentation; it must be wider than the "
-                f"contact (twice membrane.inner_radius_mm = {2 * scene.design.membrane.inner_radius_mm:g} mm is safe), or "
-                f"indentation.depth_mm less"
+                f"{scene.where}: indentation.plate_diameter_mm = {scene.design.indentation.plate_diameter_mm:g}: the "
+                f"contact reaches the plate's edge at {ending[0].indentation:.2f} mm of indentation; it must be wider "
+                f"than the contact (twice membrane.inner_radius_mm = {2 * scene.design.membrane.inner_radius_mm:g} mm "
+                "is safe), or indentation.depth_mm less"
             )

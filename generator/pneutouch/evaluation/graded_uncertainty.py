@@ -1,9 +1,10 @@
-"""Uncertainty of a graded wall: the figures of the solid, the relative uncertainty of the even wall of its mean modulus.
+"""Uncertainty of a graded wall: the figures of the solid, the relative uncertainty of the even wall of its mean
+modulus.
 
 The atlas covers even walls alone. Differences of the solid would take two presses for each of six inputs, half a second
-each and state, and on meshes coarse enough to be quick they are noise: at 12 cells the derivative of the sensitivity by the
-wall of `designs/graded-dome.toml`, unpressurised, is +0.05, on the usual mesh -0.47. So the derivatives are those of the
-even wall of the same mean modulus, -0.47 too.
+each and state, and on meshes coarse enough to be quick they are noise: at 12 cells the derivative of the sensitivity by
+the wall of `designs/graded-dome.toml`, unpressurised, is +0.05, on the usual mesh -0.47. So the derivatives are those
+of the even wall of the same mean modulus, -0.47 too.
 """
 
 from __future__ import annotations
@@ -11,14 +12,15 @@ from __future__ import annotations
 from pneutouch.mechanics import Sensor
 
 GAP, STEEP_GAP = 0.2, 0.45
-"""How far the derivatives d ln sensitivity / d ln modulus and wall of the even wall were found from those of the graded solid,
-with the paper's sensor: with 0 to 25 % of the stiff resin in either direction, and with 0 to 40 %
+"""How far the derivatives d ln sensitivity / d ln modulus and wall of the even wall were found from those of the graded
+solid, with the paper's sensor: with 0 to 25 % of the stiff resin in either direction, and with 0 to 40 %
 (`tests/evaluation/test_graded_uncertainty.py`)."""
 
 _NOTE = (
-    "the wall is graded: the figures are the solid's, their relative uncertainty is that of an even wall of its mean modulus, "
-    f"whose logarithmic derivatives by modulus and wall were found within {GAP:g} of a graded one's (0 to 25 % of the stiff "
-    f"resin; {STEEP_GAP:g} for 0 to 40 %); all of the wall is taken stiffer, or all of it softer, than its mixing curve states"
+    "the wall is graded: the figures are the solid's, their relative uncertainty is that of an even wall of its mean "
+    f"modulus, whose logarithmic derivatives by modulus and wall were found within {GAP:g} of a graded one's (0 to 25 "
+    f"% of the stiff resin; {STEEP_GAP:g} for 0 to 40 %); all of the wall is taken stiffer, or all of it softer, than "
+    "its mixing curve states"
 )
 
 

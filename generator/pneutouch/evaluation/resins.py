@@ -78,11 +78,12 @@ def resin_of(scene: ResolvedDesign) -> str:
 
 
 def pressed(resin: str, sensor: Sensor, pressures: Sequence[float], depth: float, model: str) -> PressCurves:
-    """`press_curves` at ascending pressures in MPa; beyond the limit point InputError states the greatest allowed pressure."""
+    """`press_curves` at ascending pressures in MPa; beyond the limit point InputError states the greatest allowed
+    pressure."""
     try:
         return press_curves(sensor, pressures, depth, model)
     except BeyondLimitError as error:
         raise InputError(
-            f"{resin}: driving pressure {error.pressure / KPA:g} kPa is beyond the limit point, where the dome snaps; it must be "
-            f"less than {error.limit / KPA:.2f} kPa"
+            f"{resin}: driving pressure {error.pressure / KPA:g} kPa is beyond the limit point, where the dome snaps; "
+            f"it must be less than {error.limit / KPA:.2f} kPa"
         ) from None

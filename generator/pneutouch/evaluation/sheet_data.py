@@ -86,7 +86,8 @@ class ViscousData:
 
 
 class AgeingData(NamedTuple):
-    """Ratio of the modulus after a year to the fresh one, and pairs of driving pressure (MPa) and change of sensitivity."""
+    """Ratio of the modulus after a year to the fresh one, and pairs of driving pressure (MPa) and change of
+    sensitivity."""
 
     modulus_ratio: float
     sensitivity_change: tuple[tuple[float, float], ...]

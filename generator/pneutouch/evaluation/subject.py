@@ -29,7 +29,8 @@ _HINTS = {
 
 
 def subject_of(assembly: Assembly) -> PrintSubject:
-    """The bodies of a sensor with their machines, as they stand in them, and the faces that membrane and connector share."""
+    """The bodies of a sensor with their machines, as they stand in them, and the faces that membrane and connector
+    share."""
     scene, layout = assembly.scene, assembly.layout
     items = []
     for body, solid in zip(assembly.bodies, assembly.solids, strict=True):

@@ -29,7 +29,8 @@ _SENSITIVITY = FIGURES.index("sensitivity_kPa_per_N")
 def curve(sensor: Sensor, highest: float, label: str) -> TuningCurve | None:
     """From no driving pressure to ``highest`` (MPa), or to `RATED_SHARE` of the limit point where that comes first.
 
-    The sensor must lie in the atlas. Pressures at which it has no answer are left out; None where fewer than two are left.
+    The sensor must lie in the atlas. Pressures at which it has no answer are left out; None where fewer than two are
+    left.
     """
     limit = float(respond(batch_of(sensor, [0.0]), sensor.protocol.steps).limit_pressure[0])
     pressures = np.linspace(0.0, min(highest, RATED_SHARE * limit), POINTS)

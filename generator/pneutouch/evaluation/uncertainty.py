@@ -85,7 +85,8 @@ def documents(
 ) -> tuple[Document, ...]:
     """One document a state: see `mechanics.uncertainty.document`, with its ``summary``; or ``{"unknown": why}``.
 
-    ``resins`` gives the elastomers whose measurements the model's error is taken from. ``samples`` > 0 adds ``monte_carlo``: the same sources sampled that often, the 95.45 % interval of every figure.
+    ``resins`` gives the elastomers whose measurements the model's error is taken from. ``samples`` > 0 adds
+    ``monte_carlo``: the same sources sampled that often, the 95.45 % interval of every figure.
     """
     states, model = prediction.states, prediction.model
     notes_of_wall, sensor = notes_on(sensor), even_wall(sensor)

@@ -83,8 +83,8 @@ def check_readable(wrapper: Any, content: bytes) -> None:
         read_strictly(wrapper, content)
     except lib3mf.ELib3MFException as error:
         raise ComputationError(
-            f"3MF: lib3mf cannot read back what it wrote ({error.get_error_message()}); take a name and a title without "
-            "quotes, &, < and >, or report the design"
+            f"3MF: lib3mf cannot read back what it wrote ({error.get_error_message()}); take a name and a title "
+            "without quotes, &, < and >, or report the design"
         ) from None
 
 

@@ -138,7 +138,8 @@ Name = tuple[str, str]
 
 
 class Components:
-    """Which object refers to which, over all parts: a few references can stand for more objects than any reader holds."""
+    """Which object refers to which, over all parts: a few references can stand for more objects than any reader
+    holds."""
 
     def __init__(self, where: str) -> None:
         self.where, self.object = where, ("", "")
@@ -171,7 +172,8 @@ class Components:
                 counts[name] = 1 + sum(counts.get(child, 1) for child in children)
                 if counts[name] > MOST_COMPONENTS:
                     raise InputError(
-                        f"{self.where}: its components amount to more than {MOST_COMPONENTS} objects, which no sensor needs"
+                        f"{self.where}: its components amount to more than {MOST_COMPONENTS} objects, which no sensor "
+                        "needs"
                     )
             elif name not in counts:
                 if name in open_:
@@ -184,8 +186,8 @@ class Components:
 def _check_xml(content: bytes, where: str, noted: tuple[Components, str], must: bool) -> None:
     """Refuse a document type, entities and deep nesting, in any encoding; ``must`` be well-formed XML at all.
 
-    Parts with other endings are looked through as well: what is no XML fails at its first bytes. ``noted`` takes note of
-    the components, under the name of the part.
+    Parts with other endings are looked through as well: what is no XML fails at its first bytes. ``noted`` takes note
+    of the components, under the name of the part.
     """
     depth = 0
 

@@ -137,8 +137,8 @@ def _plot_states(ax: Axes, prediction: SensorPrediction, curve: Callable[[Sensor
 def sensitivities(curves: dict[str, ResinCurve], chosen: str, published_kPa_per_N: Mapping[float, float]) -> str:
     """Sensitivity over driving pressure for every resin, the chosen one picked out.
 
-    ``curves`` are by label; ``published_kPa_per_N`` maps driving pressures (kPa) to measured sensitivities (kPa/N) of this very
-    sensor, where there are any.
+    ``curves`` are by label; ``published_kPa_per_N`` maps driving pressures (kPa) to measured sensitivities (kPa/N) of
+    this very sensor, where there are any.
     """
     with figure(*SIZE) as drawn:
         ax = drawn.add_subplot()

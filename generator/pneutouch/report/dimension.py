@@ -27,7 +27,8 @@ def polar(radius: float, degrees: float) -> tuple[float, float]:
 def circle(ax: Axes, x: float, y: float, radius: float, **look: object) -> None:
     """A thin circle."""
     angle = np.linspace(0, 2 * np.pi, 181)
-    ax.plot(x + radius * np.cos(angle), y + radius * np.sin(angle), **{"color": INK, "lw": 0.7, **look})  # type: ignore[arg-type]
+    style: dict[str, Any] = {"color": INK, "lw": 0.7, **look}
+    ax.plot(x + radius * np.cos(angle), y + radius * np.sin(angle), **style)
 
 
 def _arrow(ax: Axes, start: tuple[float, float], end: tuple[float, float]) -> None:

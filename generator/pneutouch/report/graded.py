@@ -22,7 +22,8 @@ _SHADES = ("#F4F1EA", ACCENT)
 
 
 def grade_section(material: Material, scene: ResolvedDesign, size: tuple[float, float] = (180.0, 62.0)) -> str:
-    """Half section of the dome shaded by the stiff resin's fraction, next to fraction and modulus along the arc, as SVG.
+    """Half section of the dome shaded by the stiff resin's fraction, next to fraction and modulus along the arc, as
+    SVG.
 
     ``material`` must be graded; ``size`` is width and height in mm.
     """

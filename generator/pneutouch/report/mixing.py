@@ -24,7 +24,8 @@ _ORDER = (1, 3, 4, 2, 0)
 
 
 def mixing_chart(chart: MixingChart, size: tuple[float, float]) -> str:
-    """Shear modulus over fraction with bounds, curve, band and named points, as SVG; ``size`` is width and height in mm."""
+    """Shear modulus over fraction with bounds, curve, band and named points, as SVG; ``size`` is width and height in
+    mm."""
     law = chart.law
     with figure(*size) as drawn:
         ax = drawn.add_subplot()

@@ -19,7 +19,8 @@ _UNDATED = datetime.datetime(2026, 1, 1, tzinfo=datetime.UTC)
 
 
 def html(template: str, content: Mapping[str, Any], figures: Mapping[str, str], **more: str) -> str:
-    """A page that needs nothing from outside: fonts and figures (SVG by name) stand in it. ``more`` are further values."""
+    """A page that needs nothing from outside: fonts and figures (SVG by name) stand in it. ``more`` are further
+    values."""
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
     from markupsafe import Markup
 

@@ -28,10 +28,19 @@ def port_steps(scene: ResolvedDesign) -> str:
             if scene.mount.port_side == "rear"
             else ""
         )
-        return f"Port: push a {port.bore_diameter:g} mm drill or wire through the bore. Push {size} soft tube over the barb{behind}."
+        return (
+            f"Port: push a {port.bore_diameter:g} mm drill or wire through the bore. Push {size} soft tube over the "
+            f"barb{behind}."
+        )
     if isinstance(port, Thread):
-        return f"Port: drill the core hole to {port.core_diameter:g} mm, tap {port.thread}; screw the fitting in by hand until its gasket lies on the face."
+        return (
+            f"Port: drill the core hole to {port.core_diameter:g} mm, tap {port.thread}; screw the fitting in by hand "
+            "until its gasket lies on the face."
+        )
     if isinstance(port, Luer):
-        return "Port: clear the cone of support; check with a male Luer lock that it grips by the cone before the lock bottoms."
+        return (
+            "Port: clear the cone of support; check with a male Luer lock that it grips by the cone before the lock "
+            "bottoms."
+        )
     assert isinstance(port, PushIn)
     return f"Port: push {size} tube in to the stop, {port.depth:g} mm deep, and glue it in."

@@ -60,7 +60,8 @@ def _takes(sheet: SheetData) -> str:
         resins = ", ".join(f"{name} {volume:.2f} mL" for name, volume in job.resins.items())
         swaths = "" if job.swaths is None else f" x {job.swaths} swath{'s' if job.swaths > 1 else ''}"
         rows.append(
-            f"| {job.name} | {job.mode} | {resins} | {job.support / ML:.2f} mL | {job.layers}{swaths} | {_time(job.seconds)} |"
+            f"| {job.name} | {job.mode} | {resins} | {job.support / ML:.2f} mL | {job.layers}{swaths} | "
+            f"{_time(job.seconds)} |"
         )
         notes += [f"- {job.name}: {note}." for note in job.assumptions]
     glue_mL = sheet.assembly.glue_volume / ML

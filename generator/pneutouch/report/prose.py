@@ -35,11 +35,13 @@ HANDLING = (
 DEFINITIONS = (
     [
         "Sensitivity S",
-        "kPa/N; slope of the least-squares line of pressure rise over force, at a stated driving pressure, dead volume and range",
+        "kPa/N; slope of the least-squares line of pressure rise over force, at a stated driving pressure, dead volume "
+        "and range",
     ],
     [
         "k = 2",
-        "interval of a figure: value over and times e to the twofold standard uncertainty (JCGM 100); about 95 % where many sources add up",
+        "interval of a figure: value over and times e to the twofold standard uncertainty (JCGM 100); about 95 % where "
+        "many sources add up",
     ],
     ["Force range", "from first contact to the first event that ends the range, or to the stated depth"],
     ["Non-linearity", "greatest distance from that line over the full-scale pressure rise"],
@@ -49,8 +51,8 @@ DEFINITIONS = (
 )
 
 TUNING = (
-    "Tuning: sensitivity of this design from no driving pressure to its rated one, by the atlas, with its k = 2 interval "
-    "(grey); circles: the predicted states."
+    "Tuning: sensitivity of this design from no driving pressure to its rated one, by the atlas, with its k = 2 "
+    "interval (grey); circles: the predicted states."
 )
 SHAPES = "Half sections of the deformed wall, shaded by the greatest principal stretch; thin outlines at rest."
 NO_SHAPES = "Half sections of the deformed wall are drawn by the solid alone: build with model solid."
@@ -59,8 +61,9 @@ NO_SHAPES = "Half sections of the deformed wall are drawn by the solid alone: bu
 def tradeoff(driving_pressure_kPa: float, dead_volume_mL: float) -> str:
     """Caption of the trade-off chart; kPa and mL."""
     return (
-        f"Trade-off at {driving_pressure_kPa:g} kPa: the greatest force range that goes with each sensitivity, one line a resin of this "
-        f"printer with the sensitivities it reaches, wall and radius free to 60 mm, {dead_volume_mL:.3g} mL dead volume, by the atlas; no line crosses a limit."
+        f"Trade-off at {driving_pressure_kPa:g} kPa: the greatest force range that goes with each sensitivity, one "
+        "line a resin of this printer with the sensitivities it reaches, wall and radius free to 60 mm, "
+        f"{dead_volume_mL:.3g} mL dead volume, by the atlas; no line crosses a limit."
     )
 
 
@@ -68,10 +71,11 @@ def description(scene: ResolvedDesign) -> str:
     """One paragraph: what it is and how it works."""
     membrane = scene.design.membrane
     return (
-        f"A soft hemispherical membrane ({membrane.inner_radius_mm:g} mm inner radius, {membrane.wall_thickness_mm:g} mm "
-        f"wall, {scene.membrane_material.label}) closes an air cavity on a rigid connector ({scene.connector_material.label}). "
-        "Pressing the dome raises the pressure of the trapped air, and the pressure reads the force. Stiffness and "
-        "sensitivity are set offline by the resin and online by the driving pressure."
+        f"A soft hemispherical membrane ({membrane.inner_radius_mm:g} mm inner radius, {membrane.wall_thickness_mm:g} "
+        f"mm wall, {scene.membrane_material.label}) closes an air cavity on a rigid connector "
+        f"({scene.connector_material.label}). Pressing the dome raises the pressure of the trapped air, and the "
+        "pressure reads the force. Stiffness and sensitivity are set offline by the resin and online by the driving "
+        "pressure."
     )
 
 
@@ -80,8 +84,8 @@ def method(scene: ResolvedDesign) -> tuple[str, ...]:
     indentation = scene.design.indentation
     step = scene.design.depth_mm / indentation.steps
     return (
-        f"Press a rigid flat plate of {indentation.plate_diameter_mm:g} mm centrally, in {indentation.steps} steps of {step:.2f} mm "
-        f"to {scene.design.depth_mm:.2f} mm; hold 4 s.",
+        f"Press a rigid flat plate of {indentation.plate_diameter_mm:g} mm centrally, in {indentation.steps} steps of "
+        f"{step:.2f} mm to {scene.design.depth_mm:.2f} mm; hold 4 s.",
         "Return to no contact, rest 30 s and reset the driving pressure between indentations.",
         "Three runs at each driving pressure; record force, cavity pressure and plate position.",
         "Sensitivity is the slope of the least-squares line, with intercept, of pressure rise over force.",
@@ -96,7 +100,8 @@ def printing(scene: ResolvedDesign) -> list[str]:
     if scene.membrane_material.is_digital:
         pair = " + ".join(scene.membrane_material.base_resins)
         lines.append(
-            f"Digital material: choose {scene.membrane_material.title} made of {pair}; the vendor uses the same digits for other pairs."
+            f"Digital material: choose {scene.membrane_material.title} made of {pair}; the vendor uses the same digits "
+            "for other pairs."
         )
     opening = "the opening" if grown else "the open base"
     lines.append(
@@ -118,7 +123,8 @@ def _print_membrane(scene: ResolvedDesign, grown: bool) -> str:
         stands = "dome up" if up else "turned over, dome down"
         return (
             f"Membrane and connector: one print, {stands}, the membrane in {soft}, the connector in {rigid}; load both "
-            "bodies as one assembly. Support fills the cavity and leaves through the opening behind it. Plug: print apart."
+            "bodies as one assembly. Support fills the cavity and leaves through the opening behind it. Plug: print "
+            "apart."
         )
     if not up:
         return (
@@ -136,18 +142,19 @@ def _assembly(scene: ResolvedDesign) -> list[str]:
     seat, fit = scene.seat, f"Fit: {scene.fit_clearance:.2f} mm a side"
     if isinstance(seat, ClampedFlange):
         return [
-            f"Ring: print in {scene.connector_material.label}, cone up. {fit} around the flange. Lay the flange on the plate and the "
-            f"ring on the flange; drive {seat.screw_count} {seat.screw} screws crosswise until the ring's skirt meets the plate: it then "
-            f"squeezes the flange by {seat.squeeze:.0%}. No glue."
+            f"Ring: print in {scene.connector_material.label}, cone up. {fit} around the flange. Lay the flange on the "
+            f"plate and the ring on the flange; drive {seat.screw_count} {seat.screw} screws crosswise until the "
+            f"ring's skirt meets the plate: it then squeezes the flange by {seat.squeeze:.0%}. No glue."
         ]
     if isinstance(seat, OnePiece):
         return [
-            f"Plug: print in {scene.connector_material.label}. {fit} in the opening. When the cavity is clean and dry, glue the "
-            "plug's shoulder into the counterbore; keep glue off the gap above it, which is part of the air space."
+            f"Plug: print in {scene.connector_material.label}. {fit} in the opening. When the cavity is clean and dry, "
+            "glue the plug's shoulder into the counterbore; keep glue off the gap above it, which is part of the air "
+            "space."
         ]
     return [
-        f"{fit} between flange and groove, the printers' accuracies added up. Dry-fit, then fill the gap with a flexible "
-        "adhesive that wets both materials; the flange's underside lies on the seat."
+        f"{fit} between flange and groove, the printers' accuracies added up. Dry-fit, then fill the gap with a "
+        "flexible adhesive that wets both materials; the flange's underside lies on the seat."
     ]
 
 
@@ -155,10 +162,12 @@ def _mounting(scene: ResolvedDesign) -> list[str]:
     mount = scene.mount
     if isinstance(mount, RobotFlange):
         return [
-            f"Mount: centring boss into the robot's flange, dowel in its hole, {mount.count} {mount.screw} screws from the dome's side."
+            f"Mount: centring boss into the robot's flange, dowel in its hole, {mount.count} {mount.screw} screws from "
+            "the dome's side."
         ]
     if isinstance(mount, Sleeve):
         return [
-            f"Mount: push the sleeve over the {mount.finger_diameter:g} mm finger; tap and drive {mount.set_screw_count} {mount.screw} set screws."
+            f"Mount: push the sleeve over the {mount.finger_diameter:g} mm finger; tap and drive "
+            f"{mount.set_screw_count} {mount.screw} set screws."
         ]
     return []

@@ -61,9 +61,9 @@ def _notes(viscous: ViscousData) -> list[str]:
         for run, why in row.ended.items()
     ]
     return [
-        f"Pressed to {viscous.depth:.2f} mm; held after a press at {viscous.ramp_speed:g} mm/s; losses from 1 s to 600 s "
-        f"over the value at 1 s; loops at {slow:g} (slow) and {quick:g} mm/s (quick), the greatest difference in pressure "
-        "rise at equal force over the full-scale rise.",
+        f"Pressed to {viscous.depth:.2f} mm; held after a press at {viscous.ramp_speed:g} mm/s; losses from 1 s to 600 "
+        f"s over the value at 1 s; loops at {slow:g} (slow) and {quick:g} mm/s (quick), the greatest difference in "
+        "pressure rise at equal force over the full-scale rise.",
         *(f"{_letter(j)}: {source}." for j, source in enumerate(viscous.sources)),
         f"Model: {'; '.join(viscous.basis)}.",
         *([_CONTACT_LOST.format(min(lost), max(lost))] if lost else []),

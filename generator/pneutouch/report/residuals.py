@@ -19,7 +19,8 @@ _SHADES = (INK, ACCENT, MUTED)
 
 
 def residual_chart(runs: Sequence[RunResiduals], size: tuple[float, float]) -> str:
-    """Model less measured: force and pressure over indentation, and pressure over injected volume where there are injections.
+    """Model less measured: force and pressure over indentation, and pressure over injected volume where there are
+    injections.
 
     Pressures differ by marker, line and shade, so that they can be distinguished in grayscale. SVG, ``size`` in mm.
     """

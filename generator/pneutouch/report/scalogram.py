@@ -40,7 +40,8 @@ class ScannedState:
 def scalogram_chart(
     states: Sequence[ScannedState], expected: Mapping[str, float], size: tuple[float, float] = SIZE
 ) -> str:
-    """States side by side as SVG, colours on one scale; ``expected`` maps labels to frequencies in Hz, ``size`` is in mm.
+    """States side by side as SVG, colours on one scale; ``expected`` maps labels to frequencies in Hz, ``size`` is in
+    mm.
 
     What the record's ends reach (the cone of influence) is hatched. The scalograms are one PNG each inside.
     """

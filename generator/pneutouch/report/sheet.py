@@ -98,7 +98,10 @@ def _captions(sheet: SheetData) -> dict[str, str]:
 def _ratings(sheet: SheetData) -> list[list[str]]:
     """Absolute maximum ratings: quantity, value, unit, basis."""
     limits = sheet.prediction.limits
-    basis = f"{sheet.rating.share:.0%} of the {limits.binding} ({limits.lowest / KPA:.2f} kPa, model {sheet.prediction.model})"
+    basis = (
+        f"{sheet.rating.share:.0%} of the {limits.binding} ({limits.lowest / KPA:.2f} kPa, model "
+        f"{sheet.prediction.model})"
+    )
     gauge = f"{NOT_TESTED}; the pressure sensor (SMC PSE543-R06) reads to 100 kPa"
     return [
         ["Driving pressure", f"{sheet.rating.driving_pressure_kPa:.1f}", "kPa gauge", basis],

@@ -22,7 +22,8 @@ Share = Callable[[Array, Array], Array]
 class ResinBlend:
     """The resins of a body, soft one first; ``share`` is of the second, None where there is one alone.
 
-    ``most`` is its greatest value. ``assumed`` states what the share rests on where it was neither measured nor requested.
+    ``most`` is its greatest value. ``assumed`` states what the share rests on where it was neither measured nor
+    requested.
     """
 
     resins: tuple[str, ...]
@@ -66,6 +67,7 @@ def _assumed(name: str, resins: tuple[str, ...], library: Library, where: str) -
             if point.material == name:
                 return point.fraction, point.source
     raise InputError(
-        f"{where} = {name!r}: no vendor publishes how much {resins[1]} is in it, and printprofiles/mixing/{curve_name}.toml "
-        f"has no point for it; give {{ from = {resins[0]!r}, to = {resins[1]!r}, fraction = .. }} instead"
+        f"{where} = {name!r}: no vendor publishes how much {resins[1]} is in it, and "
+        f"printprofiles/mixing/{curve_name}.toml has no point for it; give "
+        f"{{ from = {resins[0]!r}, to = {resins[1]!r}, fraction = .. }} instead"
     )

@@ -1,8 +1,9 @@
 """Blue noise in three dimensions: thresholds for which any share of the voxels below lies evenly and without pattern.
 
-Void and cluster (R. Ulichney, Proc. SPIE 1913, 332-343, 1993, DOI 10.1117/12.152707) on a block that closes on itself, with
-distances in mm: voxels are not cubes. Energies are whole numbers, so that every machine ranks alike. Block stands next to
-block, each rolled by an amount of its own: side by side as they are they would show as a pattern of the block's size.
+Void and cluster (R. Ulichney, Proc. SPIE 1913, 332-343, 1993, DOI 10.1117/12.152707) on a block that closes on itself,
+with distances in mm: voxels are not cubes. Energies are whole numbers, so that every machine ranks alike. Block stands
+next to block, each rolled by an amount of its own: side by side as they are they would show as a pattern of the block's
+size.
 """
 
 from __future__ import annotations
@@ -15,7 +16,8 @@ import numpy as np
 from pneutouch.arrays import Array, Indices
 
 BLOCK = (48, 16, 32)
-"""Voxels of the block along z, y, x: at 27 um layers about 1.3 mm in each direction; our choice, ranked in about a second."""
+"""Voxels of the block along z, y, x: at 27 um layers about 1.3 mm in each direction; our choice, ranked in about a
+second."""
 
 _WIDTH = 1.5
 """Standard deviation of the energy's Gaussian over the mean pitch: Ulichney's choice."""
@@ -96,7 +98,8 @@ def void_and_cluster(shape: tuple[int, int, int], pitch: tuple[float, float, flo
 
 @dataclass(frozen=True)
 class Thresholds:
-    """Thresholds between 0 and 1, ``values`` of the block along z, y, x; each block in space is rolled by its own shifts."""
+    """Thresholds between 0 and 1, ``values`` of the block along z, y, x; each block in space is rolled by its own
+    shifts."""
 
     values: Array
     seed: int = 0
@@ -121,7 +124,8 @@ class Thresholds:
 def _shifts(block: int, row: Indices, column: Indices, seed: int) -> tuple[Indices, Indices, Indices]:
     """Three whole numbers from 0 to 2^20 for blocks of space, arrays of one shape: mixed bits of their place.
 
-    The mixer is splitmix64 (Steele, Lea and Flood, OOPSLA 2014, DOI 10.1145/2660193.2660195): the same on every machine.
+    The mixer is splitmix64 (Steele, Lea and Flood, OOPSLA 2014, DOI 10.1145/2660193.2660195): the same on every
+    machine.
     """
     place = (np.uint64(seed + 1) << np.uint64(48)) + (np.uint64(block + 1) << np.uint64(32))
     mixed = place + (row.astype(np.uint64) << np.uint64(16)) + column.astype(np.uint64)

@@ -11,7 +11,8 @@ from pneutouch.arrays import Array, Flags, Singles
 
 @dataclass(frozen=True)
 class Cubes:
-    """A coarse grid over a window of voxels, (layers, rows, columns); ``edge`` are voxels of a cube in each direction."""
+    """A coarse grid over a window of voxels, (layers, rows, columns); ``edge`` are voxels of a cube in each
+    direction."""
 
     shape: tuple[int, int, int]
     edge: tuple[int, int, int]

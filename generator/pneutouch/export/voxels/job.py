@@ -23,7 +23,8 @@ PALETTE = (
     (204, 121, 167, 255),
     (255, 255, 255, 255),
 )
-"""Colours that people of any colour vision distinguish (M. Okabe and K. Ito, Color Universal Design, 2008), and white."""
+"""Colours that people of any colour vision distinguish (M. Okabe and K. Ito, Color Universal Design, 2008), and
+white."""
 
 
 @dataclass(frozen=True)

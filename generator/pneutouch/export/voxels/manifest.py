@@ -17,7 +17,10 @@ MANIFEST = "stack.json"
 FORMAT = 1
 """Number of the form that manifests have; a stack of another form is refused."""
 
-METHOD = "void and cluster: thresholds of blue noise in three dimensions, block by block rolled, soft skin made up for beneath"
+METHOD = (
+    "void and cluster: thresholds of blue noise in three dimensions, block by block rolled, soft skin made up for "
+    "beneath"
+)
 
 SHORT = 1e-3
 """Difference of fractions over a body beyond which a warning states that the request is not met."""
@@ -115,7 +118,8 @@ def _assumptions(job: VoxelJob) -> list[str]:
     lines = [f"{body.solid.name}: {body.blend.assumed}" for body in job.bodies if body.blend.assumed]
     return [
         *lines,
-        "row 0 of a slice is at the greatest y, seen from above; slice 0 lies on the tray: our choice, the vendor states neither",
+        "row 0 of a slice is at the greatest y, seen from above; slice 0 lies on the tray: our choice, the vendor "
+        "states neither",
         "colours stand for resins by this file alone; the operator maps them in the utility",
         "a voxel is of the body that its centre lies in",
         "a voxel of a mixed body with a neighbour outside it stays the soft resin",

@@ -46,7 +46,8 @@ class Raster:
 
     def window(self, low: Array, high: Array) -> tuple[slice, slice, slice]:
         """Layers, rows and columns whose centres lie in the box between two corners (3,)."""
-        return tuple(_held(centres, low[k], high[k]) for k, centres in ((2, self.z), (1, self.y), (0, self.x)))  # type: ignore[return-value]
+        x, y, z = (_held(centres, low[k], high[k]) for k, centres in enumerate((self.x, self.y, self.z)))
+        return z, y, x
 
     def plane(self, rows: slice, columns: slice) -> Window:
         """The rows and columns of a layer, as sections are taken."""

@@ -1,4 +1,5 @@
-"""The skin of a mixed body: its outermost voxels stay soft resin, and their share of the other resin goes to the voxels just beneath.
+"""The skin of a mixed body: its outermost voxels stay soft resin, and their share of the other resin goes to the voxels
+just beneath.
 
 A voxel is skin where one of its six neighbours lies outside the body, whatever is there: so no stiff droplet lies at a
 face, where air could leak along it, and the membrane's faces are as smooth as the soft resin's.
@@ -60,8 +61,9 @@ class RecentLayers(Generic[Item]):
 class SkinCompensation:
     """What is added to the share of every interior voxel, so that the body keeps the share of its skin.
 
-    The share requested in a skin voxel goes in equal parts to the interior voxels of the box of ``reach`` mm around it: the
-    sum over the body is kept, and so is that of any region much larger than the reach. What has no interior near is lost.
+    The share requested in a skin voxel goes in equal parts to the interior voxels of the box of ``reach`` mm around it:
+    the sum over the body is kept, and so is that of any region much larger than the reach. What has no interior near is
+    lost.
     """
 
     def __init__(

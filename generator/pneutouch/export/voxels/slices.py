@@ -1,4 +1,5 @@
-"""The slices of a job: which resin lies in every voxel, layer by layer, in memory that does not grow with their number."""
+"""The slices of a job: which resin lies in every voxel, layer by layer, in memory that does not grow with their
+number."""
 
 from __future__ import annotations
 
@@ -25,9 +26,9 @@ FULL = 0.5
 class VoxelCounts:
     """What a body became: voxels, skin voxels, the sums of the second resin's share requested and realised.
 
-    ``given`` is what was left for the dither: the skin's share made up for beneath it, less what did not fit because the
-    interior was full. ``worst`` is the greatest difference of the given and the realised fraction over the body's voxels
-    in a cube of `CUBE` that is `FULL` enough, of which there are ``cubes``.
+    ``given`` is what was left for the dither: the skin's share made up for beneath it, less what did not fit because
+    the interior was full. ``worst`` is the greatest difference of the given and the realised fraction over the body's
+    voxels in a cube of `CUBE` that is `FULL` enough, of which there are ``cubes``.
     """
 
     voxels: int = 0
