@@ -78,7 +78,7 @@ def test_far_too_many_cells(tmp_path):
         ("block.length_mm=-3", ["block.length_mm = -3", "from 1 to 1000 mm"]),
         ("scan.speed_mm_per_s=0", ["scan.speed_mm_per_s = 0", "mm/s"]),
         ("frame.hole_diameter_mm=7", ["frame.hole_diameter_mm = 7", "frame.border_mm"]),
-        ("frame.mark=ABCDEFGHIJKLMNOPQRSTUVWX", ["frame.mark", "no room"]),
+        ("frame.mark=ABCDEFGHIJKLMNOPQRSTUVWX", ["frame.mark", "do not fit"]),
     ],
 )
 def test_refused_settings(assignment, words):
