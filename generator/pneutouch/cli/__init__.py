@@ -1,19 +1,5 @@
-"""The command line. Importing a module of commands registers them with the app."""
+"""The command line: one module a command, loaded where the command is used."""
 
-from pneutouch.cli import build, calibrate, characterize, coupons, plan, scan, select, show, simulate, sweep, tray
 from pneutouch.cli.app import run
 
-__all__ = [
-    "build",
-    "calibrate",
-    "characterize",
-    "coupons",
-    "plan",
-    "run",
-    "scan",
-    "select",
-    "show",
-    "simulate",
-    "sweep",
-    "tray",
-]
+__all__ = ["run"]

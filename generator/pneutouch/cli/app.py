@@ -2,23 +2,49 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from functools import partial
+from importlib import import_module
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 from typer.core import TyperGroup
+from typer.main import get_command_from_info
 
 from pneutouch import __version__
 from pneutouch.errors import PneutouchError
 
+_MODULES = {"build": "build", "check": "build"} | {
+    name: name
+    for name in ["calibrate", "characterize", "coupons", "simulate", "plan", "scan", "select", "show", "sweep", "tray"]
+}
+"""Modules by the commands that they register when they are imported."""
+
+_OBJECTS_BEFORE_COLLECTION = 100_000
+"""A command ends within seconds and keeps most of what it makes: collecting garbage at Python's 700 objects is a sixth of
+the time that CadQuery and matplotlib take to load."""
+
 
 class Commands(TyperGroup):
     """The commands. An error of the library ends one with a message in its own words, and the error's exit code."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """Names in the order of the help."""
+        return [*self.commands, *(name for name in _MODULES if name not in self.commands)]
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """A command, whose module is imported; an unknown name imports all, for the suggestion."""
+        for name in [cmd_name] if cmd_name in self.list_commands(ctx) else _MODULES:
+            if name not in self.commands:
+                import_module(f"pneutouch.cli.{_MODULES[name]}")
+                (info,) = (one for one in app.registered_commands if one.callback and one.callback.__name__ == name)
+                self.add_command(get_command_from_info(info, pretty_exceptions_short=True, rich_markup_mode=None))
+        return super().get_command(ctx, cmd_name)
 
     def invoke(self, ctx: Any) -> Any:
         """Run the requested command."""
@@ -204,4 +230,7 @@ def print_json(document: Any) -> None:
 
 def run() -> None:
     """Entry point of the ``pneutouch`` command."""
+    gc.set_threshold(_OBJECTS_BEFORE_COLLECTION, 50, 50)
+    # The models have no plugins: to look for some, pydantic reads the metadata of every installed package.
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     app()
