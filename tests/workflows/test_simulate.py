@@ -16,7 +16,8 @@ from pneutouch.bench.simulate import SimulationTruth
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import Campaign
 from pneutouch.spec.read import validate
-from pneutouch.workflows.simulate.run import KINDS, SimulationOptions, simulate
+from pneutouch.workflows.simulate.options import KINDS, SimulationOptions
+from pneutouch.workflows.simulate.run import simulate
 
 R0 = 9.25
 ASKED = SimulationOptions(

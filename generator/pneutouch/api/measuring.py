@@ -78,7 +78,7 @@ def simulate(
 ) -> Path:
     """Simulate a measurement campaign with known truth; returns its folder, which `characterize` and `calibrate` read."""
     from pneutouch.bench.simulate import SimulationTruth
-    from pneutouch.workflows.simulate.run import SimulationOptions
+    from pneutouch.workflows.simulate.options import SimulationOptions
     from pneutouch.workflows.simulate.run import simulate as run
 
     pressures_kPa = None if driving_pressures_kPa is None else _floats(driving_pressures_kPa)

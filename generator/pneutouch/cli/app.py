@@ -58,16 +58,16 @@ class Commands(TyperGroup):
 
 def option(command: Any, parameter: str) -> str | None:
     """What ``command`` calls a parameter of the library, such as --noise for noise_kPa; None where it has none."""
-    known = {str(found.name).strip("_"): found for found in (command.params if command else ())}
+    known = {str(one.name).strip("_"): one for one in (command.params if command else ())}
     if "." in parameter:
         return f"--set {parameter}" if "set" in known else None
     names = sorted((name for name in known if f"_{name}_" in f"_{parameter}_"), key=len)
     # An option may be named by what it takes: --write NAME.
-    named = [found for found in known.values() if found.metavar == parameter.upper()]
+    named = [one for one in known.values() if one.metavar == parameter.upper()]
     if not names and not named:
         return None
-    found = known[names[-1]] if names else named[0]
-    return str(found.metavar or found.name).upper() if found.param_type_name == "argument" else max(found.opts, key=len)
+    one = known[names[-1]] if names else named[0]
+    return str(one.metavar or one.name).upper() if one.param_type_name == "argument" else max(one.opts, key=len)
 
 
 app = typer.Typer(
@@ -115,7 +115,7 @@ def reporting() -> Iterator[None]:
         raise
     except Exception as error:
         if isinstance(error.__cause__ or error.__context__, KeyboardInterrupt):
-            # A library that is interrupted while it loads says that it cannot be loaded.
+            # A library that is interrupted while it loads reports that it cannot be loaded.
             raise typer.Abort from None
         if os.environ.get("PNEUTOUCH_DEBUG"):
             raise
@@ -154,7 +154,7 @@ def predict(
     ] = False,
     json: JsonOption = False,
 ) -> None:  # fmt: skip
-    """Predict the figures alone, and how sure they are."""
+    """Predict the figures and their uncertainty."""
     with reporting():
         from pneutouch.evaluation.document import full_document
         from pneutouch.evaluation.evaluate import evaluate

@@ -36,7 +36,7 @@ _FLAGS = {"set_": "--set", **{key: f"--{key}" for key in ("model", "tolerance", 
 _VOXEL_FLAGS = {"voxels": "--voxels", "voxel_mode": "--voxel-mode"}
 
 VoxelsOption = Annotated[
-    bool, typer.Option("--voxels", help="Write a stack of PNG slices for voxel printing beside, in NAME-voxels.")
+    bool, typer.Option("--voxels", help="Write a stack of PNG slices for voxel printing as well, in NAME-voxels.")
 ]
 VoxelModeOption = Annotated[
     str | None,
@@ -146,7 +146,7 @@ def _build_sensor(evaluation: Evaluation, out: Path) -> tuple[str, Path, list[Fi
 
 
 def _planned(evaluation: Evaluation, out: Path, mode: str | None) -> VoxelPlan:
-    """The plan of the voxel stack; what is wrong with it is said before anything is built."""
+    """The plan of the voxel stack; what is wrong with it is reported before anything is built."""
     from pneutouch.workflows.build.voxels import check_stack_folder, plan_voxels, stack_folder
 
     plan = plan_voxels(evaluation.assembly, mode=mode)
@@ -167,7 +167,7 @@ def _write_voxels(plan: VoxelPlan, evaluation: Evaluation, out: Path) -> Path:
 
 
 def _from_3mf(file: str, context: typer.Context) -> Evaluation:
-    """Evaluate the recipe of a 3MF; says on stderr what was of another version when it was made."""
+    """Evaluate the recipe of a 3MF; reports on stderr what was of another version when it was made."""
     from pneutouch.export.threemf_read import read_threemf
     from pneutouch.output.recipe import evaluate_recipe
     from pneutouch.output.recipe_read import other_versions, read_recipe

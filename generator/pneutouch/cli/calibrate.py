@@ -28,11 +28,11 @@ def calibrate(
         from pneutouch.cli.progress import bar
         from pneutouch.workflows.calibrate.run import CalibrationOptions, run_calibration
 
-        asked = CalibrationOptions(
+        options = CalibrationOptions(
             data, design, sensor, tuple(fit.split(",")), tuple(hold_out or ()), not no_priors, save, shadow, out
         )
         with bar("MB read") as progress:
-            document = run_calibration(asked, progress=progress)
+            document = run_calibration(options, progress=progress)
         if json:
             print_json(document)
         else:

@@ -8,7 +8,7 @@ from pneutouch.cli.text import columns
 
 
 def calibration_text(document: dict[str, Any]) -> str:
-    """The estimates beside the design's values, how well they fit, what must be known, and the files written."""
+    """The estimates and the design's values, the goodness of the fit, notes, and the files written."""
     rows = [
         [e["key"], f"{e['value']:.4g}", _interval(e), f"designed {e['designed']:.4g}"] for e in document["estimates"]
     ]

@@ -1,4 +1,4 @@
-"""``pneutouch characterize``: measured data to figures, beside the predicted ones."""
+"""``pneutouch characterize``: measured data to figures, compared with the predicted ones."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def characterize(
     evidence: Annotated[str, typer.Option("--evidence", help="Runs whose evidence is plotted: doubtful, all or none.")] = "doubtful",
     set_: SetOption = None, out: OutOption = Path("outputs"), json: JsonOption = False,
 ) -> None:  # fmt: skip
-    """Turn measured runs into figures, beside the predicted ones; exit 3 where files could not be read."""
+    """Turn measured runs into figures and compare them with the prediction; exit 3 where files could not be read."""
     with reporting():
         from pneutouch.cli.progress import bar
         from pneutouch.errors import InputError, nearest
@@ -29,18 +29,18 @@ def characterize(
         if evidence not in EVIDENCE:
             raise InputError(f"--evidence {evidence}: unknown.{nearest(evidence, EVIDENCE)}")
         with bar("MB read") as progress:
-            found = run(data, design, changes(set_), target=target, model=model, progress=progress)
-        folder = write(found, out, evidence)
+            outcome = run(data, design, changes(set_), target=target, model=model, progress=progress)
+        folder = write(outcome, out, evidence)
         if json:
-            print_json({**found.document, "folder": str(folder)})
+            print_json({**outcome.document, "folder": str(folder)})
         else:
             from pneutouch.cli.characterize_text import measured_text
 
-            typer.echo(measured_text(found.document))
+            typer.echo(measured_text(outcome.document))
             typer.echo(f"\n{folder}")
-        for file, message in found.measured.failures:
+        for file, message in outcome.measured.failures:
             typer.echo(f"error: {file}: not read: {message}", err=True)
-        if found.failed:
+        if outcome.failed:
             raise typer.Exit(3)
-        if found.missed:
+        if outcome.missed:
             raise typer.Exit(1)

@@ -8,7 +8,7 @@ from pneutouch.bench.figure import BY_KEY
 
 
 def measured_text(document: dict[str, Any]) -> str:
-    """A table a group: measured with its interval, beside the prediction; then what is doubtful."""
+    """A table a group: measured with its interval, and the prediction; then the warnings."""
     head = f"{document['title']}: measured on {document['design']}, predicted by {document['model']}"
     lines = [head + ("  SIMULATED DATA" if document["simulated"] else "")]
     for group in document["groups"]:
@@ -21,15 +21,15 @@ def measured_text(document: dict[str, Any]) -> str:
     for entry in document["injections"]:
         error = "" if entry["standard_error"] is None else f" ± {entry['standard_error']:.2g}"
         lines.append(f"\n{entry['sensor']}: {entry['figure']} {entry['value']:.4g}{error} {entry['unit']}")
-    lines += _doubts(document["runs"])
+    lines += _warnings(document["runs"])
     lines += [f"\nquestion: {entry['file']}: {entry['question']}" for entry in document["questions"]]
     return "\n".join(lines)
 
 
-def _doubts(runs: list[dict[str, Any]]) -> list[str]:
+def _warnings(runs: list[dict[str, Any]]) -> list[str]:
     """How many stretches were left out, and how many are noted but used."""
-    every = [doubt for run in runs for doubt in run["warnings"] if doubt["kind"] != "note"]
-    left = sum(not doubt["used"] for doubt in every)
+    every = [warning for run in runs for warning in run["warnings"] if warning["kind"] != "note"]
+    left = sum(not warning["used"] for warning in every)
     if not every:
         return []
     return [f"\n{left} doubtful stretches left out, {len(every) - left} noted and used; see figures.json and evidence/"]
@@ -43,8 +43,8 @@ def _group(group: dict[str, Any]) -> list[str]:
     for key, entry in group["figures"].items():
         figure = BY_KEY[key]
         interval = "" if entry["low"] is None else f"{entry['low']:.4g} to {entry['high']:.4g}"
-        said = f"  {figure.name:<48} {entry['value']:>9.4g}  {interval:<22} {figure.unit}"
+        line = f"  {figure.name:<48} {entry['value']:>9.4g}  {interval:<22} {figure.unit}"
         if "predicted" in entry:
-            said += f"  (predicted {entry['predicted']['value']:.4g})"
-        lines.append(said.rstrip())
+            line += f"  (predicted {entry['predicted']['value']:.4g})"
+        lines.append(line.rstrip())
     return lines

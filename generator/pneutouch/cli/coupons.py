@@ -42,7 +42,7 @@ def coupons(
             return
         from pneutouch.workflows.coupons.build import build_coupons
 
-        folder, document = build_coupons(_asked(given), out or Path("outputs"))
+        folder, document = build_coupons(_options(given), out or Path("outputs"))
         if json:
             print_json({"folder": str(folder), **document})
         else:
@@ -50,12 +50,12 @@ def coupons(
 
 
 def _enter(path: Path, out: Path, given: dict[str, Any], json: bool) -> None:
-    """Write local profiles from a results file and tell what changed."""
+    """Write local profiles from a results file and report what changed."""
     from pneutouch.errors import InputError
 
     if given:
         flags = ", ".join(_FLAGS[key] for key in given)
-        raise InputError(f"--results {path}: {flags} cannot be given with it: the file says what was measured")
+        raise InputError(f"--results {path}: {flags} cannot be given with it: the file states what was measured")
     from pneutouch.workflows.coupons.results import enter_results
 
     document = enter_results(path, out)
@@ -67,8 +67,8 @@ def _enter(path: Path, out: Path, given: dict[str, Any], json: bool) -> None:
         typer.echo(results_text(document))
 
 
-def _asked(given: dict[str, Any]) -> CouponOptions:
-    """What the flags ask for. Raises InputError for copies that are not a number."""
+def _options(given: dict[str, Any]) -> CouponOptions:
+    """The options given. Raises InputError for copies that are not a number."""
     from pneutouch.errors import InputError
     from pneutouch.workflows.coupons.order import CouponOptions
 

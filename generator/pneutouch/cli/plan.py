@@ -25,7 +25,7 @@ def plan(
     with reporting():
         from pneutouch.workflows.plan.run import make_plan, rig_of, write_plan
 
-        found = make_plan(
+        result = make_plan(
             design,
             changes(set_),
             resins=words(resins),
@@ -33,13 +33,13 @@ def plan(
             rig=rig_of(rig),
             rig_name="" if rig is None else rig.name,
         )
-        folder = write_plan(found, out)
-        for warning in found.document["warnings"]:
+        folder = write_plan(result, out)
+        for warning in result.document["warnings"]:
             typer.echo(f"warning: {warning['rule']}: {warning['message']}", err=True)
         if json:
-            print_json({**found.document, "folder": str(folder)})
+            print_json({**result.document, "folder": str(folder)})
         else:
             from pneutouch.cli.plan_text import plan_text
 
-            typer.echo(plan_text(found.document))
+            typer.echo(plan_text(result.document))
             typer.echo(f"\n{folder}")

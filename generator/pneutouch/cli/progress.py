@@ -9,7 +9,7 @@ from typing import Protocol
 
 
 class ProgressCallback(Protocol):
-    """Told how many of all are done, and where it changes what is being done."""
+    """Receives how many of all are done and, where it changes, the current task."""
 
     def __call__(self, done: int, total: int, what: str | None = None) -> None:
         """Move the bar."""

@@ -24,25 +24,25 @@ def scan(
     pressures: Annotated[str, typer.Option(metavar="KPA,KPA", help="Driving pressures, kPa; empty: measured data alone.")] = "0,22",
     preload: Annotated[float, typer.Option(help="Normal force at which the height is set, N.")] = 0.5,
     speed: Annotated[float | None, typer.Option(help="Speed along the path, mm/s; left out: the specimen's.")] = None,
-    control: Annotated[str, typer.Option(help="What is held on the way: height or force.")] = "height",
+    control: Annotated[str, typer.Option(help="What is held along the path: height or force.")] = "height",
     noise: Annotated[float | None, typer.Option(help="White noise of a sample, kPa rms; left out: one step of the recorder.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the noise.")] = 0,
     data: Annotated[list[Path] | None, typer.Option("--data", metavar="FILE", help="Measured signal, CSV with time_s and pressure_kPa; may be repeated.")] = None,
-    separate: Annotated[str | None, typer.Option("--separate", metavar="PITCH@DEPTH,PITCH@DEPTH", help="Instead: rank domes by how well they tell two patterns apart, mm.")] = None,
+    separate: Annotated[str | None, typer.Option("--separate", metavar="PITCH@DEPTH,PITCH@DEPTH", help="Instead: rank domes by how well they separate two patterns, mm.")] = None,
     set_: SetOption = None, out: OutOption = Path("outputs"), json: JsonOption = False,
 ) -> None:  # fmt: skip
     """Scan a specimen with a sensor: signals, scalograms and which pattern each state shows."""
     with reporting():
-        asked = _asked(pressures, preload, speed, control, noise, seed, data or [])
+        options = _options(pressures, preload, speed, control, noise, seed, data or [])
         if separate is not None:
             refuse_flags(context, _NOT_SEPARATING, "--separate, which scans nothing", specimen)
-            _separate(specimen, design, separate, asked, changes(set_), json=json)
+            _separate(specimen, design, separate, options, changes(set_), json=json)
             return
         from pneutouch.workflows.scan.document import document
         from pneutouch.workflows.scan.run import run_scan
         from pneutouch.workflows.scan.write import write_scan
 
-        run = run_scan(specimen, design, asked, changes(set_))
+        run = run_scan(specimen, design, options, changes(set_))
         folder = write_scan(run, out)
         if json:
             print_json({**document(run), "folder": str(folder)})
@@ -53,7 +53,7 @@ def scan(
             typer.echo(f"\n{folder}")
 
 
-def _asked(
+def _options(
     pressures: str, preload: float, speed: float | None, control: str, noise: float | None, seed: int, data: list[Path]
 ) -> ScanOptions:
     from pneutouch.errors import InputError
@@ -69,16 +69,16 @@ def _asked(
 
 
 def _separate(
-    specimen: str, design: str, text: str, asked: ScanOptions, changed: dict[str, Any], *, json: bool
+    specimen: str, design: str, text: str, options: ScanOptions, changed: dict[str, Any], *, json: bool
 ) -> None:
     from pneutouch.workflows.scan.separate import separating
 
-    found = separating(specimen, design, text, asked, changed)
+    separation = separating(specimen, design, text, options, changed)
     if json:
-        print_json(found)
+        print_json(separation)
     else:
         from pneutouch.cli.scan_text import separation_text
 
-        typer.echo(separation_text(found))
-    if not found["domes"]:
+        typer.echo(separation_text(separation))
+    if not separation["domes"]:
         raise typer.Exit(1)

@@ -28,19 +28,19 @@ def scan_text(document: dict[str, Any]) -> str:
     ])  # fmt: skip
 
 
-def _pattern(found: dict[str, Any]) -> list[str]:
-    model = f"{1e3 * found['model_amplitude_kPa']:.3g}" if "model_amplitude_kPa" in found else "-"
-    true = f"{found['true_frequency_Hz']:.4g}"
-    if "p_value" not in found:
+def _pattern(pattern: dict[str, Any]) -> list[str]:
+    model = f"{1e3 * pattern['model_amplitude_kPa']:.3g}" if "model_amplitude_kPa" in pattern else "-"
+    true = f"{pattern['true_frequency_Hz']:.4g}"
+    if "p_value" not in pattern:
         return [true, "-", model, "-", "-", "-", "no signal"]
     return [
-        true, f"{found['detected_frequency_Hz']:.4g}", model, f"{1e3 * found['amplitude_kPa']:.3g}",
-        f"{found['detection_figure']:.1f}", f"{found['p_value']:.3f}", "detected" if found["detected"] else "not detected",
+        true, f"{pattern['detected_frequency_Hz']:.4g}", model, f"{1e3 * pattern['amplitude_kPa']:.3g}",
+        f"{pattern['detection_figure']:.1f}", f"{pattern['p_value']:.3f}", "detected" if pattern["detected"] else "not detected",
     ]  # fmt: skip
 
 
 def separation_text(document: dict[str, Any]) -> str:
-    """Domes that tell two patterns apart, best first."""
+    """Domes that separate two patterns, best first."""
     one, two = (f"{p['pitch_mm']:g} mm at {p['depth_mm']:g} mm" for p in document["patterns"])
     if not document["domes"]:
         return f"none of {document['candidates']} candidates shows both {one} and {two} above the noise"

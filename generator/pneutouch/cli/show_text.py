@@ -40,7 +40,7 @@ def stack_text(document: dict[str, Any]) -> str:
     return "\n".join([
         about, *([machine] if machine else []), "",
         columns(["resin", "RGBA", "voxels", "volume mm3", "share"], resins), "",
-        columns(["body", "voxels", "volume mm3", "off exact", "dithered in", "asked", "realised"], bodies), "",
+        columns(["body", "voxels", "volume mm3", "off exact", "dithered in", "designed", "realised"], bodies), "",
         *(f"assumed: {line}" for line in document.get("assumptions", [])),
     ])  # fmt: skip
 

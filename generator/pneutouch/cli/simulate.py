@@ -11,7 +11,7 @@ from pneutouch.cli.app import DesignArgument, JsonOption, OutOption, SetOption, 
 from pneutouch.cli.progress import bar
 
 if TYPE_CHECKING:
-    from pneutouch.workflows.simulate.run import SimulationOptions
+    from pneutouch.workflows.simulate.options import SimulationOptions
 
 ResinsOption = Annotated[
     str, typer.Option("--resins", metavar="NAME,NAME", help="Resins of the dome, or all of the paper's; left out: the design's.")
@@ -38,7 +38,8 @@ def simulate(
     """Simulate a measurement campaign: records with known truth, always labelled as simulated."""
     with reporting():
         from pneutouch.bench.simulate import SimulationTruth
-        from pneutouch.workflows.simulate.run import SimulationOptions, simulate
+        from pneutouch.workflows.simulate.options import SimulationOptions
+        from pneutouch.workflows.simulate.run import simulate
 
         options = SimulationOptions(
             resins=words(resins), specimens=specimens, runs=runs, kinds=words(kinds), rate=rate, seed=seed, model=model,
@@ -47,7 +48,7 @@ def simulate(
         )  # fmt: skip
         with bar("specimens") as progress:
             folder = simulate(design, out, changes(set_), options, progress=progress)
-        _tell(folder, options, json=json)
+        _report(folder, options, json=json)
 
 
 def words(text: str) -> tuple[str, ...]:
@@ -65,7 +66,7 @@ def numbers(flag: str, text: str) -> tuple[float, ...]:
         raise InputError(f"{flag} {text}: must be numbers with commas between, such as 0,22") from None
 
 
-def _tell(folder: Path, options: SimulationOptions, *, json: bool) -> None:
+def _report(folder: Path, options: SimulationOptions, *, json: bool) -> None:
     """The folder on stdout; on stderr where runs stop short of their depth."""
     from json import loads
 

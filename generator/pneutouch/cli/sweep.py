@@ -55,7 +55,7 @@ def sweep(
         target = Path("outputs") / f"{plan.name}.nc" if out is None else out
         with bar("points") as progress:
             done = run(plan, target, ComputeResources(workers, scheduler), fresh=fresh, progress=progress)
-        _tell(done, json=json)
+        _report(done, json=json)
 
 
 def _plan(
@@ -72,7 +72,7 @@ def _plan(
     return plan_of_flags(design, over, changed, **options)
 
 
-def _tell(done: SweepResult, *, json: bool) -> None:
+def _report(done: SweepResult, *, json: bool) -> None:
     """The dataset on stdout; on stderr what became of the states."""
     if json:
         print_json({

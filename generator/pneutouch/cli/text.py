@@ -14,11 +14,11 @@ def prediction_text(document: dict[str, Any]) -> str:
     rows = []
     for state in document["states"]:
         ends = [event["kind"] for event in state["events"] if event["ends_range"]]
-        force, sure = state["force_range_N"], state["uncertainty"]
+        force, uncertainty = state["force_range_N"], state["uncertainty"]
         rows.append([
             f"{state['driving_pressure_kPa']:g}", f"{state['apex_height_inner_mm']:.3f}", f"{state['apex_height_outer_mm']:.3f}",
-            _optional(state["sensitivity_kPa_per_N"], ".3f"), _interval(sure),
-            *([_interval(sure.get("monte_carlo", {}))] if sampled else []), _optional(state["r_squared"], ".4f"),
+            _optional(state["sensitivity_kPa_per_N"], ".3f"), _interval(uncertainty),
+            *([_interval(uncertainty.get("monte_carlo", {}))] if sampled else []), _optional(state["r_squared"], ".4f"),
             _optional(state["stiffness_N_per_mm"], ".3f"), "-" if force is None else f"0-{force[1]:.2f}",
             f"{ends[0] if ends else 'depth'}, {state['range_end_mm']:.2f} mm",
         ])  # fmt: skip
@@ -35,20 +35,20 @@ def prediction_text(document: dict[str, Any]) -> str:
         reach,
         "", columns(head, rows), "",
         f"error in sensitivity {far}: {error['sensitivity_basis']}",
-        *_how_sure(document["states"]),
+        *_uncertainty(document["states"]),
         *_viscous(document["viscous"]),
         *([f"aged one year: modulus times {document['aged']['modulus_ratio']:.3f} by its hardness; {document['aged']['assumes']}"]
           if "aged" in document else []),
     ])  # fmt: skip
 
 
-def _interval(sure: dict[str, Any]) -> str:
+def _interval(uncertainty: dict[str, Any]) -> str:
     """The interval of the sensitivity in a document of uncertainty, or a dash."""
-    figure = sure.get("figures", {}).get("sensitivity_kPa_per_N")
+    figure = uncertainty.get("figures", {}).get("sensitivity_kPa_per_N")
     return "-" if figure is None else f"{figure['low']:.2f} to {figure['high']:.2f}"
 
 
-def _how_sure(states: list[dict[str, Any]]) -> list[str]:
+def _uncertainty(states: list[dict[str, Any]]) -> list[str]:
     """What to measure first, at the highest driving pressure; or why nothing is known."""
     last = states[-1]
     if "unknown" in last["uncertainty"]:
@@ -56,18 +56,18 @@ def _how_sure(states: list[dict[str, Any]]) -> list[str]:
     return [f"at {last['driving_pressure_kPa']:g} kPa: {last['uncertainty']['summary']}"]
 
 
-def _viscous(found: dict[str, Any]) -> list[str]:
+def _viscous(relaxation: dict[str, Any]) -> list[str]:
     """Relaxation and hysteresis at the highest driving pressure, over the sources; or why nothing is known."""
-    if "unknown" in found:
-        return [f"relaxation and hysteresis not known: {found['unknown']}"]
-    last = found["states"][-1]
+    if "unknown" in relaxation:
+        return [f"relaxation and hysteresis not known: {relaxation['unknown']}"]
+    last = relaxation["states"][-1]
     held = [one["relaxation"].get("pressure_rise_loss_percent") for one in last["by_source"]]
     quick = [one["hysteresis"][-1] for one in last["by_source"]]
     wide = [one.get("width_percent") for one in quick]
     speed = f"{quick[0]['speed_mm_per_s']:g} mm/s" if quick else ""
     return [
-        f"held at {found['depth_mm']:.2f} mm and {last['driving_pressure_kPa']:g} kPa the pressure rise loses {_span(held)} from 1 s to "
-        f"600 s; hysteresis at {speed} {_span(wide)} of full scale ({len(found['sources'])} source(s) of relaxation data)"
+        f"held at {relaxation['depth_mm']:.2f} mm and {last['driving_pressure_kPa']:g} kPa the pressure rise loses {_span(held)} from 1 s to "
+        f"600 s; hysteresis at {speed} {_span(wide)} of full scale ({len(relaxation['sources'])} source(s) of relaxation data)"
     ]
 
 

@@ -38,14 +38,14 @@ def tray(
         order = _order(what, over or [], copies, changes(set_), {"profile": profile, "marks": marks})
         folder = out / order.name
         check_writable(folder)
-        laid = lay(order, progress=_tell)
-        write_tray(laid, folder, _tell)
-        for note in laid.expanded.left_out:
+        layout = lay(order, progress=_report)
+        write_tray(layout, folder, _report)
+        for note in layout.expanded.left_out:
             typer.echo(f"not on this tray: {note}", err=True)
         if json:
-            print_json(document(laid, folder))
+            print_json(document(layout, folder))
         else:
-            typer.echo(_text(laid))
+            typer.echo(_text(layout))
             typer.echo(str(folder))
 
 
@@ -62,19 +62,19 @@ def _order(
     return order_of_flags(what, over, 1 if copies is None else copies, changed, **head)
 
 
-def _tell(step: str) -> None:
+def _report(step: str) -> None:
     typer.echo(f"{step} ...", err=True)
 
 
-def _text(laid: TrayLayout) -> str:
+def _text(layout: TrayLayout) -> str:
     """A line a job: what to load, how full it is."""
     from pneutouch.workflows.tray.lay import counted, fill
 
-    lines = [f"{laid.printer.title}: {counted(laid.parts)}, {laid.resin_note}"]
-    for job in laid.jobs:
-        shares = fill(job, laid.printer)
+    lines = [f"{layout.printer.title}: {counted(layout.parts)}, {layout.resin_note}"]
+    for job in layout.jobs:
+        shares = fill(job, layout.printer)
         lines.append(
-            f"{laid.name(job)}: {counted(job.parts)}, {' + '.join(job.resins)}, {job.mode.name}, {job.layers} layers, "
+            f"{layout.name(job)}: {counted(job.parts)}, {' + '.join(job.resins)}, {job.mode.name}, {job.layers} layers, "
             f"bounding boxes take {shares['bounding_boxes']:.1%} of the footprint"
         )
     return "\n".join(lines)

@@ -15,8 +15,8 @@ from pneutouch.parts.connector import rigid_solids
 from pneutouch.parts.gas import glue_volume, internal_volume
 from pneutouch.parts.layout import Layout, lay_out
 from pneutouch.parts.membrane import INNER_WALL, membrane_meridian
-from pneutouch.parts.room import check_room
 from pneutouch.parts.seat import SEAT
+from pneutouch.parts.space import check_space
 from pneutouch.spec.part import ClampedFlange, OnePiece
 from pneutouch.spec.printer import Mode, Printer
 from pneutouch.units import ML
@@ -109,8 +109,8 @@ class Assembly:
 
 
 def assemble(scene: ResolvedDesign) -> Assembly:
-    """Draw the membrane and the rigid bodies of a scene. Raises InputError where there is no room for a part."""
+    """Draw the membrane and the rigid bodies of a scene. Raises InputError where a part has no space."""
     layout = lay_out(scene)
-    check_room(scene, layout)
+    check_space(scene, layout)
     membrane = Solid("membrane", "membrane", scene.membrane_material, membrane_meridian(layout))
     return Assembly(scene, layout, (membrane, *rigid_solids(scene, layout)))

@@ -21,10 +21,10 @@ from pneutouch.parts.port import PortShape, port_shape
 from pneutouch.spec.part import BoltCircle, ClampedFlange, OnePiece, RobotFlange, Sleeve
 
 HEAD_GAP = 0.5
-"""Room in mm around a screw head, for the driver."""
+"""Space in mm around a screw head, for the driver."""
 
 CLAMPED_SHARE = 0.5
-"""Share of the flange's width that a ring presses on; the rest leaves the dome room to bulge."""
+"""Share of the flange's width that a ring presses on; the rest leaves the dome space to bulge."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +94,7 @@ class Layout:
 
 
 def lay_out(scene: ResolvedDesign) -> Layout:
-    """Derive the layout of a scene from membrane, seat, mount, port and the printers' fits; `check_room` judges it."""
+    """Derive the layout of a scene from membrane, seat, mount, port and the printers' fits; `check_space` judges it."""
     membrane, seat, mount = scene.design.membrane, scene.seat, scene.mount
     port = port_shape(scene.port, scene.tube, scene.hole_undersize)
     flange = max(seat.least_flange_mm, seat.flange_over_wall * membrane.wall_thickness_mm)

@@ -16,7 +16,8 @@ from pneutouch.spec.campaign import Campaign
 from pneutouch.spec.read import parse_changes
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.workflows.characterize.run import characterize
-from pneutouch.workflows.simulate.run import SimulationOptions, simulate
+from pneutouch.workflows.simulate.options import SimulationOptions
+from pneutouch.workflows.simulate.run import simulate
 
 ASKED = SimulationOptions(
     specimens=2, driving_pressures_kPa=(0.0, 22.0), runs=1, kinds=("steps", "injection", "leak"), model="atlas", truth=SimulationTruth(rest=5.0)

@@ -1,4 +1,4 @@
-"""What every coupon family says of itself: what it belongs to, how it is drawn, what is measured on it and with what."""
+"""The declaration of a coupon family: what it belongs to, how it is drawn, what is measured on it and with what."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class CouponContext:
     scene: ResolvedDesign | None = None
 
     def layout(self) -> Layout:
-        """Where everything of the design lies. Raises InputError where the design has no room for a part."""
+        """Where everything of the design lies. Raises InputError where a part of the design has no space."""
         return lay_out(self.design())
 
     def design(self) -> ResolvedDesign:
@@ -61,9 +61,9 @@ class Coupon:
 
     Attributes:
         name: As the command line and the results file call it.
-        title: As people say it.
+        title: The name in text.
         belongs: Material: one set a material; printer: one a printer and material; design: one a design.
-        copies: How many are printed unless asked otherwise.
+        copies: How many are printed unless requested otherwise.
         draw: The exact solids, in mm; those of a design in its frame.
         nominals: What is measured, in the order of the sheet.
         steps: How it is printed and measured, for the sheet.

@@ -17,7 +17,7 @@ OVERALL, END_WIDTH, NARROW_LENGTH, NARROW_WIDTH = 115.0, 25.0, 33.0, 6.0
 FILLET, OUTER_RADIUS = 14.0, 25.0
 BENCH_MARKS = 25.0
 THICKNESS = 2.0
-"""mm; ISO 37 asks for 2.0 +-0.2, ASTM D412 for 1.3 to 3.3."""
+"""mm; ISO 37 requires 2.0 +-0.2, ASTM D412 for 1.3 to 3.3."""
 
 
 def outline() -> tuple[Segment, ...]:

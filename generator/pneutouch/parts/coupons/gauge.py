@@ -51,7 +51,7 @@ class GaugeRow:
 
 def rows() -> tuple[GaugeRow, ...]:
     """The rows from the cut corner upwards."""
-    found: list[GaugeRow] = []
+    rows: list[GaugeRow] = []
     here = _MARGIN
     for feature, sizes, depth in (
         ("wall", WALLS, LENGTH),
@@ -59,9 +59,9 @@ def rows() -> tuple[GaugeRow, ...]:
         ("hole", HOLES, max(HOLES)),
         ("slot", SLOTS, LENGTH),
     ):
-        found.append(GaugeRow(feature, sizes, here + 0.5 * depth))
+        rows.append(GaugeRow(feature, sizes, here + 0.5 * depth))
         here += depth + _GAP
-    return tuple(found)
+    return tuple(rows)
 
 
 def draw(context: CouponContext) -> tuple[Solid, ...]:

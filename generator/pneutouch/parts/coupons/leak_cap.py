@@ -22,7 +22,7 @@ _LEAST_DISC, _DISC_SHARE = 3.0, 1 / 3
 
 
 def draw(context: CouponContext) -> tuple[Solid, ...]:
-    """The cap in the frame of its design. Raises InputError where the design has no room for a part."""
+    """The cap in the frame of its design. Raises InputError where a part of the design has no space."""
     return (Solid("leak-cap", ROLE, context.design().connector_material, cap(context, [], 0.0)),)
 
 

@@ -12,13 +12,13 @@ from pneutouch.parts import Assembly
 from pneutouch.spec.part import ClampedFlange
 
 _STEP = 0.01
-"""How far in mm beside a face its section is taken."""
+"""How far in mm from a face its section is taken."""
 
 _TURNS = 24
 """Angles round a face at which a label is tried."""
 
 HEIGHTS = (5.0, 4.5, 4.0, 3.5, 3.0)
-"""Heights of capitals in mm that are tried; below 3 mm nobody reads them."""
+"""Heights of capitals in mm that are tried; below 3 mm they are not legible."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +65,7 @@ def lettered_faces(assembly: Assembly, solid: Solid) -> list[RingFace]:
 def free_area(face: RingFace, solid: Solid, body: Body, depth: float, edge: float) -> Any:
     """CrossSection of a face that is bare, has ``depth`` mm of solid behind it and lies ``edge`` mm from any edge.
 
-    Around a bore stays room for a screw head, which is less than twice as wide (ISO 4762).
+    Around a bore there is space for a screw head, which is less than twice as wide (ISO 4762).
     """
     from manifold3d import CrossSection
 
@@ -90,9 +90,9 @@ def spot(face: RingFace, area: Any, box: tuple[float, float], heights: Sequence[
         rectangle = CrossSection.square((box[0] * height, box[1] * height), True)
         for radius in _radii(reach, box[1] * height):
             for turn in range(_TURNS if radius else 1):
-                found = LabelPosition(face, height, radius, 0.5 * math.pi + 2 * math.pi * turn / _TURNS)
-                if (placed(rectangle, found) - area).area() < 1e-9:
-                    return found
+                position = LabelPosition(face, height, radius, 0.5 * math.pi + 2 * math.pi * turn / _TURNS)
+                if (placed(rectangle, position) - area).area() < 1e-9:
+                    return position
     return None
 
 

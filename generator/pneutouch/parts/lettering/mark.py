@@ -17,14 +17,14 @@ from pneutouch.spec.part import ClampedFlange
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.tray import Marks
 
-_SURE = 1.2
+_SAFETY = 1.2
 """Marks are drawn larger than the printer's recommended detail by this factor."""
 
 _PAST = 0.25
 """How far in mm a tool reaches past the face it cuts or grows from, so that no two faces coincide."""
 
 _LEAST_LAND = 0.6
-"""Wall in mm kept beside a groove: the vendor's smallest feature (objet.com Tips and Tricks)."""
+"""Wall in mm kept next to a groove: the vendor's smallest feature (objet.com Tips and Tricks)."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Mark:
         depth: Of the engraving, or height of the raising, mm.
         stroke: Its narrowest line, measured, mm.
         height: Of capitals, mm; 0 for a tally.
-        note: Why it is none, or other than asked for.
+        note: Why it is none, or other than requested.
     """
 
     kind: str
@@ -60,7 +60,7 @@ class Marker:
     def __init__(self, printer: Printer, marks: Marks, labels: list[str]) -> None:
         self._printer, self._marks = printer, marks
         self._limit = printer.smallest.emboss_mm.recommended
-        self._depth = _SURE * self._limit
+        self._depth = _SAFETY * self._limit
         self._labels = labels
         self._spots: dict[Any, LabelPosition | None] = {}
 
@@ -77,7 +77,7 @@ class Marker:
     def _lettered(self, assembly: Assembly, solid: Solid, body: Body, label: str) -> tuple[Body, Mark]:
         at = self._spot(assembly, solid, body)
         if at is None:
-            return body, Mark("none", note=f"no flat face of the {solid.name} has room for letters 3 mm tall")
+            return body, Mark("none", note=f"no flat face of the {solid.name} has space for letters 3 mm tall")
         raised = self._marks == "raised" and not at.face.mates
         note = (
             "engraved: raised letters would keep the face from lying flat"
@@ -93,16 +93,16 @@ class Marker:
         return _combined(body, (shape, ends[0], ends[1]), raised), mark
 
     def _spot(self, assembly: Assembly, solid: Solid, body: Body) -> LabelPosition | None:
-        """Where the widest label of the tray has room on a geometry: all copies carry theirs at one place."""
+        """Where the widest label of the tray fits on a geometry: all copies carry theirs at one place."""
         key = (shape_of(solid), assembly.layout)
         if key not in self._spots:
             wall = self._printer.smallest.wall(solid.material.kind).recommended
             self._spots[key] = None
             for face in lettered_faces(assembly, solid):
                 area = free_area(face, solid, body, self._depth + wall, _LEAST_LAND)
-                found = spot(face, area, self._widest, self._heights)
-                if found is not None:
-                    self._spots[key] = found
+                position = spot(face, area, self._widest, self._heights)
+                if position is not None:
+                    self._spots[key] = position
                     break
         return self._spots[key]
 
@@ -127,17 +127,17 @@ class Marker:
         if clamped:
             inner, outer = layout.flange_radius - self._depth, layout.flange_radius + _PAST
             high, low = -layout.flange_thickness / 3, -2 * layout.flange_thickness / 3
-        found = tally(*number, inner, outer, width)
+        ring = tally(*number, inner, outer, width)
         if outer - inner < self._limit or high - low < self._limit:
             return body, Mark("none", note=f"the flange is too small for grooves of {self._limit:g} mm")
-        if found is None:
+        if ring is None:
             return body, Mark("none", note="the tally does not go round the flange")
         raised = self._marks == "raised" and not clamped
         note = "engraved in the flange's edge: the ring seals on its top" if clamped else ""
         ends = (low, high) if clamped else (-_PAST, self._depth) if raised else (low, _PAST)
         depth = self._depth if raised or clamped else high - low
-        shape = _grooves(found)
-        mark = Mark("tally", "flange edge" if clamped else "flange top", raised, depth, found.narrowest, 0.0, note)
+        shape = _grooves(ring)
+        mark = Mark("tally", "flange edge" if clamped else "flange top", raised, depth, ring.narrowest, 0.0, note)
         return _combined(body, (shape, *ends), raised), mark
 
     def _band(self, assembly: Assembly, solid: Solid) -> tuple[float, float]:
@@ -153,10 +153,10 @@ def shape_of(solid: Solid) -> Any:
     return solid.name, solid.base, solid.bores, solid.adds, solid.cuts
 
 
-def _grooves(found: TallyRing) -> Any:
+def _grooves(ring: TallyRing) -> Any:
     from manifold3d import CrossSection
 
-    return rounded(CrossSection(found.polygons()))
+    return rounded(CrossSection(ring.polygons()))
 
 
 def _combined(body: Body, tool: Tool, raised: bool) -> Body:

@@ -21,7 +21,7 @@ _LARGE = 400
 _PART = 80
 """Indices of a part."""
 
-_ROOM = 1e-3
+_CLEARANCE = 1e-3
 """Least width in mm of a gap that a cut runs through."""
 
 _CHUNK = 500
@@ -34,9 +34,9 @@ _DECIMALS = 4
 def boundary(triangles: Indices, size: int) -> Indices:
     """Directed edges (n, 2) that triangles have in one direction only; ``size`` is the number of vertices."""
     edges = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
-    forth, back = edges[:, 0] * size + edges[:, 1], edges[:, 1] * size + edges[:, 0]
-    found: Indices = edges[~np.isin(forth, back)]
-    return found
+    outward, back = edges[:, 0] * size + edges[:, 1], edges[:, 1] * size + edges[:, 0]
+    border: Indices = edges[~np.isin(outward, back)]
+    return border
 
 
 def cut_places(spans: Array) -> list[float]:
@@ -45,7 +45,7 @@ def cut_places(spans: Array) -> list[float]:
         return []
     order = spans[np.argsort(spans[:, 0], kind="stable")]
     reached = np.maximum.accumulate(order[:-1, 1])
-    gaps = np.flatnonzero(order[1:, 0] > reached + _ROOM)
+    gaps = np.flatnonzero(order[1:, 0] > reached + _CLEARANCE)
     places, last = [], 0
     for k in gaps.tolist():
         if k - last >= _PART:
@@ -87,8 +87,8 @@ def triangulated(points: Array, edges: Indices) -> Indices:
         raise ComputationError(
             "a pattern's footprint leaves no clean face on the block's side; move or resize a layer by 0.1 mm, or report it"
         ) from None
-    found = [_filled(points, group) for group in groups]
-    return np.concatenate(found) if found else np.zeros((0, 3), np.int64)
+    filled = [_filled(points, group) for group in groups]
+    return np.concatenate(filled) if filled else np.zeros((0, 3), np.int64)
 
 
 def _loops(points: Array, edges: Indices) -> list[Indices]:
@@ -109,20 +109,20 @@ def _loops(points: Array, edges: Indices) -> list[Indices]:
     return loops
 
 
-def _leftmost(points: Array, before: int, here: int, ways: list[int]) -> int:
-    """Take the way out of ``here`` that turns most to the left."""
-    if len(ways) == 1:
-        return ways.pop()
+def _leftmost(points: Array, before: int, here: int, exits: list[int]) -> int:
+    """Take the edge out of ``here`` that turns most to the left."""
+    if len(exits) == 1:
+        return exits.pop()
     back = points[before] - points[here]
 
-    def turn(way: int) -> float:
-        out = points[way] - points[here]
+    def turn(exit_: int) -> float:
+        out = points[exit_] - points[here]
         # Clockwise from where we came from: the region lies between.
         angle = np.arctan2(back[0] * out[1] - back[1] * out[0], back @ out)
         return float(-angle % (2 * np.pi))
 
-    best = min(ways, key=lambda way: turn(way) or 2 * np.pi)
-    ways.remove(best)
+    best = min(exits, key=lambda exit_: turn(exit_) or 2 * np.pi)
+    exits.remove(best)
     return best
 
 
@@ -184,11 +184,11 @@ def _filled(points: Array, group: _Group) -> Indices:
         return quad
     loops = [outer, *group.holes]
     flat = triangulate([np.ascontiguousarray(points[loop]) for loop in loops])
-    found: Indices = np.concatenate(loops)[np.asarray(flat)].astype(np.int64)
-    return found
+    triangles: Indices = np.concatenate(loops)[np.asarray(flat)].astype(np.int64)
+    return triangles
 
 
 def _convex(corners: Array) -> bool:
-    forth = np.roll(corners, -1, axis=0) - corners
-    after = np.roll(forth, -1, axis=0)
-    return bool((forth[:, 0] * after[:, 1] - forth[:, 1] * after[:, 0] > 0).all())
+    outward = np.roll(corners, -1, axis=0) - corners
+    after = np.roll(outward, -1, axis=0)
+    return bool((outward[:, 0] * after[:, 1] - outward[:, 1] * after[:, 0] > 0).all())

@@ -26,7 +26,7 @@ LevelFunction = Callable[[Array], Array]
 """Values (n,) of a function at points (n, 3), mm."""
 
 _PATHS = tuple(itertools.permutations(range(3)))
-"""Ways from a cube's least corner to its greatest; each is a tetrahedron."""
+"""Paths from a cube's least corner to its greatest; each is a tetrahedron."""
 
 
 @dataclass(frozen=True)
@@ -119,13 +119,13 @@ def _crossed(below: Flags, path: tuple[int, ...], tables: dict[int, list[list[tu
     case = bits.reshape(-1)[first]
     node = np.stack(np.unravel_index(first, bits.shape), axis=1) @ strides
     mirrored = np.linalg.det((steps[1:] - steps[0]).astype(float)) < 0
-    found = []
+    keys = []
     for number, faces in tables.items():
         here = node[case == number]
         for face in faces if len(here) else ():
             pairs = [sorted(edge) for edge in (face[::-1] if mirrored else face)]
-            found.append(np.column_stack([_key(here, steps, strides, low, high) for low, high in pairs]))
-    return found
+            keys.append(np.column_stack([_key(here, steps, strides, low, high) for low, high in pairs]))
+    return keys
 
 
 def _key(node: Indices, steps: Indices, strides: Indices, low: int, high: int) -> Indices:
@@ -156,7 +156,7 @@ def _places(grid: MarchingGrid, wave: LevelFunction, values: Array, level: float
 
 
 def _closed(surface: Mesh, box: Box, inside: Flags) -> Mesh:
-    """The surface with caps on the box's sides; ``inside`` (8,) says which corners of the box belong to the body."""
+    """The surface with caps on the box's sides; ``inside`` (8,) states which corners of the box belong to the body."""
     ends = np.array([box.low, box.high])
     corners = np.array(list(itertools.product(*ends.T)))
     first = len(surface.vertices)

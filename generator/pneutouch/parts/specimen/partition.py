@@ -1,7 +1,7 @@
 """The matrix of a specimen: what its inclusion leaves of the block, with the inclusion's own triangles where they meet.
 
 The common face is taken once and turned round, so both bodies have it corner by corner. Only the block's six sides are
-triangulated anew, around the inclusion's footprints. No boolean is made, so nothing depends on a tolerance.
+triangulated again, around the inclusion's footprints. No boolean is made, so nothing depends on a tolerance.
 """
 
 from __future__ import annotations
@@ -38,10 +38,10 @@ class _Partition:
 
     def matrix(self) -> Mesh:
         """The matrix."""
-        own = np.zeros(len(self._inclusion.triangles), bool)
+        on_sides = np.zeros(len(self._inclusion.triangles), bool)
         for mask in self._footprints.values():
-            own |= mask
-        parts = [self._inclusion.triangles[~own][:, ::-1], *(self._rest(side) for side in SIDES)]
+            on_sides |= mask
+        parts = [self._inclusion.triangles[~on_sides][:, ::-1], *(self._rest(side) for side in SIDES)]
         return Mesh(self._vertices, np.concatenate(parts)).compact()
 
     def _on(self, side: BoxSide) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
@@ -62,12 +62,12 @@ class _Partition:
         other = 3 - axis
         points = np.zeros((2, 3))
         points[:, axis], points[:, other] = self._ends[end, axis], self._ends[:, other]
-        found = []
+        spans = []
         for place in cut_places(np.sort(ends, axis=1)):
             points[:, 0] = place
             low, high = (self._number(point) for point in points.tolist())
-            found.append((low, high))
-        return found
+            spans.append((low, high))
+        return spans
 
     def _number(self, point: list[float]) -> int:
         """Number of an extra vertex; two sides that are cut at one place share it."""

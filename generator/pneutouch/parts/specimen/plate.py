@@ -12,7 +12,7 @@ from pneutouch.parts.specimen.faces import boundary, triangulated
 from pneutouch.parts.specimen.mesh import Box, Mesh
 
 CORNER = 0.5
-"""Share of the border that the cut corner takes at x = y = 0: it says which way round the specimen lies."""
+"""Share of the border that the cut corner takes at x = y = 0: it shows the orientation of the specimen."""
 
 
 def holes(block: Box, border: float) -> list[tuple[float, float]]:
@@ -29,7 +29,7 @@ def plate(
     """The plate, its top at the bottom of the block; lengths in mm.
 
     ``bodies`` are what stands on it: their triangles on that plane are taken over, turned round. ``letters`` are plane
-    loops (n, 2), the solid of a letter left of them, cut ``depth`` deep into the top beside the block.
+    loops (n, 2), the solid of a letter left of them, cut ``depth`` deep into the top next to the block.
     """
     top = block.low[2]
     made = _Mesh()
@@ -101,7 +101,7 @@ class _Mesh:
         return np.arange(start, self._size)
 
     def wall(self, low: Indices, high: Indices) -> None:
-        """The strip between two rings, facing right of their way where the first one is the lower."""
+        """The strip between two rings, facing right of their direction where the first one is the lower."""
         a, b = low, np.roll(low, -1)
         c, d = high, np.roll(high, -1)
         self.walls += [np.column_stack([a, b, d]), np.column_stack([a, d, c])]

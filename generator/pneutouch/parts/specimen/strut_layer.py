@@ -1,4 +1,4 @@
-"""The family of strut lattices: checked, sized to the volume fraction asked for, and drawn."""
+"""The family of strut lattices: checked, sized to the required volume fraction, and drawn."""
 
 from __future__ import annotations
 
@@ -88,24 +88,24 @@ def _solved(layer: StrutLattice, context: PatternContext, number: int, around: B
         lattice = Lattice(layer.kind, cell, radius, sides)
         piece = octant(lattice)
         mesh = piece if whole else fill(lattice, around, piece)
-        found = mesh.volume / (1.0 if whole else around.volume)
-        if abs(found - target) <= _CLOSE * target:
+        fraction = mesh.volume / (1.0 if whole else around.volume)
+        if abs(fraction - target) <= _CLOSE * target:
             return lattice, fill(lattice, around, piece) if whole else mesh
-        tried.append((radius, found))
+        tried.append((radius, fraction))
         radius = _next(tried, target)
     raise ComputationError(
-        f"{context.where}: layer[{number}].volume_fraction = {target:g}: no strut radius found within {_TRIES} steps; "
+        f"{context.where}: layer[{number}].volume_fraction = {target:g}: no strut radius fraction within {_TRIES} steps; "
         "give strut_radius_mm instead"
     )
 
 
 def _next(tried: list[tuple[float, float]], target: float) -> float:
     """The next radius: the fraction goes about with its square at first, then along the secant."""
-    radius, found = tried[-1]
+    radius, fraction = tried[-1]
     if len(tried) == 1 or tried[-1][1] == tried[-2][1]:
-        return radius * math.sqrt(target / found)
+        return radius * math.sqrt(target / fraction)
     before, was = tried[-2]
-    return radius + (target - found) * (radius - before) / (found - was)
+    return radius + (target - fraction) * (radius - before) / (fraction - was)
 
 
 def _check_fraction(layer: StrutLattice, context: PatternContext, number: int, cell: float, target: float) -> None:
@@ -137,8 +137,8 @@ def _distances(kind: str, cell: float) -> Array:
     lattice = Lattice(kind, cell, 0.3 * cell, 8)
     line = (np.arange(_SAMPLES) + 0.5) / _SAMPLES
     points = np.array(list(itertools.product(line, line, line)))
-    found: Array = 0.5 * cell * lattice.distance(points)
-    return found
+    distance: Array = 0.5 * cell * lattice.distance(points)
+    return distance
 
 
 FAMILY = PatternFamily(box, draw)

@@ -90,7 +90,7 @@ class Lattice:
     def struts(self) -> list[tuple[Array, Array]]:
         """Ends (3,), in half cells, of every strut that reaches into the octant, mirror images of its own included."""
         reach = 1.1 * self.radius / (0.5 * self.cell)
-        found: dict[tuple[float, ...], tuple[Array, Array]] = {}
+        segments: dict[tuple[float, ...], tuple[Array, Array]] = {}
         for one, other in STRUTS[self.kind]:
             for signs in itertools.product((-1.0, 1.0), repeat=3):
                 for shift in itertools.product((0.0, 1.0), repeat=3):
@@ -98,16 +98,16 @@ class Lattice:
                     low, high = np.minimum(a, b) - reach, np.maximum(a, b) + reach
                     if (high > 0).all() and (low < 1.0).all():
                         key = tuple(sorted([tuple(a.tolist()), tuple(b.tolist())]))
-                        found[key] = (a, b)  # type: ignore[index]
-        return [found[key] for key in sorted(found)]
+                        segments[key] = (a, b)  # type: ignore[index]
+        return [segments[key] for key in sorted(segments)]
 
     def distance(self, points: Array) -> Array:
         """Distances (n,) of points (n, 3) in the octant from the nearest strut's axis, all in half cells."""
         nearest = np.full(len(points), np.inf)
         for a, b in self.struts():
-            way = b - a
-            share = np.clip((points - a) @ way / (way @ way), 0.0, 1.0)
-            nearest = np.minimum(nearest, np.linalg.norm(points - a - share[:, None] * way, axis=1))
+            direction = b - a
+            share = np.clip((points - a) @ direction / (direction @ direction), 0.0, 1.0)
+            nearest = np.minimum(nearest, np.linalg.norm(points - a - share[:, None] * direction, axis=1))
         return nearest
 
 
@@ -206,8 +206,8 @@ def _cut(mesh: Mesh, box: Box) -> Mesh:
     shifted = Mesh64(np.ascontiguousarray(mesh.vertices - np.array(box.low)), mesh.triangles.astype(np.uint64))
     cut = Manifold(shifted) ^ Manifold.cube(size.tolist())
     for detail in _CUTS:
-        found = _read(cut.simplify(detail))
-        placed = snapped(Mesh(found.vertices + np.array(box.low), found.triangles), box, 1e-6)
+        mesh = _read(cut.simplify(detail))
+        placed = snapped(Mesh(mesh.vertices + np.array(box.low), mesh.triangles), box, 1e-6)
         if placed.is_closed() and complement(box, placed).is_closed():
             break
     return placed

@@ -1,4 +1,4 @@
-"""The family of minimal surfaces: checked, levelled to the volume fraction or thickness asked for, and drawn."""
+"""The family of minimal surfaces: checked, levelled to the volume fraction or thickness required, and drawn."""
 
 from __future__ import annotations
 
@@ -41,22 +41,24 @@ def draw(layer: MinimalSurface, context: PatternContext, number: int) -> Pattern
     """The body, with the fraction that it has as measured on its mesh."""
     around, cell = box(layer, context, number), layer.pitch(context.speed)
     surface = PeriodicSurface(layer.kind, cell, layer.form, context.tolerance)
-    asked = layer.volume_fraction
+    requested = layer.volume_fraction
     fraction = (
-        fraction_of(surface, around, layer.thickness_mm) if asked is None and layer.thickness_mm else asked or 0.0
+        fraction_of(surface, around, layer.thickness_mm)
+        if requested is None and layer.thickness_mm
+        else requested or 0.0
     )
     low, high = surface.limits()
     if not low < fraction < high:
-        key, value = ("thickness_mm", layer.thickness_mm) if asked is None else ("volume_fraction", asked)
+        key, value = ("thickness_mm", layer.thickness_mm) if requested is None else ("volume_fraction", requested)
         raise context.refuse(
             number, key, value, f"the {layer.kind} {layer.form} would fill {fraction:.3g} of the layer; it hangs together from "
             f"{low:.3f} to {high:.3f} only",
         )  # fmt: skip
     mean = fraction / fraction_of(surface, around, 1.0)
-    if layer.form == "sheet" and asked is not None and mean < context.least("wall") - 1e-9:
+    if layer.form == "sheet" and requested is not None and mean < context.least("wall") - 1e-9:
         raise context.refuse(
-            number, "volume_fraction", asked, f"the sheet would be {mean:.3g} mm thick on average; the {context.printer.title} makes no "
-            f"wall thinner than {context.least('wall'):g} mm, so it must be at least {asked * context.least('wall') / mean:.3f}, or take a larger cell_mm",
+            number, "volume_fraction", requested, f"the sheet would be {mean:.3g} mm thick on average; the {context.printer.title} makes no "
+            f"wall thinner than {context.least('wall'):g} mm, so it must be at least {requested * context.least('wall') / mean:.3f}, or take a larger cell_mm",
         )  # fmt: skip
     mesh = fill(surface, around, fraction)
     truth = {

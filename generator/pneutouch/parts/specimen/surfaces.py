@@ -18,18 +18,18 @@ Form = Literal["sheet", "network"]
 
 
 def _gyroid(x: Array, y: Array, z: Array) -> Array:
-    found: Array = np.sin(x) * np.cos(y) + np.sin(y) * np.cos(z) + np.sin(z) * np.cos(x)
-    return found
+    level: Array = np.sin(x) * np.cos(y) + np.sin(y) * np.cos(z) + np.sin(z) * np.cos(x)
+    return level
 
 
 def _schwarz_p(x: Array, y: Array, z: Array) -> Array:
-    found: Array = np.cos(x) + np.cos(y) + np.cos(z)
-    return found
+    level: Array = np.cos(x) + np.cos(y) + np.cos(z)
+    return level
 
 
 def _diamond(x: Array, y: Array, z: Array) -> Array:
-    found: Array = np.cos(x) * np.cos(y) * np.cos(z) - np.sin(x) * np.sin(y) * np.sin(z)
-    return found
+    level: Array = np.cos(x) * np.cos(y) * np.cos(z) - np.sin(x) * np.sin(y) * np.sin(z)
+    return level
 
 
 SURFACES: dict[str, PeriodicFunction] = {"gyroid": _gyroid, "schwarz-p": _schwarz_p, "diamond": _diamond}
@@ -106,8 +106,8 @@ class PeriodicSurface:
         return self._wave(middle[:, None, None], middle[None, :, None], middle[None, None, :]).reshape(-1)
 
     def _wave(self, x: Array, y: Array, z: Array) -> Array:
-        found: Array = np.asarray(SURFACES[self.kind](x, y, z))
-        return found
+        level: Array = np.asarray(SURFACES[self.kind](x, y, z))
+        return level
 
 
 def fill(surface: PeriodicSurface, box: Box, fraction: float) -> Mesh:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 
@@ -15,7 +14,6 @@ from pneutouch.bench.simulate import (
     Population,
     RecordSamples,
     SimulatedSpecimens,
-    SimulationTruth,
     population,
     simulate_leak,
     simulate_run,
@@ -27,56 +25,32 @@ from pneutouch.bench.simulate.inject import sensor_pressure
 from pneutouch.bench.simulate.parameter import parameters
 from pneutouch.bench.simulate.truth import aged
 from pneutouch.catalogue import DesignSource, Library
-from pneutouch.errors import InputError, nearest
 from pneutouch.evaluation.resins import SimulatedResin, name_of, pressed, resins_of
 from pneutouch.mechanics import Sensor
 from pneutouch.output.files import MANIFEST, json_bytes, replacing
 from pneutouch.output.manifest import entry, input_hash, manifest
-from pneutouch.spec.campaign import Campaign, CampaignRun, Rig, RunKind
+from pneutouch.spec.campaign import Campaign, CampaignRun, Rig
 from pneutouch.spec.read import Changes, assignments, validate
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.units import KPA, ML
-
-KINDS: tuple[str, ...] = get_args(RunKind)
-PRESSED = ("steps", "saturation", "loop", "relaxation")
-"""Kinds of run with a plate."""
-
-REPEATED = ("steps", "saturation")
-"""Kinds that are run as often as requested; the others once."""
+from pneutouch.workflows.simulate.options import KINDS, PRESSED, REPEATED, SimulationOptions, check_options
 
 PUSHED = np.linspace(0.0, 0.5, 11) * ML
 """Volumes of an injection run, mm3: 0 to 0.5 mL, our choice."""
-
-
-@dataclass(frozen=True)
-class SimulationOptions:
-    """What shall be simulated. Pressures in kPa (None: the design's), rate in Hz, ages in days."""
-
-    resins: tuple[str, ...] = ()
-    specimens: int = 3
-    driving_pressures_kPa: tuple[float, ...] | None = None
-    runs: int = 3
-    kinds: tuple[str, ...] = ("steps", "loop", "relaxation")
-    rate: float = 100.0
-    seed: int = 0
-    model: str = "solid"
-    ages_days: tuple[float, ...] = (0.0,)
-    parquet: bool = False
-    truth: SimulationTruth = field(default_factory=SimulationTruth)
-
 
 Progress = Callable[[int, int], None]
 
 
 def simulate(
-    design: str | DesignSource, out: Path, changes: Changes | None = None, options: SimulationOptions = SimulationOptions(), library: Library | None = None,
+    design: str | DesignSource, out: Path, changes: Changes | None = None, options: SimulationOptions = SimulationOptions(),  # noqa: B008 - immutable
+    library: Library | None = None,
     progress: Progress = lambda done, total: None,
 ) -> Path:  # fmt: skip
     """Write ``out/<design>-campaign/``: campaign.toml, runs, truth.json, manifest; the same input, the same bytes.
 
     Runs are written to a hidden folder next to it as they are made. Raises InputError for what cannot be.
     """
-    _check(options)
+    check_options(options)
     subjects = resins_of(design, changes, options.resins, options.truth, library)
     name = f"{subjects[0].scene.name}-campaign"
     folder = out / name
@@ -287,25 +261,3 @@ def _inputs(subjects: list[SimulatedResin], options: SimulationOptions) -> dict[
         "parameters": {part: parameters(getattr(first.truth, part)) for part in ("scatter", "rig", "wall")},
         "rest": first.truth.rest,
     }  # fmt: skip
-
-
-def _check(options: SimulationOptions) -> None:
-    """Raise InputError for what cannot be simulated."""
-    bounds = (
-        ("specimens", options.specimens, 1, 1000), ("runs", options.runs, 1, 1000), ("rate_Hz", options.rate, 10.0, 1e5),
-        *(("driving_pressures_kPa", p, 0.0, 1000.0) for p in options.driving_pressures_kPa or ()), *(("ages", a, 0.0, 36_500.0) for a in options.ages_days),
-        *((("rest", options.truth.rest, 0.2, 3600.0),) if options.truth.rest is not None else ()),
-    )  # fmt: skip
-    for key, value, low, high in bounds:
-        if not low <= value <= high:
-            raise InputError(f"must be from {low:g} to {high:g}", key=key, value=value)
-    for key, values in (
-        ("driving_pressures_kPa", options.driving_pressures_kPa),
-        ("ages", options.ages_days),
-        ("kinds", options.kinds),
-    ):
-        if values is not None and (not values or len(set(values)) != len(values)):
-            raise InputError("must name at least one, and each once", key=key, value=",".join(map(str, values)))
-    for kind in options.kinds:
-        if kind not in KINDS:
-            raise InputError(f"unknown.{nearest(kind, KINDS)}", key="kinds", value=kind)

@@ -1,4 +1,4 @@
-"""Whether a layout has room for its parts: refused before anything is drawn, with the lengths that do not fit."""
+"""Whether a layout has space for its parts: refused before anything is drawn, with the lengths that do not fit."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Lengths = dict[str, tuple[float, float]]
 """What, with the radius that there is and the one that is needed, mm."""
 
 
-def check_room(scene: ResolvedDesign, layout: Layout) -> None:
+def check_space(scene: ResolvedDesign, layout: Layout) -> None:
     """Raise InputError for a dome too small for its channel, port or holes, or too large for its mount."""
     head = f"{scene.where}: membrane.inner_radius_mm = {layout.inner_radius:g}: too"
     for what, (has, least) in _least(scene, layout).items():
@@ -24,7 +24,7 @@ def check_room(scene: ResolvedDesign, layout: Layout) -> None:
     for what, (has, most) in _most(scene, layout).items():
         if has > most:
             raise InputError(
-                f"{head} large for connector.mount = {mount!r}: {what} is {has:.2f} mm in radius, there is room for "
+                f"{head} large for connector.mount = {mount!r}: {what} is {has:.2f} mm in radius, there is space for "
                 f"{most:.2f} mm; take a smaller dome, another seat or mount"
             )
 
