@@ -22,7 +22,7 @@ from tests.bench.rig import HEADER, Sensor, run_of, small, write
 
 SENSOR = Sensor()
 DEPTH = 5.0
-EXPECTED = ExpectedRun(DEPTH, 2.9, 7.2 * KPA, 2.5 * KPA)
+EXPECTED = ExpectedRun(DEPTH, 2.9, 7.2 * KPA)
 COLUMNS, RIG = ColumnMap(), Rig()
 
 
@@ -109,7 +109,7 @@ def test_every_wrong_unit_is_identified(tmp_path, samples, key, unit, units):
 def test_the_message_has_the_numbers(tmp_path):
     curve = ideal(factor=(1, 1e3, 1))
     with pytest.raises(InputError) as caught:
-        check_plausible(curve, COLUMNS, ExpectedRun(6.9, 4.2, 11 * KPA, 2.5 * KPA), Path("run.csv"))
+        check_plausible(curve, COLUMNS, ExpectedRun(6.9, 4.2, 11 * KPA), Path("run.csv"))
     words = str(caught.value)
     assert words == (
         "run.csv: column force_N: reads 4.5e+03 N at 6.9 mm where the prediction has 4.2 N, 1079 times it; is the column in mN? "
@@ -133,7 +133,7 @@ def test_no_question_within_a_factor_of_two(force, rise, depth):
     measured = ideal(deepest=depth * DEPTH, factor=(1, force, rise), driving=0.0)
     true = float(SENSOR.force(DEPTH))
     # A swap is detected by magnitudes where there is no driving pressure; these numbers are far from each other's.
-    expected = ExpectedRun(DEPTH, true, 40 * SENSOR.slope * true, 40 * SENSOR.slope)
+    expected = ExpectedRun(DEPTH, true, 40 * SENSOR.slope * true)
     measured = replace(measured, rise=40 * measured.rise)
     assert check_plausible(measured, COLUMNS, expected, Path("run.csv")) == ()
 

@@ -45,7 +45,7 @@ _SHAPE = 1.5
 
 @dataclass(frozen=True, slots=True)
 class ExpectedRun:
-    """The prediction of a run: force (N) and rise (MPa) at a depth (mm), and the sensitivity (MPa/N).
+    """The prediction of a run: force (N) and rise (MPa) at a depth (mm).
 
     ``curve`` are indentations (ascending, mm), forces and rises up to there, (n,) each, where they are available.
     """
@@ -53,7 +53,6 @@ class ExpectedRun:
     depth: float
     force: float
     rise: float
-    sensitivity: float
     curve: tuple[Array, Array, Array] | None = None
 
     def at(self, depth: float) -> tuple[float, float]:

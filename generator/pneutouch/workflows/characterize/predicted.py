@@ -48,7 +48,7 @@ class StatePrediction:
         state_figures, kept = state.figures, state.indentation <= state.range_end * (1 + 1e-12)
         return ExpectedRun(
             depth=float(state.indentation[kept][-1]), force=state_figures.force_range[1],
-            rise=float(state.pressure_rise[kept][-1]), sensitivity=state_figures.sensitivity_kPa_per_N * KPA,
+            rise=float(state.pressure_rise[kept][-1]),
             curve=(state.indentation[kept], state.force[kept], state.pressure_rise[kept]),
         )  # fmt: skip
 
