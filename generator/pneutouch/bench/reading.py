@@ -72,8 +72,8 @@ def read_blocks(
     if plate:
         _check_alive(blocks, names)
         warnings += _clipped(blocks, "force", blocks.force, blocks.force_extreme, rig.force_range_N, 1.0, "N")
-    top = rig.pressure_range_kPa
-    warnings += _clipped(blocks, "pressure", blocks.pressure, blocks.pressure_extreme, top, KPA, "kPa")
+    top_kPa = rig.pressure_range_kPa
+    warnings += _clipped(blocks, "pressure", blocks.pressure, blocks.pressure_extreme, top_kPa, KPA, "kPa")
     return replace(blocks, warnings=(*blocks.warnings, *warnings))
 
 

@@ -56,14 +56,14 @@ def _injections(ax: Axes, runs: Sequence[RunResiduals]) -> None:
     ax.legend(loc="best")
 
 
-def _group(ax: Axes, k: int, at: Sequence[Array], rows: Sequence[Array], label: str | None) -> None:
+def _group(ax: Axes, k: int, at: Sequence[Array], values: Sequence[Array], label: str | None) -> None:
     """Runs as points; the first carries the label, and a line joins their mean where they share their travels."""
     shade, marker = _SHADES[k % len(_SHADES)], MARKERS[k % len(MARKERS)]
     look: dict[str, Any] = {"ls": "none", "marker": marker, "ms": 2.8, "color": shade, "mew": 0.6, "zorder": 3}
     look["mfc"] = "white" if k % 2 else shade
     ax.axhline(0.0, color=FAINT, lw=0.8, zorder=1)
-    for place, (x, y) in enumerate(zip(at, rows, strict=True)):
+    for place, (x, y) in enumerate(zip(at, values, strict=True)):
         ax.plot(x, y, label=label if place == 0 else None, **look)
     shortest = min(at, key=len)
-    mean = np.mean([np.interp(shortest, x, y) for x, y in zip(at, rows, strict=True)], axis=0)
+    mean = np.mean([np.interp(shortest, x, y) for x, y in zip(at, values, strict=True)], axis=0)
     ax.plot(shortest, mean, color=shade, ls=LINES[k % len(LINES)], lw=0.9, zorder=2)

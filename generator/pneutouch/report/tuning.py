@@ -45,8 +45,8 @@ def tuning_chart(tuning: TuningChart, size: tuple[float, float]) -> str:
             *(float(other.sensitivity_kPa_per_N.max()) for other in tuning.others),
         ]
         top = 1.12 * max(most + [value for _, value in tuning.published_kPa_per_N])
-        right = float(max(chosen.driving_pressure_kPa[-1], *tuning.working_kPa_per_N))
-        ax.set(xlabel="driving pressure  (kPa)", ylabel="sensitivity  (kPa/N)", ylim=(0, top), xlim=(0, right))
+        right_kPa = float(max(chosen.driving_pressure_kPa[-1], *tuning.working_kPa_per_N))
+        ax.set(xlabel="driving pressure  (kPa)", ylabel="sensitivity  (kPa/N)", ylim=(0, top), xlim=(0, right_kPa))
         _mark(ax, tuning)
         if tuning.others:
             label_ends(ax, ends)
@@ -65,5 +65,4 @@ def _mark(ax: Axes, tuning: TuningChart) -> None:
     end = (tuning.chosen.driving_pressure_kPa[-1], tuning.high_kPa_per_N[-1])
     note(ax, "k = 2", end, (-4, -3), va="top", ha="right", color=INK)
     if tuning.published_kPa_per_N:
-        first = tuning.published_kPa_per_N[0]
-        note(ax, "published measurement", first, (7, 2), va="bottom", path_effects=halo())
+        note(ax, "published measurement", tuning.published_kPa_per_N[0], (7, 2), va="bottom", path_effects=halo())
