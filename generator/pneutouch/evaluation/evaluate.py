@@ -187,7 +187,12 @@ def _material_sensor(scene: ResolvedDesign) -> Sensor:
     try:
         return material_sensor(scene.membrane_material)
     except InputError as error:
-        raise InputError(f"{scene.where}: membrane.material = {scene.design.membrane.material!r}: {error}") from None
+        raise _material_error(scene, error) from None
+
+
+def _material_error(scene: ResolvedDesign, error: InputError) -> InputError:
+    """An error of a material, with the key of the design that names it."""
+    return InputError(str(error), file=scene.where, key="membrane.material", value=scene.design.membrane.material)
 
 
 def _aged(scene: ResolvedDesign, sensor: Sensor) -> tuple[Sensor, str]:
@@ -197,7 +202,7 @@ def _aged(scene: ResolvedDesign, sensor: Sensor) -> tuple[Sensor, str]:
     try:
         ratio = ageing_ratio(material)
     except InputError as error:
-        raise InputError(f"{scene.where}: membrane.material = {scene.design.membrane.material!r}: {error}") from None
+        raise _material_error(scene, error) from None
     assert material.shore_a is not None and material.shore_a_one_year is not None
     hardness = f"Shore A {material.shore_a.nominal:g} to {material.shore_a_one_year.nominal:g}"
     shifted = sensor.replace(shear_modulus=ratio * sensor.wall.shear_modulus)
@@ -209,8 +214,11 @@ def _beyond_limit(scene: ResolvedDesign, error: BeyondLimitError) -> InputError:
     pressures_kPa = scene.design.pneumatics.driving_pressures_kPa
     k = int(np.argmin([abs(p - error.pressure / KPA) for p in pressures_kPa]))
     return InputError(
-        f"{scene.where}: pneumatics.driving_pressures_kPa[{k}] = {pressures_kPa[k]:g}: beyond the limit point, where "
-        f"the dome snaps; with this resin, wall and radius it must be at most {error.limit / KPA:.2f} kPa"
+        "beyond the limit point, where the dome snaps; with this resin, wall and radius it must be at most "
+        f"{error.limit / KPA:.2f} kPa",
+        file=scene.where,
+        key=f"pneumatics.driving_pressures_kPa[{k}]",
+        value=pressures_kPa[k],
     )
 
 
@@ -219,9 +227,11 @@ def _check_plate(scene: ResolvedDesign, prediction: SensorPrediction) -> None:
     for state in prediction.states:
         ending = [event for event in state.events if event.ends_range]
         if ending and ending[0].kind == "plate edge":
+            safe = 2 * scene.design.membrane.inner_radius_mm
             raise InputError(
-                f"{scene.where}: indentation.plate_diameter_mm = {scene.design.indentation.plate_diameter_mm:g}: the "
-                f"contact reaches the plate's edge at {ending[0].indentation:.2f} mm of indentation; it must be wider "
-                f"than the contact (twice membrane.inner_radius_mm = {2 * scene.design.membrane.inner_radius_mm:g} mm "
-                "is safe), or indentation.depth_mm less"
+                f"the contact reaches the plate's edge at {ending[0].indentation:.2f} mm of indentation; it must be wider "
+                f"than the contact (twice membrane.inner_radius_mm = {safe:g} mm is safe), or indentation.depth_mm less",
+                file=scene.where,
+                key="indentation.plate_diameter_mm",
+                value=scene.design.indentation.plate_diameter_mm,
             )

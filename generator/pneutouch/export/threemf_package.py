@@ -53,7 +53,9 @@ def checked_package(path: Path) -> bytes:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             parts = _parts(archive, path)
     except _DAMAGE as error:
-        raise InputError(f"{path}: damaged zip archive ({error}); export or download the file again") from None
+        raise InputError(
+            f"damaged zip archive ({error})", file=path, remedy="export or download the file again"
+        ) from None
     components = Components(str(path))
     for name, part in parts.items():
         _check_xml(part, f"{path}: {name}", (components, name), must=name.lower().endswith(_XML))
@@ -67,17 +69,17 @@ def checked_package(path: Path) -> bytes:
 
 def _content(path: Path) -> bytes:
     if path.is_dir():
-        raise InputError(f"{path}: this is a folder; give a 3MF file")
+        raise InputError("this is a folder", file=path, remedy="give a 3MF file")
     if not path.exists():
-        raise InputError(f"{path}: no such file")
+        raise InputError("no such file", file=path)
     if not path.is_file():
-        raise InputError(f"{path}: not a plain file; give a 3MF file")
+        raise InputError("not a plain file", file=path, remedy="give a 3MF file")
     try:
         if path.stat().st_size > MOST_BYTES:
-            raise InputError(f"{path}: larger than {_mega(MOST_BYTES)}, which no sensor needs")
+            raise InputError(f"larger than {_mega(MOST_BYTES)}, which no sensor needs", file=path)
         return path.read_bytes()
     except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+        raise InputError(f"cannot be read: {error.strerror}", file=path) from None
 
 
 def _check_end(content: bytes, path: Path) -> None:
@@ -87,14 +89,16 @@ def _check_end(content: bytes, path: Path) -> None:
     comment = int.from_bytes(end[20:22], "little")
     if at < 0 or at + _END_SIZE + comment != len(content):
         what = "a zip archive cut short or damaged" if content.startswith(b"PK") else "not a zip archive"
-        raise InputError(f"{path}: {what}; a 3MF is a zip archive, such as pneutouch build writes")
+        raise InputError(f"{what}; a 3MF is a zip archive, such as pneutouch build writes", file=path)
     count, size = end[10:12], end[12:16]
     locator = max(0, at - _LOCATOR_64_SIZE)
     if content[locator:at].startswith(_LOCATOR_64):
         # lib3mf always writes the long form; its record stands right before the locator.
         long = content[max(0, locator - _END_64_SIZE) : locator]
         if not long.startswith(_END_64):
-            raise InputError(f"{path}: damaged zip archive (no zip64 record); export or download the file again")
+            raise InputError(
+                "damaged zip archive (no zip64 record)", file=path, remedy="export or download the file again"
+            )
         count, size = long[32:40], long[40:48]
     if int.from_bytes(count, "little") > MOST_PARTS or int.from_bytes(size, "little") > _MOST_DIRECTORY:
         _too_many(path)
@@ -106,14 +110,14 @@ def _parts(archive: zipfile.ZipFile, path: Path) -> dict[str, bytes]:
     if len(entries) > MOST_PARTS:
         _too_many(path)
     if sum(entry.file_size for entry in entries) > MOST_BYTES:
-        raise InputError(f"{path}: inflates to more than {_mega(MOST_BYTES)}, which no sensor needs")
+        raise InputError(f"inflates to more than {_mega(MOST_BYTES)}, which no sensor needs", file=path)
     parts: dict[str, bytes] = {}
     seen: set[str] = set()
     for entry in entries:
         if entry.flag_bits & 1 or entry.compress_type not in _METHODS:
-            raise InputError(f"{path}: {entry.filename}: encrypted or packed by a method that 3MF does not allow")
+            raise InputError(f"{entry.filename}: encrypted or packed by a method that 3MF does not allow", file=path)
         if entry.filename.lower() in seen:
-            raise InputError(f"{path}: {entry.filename}: there twice; a part may be there once only")
+            raise InputError(f"{entry.filename}: there twice; a part may be there once only", file=path)
         seen.add(entry.filename.lower())
         with archive.open(entry) as stream:
             part = stream.read(entry.file_size + 1)
@@ -126,7 +130,7 @@ def _parts(archive: zipfile.ZipFile, path: Path) -> dict[str, bytes]:
 
 
 def _too_many(path: Path) -> NoReturn:
-    raise InputError(f"{path}: more than {MOST_PARTS} parts, which no sensor needs")
+    raise InputError(f"more than {MOST_PARTS} parts, which no sensor needs", file=path)
 
 
 def _mega(size: int) -> str:
@@ -177,7 +181,7 @@ class Components:
                     )
             elif name not in counts:
                 if name in open_:
-                    raise InputError(f"{self.where}: object {name[1][:40]} is a component of itself")
+                    raise InputError(f"object {name[1][:40]} is a component of itself", file=self.where)
                 open_.add(name)
                 stack.append((name, True))
                 stack += [(child, False) for child in dict.fromkeys(children) if child not in counts]
@@ -192,14 +196,16 @@ def _check_xml(content: bytes, where: str, noted: tuple[Components, str], must: 
     depth = 0
 
     def refuse(*_: Any) -> NoReturn:
-        raise InputError(f"{where}: has a document type or entities, which 3MF does not allow; take them out")
+        raise InputError(
+            "has a document type or entities, which 3MF does not allow", file=where, remedy="take them out"
+        )
 
     def deeper(tag: str, attributes: dict[str, str]) -> None:
         nonlocal depth
         depth += 1
         noted[0].start(noted[1], tag, attributes)
         if depth > _DEEPEST:
-            raise InputError(f"{where}: XML nested deeper than {_DEEPEST} elements, which no 3MF needs")
+            raise InputError(f"XML nested deeper than {_DEEPEST} elements, which no 3MF needs", file=where)
 
     def back(*_: Any) -> None:
         nonlocal depth
@@ -212,4 +218,4 @@ def _check_xml(content: bytes, where: str, noted: tuple[Components, str], must: 
         parser.Parse(content, True)
     except (expat.ExpatError, ValueError, LookupError) as error:
         if must:
-            raise InputError(f"{where}: not well-formed XML: {error}") from None
+            raise InputError(f"not well-formed XML: {error}", file=where) from None

@@ -77,9 +77,9 @@ def read_threemf(path: Path) -> Package:
         model, reader = read_strictly(wrapper, content)
         return _package(path, wrapper, model, reader)
     except lib3mf.ELib3MFException as error:
-        raise InputError(f"{path}: not a valid 3MF: {error.get_error_message() or error}") from None
+        raise InputError(f"not a valid 3MF: {error.get_error_message() or error}", file=path) from None
     except UnicodeDecodeError:
-        raise InputError(f"{path}: not a valid 3MF: text in it is not UTF-8") from None
+        raise InputError("not a valid 3MF: text in it is not UTF-8", file=path) from None
 
 
 def _package(path: Path, wrapper: Any, model: Any, reader: Any) -> Package:

@@ -77,7 +77,7 @@ def read_stack(folder: Path) -> VoxelStack:
         stated = manifest["slices"][number]
         path = folder / slice_name(manifest["prefix"], number)
         if hashlib.sha256(_read(path)).hexdigest() != stated:
-            raise InputError(f"{path}: was changed after it was written: its SHA-256 is not that of {MANIFEST}")
+            raise InputError(f"was changed after it was written: its SHA-256 is not that of {MANIFEST}", file=path)
     counts = {resin: int(totals[k + 1]) for k, resin in enumerate(resins)}
     _check_counts(folder, manifest, counts)
     return VoxelStack(folder, manifest, counts, np.array(middle))
@@ -88,29 +88,29 @@ def _manifest(folder: Path) -> dict[str, Any]:
     try:
         document: Any = json.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
-        raise InputError(f"{folder}: holds no {MANIFEST}: not a voxel stack that pneutouch wrote") from None
+        raise InputError(f"holds no {MANIFEST}: not a voxel stack that pneutouch wrote", file=folder) from None
     except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+        raise InputError(f"cannot be read: {error.strerror}", file=path) from None
     except ValueError:
-        raise InputError(f"{path}: not JSON; write the stack again") from None
+        raise InputError("not JSON", file=path, remedy="write the stack again") from None
     content: dict[str, Any] = document if isinstance(document, dict) else {}
     for key, kind in _NEEDED.items():
         if not isinstance(content.get(key), kind):
-            raise InputError(f"{path}: {key} is missing or of another type; write the stack again")
+            raise InputError(f"{key} is missing or of another type", file=path, remedy="write the stack again")
     if content["format"] != FORMAT:
-        raise InputError(f"{path}: format = {content['format']}; this version reads {FORMAT}")
+        raise InputError(f"this version reads {FORMAT}", file=path, key="format", value=content["format"])
     try:
         colours = _colours(content)
     except (ValueError, TypeError, KeyError, OverflowError):
         raise InputError(
-            f"{path}: the colours are not four numbers from 0 to 255 each; write the stack again"
+            "the colours are not four numbers from 0 to 255 each", file=path, remedy="write the stack again"
         ) from None
     if len(set(colours.tolist())) != len(colours):
-        raise InputError(f"{path}: two of the colours are the same; write the stack again")
+        raise InputError("two of the colours are the same", file=path, remedy="write the stack again")
     if len(content["resins"]) > MOST_COLOURS:
-        raise InputError(f"{path}: {len(content['resins'])} colours; the utility takes {MOST_COLOURS}")
+        raise InputError(f"{len(content['resins'])} colours; the utility takes {MOST_COLOURS}", file=path)
     if whole_hash([str(one) for one in content["slices"]]) != content["sha256"]:
-        raise InputError(f"{path}: was changed after it was written: sha256 is not that of its slices")
+        raise InputError("was changed after it was written: sha256 is not that of its slices", file=path)
     return content
 
 
@@ -130,16 +130,18 @@ def _check_names(folder: Path, manifest: dict[str, Any]) -> None:
         match = pattern.fullmatch(path.name)
         if match is None:
             raise InputError(
-                f"{path}: is no slice; they are called {slice_name(prefix, 0)}, {slice_name(prefix, 1)} ..."
+                f"is no slice; they are called {slice_name(prefix, 0)}, {slice_name(prefix, 1)} ...", file=path
             )
         numbers.add(int(match[1]))
     for number in range(max(layers, max(numbers, default=-1) + 1)):
         if number not in numbers:
-            raise InputError(f"{folder}: {slice_name(prefix, number)} is missing; slices must be numbered without gaps")
+            raise InputError(
+                f"{slice_name(prefix, number)} is missing; slices must be numbered without gaps", file=folder
+            )
     if len(numbers) != layers or len(manifest["slices"]) != layers:
-        raise InputError(f"{folder}: {len(numbers)} slices; {MANIFEST} states {layers}")
+        raise InputError(f"{len(numbers)} slices; {MANIFEST} states {layers}", file=folder)
     if layers < LEAST_SLICES:
-        raise InputError(f"{folder}: {layers} slices; the utility takes no fewer than {LEAST_SLICES}")
+        raise InputError(f"{layers} slices; the utility takes no fewer than {LEAST_SLICES}", file=folder)
 
 
 def _slices(folder: Path, manifest: dict[str, Any]) -> Iterator[Labels]:
@@ -154,10 +156,10 @@ def _labels(content: bytes, manifest: dict[str, Any], where: str) -> Labels:
     rows, columns = read.pixels.shape
     if [columns, rows] != manifest["pixels"]:
         wide, tall = manifest["pixels"]
-        raise InputError(f"{where}: {columns} x {rows} pixels; all slices must be {wide} x {tall}")
+        raise InputError(f"{columns} x {rows} pixels; all slices must be {wide} x {tall}", file=where)
     if read.dpi is None or list(read.dpi) != manifest["dpi"]:
         stated = "no pitch" if read.dpi is None else f"{read.dpi[0]} x {read.dpi[1]} dpi"
-        raise InputError(f"{where}: states {stated}; must be {manifest['dpi'][0]} x {manifest['dpi'][1]} dpi")
+        raise InputError(f"states {stated}; must be {manifest['dpi'][0]} x {manifest['dpi'][1]} dpi", file=where)
     labels, known = np.zeros(read.pixels.shape, np.uint8), np.zeros(read.pixels.shape, bool)
     for k, colour in enumerate(_colours(manifest)):
         same = read.pixels == colour
@@ -167,7 +169,9 @@ def _labels(content: bytes, manifest: dict[str, Any], where: str) -> Labels:
     if not known.all():
         row, column = (int(index) for index in np.argwhere(~known)[0])
         colour = ", ".join(str(part) for part in read.pixels[row : row + 1, column].view(np.uint8))
-        raise InputError(f"{where}: the pixel in column {column}, row {row} is ({colour}), which stands for no resin")
+        raise InputError(
+            f"the pixel in column {column}, row {row} is ({colour}), which stands for no resin", file=where
+        )
     return labels
 
 
@@ -175,11 +179,11 @@ def _read(path: Path) -> bytes:
     try:
         return path.read_bytes()
     except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+        raise InputError(f"cannot be read: {error.strerror}", file=path) from None
 
 
 def _check_counts(folder: Path, manifest: dict[str, Any], counts: dict[str, int]) -> None:
     for resin, count in counts.items():
         stated = manifest["resins"][resin].get("voxels")
         if stated != count:
-            raise InputError(f"{folder / MANIFEST}: {resin} has {count} voxels in the slices; {stated} are stated")
+            raise InputError(f"{resin} has {count} voxels in the slices; {stated} are stated", file=folder / MANIFEST)
