@@ -111,5 +111,5 @@ def _restored(kind: type[PneutouchError], args: tuple[Any, ...]) -> PneutouchErr
 
 
 def _short(value: Any) -> str:
-    text = f"{value:g}" if isinstance(value, float) else repr(value)
+    text = repr(value)
     return text if len(text) <= 60 else f"{text[:57]}..."

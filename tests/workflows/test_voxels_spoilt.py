@@ -67,7 +67,7 @@ SPOILED = {
     "RGB": (lambda f: other_slice(f, 40, lambda p: p.convert("RGB")), r"_40\.png: the PNG is RGB without alpha"),
     "stray": (lambda f: repainted(f, 40, spoil=(7, 9)), r"_40\.png: the pixel in column 9, row 7 is \(12, 200, 34, 255\), which stands for no resin"),
     "size": (lambda f: repainted(f, 40, cut=-1), r"_40\.png: \d+ x \d+ pixels; all slices must be"),
-    "dpi": (lambda f: repainted(f, 40, dpi=(300, 600)), r"_40\.png: says 300 x 600 dpi; must be 600 x 300 dpi"),
+    "dpi": (lambda f: repainted(f, 40, dpi=(300, 600)), r"_40\.png: states 300 x 600 dpi; must be 600 x 300 dpi"),
     "gap": (lambda f: (f / "graded-dome_40.png").unlink(), r"graded-dome_40\.png is missing"),
     "last": (lambda f: shutil.copy(f / "graded-dome_0.png", f / "graded-dome_9999.png"), r"is missing; slices must be numbered without gaps"),
     "padded": (lambda f: (f / "graded-dome_4.png").rename(f / "graded-dome_04.png"), r"_04\.png: is no slice"),
