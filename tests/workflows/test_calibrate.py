@@ -181,4 +181,4 @@ def test_runs_of_other_sensors_and_kinds_are_not_taken(observations, scene):
     with pytest.raises(InputError, match=r"i\.csv: driving_pressure_kPa = 5: an injection must begin at ambient"):
         observations_of(campaign(held), [], [(held, np.ones(3), np.ones(3))], scene)
     _, _, remarks = observations_of(campaign(curve.run.model_copy(update={"resin": "FLX9950"})), [curve], [], scene)
-    assert "A is of FLX9950, the design says TangoPlus" in remarks[0]
+    assert "states A to be of FLX9950, the design states TangoPlus" in remarks[0]
