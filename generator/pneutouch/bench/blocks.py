@@ -68,7 +68,7 @@ class BlockCollector:
             self._first = float(time[0])
         if self.rate is None:
             if time.size < 2:
-                raise InputError(f"{self.file}: 1 row; at least 2, for a sampling rate")
+                raise InputError("1 row", file=self.file, remedy="at least 2, for a sampling rate")
             self.rate = 1 / float(np.median(np.diff(time)))
         if self.size is None:
             usual = 1 if self.rate <= SLOW else round(self.rate / BLOCK_RATE)
@@ -84,8 +84,12 @@ class BlockCollector:
         at = int(np.flatnonzero(time <= before)[0])
         does = "stands still" if time[at] == before[at] else "runs backwards"
         raise InputError(
-            f"{self.file}: row {rows[at]:.0f}: column {self.names['time']}: time {does}: {time[at]:.9g} s after "
-            f"{before[at]:.9g} s; must rise from row to row (enough decimals written? two recordings in one file?)"
+            (
+                f"row {rows[at]:.0f}: column {self.names['time']}: time {does}: {time[at]:.9g} s after "
+                f"{before[at]:.9g} s"
+            ),
+            file=self.file,
+            remedy="must rise from row to row (enough decimals written? two recordings in one file?)",
         )
 
     def _find_missed(self, time: Array) -> None:
@@ -126,14 +130,15 @@ class BlockCollector:
     def blocks(self, warnings: tuple[SuspectInterval, ...] = ()) -> Blocks:
         """The blocks, with gaps as warnings. Raises InputError where more than half of the record is missing."""
         if self.rate is None or self.size is None or self._first is None:
-            raise InputError(f"{self.file}: no samples")
+            raise InputError("no samples", file=self.file)
         if self._held.size:
             self._average(self._held, end=True)
         lost = self._short[0] + sum(count for *_, count in self._missed)
         if lost > self._samples:
             raise InputError(
-                f"{self.file}: {self._samples} samples are there and {lost} are missing, at {self.rate:.4g} Hz: more "
-                f"than half; column {self.names['time']} must be that of one recording"
+                f"{self._samples} samples are there and {lost} are missing, at {self.rate:.4g} Hz: more than half",
+                file=self.file,
+                remedy=f"column {self.names['time']} must be that of one recording",
             )
         columns = dict(zip(_COLUMNS, np.concatenate(self._parts, axis=1), strict=True))
         return Blocks(self.file, self.rate, self.size, warnings=(*self._gaps(), *warnings), **columns)

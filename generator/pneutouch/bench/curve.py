@@ -32,7 +32,7 @@ def curve_of(run: CampaignRun, blocks: Blocks, rig: Rig) -> MeasuredCurve:
     Raises InputError where the plate does not move or moves backwards, or there is no contact.
     """
     if run.kind in ("leak", "injection"):
-        raise InputError(f"{blocks.file}: a {run.kind} run has no plate and no curve")
+        raise InputError(f"a {run.kind} run has no plate and no curve", file=blocks.file)
     indentations = find_indents(blocks)
     touched = [k for k, contact in enumerate(indentations.contacts) if contact is not None]
     if not touched:
@@ -42,7 +42,7 @@ def curve_of(run: CampaignRun, blocks: Blocks, rig: Rig) -> MeasuredCurve:
     warnings += left_out
     if not kept:
         reasons = "; ".join(sorted({warning.why for warning in left_out}))
-        raise InputError(f"{blocks.file}: none of {len(touched)} indentations can be used: {reasons}")
+        raise InputError(f"none of {len(touched)} indentations can be used: {reasons}", file=blocks.file)
     loadings = [_loading(blocks, indentations, k) for k in kept] if run.kind in ("loop", "relaxation") else []
     points = _averaged(loadings) if loadings else _points(indentations, kept)
     bases = [indentations.bases[k] for k in kept]

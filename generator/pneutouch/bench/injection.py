@@ -35,15 +35,18 @@ def read_injection(path: Path, columns: ColumnMap) -> tuple[Array, Array]:
     rows, (volume, pressure) = whole(path, [columns.volume.name, columns.pressure.name])
     volume, pressure = scaled(path, columns, ("volume", "pressure"), rows, np.stack([volume, pressure]))
     if rows.size < LEAST_POINTS:
-        raise InputError(f"{path}: {rows.size} rows; at least {LEAST_POINTS}, for a line and its error")
+        raise InputError(f"{rows.size} rows", file=path, remedy=f"at least {LEAST_POINTS}, for a line and its error")
     if np.ptp(volume) <= 0:
         raise InputError(
-            f"{path}: column {columns.volume.name}: does not vary; must be the volumes injected one after another"
+            f"column {columns.volume.name}: does not vary",
+            file=path,
+            remedy="must be the volumes injected one after another",
         )
     if np.ptp(pressure) <= 0 or float(np.corrcoef(volume, pressure)[0, 1]) <= 0:
         raise InputError(
-            f"{path}: column {columns.pressure.name}: does not rise with {columns.volume.name}; are the columns "
-            "swapped, or a sign wrong (columns.volume.sign)?"
+            f"column {columns.pressure.name}: does not rise with {columns.volume.name}",
+            file=path,
+            remedy="are the columns swapped, or a sign wrong (columns.volume.sign)?",
         )
     return volume, pressure
 
@@ -111,5 +114,5 @@ def leak_rate(blocks: Blocks) -> tuple[float, float]:
     try:
         leak = leak_of(blocks.time, blocks.pressure)
     except InputError as error:
-        raise InputError(f"{blocks.file}: {error}") from None
+        raise InputError(f"{error}", file=blocks.file) from None
     return leak.rate, leak.error

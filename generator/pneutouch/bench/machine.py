@@ -108,7 +108,9 @@ def _holes(name: str, measured: MeasuredGauges, source: ReadingSource, results: 
     if not holes:
         return
     if len(holes) < 2:
-        raise InputError(f"{source.where}: gauge.{name}: 1 hole measured; at least 2, for a standard deviation")
+        raise InputError(
+            f"gauge.{name}: 1 hole measured", file=source.where, remedy="at least 2, for a standard deviation"
+        )
     smaller = [_smaller(hole, f"{source.where}: gauge.{name}.hole") for hole in holes]
     over = mean(smaller)
     how = "nominal less measured diameter of upright holes; low and high: least and greatest hole"
@@ -124,8 +126,11 @@ def _smaller(hole: GaugeSize, where: str) -> float:
     less, (low, high) = hole.nominal_mm - average, HOLE_UNDERSIZE_MM
     if not low - _ROUNDING <= less <= high + _ROUNDING:
         raise InputError(
-            f"{where}: nominal_mm = {hole.nominal_mm:g}: mean of measured_mm = {average:.4g} makes hole_undersize_mm = "
-            f"{less:.4g}; it must be from {low:g} to {high:g} mm; entered in the wrong row?"
+            (
+                f"nominal_mm = {hole.nominal_mm:g}: mean of measured_mm = {average:.4g} makes hole_undersize_mm = "
+                f"{less:.4g}; it must be from {low:g} to {high:g} mm; entered in the wrong row?"
+            ),
+            file=where,
         )
     return less
 

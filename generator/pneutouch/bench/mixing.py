@@ -85,8 +85,11 @@ def _base(soft: Material, measured: Sequence[MixedCoupons], moduli: Sequence[Mix
     at_zero = next((one for one in measured if one.fraction == 0 and one.shore_a), None)
     if at_zero is None:
         raise InputError(
-            f"{where}: hardness gives a modulus by its ratio to the soft resin's alone; shore_a at fraction = 0 is "
-            "missing; measure it on the same day, or pull dumbbells"
+            (
+                "hardness gives a modulus by its ratio to the soft resin's alone; shore_a at fraction = 0 is "
+                "missing; measure it on the same day, or pull dumbbells"
+            ),
+            file=where,
         )
     shore = mean(at_zero.shore_a)
     if moduli and moduli[0].fraction == 0:
@@ -124,7 +127,10 @@ def _check_rising(moduli: Sequence[MixModulus], where: str, soft: Material, stif
     for (f, low, by), (g, high, how) in pairwise(points):
         if high <= low:
             raise InputError(
-                f"{where}: {high:.3g} MPa at fraction = {g:g} ({how}) after {low:.3g} MPa at {f:g} ({by}); it must "
-                f"rise with {stiff.title}: were two mixes changed over? Leave the worse reading out where they differ "
-                "by scatter alone"
+                f"{high:.3g} MPa at fraction = {g:g} ({how}) after {low:.3g} MPa at {f:g} ({by})",
+                file=where,
+                remedy=(
+                    f"it must rise with {stiff.title}: were two mixes changed over? Leave the worse reading out where "
+                    "they differ by scatter alone"
+                ),
             )

@@ -92,8 +92,11 @@ def check_leak(blocks: Blocks, run: CampaignRun, rig: Rig) -> tuple[str, ...]:
     length, at = float(np.ptp(blocks.time)), sum(warning.end - warning.start for warning in lost)
     if at > 0.5 * length:
         raise InputError(
-            f"{blocks.file}: a leak run of {length:.3g} s of which {at:.3g} s are clipped ({lost[0].why}); the gauge "
-            f"has a range of {rig.pressure_range_kPa:g} kPa; must be run within it"
+            (
+                f"a leak run of {length:.3g} s of which {at:.3g} s are clipped ({lost[0].why}); the gauge has a "
+                f"range of {rig.pressure_range_kPa:g} kPa; must be run within it"
+            ),
+            file=blocks.file,
         )
     if lost:
         questions.append(
@@ -157,13 +160,15 @@ def _check_signs(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> None:
         deep = float(values[np.argmax(np.abs(values))])
         if deep < 0 and float(values.max()) <= _RESTS * -deep:
             raise InputError(
-                f"{file}: column {column.name}: falls by {_number(-deep / unit)} {name} as the sensor is pressed; it "
-                f"must rise: set columns.{key}.sign = {-column.sign}"
+                f"column {column.name}: falls by {_number(-deep / unit)} {name} as the sensor is pressed",
+                file=file,
+                remedy=f"it must rise: set columns.{key}.sign = {-column.sign}",
             )
     if curve.indentation[-1] <= 0:
         raise InputError(
-            f"{file}: column {columns.position.name}: falls as the force rises; it must count into the sensor: set "
-            f"columns.position.sign = {-columns.position.sign}"
+            f"column {columns.position.name}: falls as the force rises",
+            file=file,
+            remedy=f"it must count into the sensor: set columns.position.sign = {-columns.position.sign}",
         )
 
 
@@ -193,10 +198,13 @@ def _check_swap(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun,
     if swapped < 2 * math.log(FAR) and ((driven and rests) or (not driven and swapped + SWAP_MARGIN < as_stated)):
         before = f", and {_number(in_force / KPA)} before contact, the driving pressure" if driven else ""
         raise InputError(
-            f"{file}: columns {columns.force.name} and {columns.pressure.name} look swapped: {columns.force.name} "
-            f"rises by {force:.3g} where {expected_force:.3g} {columns.force.unit} are predicted and "
-            f"{expected_rise:.3g} {columns.pressure.unit} of pressure{before}; exchange columns.force.name and "
-            "columns.pressure.name"
+            (
+                f"columns {columns.force.name} and {columns.pressure.name} look swapped: {columns.force.name} "
+                f"rises by {force:.3g} where {expected_force:.3g} {columns.force.unit} are predicted and "
+                f"{expected_rise:.3g} {columns.pressure.unit} of pressure{before}"
+            ),
+            file=file,
+            remedy="exchange columns.force.name and columns.pressure.name",
         )
 
 

@@ -89,8 +89,12 @@ def scaled(path: Path, columns: ColumnMap, keys: Sequence[str], rows: Array, val
         place, at = np.argwhere(~(np.abs(converted) <= GREATEST))[0]
         column = getattr(columns, keys[place])
         raise InputError(
-            f"{path}: row {rows[at]:.0f}: column {column.name}: {values[place, at]:.3g} {column.unit}: no instrument "
-            "reads that; must be a measured number"
+            (
+                f"row {rows[at]:.0f}: column {column.name}: {values[place, at]:.3g} {column.unit}: no instrument "
+                "reads that"
+            ),
+            file=path,
+            remedy="must be a measured number",
         )
     return converted
 
@@ -103,7 +107,9 @@ def _check_alive(blocks: Blocks, names: dict[str, str]) -> None:
     if np.ptp(blocks.position) <= _EXACT * float(np.abs(blocks.position).max()):
         noise = float(np.median(blocks.force_spread))
         if blocks.size > 1 and np.ptp(blocks.force) > _PRESSED * noise:
-            raise InputError(f"{blocks.file}: column {names['position']}: {problem} while the force changes{question}")
+            raise InputError(
+                f"column {names['position']}: {problem} while the force changes{question}", file=blocks.file
+            )
         return
     # Across a gap the plate has moved far between two blocks; that is no motion that was recorded.
     steps = np.diff(blocks.time, prepend=blocks.time[0] - np.median(np.diff(blocks.time)))
@@ -115,7 +121,7 @@ def _check_alive(blocks: Blocks, names: dict[str, str]) -> None:
     ):
         close = _EXACT * float(np.abs(values).max())
         if spread[moving].max() <= close and np.ptp(values[moving]) <= close:
-            raise InputError(f"{blocks.file}: column {names[key]}: {problem} whenever the plate moves{question}")
+            raise InputError(f"column {names[key]}: {problem} whenever the plate moves{question}", file=blocks.file)
 
 
 def _clipped(

@@ -51,9 +51,12 @@ def puck(name: str, material: Material, measured: Puck, source: ReadingSource, r
     for place, density in enumerate(densities, start=1):
         if not _DENSITIES[0] <= density <= _DENSITIES[1]:
             raise InputError(
-                f"{source.where}: puck.{name}: puck {place}: mass_g = {mass[place - 1]:g}, diameter_mm = "
-                f"{diameter[place - 1]:g} and thickness_mm = {thickness[place - 1]:g} make {density:.3g} g/cm3; must "
-                f"be from {_DENSITIES[0]:g} to {_DENSITIES[1]:g}"
+                (
+                    f"puck.{name}: puck {place}: mass_g = {mass[place - 1]:g}, diameter_mm = {diameter[place - 1]:g} "
+                    f"and thickness_mm = {thickness[place - 1]:g} make {density:.3g} g/cm3"
+                ),
+                file=source.where,
+                remedy=f"must be from {_DENSITIES[0]:g} to {_DENSITIES[1]:g}",
             )
     how = "mass over measured volume of pucks"
     _add(results, source, name, "density_g_per_cm3", mean(densities.tolist()), how, "density, g/cm3")
@@ -130,7 +133,7 @@ def dumbbell(name: str, material: Material, measured: Dumbbell, source: ReadingS
     """Shear modulus by the neo-Hookean fit. Raises InputError for too few specimens or points or a rigid material."""
     where = f"{source.where}: dumbbell.{name}"
     if material.kind != "elastomer" and any(specimen.force_N for specimen in measured.specimen):
-        raise InputError(f"{where}: {material.label} is rigid; die C is for an elastomer")
+        raise InputError(f"{material.label} is rigid", file=where, remedy="die C is for an elastomer")
     fit = pulled(measured, where)
     if fit is None:
         return
@@ -188,13 +191,17 @@ def _fit(specimen: DumbbellSpecimen, most: float, where: str) -> tuple[float, fl
     near = stretch - 1 <= most * (1 + 1e-9)
     if near.sum() < _LEAST_POINTS:
         raise InputError(
-            f"{where}: {near.sum()} points up to a strain of {most:g} (extension_mm = "
-            f"{most * specimen.gauge_length_mm:g}); at least {_LEAST_POINTS}"
+            (f"{near.sum()} points up to a strain of {most:g} (extension_mm = {most * specimen.gauge_length_mm:g})"),
+            file=where,
+            remedy=f"at least {_LEAST_POINTS}",
         )
     modulus, error = neo_hookean(stretch[near], stress[near])
     if not _MODULI[0] <= modulus <= _MODULI[1]:
         raise InputError(
-            f"{where}: force_N over width_mm and thickness_mm makes a shear modulus of {modulus:.4g} MPa; an "
-            f"elastomer has from {_MODULI[0]:g} to {_MODULI[1]:g} MPa; must be forces in N and lengths in mm"
+            (
+                f"force_N over width_mm and thickness_mm makes a shear modulus of {modulus:.4g} MPa; an elastomer "
+                f"has from {_MODULI[0]:g} to {_MODULI[1]:g} MPa; must be forces in N and lengths in mm"
+            ),
+            file=where,
         )
     return modulus, error, secant_modulus(stretch, stress, _SECANT)

@@ -56,8 +56,9 @@ def excursions(blocks: Blocks) -> tuple[list[Excursion], bool]:
     noise, span = position_noise(blocks.position), float(np.ptp(place))
     if span <= _LEAST_SHARE * noise or place.size < FEW:
         raise InputError(
-            f"{blocks.file}: position: the plate never moves: from {place.min():.4g} to {place.max():.4g} mm; is "
-            "columns.position the right column?"
+            f"position: the plate never moves: from {place.min():.4g} to {place.max():.4g} mm",
+            file=blocks.file,
+            remedy="is columns.position the right column?",
         )
     _check_direction(blocks, place, span)
     turns = _turns(place, max(2 * NOISE * noise, TURN * span))
@@ -107,8 +108,12 @@ def _check_direction(blocks: Blocks, place: Array, span: float) -> None:
         return
     if low.std() > _ACTIVE * high.std() and np.ptp(low) > TURN * np.ptp(blocks.force):
         raise InputError(
-            f"{blocks.file}: the force changes where position is low ({place.min():.4g} mm) and is constant where it "
-            f"is high ({place.max():.4g} mm); position must count into the sensor: invert columns.position.sign"
+            (
+                f"the force changes where position is low ({place.min():.4g} mm) and is constant where it is high "
+                f"({place.max():.4g} mm)"
+            ),
+            file=blocks.file,
+            remedy="position must count into the sensor: invert columns.position.sign",
         )
 
 

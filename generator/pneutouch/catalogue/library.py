@@ -50,7 +50,7 @@ def _by_family(models: Mapping[str, type[BaseModel]]) -> ValidateFile:
     def check(content: dict[str, Any], where: str) -> BaseModel:
         family = content.get("family")
         if not isinstance(family, str) or family not in models:
-            raise InputError(f"{where}: family = {family!r}: unknown.{nearest(str(family), models)}")
+            raise InputError(f"unknown.{nearest(str(family), models)}", file=where, key="family", value=family)
         return validate(models[family], content, where)
 
     return check

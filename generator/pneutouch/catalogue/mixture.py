@@ -81,15 +81,17 @@ def mixing(
     where = str(paths[f"{soft}+{stiff}"])
     if (curve.soft, curve.stiff) != (soft, stiff):
         raise InputError(
-            f"{where}: soft = {curve.soft!r}, stiff = {curve.stiff!r}: must be {soft!r} and {stiff!r}, as the file's name"
+            (f"soft = {curve.soft!r}, stiff = {curve.stiff!r}: must be {soft!r} and {stiff!r}, as the file's name"),
+            file=where,
         )
     rows = np.array([_resolved(point, curve, library, where) for point in curve.points])
     fraction = np.array([point.fraction for point in curve.points])
     for (f, a), (g, b) in pairwise(zip(fraction, rows[:, 0], strict=True)):
         if b <= a:
             raise InputError(
-                f"{where}: points: a shear modulus of {b:g} MPa at fraction {g:g} after {a:g} MPa at {f:g}; "
-                f"it must rise with the fraction of {stiff}"
+                f"points: a shear modulus of {b:g} MPa at fraction {g:g} after {a:g} MPa at {f:g}",
+                file=where,
+                remedy=f"it must rise with the fraction of {stiff}",
             )
     return ResolvedMixingCurve(curve, fraction, *rows.T)
 
@@ -108,11 +110,14 @@ def _resolved(point: MixingPoint, curve: MixingCurve, library: Library, where: s
     foreign = [resin for resin in material.base_resins if resin not in (curve.soft, curve.stiff)]
     if foreign:
         raise InputError(
-            f"{where}: points.material = {point.material!r}: has {', '.join(foreign)} in it; must be of {curve.soft} and "
-            f"{curve.stiff} alone"
+            f"has {', '.join(foreign)} in it",
+            file=where,
+            key="points.material",
+            value=point.material,
+            remedy=f"must be of {curve.soft} and {curve.stiff} alone",
         )
     if material.shear_modulus_MPa is None:
-        raise InputError(f"{where}: points.material = {point.material!r}: has no shear_modulus_MPa")
+        raise InputError("has no shear_modulus_MPa", file=where, key="points.material", value=point.material)
     known = material.elongation_at_break_percent
     spread = material.shear_modulus_MPa.spread
     return (

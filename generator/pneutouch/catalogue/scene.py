@@ -155,8 +155,11 @@ def _tube(design: DesignFile, where: str, library: Library) -> Tube:
         library.load("tubes", name, file=where, key="pneumatics.tube")
         if name not in port.tubes:
             raise InputError(
-                f"{where}: pneumatics.tube = {name!r}: the port {design.connector.port} takes {', '.join(port.tubes)}; "
-                "give one of these, or another connector.port"
+                f"the port {design.connector.port} takes {', '.join(port.tubes)}",
+                file=where,
+                key="pneumatics.tube",
+                value=name,
+                remedy="give one of these, or another connector.port",
             )
     tube: Tube = library.load("tubes", name or port.tubes[0], file=where, key="tubes of connector.port")
     return tube
@@ -170,7 +173,7 @@ def _mode(printer: Printer, *materials: Material) -> Mode:
 
 def _check_kind(scene: ResolvedDesign, key: str, material: Material, kind: MaterialKind) -> None:
     if material.kind != kind:
-        raise InputError(f"{scene.where}: {key}: {material.label} is {material.kind}; it must be {kind}")
+        raise InputError(f"{key}: {material.label} is {material.kind}", file=scene.where, remedy=f"it must be {kind}")
 
 
 def _check_runs(scene: ResolvedDesign, key: str, printer: Printer, material: Material) -> None:
@@ -178,8 +181,9 @@ def _check_runs(scene: ResolvedDesign, key: str, printer: Printer, material: Mat
         table, name = key.split(".")
         value = getattr(getattr(scene.design, table), name)
         raise InputError(
-            f"{scene.where}: {key} = {value!r}: the {printer.title} cannot run {material.label}; "
-            f"it runs {', '.join(printer.resins)}, {printer.resins_at_once} at once"
+            f"{key} = {value!r}: the {printer.title} cannot run {material.label}",
+            file=scene.where,
+            remedy=f"it runs {', '.join(printer.resins)}, {printer.resins_at_once} at once",
         )
 
 

@@ -218,7 +218,7 @@ def refuse_flags(context: typer.Context, flags: Mapping[str, str], what: str, fi
         flag for key, flag in flags.items() if getattr(context.get_parameter_source(key), "name", "") == "COMMANDLINE"
     ]
     if given:
-        raise InputError(f"{file}: {', '.join(given)} cannot be given with {what}")
+        raise InputError(f"{', '.join(given)} cannot be given with {what}", file=file)
 
 
 def print_json(document: Any) -> None:

@@ -64,7 +64,7 @@ def _plan(
     from pneutouch.workflows.sweep import plan_of_file, plan_of_flags
 
     if file is not None and (design is not None or over):
-        raise InputError(f"{file}: a sweep file and {'--over' if over else '--design'}: give one or the other")
+        raise InputError(f"a sweep file and {'--over' if over else '--design'}: give one or the other", file=file)
     if file is not None:
         return plan_of_file(file, changed, **options)
     if design is None or not over:

@@ -176,8 +176,8 @@ class Components:
                 counts[name] = 1 + sum(counts.get(child, 1) for child in children)
                 if counts[name] > MOST_COMPONENTS:
                     raise InputError(
-                        f"{self.where}: its components amount to more than {MOST_COMPONENTS} objects, which no sensor "
-                        "needs"
+                        f"its components amount to more than {MOST_COMPONENTS} objects, which no sensor needs",
+                        file=self.where,
                     )
             elif name not in counts:
                 if name in open_:

@@ -36,7 +36,7 @@ def write_design(name: str, folder: Path, text: str) -> Path:
         handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)
     except FileExistsError:
         what = "there is such a file already; give another name" if path.exists() else f"{folder} is not a folder"
-        raise InputError(f"{path}: {what}") from None
+        raise InputError(f"{what}", file=path) from None
     except OSError as error:
         raise InputError(str(error.strerror), file=path, remedy="give a folder you may write to with `out`") from None
     with os.fdopen(handle, "w", encoding="utf-8") as file:

@@ -30,8 +30,9 @@ def read_recipe(package: Package) -> BuildRecipe:
     where = str(package.path)
     if package.recipe is None:
         raise InputError(
-            f"{where}: holds no recipe, so it cannot be rebuilt; give a 3MF that pneutouch build wrote, or a design "
-            "file"
+            "holds no recipe, so it cannot be rebuilt",
+            file=where,
+            remedy="give a 3MF that pneutouch build wrote, or a design file",
         )
     head = _head(package.recipe, f"{where}: recipe")
     inputs, kinds = head.inputs, scene_kinds()
@@ -44,8 +45,9 @@ def read_recipe(package: Package) -> BuildRecipe:
     _check_steps(scene, f"{where}: recipe")
     if package.metadata.get("input-hash") != input_hash(inputs, head.version):
         raise InputError(
-            f"{where}: recipe: altered or damaged: it does not match the input hash stored with it; "
-            "take the file as it was built, or build from a design file"
+            "recipe: altered or damaged: it does not match the input hash stored with it",
+            file=where,
+            remedy="take the file as it was built, or build from a design file",
         )
     return BuildRecipe(scene, resins, options, head.version)
 
@@ -64,17 +66,23 @@ def _head(text: str, where: str) -> _Head:
         content = json.loads(text, parse_constant=_no_number)
     except (ValueError, RecursionError) as error:
         why = "nested too deep" if isinstance(error, RecursionError) else str(error)
-        raise InputError(f"{where}: damaged, not valid JSON: {why}; take the file as it was built") from None
+        raise InputError(
+            f"damaged, not valid JSON: {why}", file=where, remedy="take the file as it was built"
+        ) from None
     if not isinstance(content, dict):
-        raise InputError(f"{where}: damaged: must be a table")
+        raise InputError("damaged: must be a table", file=where)
     if content.get("format", FORMAT) != FORMAT:
-        raise InputError(f"{where}: of form {content['format']!r}; pneutouch {__version__} reads form {FORMAT}")
+        raise InputError(
+            f"of form {content['format']!r}", file=where, remedy=f"pneutouch {__version__} reads form {FORMAT}"
+        )
     head = validate(_Head, content, where)
     name = head.name
     if not name.isprintable() or not name.strip(". ") or "/" in name or "\\" in name or len(name.encode()) > 200:
-        raise InputError(f"{where}: name = {name!r}: must be a plain file name, for it names the output folder")
+        raise InputError(
+            "must be a plain file name, for it names the output folder", file=where, key="name", value=name
+        )
     if not head.version.isprintable() or len(head.version) > 40:
-        raise InputError(f"{where}: version = {head.version[:60]!r}: must be a version number")
+        raise InputError("must be a version number", file=where, key="version", value=head.version[:60])
     return head
 
 
@@ -84,9 +92,9 @@ def _no_number(word: str) -> NoReturn:
 
 def _check_keys(content: dict[str, Any], known: set[str], where: str) -> None:
     for key in sorted(content.keys() - known):
-        raise InputError(f"{where}: {key}: unknown.{nearest(key, known)}")
+        raise InputError(f"{key}: unknown.{nearest(key, known)}", file=where)
     for key in sorted(known - content.keys()):
-        raise InputError(f"{where}: {key}: missing")
+        raise InputError(f"{key}: missing", file=where)
 
 
 def _part(kind: str, content: Any, where: str) -> Any:
@@ -110,7 +118,7 @@ def _dated(content: dict[str, Any]) -> dict[str, Any]:
 
 def _resins(content: Any, where: str) -> Resins:
     if not isinstance(content, dict):
-        raise InputError(f"{where}: must be a table of materials")
+        raise InputError("must be a table of materials", file=where)
     resins = {name: _part("materials", content[name], f"{where}.{name}") for name in sorted(content)}
     for name, material in resins.items():
         if material.kind != "elastomer":
@@ -126,14 +134,14 @@ def _options(inputs: dict[str, Any], where: str) -> PredictionOptions:
     for key, used in needed.items():
         if used == (inputs[key] is None):
             raise InputError(
-                f"{where}: {key} = {inputs[key]!r}: must {'' if used else 'not '}be given with model {model}"
+                f"{key} = {inputs[key]!r}: must {'' if used else 'not '}be given with model {model}", file=where
             )
     if needed["closure"]:
         given["closure"] = _one_of(inputs, "closure", CLOSURES, where)
     if needed["tolerance"]:
         value = inputs["tolerance"]
         if type(value) not in (int, float) or not (math.isfinite(value) and 0 < value < 100):
-            raise InputError(f"{where}: tolerance = {str(value)[:60]}: must be a positive share, such as 0.02")
+            raise InputError(f"tolerance = {str(value)[:60]}: must be a positive share, such as 0.02", file=where)
         given["tolerance"] = float(value)
     return PredictionOptions(**given)
 
@@ -141,7 +149,7 @@ def _options(inputs: dict[str, Any], where: str) -> PredictionOptions:
 def _one_of(inputs: dict[str, Any], key: str, known: Collection[str], where: str) -> str:
     value = inputs[key]
     if not isinstance(value, str) or value not in known:
-        raise InputError(f"{where}: {key} = {str(value)[:60]!r}: unknown.{nearest(str(value)[:60], known)}")
+        raise InputError(f"{key} = {str(value)[:60]!r}: unknown.{nearest(str(value)[:60], known)}", file=where)
     return value
 
 
@@ -149,8 +157,9 @@ def _check_steps(scene: ResolvedDesign, where: str) -> None:
     """Steps that no printer makes would make meshes without bounds."""
     if scene.mesh_tolerance < FINEST_STEP:
         raise InputError(
-            f"{where}: the printers step by {scene.mesh_tolerance:g} mm; their steps must be at least "
-            f"{FINEST_STEP:g} mm"
+            f"the printers step by {scene.mesh_tolerance:g} mm",
+            file=where,
+            remedy=f"their steps must be at least {FINEST_STEP:g} mm",
         )
 
 

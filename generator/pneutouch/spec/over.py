@@ -33,9 +33,9 @@ def spread(where: str, key: str, start: Any, stop: Any, count: Any) -> list[floa
     shown = f"{key}: from {start} to {stop} count {count}"
     ends = (start, stop)
     if any(isinstance(end, bool) or not isinstance(end, int | float) or not math.isfinite(end) for end in ends):
-        raise InputError(f"{where}: {shown}: the ends must be finite numbers")
+        raise InputError(f"{shown}: the ends must be finite numbers", file=where)
     if isinstance(count, bool) or not isinstance(count, int) or not 2 <= count <= MAX_VALUES:
-        raise InputError(f"{where}: {shown}: the count must be a whole number from 2 to {MAX_VALUES}")
+        raise InputError(f"{shown}: the count must be a whole number from 2 to {MAX_VALUES}", file=where)
     # Twelve digits: the values are read and selected by people, and 1.1 must be 1.1.
     inner = [float(f"{start + (stop - start) * (k / (count - 1)):.12g}") for k in range(1, count - 1)]
     values: list[float | int] = [start, *inner, stop]

@@ -250,7 +250,7 @@ def validate_specimen(content: dict[str, Any], where: str) -> Specimen:
     """The model of a specimen's file; each layer by the model of its kind, so that messages name the layer and its keys."""
     layers = content.get("layer", [])
     if not isinstance(layers, list):
-        raise InputError(f"{where}: layer: must be tables, written [[layer]]")
+        raise InputError("layer: must be tables, written [[layer]]", file=where)
     models = [_layer(layer, f"{where}: layer[{k}]") for k, layer in enumerate(layers)]
     return validate(Specimen, {**content, "layer": models}, where)
 

@@ -149,33 +149,48 @@ def _reader(given: Signal, target: float, lines: Array, where: str) -> tuple[_Re
     used = fitter(len(kept.pressure), kept.rate, bottom, top, lines, overtones, BAND)
     if np.count_nonzero(quiet) < _LEAST_QUIET or np.count_nonzero(used.bins) < 2 * (DEGREE + 1):
         raise InputError(
-            f"{where}: pattern frequency {target:g} Hz: the target frequencies leave no noise to compare "
-            f"with between {bottom:.3g} and {top:.3g} Hz; test fewer frequencies, or give a longer record"
+            (
+                f"pattern frequency {target:g} Hz: the target frequencies leave no noise to compare with between "
+                f"{bottom:.3g} and {top:.3g} Hz"
+            ),
+            file=where,
+            remedy="test fewer frequencies, or give a longer record",
         )
     return _Reader(used, target, voices, quiet), detrended(kept.pressure)
 
 
 def _check(given: Signal, target: Sequence[float], surrogates: int, level: float, where: str) -> None:
     if not target:
-        raise InputError(f"{where}: no pattern frequency given; give at least one in Hz")
+        raise InputError("no pattern frequency given", file=where, remedy="give at least one in Hz")
     if not 0 < level < 1 or math.floor(level * (surrogates + 1) + 1e-9) < 1:
         raise InputError(
-            f"{where}: {surrogates} surrogates for a level of {level:g}; the level must lie between 0 and 1, and there "
-            f"must be at least {math.ceil(1 / level) - 1 if 0 < level < 1 else SURROGATES}"
+            f"{surrogates} surrogates for a level of {level:g}",
+            file=where,
+            remedy=(
+                "the level must lie between 0 and 1, and there must be at least "
+                f"{math.ceil(1 / level) - 1 if 0 < level < 1 else SURROGATES}"
+            ),
         )
     most = given.rate / (OVERSAMPLING * (1 + BAND))
     for frequency in target:
         if not 0 < frequency < math.inf:
-            raise InputError(f"{where}: pattern frequency {frequency:g} Hz: must be a number above 0")
+            raise InputError(f"pattern frequency {frequency:g} Hz: must be a number above 0", file=where)
         if frequency > most:
             raise InputError(
-                f"{where}: pattern frequency {frequency:g} Hz: sampled at {given.rate:g} Hz, it can be tested up to "
-                f"{most:.4g} Hz"
+                (
+                    f"pattern frequency {frequency:g} Hz: sampled at {given.rate:g} Hz, it can be tested up to "
+                    f"{most:.4g} Hz"
+                ),
+                file=where,
             )
         if given.duration < least_duration(frequency) * (1 - 1e-9):
             raise InputError(
-                f"{where}: pattern frequency {frequency:g} Hz: the record lasts {given.duration:.4g} s and must last at "
-                f"least {least_duration(frequency):.4g} s, so that {CYCLES:g} cycles lie outside the wavelet's cone of influence"
+                (
+                    f"pattern frequency {frequency:g} Hz: the record lasts {given.duration:.4g} s and must last at "
+                    f"least {least_duration(frequency):.4g} s, so that {CYCLES:g} cycles lie outside the wavelet's "
+                    "cone of influence"
+                ),
+                file=where,
             )
     if np.ptp(given.pressure) <= 1e-12 * np.abs(given.pressure).max():
-        raise InputError(f"{where}: the pressure is the same throughout; there is nothing to detect in it")
+        raise InputError("the pressure is the same throughout", file=where, remedy="there is nothing to detect in it")

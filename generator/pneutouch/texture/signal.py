@@ -60,18 +60,22 @@ def signal(time: Array, pressure: Array, where: str = "signal", rows: Sequence[i
     """
     numbers = range(1, len(time) + 1) if rows is None else rows
     if len(time) != len(pressure):
-        raise InputError(f"{where}: {len(time)} times and {len(pressure)} pressures; must be as many")
+        raise InputError(f"{len(time)} times and {len(pressure)} pressures", file=where, remedy="must be as many")
     if len(time) < 4:
-        raise InputError(f"{where}: {len(time)} rows; a signal needs at least 4")
+        raise InputError(f"{len(time)} rows", file=where, remedy="a signal needs at least 4")
     for name, values, unit in (("time_s", time, 1.0), ("pressure_kPa", pressure, KPA)):
         wrong = np.flatnonzero(~np.isfinite(values))
         if wrong.size:
             at = int(wrong[0])
-            raise InputError(f"{where}: row {numbers[at]}: {name} = {values[at] / unit:g}; must be a finite number")
+            raise InputError(
+                f"row {numbers[at]}: {name} = {values[at] / unit:g}", file=where, remedy="must be a finite number"
+            )
     far = np.flatnonzero(np.abs(pressure) > MOST)
     if far.size:
         at = int(far[0])
-        raise InputError(f"{where}: row {numbers[at]}: pressure_kPa = {pressure[at] / KPA:g}; is this in kPa?")
+        raise InputError(
+            f"row {numbers[at]}: pressure_kPa = {pressure[at] / KPA:g}", file=where, remedy="is this in kPa?"
+        )
     _check_steps(time, where, numbers)
     return Signal(float(time[0]), float(time[-1] - time[0]) / (len(time) - 1), np.asarray(pressure, float))
 
@@ -83,22 +87,32 @@ def _check_steps(time: Array, where: str, rows: Sequence[int]) -> None:
     if back.size:
         at = int(back[0]) + 1
         raise InputError(
-            f"{where}: row {rows[at]}: time_s = {time[at]:.9g} after {time[at - 1]:.9g}; time must run forwards"
+            f"row {rows[at]}: time_s = {time[at]:.9g} after {time[at - 1]:.9g}",
+            file=where,
+            remedy="time must run forwards",
         )
     gap = np.flatnonzero(steps > (1 + 2 * _OFF) * usual * (1 + 1e-6))
     if gap.size:
         at = int(gap[0]) + 1
         raise InputError(
-            f"{where}: row {rows[at]}: time_s = {time[at]:.9g} after {time[at - 1]:.9g}: a gap of {steps[at - 1]:.6g} s "
-            f"where steps are {usual:.6g} s; fill it, or give the longer piece alone"
+            (
+                f"row {rows[at]}: time_s = {time[at]:.9g} after {time[at - 1]:.9g}: a gap of {steps[at - 1]:.6g} "
+                f"s where steps are {usual:.6g} s"
+            ),
+            file=where,
+            remedy="fill it, or give the longer piece alone",
         )
     even = np.linspace(time[0], time[-1], len(time))
     off = np.abs(time - even)
     at = int(np.argmax(off))
     if off[at] > _OFF * float(steps.mean()) * (1 + 1e-6):
         raise InputError(
-            f"{where}: row {rows[at]}: time_s = {time[at]:.9g} where even steps of {steps.mean():.6g} s would have "
-            f"{even[at]:.9g}; resample the signal to even steps"
+            (
+                f"row {rows[at]}: time_s = {time[at]:.9g} where even steps of {steps.mean():.6g} s would have "
+                f"{even[at]:.9g}"
+            ),
+            file=where,
+            remedy="resample the signal to even steps",
         )
 
 

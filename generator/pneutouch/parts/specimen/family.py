@@ -35,7 +35,7 @@ class PatternContext:
     def refuse(self, number: int, key: str, value: Any, right: str) -> InputError:
         """The error for one value of a layer: names file, layer, key and value, and states what would be right."""
         shown = f"{value:g}" if isinstance(value, float | int) else repr(value)
-        return InputError(f"{self.where}: layer[{number}].{key} = {shown}: {right}")
+        return InputError(f"layer[{number}].{key} = {shown}: {right}", file=self.where)
 
     def least(self, kind: str) -> float:
         """Smallest wall or pin in mm that the printer makes of the patterns' material."""

@@ -94,8 +94,9 @@ def _solved(layer: StrutLattice, context: PatternContext, number: int, around: B
         tried.append((radius, fraction))
         radius = _next(tried, target)
     raise ComputationError(
-        f"{context.where}: layer[{number}].volume_fraction = {target:g}: no strut radius fraction within {_TRIES} steps; "
-        "give strut_radius_mm instead"
+        f"layer[{number}].volume_fraction = {target:g}: no strut radius fraction within {_TRIES} steps",
+        file=context.where,
+        remedy="give strut_radius_mm instead",
     )
 
 

@@ -42,7 +42,7 @@ def build(evaluation: Evaluation, out: Path, progress: StepReport = lambda step:
     """
     scene, assembly = evaluation.scene, evaluation.assembly
     if evaluation.options.aged:
-        raise InputError(f"{scene.where}: an aged prediction is for reading; a build is of a fresh print")
+        raise InputError("an aged prediction is for reading", file=scene.where, remedy="a build is of a fresh print")
     folder = out / scene.name
     check_writable(folder)
     progress("rules")

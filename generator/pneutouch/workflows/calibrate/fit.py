@@ -137,7 +137,11 @@ def observations_of(
     for run, _, _ in pushed:
         if run.driving_pressure_kPa:
             raise InputError(
-                f"{run.file}: driving_pressure_kPa = {run.driving_pressure_kPa:g}: an injection must begin at ambient pressure, 0"
+                (
+                    f"driving_pressure_kPa = {run.driving_pressure_kPa:g}: an injection must begin at ambient "
+                    "pressure, 0"
+                ),
+                file=run.file,
             )
     if not steps and not pushed:
         raise InputError(

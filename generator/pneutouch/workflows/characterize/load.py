@@ -71,7 +71,7 @@ def campaign_of(data: Path) -> tuple[Campaign, Path]:
     """The campaign of a folder or of its campaign file. Raises InputError."""
     path = data / CAMPAIGN if data.is_dir() else data
     if data.is_dir() and not path.is_file():
-        raise InputError(f"{data}: holds no {CAMPAIGN}; `pneutouch plan` writes one to be filled in")
+        raise InputError(f"holds no {CAMPAIGN}", file=data, remedy="`pneutouch plan` writes one to be filled in")
     return validate(Campaign, read_toml(path), str(path)), path.parent
 
 
@@ -139,7 +139,7 @@ def _read(
 ) -> None:  # fmt: skip
     path = folder / run.file
     if not path.is_file():
-        raise InputError(f"{path}: no such file; the campaign names it as {run.label}")
+        raise InputError("no such file", file=path, remedy=f"the campaign names it as {run.label}")
     if run.kind == "injection":
         gathered.injections.append((run, *read_injection(path, campaign.columns)))
         return

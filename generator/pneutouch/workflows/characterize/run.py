@@ -92,7 +92,7 @@ def _design_of(data: Path) -> tuple[str, dict[str, Any]]:
     """The design that a campaign names, and what changes it."""
     if not (data.is_dir() or data.suffix == ".toml"):
         if not data.exists():
-            raise InputError(f"{data}: no such file or folder")
+            raise InputError("no such file or folder", file=data)
         raise InputError("a single file needs its sensor", file=data, remedy="give `design`")
     campaign, folder = campaign_of(data)
     if campaign.design is None:

@@ -31,7 +31,7 @@ def enter_results(path: Path, out: Path, library: Library | None = None) -> dict
     here = ReadingSource(str(path), results.lab, results.date)
     curves = [local_curve(pair, read, here, library, out, findings) for pair, read in results.mixing.items()]
     if not (findings.changes or findings.figures or findings.notes):
-        raise InputError(f"{path}: nothing measured: every list is empty; fill in some readings")
+        raise InputError("nothing measured: every list is empty", file=path, remedy="fill in some readings")
     source = ReadingSource(path.name, results.lab, results.date)
     profiles = local_profiles(findings.changes, source, library, out) + [curve for curve in curves if curve is not None]
     write_profiles(profiles)
@@ -66,9 +66,9 @@ def _gauges(
         material = _material(material_name, source.where, f"gauge.{name}", library)
         if printer.mode_for(material) is None:
             raise InputError(
-                f"{source.where}: gauge.{name}.{material_name}: the {printer.title} cannot run {material.label}; it "
-                "runs "
-                f"{', '.join(printer.resins)}"
+                f"gauge.{name}.{material_name}: the {printer.title} cannot run {material.label}",
+                file=source.where,
+                remedy=f"it runs {', '.join(printer.resins)}",
             )
         measured.append((material_name, material, gauge))
     gauges(name, printer, measured, source, findings)

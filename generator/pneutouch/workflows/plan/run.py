@@ -54,7 +54,9 @@ def rig_of(file: Path | None) -> Rig:
         return Rig()
     content = read_toml(file)
     if not isinstance(content.get("rig"), dict):
-        raise InputError(f"{file}: rig: missing; give a [rig] table, such as [rig] and below it force_range_N = 50.0")
+        raise InputError(
+            "rig: missing", file=file, remedy="give a [rig] table, such as [rig] and below it force_range_N = 50.0"
+        )
     return validate(Rig, content["rig"], f"{file}: rig")
 
 

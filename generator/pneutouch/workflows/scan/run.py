@@ -161,7 +161,7 @@ def bars_of(context: ResolvedSpecimen) -> tuple[BarRow, ...]:
         rows.append(BarRow(name, pitch, layer.width_mm, layer.height_mm, layer.depth_mm, edges))
     names = [row.name for row in rows]
     if len(set(names)) < len(names):
-        raise InputError(f"{context.where}: layer: two patterns have one name; give each its own")
+        raise InputError("layer: two patterns have one name", file=context.where, remedy="give each its own")
     return tuple(rows)
 
 
@@ -170,8 +170,11 @@ def matrix_of(context: ResolvedSpecimen) -> MatrixLayer:
     modulus, poisson = context.matrix.shear_modulus_MPa, context.matrix.poisson_ratio
     if modulus is None or poisson is None:
         raise InputError(
-            f"{context.where}: block.matrix = {context.specimen.block.matrix!r}: has no shear modulus; the scan model "
-            "takes a soft matrix with stiff bars"
+            "has no shear modulus",
+            file=context.where,
+            key="block.matrix",
+            value=context.specimen.block.matrix,
+            remedy="the scan model takes a soft matrix with stiff bars",
         )
     return MatrixLayer(context.specimen.block.height_mm, modulus.nominal, poisson.nominal)
 
@@ -210,11 +213,13 @@ def _check_length(context: ResolvedSpecimen, scan_path: ScanPath, frequencies: d
         needed = least_duration(frequency)
         if lasts < needed:
             raise InputError(
-                f"{context.where}: {name}: {frequency:.4g} Hz at {scan_path.speed:g} mm/s: the path of "
-                f"{max(scan_path.end - scan_path.start, 0):.4g} mm "
-                f"between the block's ends lasts {max(lasts, 0):.4g} s and must last {needed:.4g} s; block.length_mm "
-                "must be at least "
-                f"{needed * scan_path.speed + 2 * scan_path.start:.4g}"
+                (
+                    f"{name}: {frequency:.4g} Hz at {scan_path.speed:g} mm/s: the path of "
+                    f"{max(scan_path.end - scan_path.start, 0):.4g} mm between the block's ends lasts "
+                    f"{max(lasts, 0):.4g} s and must last {needed:.4g} s"
+                ),
+                file=context.where,
+                remedy=f"block.length_mm must be at least {needed * scan_path.speed + 2 * scan_path.start:.4g}",
             )
 
 

@@ -115,7 +115,9 @@ def candidates(scene: ResolvedDesign, sensor: Sensor, library: Library) -> DomeC
         and resin_outside_atlas(wall := material_sensor(material).wall, sensor.gas.ambient_pressure) is None
     }
     if not resins:
-        raise InputError(f"{scene.where}: print.profile: the {scene.printer.title} runs no resin that the atlas covers")
+        raise InputError(
+            f"the {scene.printer.title} runs no resin that the atlas covers", file=scene.where, key="print.profile"
+        )
     ratios = np.geomspace(recipe.thinnest, recipe.thickest, _RATIOS)
     mu = np.array([*resins.values()])
     resin, ratio, radius, share = _grid(

@@ -152,7 +152,7 @@ def base_scene(target: Target, where: str, library: Library) -> ResolvedDesign:
     try:
         return load_scene(target.setting.base or DEFAULT, changes, library)
     except InputError as error:
-        raise InputError(f"{where}: {error}") from None
+        raise InputError(f"{error}", file=where) from None
 
 
 def _some_resin(target: Target, where: str, library: Library) -> str:
@@ -169,11 +169,13 @@ def _some_resin(target: Target, where: str, library: Library) -> str:
     loaded = {name: library.load("materials", name, file=where, key="given.materials") for name in names}
     for name in target.given.materials or []:
         if loaded[name].kind != "elastomer":
-            raise InputError(f"{where}: given.materials: {name} is {loaded[name].kind}; it must be an elastomer")
+            raise InputError(
+                f"{name} is {loaded[name].kind}", file=where, key="given.materials", remedy="it must be an elastomer"
+            )
     runs = [name for name, m in loaded.items() if m.kind == "elastomer" and printer.mode_for(m) is not None]
     if not runs:
         raise InputError(
-            f"{where}: the {printer.title} runs none of {', '.join(names)}; give other materials or profile"
+            f"the {printer.title} runs none of {', '.join(names)}", file=where, remedy="give other materials or profile"
         )
     return runs[0]
 

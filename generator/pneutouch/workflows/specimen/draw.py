@@ -58,8 +58,9 @@ def draw(scene: ResolvedSpecimen) -> SpecimenBodies:
     for body in bodies:
         if not body.is_closed() or not body.welded().is_closed():
             raise ComputationError(
-                f"{scene.where}: the {body.name} does not come out closed; change a pitch, cell or depth by 0.01 mm, "
-                "or report it"
+                f"the {body.name} does not come out closed",
+                file=scene.where,
+                remedy="change a pitch, cell or depth by 0.01 mm, or report it",
             )
     return SpecimenBodies(scene, patterns, bodies)
 
@@ -86,8 +87,9 @@ def _patterns(scene: ResolvedSpecimen) -> tuple[PatternGeometry, ...]:
     total = sum(len(pattern.mesh.triangles) for pattern in patterns)
     if total > MOST_TRIANGLES:
         raise InputError(
-            f"{scene.where}: layer: all patterns together take {total / 1e6:.1f} million triangles; the most is "
-            f"{MOST_TRIANGLES / 1e6:g} million, so take larger cells"
+            f"layer: all patterns together take {total / 1000000.0:.1f} million triangles",
+            file=scene.where,
+            remedy=f"the most is {MOST_TRIANGLES / 1000000.0:g} million, so take larger cells",
         )
     return patterns
 
@@ -103,9 +105,9 @@ def _frame(scene: ResolvedSpecimen, frame: FramePlate, material: Material, bodie
     least = smallest.wall(material.kind).least or smallest.wall(material.kind).recommended
     if land < least:
         raise InputError(
-            f"{where}: frame.hole_diameter_mm = {frame.hole_diameter_mm:g}: leaves {land:.3g} mm next to the hole; "
-            "it must be at most "
-            f"{frame.border_mm - 2 * least:.3g} mm, or raise frame.border_mm"
+            f"frame.hole_diameter_mm = {frame.hole_diameter_mm:g}: leaves {land:.3g} mm next to the hole",
+            file=where,
+            remedy=f"it must be at most {frame.border_mm - 2 * least:.3g} mm, or raise frame.border_mm",
         )
     letters, depth = _letters(scene, frame)
     return plate(
@@ -130,14 +132,19 @@ def _letters(scene: ResolvedSpecimen, frame: FramePlate) -> tuple[list[Array], f
     free = scene.block.high[0]
     if high - low > free or top - bottom > space or space < 2.0:
         raise InputError(
-            f"{scene.where}: frame.mark = {frame.mark!r}: {high - low:.1f} x {top - bottom:.1f} mm do not fit on "
-            f"{free:g} x {space:g} mm; "
-            "take fewer letters, or raise frame.border_mm"
+            f"{high - low:.1f} x {top - bottom:.1f} mm do not fit on {free:g} x {space:g} mm",
+            file=scene.where,
+            key="frame.mark",
+            value=frame.mark,
+            remedy="take fewer letters, or raise frame.border_mm",
         )
     if frame.thickness_mm - depth < least:
         raise InputError(
-            f"{scene.where}: frame.thickness_mm = {frame.thickness_mm:g}: letters {depth:g} mm deep need at least "
-            f"{depth + least:g} mm"
+            (
+                f"frame.thickness_mm = {frame.thickness_mm:g}: letters {depth:g} mm deep need at least "
+                f"{depth + least:g} mm"
+            ),
+            file=scene.where,
         )
     middle = np.array([0.5 * free, -0.5 * frame.border_mm])
     return [np.asarray(line) + middle for line in shape.to_polygons()], depth

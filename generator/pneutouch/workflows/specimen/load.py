@@ -74,7 +74,9 @@ def load_specimen(name: str, changes: Changes | None = None, library: Library | 
     path = files[name] if name in files else library.design_file(name)
     content = override(read_toml(path), changes or {}, Specimen)
     if not is_specimen(content):
-        raise InputError(f"{path}: has no [block] table, so it is no specimen; a sensor is built by its own name")
+        raise InputError(
+            "has no [block] table, so it is no specimen", file=path, remedy="a sensor is built by its own name"
+        )
     return _resolved(path.stem, str(path), validate_specimen(content, str(path)), library)
 
 
@@ -93,8 +95,10 @@ def _resolved(name: str, where: str, specimen: Specimen, library: Library) -> Re
     if mode is None:
         labels = ", ".join(dict.fromkeys(material.label for material in together))
         raise InputError(
-            f"{where}: print.profile = {specimen.print.profile!r}: the {printer.title} cannot hold {labels} "
-            "together; it runs "
-            f"{', '.join(printer.resins)}, {printer.resins_at_once} at once"
+            f"the {printer.title} cannot hold {labels} together",
+            file=where,
+            key="print.profile",
+            value=specimen.print.profile,
+            remedy=f"it runs {', '.join(printer.resins)}, {printer.resins_at_once} at once",
         )
     return ResolvedSpecimen(name, where, specimen, matrix, inclusion, frame, printer, mode)

@@ -60,17 +60,17 @@ class SweepPlan:
             ("clamp", self.clamp, CLAMPS),
         ):
             if value not in known:
-                raise InputError(f"{self.where}: {option} = {value!r}: unknown.{nearest(value, known)}")
+                raise InputError(f"{option} = {value!r}: unknown.{nearest(value, known)}", file=self.where)
         if bool(self.axes) == bool(self.points):
-            raise InputError(f"{self.where}: give either a grid or a list of points, one of them and not both")
+            raise InputError("give either a grid or a list of points, one of them and not both", file=self.where)
         varied = [axis.key for axis in self.axes] + [key for point in self.points for key in point]
         for key in (*self.settings, *varied):
             _check_key(self.where, key)
         for key in dict.fromkeys(varied):
             if key in self.settings:
-                raise InputError(f"{self.where}: {key} = {self.settings[key]!r}: set for all points and varied too")
+                raise InputError(f"{key} = {self.settings[key]!r}: set for all points and varied too", file=self.where)
         if self.count > MAX_POINTS:
-            raise InputError(f"{self.where}: {self.count} points; it must be at most {MAX_POINTS}")
+            raise InputError(f"{self.count} points", file=self.where, remedy=f"it must be at most {MAX_POINTS}")
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -113,10 +113,12 @@ def _check_key(where: str, key: str) -> None:
     table_name, dot, field = key.partition(".")
     table = table_of(DesignFile, table_name)
     if not dot:
-        raise InputError(f"{where}: {key}: write table.key, such as membrane.wall_thickness_mm")
+        raise InputError(f"{key}: write table.key, such as membrane.wall_thickness_mm", file=where)
     if table is None:
-        raise InputError(f"{where}: {key}: unknown table {table_name}.{nearest(table_name, DesignFile.model_fields)}")
+        raise InputError(
+            f"{key}: unknown table {table_name}.{nearest(table_name, DesignFile.model_fields)}", file=where
+        )
     if field not in table.model_fields:
-        raise InputError(f"{where}: {key}: unknown key.{nearest(field, table.model_fields)}")
+        raise InputError(f"{key}: unknown key.{nearest(field, table.model_fields)}", file=where)
     if table_name == "document":
-        raise InputError(f"{where}: {key}: no prediction depends on it; sweep over another table")
+        raise InputError(f"{key}: no prediction depends on it", file=where, remedy="sweep over another table")

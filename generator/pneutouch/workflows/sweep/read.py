@@ -27,19 +27,19 @@ def plan_of_file(path: Path, changes: Changes | None = None, **options: str | No
     where, content = str(path), read_toml(path)
     for key in content:
         if key not in KEYS:
-            raise InputError(f"{where}: {key}: unknown key.{nearest(key, KEYS)}")
+            raise InputError(f"{key}: unknown key.{nearest(key, KEYS)}", file=where)
     words = {key: _text(where, key, content[key]) for key in KEYS[:4] if key in content}
     words |= {key: value for key, value in options.items() if value is not None}
     design = words.pop("design", "")
     if not design:
-        raise InputError(f'{where}: design: missing; name the base design, such as design = "paper-dome"')
+        raise InputError("design: missing", file=where, remedy='name the base design, such as design = "paper-dome"')
     if design.endswith(".toml"):
         design = str(path.parent / design)
     fixed = {key: _value(where, key, v) for key, v in _flat(where, "set", content.get("set", {})).items()}
     grid = {key: _values(where, key, v) for key, v in _flat(where, "grid", content.get("grid", {})).items()}
     entries = content.get("point", [])
     if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
-        raise InputError(f"{where}: point: must be a list of tables, each headed [[point]]")
+        raise InputError("point: must be a list of tables, each headed [[point]]", file=where)
     points = tuple(
         {key: _value(where, f"point[{k}]: {key}", v) for key, v in _flat(where, f"point[{k}]", entry).items()}
         for k, entry in enumerate(entries)
@@ -77,7 +77,7 @@ def _plan(
     """The plan; a grid's driving pressures become those of every point, for they are a dimension already."""
     if PRESSURES in grid:
         if PRESSURES in fixed:
-            raise InputError(f"{where}: {PRESSURES} = {fixed[PRESSURES]!r}: set for all points and varied too")
+            raise InputError(f"{PRESSURES} = {fixed[PRESSURES]!r}: set for all points and varied too", file=where)
         fixed = {**fixed, PRESSURES: grid[PRESSURES]}
     axes = tuple(SweepAxis(key, tuple(values)) for key, values in grid.items() if key != PRESSURES)
     return SweepPlan(
@@ -89,7 +89,7 @@ def _values(where: str, key: str, given: Any) -> list[Any]:
     """The values of one axis: a list, or a table ``{from, to, count}``."""
     if isinstance(given, dict):
         if set(given) != _RANGE:
-            raise InputError(f"{where}: {key} = {given!r}: a range has the keys from, to and count")
+            raise InputError(f"{key} = {given!r}: a range has the keys from, to and count", file=where)
         given = spread(where, key, given["from"], given["to"], given["count"])
     if not isinstance(given, list) or not 1 <= len(given) <= MAX_VALUES:
         raise InputError(
@@ -99,7 +99,7 @@ def _values(where: str, key: str, given: Any) -> list[Any]:
     seen: set[Any] = set()
     for k, value in enumerate(values):
         if value in seen:
-            raise InputError(f"{where}: {key}[{k}] = {value!r}: every value may appear once only")
+            raise InputError(f"{key}[{k}] = {value!r}: every value may appear once only", file=where)
         seen.add(value)
     return values
 
@@ -119,14 +119,14 @@ def _value(where: str, key: str, given: Any) -> Value:
 def _scalar(where: str, key: str, given: Any) -> float | int | str:
     number = isinstance(given, int | float) and not isinstance(given, bool) and math.isfinite(given)
     if not number and not isinstance(given, str):
-        raise InputError(f"{where}: {key} = {given!r}: must be a finite number or a name")
+        raise InputError(f"{key} = {given!r}: must be a finite number or a name", file=where)
     return given  # type: ignore[no-any-return]
 
 
 def _flat(where: str, table: str, given: Any) -> dict[str, Any]:
     """Keys as ``table.key``, whether they were written with quotes or TOML made tables of the dots."""
     if not isinstance(given, dict):
-        raise InputError(f"{where}: {table} = {given!r}: must be a table")
+        raise InputError(f"{table} = {given!r}: must be a table", file=where)
     flat: dict[str, Any] = {}
     for key, value in given.items():
         inner = (
@@ -134,7 +134,7 @@ def _flat(where: str, table: str, given: Any) -> dict[str, Any]:
         )
         for name, item in inner.items():
             if name in flat:
-                raise InputError(f"{where}: {table}: {name} is given twice")
+                raise InputError(f"{table}: {name} is given twice", file=where)
             flat[name] = item
     return flat
 
@@ -145,5 +145,5 @@ def _checked(changes: Changes | None) -> Settings:
 
 def _text(where: str, key: str, given: Any) -> str:
     if not isinstance(given, str) or not given:
-        raise InputError(f"{where}: {key} = {given!r}: must be a name")
+        raise InputError(f"{key} = {given!r}: must be a name", file=where)
     return given

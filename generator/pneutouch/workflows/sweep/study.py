@@ -110,7 +110,7 @@ def _check(plan: SweepPlan, library: Library) -> None:
         for index, point in enumerate(plan.points):
             fault = _fault(plan, index, library)
             if fault:
-                raise InputError(f"{plan.where}: point[{index}] = {point}: {fault}")
+                raise InputError(f"point[{index}] = {point}: {fault}", file=plan.where)
         return
     strides = [_stride(plan.shape, k) for k in range(len(plan.axes))]
     fits: set[tuple[int, int]] = set()
@@ -125,7 +125,7 @@ def _check(plan: SweepPlan, library: Library) -> None:
                 fault = _common_fault(plan, indices, library)
                 if fault:
                     raise InputError(
-                        f"{plan.where}: {axis.key} = {value!r}: no point of the sweep can have it: {fault}"
+                        f"{axis.key} = {value!r}: no point of the sweep can have it: {fault}", file=plan.where
                     )
 
 

@@ -75,12 +75,12 @@ def expand(order: TrayOrder, library: Library | None = None) -> ExpandedTray:
     left_out = tuple(dict.fromkeys(notes))
     if not pieces:
         raise InputError(
-            f"{order.where}: nothing is left for the {printer.title}: "
-            f"{'; '.join(left_out) or 'no design has such a body'}; "
-            f"give another tray.profile or tray.bodies, or set print.profile to {profile!r}"
+            f"nothing is left for the {printer.title}: {'; '.join(left_out) or 'no design has such a body'}",
+            file=order.where,
+            remedy=f"give another tray.profile or tray.bodies, or set print.profile to {profile!r}",
         )
     if sum(len(piece.solids) * piece.value.copies for piece in pieces) > MOST_PARTS:
-        raise InputError(f"{order.where}: more than {MOST_PARTS} bodies; take fewer copies")
+        raise InputError(f"more than {MOST_PARTS} bodies", file=order.where, remedy="take fewer copies")
     return ExpandedTray(printer, profile, tuple(pieces), left_out)
 
 

@@ -216,8 +216,9 @@ def _check_height(parts: list[TrayPart], printer: Printer, where: str) -> None:
     for part in parts:
         if part.size[2] > printer.envelope_mm.z:
             raise InputError(
-                f"{where}: {part.name} of {part.value.design} is {part.size[2]:.1f} mm tall; the {printer.title} "
-                f"builds {printer.envelope_mm.z:g} mm"
+                f"{part.name} of {part.value.design} is {part.size[2]:.1f} mm tall",
+                file=where,
+                remedy=f"the {printer.title} builds {printer.envelope_mm.z:g} mm",
             )
 
 

@@ -23,7 +23,7 @@ def jobs(materials: Sequence[tuple[Material, ...]], printer: Printer, where: str
     for index, alone in enumerate(materials):
         kinds.setdefault(frozenset(resin for material in alone for resin in material.base_resins), []).append(index)
         if printer.mode_for(*alone) is None:
-            raise InputError(f"{where}: the {printer.title} cannot print {_and(alone)} in one job")
+            raise InputError(f"the {printer.title} cannot print {_and(alone)} in one job", file=where)
     examples = [
         list({tuple(m.base_resins): m for i in indices for m in materials[i]}.values()) for indices in kinds.values()
     ]
