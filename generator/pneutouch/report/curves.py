@@ -49,15 +49,8 @@ def _mark_limits(ax: Axes, prediction: SensorPrediction) -> None:
     p, gauge_kPa = curve.pressure / KPA, prediction.limits.gauge / KPA
     if gauge_kPa < 1.2 * p.max():
         ax.axhline(gauge_kPa, color=MUTED, lw=0.8, ls=LINES[4])
-        ax.text(
-            curve.apex_inner[-1],
-            gauge_kPa,
-            f"gauge range {gauge_kPa:g} kPa",
-            ha="right",
-            va="bottom",
-            color=MUTED,
-            fontsize=6.5,
-        )
+        at, text = (curve.apex_inner[-1], gauge_kPa), f"gauge range {gauge_kPa:g} kPa"
+        ax.text(*at, text, ha="right", va="bottom", color=MUTED, fontsize=6.5)
     ruptured = prediction.limits.break_strain
     if ruptured is not None:
         rising = slice(0, int(np.argmax(p)) + 1)
@@ -103,13 +96,8 @@ def response(prediction: SensorPrediction) -> str:
         for state in prediction.states:
             if state.figures is not None:
                 force = np.array(state.figures.force_range)
-                ax.plot(
-                    force,
-                    state.figures.intercept_kPa + state.figures.sensitivity_kPa_per_N * force,
-                    color=FAINT,
-                    lw=0.8,
-                    zorder=1,
-                )
+                fit_kPa = state.figures.intercept_kPa + state.figures.sensitivity_kPa_per_N * force
+                ax.plot(force, fit_kPa, color=FAINT, lw=0.8, zorder=1)
         ax.set(xlabel="contact force  (N)", ylabel="pressure rise  (kPa)", xlim=(0, None), ylim=(0, None))
         return svg(drawn)
 
@@ -145,12 +133,10 @@ def sensitivities(curves: dict[str, ResinCurve], chosen: str, published_kPa_per_
         ends = []
         for k, (label, (pressures, values, _)) in enumerate(curves.items()):
             picked = label == chosen
-            look: dict[str, Any] = {
-                "color": ACCENT if picked else MUTED,
-                "lw": 2.0 if picked else 0.8,
-                "ls": LINES[0] if picked else LINES[k % 4],
-            }
-            ax.plot(pressures, values, zorder=3 if picked else 2, **look)
+            look: dict[str, Any] = {"color": MUTED, "lw": 0.8, "ls": LINES[k % 4], "zorder": 2}
+            if picked:
+                look = {"color": ACCENT, "lw": 2.0, "ls": LINES[0], "zorder": 3}
+            ax.plot(pressures, values, **look)
             style = {"fontsize": 6.5, "color": INK, **BOLD} if picked else {"fontsize": 6.5, "color": MUTED}
             ends.append((float(pressures[-1]), float(values[-1]), label, style))
         if published_kPa_per_N:
@@ -159,12 +145,8 @@ def sensitivities(curves: dict[str, ResinCurve], chosen: str, published_kPa_per_
             ax.legend(loc="lower left")
         right = max(float(pressures[-1]) for pressures, *_ in curves.values())
         highest = max([float(np.max(values)) for _, values, _ in curves.values()] + list(published_kPa_per_N.values()))
-        ax.set(
-            xlabel="driving pressure  (kPa)",
-            ylabel="sensitivity  (kPa/N)",
-            xlim=(0, 1.02 * right),
-            ylim=(0, 1.1 * highest),
-        )
+        ax.set(xlabel="driving pressure  (kPa)", ylabel="sensitivity  (kPa/N)")
+        ax.set(xlim=(0, 1.02 * right), ylim=(0, 1.1 * highest))
         label_ends(ax, ends)
         return svg(drawn)
 

@@ -99,22 +99,13 @@ class _Section:
             spot = (-layout.opening_radius + 0.6 * unit, layout.under + 0.5 * seat.shoulder_thickness)
             leader(self.ax, spot, at, f"plug, opening Ø{2 * layout.opening_radius:g}", "right")
         if isinstance(mount, Sleeve):
-            leader(
-                self.ax,
-                (-0.5 * mount.finger_diameter, layout.plate_low - 0.8 * mount.sleeve_length),
-                (self.left - 0.5 * unit, layout.plate_low - 0.8 * mount.sleeve_length),
-                f"finger Ø{mount.finger_diameter:g}",
-                "right",
-            )
+            height, text = layout.plate_low - 0.8 * mount.sleeve_length, f"finger Ø{mount.finger_diameter:g}"
+            spot = (-0.5 * mount.finger_diameter, height)
+            leader(self.ax, spot, (self.left - 0.5 * unit, height), text, "right")
         if isinstance(mount, RobotFlange):
             text = f"centring Ø{mount.boss_diameter:g}\n{mount.boss_height:g} high"
-            leader(
-                self.ax,
-                (-0.4 * mount.boss_diameter, layout.under),
-                (self.left - 0.5 * unit, self.bottom - 1.5 * unit),
-                text,
-                "right",
-            )
+            spot = (-0.4 * mount.boss_diameter, layout.under)
+            leader(self.ax, spot, (self.left - 0.5 * unit, self.bottom - 1.5 * unit), text, "right")
 
 
 def _plan(ax: Axes, assembly: Assembly) -> None:

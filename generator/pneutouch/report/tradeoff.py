@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from pneutouch.evaluation.chart_data import ChartPoint, TradeOff
 from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MUTED, Label, figure, label_points, plain_ticks, svg
@@ -65,11 +65,8 @@ def _window(ax: Axes, tradeoff: TradeOff) -> None:
 
     low, high = tradeoff.window_kPa_per_N or ax.get_xlim()
     least, top = tradeoff.force or ax.get_ylim()[0], ax.get_ylim()[1]
-    ax.add_patch(
-        Rectangle(
-            (low, least), high - low, top - least, fc=FAINT, alpha=0.6, ec=INK, lw=0.6, zorder=1, gid="target-window"
-        )
-    )
+    look: dict[str, Any] = {"fc": FAINT, "alpha": 0.6, "ec": INK, "lw": 0.6, "zorder": 1}
+    ax.add_patch(Rectangle((low, least), high - low, top - least, gid="target-window", **look))
     middle = (low * high) ** 0.5
     ax.annotate("target", (middle, top), xytext=(0, 2), textcoords="offset points", ha="center", fontsize=6.5, **BOLD)
 

@@ -25,25 +25,16 @@ def tuning_chart(tuning: TuningChart, size: tuple[float, float]) -> str:
         at = float(chosen.driving_pressure_kPa[-1]), float(chosen.sensitivity_kPa_per_N[-1])
         ends: list[Label] = [(*at, chosen.label, {"fontsize": 6.5, "color": INK, **BOLD})]
         for k, other in enumerate(tuning.others):
-            ax.plot(
-                other.driving_pressure_kPa,
-                other.sensitivity_kPa_per_N,
-                color=INK,
-                lw=0.7,
-                ls=LINES[1 + k % 4],
-                zorder=3,
-            )
+            line = other.driving_pressure_kPa, other.sensitivity_kPa_per_N
+            ax.plot(*line, color=INK, lw=0.7, ls=LINES[1 + k % 4], zorder=3)
             at = float(other.driving_pressure_kPa[-1]), float(other.sensitivity_kPa_per_N[-1])
             ends.append((*at, other.label, {"fontsize": 6.5, "color": MUTED}))
         ax.plot(chosen.driving_pressure_kPa, chosen.sensitivity_kPa_per_N, color=ACCENT, lw=2.0, zorder=4)
         if tuning.published_kPa_per_N:
-            ax.plot(
-                *np.array(tuning.published_kPa_per_N).T, "D", color=INK, mfc="white", ms=4.5, zorder=6, clip_on=False
-            )
-        most = [
-            float(tuning.high_kPa_per_N.max()),
-            *(float(other.sensitivity_kPa_per_N.max()) for other in tuning.others),
-        ]
+            points = np.array(tuning.published_kPa_per_N).T
+            ax.plot(*points, "D", color=INK, mfc="white", ms=4.5, zorder=6, clip_on=False)
+        most = [float(tuning.high_kPa_per_N.max())]
+        most += [float(other.sensitivity_kPa_per_N.max()) for other in tuning.others]
         top = 1.12 * max(most + [value for _, value in tuning.published_kPa_per_N])
         right_kPa = float(max(chosen.driving_pressure_kPa[-1], *tuning.working_kPa_per_N))
         ax.set(xlabel="driving pressure  (kPa)", ylabel="sensitivity  (kPa/N)", ylim=(0, top), xlim=(0, right_kPa))

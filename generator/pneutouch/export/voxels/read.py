@@ -22,18 +22,11 @@ MOST_COLOURS = 6
 """Of the utility (GrabCAD Voxel Print guide), whatever a manifest states."""
 
 _NEEDED: dict[str, type | tuple[type, ...]] = {
-    "format": int,
-    "prefix": str,
-    "dpi": list,
-    "pixels": list,
-    "layers": int,
+    **dict.fromkeys(("format", "layers"), int),
+    **dict.fromkeys(("prefix", "sha256"), str),
+    **dict.fromkeys(("dpi", "pixels", "pixel_um", "background_rgba", "slices"), list),
+    **dict.fromkeys(("resins", "bodies"), dict),
     "layer_um": (int, float),
-    "pixel_um": list,
-    "background_rgba": list,
-    "resins": dict,
-    "bodies": dict,
-    "slices": list,
-    "sha256": str,
 }
 
 
