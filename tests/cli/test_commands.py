@@ -102,10 +102,15 @@ def test_an_output_that_is_a_file_is_refused_before_any_work(command, tmp_path, 
 
 
 def modules_after(*words):
+    """Names of all modules that a command has loaded when it ends."""
     code = f"import sys; sys.argv = {['pneutouch', *words]!r}\nfrom pneutouch.cli import run\ntry: run()\nexcept SystemExit: pass\nprint('MODULES', *sys.modules)"
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    loaded = result.stdout.split("MODULES")[-1].split()
-    return {name.split(".")[0] for name in loaded}
+    return set(result.stdout.split("MODULES")[-1].split())
+
+
+def rooms(modules):
+    """Second parts of the names of our own modules: pneutouch.mechanics.gas is of mechanics."""
+    return {name.split(".")[1] for name in modules if name.startswith("pneutouch.")}
 
 
 @pytest.mark.parametrize(
@@ -120,3 +125,22 @@ def modules_after(*words):
 )
 def test_light_commands_load_no_heavy_package(words):
     assert modules_after(*words) & HEAVY == set()
+
+
+@pytest.mark.parametrize("model", ["membrane", "atlas", "solid"])
+def test_figures_alone_load_neither_print_rules_nor_drawings(model):
+    loaded = modules_after("predict", "paper-dome", "--model", model)
+    assert rooms(loaded) & {"printability", "report", "export", "output", "selection", "workflows"} == set()
+    assert "pneutouch.spec.specimen" not in loaded
+
+
+def test_the_solid_loads_scipys_linear_algebra_alone():
+    loaded = {name for name in modules_after("predict", "paper-dome") if name.startswith("scipy.")}
+    assert "scipy.linalg.lapack" in loaded
+    assert not {name for name in loaded if name.startswith(("scipy.sparse", "scipy.interpolate", "scipy.optimize"))}
+
+
+def test_a_command_loads_no_other_commands_module():
+    loaded = modules_after("select", "--help")
+    assert "pneutouch.cli.select" in loaded
+    assert not {"pneutouch.cli.sweep", "pneutouch.cli.tray", "pneutouch.cli.calibrate"} & loaded

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-from pneutouch.arrays import Array
-from pneutouch.catalogue.mixture import ResolvedMixingCurve
-from pneutouch.mechanics.prediction import SensorState
-from pneutouch.selection.front import TradeOffFront
+if TYPE_CHECKING:
+    from pneutouch.arrays import Array
+    from pneutouch.catalogue.mixture import ResolvedMixingCurve
+    from pneutouch.mechanics.prediction import SensorState
+    from pneutouch.selection.front import TradeOffFront
 
 
 class ResinCurve(NamedTuple):

@@ -6,16 +6,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from pneutouch.arrays import Array
-from pneutouch.catalogue import ResolvedDesign
-from pneutouch.evaluation.chart_data import ComparedMembrane, ResinCurve, TradeOff, TuningChart
-from pneutouch.mechanics.prediction import SensorPrediction
-from pneutouch.parts import Assembly
-from pneutouch.printability import Finding
-from pneutouch.printability.estimate import JobEstimate
-
 if TYPE_CHECKING:
+    from pneutouch.arrays import Array
+    from pneutouch.catalogue import ResolvedDesign
+    from pneutouch.evaluation.chart_data import ComparedMembrane, ResinCurve, TradeOff, TuningChart
+    from pneutouch.mechanics.prediction import SensorPrediction
     from pneutouch.mechanics.uncertainty import GasNotes
+    from pneutouch.parts import Assembly
+    from pneutouch.printability import Finding
+    from pneutouch.printability.estimate import JobEstimate
 
 
 class Rating(NamedTuple):
