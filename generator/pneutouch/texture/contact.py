@@ -102,9 +102,9 @@ def touch(sensor: Sensor, driving_pressure: float, preload: float) -> PreloadCon
             f"{sensor.gas.gauge_limit / KPA:g} kPa; give less"
         )
     return PreloadContact(
-        driving_pressure, preload, at, float(np.interp(at, travel, radius)), pressure,
-        float(np.interp(at, travel, force_slope)), float(np.interp(at, travel, rise_slope)), model,
-        travel, force, rise, force_slope, rise_slope,
+        driving_pressure=driving_pressure, preload=preload, indentation=at, contact_radius=float(np.interp(at, travel, radius)), pressure=pressure,
+        stiffness=float(np.interp(at, travel, force_slope)), pressure_slope=float(np.interp(at, travel, rise_slope)), model=model,
+        travel=travel, force=force, rise=rise, force_slope=force_slope, rise_slope=rise_slope,
     )  # fmt: skip
 
 

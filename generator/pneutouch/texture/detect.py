@@ -127,8 +127,8 @@ def _detect(
     as_much = int(np.count_nonzero(ratios >= float(peak.amplitude) / float(floor)))
     threshold = float(ratios[surrogates - math.floor(level * (surrogates + 1) + 1e-9)])
     return Detection(
-        target, float(peak.frequency), float(peak.amplitude), float(floor), threshold, (1 + as_much) / (1 + surrogates),
-        surrogates, level, bool(peak.inner),
+        target=target, frequency=float(peak.frequency), amplitude=float(peak.amplitude), floor=float(floor), threshold=threshold, p_value=(1 + as_much) / (1 + surrogates),
+        surrogates=surrogates, level=level, is_ridge=bool(peak.inner),
     )  # fmt: skip
 
 

@@ -125,7 +125,21 @@ def _evaluated(fit: CalibrationFit, full: Array, points: ObservationPoints) -> t
 def _planned(travel: Array, driving: Array, volume: Array) -> ObservationPoints:
     """Points of a planned test at travels (c, m), driving pressures (c,) and injected volumes (i, n)."""
     t, v, runs = np.ones_like(travel), np.ones_like(volume), np.zeros(len(travel))
-    return ObservationPoints(travel, t, t, t, t, t > 0, driving, volume, v, v, v > 0, runs, runs.astype(int))
+    return ObservationPoints(
+        travel=travel,
+        force=t,
+        rise=t,
+        force_error=t,
+        rise_error=t,
+        there=t > 0,
+        driving=driving,
+        volume=volume,
+        pressure=v,
+        pressure_error=v,
+        known=v > 0,
+        travel_error=runs,
+        group=runs.astype(int),
+    )
 
 
 def _indented(fit: CalibrationFit, full: Array, pressure: float, depth: float) -> Array:

@@ -73,7 +73,17 @@ def predict_held_out(
         )
         raise InputError(problem, key="hold_out_kPa", value=driving_pressure_kPa, remedy="hold out another")
     force, rise = (part.reshape(shape) for part in (values[0][: use.size], values[0][use.size : 2 * use.size]))
-    rows = [_row(points.travel[i], points.force[i], points.rise[i], force[i], rise[i], use[i]) for i in range(len(use))]
+    rows = [
+        _row(
+            travel=points.travel[i],
+            force=points.force[i],
+            rise=points.rise[i],
+            model_force=force[i],
+            model_rise=rise[i],
+            use=use[i],
+        )
+        for i in range(len(use))
+    ]
     measured_kPa_per_N, predicted_kPa_per_N, *errors = (float(x) for x in np.mean(rows, axis=0)[:4])
     errors += [float(x) for x in np.max(rows, axis=0)[4:]]
     sensitivities = measured_kPa_per_N, predicted_kPa_per_N

@@ -121,11 +121,11 @@ def _respond(batch: SensorBatch, steps: int, atlas: Atlas) -> AtlasResponse:
         array[infeasible] = np.nan
     stretch = press.field("stretch", track).max(axis=1)
     return AtlasResponse(
-        lines(indentation, force, rise / KPA), np.where(good, ends, OUTSIDE), good & _near(press, track),
-        np.where(infeasible, np.nan, end * batch.inner_radius), np.where(good, limit, np.nan),
-        np.where(infeasible, np.nan, press.apex * batch.inner_radius),
-        np.where(infeasible, np.nan, press.volume(press.free) * batch.inner_radius**3),
-        np.where(infeasible, np.nan, stretch), indentation, force, rise,
+        lines=lines(indentation, force, rise / KPA), ends=np.where(good, ends, OUTSIDE), near_buckling=good & _near(press, track),
+        range_end=np.where(infeasible, np.nan, end * batch.inner_radius), limit_pressure=np.where(good, limit, np.nan),
+        apex_outer=np.where(infeasible, np.nan, press.apex * batch.inner_radius),
+        cavity_volume=np.where(infeasible, np.nan, press.volume(press.free) * batch.inner_radius**3),
+        max_stretch=np.where(infeasible, np.nan, stretch), indentation=indentation, force=force, rise=rise,
     )  # fmt: skip
 
 

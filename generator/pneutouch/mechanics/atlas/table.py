@@ -166,9 +166,9 @@ class Atlas:
             return values
 
         return AtlasSlices(
-            self._grid, cut("limit_volume"), cut("limit_pressure"), cut("apex"), cut("potential"),
-            support[below] & support[below + 1], 1.0 + wall_ratio, between("fold_from")[:, 0], between("fold_volume"),
-            self.recipe.fold_depths, {part: cut(part) for name in names for part in parts(name)},
+            grid=self._grid, limit_volume=cut("limit_volume"), limit_pressure=cut("limit_pressure"), apex=cut("apex"), potential=cut("potential"),
+            support=support[below] & support[below + 1], rest_apex=1.0 + wall_ratio, fold_from=between("fold_from")[:, 0], fold_volume=between("fold_volume"),
+            fold_depths=self.recipe.fold_depths, fields={part: cut(part) for name in names for part in parts(name)},
         )  # fmt: skip
 
 

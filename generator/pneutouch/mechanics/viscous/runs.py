@@ -139,7 +139,16 @@ def _loop(travel: Array, force: Array, rise: Array, known: int, ended: str | Non
         before, after = back[:, first - 1], back[:, first]
         edge = before + before[1] / (before[1] - after[1]) * (after - before)
         back, lost, where = np.column_stack([back[:, :first], edge]), float(edge[0]), None
-    return LoopRun(travel[there], force[there], rise[there], back[0], back[1], back[2], lost, where)
+    return LoopRun(
+        indentation_in=travel[there],
+        force_in=force[there],
+        rise_in=rise[there],
+        indentation_out=back[0],
+        force_out=back[1],
+        rise_out=back[2],
+        contact_lost=lost,
+        ended=where,
+    )
 
 
 def _followed(

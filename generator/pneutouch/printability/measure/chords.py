@@ -83,8 +83,8 @@ def chords(manifold: Any, surface: SurfaceMesh, samples: SurfaceSamples, reach: 
         rows = np.flatnonzero(np.isfinite(length) & (length <= reach) & (facing < _OPPOSING))
         wide = np.full(len(rows), np.inf)
         sides[cast(Side, side)] = Chords(
-            samples.points[rows], sign * normals[rows], length[rows], samples.faces[rows], far[rows],
-            samples.areas[rows], wide, np.zeros((len(rows), 2), np.int64), np.zeros((len(rows), 3)), wide,
+            start=samples.points[rows], direction=sign * normals[rows], length=length[rows], near=samples.faces[rows], far=far[rows],
+            area=samples.areas[rows], second=wide, sides=np.zeros((len(rows), 2), np.int64), axis=np.zeros((len(rows), 3)), flank=wide,
         )  # fmt: skip
     return sides
 

@@ -133,16 +133,16 @@ def candidates(scene: ResolvedDesign, sensor: Sensor, library: Library) -> DomeC
     resin, ratio, radius, pressure = resin[keep], ratio[keep], radius[keep], pressure[keep]
     ones = np.ones(radius.size)
     batch = SensorBatch(
-        radius,
-        ratio * radius,
-        mu[resin.astype(int)],
-        ones * sensor.gas.ambient_pressure,
-        ones * sensor.gas.dead_volume,
-        pressure,
-        radius * min(sensor.protocol.depth / sensor.dome.inner_radius, recipe.deepest),
-        ones * sensor.protocol.plate_radius,
-        ones * sensor.gas.gauge_limit,
-        ones * np.inf,
+        inner_radius=radius,
+        wall_thickness=ratio * radius,
+        shear_modulus=mu[resin.astype(int)],
+        ambient_pressure=ones * sensor.gas.ambient_pressure,
+        dead_volume=ones * sensor.gas.dead_volume,
+        driving_pressure=pressure,
+        depth=radius * min(sensor.protocol.depth / sensor.dome.inner_radius, recipe.deepest),
+        plate_radius=ones * sensor.protocol.plate_radius,
+        gauge_limit=ones * sensor.gas.gauge_limit,
+        break_stretch=ones * np.inf,
     )
     return DomeCandidates(tuple(resins), resin, radius, ratio * radius, dome, batch)
 
