@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: venv demo test pytest lint review check-slow chart chart-meshes texture-page coverage-page voxel-page mixing-page atlas atlas-page lock clean
+.PHONY: venv demo test pytest lint review ratios check-slow chart chart-meshes texture-page coverage-page voxel-page mixing-page atlas atlas-page lock clean
 
 venv: $(VENV)/.dev
 
@@ -37,6 +37,11 @@ lint: $(VENV)/.dev
 review: $(VENV)/.dev
 	$(BIN)/sp-repo-review .
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pre-commit run --all-files
+
+# Times of single jobs over those of others in the same run; and of the commands over the import of their libraries.
+ratios: $(VENV)/.dev
+	$(BIN)/python -m benchmarks.ratios
+	$(BIN)/python -m benchmarks.start_up
 
 check-slow: $(VENV)/.dev
 	$(BIN)/python -m pytest -m slow

@@ -16,6 +16,7 @@ import tempfile
 NUMERICS = "import numpy, scipy.linalg"
 DRAWING = "import cadquery, matplotlib.pyplot, trimesh, numpy, scipy.linalg"
 NOTHING = "import sys"
+WORDS = "import typer, pydantic"
 README_TARGET = "--sensitivity 1.9 --at 12 --force-range 15 --max-diameter 25"
 
 COMMANDS: dict[str, tuple[list[str], str, float]] = {
@@ -23,6 +24,7 @@ COMMANDS: dict[str, tuple[list[str], str, float]] = {
     "predict paper-dome": (["-m", "pneutouch", "predict", "paper-dome"], NUMERICS, 4.0),
     "predict --model atlas": (["-m", "pneutouch", "predict", "paper-dome", "--model", "atlas"], NUMERICS, 2.5),
     "select": (["-m", "pneutouch", "select", *README_TARGET.split()], NUMERICS, 5.0),
+    "--help": (["-m", "pneutouch", "--help"], WORDS, 2.5),
     "import pneutouch": (["-c", "import pneutouch"], NOTHING, 1.5),
 }
 """Arguments of Python by name, the imports each is compared with, and the ratio it must not pass."""
@@ -41,7 +43,7 @@ def measure(runs: int) -> dict[str, float]:
     """Median processor time of every command and every import, s."""
     with tempfile.TemporaryDirectory() as out:
         jobs = {name: [word.format(out=out) for word in words] for name, (words, _, _) in COMMANDS.items()}
-        jobs |= {text: ["-c", text] for text in (NUMERICS, DRAWING, NOTHING)}
+        jobs |= {text: ["-c", text] for text in (NUMERICS, DRAWING, NOTHING, WORDS)}
         for arguments in jobs.values():
             processor_seconds(arguments)  # fills the caches of files and of compiled modules
         times = [{name: processor_seconds(arguments) for name, arguments in jobs.items()} for _ in range(runs)]

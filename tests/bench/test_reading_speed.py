@@ -1,4 +1,4 @@
-"""Long files: how much memory and time they take."""
+"""Long files: how much memory they take. Their time: ``benchmarks.ratios``."""
 
 from __future__ import annotations
 
@@ -13,22 +13,20 @@ from pneutouch.units import KPA
 from tests.bench.rig import HEADER, Faults, record, write
 
 MEASURE = """
-import sys, time
+import sys
 from pathlib import Path
 from pneutouch.bench.curve import curve_of
 from pneutouch.bench.reading import read_blocks
 from pneutouch.spec.campaign import CampaignRun, ColumnMap, Rig
-begin = time.perf_counter()
 run = CampaignRun(file="x", sensor="A", resin="r", driving_pressure_kPa=12)
 points = curve_of(run, read_blocks(Path(sys.argv[1]), ColumnMap(), Rig()), Rig()).indentation.size
-seconds = time.perf_counter() - begin
 status = Path("/proc/self/status").read_text()
-print(seconds, 1024 * int(status.split("VmHWM:")[1].split()[0]), points)
+print(1024 * int(status.split("VmHWM:")[1].split()[0]), points)
 """
 
 
 def measure(path):
-    """Seconds and peak bytes of a process of its own from a file to a curve, and its points.
+    """Peak bytes of a process of its own from a file to a curve, and its points.
 
     The peak is that of /proc: the one of getrusage begins with the parent's.
     """
@@ -56,16 +54,16 @@ def test_memory_does_not_grow_with_the_file(tmp_path):
     assert len(body) > 30e6
     third = tmp_path / "third.csv"
     third.write_bytes(header + b"\n" + body[: body.rfind(b"\n", 0, len(body) // 3) + 1])
-    _, whole, _ = measure(path)
-    _, part, points = measure(third)
+    whole, _ = measure(path)
+    part, points = measure(third)
     assert points >= 4
     assert whole < part + 0.25 * (len(body) * 2 / 3)
 
 
 @pytest.mark.slow
-def test_300_megabytes_in_20_seconds_and_500_megabytes(tmp_path):
+def test_300_megabytes_in_500_megabytes(tmp_path):
     path = long_file(tmp_path / "long.csv", 46.0)
     assert path.stat().st_size > 290e6
-    seconds, peak, points = measure(path)
+    peak, points = measure(path)
     assert points == 15
-    assert seconds < 20 and peak < 500e6
+    assert peak < 500e6

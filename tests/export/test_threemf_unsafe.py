@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import struct
-import time
 import tracemalloc
 import zipfile
 import zlib
@@ -251,12 +250,11 @@ def chained(depth, width, last="2"):
     return change
 
 
-def test_components_that_amount_to_too_many_bodies_are_refused_at_once(tmp_path, good):
+def test_components_that_amount_to_too_many_bodies_are_refused(tmp_path, good):
+    """10**30 of them: refused before they are expanded, or this would never end."""
     path = with_model(good, tmp_path / "bad.3mf", chained(30, 10))
-    start = time.process_time()
     with pytest.raises(InputError, match="its components amount to more than 10000 objects"):
         read_threemf(path)
-    assert time.process_time() - start < 1.0
 
 
 def test_components_of_themselves_are_refused(tmp_path, good):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 import numpy as np
 import pytest
 
@@ -213,11 +211,3 @@ def test_residuals_are_model_less_measured_by_run(library):
     assert [row.label for row in rows] == [curve.run.label for curve in seen]
     assert all(row.force.size == curve.force.size - 1 for row, curve in zip(rows, seen, strict=True))
     assert all(0 < row.force_error < 0.05 and 0 < row.rise_error < 0.05 for row in rows)
-
-
-def test_forty_curves_and_four_parameters_take_less_than_five_seconds(library):
-    seen = curves(other(**TRUTH), np.linspace(0, 22, 10), 4, np.random.default_rng(1))
-    assert len(seen) == 40
-    start = time.perf_counter()
-    fit(Observations(seen), DESIGNED, chosen(library, *NAMES))
-    assert time.perf_counter() - start < 5.0

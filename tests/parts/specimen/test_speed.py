@@ -1,10 +1,9 @@
-"""How fast: against one batch boolean of the same primitives in the same run, in time of the processor, and how many triangles come out."""
+"""Large patterns: closed, exact, and of how many triangles. Their times: ``benchmarks.ratios``."""
 
 from __future__ import annotations
 
 import itertools
 import math
-import time
 
 import numpy as np
 import pytest
@@ -18,9 +17,9 @@ from tests.parts.specimen.shapes import STEP, bars_by_hand, body, context, drawn
 PER_CELL = {"simple-cubic": 3, "bcc": 8, "fcc": 24, "octet": 36, "kelvin": 24}
 
 
-def batch(kind, lattice, counts):
-    """One batch union of every strut as the hull of its two balls, as the octant's are, not trimmed."""
-    from manifold3d import Manifold, OpType
+def batch_of_hulls(kind, lattice, counts):
+    """Every strut as the hull of its two balls, as the octant's are, not trimmed."""
+    from manifold3d import Manifold
 
     ball, ends = lattice.ball(), set()
     for cell in itertools.product(*map(range, counts)):
@@ -31,27 +30,18 @@ def batch(kind, lattice, counts):
                     for e in (one, other)
                 ]
                 ends.add(tuple(sorted(pair)))
-    hulls = [Manifold.hull_points(np.concatenate([ball + np.array(a), ball + np.array(b)])) for a, b in sorted(ends)]
-    start = time.process_time()
-    whole = Manifold.batch_boolean(hulls, OpType.Add)
-    triangles = whole.num_tri()
-    return time.process_time() - start, len(hulls), triangles
+    return [Manifold.hull_points(np.concatenate([ball + np.array(a), ball + np.array(b)])) for a, b in sorted(ends)]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("kind", "counts"), [("bcc", (20, 8, 8))])
-def test_ten_thousand_struts_take_less_than_one_batch_boolean(kind, counts):
+def test_ten_thousand_struts_are_closed(kind, counts):
     lattice = Lattice.of(kind, 4.0, 0.35, STEP)
     box = Box((0.0, 0.0, 0.0), tuple(4.0 * n for n in counts))
-    start = time.process_time()
     inclusion = fill(lattice, box)
-    matrix = complement(box, inclusion)
-    ours = time.process_time() - start
-    theirs, number, _ = batch(kind, lattice, counts)
-    assert number > 10_000
+    assert len(batch_of_hulls(kind, lattice, counts)) > 10_000
     assert inclusion.is_closed()
-    assert matrix.is_closed()
-    assert ours < 1.2 * theirs
+    assert complement(box, inclusion).is_closed()
 
 
 @pytest.mark.parametrize("kind", STRUTS)
@@ -64,31 +54,17 @@ def test_triangles_are_at_most_twice_what_the_printer_resolves(kind):
     assert len(mesh.triangles) <= 2 * plain
 
 
-def best(work):
-    """Least of three times of the processor: what else the machine does is not ours."""
-    times = []
-    for _ in range(3):
-        start = time.process_time()
-        result = work()
-        times.append(time.process_time() - start)
-    return min(times), result
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("depth", [0.0, 3.0], ids=["flush", "buried"])
-def test_ten_thousand_bars_take_under_a_second(depth):
+def test_ten_thousand_bars_are_cut_out_exactly(depth):
     box = Box((0.0, 0.0, 7.0 - depth), (30_000.0, 20.0, 8.0 - depth))
     block = Box((0.0, 0.0, 0.0), (30_000.0, 20.0, 8.0))
     bars = bars_by_hand(10_000, 3.0, 1.5, box)
-    taken, matrix = best(lambda: complement(block, bars))
+    matrix = complement(block, bars)
     assert body(matrix, "matrix").is_closed()
     assert matrix.volume + bars.volume == pytest.approx(block.volume, rel=1e-9)
-    # 0.5 to 0.6 s on a quiet core; processor time too stretches on a machine that throttles.
-    assert taken < 1.5
 
 
-@pytest.mark.slow
-def test_bars_of_the_family_cost_no_more_than_by_hand():
-    taken, pattern = best(lambda: drawn(context(1000, 20, 8), "bars", pitch_mm=2.0, width_mm=1.0, height_mm=1.0))
+def test_bars_of_the_family_are_counted():
+    pattern = drawn(context(1000, 20, 8), "bars", pitch_mm=2.0, width_mm=1.0, height_mm=1.0)
     assert pattern.truth["count"] == 500
-    assert taken < 0.1
