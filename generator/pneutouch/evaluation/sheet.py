@@ -86,11 +86,11 @@ def constant_membranes(sensor: Sensor, prediction: SensorPrediction) -> tuple[Co
 
 def _constant(sensor: Sensor, pressures: np.ndarray, label: str) -> ComparedMembrane | None:
     """A constant membrane at the pressures that it can be solved for; None where there are none."""
-    from pneutouch.mechanics.solid_states import solid_result
+    from pneutouch.mechanics.solid_states import solid_states
 
     for count in range(pressures.size, 0, -1):
         try:
-            return ComparedMembrane(label, solid_result(sensor, pressures[:count], past_limit=1.0).states)
+            return ComparedMembrane(label, solid_states(sensor, pressures[:count]))
         except ComputationError:
             continue
     return None

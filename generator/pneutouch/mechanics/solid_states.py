@@ -29,7 +29,7 @@ KINDS = {
     "unstable": ("loss of stability", True),
     "snap": ("inward buckling", True),
     "clamp_fold": ("fold at the clamp", True),
-    "lost": ("no equilibrium pressed", True),
+    "lost": ("no equilibrium found", True),
     "floor": ("apex at the base plane", True),
     "separation": ("contact separates at the centre", True),
     "break": ("break strain", True),
@@ -48,15 +48,26 @@ def solid_result(
 
     ``cells`` is the number of cells along the arc; left out, the wall ratio decides (reasons in docs/accuracy.md).
     ``past_limit`` is the multiple of the limit volume to which inflation goes on: 1 where only the figures are needed.
-    Raises BeyondLimitError beyond the limit point, ComputationError where no equilibrium is pressed.
+    Raises BeyondLimitError beyond the limit point, ComputationError where no equilibrium is found.
     """
+    probe = _probe(sensor, cells)
+    run = inflate(probe.solid, past_limit=past_limit)
+    states = tuple(_state(sensor, probe, run, float(p)) for p in driving_pressures)
+    return ModelResult(_limit_point(sensor, run), _limits(sensor, probe, run), _inflation(probe.solid, run), states)
+
+
+def solid_states(sensor: Sensor, driving_pressures: Array) -> tuple[SensorState, ...]:
+    """The states of `solid_result` alone: inflation ends at the highest driving pressure (MPa), short of the limit point."""
+    probe = _probe(sensor)
+    run = inflate(probe.solid, to_pressure=float(np.max(driving_pressures)))
+    return tuple(_state(sensor, probe, run, float(p)) for p in driving_pressures)
+
+
+def _probe(sensor: Sensor, cells: int | None = None) -> StrainProbe:
+    """The sensor's wall as the solid takes it, and the probe of its strains."""
     size = (sensor.dome.inner_radius, sensor.dome.wall_thickness)
     mesh = dome(*size, arc=cells) if sensor.dome.flange is None else printed_dome(*size, *sensor.dome.flange, arc=cells)
-    solid = SolidModel(mesh, sensor.wall.hyperelastic, grade=_grade(sensor))
-    run = inflate(solid, past_limit=past_limit)
-    probe = StrainProbe(solid)
-    states = tuple(_state(sensor, probe, run, float(p)) for p in driving_pressures)
-    return ModelResult(_limit_point(sensor, run), _limits(sensor, probe, run), _inflation(solid, run), states)
+    return StrainProbe(SolidModel(mesh, sensor.wall.hyperelastic, grade=_grade(sensor)))
 
 
 def _grade(sensor: Sensor) -> Callable[[Array, Array], Array] | None:

@@ -184,10 +184,10 @@ def _solid_curve(sensor: Sensor, pressure: float) -> LoadingCurve:
 
     from scipy.interpolate import CubicSpline
 
-    from pneutouch.mechanics.solid_states import solid_result
+    from pneutouch.mechanics.solid_states import solid_states
 
     try:
-        state = solid_result(sensor.replace(steps=_SOLID_STEPS), np.array([pressure])).states[0]
+        state = solid_states(sensor.replace(steps=_SOLID_STEPS), np.array([pressure]))[0]
     except BeyondLimitError as error:
         raise _beyond(error.pressure, error.limit) from None
     travel, force, rise = state.indentation, state.force, state.pressure_rise

@@ -7,9 +7,9 @@ from pneutouch.mechanics.uncertainty.gas_notes import GasNotes, gas_notes
 from pneutouch.mechanics.uncertainty.monte_carlo import monte_carlo
 from pneutouch.mechanics.uncertainty.propagate import COVERAGE, Budget
 from pneutouch.mechanics.uncertainty.source import FIGURES, INPUTS, UncertaintySource
-from pneutouch.mechanics.uncertainty.sources.model import ModelErrors, model_errors
+from pneutouch.mechanics.uncertainty.sources.model import ModelErrors, measured_errors, model_errors
 
 __all__ = [
     "COVERAGE", "FIGURES", "INPUTS", "Budget", "GasNotes", "ModelErrors", "UncertaintySource", "batch_of", "budget", "document",
-    "gas_notes", "gas_text", "model_errors", "monte_carlo", "shares", "text",
+    "gas_notes", "gas_text", "measured_errors", "model_errors", "monte_carlo", "shares", "text",
 ]  # fmt: skip

@@ -19,7 +19,7 @@ from pneutouch.mechanics.atlas_states import resin_outside_atlas
 from pneutouch.mechanics.models import NUMERICAL
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.uncertainty import ModelErrors, budget, model_errors
+from pneutouch.mechanics.uncertainty import ModelErrors, budget, measured_errors
 from pneutouch.mechanics.uncertainty.source import FIGURES, SENSITIVITY
 from pneutouch.parts import assemble
 from pneutouch.selection import Candidate, CandidateResin, SelectionProblem, SelectionResult, choose
@@ -251,9 +251,7 @@ def _uncertainty(
     scene: ResolvedDesign, sensor: Sensor, library: Library
 ) -> Callable[[CandidateResin, SensorBatch], Array]:
     materials = library.all("materials", Material)
-    known = {
-        name: model_errors(material, materials.values()) for name, material in materials.items() if material.measured
-    }
+    known = measured_errors(materials)
 
     def relative(resin: CandidateResin, batch: SensorBatch) -> Array:
         errors = known.get(resin.name) or ModelErrors(pool=next(iter(known.values())).pool if known else ())
@@ -282,9 +280,9 @@ def _like(sensor: Sensor, batch: SensorBatch, i: int) -> Sensor:
 
 def _confirm(selection: SelectionRun, choice: Candidate) -> Confirmation:
     """The solid's sensitivity, compared with that of the atlas."""
-    from pneutouch.mechanics.solid_states import solid_result
+    from pneutouch.mechanics.solid_states import solid_states
 
-    figures = solid_result(selection.sensor_of(choice), choice.pool.pressure).states[0].figures
+    figures = solid_states(selection.sensor_of(choice), choice.pool.pressure)[0].figures
     if figures is None:
         return Confirmation(float("nan"), False)
     stated_kPa_per_N = float(choice.pool.response.lines.sensitivity_kPa_per_N[0])

@@ -35,6 +35,21 @@ def model_errors(material: Material, materials: Iterable[Material]) -> ModelErro
     """The atlas on the paper's sensor against Table S1, in every resin of ``materials`` that was measured."""
     others = list(materials)
     resin_errors, *rest = table_s1_errors([material, *others])
+    return _pooled(resin_errors, others, rest)
+
+
+def measured_errors(materials: Mapping[str, Material]) -> dict[str, ModelErrors]:
+    """`model_errors` of every resin that was measured, by name."""
+    every = list(materials.values())
+    errors = table_s1_errors(every)
+    return {
+        name: _pooled(own, every, errors)
+        for (name, material), own in zip(materials.items(), errors, strict=True)
+        if material.measured
+    }
+
+
+def _pooled(resin_errors: tuple[float, ...], others: list[Material], rest: list[tuple[float, ...]]) -> ModelErrors:
     pool = [error for errors in rest if not _unexplained(errors) for error in errors]
     out = [other.title for other, errors in zip(others, rest, strict=True) if _unexplained(errors)]
     return ModelErrors(resin_errors, tuple(pool), tuple(out))
