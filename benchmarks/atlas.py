@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 from rich.progress import Progress
 
-from pneutouch.mechanics.atlas.fit import WallCoefficients, fit_sheet, join
+from benchmarks.atlas_build.fit import WallCoefficients, fit_sheet, join
+from benchmarks.atlas_build.stale import solid_fingerprint, survey_fingerprint
+from benchmarks.atlas_build.survey import survey
 from pneutouch.mechanics.atlas.recipe import RECIPE
-from pneutouch.mechanics.atlas.stale import solid_fingerprint
-from pneutouch.mechanics.atlas.survey import survey
 from pneutouch.mechanics.atlas.table import SHIPPED
 
 WORK = Path("outputs") / "atlas"
@@ -35,7 +35,7 @@ def _sheet(wall_ratio: float, folder: Path) -> WallCoefficients:
 
 
 def main() -> None:
-    folder = WORK / f"{RECIPE.survey_fingerprint()}-{solid_fingerprint()}"
+    folder = WORK / f"{survey_fingerprint(RECIPE)}-{solid_fingerprint()}"
     folder.mkdir(parents=True, exist_ok=True)
     walls = [float(wall) for wall in RECIPE.wall_ratios]
     with Progress() as bar, ProcessPoolExecutor(os.cpu_count()) as pool:

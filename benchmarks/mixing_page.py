@@ -6,12 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
+from benchmarks.mixing_chart import mixing_chart, mixing_data
 from benchmarks.mixing_laws import LONG_TERM, PLACING, VOXEL_THRESHOLD, placings, stiff_moduli
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.mixture import ResolvedMixingCurve, mixing
-from pneutouch.evaluation.mixing import mixing_data
 from pneutouch.mechanics.mixing import THRESHOLD, hashin_shtrikman_low, percolation
-from pneutouch.report.mixing import mixing_chart
 from pneutouch.spec.material import Material
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -8,13 +8,12 @@ import tomllib
 
 import numpy as np
 import pytest
+from benchmarks.mixing_chart import mixing_chart, mixing_data
 from benchmarks.mixing_laws import fraction_of, placings
 from benchmarks.mixing_page import DOCS, STIFF, WHERE, measure, page
 
 from pneutouch.catalogue import load_scene
-from pneutouch.evaluation.mixing import mixing_data
 from pneutouch.mechanics.mixing import hashin_shtrikman_low
-from pneutouch.report.mixing import mixing_chart
 
 
 @pytest.fixture(scope="module")

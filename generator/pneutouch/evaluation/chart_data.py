@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from pneutouch.arrays import Array
-    from pneutouch.catalogue.mixture import ResolvedMixingCurve
     from pneutouch.mechanics.prediction import SensorState
     from pneutouch.selection.front import TradeOffFront
 
@@ -89,30 +88,3 @@ class TradeOff:
     def known(self) -> tuple[TradeOffFront, ...]:
         """The fronts with a line to draw."""
         return tuple(front for front in self.fronts if front.sensitivity_kPa_per_N.size > 1)
-
-
-class MixingLine(NamedTuple):
-    """A bound or model of a mix: moduli (n,) in MPa over the chart's fractions, and the point of its label."""
-
-    label: str
-    modulus: Array
-    mark: tuple[float, float]
-
-
-@dataclass(frozen=True)
-class MixingChart:
-    """A mixing curve between its bounds.
-
-    Attributes:
-        law: The curve.
-        stiff: Greatest modulus of its stiff resin, MPa.
-        names: Labels of its points.
-        fraction: Volume fractions of the lines, (n,).
-        lines: Reuss, Voigt, Hashin and Shtrikman low and high, percolation.
-    """
-
-    law: ResolvedMixingCurve
-    stiff: float
-    names: tuple[str, ...]
-    fraction: Array
-    lines: tuple[MixingLine, ...]

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from benchmarks.atlas_build.fit import roughness
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.interpolate import BSpline
 
-from pneutouch.mechanics.atlas.spline import SplineAxis, pieces, roughness
+from pneutouch.mechanics.atlas.spline import SplineAxis, pieces
 
 axes = st.builds(
     lambda low, length, cells, degree, stretch: SplineAxis(low, low + length, cells, degree, stretch),

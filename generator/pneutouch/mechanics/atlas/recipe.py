@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
@@ -11,8 +10,6 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.spline import SplineAxis
-
-_HOLDING = ("stiffest", "degree", "volume_cells", "volume_stretch", "depth_cells")
 
 
 @dataclass(frozen=True)
@@ -55,19 +52,6 @@ class AtlasRecipe:
         return np.geomspace(self.thinnest / self.margin, self.thickest * self.margin, self.walls)
 
     @property
-    def survey_volumes(self) -> Array:
-        """Surveyed nu, ascending, with nu = 0 among them; (volumes,)."""
-        below = round(self.volumes * 0.42)
-        up = np.linspace(0.0, self.highest_volume, self.volumes - below)
-        down = np.linspace(self.lowest_volume, 0.0, below, endpoint=False)
-        return np.concatenate([down, up])
-
-    @property
-    def survey_depths(self) -> Array:
-        """Surveyed w, (depths,)."""
-        return axes(self).depth.even(self.depths)
-
-    @property
     def fold_depths(self) -> Array:
         """Depths below the unloaded apex at which the buckling edge is kept, (folds,)."""
         return np.linspace(0.35, self.beyond, self.folds)
@@ -82,11 +66,6 @@ class AtlasRecipe:
         content: dict[str, Any] = json.loads(text)
         fields: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in content.items()}
         return cls(**fields)
-
-    def survey_fingerprint(self) -> str:
-        """Distinguishes recipes that solve other states; how the answers are stored does not count."""
-        content = {key: value for key, value in asdict(self).items() if key not in _HOLDING}
-        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
 
 
 class AtlasAxes(NamedTuple):

@@ -112,8 +112,3 @@ class SplineAxis:
         out = np.zeros((x.size, self.size))
         np.put_along_axis(out, cell[:, None] + np.arange(self.degree + 1), weight[:, order], axis=1)
         return out
-
-
-def roughness(size: int, order: int) -> Array:
-    """Differences of an order of neighbouring coefficients, (size - order, size)."""
-    return np.diff(np.eye(size), n=order, axis=0)

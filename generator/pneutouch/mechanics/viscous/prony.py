@@ -1,4 +1,4 @@
-"""Linear relaxation of a resin: a Prony series, and what it answers to the plainest histories in closed form."""
+"""Linear relaxation of a resin as a Prony series."""
 
 from __future__ import annotations
 
@@ -9,9 +9,6 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.spec.material import Material
-
-_SHORT = 1.0e-4
-"""Ramps shorter than this share of a relaxation time are taken by their series, good to that share."""
 
 
 @dataclass(frozen=True)
@@ -36,24 +33,6 @@ class Prony:
         """Modulus after a step of strain, over the relaxed one; any shape, s."""
         decay = np.exp(-np.asarray(time)[..., None] / np.array(self.times))
         return np.asarray(1.0 + decay @ self.excess)
-
-    def after_ramp(self, ramp: float, time: Array) -> Array:
-        """Stress over strain, over the relaxed modulus, ``time`` s after an even ramp of ``ramp`` s; (n,)."""
-        tau = np.array(self.times)
-        mean = tau / ramp * -np.expm1(-ramp / tau)
-        return np.asarray(1.0 + np.exp(-np.asarray(time)[..., None] / tau) @ (self.excess * mean))
-
-    def loop_energy(self, ramp: float) -> float:
-        """Energy that an even ramp of ``ramp`` s to strain 1 and back leaves behind, over the relaxed modulus.
-
-        A Maxwell element c, tau under strain t/T and back takes c tau/T^2 (2 T - tau (1 - e)(3 - e)), e = exp(-T/tau): the
-        work of its stress, integrated; part of it is dissipated after the return.
-        """
-        share = ramp / np.array(self.times)
-        gone = -np.expm1(-share)
-        # The difference of a short ramp is lost in rounding; its first term is not.
-        taken = np.where(share < _SHORT, 2 / 3 * share**3, 2 * share - gone * (2 + gone))
-        return float((self.excess * taken / share**2).sum())
 
 
 def prony_series(material: Material) -> tuple[Prony, ...]:

@@ -75,13 +75,6 @@ class LoopRun:
             return None
         return hysteresis(self.force_in, self.rise_in, self.force_out, self.rise_out)
 
-    def energy_loss(self) -> float | None:
-        """Share of the plate's work that does not come back; None where there is no retraction."""
-        if self.force_out.size < 2:
-            return None
-        spent = np.trapezoid(self.force_in, self.indentation_in)
-        return float(1.0 + np.trapezoid(self.force_out, self.indentation_out) / spent)
-
 
 def relaxation(
     sensor: Sensor, series: Sequence[Prony], driving_pressures: Sequence[float], depth: float, speed: float,

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from benchmarks.atlas_build.sampler import AtlasSampler, Equilibrium, SampledPress, survey_depths, survey_volumes
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.recipe import STORED, STRETCHES, AtlasRecipe
-from pneutouch.mechanics.atlas.sampler import AtlasSampler, Equilibrium, SampledPress
 
 _NEAR_ZERO = 0.3
 """Below this share of the limit pressure, a pressure that rises as the plate goes up belongs to a buckled wall."""
@@ -48,7 +48,7 @@ def survey(wall_ratio: float, recipe: AtlasRecipe) -> Survey:
     rows = [_down(sampler, sampler.touching(free)) for free in sampler.free]
     nodes = [node for row in rows for node in row.values()]
     above = rows[0]
-    for nu in reversed(recipe.survey_volumes[recipe.survey_volumes < 0.0]):
+    for nu in reversed(survey_volumes(recipe)[survey_volumes(recipe) < 0.0]):
         above = _squeezed(sampler, above, float(nu))
         nodes += above.values()
     presses = [
@@ -81,7 +81,7 @@ def _fold(sampler: AtlasSampler, presses: list[SampledPress]) -> tuple[float, Ar
 def _down(sampler: AtlasSampler, start: Equilibrium) -> dict[int, Equilibrium]:
     """The plate coming down at a fixed volume, as far as a gas can hold it."""
     row = {0: start}
-    for k, w in enumerate(sampler.recipe.survey_depths[1:], start=1):
+    for k, w in enumerate(survey_depths(sampler.recipe)[1:], start=1):
         node = sampler.step(row[k - 1], start.state.volume, start.height - w)
         if node is None or not sampler.reachable(node):
             break
@@ -100,7 +100,7 @@ def _squeezed(sampler: AtlasSampler, above: dict[int, Equilibrium], nu: float) -
     lowest = rest.outer_apex - sampler.recipe.beyond
     row: dict[int, Equilibrium] = {}
     for k in sorted(above, reverse=True):
-        height = apex - sampler.recipe.survey_depths[k]
+        height = apex - survey_depths(sampler.recipe)[k]
         if height < lowest:
             continue
         node = sampler.step(above[k], volume, height)

@@ -9,7 +9,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
-from pneutouch.mechanics.atlas.recipe import AtlasRecipe
+from pneutouch.mechanics.atlas.recipe import AtlasRecipe, axes
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.solid.contact import Plate
 from pneutouch.mechanics.solid.continuation import PathFollower
@@ -31,6 +31,19 @@ point of contact, is only known coarsely."""
 _SUCTION = 2.0e-3
 """States are kept down to this share of the limit pressure below zero, no further: sucked off the plate the wall answers
 with another, softer stiffness, and the kink there would spoil the smooth side."""
+
+
+def survey_volumes(recipe: AtlasRecipe) -> Array:
+    """Surveyed nu, ascending, with nu = 0 among them; (volumes,)."""
+    below = round(recipe.volumes * 0.42)
+    up = np.linspace(0.0, recipe.highest_volume, recipe.volumes - below)
+    down = np.linspace(recipe.lowest_volume, 0.0, below, endpoint=False)
+    return np.concatenate([down, up])
+
+
+def survey_depths(recipe: AtlasRecipe) -> Array:
+    """Surveyed w, (depths,)."""
+    return axes(recipe).depth.even(recipe.depths)
 
 
 @dataclass(frozen=True)
@@ -83,7 +96,7 @@ class AtlasSampler:
         if run.limit is None:
             raise ComputationError(f"t0/R0 = {wall_ratio:g}: no limit point: {run.why_no_limit}")
         self.rest, self.limit = run.states[0], run.limit
-        self.free = [self._free(run, nu) for nu in recipe.survey_volumes if nu >= 0.0]
+        self.free = [self._free(run, nu) for nu in survey_volumes(recipe) if nu >= 0.0]
         apex = self.solid.mesh.outer_apex
         self.first_slope = float(self.rest.by_volume[apex, 1])
 

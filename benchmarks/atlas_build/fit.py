@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import solve_triangular
 
+from benchmarks.atlas_build.survey import Survey
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.recipe import STORED, AtlasAxes, AtlasRecipe, axes, flattened
-from pneutouch.mechanics.atlas.spline import SplineAxis, roughness
-from pneutouch.mechanics.atlas.survey import Survey
+from pneutouch.mechanics.atlas.spline import SplineAxis
 
 _SMOOTH = 1.0e-5
 """Weight of the coefficients' roughness: decides only where no state supports them."""
@@ -24,6 +24,11 @@ _TYPES = {"inner_apex": np.float32}
 """Half precision is enough for the other fields: a step of it moves a stretch by less than a thousandth."""
 _AT_CONTACT = 4.0
 """Weight of the free dome: its fields give the limits of driving, and no force is the force at first contact."""
+
+
+def roughness(size: int, order: int) -> Array:
+    """Differences of an order of neighbouring coefficients, (size - order, size)."""
+    return np.diff(np.eye(size), n=order, axis=0)
 
 
 @dataclass(frozen=True)

@@ -3,16 +3,25 @@
 from __future__ import annotations
 
 import hashlib
+import json
+from dataclasses import asdict
 
 import numpy as np
 
-from pneutouch.mechanics.atlas.recipe import RECIPE
-from pneutouch.mechanics.atlas.sampler import AtlasSampler
+from benchmarks.atlas_build.sampler import AtlasSampler
+from pneutouch.mechanics.atlas.recipe import RECIPE, AtlasRecipe
 
 _WALLS = (0.07, 0.16, 0.3)
 _ROWS = (0, 12)
 _DEPTH = 0.4
 _DIGITS = 6
+_HOLDING = ("stiffest", "degree", "volume_cells", "volume_stretch", "depth_cells")
+
+
+def survey_fingerprint(recipe: AtlasRecipe) -> str:
+    """Distinguishes recipes that solve other states; how the answers are stored does not count."""
+    content = {key: value for key, value in asdict(recipe).items() if key not in _HOLDING}
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
 
 
 def solid_fingerprint() -> str:

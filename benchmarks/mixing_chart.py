@@ -2,12 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.catalogue.mixture import ResolvedMixingCurve
-from pneutouch.evaluation.chart_data import MixingChart
+from pneutouch.mechanics.mixing import (
+    THRESHOLD,
+    Law,
+    hashin_shtrikman_high,
+    hashin_shtrikman_low,
+    percolation,
+    reuss,
+    voigt,
+)
 from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MUTED, figure, halo, plain_ticks, svg
 
 if TYPE_CHECKING:
@@ -21,6 +31,54 @@ _LOOKS = (_OUTER, _OUTER, _INNER, _INNER, {"color": INK, "lw": 0.7, "ls": LINES[
 _PLACES = ((0.78, 0.1), (0.02, 0.95), (0.56, 0.5), (0.3, 0.95), (0.27, 0.6))
 """Positions of the labels of the lines, in shares of the axes, where nothing else stands."""
 _ORDER = (1, 3, 4, 2, 0)
+
+
+class MixingLine(NamedTuple):
+    """A bound or model of a mix: moduli (n,) in MPa over the chart's fractions, and the point of its label."""
+
+    label: str
+    modulus: Array
+    mark: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class MixingChart:
+    """A mixing curve between its bounds.
+
+    Attributes:
+        law: The curve.
+        stiff: Greatest modulus of its stiff resin, MPa.
+        names: Labels of its points.
+        fraction: Volume fractions of the lines, (n,).
+        lines: Reuss, Voigt, Hashin and Shtrikman low and high, percolation.
+    """
+
+    law: ResolvedMixingCurve
+    stiff: float
+    names: tuple[str, ...]
+    fraction: Array
+    lines: tuple[MixingLine, ...]
+
+
+def mixing_data(law: ResolvedMixingCurve, stiff: tuple[float, float], names: tuple[str, ...]) -> MixingChart:
+    """The chart of a curve; ``stiff`` are the least and greatest modulus of its stiff resin, MPa, ``names`` its points.
+
+    Of each bound the widest that the range of the stiff resin makes.
+    """
+    soft, fraction = float(law.modulus[0]), np.linspace(0.0, 1.0, _COUNT)
+
+    def line(label: str, bound: Law, modulus: float, at: float) -> MixingLine:
+        return MixingLine(label, bound(fraction, soft, modulus), (at, float(bound(np.array(at), soft, modulus))))
+
+    low, high = stiff
+    lines = (
+        line("Reuss: equal stress", reuss, low, 0.88),
+        line("Voigt: equal strain", voigt, high, 0.12),
+        line("Hashin and Shtrikman, softest isotropic mix", hashin_shtrikman_low, low, 0.88),
+        line("Hashin and Shtrikman, stiffest isotropic mix", hashin_shtrikman_high, high, 0.36),
+        line(f"droplets that touch beyond {100 * THRESHOLD:g} %", percolation, low, 0.2),
+    )
+    return MixingChart(law, high, names, fraction, lines)
 
 
 def mixing_chart(chart: MixingChart, size: tuple[float, float]) -> str:

@@ -1,0 +1,1 @@
+"""Builds the atlas that ships: the solid surveyed, and its answers fitted."""
