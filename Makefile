@@ -33,7 +33,7 @@ lint: $(VENV)/.dev
 	$(BIN)/ruff format --check generator tests benchmarks
 	$(BIN)/mypy
 
-# What CI asks for beside the tests; pre-commit needs a clone, and its hooks are programs of the virtual environment.
+# What CI requires in addition to the tests; pre-commit needs a clone, and its hooks are programs of the virtual environment.
 review: $(VENV)/.dev
 	$(BIN)/sp-repo-review .
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pre-commit run --all-files
@@ -56,7 +56,7 @@ lock:
 clean:
 	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache
 
-# Speed against accuracy, measured here and now; writes docs/accuracy.md and its charts.
+# Speed against accuracy, measured now; writes docs/accuracy.md and its charts.
 chart: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.chart
 
