@@ -40,12 +40,13 @@ def measure() -> dict[str, Any]:
         return [float(f"{value:.{_DIGITS}g}") for value in values]
 
     return {
-        "requested": COUNT, **{key: column([getattr(gap.case, key) for gap in gaps]) for key in KEYS},
+        "requested": COUNT,
+        **{key: column([getattr(gap.case, key) for gap in gaps]) for key in KEYS},
         **{name: column([getattr(gap, name) for gap in gaps]) for name in ERRORS},
         "end_off": column([gap.positions[1] - gap.positions[0] for gap in gaps]),
         "states": {name: _states(gaps, f"every_{name}") for name in ("force", "pressure")},
         "ends": dict(Counter(" / ".join(gap.ends) for gap in gaps).most_common()),
-    }  # fmt: skip
+    }
 
 
 def _states(gaps: list[Gap], name: str) -> list[float]:
@@ -62,16 +63,23 @@ def page(data: dict[str, Any]) -> str:
 def _what() -> list[str]:
     grid = axes(RECIPE)
     return [
-        "# The atlas", "",
+        "# The atlas",
+        "",
         "The atlas is the finite element `solid` tabulated once: the same results in a small part of the time, within stated limits. "
-        "`pneutouch predict DESIGN --model atlas` selects it; `--model auto` takes it where its stated error meets the tolerance.", "",
-        "## What it contains", "",
+        "`pneutouch predict DESIGN --model atlas` selects it; `--model auto` takes it where its stated error meets the tolerance.",
+        "",
+        "## What it contains",
+        "",
         "For a neo-Hookean wall everything scales with the shear modulus mu and the inner radius R0. A dome "
         "under a plate is then described by its elastic energy E(t0/R0, V, h): wall ratio, cavity volume, plate height. Pressure and force are its slopes,",
-        "", "    p = dE/dV,   F = -dE/dh,", "",
+        "",
+        "    p = dE/dV,   F = -dE/dh,",
+        "",
         "so the two are always consistent: a closed path does no work. Gas, dead volume, ambient pressure, modulus and size are "
-        "not in the table. They enter afterwards and exactly, by Boyle's law: (p + pa)(V + Vd) keeps its value at first contact.", "",
-        "| coordinate | meaning | limits | coefficients |", "|---|---|---|---|",
+        "not in the table. They enter afterwards and exactly, by Boyle's law: (p + pa)(V + Vd) keeps its value at first contact.",
+        "",
+        "| coordinate | meaning | limits | coefficients |",
+        "|---|---|---|---|",
         f"| t0/R0 | wall ratio, in its logarithm | {RECIPE.thinnest:g} to {RECIPE.thickest:g} | {grid.wall.size}, cubic |",
         f"| nu | volume above the unloaded one over the same at the limit point | {RECIPE.lowest_volume:g} to {RECIPE.highest_volume:g} | "
         f"{grid.volume.size}, degree {RECIPE.degree} |",
@@ -80,19 +88,22 @@ def _what() -> list[str]:
         "",
         f"Ambient pressure up to {RECIPE.stiffest:g} mu, any dead volume, Poisson ratio {RECIPE.poisson_ratio:g}, base clamped, any "
         "driving pressure below the limit point. In addition to the energy it holds the quantities that define events: contact radius, greatest stretch "
-        "and stress, the fold of a face, the overhang, the inner apex.", "",
-    ]  # fmt: skip
+        "and stress, the fold of a face, the overhang, the inner apex.",
+        "",
+    ]
 
 
 def _made() -> list[str]:
     return [
-        "## How it is made", "",
+        "## How it is made",
+        "",
         f"`make atlas` solves the solid at its default mesh for {RECIPE.walls} walls, a little beyond the limits. Volume and plate height are "
         "prescribed; energy, pressure, force and their derivatives are stored for every state that is stable with some trapped gas. Presses with "
         "trapped gas cover the edge at zero pressure and locate the buckling of the wall. One energy in B-splines is fitted to all states by "
         f"least squares. The command takes minutes on two cores and writes `atlas.npz` ({SHIPPED.stat().st_size / 1e6:.1f} MB); a stopped run resumes. "
-        "The file carries a fingerprint of the solid's results, and a test fails when the solid no longer gives them.", "",
-    ]  # fmt: skip
+        "The file carries a fingerprint of the solid's results, and a test fails when the solid no longer gives them.",
+        "",
+    ]
 
 
 def _row(name: str, words: str, data: dict[str, Any]) -> str:
@@ -110,15 +121,21 @@ def _accuracy(data: dict[str, Any]) -> list[str]:
         for name, values in data["states"].items()
     ]
     return [
-        "## Error against the solid", "",
+        "## Error against the solid",
+        "",
         f"{data['requested']:,} random presses within the limits, none of them used to make the atlas, computed by both: walls and gas stiffness uniform in their "
         f"logarithm, driving pressure 0 to 97 % of the limit, dead volume 0 to several R0^3, depth 0.2 to 0.75 R0, some with a gauge limit "
-        f"or a break strain ({count:,} have a range to compare). `make check-slow` repeats them and prints these figures.", "",
-        "| error | median | 99 of 100 | greatest | above 0.5 % |", "|---|---|---|---|---|",
-        *(_row(name, words, data) for name, words in ERRORS.items()), *states, "",
+        f"or a break strain ({count:,} have a range to compare). `make check-slow` repeats them and prints these figures.",
+        "",
+        "| error | median | 99 of 100 | greatest | above 0.5 % |",
+        "|---|---|---|---|---|",
+        *(_row(name, words, data) for name, words in ERRORS.items()),
+        *states,
+        "",
         f"The event that ends the range is the same in {same:,} of {count:,} presses; its position differs by at most {off.max():.4f} R0 (the solid itself "
-        "locates a jump to 0.0005 R0). The error of the solid against a refined mesh comes in addition, see [accuracy](accuracy.md).", "",
-    ]  # fmt: skip
+        "locates a jump to 0.0005 R0). The error of the solid against a refined mesh comes in addition, see [accuracy](accuracy.md).",
+        "",
+    ]
 
 
 def _worst(data: dict[str, Any]) -> list[str]:
@@ -129,29 +146,37 @@ def _worst(data: dict[str, Any]) -> list[str]:
         for i in order
     ]
     return [
-        "## Where the error is greatest, and why", "",
-        "![Greatest error in force over wall ratio and driving pressure, and over wall ratio and depth](atlas.svg)", "",
+        "## Where the error is greatest, and why",
+        "",
+        "![Greatest error in force over wall ratio and driving pressure, and over wall ratio and depth](atlas.svg)",
+        "",
         "- **No pressure.** Pressure in the cavity keeps a thin dome round under its plate. Without it the force of the solid "
         "oscillates as the contact edge moves over the elements one by one: at t0/R0 = 0.06 by up to 0.6 % of full scale "
         "against a mesh twice as fine, at 0.2 by 0.3 %. The atlas smooths these oscillations.",
         "- **Shortly before buckling.** The stiffness goes to zero along an edge whose position changes with the wall. Between two tabulated walls "
         "the table shows it only as a bend.",
-        "- **Just below the limit point.** The free pressure is flat there: a small error in pressure is a large one in volume.", "",
-        "The six greatest errors in force:", "",
+        "- **Just below the limit point.** The free pressure is flat there: a small error in pressure is a large one in volume.",
+        "",
+        "The six greatest errors in force:",
+        "",
         "| t0/R0 | driving, of the limit | ambient/mu | dead volume/R0^3 | depth/R0 | force | pressure | sensitivity |",
-        "|---|---|---|---|---|---|---|---|", *rows, "",
-    ]  # fmt: skip
+        "|---|---|---|---|---|---|---|---|",
+        *rows,
+        "",
+    ]
 
 
 def _outside() -> list[str]:
     return [
-        "## What it does not cover", "",
+        "## What it does not cover",
+        "",
         "Another law or Poisson ratio, a flange held as printed, walls or depths outside the limits, very soft resin in high ambient "
         "pressure, a press that leaves the tabulated states, a contact that reaches the edge of the plate (its shape is not in the "
         "table). The atlas then gives no figures and reports the reason; `--model auto` uses the solid and reports this under "
         "`error_estimate`. `auto` also uses the solid for ranges that end by buckling or at the break strain: the atlas computes those "
-        "when it is selected by name, but the solid locates the end more exactly. The deformed shapes of the wall come only from the solid.", "",
-    ]  # fmt: skip
+        "when it is selected by name, but the solid locates the end more exactly. The deformed shapes of the wall come only from the solid.",
+        "",
+    ]
 
 
 def draw(data: dict[str, Any]) -> str:
@@ -165,9 +190,12 @@ def draw(data: dict[str, Any]) -> str:
     with figure(178, 78) as drawn:
         axes = drawn.subplots(1, 2)
         for ax, key, steps, label in zip(
-            axes, ("share", "depth"), (np.linspace(0.0, 0.97, 11), np.linspace(0.2, 0.75, 12)),
-            ("driving pressure / limit  (-)", "depth / R0  (-)"), strict=True,
-        ):  # fmt: skip
+            axes,
+            ("share", "depth"),
+            (np.linspace(0.0, 0.97, 11), np.linspace(0.2, 0.75, 12)),
+            ("driving pressure / limit  (-)", "depth / R0  (-)"),
+            strict=True,
+        ):
             mesh = ax.pcolormesh(
                 edges, steps, _greatest(wall, np.array(data[key]), error, edges, steps), norm=norm, cmap=shades
             )

@@ -47,8 +47,17 @@ class Case:
     def batch(self, limit: float) -> SensorBatch:
         """The same for the atlas, driven to a share of a limit pressure."""
         values = (
-            1.0, self.wall, 1.0, self.ambient, self.dead, self.share * limit, self.depth, np.inf, self.gauge, self.tear,
-        )  # fmt: skip
+            1.0,
+            self.wall,
+            1.0,
+            self.ambient,
+            self.dead,
+            self.share * limit,
+            self.depth,
+            np.inf,
+            self.gauge,
+            self.tear,
+        )
         return SensorBatch(*(np.array([value]) for value in values))
 
 
@@ -128,10 +137,19 @@ def compare(case: Case) -> Gap | None:
         travel = grid
     force, rise = _differences(lookup, travel, _curve(found.path, travel))
     return Gap(
-        case, force.error, rise.error, rise.error * rise.scale / (free.pressure + rise.scale), force.every, rise.every,
-        ours.sensitivity_kPa_per_N / theirs.sensitivity_kPa_per_N - 1.0, KPA * float(said.lines.sensitivity_kPa_per_N[0]) / full.sensitivity_kPa_per_N - 1.0,
-        names, (end, mine), limit, bool(said.near_buckling[0]),
-    )  # fmt: skip
+        case,
+        force.error,
+        rise.error,
+        rise.error * rise.scale / (free.pressure + rise.scale),
+        force.every,
+        rise.every,
+        ours.sensitivity_kPa_per_N / theirs.sensitivity_kPa_per_N - 1.0,
+        KPA * float(said.lines.sensitivity_kPa_per_N[0]) / full.sensitivity_kPa_per_N - 1.0,
+        names,
+        (end, mine),
+        limit,
+        bool(said.near_buckling[0]),
+    )
 
 
 class _Difference(NamedTuple):

@@ -26,14 +26,24 @@ def _model(sensor: Sensor, arc: int, through: int) -> list[str]:
     other_way = [0, 3, 2, 1, 7, 6, 5, 4]  # CalculiX wants its axisymmetric cells counter-clockwise in (r, z)
     inside = range(1, len(mesh.cells) + 1, through)
     return [
-        "*NODE,NSET=ALL", *(f"{k},{r:.12g},{z:.12g},0." for k, (r, z) in enumerate(mesh.nodes, start=1)),
+        "*NODE,NSET=ALL",
+        *(f"{k},{r:.12g},{z:.12g},0." for k, (r, z) in enumerate(mesh.nodes, start=1)),
         "*ELEMENT,TYPE=CAX8R,ELSET=WALL",
         *(f"{k}," + ",".join(str(n + 1) for n in cell[other_way]) for k, cell in enumerate(mesh.cells, start=1)),
-        "*ELSET,ELSET=INNER", *(f"{k}," for k in inside),
-        "*NSET,NSET=BASE", *(f"{n + 1}," for n in mesh.clamped), "*NSET,NSET=AXIS", *(f"{n + 1}," for n in mesh.axis),
-        "*MATERIAL,NAME=RUBBER", "*HYPERELASTIC,NEO HOOKE", f"{0.5 * mu:.12g},{2 / bulk:.12g}",
-        "*SOLID SECTION,ELSET=WALL,MATERIAL=RUBBER", "*BOUNDARY", "BASE,1,2", "AXIS,1,1",
-    ]  # fmt: skip
+        "*ELSET,ELSET=INNER",
+        *(f"{k}," for k in inside),
+        "*NSET,NSET=BASE",
+        *(f"{n + 1}," for n in mesh.clamped),
+        "*NSET,NSET=AXIS",
+        *(f"{n + 1}," for n in mesh.axis),
+        "*MATERIAL,NAME=RUBBER",
+        "*HYPERELASTIC,NEO HOOKE",
+        f"{0.5 * mu:.12g},{2 / bulk:.12g}",
+        "*SOLID SECTION,ELSET=WALL,MATERIAL=RUBBER",
+        "*BOUNDARY",
+        "BASE,1,2",
+        "AXIS,1,1",
+    ]
 
 
 def _seconds(folder: Path, deck: list[str]) -> float:

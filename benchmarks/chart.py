@@ -21,10 +21,12 @@ ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"
 
 HEAD = [
-    "# Accuracy and cost, measured", "",
+    "# Accuracy and cost, measured",
+    "",
     "`make chart` writes this page and [validation.md](validation.md). Nothing is fitted; every cell is listed, including the bad ones. "
-    "Times are processor times of one run on one core: only their ratios are comparable.", "",
-]  # fmt: skip
+    "Times are processor times of one run on one core: only their ratios are comparable.",
+    "",
+]
 
 
 def main() -> None:
@@ -38,15 +40,17 @@ def main() -> None:
     _write("speed-accuracy.svg", chart(speeds, programs))
     _write("validity.svg", validity.draw(map_rows))
     _write("laws.svg", laws.draw(law_curves))
-    for name, data in (
-        ("speed-accuracy.json", speeds), ("peers.json", programs), ("validity.json", map_rows),
-    ):  # fmt: skip
+    for name, data in (("speed-accuracy.json", speeds), ("peers.json", programs), ("validity.json", map_rows)):
         _write(name, json.dumps(data, indent=1) + "\n")
     sections = [
-        *contact_section(cells), *speed.section(speeds, programs, shares.shares()), *validity.section(map_rows),
-        *inflation_section(), *laws.section(law_curves),
-        "The print meshes compared with other kernels: [meshing.md](meshing.md).", "",
-    ]  # fmt: skip
+        *contact_section(cells),
+        *speed.section(speeds, programs, shares.shares()),
+        *validity.section(map_rows),
+        *inflation_section(),
+        *laws.section(law_curves),
+        "The print meshes compared with other kernels: [meshing.md](meshing.md).",
+        "",
+    ]
     _write("accuracy.md", "\n".join([*HEAD, *sections]))
     _write("validation.md", validation.page())
 
@@ -63,12 +67,17 @@ def inflation_section() -> list[str]:
     cap = relative_height(known[:, 0], 1.0, 1.0, 1.0)
     lines = [f"| {p:.4f} | {h:.4f} | {x:.4f} | {x / h - 1:+.1%} |" for (p, h), x in zip(known, cap, strict=True)]
     return [
-        "## Inflation: the cap against the exact membrane", "",
+        "## Inflation: the cap against the exact membrane",
+        "",
         "The paper assumes a cap of constant curvature. The exact neo-Hookean membrane, solved by shooting, has its limit "
         f"point at p R0/(mu t0) = {RISING_BRANCH[-1, 0]:.5f}, h/R0 = {RISING_BRANCH[-1, 1]:.5f}: the cap is off by "
-        f"**{pressure:+.1%} in pressure and {height:+.1%} in height** there.", "",
-        "| p R0/(mu t0) | exact h/R0 | cap h/R0 | error |", "|---|---|---|---|", *lines, "",
-    ]  # fmt: skip
+        f"**{pressure:+.1%} in pressure and {height:+.1%} in height** there.",
+        "",
+        "| p R0/(mu t0) | exact h/R0 | cap h/R0 | error |",
+        "|---|---|---|---|",
+        *lines,
+        "",
+    ]
 
 
 def contact_section(cells: list[Cell]) -> list[str]:
@@ -82,19 +91,24 @@ def contact_section(cells: list[Cell]) -> list[str]:
         for c in cells
     ]
     return [
-        "## Contact: every model against the paper's Table S1", "",
+        "## Contact: every model against the paper's Table S1",
+        "",
         "Sensitivity in kPa/N on the paper's sensor, no dead volume, fitted up to the first event that ends the range; every "
         "cell, nothing fitted. Median absolute error of the twelve cells from TangoPlus to FLX9985-DM: "
-        f"solid **{median['solid']:.1%}**, membrane variational {median['variational']:.0%}, printed {median['printed']:.0%}.", "",
+        f"solid **{median['solid']:.1%}**, membrane variational {median['variational']:.0%}, printed {median['printed']:.0%}.",
+        "",
         "| resin | driving kPa | measured | solid | error | variational | error | printed | error | solid's range ends, mm |",
-        "|---|---|---|---|---|---|---|---|---|---|", *rows, "",
+        "|---|---|---|---|---|---|---|---|---|---|",
+        *rows,
+        "",
         "Possible reasons for the bad cells: the moduli of FLX9985-DM and FLX9995-DM come from another source than the other five (a "
         "quasi-static E, not a relaxed modulus). The model computes twice the sensitivity for FLX9995-DM, as if its wall were stiffer than "
         "that modulus, which is unexplained, and a slightly low sensitivity for FLX9985-DM. The membrane has no bending "
         "stiffness, so the resin has little effect on "
         "its sensitivity; at zero driving pressure F = p pi rho^2 even bounds S from below by 1/(pi R0^2) = 3.72 kPa/N, above "
-        "every measured value. Use the membrane for inflation, limits and trends; choose a resin by the solid.", "",
-    ]  # fmt: skip
+        "every measured value. Use the membrane for inflation, limits and trends; choose a resin by the solid.",
+        "",
+    ]
 
 
 if __name__ == "__main__":

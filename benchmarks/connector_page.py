@@ -13,10 +13,13 @@ from pneutouch.spec.read import parse_changes
 ROOT = Path(__file__).resolve().parents[1]
 
 SHOWN = (
-    ("glued-flange", "barb-4x2.5", "bolt-circle-4xM3"), ("clamped-flange-M2", "thread-M5", "rear-3xM2"),
-    ("one-piece", "luer-female", "plain"), ("glued-flange", "push-in-4", "robot-50-4-M6"),
-    ("clamped-flange-M2", "thread-M3", "finger-16"), ("one-piece", "barb-6x4", "robot-50-4-M6"),
-)  # fmt: skip
+    ("glued-flange", "barb-4x2.5", "bolt-circle-4xM3"),
+    ("clamped-flange-M2", "thread-M5", "rear-3xM2"),
+    ("one-piece", "luer-female", "plain"),
+    ("glued-flange", "push-in-4", "robot-50-4-M6"),
+    ("clamped-flange-M2", "thread-M3", "finger-16"),
+    ("one-piece", "barb-6x4", "robot-50-4-M6"),
+)
 
 
 def assembly(seat: str, port: str, mount: str) -> Assembly:

@@ -99,9 +99,13 @@ def _runs(of: Cell, name: str, pressed: PressCurves, rng: np.random.Generator) -
                 rate = LOOP_RATE if kind == "loop" else RATE
                 record = simulate_run(curve, way, TRUTH.rig, rate, rng, wall=TRUTH.wall, scatter=TRUTH.scatter)
                 run = CampaignRun(
-                    file=f"{name}-{pressure:g}-{kind}-{number}", kind=kind, sensor=name, resin=of.resin,
-                    driving_pressure_kPa=pressure, run=number,
-                )  # fmt: skip
+                    file=f"{name}-{pressure:g}-{kind}-{number}",
+                    kind=kind,
+                    sensor=name,
+                    resin=of.resin,
+                    driving_pressure_kPa=pressure,
+                    run=number,
+                )
                 yield curve_of(run, blocks_of(Path(run.file), *record, rate=rate), Rig(rate_Hz=rate))
 
 
@@ -120,11 +124,12 @@ def counted(resin: str, campaigns: int = CAMPAIGNS) -> dict[str, dict[str, dict[
                     into.setdefault(key, []).append((estimate.holds(true[key]), off, half))
     return {
         pressure: {
-            key: dict(zip(("held", "off", "half"), np.mean(rows, axis=0).round(6).tolist(), strict=True)) | {"campaigns": len(rows)}
+            key: dict(zip(("held", "off", "half"), np.mean(rows, axis=0).round(6).tolist(), strict=True))
+            | {"campaigns": len(rows)}
             for key, rows in sorted(figures.items())
         }
         for pressure, figures in held.items()
-    }  # fmt: skip
+    }
 
 
 def table(data: dict[str, Any]) -> list[str]:

@@ -52,14 +52,18 @@ def summary(found: dict[str, list[Row]]) -> list[str]:
 
 def page(found: dict[str, list[Row]]) -> list[str]:
     lines = [
-        "# Print meshes: time against deviation, measured", "",
+        "# Print meshes: time against deviation, measured",
+        "",
         "`make chart-meshes` writes this page. Time is processor time relative to pneutouch in the same run (median of seven, taken in "
         "turn); deviation is the greatest distance of dense points on the mesh from the exact surface over the requested "
         "tolerance. *manifold3d alone* does the same operations on inscribed outlines: its revolve, its cylinders and one "
-        "batch boolean for union and one for difference.", "",
-        "![Measured deviation over processor time and over triangles, three bodies](meshing.svg)", "",
-        *[f"- {line}" for line in summary(found)], "",
-    ]  # fmt: skip
+        "batch boolean for union and one for difference.",
+        "",
+        "![Measured deviation over processor time and over triangles, three bodies](meshing.svg)",
+        "",
+        *[f"- {line}" for line in summary(found)],
+        "",
+    ]
     for label, rows in found.items():
         ours = {row.tolerance: row for row in rows if row.method == OURS}
         lines += [
@@ -71,14 +75,16 @@ def page(found: dict[str, list[Row]]) -> list[str]:
         lines += [
             f"| {row.tolerance:g} | {row.method} | {row.milliseconds / ours[row.tolerance].milliseconds:.1f} | {row.triangles} | "
             f"{row.deviation / row.tolerance:.2f} | {row.volume_error:+.1e} |"
-            for row in sorted(rows, key=lambda r: -r.tolerance) if row.tolerance in ours
-        ] + [""]  # fmt: skip
+            for row in sorted(rows, key=lambda r: -r.tolerance)
+            if row.tolerance in ours
+        ] + [""]
     return [
         *lines,
         "pneutouch needs fewer triangles because each ring has only as many vertices as its radius requires, and because the "
         "error is split between inside and outside so that the volume is kept. CadQuery passes its tolerance to Open CASCADE "
-        "as a relative one and misses an absolute one; its meshes are open by index until vertices are merged.", "",
-    ]  # fmt: skip
+        "as a relative one and misses an absolute one; its meshes are open by index until vertices are merged.",
+        "",
+    ]
 
 
 def chart(found: dict[str, list[Row]]) -> str:
@@ -89,8 +95,14 @@ def chart(found: dict[str, list[Row]]) -> str:
             for k, method in enumerate(dict.fromkeys(row.method for row in rows)):
                 mine = sorted((row for row in rows if row.method == method), key=lambda row: row.deviation)
                 colour = ACCENT if method == OURS else (INK if k % 2 else MUTED)
-                look = {"color": colour, "marker": MARKERS[k % len(MARKERS)], "ls": LINES[k % len(LINES)], "ms": 3.5,
-                        "lw": 2 if method == OURS else 0.9, "label": method}  # fmt: skip
+                look = {
+                    "color": colour,
+                    "marker": MARKERS[k % len(MARKERS)],
+                    "ls": LINES[k % len(LINES)],
+                    "ms": 3.5,
+                    "lw": 2 if method == OURS else 0.9,
+                    "label": method,
+                }
                 error = [1e3 * row.deviation for row in mine]
                 axes[0, column].loglog([row.milliseconds for row in mine], error, **look)
                 axes[1, column].loglog([row.triangles for row in mine], error, **look)

@@ -37,15 +37,23 @@ def page(law: ResolvedMixingCurve, stiff: tuple[float, float], names: tuple[str,
 
 def _what() -> list[str]:
     return [
-        "# Stiffness of a mix of two resins", "",
+        "# Stiffness of a mix of two resins",
+        "",
         "`python -m benchmarks.mixing_page` writes this page. A membrane may be printed from two base resins mixed droplet by droplet, at one fraction or "
-        "graded along its arc:", "",
-        "```toml", "[membrane]", f'material = {{ from = "{SOFT}", to = "{STIFF}", fraction = 0.1 }}', "```", "",
+        "graded along its arc:",
+        "",
+        "```toml",
+        "[membrane]",
+        f'material = {{ from = "{SOFT}", to = "{STIFF}", fraction = 0.1 }}',
+        "```",
+        "",
         "The fraction is exact: it is what is printed. The modulus is uncertain. No vendor publishes the mixing ratio of a digital "
         "material, so **the seven stiffnesses of the catalogue are placed at assumed fractions**, and every prediction of a mix carries "
-        "this as a separate uncertainty, `mixing fraction`. `pneutouch list mixing` shows the available curves.", "",
-        "![Shear modulus over fraction: bounds, curve, band and the seven resins](mixing.svg)", "",
-    ]  # fmt: skip
+        "this as a separate uncertainty, `mixing fraction`. `pneutouch list mixing` shows the available curves.",
+        "",
+        "![Shear modulus over fraction: bounds, curve, band and the seven resins](mixing.svg)",
+        "",
+    ]
 
 
 def placed(law: ResolvedMixingCurve, stiff: tuple[float, float], names: tuple[str, ...]) -> list[str]:
@@ -58,18 +66,25 @@ def placed(law: ResolvedMixingCurve, stiff: tuple[float, float], names: tuple[st
     series = ", ".join(f"{mu:.2f}" for _, mu in LONG_TERM)
     shares = ", ".join(f"{100 * f:g}" for f, _ in LONG_TERM)
     return [
-        "## The fractions of the seven resins", "",
+        "## The fractions of the seven resins",
+        "",
         f"Percent of {STIFF} by volume at which each law has the modulus of the resin; a range where the modulus of {STIFF}, "
-        f"{stiff[0]:.0f} to {stiff[1]:.0f} MPa (a third of its E), has an influence.", "",
-        f"| resin | mu, MPa | {' | '.join(PLACING)} | assumed range |", "|---|---|" + "---|" * (len(PLACING) + 1), *rows, "",
+        f"{stiff[0]:.0f} to {stiff[1]:.0f} MPa (a third of its E), has an influence.",
+        "",
+        f"| resin | mu, MPa | {' | '.join(PLACING)} | assumed range |",
+        "|---|---|" + "---|" * (len(PLACING) + 1),
+        *rows,
+        "",
         "The curve uses the first law. It is a series of Agilus30 Black with VeroWhite from an Abaqus/MATLAB mixture tool "
         f"(`HELPER_MaterialsFE.m`): long-term moduli {series} MPa at {shares} %. Each catalogue resin is placed where that series has "
-        "the same modulus relative to its soft resin, with ln modulus linear between the points. Limitations:", "",
+        "the same modulus relative to its soft resin, with ln modulus linear between the points. Limitations:",
+        "",
         "- It is another pair of resins, from the input file of a program whose measurements are not available.",
         "- Its long-term moduli are of the rubbery state (pure VeroWhite: 8.47 MPa); those of FLX9985 and FLX9995 are quasi-static.",
         "- Between 50 and 100 % it rises slowly, to 28 times its soft resin; FLX9995 has 31 times TangoPlus. Beyond 50 % the curve "
-        "is extrapolated with the last slope before it. With the point at 100 %, FLX9985 would be at 80 %, and FLX9995 would have no fraction.", "",
-    ]  # fmt: skip
+        "is extrapolated with the last slope before it. With the point at 100 %, FLX9985 would be at 80 %, and FLX9995 would have no fraction.",
+        "",
+    ]
 
 
 def _range(values: list[float]) -> str:
@@ -87,13 +102,18 @@ def bounds(law: ResolvedMixingCurve, stiff: tuple[float, float]) -> list[str]:
         for x, a, c, p, q in zip(f, low, curve, touch, later, strict=True)
     ]
     return [
-        "## Bounds, and the step from soft to rigid", "",
+        "## Bounds, and the step from soft to rigid",
+        "",
         "For any arrangement of the droplets a mix of two incompressible solids is stiffer than at equal stress (Reuss) and "
         "softer than at equal strain (Voigt); an isotropic one lies between the bounds of Hashin and Shtrikman (1963, DOI "
         "10.1016/0022-5096(63)90060-7). The curve lies between all of them. This restricts it little: the two resins are a factor of "
-        f"{stiff[0] / soft:,.0f} or more apart, and so are the bounds.", "",
+        f"{stiff[0] / soft:,.0f} or more apart, and so are the bounds.",
+        "",
         f"| % {STIFF} | softest isotropic mix, MPa | curve, MPa | curve over softest | touching beyond {100 * THRESHOLD:g} % | "
-        f"touching beyond {100 * VOXEL_THRESHOLD:g} % |", "|---|---|---|---|---|---|", *rows, "",
+        f"touching beyond {100 * VOXEL_THRESHOLD:g} % |",
+        "|---|---|---|---|---|---|",
+        *rows,
+        "",
         "If the assumed fractions are right, the stiff droplets are not isolated, since the curve is well above the softest mix. They "
         "form no network of glassy resin either, since the curve is far below the modulus of droplets that touch throughout the wall (Takayanagi's model "
         "with the connected share after Ouali, Cavaillé and Perez 1991). The two resins would have to blend before they "
@@ -102,8 +122,9 @@ def bounds(law: ResolvedMixingCurve, stiff: tuple[float, float]) -> list[str]:
         "is the filling of spheres on a cubic lattice at its site threshold, pi/6 x 0.3116 (Scher and Zallen 1970, DOI "
         f"10.1063/1.1674565). Voxels that fill their cells and touch by faces do so at {100 * VOXEL_THRESHOLD:g} %. Where droplets stay "
         f"separate, expect the step from rubber to plastic between {100 * THRESHOLD:.0f} and {100 * VOXEL_THRESHOLD:.0f} %, not a slope: "
-        "**a graded wall that crosses it may be rigid there.**", "",
-    ]  # fmt: skip
+        "**a graded wall that crosses it may be rigid there.**",
+        "",
+    ]
 
 
 def band(law: ResolvedMixingCurve) -> list[str]:
@@ -114,28 +135,41 @@ def band(law: ResolvedMixingCurve) -> list[str]:
         for x, low, mu, high in zip(f, law.band_at(f)[0], law.modulus_at(f), law.band_at(f)[1], strict=True)
     ]
     return [
-        "## Uncertainty", "",
+        "## Uncertainty",
+        "",
         "`fraction_low` and `fraction_high` of each point are the least and the greatest of the table above. The band is the curve with "
         "its points at one or the other end. No modulus above the curve's stiffest is used, because no data exist beyond it; "
-        "a wall of touching droplets would be stiffer still, and not an elastomer.", "",
-        f"| % {STIFF} | least, MPa | curve, MPa | greatest, MPa | standard uncertainty of ln mu |", "|---|---|---|---|---|", *rows, "",
+        "a wall of touching droplets would be stiffer still, and not an elastomer.",
+        "",
+        f"| % {STIFF} | least, MPa | curve, MPa | greatest, MPa | standard uncertainty of ln mu |",
+        "|---|---|---|---|---|",
+        *rows,
+        "",
         "The uncertainty is that of a logarithm anywhere between the ends (JCGM 100, 4.3.7). It counts in addition to `published modulus`: also "
-        "at the fraction of a catalogue resin a mix is less certain than that resin.", "",
-    ]  # fmt: skip
+        "at the fraction of a catalogue resin a mix is less certain than that resin.",
+        "",
+    ]
 
 
 def _lab() -> list[str]:
     return [
-        "## What to measure", "",
-        "Print mixes of known fraction and test them in tension; two dumbbells of each are enough for a new curve:", "",
-        "```", f"pneutouch coupons --mixing {SOFT}+{STIFF} --profile j735 --only puck,dumbbell", "# print, measure, fill in results.toml",
-        f"pneutouch coupons --results results.toml   # writes printprofiles/mixing/{SOFT}+{STIFF}.toml", "```", "",
+        "## What to measure",
+        "",
+        "Print mixes of known fraction and test them in tension; two dumbbells of each are enough for a new curve:",
+        "",
+        "```",
+        f"pneutouch coupons --mixing {SOFT}+{STIFF} --profile j735 --only puck,dumbbell",
+        "# print, measure, fill in results.toml",
+        f"pneutouch coupons --results results.toml   # writes printprofiles/mixing/{SOFT}+{STIFF}.toml",
+        "```",
+        "",
         "The command prints eight fractions, 0 to 60 %, with small steps near the threshold. It prints only pucks unless dumbbells are requested; pucks and dumbbells together need a tray "
         "larger than that of an Objet260. The modulus comes from the dumbbells. With pucks only, it is "
         "the modulus of the soft resin times the ratio of Gent's relation between the two hardnesses: reliable for the order, inaccurate in size, not used "
         "above 95 A. A curve whose modulus falls with the fraction is refused. The measured curve comes before the shipped one; it has a `spread` "
-        "in place of the band, and the assumption leaves the budget.", "",
-    ]  # fmt: skip
+        "in place of the band, and the assumption leaves the budget.",
+        "",
+    ]
 
 
 def main() -> None:

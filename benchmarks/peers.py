@@ -76,8 +76,12 @@ def _process(name: str, arc: int, through: int, count: int) -> dict[str, Any]:
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     done = subprocess.run(
         [sys.executable, "-m", "benchmarks.peers", name, str(arc), str(through), str(count)],
-        env=os.environ | {"OMP_NUM_THREADS": "1"}, cwd=Path(__file__).parents[1], capture_output=True, text=True, check=True,
-    )  # fmt: skip
+        env=os.environ | {"OMP_NUM_THREADS": "1"},
+        cwd=Path(__file__).parents[1],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     whole = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
     return {**json.loads(done.stdout), "whole": whole}
@@ -104,13 +108,17 @@ def measure(truth: float) -> dict[str, Any]:
             runs[case].append(_run(*case, counts[case]))
     rows = [
         {
-            "program": case[0], "cells_along": case[1], "cells_across": case[2], "steps": found[0]["steps"],
-            "limit_pressure_kPa": 1e3 * found[0]["limit"], "limit_error": found[0]["limit"] / truth - 1,
+            "program": case[0],
+            "cells_along": case[1],
+            "cells_across": case[2],
+            "steps": found[0]["steps"],
+            "limit_pressure_kPa": 1e3 * found[0]["limit"],
+            "limit_error": found[0]["limit"] / truth - 1,
             "solve_s": statistics.median(r["solve"] for r in found),
             "whole_s": statistics.median(r["whole"] for r in found),
         }
         for case, found in runs.items()
-    ]  # fmt: skip
+    ]
     return {"reference_limit_kPa": 1e3 * truth, "missing": absent, "rows": rows}
 
 

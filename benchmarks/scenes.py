@@ -62,8 +62,11 @@ SCENES = (
     Scene("wall 0.1, 60 kPa, 1 mL", sensor(20.0, 2.0, 1.64, 0.5, 1.0), 60 * KPA),
     Scene("wall 0.3, 40 kPa", sensor(6.0, 1.8, 0.55, 0.4), 40 * KPA),
     Scene("wall 0.4, 0 kPa, 0.1 mL", sensor(5.0, 2.0, 0.91, 0.5, 0.1), 0.0),
-    Scene("Mooney-Rivlin, wall 0.083, 15 kPa, 1 mL",
-          sensor(12.0, 1.0, 0.17, 0.65, 1.0).replace(law=("mooney-rivlin", (0.07, 0.015))), 15 * KPA),
+    Scene(
+        "Mooney-Rivlin, wall 0.083, 15 kPa, 1 mL",
+        sensor(12.0, 1.0, 0.17, 0.65, 1.0).replace(law=("mooney-rivlin", (0.07, 0.015))),
+        15 * KPA,
+    ),
     Scene("Ogden (Agilus30), 50 kPa", paper(1.423, 0.5).replace(law=OGDEN_AGILUS30), 50 * KPA),
-)  # fmt: skip
+)
 """At least twelve, for every figure that is said to hold over scenes."""

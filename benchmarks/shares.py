@@ -11,18 +11,27 @@ from benchmarks.speed_accuracy import run
 
 PARTS: dict[str, tuple[tuple[str, str], ...]] = {
     "assembly: strains, law, forces, stiffness": (
-        ("model.py", "local"), ("model.py", "forces"), ("model.py", "stiffness"), ("model.py", "expand"),
-        ("banded.py", "matrix"), ("banded.py", "vector"), ("cavity.py", "gradient"), ("cavity.py", "hessian"),
+        ("model.py", "local"),
+        ("model.py", "forces"),
+        ("model.py", "stiffness"),
+        ("model.py", "expand"),
+        ("banded.py", "matrix"),
+        ("banded.py", "vector"),
+        ("cavity.py", "gradient"),
+        ("cavity.py", "hessian"),
     ),
     "factorisation and back substitution": (("banded.py", "solve"),),
     "counting negative pivots": (("banded.py", "negative_pivots"),),
     "contact: gaps and tractions": (
-        ("contact.py", "touch"), ("contact.py", "linear"), ("contact.py", "hessian"), ("contact.py", "force"),
+        ("contact.py", "touch"),
+        ("contact.py", "linear"),
+        ("contact.py", "hessian"),
+        ("contact.py", "force"),
         ("contact.py", "footprint"),
     ),
     "stress maxima and events at each state": (("stress.py", "peak"), ("indent.py", "events")),
     "mesh and set-up": (("mesh.py", "dome"), ("model.py", "__init__"), ("stress.py", "__init__")),
-}  # fmt: skip
+}
 """Functions by file; none of one row calls one of another, so that times within them add up."""
 
 CLOSING_IN = ("events.py", "_close_in")

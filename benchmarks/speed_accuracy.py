@@ -30,9 +30,14 @@ REFINEMENTS = ((32, 2), (64, 4), (128, 8))
 """Cells along the arc and across the wall of the three meshes behind the reference: each halves the cells' sides."""
 
 MESHES: dict[str, tuple[int | None, int | None]] = {
-    "solid 8 x 1": (8, 1), "solid 12 x 1": (12, 1), "solid 16 x 1": (16, 1), "solid 24 x 1": (24, 1),
-    "solid default": (None, None), "solid 36 x 2": (36, 2), "solid 48 x 3": (48, 3),
-}  # fmt: skip
+    "solid 8 x 1": (8, 1),
+    "solid 12 x 1": (12, 1),
+    "solid 16 x 1": (16, 1),
+    "solid 24 x 1": (24, 1),
+    "solid default": (None, None),
+    "solid 36 x 2": (36, 2),
+    "solid 48 x 3": (48, 3),
+}
 """The default is 24 to 48 cells along the arc and one or two across, by the wall ratio."""
 
 METHODS = ("membrane variational", "membrane printed", *MODEL_METHODS, *MESHES)
@@ -129,22 +134,34 @@ def compare(method: str, scene: Scene, answer: Answer, truth: Reference) -> dict
     grid = np.linspace(0.0, common, scene.sensor.protocol.steps + 1)
     force, _ = truth.force(grid)
     row: dict[str, Any] = {
-        "method": method, "scene": scene.name, "range_end_mm": answer.end, "ends": answer.ends,
-        "compared_to_mm": common, "range_share": common / truth.end,
+        "method": method,
+        "scene": scene.name,
+        "range_end_mm": answer.end,
+        "ends": answer.ends,
+        "compared_to_mm": common,
+        "range_share": common / truth.end,
         "sensitivity_kPa_per_N": answer.sensitivity(grid),
         "own_sensitivity_kPa_per_N": answer.sensitivity(np.linspace(0.0, answer.end, scene.sensor.protocol.steps + 1)),
         "sensitivity_error": answer.sensitivity(grid) / truth.sensitivity(grid)[0] - 1,
         "force_error": float(np.max(np.abs(answer.curve(grid)[0] - force)) / np.max(force)),
         "apex_error": answer.apex / truth.apex()[0] - 1 if scene.pressure else None,
         "limit_error": limit(method, scene) / truth.limit()[0] - 1,
-    }  # fmt: skip
+    }
     return {key: None if isinstance(value, float) and np.isnan(value) else value for key, value in row.items()}
 
 
 FIGURES = (
-    "range_end_mm", "ends", "compared_to_mm", "range_share", "sensitivity_kPa_per_N", "own_sensitivity_kPa_per_N",
-    "sensitivity_error", "force_error", "apex_error", "limit_error",
-)  # fmt: skip
+    "range_end_mm",
+    "ends",
+    "compared_to_mm",
+    "range_share",
+    "sensitivity_kPa_per_N",
+    "own_sensitivity_kPa_per_N",
+    "sensitivity_error",
+    "force_error",
+    "apex_error",
+    "limit_error",
+)
 
 
 def model_note(method: str, scene: Scene) -> dict[str, str]:
@@ -162,19 +179,28 @@ def describe(scene: Scene, truth: Reference) -> dict[str, Any]:
     force, force_off = truth.force(grid)
     known = not np.isnan(top)
     return {
-        "scene": scene.name, "inner_radius_mm": s.dome.inner_radius, "wall_thickness_mm": s.dome.wall_thickness,
+        "scene": scene.name,
+        "inner_radius_mm": s.dome.inner_radius,
+        "wall_thickness_mm": s.dome.wall_thickness,
         "law": [s.wall.law[0], list(s.wall.law[1])] if s.wall.law else ["neo-hookean", [s.wall.shear_modulus]],
-        "poisson_ratio": s.wall.poisson_ratio, "driving_pressure_kPa": scene.pressure / KPA,
-        "dead_volume_mL": s.gas.dead_volume * 1e-3, "depth_mm": s.protocol.depth,
+        "poisson_ratio": s.wall.poisson_ratio,
+        "driving_pressure_kPa": scene.pressure / KPA,
+        "dead_volume_mL": s.gas.dead_volume * 1e-3,
+        "depth_mm": s.protocol.depth,
         "reference": {
-            "range_end_mm": truth.end, "ends": truth.ends,
+            "range_end_mm": truth.end,
+            "ends": truth.ends,
             "range_ends_mm": [a.end for a in truth.answers],
-            "apex_height_inner_mm": apex, "apex_error": apex_off / apex,
-            "limit_pressure_kPa": top / KPA if known else None, "limit_error": top_off / top if known else None,
-            "sensitivity_kPa_per_N": slope, "sensitivity_error": slope_off / slope,
-            "force_N": float(force[-1]), "force_error": float(np.max(force_off) / np.max(force)),
+            "apex_height_inner_mm": apex,
+            "apex_error": apex_off / apex,
+            "limit_pressure_kPa": top / KPA if known else None,
+            "limit_error": top_off / top if known else None,
+            "sensitivity_kPa_per_N": slope,
+            "sensitivity_error": slope_off / slope,
+            "force_N": float(force[-1]),
+            "force_error": float(np.max(force_off) / np.max(force)),
         },
-    }  # fmt: skip
+    }
 
 
 def measure(scenes: tuple[Scene, ...] = SCENES) -> dict[str, Any]:

@@ -39,10 +39,15 @@ def measure() -> dict[str, Any]:
     run = run_scan("texture-specimen", "paper-dome", library=library)
     radii = [seen.touch.contact_radius for seen in run.seen if seen.touch is not None]
     return {
-        "scan": document(run), "single": single(radii), "both": both(radii), "plane": plane(radii),
-        "speed": speed(run), "sweeps": sweeps(run), "advice": advice(run),
+        "scan": document(run),
+        "single": single(radii),
+        "both": both(radii),
+        "plane": plane(radii),
+        "speed": speed(run),
+        "sweeps": sweeps(run),
+        "advice": advice(run),
         "separate": separating("texture-specimen", "paper-dome", "3@0,6@2", ScanOptions(), library=library),
-    }  # fmt: skip
+    }
 
 
 def _bars(row: Row, length: float = LENGTH) -> BarRow:
@@ -69,8 +74,17 @@ def single(radii: list[float]) -> list[dict[str, float]]:
                     Strip(LENGTH, HEIGHT, cell, (row,)).disc_compliance(at, radius) for cell in (CELL, CELL / 2)
                 )
                 ours = -float(amplitude(MatrixLayer(HEIGHT, *AGILUS), _bars(row), np.array(radius)))
-                found.append({"pitch": pitch, "depth": depth, "radius": radius, "fe": harmonic(fe), "reduced": ours,
-                              "coarse": harmonic(coarse), "fe_mean": float(fe.mean())})  # fmt: skip
+                found.append(
+                    {
+                        "pitch": pitch,
+                        "depth": depth,
+                        "radius": radius,
+                        "fe": harmonic(fe),
+                        "reduced": ours,
+                        "coarse": harmonic(coarse),
+                        "fe_mean": float(fe.mean()),
+                    }
+                )
     return found
 
 
@@ -83,11 +97,18 @@ def both(radii: list[float]) -> list[dict[str, float]]:
             fe = Strip(LENGTH, HEIGHT, CELL / 2, rows).disc_compliance(PLACES, radius)
             bars = tuple(map(_bars, rows))
             ground = Substrate(MatrixLayer(HEIGHT, *AGILUS), bars, LENGTH, radius)
-            found.append({
-                "depth": depth, "radius": radius, "fe_3": harmonic(fe, 2), "fe_6": harmonic(fe), "fe_mean": float(fe.mean()),
-                "reduced_3": ground.amplitude(bars[0]), "reduced_6": -ground.amplitude(bars[1]),
-                "reduced_mean": float(ground.compliance(2048).mean()),
-            })  # fmt: skip
+            found.append(
+                {
+                    "depth": depth,
+                    "radius": radius,
+                    "fe_3": harmonic(fe, 2),
+                    "fe_6": harmonic(fe),
+                    "fe_mean": float(fe.mean()),
+                    "reduced_3": ground.amplitude(bars[0]),
+                    "reduced_6": -ground.amplitude(bars[1]),
+                    "reduced_mean": float(ground.compliance(2048).mean()),
+                }
+            )
     return found
 
 
@@ -138,12 +159,32 @@ def sweeps(run: Any) -> dict[str, Any]:
 
     kinds = [BarPattern(3.0, 0.0), BarPattern(6.0, 2.0), BarPattern(6.0, 4.0)]
     return {
-        "pressure": {"x": (pressures / KPA).tolist(), "y": pascals(amplitudes(batch_of(sensor, pressures), 0.5, matrix, kinds).T)},
-        "depth": {"x": depths.tolist(), "y": pascals(np.concatenate([amplitudes(ends, 0.5, matrix, [BarPattern(p, float(d)) for d in depths]) for p in (3.0, 6.0)]))},
-        "pitch": {"x": pitches.tolist(), "y": pascals(np.concatenate([amplitudes(ends, 0.5, matrix, [BarPattern(float(p), d) for p in pitches]) for d in (0.0, 2.0)]))},
-        "preload": {"x": preloads.tolist(), "y": pascals(np.stack([amplitudes(ends, float(f), matrix, kinds[:2]).T.ravel() for f in preloads], axis=1))},
+        "pressure": {
+            "x": (pressures / KPA).tolist(),
+            "y": pascals(amplitudes(batch_of(sensor, pressures), 0.5, matrix, kinds).T),
+        },
+        "depth": {
+            "x": depths.tolist(),
+            "y": pascals(
+                np.concatenate(
+                    [amplitudes(ends, 0.5, matrix, [BarPattern(p, float(d)) for d in depths]) for p in (3.0, 6.0)]
+                )
+            ),
+        },
+        "pitch": {
+            "x": pitches.tolist(),
+            "y": pascals(
+                np.concatenate(
+                    [amplitudes(ends, 0.5, matrix, [BarPattern(float(p), d) for p in pitches]) for d in (0.0, 2.0)]
+                )
+            ),
+        },
+        "preload": {
+            "x": preloads.tolist(),
+            "y": pascals(np.stack([amplitudes(ends, float(f), matrix, kinds[:2]).T.ravel() for f in preloads], axis=1)),
+        },
         "noise": [noise_amplitude(4 / 3) / KPA * 1e3, noise_amplitude(4 / 6) / KPA * 1e3],
-    }  # fmt: skip
+    }
 
 
 def advice(run: Any) -> list[dict[str, float]]:
@@ -152,8 +193,15 @@ def advice(run: Any) -> list[dict[str, float]]:
     limit = float(respond(batch_of(run.sensor, [0.0]), run.sensor.protocol.steps).limit_pressure[0])
     for pitch, depth in ((3.0, 0.0), (6.0, 0.0), (6.0, 2.0), (6.0, 4.0), (10.0, 2.0), (15.0, 4.0), (30.0, 2.0)):
         best = recommend(BarPattern(pitch, depth), run.sensor, run.matrix, min(22 * KPA, 0.8 * limit))
-        found.append({"pitch": pitch, "depth": depth, "kPa": best.driving_pressure / KPA, "Pa": 1e3 * best.amplitude / KPA,
-                      "Pa_at_0": 1e3 * best.unpressurised / KPA})  # fmt: skip
+        found.append(
+            {
+                "pitch": pitch,
+                "depth": depth,
+                "kPa": best.driving_pressure / KPA,
+                "Pa": 1e3 * best.amplitude / KPA,
+                "Pa_at_0": 1e3 * best.unpressurised / KPA,
+            }
+        )
     return found
 
 
@@ -164,8 +212,11 @@ def chart(data: dict[str, Any]) -> str:
         "pressure": ("driving pressure  (kPa)", ["3 mm, surface", "6 mm, 2 mm deep", "6 mm, 4 mm deep"]),
         "depth": ("depth  (mm)", ["3 mm, 0 kPa", "3 mm, 22 kPa", "6 mm, 0 kPa", "6 mm, 22 kPa"]),
         "pitch": ("pitch  (mm)", ["surface, 0 kPa", "surface, 22 kPa", "2 mm deep, 0 kPa", "2 mm deep, 22 kPa"]),
-        "preload": ("preload  (N)", ["3 mm surface, 0 kPa", "3 mm surface, 22 kPa", "6 mm, 2 mm deep, 0 kPa", "6 mm, 2 mm deep, 22 kPa"]),
-    }  # fmt: skip
+        "preload": (
+            "preload  (N)",
+            ["3 mm surface, 0 kPa", "3 mm surface, 22 kPa", "6 mm, 2 mm deep, 0 kPa", "6 mm, 2 mm deep, 22 kPa"],
+        ),
+    }
     colours = [INK, ACCENT, MUTED, "#3D8FBF"]
     with figure(180, 130) as drawn:
         axes = drawn.subplots(2, 2)
@@ -212,9 +263,12 @@ def main() -> None:
     data = measure()
     run = run_scan("texture-specimen", "paper-dome", library=Library((ROOT,)))
     files = {
-        "texture.json": json.dumps(data, indent=1, sort_keys=True) + "\n", "texture.svg": chart(data),
-        "texture-check.svg": check_chart(data), "texture-scan.svg": spectra(run), "texture.md": page(data),
-    }  # fmt: skip
+        "texture.json": json.dumps(data, indent=1, sort_keys=True) + "\n",
+        "texture.svg": chart(data),
+        "texture-check.svg": check_chart(data),
+        "texture-scan.svg": spectra(run),
+        "texture.md": page(data),
+    }
     for name, text in files.items():
         (DOCS / name).write_text(text, encoding="utf-8")
         print(f"wrote docs/{name}")

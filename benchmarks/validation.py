@@ -32,11 +32,21 @@ PRINTED_FLANGE = (2.25, 2.25)
 """Width and thickness of the flange of designs/paper-dome.toml, mm."""
 
 PRESSED_MEMBRANE = {
-    22: {1.0: (23.06473, 0.51684, 2.6707), 2.0: (25.37169, 1.46845, 4.2922), 3.0: (29.39562, 2.98762, 5.6878),
-         4.0: (36.03323, 5.43614, 6.9298), 5.0: (46.71956, 9.48173, 8.0375)},
-    35: {1.0: (36.38451, 0.68769, 2.4528), 2.0: (38.90945, 1.87926, 3.9209), 3.0: (42.77793, 3.65116, 5.2123),
-         4.0: (48.47384, 6.23693, 6.3997), 5.0: (56.72326, 10.02554, 7.5006)},
-}  # fmt: skip
+    22: {
+        1.0: (23.06473, 0.51684, 2.6707),
+        2.0: (25.37169, 1.46845, 4.2922),
+        3.0: (29.39562, 2.98762, 5.6878),
+        4.0: (36.03323, 5.43614, 6.9298),
+        5.0: (46.71956, 9.48173, 8.0375),
+    },
+    35: {
+        1.0: (36.38451, 0.68769, 2.4528),
+        2.0: (38.90945, 1.87926, 3.9209),
+        3.0: (42.77793, 3.65116, 5.2123),
+        4.0: (48.47384, 6.23693, 6.3997),
+        5.0: (56.72326, 10.02554, 7.5006),
+    },
+}
 """The exact membrane (R0 9.25 mm, mu t0 0.255 N/mm, no dead volume) pressed by a plate: cavity pressure kPa, force N,
 contact radius mm by indentation, at driving pressures in kPa. Shooting and an energy method, which agree to 5e-5."""
 
@@ -81,9 +91,13 @@ def spheres() -> list[str]:
             f"{exact[1]:.6f} | {found[1]:.6f} | {found[1] / exact[1] - 1:+.1e} |"
         )
     return [
-        "## Thick neo-Hookean spheres: exact", "",
-        "| radii mm | exact p/mu | solid | error | exact stretch | solid | error |", "|---|---|---|---|---|---|---|", *rows, "",
-    ]  # fmt: skip
+        "## Thick neo-Hookean spheres: exact",
+        "",
+        "| radii mm | exact p/mu | solid | error | exact stretch | solid | error |",
+        "|---|---|---|---|---|---|---|",
+        *rows,
+        "",
+    ]
 
 
 def thin_walls() -> list[str]:
@@ -93,11 +107,16 @@ def thin_walls() -> list[str]:
     rows = [f"| {ratio:g} | {p:.5f} | {h:.5f} |" for ratio, (p, h) in zip(ratios, found, strict=True)]
     p, h = 2 * np.array(found[-1]) - np.array(found[-2])
     return [
-        "## Thin walls: the exact membrane", "",
+        "## Thin walls: the exact membrane",
+        "",
         "The exact membrane peaks at p R0/(mu t0) = 1.57537, h/R0 = 1.69000. Extrapolated to no wall the solid gives "
-        f"**{p:.5f} ({p / 1.57537 - 1:+.1e}) at {h:.5f} ({h / 1.69000 - 1:+.1e})**.", "",
-        "| t0/R0 | p R0/(mu t0) | h/R0 |", "|---|---|---|", *rows, "",
-    ]  # fmt: skip
+        f"**{p:.5f} ({p / 1.57537 - 1:+.1e}) at {h:.5f} ({h / 1.69000 - 1:+.1e})**.",
+        "",
+        "| t0/R0 | p R0/(mu t0) | h/R0 |",
+        "|---|---|---|",
+        *rows,
+        "",
+    ]
 
 
 def pressed_membrane() -> list[str]:
@@ -114,11 +133,15 @@ def pressed_membrane() -> list[str]:
                 f"{state.force / force - 1:+.2%} | {radius:.3f} | {state.contact_radius / radius - 1:+.2%} |"
             )
     return [
-        "## Pressed membrane: shooting", "",
-        "The solid with t0/R0 = 0.01 against the exact membrane under a plate with sealed gas.", "",
+        "## Pressed membrane: shooting",
+        "",
+        "The solid with t0/R0 = 0.01 against the exact membrane under a plate with sealed gas.",
+        "",
         "| driving kPa | indentation mm | cavity kPa | solid | force N | solid | contact radius mm | solid |",
-        "|---|---|---|---|---|---|---|---|", *rows, "",
-    ]  # fmt: skip
+        "|---|---|---|---|---|---|---|---|",
+        *rows,
+        "",
+    ]
 
 
 def refinement() -> list[str]:
@@ -131,12 +154,17 @@ def refinement() -> list[str]:
     best = fine + (fine - coarse) / (2**order - 1)
     rows = [f"| {a} x {t} | {p:.6f} | {p / best - 1:+.1e} |" for (a, t), p in zip(meshes, found, strict=True)]
     return [
-        "## Refinement: the paper's wall", "",
+        "## Refinement: the paper's wall",
+        "",
         "Limit pressure p R0/(mu t0) at nu 0.49, both directions halved, against the value extrapolated with the order that the last "
         f"three show, **{order:.1f}**. The clamped corner is singular, so the order is below that of the smooth sphere (four, in the "
-        "tests).", "",
-        "| cells | p R0/(mu t0) | error |", "|---|---|---|", *rows, "",
-    ]  # fmt: skip
+        "tests).",
+        "",
+        "| cells | p R0/(mu t0) | error |",
+        "|---|---|---|",
+        *rows,
+        "",
+    ]
 
 
 def invariances() -> list[str]:
@@ -151,11 +179,16 @@ def invariances() -> list[str]:
     v, p, k = base.volume, base.pressure, np.array([s.stiffness for s in base.states])
     work = 0.5 * np.diff(v) * (p[1:] + p[:-1]) - np.diff(v) ** 2 / 12 * np.diff(k)
     return [
-        "## Scale invariance, and energy against work", "",
+        "## Scale invariance, and energy against work",
+        "",
         "The limit pressure over mu must not depend on size or modulus; the stored energy must be the integral of p dV: over the "
-        f"whole inflation they differ by {abs(work.sum() / (energy[-1] - energy[0]) - 1):.1e} (the error of the integration).", "",
-        "| R0 mm | mu MPa | relative change of p/mu |", "|---|---|---|", *rows, "",
-    ]  # fmt: skip
+        f"whole inflation they differ by {abs(work.sum() / (energy[-1] - energy[0]) - 1):.1e} (the error of the integration).",
+        "",
+        "| R0 mm | mu MPa | relative change of p/mu |",
+        "|---|---|---|",
+        *rows,
+        "",
+    ]
 
 
 def calculix() -> list[str]:
@@ -166,10 +199,12 @@ def calculix() -> list[str]:
     ours = solid_limit(Scene("", sensor, 0.0), 24, 2)
     theirs = calculix_limit(sensor, 24, 2)[0]
     return [
-        "## CalculiX: the same inflation", "",
+        "## CalculiX: the same inflation",
+        "",
         f"CAX8R cells, 24 x 2, pressure raised until no increment of 0.2 % converges: {1e3 * theirs:.3f} kPa, against "
-        f"{1e3 * ours:.3f} kPa here ({theirs / ours - 1:+.2%}).", "",
-    ]  # fmt: skip
+        f"{1e3 * ours:.3f} kPa here ({theirs / ours - 1:+.2%}).",
+        "",
+    ]
 
 
 def incompressibility() -> list[str]:
@@ -180,11 +215,16 @@ def incompressibility() -> list[str]:
         default, fine = limit_of(ratio, nu=nu)[0], limit_of(ratio, 72, 4, nu)[0]
         rows.append(f"| {nu:g} | {default:.5f} | {default / fine - 1:+.1e} |")
     return [
-        "## Nearly incompressible walls", "",
+        "## Nearly incompressible walls",
+        "",
         "Limit pressure at the default resolution, and its distance from a refined mesh at the same Poisson ratio: with locking "
-        "it would grow.", "",
-        "| nu | p R0/(mu t0) | against 72 x 4 cells |", "|---|---|---|", *rows, "",
-    ]  # fmt: skip
+        "it would grow.",
+        "",
+        "| nu | p R0/(mu t0) | against 72 x 4 cells |",
+        "|---|---|---|",
+        *rows,
+        "",
+    ]
 
 
 def dead_volumes(library: Library) -> list[str]:
@@ -193,9 +233,10 @@ def dead_volumes(library: Library) -> list[str]:
     runs["as printed"] = table_s1(library, flange=PRINTED_FLANGE)
     rows = [
         f"| {cell.material} | {cell.pressure:g} | {cell.measured:.3f} | "
-        + " | ".join(f"{cells[k].errors['solid']:+.0%}" for cells in runs.values()) + " |"
+        + " | ".join(f"{cells[k].errors['solid']:+.0%}" for cells in runs.values())
+        + " |"
         for k, cell in enumerate(runs["0 mL"])
-    ]  # fmt: skip
+    ]
     medians = [
         statistics.median(abs(c.errors["solid"]) for c in cells if c.material != "FLX9995-DM")
         for cells in runs.values()
@@ -203,24 +244,39 @@ def dead_volumes(library: Library) -> list[str]:
     rows.append("| median of twelve | | | " + " | ".join(f"{m:.1%}" for m in medians) + " |")
     heads = " | ".join(runs)
     return [
-        "## The paper's Table S1 with the dead volume varied", "",
+        "## The paper's Table S1 with the dead volume varied",
+        "",
         "The paper does not state its dead volume. Errors in sensitivity of the solid, all fourteen cells, nothing fitted; "
         "the median leaves out FLX9995-DM, which is off by a factor of two for an unknown reason. A dead volume lowers every cell, those of "
         "hard resins most: it does not explain why FLX9970-DM and FLX9985-DM read low without one. The last column holds the "
-        "rim as it is printed, in its groove, in place of the clamped base plane.", "",
-        f"| resin | driving kPa | measured | {heads} |", "|---|---|---|" + "---|" * len(runs), *rows, "",
-    ]  # fmt: skip
+        "rim as it is printed, in its groove, in place of the clamped base plane.",
+        "",
+        f"| resin | driving kPa | measured | {heads} |",
+        "|---|---|---|" + "---|" * len(runs),
+        *rows,
+        "",
+    ]
 
 
 def page() -> str:
     """The whole page."""
-    return "\n".join([
-        "# Validation of the solid", "",
-        "`make chart` writes this page. The tests assert these and more: energy against work, scale invariance in size and "
-        "modulus to 1e-9, tangent and force against differences, Boyle's law, stability against dense eigenvalues.", "",
-        *spheres(), *thin_walls(), *pressed_membrane(), *refinement(), *incompressibility(), *invariances(), *calculix(),
-        *dead_volumes(Library((ROOT,))),
-    ])  # fmt: skip
+    return "\n".join(
+        [
+            "# Validation of the solid",
+            "",
+            "`make chart` writes this page. The tests assert these and more: energy against work, scale invariance in size and "
+            "modulus to 1e-9, tangent and force against differences, Boyle's law, stability against dense eigenvalues.",
+            "",
+            *spheres(),
+            *thin_walls(),
+            *pressed_membrane(),
+            *refinement(),
+            *incompressibility(),
+            *invariances(),
+            *calculix(),
+            *dead_volumes(Library((ROOT,))),
+        ]
+    )
 
 
 if __name__ == "__main__":

@@ -72,12 +72,15 @@ def measure() -> list[dict[str, Any]]:
             answers = {method: _answer(method, scene) for method in METHODS}
             rows += [
                 {
-                    "method": method, "wall_ratio": ratio, "limit_fraction": fraction, "depth_ratio": depth,
+                    "method": method,
+                    "wall_ratio": ratio,
+                    "limit_fraction": fraction,
+                    "depth_ratio": depth,
                     "outcome": _outcome(method, answer, truth, depth * sensor.dome.inner_radius),
                 }
                 for method, answer in answers.items()
                 for depth in DEPTHS
-            ]  # fmt: skip
+            ]
     return rows
 
 
@@ -119,11 +122,17 @@ def section(rows: list[dict[str, Any]]) -> list[str]:
     }
     lines = [f"| {method} | " + " | ".join(map(str, counts[method])) + " |" for method in METHODS]
     return [
-        "## Map of validity", "",
+        "## Map of validity",
+        "",
         f"The paper's sensor in TangoPlus with walls of {WALL_RATIOS[0]:g} to {WALL_RATIOS[-1]:g} R0, driven to shares of its "
         "limit pressure and pressed to four depths; data in `validity.json`. Within 5 % means the sensitivity from first contact to the depth "
-        f"against the solid on {FINE[0]} x {FINE[1]} cells. \"ends before\": the range of the method ends before the depth; \"fails\": it "
-        "raised an error; \"outside its box\": the atlas reports this and gives no figures; \"no such state\": the refined solid has an event before the depth.", "",
-        "![Where each method holds](validity.svg)", "",
-        "| method | " + " | ".join(LOOKS) + " |", "|---|" + "---|" * len(LOOKS), *lines, "",
-    ]  # fmt: skip
+        f'against the solid on {FINE[0]} x {FINE[1]} cells. "ends before": the range of the method ends before the depth; "fails": it '
+        'raised an error; "outside its box": the atlas reports this and gives no figures; "no such state": the refined solid has an event before the depth.',
+        "",
+        "![Where each method holds](validity.svg)",
+        "",
+        "| method | " + " | ".join(LOOKS) + " |",
+        "|---|" + "---|" * len(LOOKS),
+        *lines,
+        "",
+    ]

@@ -75,8 +75,10 @@ def error_diffusion(fraction: float, noise: float = 0.5) -> Flags:
 
 
 METHODS: dict[str, Callable[[float], Flags]] = {
-    "blue noise": blue_noise, "error diffusion": error_diffusion, "white noise": white_noise
-}  # fmt: skip
+    "blue noise": blue_noise,
+    "error diffusion": error_diffusion,
+    "white noise": white_noise,
+}
 
 
 def spectrum(block: Flags) -> tuple[np.ndarray, np.ndarray]:
@@ -119,7 +121,14 @@ def compare() -> list[Row]:
             frequency, power = spectrum(block)
             long = power[frequency < 1 / COARSE]
             rows.append(
-                Row(method, fraction, float(abs(block.mean() - fraction)), worst_cube(block, fraction),
-                    float(long.mean()), float(long.max()), seconds)
-            )  # fmt: skip
+                Row(
+                    method,
+                    fraction,
+                    float(abs(block.mean() - fraction)),
+                    worst_cube(block, fraction),
+                    float(long.mean()),
+                    float(long.max()),
+                    seconds,
+                )
+            )
     return rows

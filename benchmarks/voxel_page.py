@@ -53,11 +53,16 @@ def stack(assembly: Any, library: Library, mode: str) -> dict[str, Any]:
         if mode == "High Mix":
             draw(held, DOCS / "voxels.png")
         return {
-            "mode": mode, "layer_um": held.manifest["layer_um"], "pixels": held.manifest["pixels"],
-            "layers": held.manifest["layers"], "seconds": seconds, "reading_seconds": reading,
+            "mode": mode,
+            "layer_um": held.manifest["layer_um"],
+            "pixels": held.manifest["pixels"],
+            "layers": held.manifest["layers"],
+            "seconds": seconds,
+            "reading_seconds": reading,
             "peak_MB": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
-            "MB": sum(path.stat().st_size for path in folder.iterdir()) / 1e6, "bodies": held.manifest["bodies"],
-        }  # fmt: skip
+            "MB": sum(path.stat().st_size for path in folder.iterdir()) / 1e6,
+            "bodies": held.manifest["bodies"],
+        }
 
 
 def dithers() -> str:
@@ -76,7 +81,7 @@ def dithers() -> str:
             views = (
                 ("one layer, from above", block[40], (0, columns, 0, rows)),
                 ("upright section", block[::-1, 30], (0, columns, 0, layers)),
-            )  # fmt: skip
+            )
             for row, (what, picture, extent) in enumerate(views):
                 ax = drawn.add_subplot(grid[row, column])
                 ax.imshow(picture, cmap=two, extent=extent, interpolation="nearest", aspect="equal", vmin=0, vmax=1)
@@ -101,8 +106,13 @@ def chart(rows: list[dict[str, Any]]) -> str:
         for k, method in enumerate(dict.fromkeys(row["method"] for row in rows)):
             mine = sorted((row for row in rows if row["method"] == method), key=lambda row: row["seconds"])
             seconds = [row["seconds"] for row in mine]
-            look = {"color": ACCENT if k == 0 else (INK if k % 2 else MUTED), "marker": MARKERS[k], "ls": LINES[k],
-                    "lw": 2 if k == 0 else 0.9, "ms": 3.5}  # fmt: skip
+            look = {
+                "color": ACCENT if k == 0 else (INK if k % 2 else MUTED),
+                "marker": MARKERS[k],
+                "ls": LINES[k],
+                "lw": 2 if k == 0 else 0.9,
+                "ms": 3.5,
+            }
             axes[0].loglog(seconds, [100 * abs(row["volume"]) for row in mine], label=method, **look)
             axes[1].loglog(seconds, [1e3 * row["mean"] for row in mine], **look)
             axes[1].loglog(seconds, [1e3 * row["most"] for row in mine], **{**look, "lw": 0.4, "mfc": "none"})

@@ -133,8 +133,10 @@ def measure(solid: Solid) -> list[Row]:
         seconds, (box, axes) = _timed(lambda pitch=pitch: cubes(solid, pitch), 1)
         mean, most = boundary(box, axes, solid)
         rows.append(
-            Row(TRIMESH, 1000 * pitch, 1.0, seconds, int(box.sum()), box.sum() * pitch**3 / solid.volume - 1, mean, most)
-        )  # fmt: skip
+            Row(
+                TRIMESH, 1000 * pitch, 1.0, seconds, int(box.sum()), box.sum() * pitch**3 / solid.volume - 1, mean, most
+            )
+        )
     return rows
 
 

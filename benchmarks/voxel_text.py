@@ -56,31 +56,50 @@ warning and `stack.json` report this.
 
 def page(found: dict[str, Any]) -> str:
     """The page from the measured numbers."""
-    return "\n".join([
-        _HEAD, "## Time and memory", "",
-        "The graded dome and its connector, one core. Peak memory is of the whole process.", "", *stacks(found["stacks"]), "",
-        "## The dither", "",
-        "The same uniform fraction on a block of 2.6 x 5.4 x 5.4 mm by three dithers. *Cube* is the greatest error of the fraction "
-        "in any cube of 1 mm (10,656 voxels). *Clumps* is the mean power of waves longer than 0.4 mm over that of white "
-        "noise, *peak* the greatest of one such wave. Error diffusion passes half of a voxel's error to the next row and half to the "
-        "next layer, with rows turned from layer to layer and a randomised threshold; it runs 96 layers before the block.", "",
-        *dithers(found["dithers"]), "",
-        "![Layers, upright sections and spectra of the three dithers](dither.svg)", "",
-        *verdict(found["dithers"]), "",
-        "## Raster: speed against accuracy", "",
-        "Only the membrane. *Surface* is the distance of the boundary between voxels from the exact surface. The other programs slice "
-        "the same mesh (chord tolerance 5 um) with manifold3d and fill the polygons with Pillow or matplotlib; trimesh's voxels "
-        "are cubes.", "",
-        "![Error of volume and of the surface over time](voxels.svg)", "",
-        *rasters(found["rasters"]), "",
-        "The raster itself bounds the surface: half a voxel's diagonal is 49 um at 27 um layers. Pillow fills every "
-        "pixel that an edge touches, trimesh every cube that the surface touches.", "",
-    ])  # fmt: skip
+    return "\n".join(
+        [
+            _HEAD,
+            "## Time and memory",
+            "",
+            "The graded dome and its connector, one core. Peak memory is of the whole process.",
+            "",
+            *stacks(found["stacks"]),
+            "",
+            "## The dither",
+            "",
+            "The same uniform fraction on a block of 2.6 x 5.4 x 5.4 mm by three dithers. *Cube* is the greatest error of the fraction "
+            "in any cube of 1 mm (10,656 voxels). *Clumps* is the mean power of waves longer than 0.4 mm over that of white "
+            "noise, *peak* the greatest of one such wave. Error diffusion passes half of a voxel's error to the next row and half to the "
+            "next layer, with rows turned from layer to layer and a randomised threshold; it runs 96 layers before the block.",
+            "",
+            *dithers(found["dithers"]),
+            "",
+            "![Layers, upright sections and spectra of the three dithers](dither.svg)",
+            "",
+            *verdict(found["dithers"]),
+            "",
+            "## Raster: speed against accuracy",
+            "",
+            "Only the membrane. *Surface* is the distance of the boundary between voxels from the exact surface. The other programs slice "
+            "the same mesh (chord tolerance 5 um) with manifold3d and fill the polygons with Pillow or matplotlib; trimesh's voxels "
+            "are cubes.",
+            "",
+            "![Error of volume and of the surface over time](voxels.svg)",
+            "",
+            *rasters(found["rasters"]),
+            "",
+            "The raster itself bounds the surface: half a voxel's diagonal is 49 um at 27 um layers. Pillow fills every "
+            "pixel that an edge touches, trimesh every cube that the surface touches.",
+            "",
+        ]
+    )
 
 
 def stacks(rows: list[dict[str, Any]]) -> list[str]:
-    lines = ["| mode | slices | time s | peak MB | files MB | reading s | volume error | fraction requested, realised | worst cube |",
-             "|---|---|---|---|---|---|---|---|---|"]  # fmt: skip
+    lines = [
+        "| mode | slices | time s | peak MB | files MB | reading s | volume error | fraction requested, realised | worst cube |",
+        "|---|---|---|---|---|---|---|---|---|",
+    ]
     for row in rows:
         wide, tall = row["pixels"]
         body = row["bodies"]["membrane"]
@@ -102,8 +121,9 @@ def dithers(rows: list[dict[str, Any]]) -> list[str]:
     ]
     return lines + [
         f"| {row['method']} | {row['fraction']:g} | {row['whole']:.3%} | {row['cube']:.2%} | {row['clumps']:.3f} | {row['peak']:.2f} | "
-        f"{row['seconds']:.3f} |" for row in rows
-    ]  # fmt: skip
+        f"{row['seconds']:.3f} |"
+        for row in rows
+    ]
 
 
 def verdict(rows: list[dict[str, Any]]) -> list[str]:
@@ -124,7 +144,7 @@ def verdict(rows: list[dict[str, Any]]) -> list[str]:
         f"wave. The seams reduce the uniformity a little. Its single waves longer than 0.4 mm have at most {middling:.1f} times the power of white noise from 0.1 to 0.9 and "
         f"{max(of(blue, 'peak')):.0f} times where droplets are rare, against {max(of(diffused, 'peak')):.0f} by error diffusion "
         "and the 6 to 8 that white noise itself reaches by chance."
-    ]  # fmt: skip
+    ]
 
 
 def rasters(rows: list[dict[str, Any]]) -> list[str]:

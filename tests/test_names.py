@@ -61,36 +61,45 @@ def test_every_name_holds_the_unit_that_it_states():
     assert not places()
 
 
-@pytest.mark.parametrize(("code", "name"), [
-    ("pressure = curve.pressure / KPA", "pressure"),
-    ("pressure_kPa = 2 * at[0] * KPA", "pressure_kPa"),
-    ("pressure_kPa = curve.pressure", "pressure_kPa"),
-    ("sensitivity = float(found.sensitivity_kPa_per_N[0])", "sensitivity"),
-    ("first, stated = 0.0, design.dead_volume_mL", "stated"),
-    ("inner = stated * ML + tube", "stated"),
-    ("inner = [p * KPA for p in pressures]", "p"),
-    ("for pressure in design.driving_pressures_kPa:\n    pass", "pressure"),
-    ("document = {'pressure_kPa': state.pressure}", "pressure_kPa"),
-    ("document = {'pressure': state.pressure / KPA}", "pressure"),
-    ("def press(depth, pressure): ...\n\n\npress(1.0, given.pressure_kPa)", "pressure"),
-    ("def press(depth, pressure): ...\n\n\npress(1.0, pressure=given / KPA)", "pressure"),
-    ("def rated(limit):\n    return 0.9 * limit / KPA", "rated"),
-    ("class Run:\n    '''A run at a driving pressure (kPa).'''\n\n    pressure: float", "pressure"),
-    ("class Run:\n    '''A run.\n\n    Attributes:\n        low, high: Ends in kPa.\n    '''\n\n    low: float", "low"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("code", "name"),
+    [
+        ("pressure = curve.pressure / KPA", "pressure"),
+        ("pressure_kPa = 2 * at[0] * KPA", "pressure_kPa"),
+        ("pressure_kPa = curve.pressure", "pressure_kPa"),
+        ("sensitivity = float(found.sensitivity_kPa_per_N[0])", "sensitivity"),
+        ("first, stated = 0.0, design.dead_volume_mL", "stated"),
+        ("inner = stated * ML + tube", "stated"),
+        ("inner = [p * KPA for p in pressures]", "p"),
+        ("for pressure in design.driving_pressures_kPa:\n    pass", "pressure"),
+        ("document = {'pressure_kPa': state.pressure}", "pressure_kPa"),
+        ("document = {'pressure': state.pressure / KPA}", "pressure"),
+        ("def press(depth, pressure): ...\n\n\npress(1.0, given.pressure_kPa)", "pressure"),
+        ("def press(depth, pressure): ...\n\n\npress(1.0, pressure=given / KPA)", "pressure"),
+        ("def rated(limit):\n    return 0.9 * limit / KPA", "rated"),
+        ("class Run:\n    '''A run at a driving pressure (kPa).'''\n\n    pressure: float", "pressure"),
+        (
+            "class Run:\n    '''A run.\n\n    Attributes:\n        low, high: Ends in kPa.\n    '''\n\n    low: float",
+            "low",
+        ),
+    ],
+)
 def test_a_name_with_two_units_is_found(tmp_path, code, name):
     (tmp_path / "one.py").write_text(code + "\n")
     assert [place.name for place in places(tmp_path)] == [name]
 
 
-@pytest.mark.parametrize("code", [
-    "pressure_kPa = curve.pressure / KPA",
-    "pressure = design.driving_pressure_kPa * KPA",
-    "pressures = [p * KPA for p in design.driving_pressures_kPa]",
-    "document = {'pressure_kPa': state.pressure / KPA, 'note': f'{state.pressure / KPA:g} kPa'}",
-    "def rated_kPa(limit):\n    return 0.9 * limit / KPA",
-    "class Excess:\n    '''What was measured, in kPa or mm.'''\n\n    measured: float\n    unit: str\n\n\nExcess(p / KPA, 'kPa')",
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "code",
+    [
+        "pressure_kPa = curve.pressure / KPA",
+        "pressure = design.driving_pressure_kPa * KPA",
+        "pressures = [p * KPA for p in design.driving_pressures_kPa]",
+        "document = {'pressure_kPa': state.pressure / KPA, 'note': f'{state.pressure / KPA:g} kPa'}",
+        "def rated_kPa(limit):\n    return 0.9 * limit / KPA",
+        "class Excess:\n    '''What was measured, in kPa or mm.'''\n\n    measured: float\n    unit: str\n\n\nExcess(p / KPA, 'kPa')",
+    ],
+)
 def test_a_name_that_states_its_unit_is_left_alone(tmp_path, code):
     (tmp_path / "one.py").write_text(code + "\n")
     assert places(tmp_path) == []

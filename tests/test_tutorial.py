@@ -69,9 +69,10 @@ def test_what_is_predicted_again_is_the_sensor_in_hand(walked):
     }
     for pressure in (0.0, 22.0):
         own = [
-            run["figures"]["sensitivity_kPa_per_N"] for run in found["runs"]
+            run["figures"]["sensitivity_kPa_per_N"]
+            for run in found["runs"]
             if (run["sensor"], run["driving_pressure_kPa"], run["kind"]) == ("TangoPlus-1", pressure, "steps")
-        ]  # fmt: skip
+        ]
         assert rows[pressure] == pytest.approx(sum(own) / len(own), rel=0.03)
 
 

@@ -28,9 +28,14 @@ def unpacked(tmp_path_factory):
 
 def test_designs_profiles_parts_templates_and_fonts_are_inside(unpacked):
     for name in (
-        "data/designs/paper-dome.toml", "data/printprofiles/objet260-connex.toml", "data/printprofiles/materials/FLX9960.toml",
-        "parts/ports/barb-4x2.5.toml", "report/templates/datasheet.typ", "parts/lettering/fonts/Inter-Regular.otf", "parts/lettering/fonts/OFL.txt",
-    ):  # fmt: skip
+        "data/designs/paper-dome.toml",
+        "data/printprofiles/objet260-connex.toml",
+        "data/printprofiles/materials/FLX9960.toml",
+        "parts/ports/barb-4x2.5.toml",
+        "report/templates/datasheet.typ",
+        "parts/lettering/fonts/Inter-Regular.otf",
+        "parts/lettering/fonts/OFL.txt",
+    ):
         assert (unpacked / "pneutouch" / name).is_file(), name
 
 

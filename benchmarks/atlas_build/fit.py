@@ -90,16 +90,23 @@ def fit_sheet(survey: Survey, recipe: AtlasRecipe) -> WallCoefficients:
     smooth = _smoothness(grid)
     potential = _system(
         [rows * (unit * scale)[:, None] for (rows, _, _), scale in zip(solution, scales, strict=True)],
-        [(target * scale)[:, None] for (_, target, _), scale in zip(solution, scales, strict=True)], smooth / _FLOOR,
-    )  # fmt: skip
+        [(target * scale)[:, None] for (_, target, _), scale in zip(solution, scales, strict=True)],
+        smooth / _FLOOR,
+    )
     weight = np.where(w > 0.0, 1.0, _AT_CONTACT)[:, None]
     target = np.stack([flattened(name, field) for name, field in zip(STORED, survey.fields, strict=True)], axis=1)
     support = np.zeros((grid.volume.cells, grid.depth.cells))
     support[grid.volume.basis(nu)[0], grid.depth.basis(w)[0]] = 1.0
     return WallCoefficients(
-        survey.limit_volume, unit, apex, potential, _system([value * weight], [target * weight], smooth), _grown(support),
-        survey.fold_from, survey.fold_volume,
-    )  # fmt: skip
+        survey.limit_volume,
+        unit,
+        apex,
+        potential,
+        _system([value * weight], [target * weight], smooth),
+        _grown(support),
+        survey.fold_from,
+        survey.fold_volume,
+    )
 
 
 def _grown(support: Array) -> Array:
@@ -122,9 +129,7 @@ def _fit_apex(survey: Survey, axis: SplineAxis, rest: float, reach: float) -> Ar
 
 def _smoothness(grid: AtlasAxes) -> Array:
     volume, depth = grid.volume.size, grid.depth.size
-    rough = np.concatenate([
-        np.kron(roughness(volume, 4), np.eye(depth)), np.kron(np.eye(volume), roughness(depth, 4)),
-    ])  # fmt: skip
+    rough = np.concatenate([np.kron(roughness(volume, 4), np.eye(depth)), np.kron(np.eye(volume), roughness(depth, 4))])
     return np.concatenate([_SMOOTH * rough, _ALIKE * np.eye(volume * depth)])
 
 

@@ -143,9 +143,14 @@ class AtlasSampler:
         r, z = contact.positions(by_height)
         push = -float(np.vdot(contact.weight * active, 1.0 + touch.slope * r - z))
         return Equilibrium(
-            state, height, float(np.vdot(contact.weight, touch.traction)), by_height, by_volume,
-            np.array([[stiffness, mixed], [mixed, push]]), answer.stable,
-        )  # fmt: skip
+            state,
+            height,
+            float(np.vdot(contact.weight, touch.traction)),
+            by_height,
+            by_volume,
+            np.array([[stiffness, mixed], [mixed, push]]),
+            answer.stable,
+        )
 
     def step(self, a: Equilibrium, volume: float, height: float, halvings: int = _HALVINGS) -> Equilibrium | None:
         """The equilibrium at another volume and height on the same branch, or None where the branch ends."""

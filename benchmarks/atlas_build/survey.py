@@ -131,16 +131,26 @@ def _gathered(sampler: AtlasSampler, nodes: list[Equilibrium], fold_from: float,
         values = {
             **dict(zip(STRETCHES, sampler.probe.stretch_by_zone(x), strict=True)),
             "contact_radius": solid.contact.footprint(x, touch).radius,
-            "von_mises": peak.von_mises, "fold": peak.fold, "inner_apex": float(x[inner, 1]),
+            "von_mises": peak.von_mises,
+            "fold": peak.fold,
+            "inner_apex": float(x[inner, 1]),
             "overhang": float((solid.rest[:, 1].min() - x[:, 1]).max()),
-        }  # fmt: skip
+        }
         return [values[name] for name in STORED]
 
     return Survey(
-        solid.wall, sampler.limit.volume, sampler.limit.pressure,
-        np.array([f.volume for f in sampler.free]), np.array([f.outer_apex for f in sampler.free]),
-        np.array([n.state.volume for n in nodes]), np.array([n.height for n in nodes]),
-        np.array([n.energy for n in nodes]), np.array([n.state.filling.pressure for n in nodes]),
-        np.array([n.force for n in nodes]), np.array([n.stiffness for n in nodes]),
-        np.array([fields(n) for n in nodes]).T, fold_from, fold_volume,
-    )  # fmt: skip
+        solid.wall,
+        sampler.limit.volume,
+        sampler.limit.pressure,
+        np.array([f.volume for f in sampler.free]),
+        np.array([f.outer_apex for f in sampler.free]),
+        np.array([n.state.volume for n in nodes]),
+        np.array([n.height for n in nodes]),
+        np.array([n.energy for n in nodes]),
+        np.array([n.state.filling.pressure for n in nodes]),
+        np.array([n.force for n in nodes]),
+        np.array([n.stiffness for n in nodes]),
+        np.array([fields(n) for n in nodes]).T,
+        fold_from,
+        fold_volume,
+    )

@@ -22,7 +22,8 @@ def section(data: dict[str, Any], peers: dict[str, Any], shares: dict[str, float
     }
     meshes = ", ".join(f"{arc} x {through}" for arc, through in data["refinements"])
     return [
-        "## Speed against accuracy", "",
+        "## Speed against accuracy",
+        "",
         f"{len(truths)} scenes that differ in wall ratio (0.05 to 0.4), law, driving pressure, dead volume and depth "
         "(`benchmarks/scenes.py`; raw numbers in `speed-accuracy.json` and `peers.json`). The work timed is study 1 from the "
         "mesh to the driving pressure and study 2 in 14 steps. The reference is extrapolated from three refinements "
@@ -30,15 +31,24 @@ def section(data: dict[str, Any], peers: dict[str, Any], shares: dict[str, float
         f"sensitivity {_both(own['sensitivity_error'])}, in force {_both(own['force_error'])}, in limit pressure "
         f"{_both(own['limit_error'])} (median / worst scene). **Force and sensitivity are compared over the same range: "
         "from first contact to the first event that ends the range of the reference, on any of its meshes, or of the method.** "
-        "Force is the greatest difference over the greatest force.", "",
-        "![Error over processor time with the Pareto front](speed-accuracy.svg)", "",
+        "Force is the greatest difference over the greatest force.",
+        "",
+        "![Error over processor time with the Pareto front](speed-accuracy.svg)",
+        "",
         "Left: marker at the median scene, line up to the worst; hollow markers end the range of more than a quarter of the "
-        "scenes by an event that the reference does not have. Right: the paper's sensor in TangoPlus.", "",
+        "scenes by an event that the reference does not have. Right: the paper's sensor in TangoPlus.",
+        "",
         "Errors, median / worst scene; times over the default's, median over scenes, processor time of the same run. A scene "
-        f"is cut where the method's range ends before {CUT:.0%} of the reference's.", "",
-        *table(data), *_model_words(data), *_default_words(data), *scene_table(data), *_target_section(data, peers), *_peer_section(peers),
+        f"is cut where the method's range ends before {CUT:.0%} of the reference's.",
+        "",
+        *table(data),
+        *_model_words(data),
+        *_default_words(data),
+        *scene_table(data),
+        *_target_section(data, peers),
+        *_peer_section(peers),
         *_share_section(shares),
-    ]  # fmt: skip
+    ]
 
 
 def _both(errors: list[float]) -> str:
@@ -51,7 +61,8 @@ def _default_words(data: dict[str, Any]) -> list[str]:
     base = statistics.median(row["processor_s"] for row in of(data["rows"], DEFAULT))
     dear = statistics.median(row["processor_s"] for row in of(data["rows"], "solid 36 x 2")) / base
     return [
-        "### Why this default", "",
+        "### Why this default",
+        "",
         "The default takes 24 to 48 cells along the arc (three to the bending length sqrt(R0 t0)) and one across up to "
         "t0/R0 = 0.055, else two. It is the cheapest mesh on the Pareto front that keeps every scene within 1 %: one cell across is "
         f"off by {worst['solid 24 x 1']:.1%} in the worst scene, a thick wall; fewer than 24 along make the contact's edge so "
@@ -59,8 +70,9 @@ def _default_words(data: dict[str, Any]) -> list[str]:
         f"({cut['solid 8 x 1']}, {cut['solid 12 x 1']} and {cut['solid 16 x 1']} scenes cut at 8, 12 and 16). 36 x 2 costs "
         f"{dear:.1f} times as much and its worst scene is at {worst['solid 36 x 2']:.2%}, against {worst[DEFAULT]:.2%}. "
         "What the default does not resolve is the fold at the clamped corner: where the reference ends with it, the "
-        "range of the default is longer, and its figure over that range (last column) is not checked here: the slope falls with depth.", "",
-    ]  # fmt: skip
+        "range of the default is longer, and its figure over that range (last column) is not checked here: the slope falls with depth.",
+        "",
+    ]
 
 
 def _model_words(data: dict[str, Any]) -> list[str]:
@@ -79,13 +91,18 @@ def _model_words(data: dict[str, Any]) -> list[str]:
     base = statistics.median(row["processor_s"] for row in solid.values())
     ratio = statistics.median(solid[row["scene"]]["processor_s"] / row["processor_s"] for row in inside)
     return [
-        "### The atlas and the choice of `auto`", "",
+        "### The atlas and the choice of `auto`",
+        "",
         f"The [atlas](atlas.md) is timed for one sensor per call, warm; it covers {len(inside)} of {len(atlas)} scenes, "
         f"{ratio:.0f} times as fast as the default solid in the median, and has the errors of the solid because it is made from it. "
         f"{AT_ONCE:,} sensors in one call cost {base / data['atlas_at_once_s']:,.0f} times less each than the default. `auto` takes the cheapest model "
-        "whose stated error meets its tolerance. It uses the solid where the atlas does not cover a scene, or where the press ends by buckling or at the break strain, which the solid locates more exactly.", "",
-        "| scene | atlas's error in sensitivity | auto took | its error | its time / default |", "|---|---|---|---|---|", *lines, "",
-    ]  # fmt: skip
+        "whose stated error meets its tolerance. It uses the solid where the atlas does not cover a scene, or where the press ends by buckling or at the break strain, which the solid locates more exactly.",
+        "",
+        "| scene | atlas's error in sensitivity | auto took | its error | its time / default |",
+        "|---|---|---|---|---|",
+        *lines,
+        "",
+    ]
 
 
 def _target_section(data: dict[str, Any], peers: dict[str, Any]) -> list[str]:
@@ -103,16 +120,22 @@ def _peer_section(peers: dict[str, Any]) -> list[str]:
         for r in rows
     ]
     return [
-        "### Other programs", "",
+        "### Other programs",
+        "",
         "The paper's sensor in TangoPlus inflated to and through its limit point, nu 0.49, one thread. Processor times over the "
         "cheapest pneutouch solve within 0.5 %, median of three processes: the solve with its mesh, and the whole process with start, "
         "imports and files. FElupe has no cavity, so it gets the apex height prescribed with the pressure as one more "
         "unknown (a border around its matrices, added here), a guess along the last step and the least number of steps with which its Newton "
         "iteration converges, determined beforehand and not counted. CalculiX has no arc length: its pressure rises until no increment of "
-        "0.2 % converges, so that its error does not shrink with its mesh. Both run with the meshes that suit them best.", "",
-        "| program | cells | steps | limit pressure | solve | whole process |", "|---|---|---|---|---|---|", *lines, "",
-        f"{_same_mesh(rows)}", "",
-    ]  # fmt: skip
+        "0.2 % converges, so that its error does not shrink with its mesh. Both run with the meshes that suit them best.",
+        "",
+        "| program | cells | steps | limit pressure | solve | whole process |",
+        "|---|---|---|---|---|---|",
+        *lines,
+        "",
+        f"{_same_mesh(rows)}",
+        "",
+    ]
 
 
 def _same_mesh(rows: list[dict[str, Any]]) -> str:
@@ -133,11 +156,17 @@ def _same_mesh(rows: list[dict[str, Any]]) -> str:
 
 def _share_section(shares: dict[str, float]) -> list[str]:
     return [
-        "### Where the time goes", "",
-        "The default on all scenes under the profiler (which overestimates the cost of small functions).", "",
-        "| part | share |", "|---|---|", *(f"| {part} | {share:.0%} |" for part, share in shares.items()), "",
-        "The time of locating a jump is also contained in the other rows.", "",
-    ]  # fmt: skip
+        "### Where the time goes",
+        "",
+        "The default on all scenes under the profiler (which overestimates the cost of small functions).",
+        "",
+        "| part | share |",
+        "|---|---|",
+        *(f"| {part} | {share:.0%} |" for part, share in shares.items()),
+        "",
+        "The time of locating a jump is also contained in the other rows.",
+        "",
+    ]
 
 
 def table(data: dict[str, Any]) -> list[str]:
@@ -155,8 +184,10 @@ def table(data: dict[str, Any]) -> list[str]:
         lines.append(f"| {method} | {cost:.3g} | {' | '.join(cells)} | {cut} | {len(rows)} |")
     return [
         "| method (cells along x across) | time / default | apex height | limit pressure | force | sensitivity | scenes cut | covered |",
-        "|---|---|---|---|---|---|---|---|", *lines, "",
-    ]  # fmt: skip
+        "|---|---|---|---|---|---|---|---|",
+        *lines,
+        "",
+    ]
 
 
 def scene_table(data: dict[str, Any]) -> list[str]:
@@ -172,8 +203,10 @@ def scene_table(data: dict[str, Any]) -> list[str]:
         )
     return [
         "| scene | reference kPa/N | default's error | force | compared to mm | reference ends with | default over its full range |",
-        "|---|---|---|---|---|---|---|", *lines, "",
-    ]  # fmt: skip
+        "|---|---|---|---|---|---|---|",
+        *lines,
+        "",
+    ]
 
 
 def verdicts(data: dict[str, Any], peers: dict[str, Any]) -> list[str]:

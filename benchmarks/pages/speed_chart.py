@@ -75,23 +75,42 @@ def _sensitivity_panel(ax: Axes, data: dict[str, Any]) -> None:
             )
         else:
             aside = 6 if method.endswith(" 24 x 1") else 0  # it stands beside 16 x 1
-            ax.annotate(label, (cost, worst), xytext=(aside, 4), textcoords="offset points", ha="center", rotation=90,
-                        fontsize=6, color=colour)  # fmt: skip
+            ax.annotate(
+                label,
+                (cost, worst),
+                xytext=(aside, 4),
+                textcoords="offset points",
+                ha="center",
+                rotation=90,
+                fontsize=6,
+                color=colour,
+            )
         if not cut or membrane:
             points.append((cost, middle))
     errors = [100 * e for e in sizes(of(data["rows"], ATLAS), "sensitivity_error")]
     many = 1e3 * data["atlas_at_once_s"], statistics.median(errors)
     ax.plot(*many, marker=MARKERS[1], color=ACCENT, mfc="white", ls="", ms=4, zorder=3)
-    ax.annotate(f"atlas,\n{AT_ONCE:,} at once", many, xytext=(0, 6), textcoords="offset points", ha="left",
-                fontsize=6, color=ACCENT)  # fmt: skip
+    ax.annotate(
+        f"atlas,\n{AT_ONCE:,} at once",
+        many,
+        xytext=(0, 6),
+        textcoords="offset points",
+        ha="left",
+        fontsize=6,
+        color=ACCENT,
+    )
     _front_line(ax, [*points, many])
     ax.legend(loc="upper right", fontsize=6)
     ax.axhline(100 * SENSITIVITY_TARGET, color=MUTED, lw=0.5)
     ax.text(
         0.02, 100 * SENSITIVITY_TARGET, "1 %", transform=ax.get_yaxis_transform(), fontsize=6, va="bottom", color=MUTED
     )
-    ax.set(xscale="log", yscale="log", xlabel="processor time, studies 1 and 2 in 14 steps  (ms)",
-           ylabel="error of sensitivity, median to worst scene  (%)")  # fmt: skip
+    ax.set(
+        xscale="log",
+        yscale="log",
+        xlabel="processor time, studies 1 and 2 in 14 steps  (ms)",
+        ylabel="error of sensitivity, median to worst scene  (%)",
+    )
 
 
 def _limit_panel(ax: Axes, data: dict[str, Any], peers: dict[str, Any]) -> None:
@@ -118,8 +137,12 @@ def _limit_panel(ax: Axes, data: dict[str, Any], peers: dict[str, Any]) -> None:
     ax.plot([], [], marker="o", mfc="white", color=INK, ls="", label="hollow: whole process")
     _front_line(ax, points)
     ax.axhline(100 * WITHIN, color=MUTED, lw=0.5)
-    ax.set(xscale="log", yscale="log", xlabel="processor time, inflation through the limit point  (ms)",
-           ylabel="error of limit pressure, paper's sensor  (%)")  # fmt: skip
+    ax.set(
+        xscale="log",
+        yscale="log",
+        xlabel="processor time, inflation through the limit point  (ms)",
+        ylabel="error of limit pressure, paper's sensor  (%)",
+    )
     ax.text(0.02, 100 * WITHIN, "0.5 %", transform=ax.get_yaxis_transform(), fontsize=6, va="bottom", color=MUTED)
     ax.set_ylim(top=8)
     ax.legend(loc="upper left", fontsize=6, ncols=1)

@@ -15,11 +15,17 @@ from pneutouch.spec.design import DesignFile
 from pneutouch.spec.target import Target
 
 FIELDS = {
-    "inner_radius_mm": st.floats(2, 100), "wall_thickness_mm": st.floats(0.05, 1.9), "material": st.sampled_from(["TangoPlus", "FLX9950"]),
-    "connector_material": st.sampled_from(["ABS", "VeroClear"]), "tube_length_mm": st.floats(0, 20000), "steps": st.integers(2, 1000),
+    "inner_radius_mm": st.floats(2, 100),
+    "wall_thickness_mm": st.floats(0.05, 1.9),
+    "material": st.sampled_from(["TangoPlus", "FLX9950"]),
+    "connector_material": st.sampled_from(["ABS", "VeroClear"]),
+    "tube_length_mm": st.floats(0, 20000),
+    "steps": st.integers(2, 1000),
     "driving_pressures_kPa": st.lists(st.floats(0, 1000), min_size=1, max_size=4, unique=True).map(sorted),
-    "title": st.text("aé漢&<\"' ", max_size=20), "connector_profile": st.sampled_from(["abs-filament", "j735"]), "orientation": st.just("dome-down"),
-}  # fmt: skip
+    "title": st.text("aé漢&<\"' ", max_size=20),
+    "connector_profile": st.sampled_from(["abs-filament", "j735"]),
+    "orientation": st.just("dome-down"),
+}
 
 
 @given(fields=st.fixed_dictionaries({}, optional=FIELDS))
@@ -69,10 +75,15 @@ def test_a_printer_that_runs_the_resin_is_chosen_where_none_is_named():
         ({"inner_radius": 6}, "inner_radius", 6, "Did you mean inner_radius_mm"),
         ({"connector_material": 3}, "connector_material", 3, "must be text"),
         ({"pneumatics": {"tube_lenth_mm": 3}}, "pneumatics.tube_lenth_mm", 3, "tube_length_mm"),
-        ({"tube_length_mm": 3, "pneumatics": {"tube_length_mm": 4}}, "pneumatics", {"tube_length_mm": 4}, "given twice"),
+        (
+            {"tube_length_mm": 3, "pneumatics": {"tube_length_mm": 4}},
+            "pneumatics",
+            {"tube_length_mm": 4},
+            "given twice",
+        ),
         ({"material": "Tanga"}, "material", "Tanga", "Did you mean TangoPlus"),
     ],
-)  # fmt: skip
+)
 def test_errors_name_the_keyword_its_value_and_what_would_be_right(fields, key, value, words):
     with pytest.raises(pt.InputError, match=words) as caught:
         pt.Design(**fields).check()

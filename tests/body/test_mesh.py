@@ -109,10 +109,13 @@ def test_volume_error_falls_with_the_square_of_the_cut_length_not_with_the_toler
 @given(st.floats(1, 60), st.floats(0.05, 0.6), st.sampled_from([0.1, 0.03]))
 def test_any_dome_meshes_closed_and_within_tolerance(radius, share, tolerance):
     outer = radius * (1 + share)
-    dome = Meridian((
-        Arc((0, 0), radius, math.pi / 2, 0, "inner"), Line((radius, 0), (outer, 0), "base"),
-        Arc((0, 0), outer, 0, math.pi / 2, "outer"),
-    ))  # fmt: skip
+    dome = Meridian(
+        (
+            Arc((0, 0), radius, math.pi / 2, 0, "inner"),
+            Line((radius, 0), (outer, 0), "base"),
+            Arc((0, 0), outer, 0, math.pi / 2, "outer"),
+        )
+    )
     vertices, triangles = revolve(dome, tolerance)
     from pneutouch.body import Body
 
@@ -144,9 +147,7 @@ def test_widened_polygon_keeps_the_circle_area_within_the_error(radius, error):
 
 def test_blind_and_through_bores_take_out_their_volume(library):
     material: Material = library.load("materials", "ABS")
-    plate = Meridian((
-        Line((0, 0), (20, 0), "low"), Line((20, 0), (20, 6), "edge"), Line((20, 6), (0, 6), "high")
-    ))  # fmt: skip
+    plate = Meridian((Line((0, 0), (20, 0), "low"), Line((20, 0), (20, 6), "edge"), Line((20, 6), (0, 6), "high")))
     bores = (Bore(10, 0, 1.7, 0, 6), Bore(-10, 0, 1.0, 0, 4, closed="high"))
     solid = Solid("plate", "connector", material, plate, bores)
     body = solid.mesh(0.02)

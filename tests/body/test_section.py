@@ -15,9 +15,12 @@ from pneutouch.parts import assemble
 from pneutouch.spec.read import parse_changes
 
 CASES = {
-    "paper-dome": [], "graded-dome": [], "fingertip-dome": [],
-    "stiff-dome": ["connector.port=thread-M5", "connector.mount=robot-50-4-M6"], "soft-pad": ["connector.port=luer-female"],
-}  # fmt: skip
+    "paper-dome": [],
+    "graded-dome": [],
+    "fingertip-dome": [],
+    "stiff-dome": ["connector.port=thread-M5", "connector.mount=robot-50-4-M6"],
+    "soft-pad": ["connector.port=luer-female"],
+}
 
 
 def winding(points, triangles):
@@ -55,8 +58,10 @@ def test_sections_add_up_to_the_exact_volume_and_agree_with_points(name, library
         (left, front, low), (right, back, high) = inside.low, inside.high
         heights = low + (np.arange(600) + 0.5) / 600 * (high - low)
         axes = [
-            np.arange(left - step * rng.random(), right, step), np.arange(front - step * rng.random(), back, step), heights
-        ]  # fmt: skip
+            np.arange(left - step * rng.random(), right, step),
+            np.arange(front - step * rng.random(), back, step),
+            heights,
+        ]
         window = Window(axes[0], axes[1])
         volume = step**2 * np.mean([inside.section(window, z).sum() for z in heights]) * (high - low)
         assert volume == pytest.approx(solid.volume, rel=0.004)

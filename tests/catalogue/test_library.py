@@ -12,10 +12,14 @@ from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 
 PAPER_TABLE_1 = {
-    "TangoPlus": (0.17, 27.6, 29.5), "FLX9940": (0.27, 38.5, 42.4), "FLX9950": (0.55, 50.4, 51.1),
-    "FLX9960": (0.91, 59.9, 60.5), "FLX9970": (1.64, 68.9, 68.2), "FLX9985": (4.00, 80.4, 76.0),
+    "TangoPlus": (0.17, 27.6, 29.5),
+    "FLX9940": (0.27, 38.5, 42.4),
+    "FLX9950": (0.55, 50.4, 51.1),
+    "FLX9960": (0.91, 59.9, 60.5),
+    "FLX9970": (1.64, 68.9, 68.2),
+    "FLX9985": (4.00, 80.4, 76.0),
     "FLX9995": (5.33, 91.3, 87.0),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", PAPER_TABLE_1)

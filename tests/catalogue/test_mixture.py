@@ -134,22 +134,34 @@ def point(fraction, **more):
 
 ZERO = point(0.0, material="TangoPlus")
 BAD = [
-    ({"points": [ZERO, point(0.2, shear_modulus_MPa=0.5), point(0.1, shear_modulus_MPa=0.9)]}, "fraction 0.1 after 0.2"),
+    (
+        {"points": [ZERO, point(0.2, shear_modulus_MPa=0.5), point(0.1, shear_modulus_MPa=0.9)]},
+        "fraction 0.1 after 0.2",
+    ),
     ({"points": [ZERO, point(0.2, shear_modulus_MPa=0.5), point(0.2, shear_modulus_MPa=0.9)]}, "they must rise"),
-    ({"points": [ZERO, point(0.1, shear_modulus_MPa=0.5), point(0.2, shear_modulus_MPa=0.4)]}, "0.4 MPa at fraction 0.2 after 0.5 MPa"),
+    (
+        {"points": [ZERO, point(0.1, shear_modulus_MPa=0.5), point(0.2, shear_modulus_MPa=0.4)]},
+        "0.4 MPa at fraction 0.2 after 0.5 MPa",
+    ),
     ({"points": [point(0.1, material="TangoPlus"), point(0.2, material="FLX9960")]}, "must be 0, the soft resin alone"),
     ({"points": [ZERO, point(0.2)]}, "either material or shear_modulus_MPa"),
     ({"points": [ZERO, point(0.2, material="FLX9960", shear_modulus_MPa=1.0)]}, "either material or shear_modulus_MPa"),
-    ({"points": [ZERO, point(0.2, material="FLX9960", shear_modulus_spread_MPa=1.0)]}, "a spread needs its shear_modulus_MPa"),
+    (
+        {"points": [ZERO, point(0.2, material="FLX9960", shear_modulus_spread_MPa=1.0)]},
+        "a spread needs its shear_modulus_MPa",
+    ),
     ({"points": [ZERO, point(0.2, material="FLX9960", fraction_low=0.3)]}, "must lie between fraction_low = 0.3"),
-    ({"points": [ZERO, point(0.1, material="FLX9950", fraction_high=0.4), point(0.2, material="FLX9960")]}, "it must not fall"),
+    (
+        {"points": [ZERO, point(0.1, material="FLX9950", fraction_high=0.4), point(0.2, material="FLX9960")]},
+        "it must not fall",
+    ),
     ({"points": [ZERO, point(0.2, material="FLX9961")]}, "no such name among the materials"),
     ({"points": [ZERO, point(0.2, material="Agilus30")]}, "has Agilus30 in it"),
     ({"points": [ZERO, point(0.2, material="VeroClear")]}, "has no shear_modulus_MPa"),
     ({"points": [ZERO, point(0.2, shear_modulus_MPa=-1.0)]}, "shear_modulus_MPa"),
     ({"soft": "Agilus30"}, "must be 'TangoPlus' and 'VeroClear', as the file's name"),
     ({"stiff": "TangoPlus"}, "another resin than soft"),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("top", "said"), BAD, ids=[said[:40] for _, said in BAD])

@@ -28,9 +28,27 @@ def campaign(tmp_path_factory):
     """One specimen of one resin, two pressures, two runs each and an injection; the design states the air behind it."""
     out = tmp_path_factory.mktemp("simulated")
     result = run(
-        "simulate", "paper-dome", "--set", DEAD, "--resins", "TangoPlus", "--specimens", "1", "--pressures", "0,22",
-        "--runs", "2", "--kinds", "steps,injection", "--rest", "10", "--model", "atlas", "--out", str(out),
-    )  # fmt: skip
+        "simulate",
+        "paper-dome",
+        "--set",
+        DEAD,
+        "--resins",
+        "TangoPlus",
+        "--specimens",
+        "1",
+        "--pressures",
+        "0,22",
+        "--runs",
+        "2",
+        "--kinds",
+        "steps,injection",
+        "--rest",
+        "10",
+        "--model",
+        "atlas",
+        "--out",
+        str(out),
+    )
     assert result.exit_code == 0, result.stderr
     return out / "paper-dome-campaign"
 
@@ -87,13 +105,16 @@ def test_a_part_of_the_parameters_says_what_else_counts(campaign, place):
     assert width[0] > 1.5 * width[1]
 
 
-@pytest.mark.parametrize(("words", "message"), [
-    (("--sensor", "B"), "--sensor B: no such sensor in the campaign; there are TangoPlus-1"),
-    (("--fit", "moduls"), "--fit moduls: no such parameter. Did you mean modulus"),
-    (("--hold-out", "5"), "--hold-out 5: no run at this driving pressure; measured: 0, 22 kPa"),
-    (("--save", "TangoPlus"), "which the new file would hide; give another name, or --shadow"),
-    (("--shadow",), "--shadow: goes with --save NAME"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("--sensor", "B"), "--sensor B: no such sensor in the campaign; there are TangoPlus-1"),
+        (("--fit", "moduls"), "--fit moduls: no such parameter. Did you mean modulus"),
+        (("--hold-out", "5"), "--hold-out 5: no run at this driving pressure; measured: 0, 22 kPa"),
+        (("--save", "TangoPlus"), "which the new file would hide; give another name, or --shadow"),
+        (("--shadow",), "--shadow: goes with --save NAME"),
+    ],
+)
 def test_wrong_words_end_with_two_and_nothing_written(words, message, campaign, place):
     before = files(place)
     result = run("calibrate", str(campaign), "--design", "mine", "--out", "out", *words)

@@ -86,7 +86,7 @@ def test_a_target_file_with_flags_over_it(tmp_path):
         ("[target]\nsensitivity_kPa_per_N = 1\n[given]\nmaterials = []\n", "given.materials"),
         ("target = 3\n", "target"),
     ],
-)  # fmt: skip
+)
 def test_a_bad_target_file_is_named_with_its_key(tmp_path, content, said):
     path = tmp_path / "bad.toml"
     path.write_text(content)

@@ -39,9 +39,11 @@ def test_show_prints_bodies_metadata_and_recipe(command, built_file, evaluated):
     design = evaluation.scene.design
     assert f"recipe of {NAME}" in result.stdout
     for key, value in (
-        ("membrane.inner_radius_mm", design.membrane.inner_radius_mm), ("membrane.material", design.membrane.material),
-        ("made by", f"pneutouch {__version__}"), ("model", "solid"),
-    ):  # fmt: skip
+        ("membrane.inner_radius_mm", design.membrane.inner_radius_mm),
+        ("membrane.material", design.membrane.material),
+        ("made by", f"pneutouch {__version__}"),
+        ("model", "solid"),
+    ):
         assert [line for line in result.stdout.splitlines() if line.split() == f"{key} {value}".split()], key
 
 
@@ -100,10 +102,13 @@ def test_another_version_is_said_on_stderr(command, built_file, tmp_path, monkey
 @pytest.mark.parametrize(
     "words",
     [
-        ["--set", "membrane.inner_radius_mm=8"], ["--model", "solid"], ["--tolerance", "2%"],
-        ["--closure", "variational"], ["--clamp", "base"],
+        ["--set", "membrane.inner_radius_mm=8"],
+        ["--model", "solid"],
+        ["--tolerance", "2%"],
+        ["--closure", "variational"],
+        ["--clamp", "base"],
     ],
-)  # fmt: skip
+)
 def test_nothing_can_be_set_beside_a_3mf(command, built_file, tmp_path, words):
     result = command("build", "sensor.3mf", *words)
     assert result.returncode == 2

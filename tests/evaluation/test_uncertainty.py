@@ -33,10 +33,20 @@ def test_widths_are_the_budgets_and_values_the_models(evaluated, library, name, 
     evaluation = evaluated(name)
     batch, found = own_budget(evaluation, library, near)
     for row, (state, said) in enumerate(zip(evaluation.prediction.states, evaluation.uncertainty, strict=True)):
-        values = dict(zip(FIGURES, (
-            state.figures.sensitivity_kPa_per_N, 1e3 * evaluation.prediction.limits.limit_point, state.figures.stiffness,
-            state.figures.force_range[1], state.range_end, state.apex_outer,
-        ), strict=True))  # fmt: skip
+        values = dict(
+            zip(
+                FIGURES,
+                (
+                    state.figures.sensitivity_kPa_per_N,
+                    1e3 * evaluation.prediction.limits.limit_point,
+                    state.figures.stiffness,
+                    state.figures.force_range[1],
+                    state.range_end,
+                    state.apex_outer,
+                ),
+                strict=True,
+            )
+        )
         assert said["figures"].keys() == values.keys()
         for i, (figure, value) in enumerate(values.items()):
             width = float(found.expanded[i, row])

@@ -31,11 +31,16 @@ FACES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
 def material(**changes):
     """A digital material of a lab's own."""
     content = {
-        "title": "Lab mix", "code": "LM", "kind": "elastomer", "base_resins": ["TangoPlus", "VeroClear"],
-        "colour": "#BE965A", "density_g_per_cm3": {"value": 1.15, "source": "our own scales"},
+        "title": "Lab mix",
+        "code": "LM",
+        "kind": "elastomer",
+        "base_resins": ["TangoPlus", "VeroClear"],
+        "colour": "#BE965A",
+        "density_g_per_cm3": {"value": 1.15, "source": "our own scales"},
         "poisson_ratio": {"value": 0.49, "source": "assumed here"},
-        "shear_modulus_MPa": {"value": 0.4, "source": "our own test"}, **changes,
-    }  # fmt: skip
+        "shear_modulus_MPa": {"value": 0.4, "source": "our own test"},
+        **changes,
+    }
     return validate(Material, content, "lab.toml")
 
 

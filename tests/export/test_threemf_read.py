@@ -34,9 +34,10 @@ def test_what_was_built_comes_back(built, evaluated):
 
 
 @given(
-    shift=st.floats(-1000, 1000), scale=st.floats(0.01, 100),
+    shift=st.floats(-1000, 1000),
+    scale=st.floats(0.01, 100),
     title=st.text(st.characters(min_codepoint=32, exclude_categories=["Cs", "Cn", "Cc"]), min_size=1, max_size=60),
-)  # fmt: skip
+)
 def test_any_vertices_and_text_come_back(tmp_path_factory, shift, scale, title):
     body = tetrahedron(material(title=title))
     body = type(body)(title, "membrane", body.material, body.vertices * scale + shift, body.triangles)
@@ -96,7 +97,8 @@ def test_a_colour_is_no_material(tmp_path):
 
 def test_a_recipe_in_another_makers_namespace_is_not_ours(tmp_path):
     path = with_model(
-        written(tmp_path, tetrahedron(material())), tmp_path / "y.3mf",
+        written(tmp_path, tetrahedron(material())),
+        tmp_path / "y.3mf",
         lambda model: model.replace(b"https://pneutouch.org/3mf/2026", b"https://example.org/other"),
-    )  # fmt: skip
+    )
     assert read_threemf(path).recipe is None

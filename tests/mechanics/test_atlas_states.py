@@ -83,10 +83,14 @@ def test_the_pressure_at_the_break_strain_is_the_solids():
     assert atlas_result(SENSOR.replace(break_stretch=None), PRESSURES[:1])[0].limits.break_strain is None
 
 
-@pytest.mark.parametrize(("changes", "kind"), [
-    ({"gauge_limit": 0.05}, "gauge range"), ({"break_stretch": 1.35}, "break strain"),
-    ({"shear_modulus": 1.64, "break_stretch": None}, "inward buckling"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("changes", "kind"),
+    [
+        ({"gauge_limit": 0.05}, "gauge range"),
+        ({"break_stretch": 1.35}, "break strain"),
+        ({"shear_modulus": 1.64, "break_stretch": None}, "inward buckling"),
+    ],
+)
 def test_the_event_that_ends_a_range_is_the_solids(changes, kind):
     sensor = SENSOR.replace(**{"depth": 6.9375, **changes})
     pressure = np.array([0.0 if kind == "inward buckling" else 0.022])
@@ -101,8 +105,10 @@ def test_the_event_that_ends_a_range_is_the_solids(changes, kind):
 
 def test_warnings_on_the_way_are_the_solids():
     deep = SENSOR.replace(depth=6.9)
-    found = [{e.kind: e.indentation for e in f.states[0].events if not e.ends_range}
-             for f in (atlas_result(deep, PRESSURES[:1])[0], solid_result(deep, PRESSURES[:1]))]  # fmt: skip
+    found = [
+        {e.kind: e.indentation for e in f.states[0].events if not e.ends_range}
+        for f in (atlas_result(deep, PRESSURES[:1])[0], solid_result(deep, PRESSURES[:1]))
+    ]
     assert set(found[0]) == set(found[1]) and found[1]
     for kind, where in found[1].items():
         assert found[0][kind] == pytest.approx(where, abs=0.05 * deep.dome.inner_radius)
@@ -136,11 +142,14 @@ def test_the_box_has_edges_and_they_belong_to_it():
     assert outside_atlas(inside.replace(wall_thickness=0.35 * 9.25)) is None
     assert outside_atlas(SENSOR.replace(ambient_pressure=1.0 * 0.17)) is None
     for changes, word in (
-        ({"wall_thickness": 0.0599 * 9.25}, "wall"), ({"wall_thickness": 0.3501 * 9.25}, "wall"),
-        ({"depth": 0.7501 * 9.25}, "depth"), ({"ambient_pressure": 1.001 * 0.17}, "ambient"),
-        ({"poisson_ratio": 0.4999}, "Poisson"), ({"flange": (2.0, 2.0)}, "flange"),
+        ({"wall_thickness": 0.0599 * 9.25}, "wall"),
+        ({"wall_thickness": 0.3501 * 9.25}, "wall"),
+        ({"depth": 0.7501 * 9.25}, "depth"),
+        ({"ambient_pressure": 1.001 * 0.17}, "ambient"),
+        ({"poisson_ratio": 0.4999}, "Poisson"),
+        ({"flange": (2.0, 2.0)}, "flange"),
         ({"law": ("ogden", (1.4, -3.7))}, "law"),
-    ):  # fmt: skip
+    ):
         assert word in str(outside_atlas(SENSOR.replace(**changes)))
 
 

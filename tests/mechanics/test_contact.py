@@ -76,8 +76,9 @@ def test_force_is_the_work_of_the_plate(p):
     content = (p + PAPER.gas.ambient_pressure) * volume0
     potential = (
         wall * energy(PAPER.wall.shear_modulus, state.thickness_stretch)
-        - content * np.log(state.volume) + PAPER.gas.ambient_pressure * state.volume
-    )  # fmt: skip
+        - content * np.log(state.volume)
+        + PAPER.gas.ambient_pressure * state.volume
+    )
     work = np.trapezoid(state.force, way)
     assert work == pytest.approx(potential[-1] - potential[0], rel=1e-5)
 
@@ -94,8 +95,9 @@ def test_variational_contact_radius_is_a_minimum_over_all_radii(p):
     content = (p + sensor.gas.ambient_pressure) * start.volume
     potential = (
         2 * np.pi * 9.25**2 * 1.5 * energy(0.17, stretch)
-        - content * np.log(cap.volume) + sensor.gas.ambient_pressure * cap.volume
-    )  # fmt: skip
+        - content * np.log(cap.volume)
+        + sensor.gas.ambient_pressure * cap.volume
+    )
     assert trial[np.argmin(potential)] == pytest.approx(rho, abs=5e-3)
 
 
@@ -117,9 +119,12 @@ def test_boyle_holds_at_every_state():
 @given(st.floats(0.5, 8), st.floats(0.1, 10), st.floats(0.0, 0.9))
 def test_scaling_with_size_and_modulus(size, stiff, fraction):
     """Lengths by s, moduli and pressures by k: forces scale with k s^2, pressures with k."""
-    big = PAPER.replace(inner_radius=size * 9.25, wall_thickness=size * 1.5, shear_modulus=stiff * 0.17,
+    big = PAPER.replace(
+        inner_radius=size * 9.25,
+        wall_thickness=size * 1.5,
+        shear_modulus=stiff * 0.17,
         ambient_pressure=stiff * PAPER.gas.ambient_pressure,
-    )  # fmt: skip
+    )
     p = fraction * 0.0419
     one, other = pressed(PAPER, p, 3.0), pressed(big, stiff * p, size * 3.0)
     assert float(other.force) == pytest.approx(stiff * size**2 * float(one.force), rel=1e-9)

@@ -22,8 +22,15 @@ from pneutouch.mechanics.membrane_energy import energy as wall_energy
 from pneutouch.mechanics.membrane_energy import energy_slope
 from tests.mechanics.exact_membrane import inflated, limit_point
 
-MODULI = {"TangoPlus": 0.17, "FLX9940": 0.27, "FLX9950": 0.55, "FLX9960": 0.91, "FLX9970": 1.64,
-          "FLX9985": 4.00, "FLX9995": 5.33}  # fmt: skip
+MODULI = {
+    "TangoPlus": 0.17,
+    "FLX9940": 0.27,
+    "FLX9950": 0.55,
+    "FLX9960": 0.91,
+    "FLX9970": 1.64,
+    "FLX9985": 4.00,
+    "FLX9995": 5.33,
+}
 
 
 def test_limit_point_constants():

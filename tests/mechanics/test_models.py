@@ -121,9 +121,13 @@ def test_a_contact_that_reaches_the_plates_edge_goes_to_the_solid():
         predict("x", small, [0.022], model="atlas")
 
 
-@pytest.mark.parametrize(("changes", "pressure", "word"), [
-    ({"shear_modulus": 1.64, "depth": 6.9375}, 0.0, "buckles"), ({"break_stretch": 1.35, "depth": 6.9375}, 0.022, "break strain"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("changes", "pressure", "word"),
+    [
+        ({"shear_modulus": 1.64, "depth": 6.9375}, 0.0, "buckles"),
+        ({"break_stretch": 1.35, "depth": 6.9375}, 0.022, "break strain"),
+    ],
+)
 def test_a_range_that_ends_by_buckling_or_tearing_is_left_to_the_solid_unless_the_atlas_is_asked(
     changes, pressure, word
 ):
@@ -180,9 +184,15 @@ def test_the_command_line_takes_a_tolerance(command, root):
     assert document["model"] == "atlas" and "meets 2.0%" in document["error_estimate"]["model_choice"]
 
 
-@pytest.mark.parametrize("words", [
-    ["--tolerance", "two"], ["--tolerance", "-2%"], ["--tolerance", "0.5%"], ["--tolerance", "2%", "--model", "solid"],
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["--tolerance", "two"],
+        ["--tolerance", "-2%"],
+        ["--tolerance", "0.5%"],
+        ["--tolerance", "2%", "--model", "solid"],
+    ],
+)
 def test_bad_tolerances_exit_2_in_one_line(command, root, words):
     result = command("predict", "paper-dome", *words, "--json", cwd=root)
     assert result.returncode == 2 and result.stdout == ""

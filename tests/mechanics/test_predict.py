@@ -95,7 +95,14 @@ def test_document_is_rounded_and_names_units():
     assert state["curve"]["contact_force_N"][0] == 0.0
     assert set(document) >= {"design", "model", "error_estimate", "limit_point", "states", "assumptions"}
     assert set(state) >= {
-        "driving_pressure_kPa", "apex_height_inner_mm", "apex_height_outer_mm", "sensitivity_kPa_per_N", "r_squared",
-        "stiffness_N_per_mm", "force_range_N", "curve", "events",
-    }  # fmt: skip
+        "driving_pressure_kPa",
+        "apex_height_inner_mm",
+        "apex_height_outer_mm",
+        "sensitivity_kPa_per_N",
+        "r_squared",
+        "stiffness_N_per_mm",
+        "force_range_N",
+        "curve",
+        "events",
+    }
     assert set(state["curve"]) >= {"indentation_mm", "contact_force_N", "pressure_rise_kPa"}

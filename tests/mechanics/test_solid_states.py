@@ -125,8 +125,11 @@ def test_document_has_stress_stretch_and_the_inflation_curve(paper):
     assert max(curve["max_von_mises_MPa"]) > 0.1
     assert max(curve["max_stretch"]) > 1.2
     assert set(document["inflation"]) == {
-        "apex_height_inner_mm", "apex_height_outer_mm", "cavity_volume_mL", "driving_pressure_kPa",
-    }  # fmt: skip
+        "apex_height_inner_mm",
+        "apex_height_outer_mm",
+        "cavity_volume_mL",
+        "driving_pressure_kPa",
+    }
 
 
 def test_shapes_lie_above_the_base_and_under_the_plate(paper):

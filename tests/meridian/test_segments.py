@@ -53,11 +53,13 @@ def test_arc_bounds_reach_the_quarter_points():
 
 
 def hollow_hemisphere(inner: float, outer: float) -> Meridian:
-    return Meridian((
-        Arc((0, 0), inner, math.pi / 2, 0, "inner"),
-        Line((inner, 0), (outer, 0), "base"),
-        Arc((0, 0), outer, 0, math.pi / 2, "outer"),
-    ))  # fmt: skip
+    return Meridian(
+        (
+            Arc((0, 0), inner, math.pi / 2, 0, "inner"),
+            Line((inner, 0), (outer, 0), "base"),
+            Arc((0, 0), outer, 0, math.pi / 2, "outer"),
+        )
+    )
 
 
 def test_hollow_hemisphere_has_its_textbook_volume():

@@ -71,14 +71,19 @@ def test_every_part_comes_back(kind, library):
 
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
-    radius=st.floats(2, 100), share=st.floats(0.06, 0.5), tolerance=st.floats(0.011, 99),
-    pressures=st.lists(st.floats(0, 1000), min_size=1, max_size=5, unique=True), title=st.text("aé漢&<\"' ", max_size=20),
-)  # fmt: skip
+    radius=st.floats(2, 100),
+    share=st.floats(0.06, 0.5),
+    tolerance=st.floats(0.011, 99),
+    pressures=st.lists(st.floats(0, 1000), min_size=1, max_size=5, unique=True),
+    title=st.text("aé漢&<\"' ", max_size=20),
+)
 def test_numbers_and_text_come_back_exactly(library, radius, share, tolerance, pressures, title):
     changes = [
-        f"membrane.inner_radius_mm={radius!r}", f"membrane.wall_thickness_mm={min(radius * share, 50)!r}",
-        f"pneumatics.driving_pressures_kPa={pressures!r}", f"document.title={json.dumps(title, ensure_ascii=False)}",
-    ]  # fmt: skip
+        f"membrane.inner_radius_mm={radius!r}",
+        f"membrane.wall_thickness_mm={min(radius * share, 50)!r}",
+        f"pneumatics.driving_pressures_kPa={pressures!r}",
+        f"document.title={json.dumps(title, ensure_ascii=False)}",
+    ]
     scene = load_scene("paper-dome", parse_changes(changes), library)
     recipe = BuildRecipe(scene, {}, PredictionOptions("auto", tolerance=tolerance))
     assert read_recipe(package_of(recipe)) == dataclasses.replace(recipe, scene=renamed(scene))

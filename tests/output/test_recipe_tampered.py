@@ -52,15 +52,24 @@ def at(*path):
 
 
 TAMPERED = {
-    "radius out of range": (put(1000.0, *at("design", "membrane", "inner_radius_mm")), "design: membrane.inner_radius_mm = 1000.0: must be from 1 to 100 mm"),
-    "wall as text": (put("thick", *at("design", "membrane", "wall_thickness_mm")), "design: membrane.wall_thickness_mm = 'thick': must be a number"),
+    "radius out of range": (
+        put(1000.0, *at("design", "membrane", "inner_radius_mm")),
+        "design: membrane.inner_radius_mm = 1000.0: must be from 1 to 100 mm",
+    ),
+    "wall as text": (
+        put("thick", *at("design", "membrane", "wall_thickness_mm")),
+        "design: membrane.wall_thickness_mm = 'thick': must be a number",
+    ),
     "unknown key": (put(1, *at("design", "membrane", "radius")), "design: membrane.radius: unknown key"),
     "steps without end": (put(10**9, *at("design", "indentation", "steps")), "from 2 to 1000"),
     "not a date": (put("soon", *at("design", "document", "date")), "document.date"),
     "document a list": (put([], *at("design", "document")), "document"),
     "design a number": (put(3, *at("design")), "design = '3': must be a table"),
     "a bad colour": (put("red", *at("membrane_material", "colour")), "membrane_material: colour"),
-    "no source": (remove(*at("membrane_material", "shear_modulus_MPa", "source")), "membrane_material: shear_modulus_MPa.source: missing"),
+    "no source": (
+        remove(*at("membrane_material", "shear_modulus_MPa", "source")),
+        "membrane_material: shear_modulus_MPa.source: missing",
+    ),
     "no port": (remove(*at("port")), "inputs: port: missing"),
     "unknown input": (put({}, *at("ports")), "inputs: ports: unknown. Did you mean port?"),
     "another family": (put("needle", *at("port", "family")), "port: family"),
@@ -89,7 +98,7 @@ TAMPERED = {
     "name without end": (put("x" * 300, "name"), "must be a plain file name"),
     "name a number": (put(7, "name"), "name = 7"),
     "version with a line": (put("1\nerror", "version"), "must be a version number"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize(("change", "said"), TAMPERED.values(), ids=TAMPERED.keys())

@@ -18,9 +18,7 @@ def manifold(vertices, triangles):
 
 
 def ring(inner, outer, low, high, frame=None):
-    outline = trace(
-        (inner, low), [("", (outer, low)), ("", (outer, high)), ("", (inner, high)), ("", (inner, low))]
-    )  # fmt: skip
+    outline = trace((inner, low), [("", (outer, low)), ("", (outer, high)), ("", (inner, high)), ("", (inner, low))])
     return manifold(*Turned(outline, frame or Frame()).mesh(_FINE))
 
 

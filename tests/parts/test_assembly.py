@@ -73,9 +73,7 @@ def test_a_plug_that_does_not_pass_through_the_sleeve_is_refused():
 def test_any_size_gives_sound_bodies_or_says_what_there_is_no_room_for(radius, share, parts):
     wall = max(share * radius, 0.05)
     try:
-        assembly = assembled(
-            LIBRARY, parts, f"membrane.inner_radius_mm={radius}", f"membrane.wall_thickness_mm={wall}"
-        )  # fmt: skip
+        assembly = assembled(LIBRARY, parts, f"membrane.inner_radius_mm={radius}", f"membrane.wall_thickness_mm={wall}")
     except InputError as error:
         assert "too small for" in str(error) or "too large for" in str(error)
         return
@@ -118,9 +116,10 @@ def test_channel_is_open_from_the_cavity_to_the_port():
         lengths = [np.linalg.norm(side, axis=1) for side in (a, b, c)]
         triple = np.einsum("ij,ij->i", a, np.cross(b, c))
         rest = lengths[0] * lengths[1] * lengths[2] + (
-            np.einsum("ij,ij->i", a, b) * lengths[2] + np.einsum("ij,ij->i", b, c) * lengths[0]
+            np.einsum("ij,ij->i", a, b) * lengths[2]
+            + np.einsum("ij,ij->i", b, c) * lengths[0]
             + np.einsum("ij,ij->i", c, a) * lengths[1]
-        )  # fmt: skip
+        )
         assert abs(np.sum(2 * np.arctan2(triple, rest)) / (4 * np.pi)) < 1e-6
 
 
@@ -139,10 +138,14 @@ def test_mounting_holes_lie_on_a_whole_millimetre_circle_and_clear_the_seat():
 
 def test_holes_are_drawn_wider_by_what_the_printer_makes_them_smaller():
     bores = {
-        profile: assemble(load_scene("paper-dome", {"connector.material": material, "print.connector_profile": profile}, LIBRARY))
-        .solid("connector").bores[0].radius
+        profile: assemble(
+            load_scene("paper-dome", {"connector.material": material, "print.connector_profile": profile}, LIBRARY)
+        )
+        .solid("connector")
+        .bores[0]
+        .radius
         for profile, material in (("abs-filament", "ABS"), ("objet260-connex", "VeroClear"))
-    }  # fmt: skip
+    }
     printers = {name: LIBRARY.load("printers", name).hole_undersize_mm.nominal for name in bores}
     assert printers["abs-filament"] > printers["objet260-connex"]
     for name, radius in bores.items():
@@ -168,12 +171,18 @@ def test_a_clamping_ring_rests_on_the_flange_and_closes_by_the_squeeze():
     assert places[0] == places[1]
 
 
-@pytest.mark.parametrize(("setting", "words"), [
-    ("connector.seat=one-piece", ["connector.seat = 'one-piece'", "print.connector_profile = 'abs-filament'", "'objet260-connex'"]),
-    ("pneumatics.tube=6x4", ["pneumatics.tube = '6x4'", "barb-4x2.5 takes 4x2.5"]),
-    ("pneumatics.tube=5x3", ["pneumatics.tube = '5x3'", "no such name among the tubes"]),
-    ("connector.port=barb-4.2x2.5", ["no such name among the ports", "Did you mean barb-4x2.5"]),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("setting", "words"),
+    [
+        (
+            "connector.seat=one-piece",
+            ["connector.seat = 'one-piece'", "print.connector_profile = 'abs-filament'", "'objet260-connex'"],
+        ),
+        ("pneumatics.tube=6x4", ["pneumatics.tube = '6x4'", "barb-4x2.5 takes 4x2.5"]),
+        ("pneumatics.tube=5x3", ["pneumatics.tube = '5x3'", "no such name among the tubes"]),
+        ("connector.port=barb-4.2x2.5", ["no such name among the ports", "Did you mean barb-4x2.5"]),
+    ],
+)
 def test_parts_that_do_not_go_together_are_refused(setting, words):
     with pytest.raises(InputError) as error:
         assemble(load_scene("paper-dome", parse_changes([setting]), LIBRARY))

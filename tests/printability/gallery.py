@@ -97,9 +97,12 @@ def cup(outer: float = 10.0, wall: float = 1.5) -> Manifold:
 def meander() -> Manifold:
     """A block with a passage of five turns."""
     legs = [
-        rod(1.5, 15.0, (4.0, 6.0, 5.0)), rod(1.5, 17.5, (12.0, 6.0, 2.5)), rod(1.5, 15.0, (20.0, 6.0, 5.0)),
-        rod(1.5, 8.0).rotate((0, 90, 0)).translate((4.0, 6.0, 5.0)), rod(1.5, 8.0).rotate((0, 90, 0)).translate((12.0, 6.0, 18.0)),
-    ]  # fmt: skip
+        rod(1.5, 15.0, (4.0, 6.0, 5.0)),
+        rod(1.5, 17.5, (12.0, 6.0, 2.5)),
+        rod(1.5, 15.0, (20.0, 6.0, 5.0)),
+        rod(1.5, 8.0).rotate((0, 90, 0)).translate((4.0, 6.0, 5.0)),
+        rod(1.5, 8.0).rotate((0, 90, 0)).translate((12.0, 6.0, 18.0)),
+    ]
     turns = [ball(1.5, at, 48) for at in ((4.0, 6.0, 5.0), (12.0, 6.0, 18.0), (20.0, 6.0, 18.0))]
     way_in = rod(1.5, 5.0, (4.0, 6.0, 19.0)) + rod(1.5, 5.0, (20.0, 6.0, 1.0))
     return box(24, 12, 22) - Manifold.batch_boolean([*legs, *turns, way_in], OpType.Add)
@@ -187,7 +190,9 @@ BAD: dict[str, Exhibit] = {
     "soft bristle": Exhibit(
         lambda: one(box(10, 10, 3) + box(1.2, 1.2, 6, (4.0, 4.0, 2.0)), resin="TangoPlus"), {"pins": "warning"}
     ),
-    "strut": Exhibit(lambda: one(box(10, 10, 3) + rod(0.4, 10, (5.0, 5.0, 2.0)) + box(10, 10, 3, (0, 0, 11))), {"pins": "warning"}),
+    "strut": Exhibit(
+        lambda: one(box(10, 10, 3) + rod(0.4, 10, (5.0, 5.0, 2.0)) + box(10, 10, 3, (0, 0, 11))), {"pins": "warning"}
+    ),
     "pinhole": Exhibit(lambda: one(box(10, 10, 1.05) - rod(0.2, 3, (5.0, 5.0, -1.0))), {"holes": "error"}),
     "square hole": Exhibit(lambda: one(box(10, 10, 2) - box(0.8, 0.8, 4, (4.0, 4.0, -1.0))), {"holes": "warning"}),
     "capillary": Exhibit(lambda: one(box(10, 10, 4) - rod(0.25, 6, (5.0, 5.0, -1.0))), {"channels": "error"}),
@@ -218,7 +223,7 @@ BAD: dict[str, Exhibit] = {
     "fine": Exhibit(lambda: one(ball(2, sides=400)), {"mesh": "note"}),
     "open mesh": Exhibit(_open_mesh, {"mesh": "error"}),
     "inside out": Exhibit(_inside_out, {"mesh": "error"}),
-}  # fmt: skip
+}
 
 GOOD: dict[str, Callable[[], PrintSubject]] = {
     "plate": lambda: one(box(30, 30, 1.1)),

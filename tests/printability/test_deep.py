@@ -46,9 +46,12 @@ def test_a_coarse_mesh_is_measured_both_ways():
 def test_crossing_shells_are_found():
     one, other = body_of(box(10, 10, 10)), body_of(box(10, 10, 10, (5, 4, 3)))
     both = Body(
-        "both", "coupon", one.material, np.vstack([one.vertices, other.vertices]),
+        "both",
+        "coupon",
+        one.material,
+        np.vstack([one.vertices, other.vertices]),
         np.vstack([one.triangles, other.triangles + len(one.vertices)]),
-    )  # fmt: skip
+    )
     assert any("cross" in finding.message for finding in inspect(both))
     assert inspect(one) == []
 

@@ -159,8 +159,11 @@ def test_the_gauge_is_measured_feature_by_feature():
     body = gauge.mesh(printer().finest_step(printer().mode[0]))
     found = PrintPart(PrintItem(body, printer(), printer().mode[0], gauge)).places
     for kinds, sizes, most in (
-        (("wall",), WALLS, 1.0), (("pin",), PINS, 1.0), (("hole", "channel"), HOLES, NARROW_HOLE), (("gap",), SLOTS, NARROW_HOLE)
-    ):  # fmt: skip
+        (("wall",), WALLS, 1.0),
+        (("pin",), PINS, 1.0),
+        (("hole", "channel"), HOLES, NARROW_HOLE),
+        (("gap",), SLOTS, NARROW_HOLE),
+    ):
         measured = sorted(place.size for place in found if place.kind in kinds)
         assert measured == pytest.approx([size for size in sizes if size <= most], abs=0.005), kinds
 

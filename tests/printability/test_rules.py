@@ -60,9 +60,10 @@ def test_the_barb_is_found_as_it_is_drawn():
 @pytest.mark.parametrize(("wall", "severity"), [(0.5, "error"), (0.8, "warning"), (1.02, None)])
 def test_a_dome_s_wall_is_measured(wall, severity):
     found = [
-        finding for finding in check(subject("paper-dome", f"membrane.wall_thickness_mm={wall}"))
+        finding
+        for finding in check(subject("paper-dome", f"membrane.wall_thickness_mm={wall}"))
         if (finding.rule, finding.body) == ("walls", "membrane")
-    ]  # fmt: skip
+    ]
     assert [finding.severity for finding in found] == ([severity] if severity else [])
     for finding in found:
         document = finding.document()

@@ -58,9 +58,17 @@ def curve_of(
         fall = 1 - _DECAY * np.log10(np.maximum(time, 0.1))
         relaxation = (time, force[-1] * fall + rng.normal(0, 0.01, time.size), rise[-1] * (0.4 + 0.6 * fall))
     return MeasuredCurve(
-        run, depth, force, rise, (run.driving_pressure_kPa + rng.normal(0, 0.02)) * KPA, loop=loop, relaxation=relaxation,
-        noise=(0.012, 0.015 * KPA), drift=(0.001 * KPA, 1e-4), warnings=doubts,
-    )  # fmt: skip
+        run,
+        depth,
+        force,
+        rise,
+        (run.driving_pressure_kPa + rng.normal(0, 0.02)) * KPA,
+        loop=loop,
+        relaxation=relaxation,
+        noise=(0.012, 0.015 * KPA),
+        drift=(0.001 * KPA, 1e-4),
+        warnings=doubts,
+    )
 
 
 def beside_of(group: RunGroup, states: dict[float, SensorState]) -> GroupComparison:
@@ -85,10 +93,17 @@ def beside_of(group: RunGroup, states: dict[float, SensorState]) -> GroupCompari
 
 
 def measured_of(
-    library: Library, *, resins: tuple[str, ...] = RESINS, pressures: tuple[float, ...] = (0.0, 22.0), specimens: int = 3,
-    runs: int = 3, kinds: tuple[str, ...] = ("steps", "saturation", "loop", "relaxation"), ages: tuple[float, ...] = (0.0,),
-    simulated: bool = True, predicted: bool = True,
-) -> CampaignReport:  # fmt: skip
+    library: Library,
+    *,
+    resins: tuple[str, ...] = RESINS,
+    pressures: tuple[float, ...] = (0.0, 22.0),
+    specimens: int = 3,
+    runs: int = 3,
+    kinds: tuple[str, ...] = ("steps", "saturation", "loop", "relaxation"),
+    ages: tuple[float, ...] = (0.0,),
+    simulated: bool = True,
+    predicted: bool = True,
+) -> CampaignReport:
     """A campaign of every resin at every pressure and age; ageing makes sensors a tenth stiffer."""
     rng = np.random.default_rng(7)
     curves, every = [], {}
@@ -101,21 +116,39 @@ def measured_of(
                     for age in ages:
                         for k in range(runs if kind == "steps" else 1):
                             run = CampaignRun(
-                                file=f"runs/{resin}-{n + 1}-{kind}-{pressure:g}-{age:g}-{k + 1}.csv", kind=kind,
-                                sensor=f"{resin}-{n + 1}", resin=resin, driving_pressure_kPa=pressure, run=k + 1, date=DAY,
+                                file=f"runs/{resin}-{n + 1}-{kind}-{pressure:g}-{age:g}-{k + 1}.csv",
+                                kind=kind,
+                                sensor=f"{resin}-{n + 1}",
+                                resin=resin,
+                                driving_pressure_kPa=pressure,
+                                run=k + 1,
+                                date=DAY,
                                 age_days=age,
-                            )  # fmt: skip
+                            )
                             factor = factors[n] * (1.1 if age else 1.0)
                             curves.append(curve_of(run, every[resin][pressure], factor, rng))
     comparisons = tuple(beside_of(group, every[group.key.resin] if predicted else {}) for group in summarize(curves))
     campaign = Campaign(
-        title=f"Resins under pressure: {len(resins)} at {len(pressures)}", lab="Test bench 3", design="paper-dome", simulated=simulated,
+        title=f"Resins under pressure: {len(resins)} at {len(pressures)}",
+        lab="Test bench 3",
+        design="paper-dome",
+        simulated=simulated,
         runs=[curve.run for curve in curves],
-    )  # fmt: skip
+    )
     return CampaignReport(
-        campaign, load_scene("paper-dome", library=library), Path("campaign"), comparisons, tuple(curves), (), (), (), (),
-        _ageing(resins, pressures) if len(ages) > 1 else (), "atlas", "0123456789ab",
-    )  # fmt: skip
+        campaign,
+        load_scene("paper-dome", library=library),
+        Path("campaign"),
+        comparisons,
+        tuple(curves),
+        (),
+        (),
+        (),
+        (),
+        _ageing(resins, pressures) if len(ages) > 1 else (),
+        "atlas",
+        "0123456789ab",
+    )
 
 
 def _ageing(resins: tuple[str, ...], pressures: tuple[float, ...]):

@@ -27,8 +27,9 @@ from pneutouch.workflows.select.run import select
 SIZE = (86.0, 62.0)
 TARGET = {
     "target": {"sensitivity_kPa_per_N": 1.5, "tolerance_percent": 5, "driving_pressure_kPa": 20, "force_range_N": 20},
-    "given": {"materials": ["TangoPlus", "FLX9960"]}, "setting": {"base": "paper-dome"},
-}  # fmt: skip
+    "given": {"materials": ["TangoPlus", "FLX9960"]},
+    "setting": {"base": "paper-dome"},
+}
 
 
 @pytest.fixture(scope="module")

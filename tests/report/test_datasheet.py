@@ -12,10 +12,22 @@ import pytest
 from pneutouch.report import curves
 
 SECTIONS = [
-    "Performance", "Uncertainty", "Absolute maximum ratings", "Operating conditions", "What limits the driving pressure", "Environment",
-    "Mechanical drawing", "Material and print", "Reliability", "Ordering code", "How to measure it", "Handling",
-    "Assumptions of the prediction", "Definitions", "Revisions",
-]  # fmt: skip
+    "Performance",
+    "Uncertainty",
+    "Absolute maximum ratings",
+    "Operating conditions",
+    "What limits the driving pressure",
+    "Environment",
+    "Mechanical drawing",
+    "Material and print",
+    "Reliability",
+    "Ordering code",
+    "How to measure it",
+    "Handling",
+    "Assumptions of the prediction",
+    "Definitions",
+    "Revisions",
+]
 
 
 @pytest.fixture(scope="module")
@@ -93,8 +105,10 @@ def test_the_air_on_the_sheet_is_computed_and_no_longer_a_fixed_factor(evaluated
     evaluation = evaluated("paper-dome")
     gas = gas_notes(batch_of(evaluation.sensor, [s.driving_pressure for s in evaluation.prediction.states]))
     for numbers, unit in (
-        (gas.by_temperature_kPa_per_K, "kPa/K"), (gas.force_by_temperature, "N/K"), (gas.fast_over_slow, "times")
-    ):  # fmt: skip
+        (gas.by_temperature_kPa_per_K, "kPa/K"),
+        (gas.force_by_temperature, "N/K"),
+        (gas.fast_over_slow, "times"),
+    ):
         assert f"{numbers[0]:.2f} and {numbers[-1]:.2f} {unit}" in html
     assert "1.4 times" not in html
 
@@ -248,9 +262,14 @@ def test_axes_carry_quantities_and_units(evaluated):
 def test_print_sheet_names_files_resins_machines_and_the_measured_deviation(built):
     text = (built("fingertip-dome") / "print-sheet.md").read_text()
     for word in (
-        "stl/membrane.stl", "FLX9940-DM (TangoPlus + VeroClear)", "Objet260", "Digital Material", "dome up",
-        "choose the resin of each body by hand", "greatest measured distance",
-    ):  # fmt: skip
+        "stl/membrane.stl",
+        "FLX9940-DM (TangoPlus + VeroClear)",
+        "Objet260",
+        "Digital Material",
+        "dome up",
+        "choose the resin of each body by hand",
+        "greatest measured distance",
+    ):
         assert word in text
 
 

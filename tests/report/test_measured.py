@@ -48,9 +48,13 @@ def campaign(library):
         SuspectInterval(10.0 + k, 10.5 + k, f"doubt number {k} in a row", bool(k % 2)) for k in range(MOST + 7)
     )
     return replace(
-        found, curves=(replace(found.curves[0], warnings=doubts), *found.curves[1:]), verdicts=VERDICTS,
-        injections=INJECTIONS, failures=(FAILURE,), questions=(QUESTION,),
-    )  # fmt: skip
+        found,
+        curves=(replace(found.curves[0], warnings=doubts), *found.curves[1:]),
+        verdicts=VERDICTS,
+        injections=INJECTIONS,
+        failures=(FAILURE,),
+        questions=(QUESTION,),
+    )
 
 
 @pytest.fixture(scope="module")
@@ -123,9 +127,11 @@ def test_failures_questions_doubts_and_leaks_are_listed(said):
 def test_verdict_is_failed_before_undecided_before_passed(campaign):
     passed, undecided, failed = VERDICTS
     for verdicts, word in (
-        ((passed, undecided, failed), "Target failed"), ((passed, undecided), "Target not decided"), ((passed,), "Target passed"),
+        ((passed, undecided, failed), "Target failed"),
+        ((passed, undecided), "Target not decided"),
+        ((passed,), "Target passed"),
         ((), "No target given"),
-    ):  # fmt: skip
+    ):
         assert verdict(replace(campaign, verdicts=verdicts))["word"] == word
 
 
@@ -218,9 +224,10 @@ def test_specimen_rows_are_means_over_runs(campaign):
     beside = campaign.comparisons[0]
     name = beside.group.sensors[0]
     own = [
-        found["sensitivity_kPa_per_N"] for curve, found in zip(beside.group.curves, beside.group.each, strict=True)
+        found["sensitivity_kPa_per_N"]
+        for curve, found in zip(beside.group.curves, beside.group.each, strict=True)
         if curve.run.sensor == name and "sensitivity_kPa_per_N" in found
-    ]  # fmt: skip
+    ]
     assert rows[0][1:3] == [name, "1, circle"]
     assert rows[0][6:8] == [number(float(np.mean(own)), 4), number(float(np.std(own, ddof=1)), 2)]
 
@@ -230,8 +237,9 @@ def test_tiles_name_the_worst_group(campaign):
     gaps = {
         (b.label, b.group.key.driving_pressure_kPa): difference(
             b.group.figures["sensitivity_kPa_per_N"].value, b.predicted["sensitivity_kPa_per_N"][0]
-        ) for b in campaign.comparisons
-    }  # fmt: skip
+        )
+        for b in campaign.comparisons
+    }
     (label, pressure), gap = max(gaps.items(), key=lambda item: abs(item[1]))
     assert by_name["Off the predicted sensitivity"][3] == f"median; most {signed(gap)} % at {label}, {pressure:g} kPa"
     assert by_name["In the predicted band"][1] == "14 of 14"

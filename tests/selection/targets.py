@@ -9,17 +9,17 @@ from typing import Any
 from pneutouch.spec.target import Given, Setting, Target, TargetFigures, Weights
 from pneutouch.workflows.select.run import SelectionRun, select
 
-FINGERTIP = {
-    "sensitivity_kPa_per_N": 1.9, "driving_pressure_kPa": 12.0, "force_range_N": 15.0, "max_diameter_mm": 25.0,
-}  # fmt: skip
+FINGERTIP = {"sensitivity_kPa_per_N": 1.9, "driving_pressure_kPa": 12.0, "force_range_N": 15.0, "max_diameter_mm": 25.0}
 """The first thing people ask for."""
 
 
 def target(wanted: dict[str, Any], **tables: dict[str, Any]) -> Target:
     return Target(
-        target=TargetFigures(**wanted), given=Given(**tables.get("given", {})), setting=Setting(**tables.get("setting", {})),
+        target=TargetFigures(**wanted),
+        given=Given(**tables.get("given", {})),
+        setting=Setting(**tables.get("setting", {})),
         weights=Weights(**tables.get("weights", {})),
-    )  # fmt: skip
+    )
 
 
 def answer(wanted: dict[str, Any], **tables: dict[str, Any]) -> SelectionRun:

@@ -133,7 +133,7 @@ def test_the_paper_s_own_cells_lead_back_to_its_resins():
                 {"sensitivity_kPa_per_N": cell.nominal, "driving_pressure_kPa": pressure},
                 given={"inner_radius_mm": 9.25, "wall_thickness_mm": 1.5, "materials": order},
                 setting={"base": "paper-dome"},
-            ).answer  # fmt: skip
+            ).answer
             choice = found.designs[0] if found.designs else found.nearest
             near.append(abs(order.index(choice.resin.name) - order.index(name)) <= 1)
     assert sum(near) >= 10

@@ -8,9 +8,7 @@ from pneutouch.errors import InputError
 from pneutouch.workflows.select.document import document
 from tests.selection.targets import FINGERTIP, answer
 
-KEYS = {
-    "sensitivity": "sensitivity_kPa_per_N", "force range": "force_range_N", "outer diameter": "max_diameter_mm",
-}  # fmt: skip
+KEYS = {"sensitivity": "sensitivity_kPa_per_N", "force range": "force_range_N", "outer diameter": "max_diameter_mm"}
 
 
 @pytest.mark.parametrize(

@@ -26,14 +26,20 @@ CASES = [
     ('[membrane]\ninner_radius_mm = "9"', ["'9'", "a number from 1 to 100 mm"]),
     ("[membrane]\ninner_radius_mm = true", ["True", "a number from 1 to 100 mm"]),
     ("[membrane]\ninner_radius_mm = [9]", ["[9]", "a number from 1 to 100 mm"]),
-    ("[membrane]\ninner_radius_mm = 5\nwall_thickness_mm = 5", ["wall_thickness_mm = 5", "less than", "inner_radius_mm = 5"]),
+    (
+        "[membrane]\ninner_radius_mm = 5\nwall_thickness_mm = 5",
+        ["wall_thickness_mm = 5", "less than", "inner_radius_mm = 5"],
+    ),
     ("[membrane]\nmaterial = 3", ["membrane.material = 3", "text"]),
     ('[membrane]\nmaterial = "TangoPlsu"', ["membrane.material = 'TangoPlsu'", "Did you mean TangoPlus?"]),
     ('[membrane]\nmaterial = "ABS"', ["membrane.material", "ABS", "elastomer"]),
     ('[connector]\nmaterial = "TangoPlus"', ["connector.material", "rigid"]),
     ('[membrane]\nmaterial = "Agilus30"', ["print.profile = 'objet260-connex'", "cannot run Agilus30", "TangoPlus"]),
     ('[connector]\nport = "barb"', ["connector.port = 'barb'", "no such name among the ports", "Did you mean barb-"]),
-    ("[membrane]\nwall_thikness_mm = 1", ["membrane.wall_thikness_mm", "unknown key", "Did you mean wall_thickness_mm?"]),
+    (
+        "[membrane]\nwall_thikness_mm = 1",
+        ["membrane.wall_thikness_mm", "unknown key", "Did you mean wall_thickness_mm?"],
+    ),
     ("[membran]\nmaterial = 'x'", ["membran", "unknown table", "Did you mean membrane?"]),
     ('[print]\norientation = "sideways"', ["print.orientation = 'sideways'", "must be 'dome-up' or 'dome-down'"]),
     ("membrane = 3", ["membrane = 3", "a table"]),
@@ -42,7 +48,10 @@ CASES = [
     ("[pneumatics]\ndriving_pressures_kPa = [5, 5]", ["driving_pressures_kPa", "once only"]),
     ("[pneumatics]\ndriving_pressures_kPa = [0, nan]", ["driving_pressures_kPa[1]", "finite"]),
     ("[pneumatics]\ndriving_pressures_kPa = [0, 'a']", ["driving_pressures_kPa[1] = 'a'", "a number"]),
-    ("[pneumatics]\ndriving_pressures_kPa = [0, 42]", ["driving_pressures_kPa[1] = 42", "limit point", "at most 39.59 kPa"]),
+    (
+        "[pneumatics]\ndriving_pressures_kPa = [0, 42]",
+        ["driving_pressures_kPa[1] = 42", "limit point", "at most 39.59 kPa"],
+    ),
     ("[pneumatics]\ndead_volume_mL = -1", ["dead_volume_mL = -1", "from 0 to 1000 mL"]),
     ("[indentation]\nsteps = 1.5", ["steps = 1.5", "whole number"]),
     ("[indentation]\ndepth_mm = 9.2", ["depth_mm = 9.2", "0.95"]),
@@ -52,7 +61,7 @@ CASES = [
     ("[indentation]\ndepth_mm = 20", ["depth_mm = 20", "0.95"]),
     ('[document]\ntitle = "a\\u0007b"', ["document.title", "cannot be printed"]),
     ("[document]\ndate = 'yesterday'", ["document.date", "yesterday", "a date such as 2026-11-21"]),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("text", "words"), CASES, ids=[text.replace("\n", " ")[:50] for text, _ in CASES])
@@ -151,11 +160,29 @@ def test_commands_exit_2_without_traceback_and_write_nothing(words, command, tmp
     [
         (("value = 0.49", "value = 0.5"), ["poisson_ratio = 0.5", "between 0 and 0.5"]),
         (("value = 0.17", "value = -0.17"), ["shear modulus is -0.17 MPa", "positive"]),
-        (('title = "TangoPlus"', 'law = { name = "yeoh", constants = [-0.1, 0, 0], source = "made up here" }\ntitle = "TangoPlus"'), ["law", "positive"]),
-        (('title = "TangoPlus"', 'law = { name = "yeo", constants = [1.0], source = "made up here" }\ntitle = "TangoPlus"'), ["Did you mean yeoh?"]),
-        (('title = "TangoPlus"', 'law = { name = "ogden", constants = [1.0], source = "made up here" }\ntitle = "TangoPlus"'), ["cannot take the constants [1.0]"]),
+        (
+            (
+                'title = "TangoPlus"',
+                'law = { name = "yeoh", constants = [-0.1, 0, 0], source = "made up here" }\ntitle = "TangoPlus"',
+            ),
+            ["law", "positive"],
+        ),
+        (
+            (
+                'title = "TangoPlus"',
+                'law = { name = "yeo", constants = [1.0], source = "made up here" }\ntitle = "TangoPlus"',
+            ),
+            ["Did you mean yeoh?"],
+        ),
+        (
+            (
+                'title = "TangoPlus"',
+                'law = { name = "ogden", constants = [1.0], source = "made up here" }\ntitle = "TangoPlus"',
+            ),
+            ["cannot take the constants [1.0]"],
+        ),
     ],
-)  # fmt: skip
+)
 def test_a_resin_that_makes_no_solid_is_refused(change, words, tmp_path):
     folder = tmp_path / "printprofiles/materials"
     folder.mkdir(parents=True)

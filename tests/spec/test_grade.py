@@ -31,17 +31,29 @@ CASES = [
     ('from = 3, to = "VeroClear", fraction = 0.1', ["membrane.material.from = 3", "must be text"]),
     (f"{PAIR}, fraction = 0.1, at = [0]", ["at: knots need a fraction at each"]),
     (f"{PAIR}, fraction = [0, 0.1, 0.2], at = [0, 1]", ["2 knots for 3 fractions"]),
-    (f"{PAIR}, fraction = [0, 0.1], at = [0.1, 1]", ["at = [0.1, 1.0]", "begin with 0 (the pole) and end with 1 (the rim)"]),
+    (
+        f"{PAIR}, fraction = [0, 0.1], at = [0.1, 1]",
+        ["at = [0.1, 1.0]", "begin with 0 (the pole) and end with 1 (the rim)"],
+    ),
     (f"{PAIR}, fraction = [0, 0.1, 0.2, 0.1], at = [0, 0.7, 0.6, 1]", ["at = [0.0, 0.7, 0.6, 1.0]: out of order"]),
     (f"{PAIR}, fraction = [0, 0.1, 0.2, 0.1], at = [0, 0.7, 0.7, 1]", ["out of order"]),
     ('from = "TangoPlus", to = "TangoPlus", fraction = 0.1', ["to = 'TangoPlus'", "another resin than from"]),
-    ('from = "TangoPlsu", to = "VeroClear", fraction = 0.1', ["material.from = 'TangoPlsu'", "Did you mean TangoPlus?"]),
+    (
+        'from = "TangoPlsu", to = "VeroClear", fraction = 0.1',
+        ["material.from = 'TangoPlsu'", "Did you mean TangoPlus?"],
+    ),
     ('from = "TangoPlus", to = "VeroClera", fraction = 0.1', ["material.to = 'VeroClera'", "Did you mean VeroClear?"]),
-    ('from = "TangoPlus", to = "ABS", fraction = 0.1', ["no mixing curve of ABS in TangoPlus", "known: TangoPlus+VeroClear"]),
-    ('from = "VeroClear", to = "TangoPlus", fraction = 0.1', ["no mixing curve", "the soft resin goes first: TangoPlus"]),
+    (
+        'from = "TangoPlus", to = "ABS", fraction = 0.1',
+        ["no mixing curve of ABS in TangoPlus", "known: TangoPlus+VeroClear"],
+    ),
+    (
+        'from = "VeroClear", to = "TangoPlus", fraction = 0.1',
+        ["no mixing curve", "the soft resin goes first: TangoPlus"],
+    ),
     (f"{PAIR}, fraction = 0.7", ["fraction = 0.7", "no modulus is known beyond 0.668 of VeroClear in TangoPlus"]),
     (f"{PAIR}, fraction = [0, 0.7]", ["fraction = 0.7", "at most"]),
-]  # fmt: skip
+]
 
 
 def design(tmp_path, grade, rest=""):

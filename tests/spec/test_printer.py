@@ -27,10 +27,12 @@ def own(folder, text):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("value = -7.5", "value = -7.5"), ("value = 1.2", "value = 1.2"), ("low = -3.0\nhigh = 3.0", "low = -3"),
+        ("value = -7.5", "value = -7.5"),
+        ("value = 1.2", "value = 1.2"),
+        ("low = -3.0\nhigh = 3.0", "low = -3"),
         ("value = 0.2\nlow = 0.1\nhigh = 2.0", "high = 2"),
     ],
-)  # fmt: skip
+)
 def test_a_hole_undersize_that_no_printer_has_is_refused(tmp_path, text, said):
     with pytest.raises(InputError) as error:
         own(tmp_path, text).load("printers", "abs-filament")

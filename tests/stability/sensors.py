@@ -39,9 +39,14 @@ def random_sensors(
         assert run.limit is not None
         free = state_at(solid, share * run.limit.pressure, run)
         press = PressSettings(
-            depth * radius, int(rng.integers(1, 20)), PLATE * radius, sensor.gas.ambient_pressure,
-            rng.uniform(0.0, 5.0) * ML, sensor.gas.gauge_limit, sensor.wall.break_stretch - 1.0,
-        )  # fmt: skip
+            depth * radius,
+            int(rng.integers(1, 20)),
+            PLATE * radius,
+            sensor.gas.ambient_pressure,
+            rng.uniform(0.0, 5.0) * ML,
+            sensor.gas.gauge_limit,
+            sensor.wall.break_stretch - 1.0,
+        )
         label = f"{number}: {name}, R0 {radius:.3f} mm, t0/R0 {ratio:.3f}, {share:.0%} of the limit, {press}"
         yield label, Study.of(solid, free, press)
 

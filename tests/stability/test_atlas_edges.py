@@ -28,9 +28,13 @@ def silent(found: AtlasResponse, row: int) -> bool:
 
 
 OUT = {
-    "wall too thin": {"wall_thickness": 0.059}, "wall too thick": {"wall_thickness": 0.351}, "paper-thin": {"wall_thickness": 1e-4},
-    "solid ball": {"wall_thickness": 5.0}, "too deep": {"depth": 0.76}, "gas too stiff": {"ambient_pressure": 1.1},
-}  # fmt: skip
+    "wall too thin": {"wall_thickness": 0.059},
+    "wall too thick": {"wall_thickness": 0.351},
+    "paper-thin": {"wall_thickness": 1e-4},
+    "solid ball": {"wall_thickness": 5.0},
+    "too deep": {"depth": 0.76},
+    "gas too stiff": {"ambient_pressure": 1.1},
+}
 
 
 @pytest.mark.parametrize("case", OUT)
@@ -83,8 +87,15 @@ def test_a_gauge_that_is_full_before_contact_leaves_no_range():
 @pytest.mark.parametrize("share", [0.0, 0.5, 0.97])
 def test_the_corners_of_the_box_have_answers(wall, ambient, dead, share):
     limit = float(shipped().slices(np.array([wall])).limit_pressure[0])
-    found = respond(batch(wall_thickness=wall, ambient_pressure=ambient, dead_volume=dead, driving_pressure=share * limit,
-                          depth=[0.05, 0.3, 0.75]))  # fmt: skip
+    found = respond(
+        batch(
+            wall_thickness=wall,
+            ambient_pressure=ambient,
+            dead_volume=dead,
+            driving_pressure=share * limit,
+            depth=[0.05, 0.3, 0.75],
+        )
+    )
     assert (found.ends != OUTSIDE).all()
     assert np.isfinite(found.force).all() and np.isfinite(found.range_end).all()
     assert (np.diff(found.force, axis=1) > -2e-3 * found.force.max()).all()

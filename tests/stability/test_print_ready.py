@@ -30,10 +30,14 @@ def random_design(rng):
     profile, connector = rng.choice(["objet260-connex", "j735"]), str(rng.choice(sorted(PROFILES)))
     resin, (port, seat, mount) = str(rng.choice(RESINS)), PARTS[rng.integers(len(PARTS))]
     return [
-        f"membrane.inner_radius_mm={radius!r}", f"membrane.wall_thickness_mm={wall!r}", f"membrane.material={resin}",
-        f"print.profile={profile}", f"print.connector_profile={connector}", f"connector.material={PROFILES[connector]}",
+        f"membrane.inner_radius_mm={radius!r}",
+        f"membrane.wall_thickness_mm={wall!r}",
+        f"membrane.material={resin}",
+        f"print.profile={profile}",
+        f"print.connector_profile={connector}",
+        f"connector.material={PROFILES[connector]}",
         *chosen_parts(port, seat, mount),
-    ]  # fmt: skip
+    ]
 
 
 def judge(chosen):
@@ -68,9 +72,10 @@ def test_every_combination_of_parts_is_ready_to_print_or_names_the_reason(radius
     reasons = set()
     for port, seat, mount in PARTS:
         chosen = [
-            f"membrane.inner_radius_mm={radius}", f"membrane.wall_thickness_mm={SIZES[radius]}",
+            f"membrane.inner_radius_mm={radius}",
+            f"membrane.wall_thickness_mm={SIZES[radius]}",
             *chosen_parts(port, seat, mount),
-        ]  # fmt: skip
+        ]
         fate, why = outcome("stiff-dome", chosen)
         counts[fate] += 1
         if fate == "refused":

@@ -32,9 +32,13 @@ def figures(radius, mu):
     run = inflate(solid, past_limit=1.0)
     free = state_at(solid, PRESSURE * mu, run)
     press = PressSettings(
-        0.5 * radius, 5, plate_diameter=30 / 9.25 * radius, ambient=AMBIENT * mu, dead_volume=0.5 * radius**3,
+        0.5 * radius,
+        5,
+        plate_diameter=30 / 9.25 * radius,
+        ambient=AMBIENT * mu,
+        dead_volume=0.5 * radius**3,
         gauge_range=np.inf,
-    )  # fmt: skip
+    )
     study = Study.of(solid, free, press)
     assert study.found.complete and study.unbalance() <= 1.0
     curve = study.found

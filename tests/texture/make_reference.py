@@ -36,8 +36,9 @@ def main() -> None:
     kept = found[:, AT]
     content = {
         "made by": f"ssqueezepy {ssqueezepy.__version__}, numpy {np.__version__}, tests/texture/make_reference.py",
-        "real": kept.real.tolist(), "imaginary": kept.imag.tolist(),
-    }  # fmt: skip
+        "real": kept.real.tolist(),
+        "imaginary": kept.imag.tolist(),
+    }
     Path(__file__).with_name("reference.json").write_text(json.dumps(content) + "\n")
 
 

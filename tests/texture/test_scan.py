@@ -126,9 +126,15 @@ def test_recorder_steps_and_clips():
 
 @pytest.mark.parametrize(
     ("pressure", "preload", "word"),
-    [(0.0, 0.0, "more than 0"), (0.0, np.nan, "more than 0"), (0.0, 1e4, "reaches"), (-1.0, 0.5, "0 or more"),
-     (45.0, 0.5, "limit point"), (150.0, 0.5, "range of 100 kPa")],
-)  # fmt: skip
+    [
+        (0.0, 0.0, "more than 0"),
+        (0.0, np.nan, "more than 0"),
+        (0.0, 1e4, "reaches"),
+        (-1.0, 0.5, "0 or more"),
+        (45.0, 0.5, "limit point"),
+        (150.0, 0.5, "range of 100 kPa"),
+    ],
+)
 def test_touch_refuses_what_cannot_be(pressure, preload, word):
     with pytest.raises(InputError, match=word):
         touch(SENSOR, pressure * KPA, preload)
@@ -137,10 +143,11 @@ def test_touch_refuses_what_cannot_be(pressure, preload, word):
 def test_scan_refuses_paths_noise_and_pitches():
     at = touch(SENSOR, 0.0, 0.5)
     for way, rows, recorder, word in (
-        (ScanPath(5.0, 5.0, 4.0), bars(), QUIET, "shorter than the patch"), (ScanPath(5.0, 50.0, 0.0), bars(), QUIET, "speed"),
+        (ScanPath(5.0, 5.0, 4.0), bars(), QUIET, "shorter than the patch"),
+        (ScanPath(5.0, 50.0, 0.0), bars(), QUIET, "speed"),
         (ScanPath(5.0, 50.0, 4.0), bars(1.5), QUIET, r"times the patch, whose radius is 3.58 mm"),
         (ScanPath(5.0, 50.0, 4.0), bars(), Recorder(noise=-1.0), "noise"),
-    ):  # fmt: skip
+    ):
         with pytest.raises(InputError, match=word):
             scan(at, ground(at.contact_radius, rows), way, recorder)
 

@@ -29,20 +29,23 @@ def test_a_file_is_read_in_si_units(tmp_path):
     assert np.array_equal(found.pressure, other.pressure)
 
 
-@pytest.mark.parametrize(("text", "words"), [
-    ("", ["empty file"]),
-    ("time_s\n0\n", ["column pressure_kPa: missing", "separated by commas"]),
-    (GOOD.replace("pressure_kPa", "presure_kPa"), ["column pressure_kPa: missing", "Did you mean presure_kPa"]),
-    (GOOD.replace("0.3,1.03", "0.3,abc"), ["row 5", "pressure_kPa", "'abc' is no finite number"]),
-    (GOOD.replace("0.3,1.03", "0.3,"), ["row 5", "empty"]),
-    (GOOD.replace("0.3,1.03", "0.3,nan"), ["row 5", "pressure_kPa: 'nan'", "finite"]),
-    (GOOD.replace("0.3,1.03,0\n", ""), ["row 5", "a gap of 0.2 s", "0.1 s"]),
-    (GOOD.replace("0.3,1.03", "0.15,1.03"), ["row 5", "must run forwards"]),
-    (GOOD.replace("0.3,1.03", "0.2,1.03"), ["row 5", "must run forwards"]),
-    (GOOD.replace("0.3,1.03", "0.34,1.03"), ["row 5", "even steps"]),
-    ("time_s,pressure_kPa\n0,1\n1,2\n", ["2 rows; a signal needs at least 4"]),
-    ("time_s,pressure_kPa,time_s\n0,1,0\n", ["column time_s: there 2 times"]),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", ["empty file"]),
+        ("time_s\n0\n", ["column pressure_kPa: missing", "separated by commas"]),
+        (GOOD.replace("pressure_kPa", "presure_kPa"), ["column pressure_kPa: missing", "Did you mean presure_kPa"]),
+        (GOOD.replace("0.3,1.03", "0.3,abc"), ["row 5", "pressure_kPa", "'abc' is no finite number"]),
+        (GOOD.replace("0.3,1.03", "0.3,"), ["row 5", "empty"]),
+        (GOOD.replace("0.3,1.03", "0.3,nan"), ["row 5", "pressure_kPa: 'nan'", "finite"]),
+        (GOOD.replace("0.3,1.03,0\n", ""), ["row 5", "a gap of 0.2 s", "0.1 s"]),
+        (GOOD.replace("0.3,1.03", "0.15,1.03"), ["row 5", "must run forwards"]),
+        (GOOD.replace("0.3,1.03", "0.2,1.03"), ["row 5", "must run forwards"]),
+        (GOOD.replace("0.3,1.03", "0.34,1.03"), ["row 5", "even steps"]),
+        ("time_s,pressure_kPa\n0,1\n1,2\n", ["2 rows; a signal needs at least 4"]),
+        ("time_s,pressure_kPa,time_s\n0,1,0\n", ["column time_s: there 2 times"]),
+    ],
+)
 def test_what_cannot_be_read_is_said(tmp_path, text, words):
     with pytest.raises(InputError) as error:
         read_signal(written(tmp_path, text))

@@ -53,9 +53,7 @@ def test_disc_on_a_layer_is_the_exact_one():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("pitch", "radius", "low", "high"), [(6.0, 2.33, 0.9, 1.6), (3.0, 2.33, 1.5, 5.5)]
-)  # fmt: skip
+@pytest.mark.parametrize(("pitch", "radius", "low", "high"), [(6.0, 2.33, 0.9, 1.6), (3.0, 2.33, 1.5, 5.5)])
 def test_reduced_model_errs_no_more_than_its_page_says(pitch, radius, low, high):
     width, height = {3.0: (1.5, 1.0), 6.0: (3.0, 1.5)}[pitch]
     found = []

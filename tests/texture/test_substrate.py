@@ -34,10 +34,14 @@ def airy(q: float, poisson: float) -> tuple[float, float]:
 
     def basis(y):
         c, s = np.cosh(y), np.sinh(y)
-        return np.array([
-            [c, s, y * c, y * s], [s, c, c + y * s, s + y * c], [c, s, 2 * s + y * c, 2 * c + y * s],
-            [s, c, 3 * c + y * s, 3 * s + y * c],
-        ])  # fmt: skip
+        return np.array(
+            [
+                [c, s, y * c, y * s],
+                [s, c, c + y * s, s + y * c],
+                [c, s, 2 * s + y * c, 2 * c + y * s],
+                [s, c, 3 * c + y * s, 3 * s + y * c],
+            ]
+        )
 
     top, floor = basis(0.0), basis(q)
     sliding = (1 - poisson) * floor[2] + poisson * floor[0]

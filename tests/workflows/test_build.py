@@ -16,9 +16,17 @@ from pneutouch.output.files import check_writable, replacing, write_folder
 from pneutouch.workflows.build import STEPS, build
 
 FILES = {
-    "paper-dome.3mf", "stl/membrane.stl", "stl/connector.stl", "paper-dome.step", "paper-dome.glb", "datasheet.html",
-    "datasheet.pdf", "prediction.json", "print-sheet.md", "manifest.json",
-}  # fmt: skip
+    "paper-dome.3mf",
+    "stl/membrane.stl",
+    "stl/connector.stl",
+    "paper-dome.step",
+    "paper-dome.glb",
+    "datasheet.html",
+    "datasheet.pdf",
+    "prediction.json",
+    "print-sheet.md",
+    "manifest.json",
+}
 
 
 def content(folder: Path) -> dict[str, bytes]:

@@ -50,8 +50,11 @@ def test_the_document_holds_the_truth_and_is_json(found):
     document = json.loads(json_bytes(found.document))
     estimates = {e["key"]: e for e in document["estimates"]}
     for key, value in (
-        ("shear_modulus_MPa", 0.21), ("wall_thickness_mm", 1.5), ("dead_volume_mL", 0.4), ("contact_offset_mm", 0.0),
-    ):  # fmt: skip
+        ("shear_modulus_MPa", 0.21),
+        ("wall_thickness_mm", 1.5),
+        ("dead_volume_mL", 0.4),
+        ("contact_offset_mm", 0.0),
+    ):
         low, high = estimates[key]["interval_95"]
         assert low < value < high, key
         assert low < estimates[key]["value"] < high
@@ -91,8 +94,9 @@ def test_saved_files_predict_what_was_measured(found, observations, library, tmp
     saved = prepare(found, "dome-A1", tmp_path, library)
     save(saved)
     assert [path.removeprefix(str(tmp_path)) for path in saved.paths] == [
-        "/printprofiles/materials/dome-A1.toml", "/designs/dome-A1.toml",
-    ]  # fmt: skip
+        "/printprofiles/materials/dome-A1.toml",
+        "/designs/dome-A1.toml",
+    ]
     resin = tomllib.loads((tmp_path / "printprofiles/materials/dome-A1.toml").read_text())
     low, high = found.estimates[0]["interval_95"]
     assert 2 * 1.96 * resin["shear_modulus_MPa"]["spread"] == pytest.approx(high - low, rel=1e-3)

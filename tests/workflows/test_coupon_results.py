@@ -39,28 +39,39 @@ def specimen(mu, noise=0.0):
 
 def sizes(nominals, less=0.0, lost=()):
     return [
-        {"nominal_mm": n, "came_out": False} if n in lost else {"nominal_mm": n, "measured_mm": [n - less, n - less - 0.02]}
+        {"nominal_mm": n, "came_out": False}
+        if n in lost
+        else {"nominal_mm": n, "measured_mm": [n - less, n - less - 0.02]}
         for n in nominals
-    ]  # fmt: skip
+    ]
 
 
 def measured():
     """Readings of TangoPlus and of both machines of the paper's sensor."""
     gauge = {
-        "x": sizes((5.0, 20.0), -0.03), "y": sizes((20.0,), 0.05), "z": sizes((10.0,)),
-        "wall": sizes((0.5, 0.6, 0.8, 1.0), lost=(0.5,)), "hole": sizes((0.8, 1.0, 2.0), 0.1),
+        "x": sizes((5.0, 20.0), -0.03),
+        "y": sizes((20.0,), 0.05),
+        "z": sizes((10.0,)),
+        "wall": sizes((0.5, 0.6, 0.8, 1.0), lost=(0.5,)),
+        "hole": sizes((0.8, 1.0, 2.0), 0.1),
         "slot": sizes((0.3, 0.4, 0.5), lost=(0.4,)),
-    }  # fmt: skip
+    }
     return {
-        "lab": "Soft lab", "date": datetime.date(2026, 11, 21),
-        "puck": {"TangoPlus": {
-            "shore_a": [30.0, 31.0, 29.0, 30.0], "mass_g": [1.09, 1.10], "diameter_mm": [20.0, 20.0], "thickness_mm": [3.0, 3.0],
-        }},
+        "lab": "Soft lab",
+        "date": datetime.date(2026, 11, 21),
+        "puck": {
+            "TangoPlus": {
+                "shore_a": [30.0, 31.0, 29.0, 30.0],
+                "mass_g": [1.09, 1.10],
+                "diameter_mm": [20.0, 20.0],
+                "thickness_mm": [3.0, 3.0],
+            }
+        },
         "dumbbell": {"TangoPlus": {"specimen": [specimen(MU - 0.01), specimen(MU), specimen(MU + 0.01)]}},
         "gauge": {"objet260-connex": {"TangoPlus": gauge}, "abs-filament": {"ABS": {"x": sizes((20.0,), 0.3)}}},
         "leak-cap": {"paper-dome": {"start_kPa": [20.0, 20.4], "end_kPa": [19.9, 20.1], "pressure_kPa": [59.0, 58.8]}},
         "volume-plug": {"paper-dome": {"pressure_kPa": [17.7, 17.8], "water_g": [0.99, 1.0]}},
-    }  # fmt: skip
+    }
 
 
 @pytest.fixture
@@ -177,7 +188,10 @@ BAD = [
     (changed(*PULLED, "specimen", [specimen(0.2)]), "1 specimen with a curve; at least 2"),
     (changed(*PULLED, "largest_strain", 0.02), "specimen[1]: 1 points up to a strain of 0.02"),
     (changed(*PULLED, "specimen", [{**specimen(0.2), "force_N": [1.0, 2.0, 3.0]}] * 2), "must have as many"),
-    (changed(*PULLED, "specimen", [{**specimen(0.2), "width_mm": [-6.0, 6.0]}] * 2), "specimen[1].width_mm: reading 1 = -6"),
+    (
+        changed(*PULLED, "specimen", [{**specimen(0.2), "width_mm": [-6.0, 6.0]}] * 2),
+        "specimen[1].width_mm: reading 1 = -6",
+    ),
     (changed("dumbbell", "VeroClear", {"specimen": [specimen(0.2)] * 2}), "is rigid"),
     (changed(*GAUGE, "hole", sizes((0.45, 0.5))), "hole: nominal_mm = 0.45: not on the gauge, which has 0.4, 0.5"),
     (changed(*GAUGE, "hole", sizes((0.5, 0.5))), "there twice"),
@@ -188,7 +202,7 @@ BAD = [
     (changed("volume-plug", "paper-dome", "pressure_kPa", [60.0, 61.0]), "less over the plug than over the cap"),
     (changed("leak-cap", "paper-dome", "end_kPa", []), "one each a run"),
     (changed("leak-cap", "nowhere", {}), "no such name among the designs"),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("content", "said"), BAD, ids=[said[:40] for _, said in BAD])

@@ -151,13 +151,16 @@ BAD = [
     ([SOFT, pulled(0.1, 0.9), pulled(0.2, 0.5)], "0.5 MPa at fraction = 0.2 (dumbbells) after 0.9 MPa at 0.1"),
     ([pulled(0.1, 0.1), pulled(0.2, 0.5)], "after 0.17 MPa at 0 (the catalogue)"),
     ([SOFT, pulled(0.1, 90.0)], "makes a shear modulus of 89.1 MPa"),
-    ([SOFT, {"fraction": 0.1, "dumbbell": {"specimen": [specimen(0.5)]}}], "mixing.TangoPlus+VeroClear[2].dumbbell: 1 specimen"),
+    (
+        [SOFT, {"fraction": 0.1, "dumbbell": {"specimen": [specimen(0.5)]}}],
+        "mixing.TangoPlus+VeroClear[2].dumbbell: 1 specimen",
+    ),
     ([SOFT, read(0.1, 40.0, 41.0)], "shore_a at fraction = 0 is missing"),
     ([read(0.0, 27.0, 28.0), read(0.1, 97.0, 98.0)], "97.5 on average"),
     ([SOFT, read(0.1, 40.0, 141.0)], "[2].shore_a: reading 2 = 141"),
     ([SOFT, {"fraction": 0.1, "shore": [1.0]}], "unknown key. Did you mean shore_a"),
     ([SOFT], "readings at fraction = 0 alone make no curve"),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("points", "said"), BAD, ids=[said[:30] for _, said in BAD])

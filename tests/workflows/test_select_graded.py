@@ -16,9 +16,19 @@ from pneutouch.workflows.select.graded import select_graded
 from tests.conftest import ROOT
 
 FLAT = [
-    "select", "--graded", "--sensitivity", "1.9", "--tolerance", "2%", "--same-at", "0,22", "--wall", "1.2",
-    "--base", "paper-dome",
-]  # fmt: skip
+    "select",
+    "--graded",
+    "--sensitivity",
+    "1.9",
+    "--tolerance",
+    "2%",
+    "--same-at",
+    "0,22",
+    "--wall",
+    "1.2",
+    "--base",
+    "paper-dome",
+]
 """The command of docs/graded.md."""
 
 
@@ -40,11 +50,14 @@ def short(shallow):
     """Few trials for a wish that is easily met."""
     content = {
         "target": {
-            "sensitivity_kPa_per_N": 1.9, "same_sensitivity_at_kPa": [0.0, 22.0], "tolerance_percent": 25.0,
+            "sensitivity_kPa_per_N": 1.9,
+            "same_sensitivity_at_kPa": [0.0, 22.0],
+            "tolerance_percent": 25.0,
             "same_within_percent": 8.0,
         },
-        "given": {"graded": True, "wall_thickness_mm": 1.2}, "setting": {"base": shallow},
-    }  # fmt: skip
+        "given": {"graded": True, "wall_thickness_mm": 1.2},
+        "setting": {"base": shallow},
+    }
     return select_graded(Target.model_validate(content), "test", trials=4)
 
 
@@ -96,8 +109,9 @@ def test_the_same_sensitivity_at_two_pressures_that_no_constant_membrane_has(tmp
 def test_a_grade_widens_the_force_range_at_a_sensitivity():
     content = {
         "target": {"sensitivity_kPa_per_N": 1.9, "tolerance_percent": 2.0, "widest_range": True},
-        "given": {"graded": True, "wall_thickness_mm": 1.5}, "setting": {"base": "paper-dome"},
-    }  # fmt: skip
+        "given": {"graded": True, "wall_thickness_mm": 1.5},
+        "setting": {"base": "paper-dome"},
+    }
     found = select_graded(Target.model_validate(content), "test")
     assert found.search.met
     assert found.search.best.reach > 1.01 * found.nearest.trial.reach
@@ -125,17 +139,42 @@ def test_an_unreachable_target_exits_1_with_the_nearest_and_why(monkeypatch):
         (["--graded", "--sensitivity", "1.9", "--same-at", "22,0"], "two rising driving pressures"),
         (["--graded", "--sensitivity", "1.9", "--same-at", "some"], "--same-at some"),
         (["--graded", "--sensitivity", "1.9", "--same-at", "0,22", "--at", "5"], "contradict each other"),
-        (["--graded", "--sensitivity", "1.9", "--same-at", "0,22", "--material", "FLX9940"], "materials and a mix contradict"),
-        (["--graded", "--sensitivity", "1.9", "--same-at", "0,22", "--pick", "2"], "--pick cannot be given with --graded"),
-        (["--graded", "--sensitivity", "1.9", "--same-at", "0,22", "--profile", "abs-filament"],
-         "the ABS filament printer, 0.4 mm nozzle cannot mix TangoPlus with VeroClear; it runs ABS"),
+        (
+            ["--graded", "--sensitivity", "1.9", "--same-at", "0,22", "--material", "FLX9940"],
+            "materials and a mix contradict",
+        ),
+        (
+            ["--graded", "--sensitivity", "1.9", "--same-at", "0,22", "--pick", "2"],
+            "--pick cannot be given with --graded",
+        ),
+        (
+            ["--graded", "--sensitivity", "1.9", "--same-at", "0,22", "--profile", "abs-filament"],
+            "the ABS filament printer, 0.4 mm nozzle cannot mix TangoPlus with VeroClear; it runs ABS",
+        ),
         (["--sensitivity", "1.9", "--mix", "TangoPlus"], "given.mix = 'TangoPlus'"),
         (["--sensitivity", "1.9", "--mix", "TangoPlus+Vero"], "TangoPlus+Vero"),
-        (["--graded", "--sensitivity", "1.9", "--same-at", "0,22", "--wall", "0.2"], "the printer's least wall is 0.6 mm"),
-        (["--graded", "--sensitivity", "1.9", "--same-at", "0,22", "--base", "paper-dome", "--wall", "1.5", "--max-diameter", "20"],
-         "is 21.5 mm wide"),
+        (
+            ["--graded", "--sensitivity", "1.9", "--same-at", "0,22", "--wall", "0.2"],
+            "the printer's least wall is 0.6 mm",
+        ),
+        (
+            [
+                "--graded",
+                "--sensitivity",
+                "1.9",
+                "--same-at",
+                "0,22",
+                "--base",
+                "paper-dome",
+                "--wall",
+                "1.5",
+                "--max-diameter",
+                "20",
+            ],
+            "is 21.5 mm wide",
+        ),
     ],
-)  # fmt: skip
+)
 def test_bad_input_is_named(flags, said):
     result = run("select", *flags)
     assert result.exit_code == 2, result.output

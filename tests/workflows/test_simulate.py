@@ -21,9 +21,14 @@ from pneutouch.workflows.simulate.run import simulate
 
 R0 = 9.25
 ASKED = SimulationOptions(
-    specimens=2, driving_pressures_kPa=(0.0, 22.0), runs=2, kinds=("steps", "loop", "leak", "injection"), rate=50.0, model="atlas",
+    specimens=2,
+    driving_pressures_kPa=(0.0, 22.0),
+    runs=2,
+    kinds=("steps", "loop", "leak", "injection"),
+    rate=50.0,
+    model="atlas",
     truth=SimulationTruth(rest=2.0, specimens=400),
-)  # fmt: skip
+)
 
 
 @pytest.fixture(scope="module")

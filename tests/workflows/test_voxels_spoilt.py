@@ -63,13 +63,22 @@ def swapped(folder):
 
 
 SPOILED = {
-    "palette": (lambda f: other_slice(f, 40, lambda p: p.convert("P")), r"_40\.png: the PNG is an indexed palette; a slice must be RGBA"),
+    "palette": (
+        lambda f: other_slice(f, 40, lambda p: p.convert("P")),
+        r"_40\.png: the PNG is an indexed palette; a slice must be RGBA",
+    ),
     "RGB": (lambda f: other_slice(f, 40, lambda p: p.convert("RGB")), r"_40\.png: the PNG is RGB without alpha"),
-    "stray": (lambda f: repainted(f, 40, spoil=(7, 9)), r"_40\.png: the pixel in column 9, row 7 is \(12, 200, 34, 255\), which stands for no resin"),
+    "stray": (
+        lambda f: repainted(f, 40, spoil=(7, 9)),
+        r"_40\.png: the pixel in column 9, row 7 is \(12, 200, 34, 255\), which stands for no resin",
+    ),
     "size": (lambda f: repainted(f, 40, cut=-1), r"_40\.png: \d+ x \d+ pixels; all slices must be"),
     "dpi": (lambda f: repainted(f, 40, dpi=(300, 600)), r"_40\.png: states 300 x 600 dpi; must be 600 x 300 dpi"),
     "gap": (lambda f: (f / "graded-dome_40.png").unlink(), r"graded-dome_40\.png is missing"),
-    "last": (lambda f: shutil.copy(f / "graded-dome_0.png", f / "graded-dome_9999.png"), r"is missing; slices must be numbered without gaps"),
+    "last": (
+        lambda f: shutil.copy(f / "graded-dome_0.png", f / "graded-dome_9999.png"),
+        r"is missing; slices must be numbered without gaps",
+    ),
     "padded": (lambda f: (f / "graded-dome_4.png").rename(f / "graded-dome_04.png"), r"_04\.png: is no slice"),
     "truncated": (truncated, r"_40\.png: the PNG is cut off"),
     "damaged": (flipped, r"_40\.png: the PNG is damaged"),
@@ -80,7 +89,7 @@ SPOILED = {
     "altered hash": (altered("slices", ["0" * 64]), r"sha256 is not that of its slices"),
     "missing key": (altered("dpi", None), r"stack\.json: dpi is missing"),
     "text": (lambda f: (f / "graded-dome_40.png").write_text("x"), r"_40\.png: not a PNG file"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("case", SPOILED)

@@ -83,9 +83,18 @@ def simulate(
 
     pressures_kPa = None if driving_pressures_kPa is None else _floats(driving_pressures_kPa)
     options = SimulationOptions(
-        tuple(resins), specimens, pressures_kPa, runs, tuple(kinds), rate_Hz, seed, model, _floats(ages_days), parquet,
+        tuple(resins),
+        specimens,
+        pressures_kPa,
+        runs,
+        tuple(kinds),
+        rate_Hz,
+        seed,
+        model,
+        _floats(ages_days),
+        parquet,
         SimulationTruth(rest=rest_s),
-    )  # fmt: skip
+    )
     with named_by_keyword():
         return run(source_of(design), Path(out), None, options)
 

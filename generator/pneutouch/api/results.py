@@ -38,9 +38,7 @@ class CheckResult(show.Shown):
 class Result(show.Shown):
     """What a workflow found, by key as its command prints it as JSON; `save` writes its folder."""
 
-    def __init__(
-        self, title: str, document: dict[str, Any], write: Callable[[Path], Path] | None = None
-    ) -> None:  # fmt: skip
+    def __init__(self, title: str, document: dict[str, Any], write: Callable[[Path], Path] | None = None) -> None:
         self.title, self._document, self._write = title, document, write
 
     def __getitem__(self, key: str) -> Any:

@@ -31,9 +31,11 @@ class ArcProfile:
         step = x[k + 1] - x[k]
         t = (at - x[k]) / step
         return np.asarray(
-            (1 + 2 * t) * (1 - t) ** 2 * y[k] + t * (1 - t) ** 2 * step * slope[k]
-            + t**2 * (3 - 2 * t) * y[k + 1] - t**2 * (1 - t) * step * slope[k + 1]
-        )  # fmt: skip
+            (1 + 2 * t) * (1 - t) ** 2 * y[k]
+            + t * (1 - t) ** 2 * step * slope[k]
+            + t**2 * (3 - 2 * t) * y[k + 1]
+            - t**2 * (1 - t) * step * slope[k + 1]
+        )
 
 
 def _slopes(x: Array, y: Array) -> Array:

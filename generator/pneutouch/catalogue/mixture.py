@@ -152,8 +152,8 @@ def mixed_material(grade: Grade, library: Library, *, file: str | None, key: str
     content["elongation_at_break_percent"] = _elongation(law, fraction)
     if not grade.is_constant:
         content["along"] = ArcGrading(
-            arc=arc.tolist(), stiff_fraction=fraction.tolist(), shear_modulus_MPa=law.modulus_at(fraction).tolist(),
-        ).model_dump()  # fmt: skip
+            arc=arc.tolist(), stiff_fraction=fraction.tolist(), shear_modulus_MPa=law.modulus_at(fraction).tolist()
+        ).model_dump()
     return Material.model_validate({name: value for name, value in content.items() if value is not None})
 
 
@@ -177,15 +177,18 @@ def _content(grade: Grade, soft: Material, stiff: Material, share: float) -> dic
     fractions = {name: part for name, part in ((grade.from_, 1 - share), (grade.to, share)) if part > 0}
     whole = grade.is_constant and len(fractions) == 2
     return {
-        "title": grade.label, "code": f"{soft.code}{round(100 * share):02d}{'' if grade.is_constant else 'G'}", "kind": "elastomer",
-        "base_resins": list(fractions), "colour": _between(soft.colour, stiff.colour, share),
+        "title": grade.label,
+        "code": f"{soft.code}{round(100 * share):02d}{'' if grade.is_constant else 'G'}",
+        "kind": "elastomer",
+        "base_resins": list(fractions),
+        "colour": _between(soft.colour, stiff.colour, share),
         "density_g_per_cm3": {
             "value": (1 - share) * soft.density_g_per_cm3.nominal + share * stiff.density_g_per_cm3.nominal,
             "source": f"by volume from {grade.from_} and {grade.to}",
         },
         "poisson_ratio": None if soft.poisson_ratio is None else soft.poisson_ratio.model_dump(exclude_none=True),
         "mix": {"fractions": fractions, "source": "as designed: printed by voxels"} if whole else None,
-    }  # fmt: skip
+    }
 
 
 def _elongation(law: ResolvedMixingCurve, fraction: Array) -> dict[str, Any] | None:

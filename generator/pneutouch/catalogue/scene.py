@@ -65,8 +65,7 @@ class ResolvedDesign:
         One tolerance for the assembly, so that faces shared by two bodies carry the same vertices.
         """
         return min(
-            self.printer.finest_step(self.membrane_mode),
-            self.connector_printer.finest_step(self.connector_mode),
+            self.printer.finest_step(self.membrane_mode), self.connector_printer.finest_step(self.connector_mode)
         )
 
     @property
@@ -115,7 +114,9 @@ def _resolved(name: str, where: str, design: DesignFile, library: Library) -> Re
         return library.load(kind, chosen, file=where, key=f"{table}.{key}")
 
     scene = ResolvedDesign(
-        name=name, where=where, design=design,
+        name=name,
+        where=where,
+        design=design,
         membrane_material=_membrane_material(design, where, library),
         connector_material=find("materials", "connector", "material"),
         printer=find("printers", "print", "profile"),
@@ -124,7 +125,7 @@ def _resolved(name: str, where: str, design: DesignFile, library: Library) -> Re
         port=find("ports", "connector", "port"),
         seat=find("seats", "connector", "seat"),
         mount=find("mounts", "connector", "mount"),
-    )  # fmt: skip
+    )
     check_scene(scene)
     return scene
 

@@ -72,9 +72,12 @@ def option(command: Any, parameter: str) -> str | None:
 
 app = typer.Typer(
     cls=Commands,
-    add_completion=False, no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False,
+    add_completion=False,
+    no_args_is_help=True,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
     help="Pneumatic touch sensors: from a design file to print files, a prediction and a datasheet.",
-)  # fmt: skip
+)
 
 DesignArgument = Annotated[str, typer.Argument(metavar="DESIGN", help="Name of a design, or path of a TOML file.")]
 SetOption = Annotated[
@@ -144,16 +147,24 @@ def main(
 
 @app.command()
 def predict(
-    design: DesignArgument, set_: SetOption = None, model: ModelOption = None, tolerance: ToleranceOption = None,
-    closure: ClosureOption = "variational", clamp: ClampOption = "base",
+    design: DesignArgument,
+    set_: SetOption = None,
+    model: ModelOption = None,
+    tolerance: ToleranceOption = None,
+    closure: ClosureOption = "variational",
+    clamp: ClampOption = "base",
     monte_carlo: Annotated[
-        int, typer.Option(metavar="N", min=0, max=1_000_000, help="Check the uncertainty by N samples; about 0.1 s for 1000 a state.")
+        int,
+        typer.Option(
+            metavar="N", min=0, max=1_000_000, help="Check the uncertainty by N samples; about 0.1 s for 1000 a state."
+        ),
     ] = 0,
     aged: Annotated[
-        bool, typer.Option("--aged", help="After a year in light and air: the modulus shifted by the resin's hardness then.")
+        bool,
+        typer.Option("--aged", help="After a year in light and air: the modulus shifted by the resin's hardness then."),
     ] = False,
     json: JsonOption = False,
-) -> None:  # fmt: skip
+) -> None:
     """Predict the figures and their uncertainty."""
     with reporting():
         from pneutouch.evaluation.document import full_document

@@ -47,11 +47,22 @@ VoxelModeOption = Annotated[
 @app.command()
 def build(
     context: typer.Context,
-    design: Annotated[str, typer.Argument(metavar="DESIGN", help="Name of a design or specimen, path of a TOML file, or a 3MF that was built.")],
-    set_: SetOption = None, model: ModelOption = None, tolerance: ToleranceOption = None,
-    closure: ClosureOption = "variational", clamp: ClampOption = "base", out: OutOption = Path("outputs"),
-    voxels: VoxelsOption = False, voxel_mode: VoxelModeOption = None, json: JsonOption = False,
-) -> None:  # fmt: skip
+    design: Annotated[
+        str,
+        typer.Argument(
+            metavar="DESIGN", help="Name of a design or specimen, path of a TOML file, or a 3MF that was built."
+        ),
+    ],
+    set_: SetOption = None,
+    model: ModelOption = None,
+    tolerance: ToleranceOption = None,
+    closure: ClosureOption = "variational",
+    clamp: ClampOption = "base",
+    out: OutOption = Path("outputs"),
+    voxels: VoxelsOption = False,
+    voxel_mode: VoxelModeOption = None,
+    json: JsonOption = False,
+) -> None:
     """Build everything: print files, prediction, datasheet. A 3MF is built again from the recipe in it."""
     with reporting():
         stack: Path | None = None
@@ -62,9 +73,10 @@ def build(
             name, folder, findings = _build_specimen(design, out, changes(set_))
         else:
             evaluation = (
-                _from_3mf(design, context) if design.lower().endswith(".3mf")
+                _from_3mf(design, context)
+                if design.lower().endswith(".3mf")
                 else _evaluated(design, changes(set_), model, tolerance, closure=closure, clamp=clamp)
-            )  # fmt: skip
+            )
             plan = _planned(evaluation, out, voxel_mode) if voxels or voxel_mode else None
             name, folder, findings = _build_sensor(evaluation, out)
             stack = None if plan is None else _write_voxels(plan, evaluation, out)
@@ -80,11 +92,13 @@ def build(
 
 @app.command()
 def check(
-    context: typer.Context, design: DesignArgument, set_: SetOption = None,
+    context: typer.Context,
+    design: DesignArgument,
+    set_: SetOption = None,
     deep: Annotated[bool, typer.Option("--deep", help="Have pymeshlab (an extra) inspect the meshes as well.")] = False,
     voxels: Annotated[bool, typer.Option("--voxels", help="Check as well what a voxel stack must keep to.")] = False,
     json: JsonOption = False,
-) -> None:  # fmt: skip
+) -> None:
     """Check printability and mechanical limits; exit 1 where a rule is broken."""
     with reporting():
         if _is_specimen(design):

@@ -13,16 +13,30 @@ from pneutouch.cli.app import JsonOption, OutOption, app, print_json, reporting
 @app.command()
 def calibrate(
     data: Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="Folder of a campaign, or its campaign file.")],
-    design: Annotated[str | None, typer.Option(metavar="DESIGN", help="Design that the sensor was made to.", show_default="the campaign's")] = None,
-    sensor: Annotated[str | None, typer.Option(metavar="NAME", help="Sensor of the campaign.", show_default="its only one")] = None,
-    fit: Annotated[str, typer.Option(metavar="NAMES", help="What to fit: modulus, wall, dead-volume, offset.")] = "modulus,dead-volume,wall,offset",
-    hold_out: Annotated[list[float] | None, typer.Option(metavar="KPA", help="Driving pressure to predict by the others; may be repeated.")] = None,
+    design: Annotated[
+        str | None,
+        typer.Option(metavar="DESIGN", help="Design that the sensor was made to.", show_default="the campaign's"),
+    ] = None,
+    sensor: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Sensor of the campaign.", show_default="its only one")
+    ] = None,
+    fit: Annotated[
+        str, typer.Option(metavar="NAMES", help="What to fit: modulus, wall, dead-volume, offset.")
+    ] = "modulus,dead-volume,wall,offset",
+    hold_out: Annotated[
+        list[float] | None,
+        typer.Option(metavar="KPA", help="Driving pressure to predict by the others; may be repeated."),
+    ] = None,
     no_priors: Annotated[bool, typer.Option("--no-priors", help="Leave aside what is known before measuring.")] = False,
-    save: Annotated[str | None, typer.Option(metavar="NAME", help="Write resin and design of this name into the working folder.")] = None,
-    shadow: Annotated[bool, typer.Option("--shadow", help="With --save: NAME may hide a resin or design of that name.")] = False,
+    save: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Write resin and design of this name into the working folder.")
+    ] = None,
+    shadow: Annotated[
+        bool, typer.Option("--shadow", help="With --save: NAME may hide a resin or design of that name.")
+    ] = False,
     out: OutOption = Path("outputs"),
     json: JsonOption = False,
-) -> None:  # fmt: skip
+) -> None:
     """Fit modulus, wall, dead volume and contact offset to a sensor's runs."""
     with reporting():
         from pneutouch.cli.progress import bar

@@ -12,13 +12,25 @@ from pneutouch.cli.app import JsonOption, OutOption, SetOption, app, changes, pr
 
 @app.command()
 def characterize(
-    data: Annotated[Path, typer.Argument(metavar="DATA", help="Folder of a campaign, its campaign.toml, or one run's file.")],
-    design: Annotated[str | None, typer.Option("--design", help="Design of the sensors; left out: the campaign's.")] = None,
-    target: Annotated[Path | None, typer.Option("--target", metavar="FILE", help="Target file (TOML) to pass or fail against.")] = None,
-    model: Annotated[str, typer.Option("--model", help="Model of the prediction: membrane, atlas, solid or auto.")] = "solid",
-    evidence: Annotated[str, typer.Option("--evidence", help="Runs whose evidence is plotted: doubtful, all or none.")] = "doubtful",
-    set_: SetOption = None, out: OutOption = Path("outputs"), json: JsonOption = False,
-) -> None:  # fmt: skip
+    data: Annotated[
+        Path, typer.Argument(metavar="DATA", help="Folder of a campaign, its campaign.toml, or one run's file.")
+    ],
+    design: Annotated[
+        str | None, typer.Option("--design", help="Design of the sensors; left out: the campaign's.")
+    ] = None,
+    target: Annotated[
+        Path | None, typer.Option("--target", metavar="FILE", help="Target file (TOML) to pass or fail against.")
+    ] = None,
+    model: Annotated[
+        str, typer.Option("--model", help="Model of the prediction: membrane, atlas, solid or auto.")
+    ] = "solid",
+    evidence: Annotated[
+        str, typer.Option("--evidence", help="Runs whose evidence is plotted: doubtful, all or none.")
+    ] = "doubtful",
+    set_: SetOption = None,
+    out: OutOption = Path("outputs"),
+    json: JsonOption = False,
+) -> None:
     """Turn measured runs into figures and compare them with the prediction; exit 3 where files could not be read."""
     with reporting():
         from pneutouch.cli.progress import bar

@@ -17,7 +17,9 @@ def measured_text(document: dict[str, Any]) -> str:
         word = {True: "met", False: "NOT met", None: "not decided"}[entry["passed"]]
         lines.append(f"\ntarget {word}: {entry['what']}: required {entry['required']}, measured {entry['measured']}")
     for change in document["ageing"]:
-        lines.append(f"\nageing: {change['resin']}, {change['driving_pressure_kPa']:g} kPa, {change['age']}: {change['sensitivity_change_percent']:+.1f} %")  # fmt: skip
+        lines.append(
+            f"\nageing: {change['resin']}, {change['driving_pressure_kPa']:g} kPa, {change['age']}: {change['sensitivity_change_percent']:+.1f} %"
+        )
     for entry in document["injections"]:
         error = "" if entry["standard_error"] is None else f" ± {entry['standard_error']:.2g}"
         lines.append(f"\n{entry['sensor']}: {entry['figure']} {entry['value']:.4g}{error} {entry['unit']}")

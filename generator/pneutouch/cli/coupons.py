@@ -24,16 +24,30 @@ _FLAGS = {
 
 @app.command()
 def coupons(
-    profile: Annotated[str | None, typer.Option(help="Printer to make coupons for.", show_default="the design's, else objet260-connex")] = None,
-    material: Annotated[list[str] | None, typer.Option(help="Resin; may be repeated.", show_default="the design's membrane, else TangoPlus")] = None,
-    mixing: Annotated[list[str] | None, typer.Option(metavar="SOFT+STIFF", help="Two resins: coupons of eight mixes of them.")] = None,
+    profile: Annotated[
+        str | None, typer.Option(help="Printer to make coupons for.", show_default="the design's, else objet260-connex")
+    ] = None,
+    material: Annotated[
+        list[str] | None,
+        typer.Option(help="Resin; may be repeated.", show_default="the design's membrane, else TangoPlus"),
+    ] = None,
+    mixing: Annotated[
+        list[str] | None, typer.Option(metavar="SOFT+STIFF", help="Two resins: coupons of eight mixes of them.")
+    ] = None,
     design: Annotated[str | None, typer.Option(metavar="DESIGN", help="Design that cap and plug belong to.")] = None,
     only: Annotated[list[str] | None, typer.Option(help="Coupons, such as puck,dumbbell; left out: all.")] = None,
-    copies: Annotated[list[str] | None, typer.Option(metavar="COUPON=N", help="Copies, such as puck=4; may be repeated.")] = None,
-    results: Annotated[Path | None, typer.Option(metavar="FILE", help="Filled results file: writes profiles of your own.")] = None,
-    out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder.", show_default="outputs; with --results the working folder")] = None,
+    copies: Annotated[
+        list[str] | None, typer.Option(metavar="COUPON=N", help="Copies, such as puck=4; may be repeated.")
+    ] = None,
+    results: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Filled results file: writes profiles of your own.")
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="DIR", help="Folder.", show_default="outputs; with --results the working folder"),
+    ] = None,
     json: JsonOption = False,
-) -> None:  # fmt: skip
+) -> None:
     """Make test prints to measure a printer and its resins, or enter what was measured."""
     given = {key: value for key, value in locals().items() if key in _FLAGS and value}
     with reporting():

@@ -20,9 +20,7 @@ if TYPE_CHECKING:
     from pneutouch.workflows.select.graded import GradedSelectionRun
 
 
-def select_graded(
-    target: Target, where: str, write: str | None, out: Path, *, json: bool, refused: list[str]
-) -> None:  # fmt: skip
+def select_graded(target: Target, where: str, write: str | None, out: Path, *, json: bool, refused: list[str]) -> None:
     """Search, show and save a grade. Exits 1 where none meets the target; ``refused`` are flags that do not go with it."""
     from pneutouch.workflows.select import graded_document as shown
     from pneutouch.workflows.select.graded import select_graded as run
@@ -50,7 +48,15 @@ def graded_text(selection: GradedSelectionRun) -> str:
 
     best, sensor, grade_target = selection.search.best, selection.sensor, selection.grade_target
     pressures = [f"{p / KPA:g} kPa" for p in grade_target.pressures]
-    head = ["", *(f"S {p}" for p in pressures), *(["apart"] if len(pressures) > 1 else []), *(f"range {p}" for p in pressures), "ends with", "rated kPa", "meets"]  # fmt: skip
+    head = [
+        "",
+        *(f"S {p}" for p in pressures),
+        *(["apart"] if len(pressures) > 1 else []),
+        *(f"range {p}" for p in pressures),
+        "ends with",
+        "rated kPa",
+        "meets",
+    ]
     rows = [["graded: " + selection.grade.label, *_row(selection, best)]]
     rows += [[constant.name, *_row(selection, constant.trial)] for constant in selection.constants]
     size = f"R0 {sensor.dome.inner_radius:g} mm, t0 {sensor.dome.wall_thickness:g} mm, on {selection.base.where}"
@@ -71,6 +77,10 @@ def _row(selection: GradedSelectionRun, trial: GradeTrial) -> list[str]:
     apart = [f"{100 * trial.difference:+.1f} %"] if len(trial.sensitivity_kPa_per_N) > 1 else []
     rated = "-" if trial.note else f"{trial.rated / KPA:.1f}"
     return [
-        *(f"{value:.3f}" for value in trial.sensitivity_kPa_per_N), *apart, *(f"{value:.1f} N" for value in trial.force),
-        ", ".join(dict.fromkeys(trial.ends)) or "-", rated, "yes" if selection.meets(trial) else "no",
-    ]  # fmt: skip
+        *(f"{value:.3f}" for value in trial.sensitivity_kPa_per_N),
+        *apart,
+        *(f"{value:.1f} N" for value in trial.force),
+        ", ".join(dict.fromkeys(trial.ends)) or "-",
+        rated,
+        "yes" if selection.meets(trial) else "no",
+    ]

@@ -17,10 +17,13 @@ def plan(
     resins: ResinsOption = "",
     specimens: SpecimensOption = 3,
     rig: Annotated[
-        Path | None, typer.Option("--rig", metavar="RIG.toml", help="File with a [rig] table; left out: the paper's rig.")
+        Path | None,
+        typer.Option("--rig", metavar="RIG.toml", help="File with a [rig] table; left out: the paper's rig."),
     ] = None,
-    set_: SetOption = None, out: OutOption = Path("outputs"), json: JsonOption = False,
-) -> None:  # fmt: skip
+    set_: SetOption = None,
+    out: OutOption = Path("outputs"),
+    json: JsonOption = False,
+) -> None:
     """Plan a measurement campaign: every run and step, what it must read, and where the rig cannot follow."""
     with reporting():
         from pneutouch.workflows.plan.run import make_plan, rig_of, write_plan

@@ -21,16 +21,34 @@ def scan(
     context: typer.Context,
     specimen: Annotated[str, typer.Argument(metavar="SPECIMEN", help="Name of a specimen, or path of its TOML file.")],
     design: Annotated[str, typer.Option("--design", help="Sensor that scans: name of a design, or path.")],
-    pressures: Annotated[str, typer.Option(metavar="KPA,KPA", help="Driving pressures, kPa; empty: measured data alone.")] = "0,22",
+    pressures: Annotated[
+        str, typer.Option(metavar="KPA,KPA", help="Driving pressures, kPa; empty: measured data alone.")
+    ] = "0,22",
     preload: Annotated[float, typer.Option(help="Normal force at which the height is set, N.")] = 0.5,
     speed: Annotated[float | None, typer.Option(help="Speed along the path, mm/s; left out: the specimen's.")] = None,
     control: Annotated[str, typer.Option(help="What is held along the path: height or force.")] = "height",
-    noise: Annotated[float | None, typer.Option(help="White noise of a sample, kPa rms; left out: one step of the recorder.")] = None,
+    noise: Annotated[
+        float | None, typer.Option(help="White noise of a sample, kPa rms; left out: one step of the recorder.")
+    ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the noise.")] = 0,
-    data: Annotated[list[Path] | None, typer.Option("--data", metavar="FILE", help="Measured signal, CSV with time_s and pressure_kPa; may be repeated.")] = None,
-    separate: Annotated[str | None, typer.Option("--separate", metavar="PITCH@DEPTH,PITCH@DEPTH", help="Instead: rank domes by how well they separate two patterns, mm.")] = None,
-    set_: SetOption = None, out: OutOption = Path("outputs"), json: JsonOption = False,
-) -> None:  # fmt: skip
+    data: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--data", metavar="FILE", help="Measured signal, CSV with time_s and pressure_kPa; may be repeated."
+        ),
+    ] = None,
+    separate: Annotated[
+        str | None,
+        typer.Option(
+            "--separate",
+            metavar="PITCH@DEPTH,PITCH@DEPTH",
+            help="Instead: rank domes by how well they separate two patterns, mm.",
+        ),
+    ] = None,
+    set_: SetOption = None,
+    out: OutOption = Path("outputs"),
+    json: JsonOption = False,
+) -> None:
     """Scan a specimen with a sensor: signals, scalograms and which pattern each state shows."""
     with reporting():
         options = _options(pressures, preload, speed, control, noise, seed, data or [])

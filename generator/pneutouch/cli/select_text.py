@@ -75,8 +75,15 @@ def _row(choice: Candidate) -> list[str]:
     pool = choice.pool
     end = int(pool.response.ends[0])
     return [
-        choice.resin.name, f"{pool.radius[0]:.2f}", f"{pool.wall[0]:.2f}", f"{pool.pressure[0] / KPA:.2f}",
-        f"{pool.response.lines.sensitivity_kPa_per_N[0]:.3f}", f"{100 * choice.expanded:.0f} %", f"0-{pool.force[0]:.2f}",
-        f"{'depth' if end == DEPTH else ENDS[end]}", f"{choice.span[0]:.2f}..{choice.span[1]:.2f}", f"{choice.rated / KPA:.1f}",
+        choice.resin.name,
+        f"{pool.radius[0]:.2f}",
+        f"{pool.wall[0]:.2f}",
+        f"{pool.pressure[0] / KPA:.2f}",
+        f"{pool.response.lines.sensitivity_kPa_per_N[0]:.3f}",
+        f"{100 * choice.expanded:.0f} %",
+        f"0-{pool.force[0]:.2f}",
+        f"{'depth' if end == DEPTH else ENDS[end]}",
+        f"{choice.span[0]:.2f}..{choice.span[1]:.2f}",
+        f"{choice.rated / KPA:.1f}",
         f"{choice.binding} ({100 * choice.margins[choice.binding]:+.0f} %)",
-    ]  # fmt: skip
+    ]

@@ -13,10 +13,14 @@ from pneutouch.cli.app import JsonOption, app, print_json, refuse_flags, reporti
 @app.command()
 def show(
     context: typer.Context,
-    file: Annotated[Path, typer.Argument(metavar="FILE.3mf", help="A 3MF, ours or not; or the folder of a voxel stack.")],
-    out: Annotated[Path | None, typer.Option("--out", metavar="FILE.png", help="Picture of a voxel stack's sections.")] = None,
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE.3mf", help="A 3MF, ours or not; or the folder of a voxel stack.")
+    ],
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="FILE.png", help="Picture of a voxel stack's sections.")
+    ] = None,
     json: JsonOption = False,
-) -> None:  # fmt: skip
+) -> None:
     """Show a 3MF: its bodies, its metadata and the recipe it was built from. Of a voxel stack: what lies in it."""
     with reporting():
         if file.is_dir() and file.suffix.lower() != ".3mf":

@@ -26,34 +26,53 @@ def stack_text(document: dict[str, Any]) -> str:
     )
     machine = f"for the {document['printer']} in the mode {document['mode']}" if "printer" in document else ""
     resins = [
-        [resin, ", ".join(map(str, entry["rgba"])), str(entry["voxels"]), f"{entry['volume_mm3']:.2f}", f"{entry['share_of_the_print']:.3%}"]
+        [
+            resin,
+            ", ".join(map(str, entry["rgba"])),
+            str(entry["voxels"]),
+            f"{entry['volume_mm3']:.2f}",
+            f"{entry['share_of_the_print']:.3%}",
+        ]
         for resin, entry in document["resins"].items()
-    ]  # fmt: skip
+    ]
     bodies = [
         [
-            name, str(body["voxels"]), f"{body['volume_mm3']:.2f}", f"{body['volume_mm3'] / body['exact_volume_mm3'] - 1:+.2%}",
+            name,
+            str(body["voxels"]),
+            f"{body['volume_mm3']:.2f}",
+            f"{body['volume_mm3'] / body['exact_volume_mm3'] - 1:+.2%}",
             body.get("stiff_resin", "-"),
             *(f"{body[key]:.3%}" if key in body else "-" for key in ("fraction_requested", "fraction_realised")),
         ]
         for name, body in document["bodies"].items()
-    ]  # fmt: skip
-    return "\n".join([
-        about, *([machine] if machine else []), "",
-        columns(["resin", "RGBA", "voxels", "volume mm3", "share"], resins), "",
-        columns(["body", "voxels", "volume mm3", "off exact", "dithered in", "designed", "realised"], bodies), "",
-        *(f"assumed: {line}" for line in document.get("assumptions", [])),
-    ])  # fmt: skip
+    ]
+    return "\n".join(
+        [
+            about,
+            *([machine] if machine else []),
+            "",
+            columns(["resin", "RGBA", "voxels", "volume mm3", "share"], resins),
+            "",
+            columns(["body", "voxels", "volume mm3", "off exact", "dithered in", "designed", "realised"], bodies),
+            "",
+            *(f"assumed: {line}" for line in document.get("assumptions", [])),
+        ]
+    )
 
 
 def _bodies(document: dict[str, Any]) -> str:
     head = ["body", "material", "colour", "size mm", "volume mm3", "triangles"]
     rows = [
         [
-            body["name"] or "-", body["material"] or "-", body["colour"] or "-",
-            " x ".join(f"{length:.2f}" for length in body["size_mm"]), f"{body['volume_mm3']:.1f}", str(body["triangles"]),
+            body["name"] or "-",
+            body["material"] or "-",
+            body["colour"] or "-",
+            " x ".join(f"{length:.2f}" for length in body["size_mm"]),
+            f"{body['volume_mm3']:.1f}",
+            str(body["triangles"]),
         ]
         for body in document["bodies"]
-    ]  # fmt: skip
+    ]
     mixes = [
         f"{body['name']} is mixed from " + ", ".join(f"{ratio:.1%} {resin}" for resin, ratio in body["mix"].items())
         for body in document["bodies"]
@@ -79,10 +98,13 @@ def _recipe(recipe: dict[str, Any] | None) -> list[str]:
     other = recipe["other_versions"]
     libraries = [f"{name} {version}" for name, version in recipe["versions"].items() if name != "pneutouch"]
     made = {
-        "made by": f"pneutouch {recipe['version']}", "made with": ", ".join(libraries) or "-", "input hash": recipe["input_hash"],
+        "made by": f"pneutouch {recipe['version']}",
+        "made with": ", ".join(libraries) or "-",
+        "input hash": recipe["input_hash"],
         **({"other versions": ", ".join(other)} if other else {}),
-        **settings, "compared resins": ", ".join(inputs["compared_resins"]),
-    }  # fmt: skip
+        **settings,
+        "compared resins": ", ".join(inputs["compared_resins"]),
+    }
     return [_table(f"recipe of {recipe['name']}", made), _table("design", design)]
 
 

@@ -14,8 +14,11 @@ if TYPE_CHECKING:
     from pneutouch.workflows.simulate.options import SimulationOptions
 
 ResinsOption = Annotated[
-    str, typer.Option("--resins", metavar="NAME,NAME", help="Resins of the dome, or all of the paper's; left out: the design's.")
-]  # fmt: skip
+    str,
+    typer.Option(
+        "--resins", metavar="NAME,NAME", help="Resins of the dome, or all of the paper's; left out: the design's."
+    ),
+]
 SpecimensOption = Annotated[int, typer.Option("--specimens", help="Specimens of each resin.")]
 
 
@@ -24,17 +27,27 @@ def simulate(
     design: DesignArgument,
     resins: ResinsOption = "",
     specimens: SpecimensOption = 3,
-    pressures: Annotated[str | None, typer.Option(metavar="KPA,KPA", help="Driving pressures, kPa; left out: the design's.")] = None,
+    pressures: Annotated[
+        str | None, typer.Option(metavar="KPA,KPA", help="Driving pressures, kPa; left out: the design's.")
+    ] = None,
     runs: Annotated[int, typer.Option(help="Runs of each steps and saturation test; other kinds have one.")] = 3,
-    kinds: Annotated[str, typer.Option(metavar="KIND,KIND", help="Of steps, saturation, loop, relaxation, leak, injection.")] = "steps,loop,relaxation",
+    kinds: Annotated[
+        str, typer.Option(metavar="KIND,KIND", help="Of steps, saturation, loop, relaxation, leak, injection.")
+    ] = "steps,loop,relaxation",
     rate: Annotated[float, typer.Option(help="Samples a second, Hz.")] = 100.0,
-    rest: Annotated[float | None, typer.Option(metavar="S", help="Longest rest, s; left out: the paper's 30 s and 2 s.")] = None,
+    rest: Annotated[
+        float | None, typer.Option(metavar="S", help="Longest rest, s; left out: the paper's 30 s and 2 s.")
+    ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Seed of scatter and noise.")] = 0,
-    ages: Annotated[str, typer.Option(metavar="DAYS,DAYS", help="Ages at which every specimen is measured, days.")] = "0",
+    ages: Annotated[
+        str, typer.Option(metavar="DAYS,DAYS", help="Ages at which every specimen is measured, days.")
+    ] = "0",
     model: Annotated[str, typer.Option("--model", help="What presses the specimens: solid, atlas or auto.")] = "solid",
     parquet: Annotated[bool, typer.Option("--parquet", help="Parquet files instead of CSV.")] = False,
-    set_: SetOption = None, out: OutOption = Path("outputs"), json: JsonOption = False,
-) -> None:  # fmt: skip
+    set_: SetOption = None,
+    out: OutOption = Path("outputs"),
+    json: JsonOption = False,
+) -> None:
     """Simulate a measurement campaign: records with known truth, always labelled as simulated."""
     with reporting():
         from pneutouch.bench.simulate import SimulationTruth
@@ -42,10 +55,18 @@ def simulate(
         from pneutouch.workflows.simulate.run import simulate
 
         options = SimulationOptions(
-            resins=words(resins), specimens=specimens, runs=runs, kinds=words(kinds), rate=rate, seed=seed, model=model,
-            driving_pressures_kPa=None if pressures is None else numbers("--pressures", pressures), ages_days=numbers("--ages", ages),
-            parquet=parquet, truth=SimulationTruth(rest=rest),
-        )  # fmt: skip
+            resins=words(resins),
+            specimens=specimens,
+            runs=runs,
+            kinds=words(kinds),
+            rate=rate,
+            seed=seed,
+            model=model,
+            driving_pressures_kPa=None if pressures is None else numbers("--pressures", pressures),
+            ages_days=numbers("--ages", ages),
+            parquet=parquet,
+            truth=SimulationTruth(rest=rest),
+        )
         with bar("specimens") as progress:
             folder = simulate(design, out, changes(set_), options, progress=progress)
         _report(folder, options, json=json)
@@ -75,10 +96,17 @@ def _report(folder: Path, options: SimulationOptions, *, json: bool) -> None:
     for note in truth["notes"]:
         typer.echo(f"note: {note}", err=True)
     if json:
-        print_json({
-            "folder": str(folder), "simulated": True, "runs": len(files), "specimens": len(truth["specimens"]),
-            "seed": options.seed, "populations": truth["populations"], "notes": truth["notes"],
-        })  # fmt: skip
+        print_json(
+            {
+                "folder": str(folder),
+                "simulated": True,
+                "runs": len(files),
+                "specimens": len(truth["specimens"]),
+                "seed": options.seed,
+                "populations": truth["populations"],
+                "notes": truth["notes"],
+            }
+        )
         return
     typer.echo(f"{len(files)} simulated runs of {len(truth['specimens'])} specimens", err=True)
     typer.echo(str(folder))

@@ -75,10 +75,15 @@ def _plan(
 def _report(done: SweepResult, *, json: bool) -> None:
     """The dataset on stdout; on stderr what became of the states."""
     if json:
-        print_json({
-            "dataset": str(done.path), "points": done.points, "computed": done.computed, "states": done.states,
-            "input_hash": done.input_hash,
-        })  # fmt: skip
+        print_json(
+            {
+                "dataset": str(done.path),
+                "points": done.points,
+                "computed": done.computed,
+                "states": done.states,
+                "input_hash": done.input_hash,
+            }
+        )
         return
     counts = ", ".join(f"{count} {status}" for status, count in done.states.items())
     there = "; was there already, --fresh computes it again" if done.computed == 0 else ""

@@ -17,18 +17,24 @@ if TYPE_CHECKING:
 
 @app.command()
 def tray(
-    what: Annotated[list[str], typer.Argument(metavar="TRAY.toml | DESIGN...", help="Tray file, or names or paths of designs.")],
+    what: Annotated[
+        list[str], typer.Argument(metavar="TRAY.toml | DESIGN...", help="Tray file, or names or paths of designs.")
+    ],
     over: Annotated[
         list[str] | None,
-        typer.Option("--over", metavar="TABLE.KEY=VALUES", help="One part a value: A,B,C or FROM:TO:COUNT. Not with a tray file."),
+        typer.Option(
+            "--over", metavar="TABLE.KEY=VALUES", help="One part a value: A,B,C or FROM:TO:COUNT. Not with a tray file."
+        ),
     ] = None,
     copies: Annotated[int | None, typer.Option("--copies", help="Copies of each. Not with a tray file.")] = None,
-    profile: Annotated[str | None, typer.Option("--profile", help="Printer; left out: the file's, or the membrane's.")] = None,
+    profile: Annotated[
+        str | None, typer.Option("--profile", help="Printer; left out: the file's, or the membrane's.")
+    ] = None,
     marks: Annotated[str | None, typer.Option("--marks", help="engraved, raised or none.")] = None,
     set_: SetOption = None,
     out: OutOption = Path("outputs"),
     json: JsonOption = False,
-) -> None:  # fmt: skip
+) -> None:
     """Lay many sensors out on one tray: print files, part marks and a label list."""
     with reporting():
         from pneutouch.output.files import check_writable

@@ -60,10 +60,17 @@ def carrier_meridian(scene: ResolvedDesign, layout: Layout) -> Meridian:
     assert isinstance(scene.seat, OnePiece)
     seat, opening = scene.seat, layout.opening_radius
     wide, high = opening + seat.shoulder_width, layout.under + seat.shoulder_thickness
-    return trace((wide, layout.under), [
-        *underside(scene, layout), *seat_faces(seat, layout), ("lip top", (opening, 0.0)), ("opening", (opening, high)),
-        ("counterbore", (wide, high)), ("counterbore", (wide, layout.under)),
-    ])  # fmt: skip
+    return trace(
+        (wide, layout.under),
+        [
+            *underside(scene, layout),
+            *seat_faces(seat, layout),
+            ("lip top", (opening, 0.0)),
+            ("opening", (opening, high)),
+            ("counterbore", (wide, high)),
+            ("counterbore", (wide, layout.under)),
+        ],
+    )
 
 
 def plug_meridian(scene: ResolvedDesign, layout: Layout) -> Meridian:
@@ -72,9 +79,11 @@ def plug_meridian(scene: ResolvedDesign, layout: Layout) -> Meridian:
     seat, body = scene.seat, plug_radius(scene, layout)
     wide, high = body + seat.shoulder_width, layout.under + seat.shoulder_thickness
     faces: TracedPath = [
-        ("plug underside", (wide, layout.under)), (PLUG_SHOULDER, (wide, high)), (PLUG_SHOULDER, (body, high)),
+        ("plug underside", (wide, layout.under)),
+        (PLUG_SHOULDER, (wide, high)),
+        (PLUG_SHOULDER, (body, high)),
         ("plug", (body, 0.0)),
-    ]  # fmt: skip
+    ]
     if layout.port_axis is not None:
         neck, step = plug_neck(scene, layout)
         relief: TracedPath = [
@@ -112,8 +121,14 @@ def ring_meridian(seat: ClampedFlange, layout: Layout) -> Meridian:
     """
     inner, high = layout.ring_inner, seat.ring_thickness
     skirt = layout.plate_high + seat.squeeze * layout.flange_thickness
-    return trace((inner, 0.0), [
-        ("clamp face", (layout.groove_outer, 0.0)), ("skirt inside", (layout.groove_outer, skirt)),
-        ("skirt", (layout.ring_radius, skirt)), ("ring", (layout.ring_radius, high)),
-        ("ring top", (inner + high, high)), ("ring cone", (inner, 0.0)),
-    ])  # fmt: skip
+    return trace(
+        (inner, 0.0),
+        [
+            ("clamp face", (layout.groove_outer, 0.0)),
+            ("skirt inside", (layout.groove_outer, skirt)),
+            ("skirt", (layout.ring_radius, skirt)),
+            ("ring", (layout.ring_radius, high)),
+            ("ring top", (inner + high, high)),
+            ("ring cone", (inner, 0.0)),
+        ],
+    )

@@ -106,13 +106,22 @@ def lay_out(scene: ResolvedDesign) -> Layout:
     low = -flange - thickness
     side = mount.port_side == "side"
     return Layout(
-        inner_radius=membrane.inner_radius_mm, wall=membrane.wall_thickness_mm, flange_width=flange,
-        flange_thickness=flange, clearance=clearance, ring_radius=ring, plate_radius=_plate_radius(scene, ring, bolts),
-        plate_high=-flange, plate_low=low, under=low - mount.boss_height if isinstance(mount, RobotFlange) else low,
-        bolt_circle_radius=bolts, channel_radius=_channel_radius(scene, port),
+        inner_radius=membrane.inner_radius_mm,
+        wall=membrane.wall_thickness_mm,
+        flange_width=flange,
+        flange_thickness=flange,
+        clearance=clearance,
+        ring_radius=ring,
+        plate_radius=_plate_radius(scene, ring, bolts),
+        plate_high=-flange,
+        plate_low=low,
+        under=low - mount.boss_height if isinstance(mount, RobotFlange) else low,
+        bolt_circle_radius=bolts,
+        channel_radius=_channel_radius(scene, port),
         opening_radius=membrane.inner_radius_mm - seat.lip_wall_mm if isinstance(seat, OnePiece) else 0.0,
-        port=port, port_axis=low + _port_height(scene, port) if side else None,
-    )  # fmt: skip
+        port=port,
+        port_axis=low + _port_height(scene, port) if side else None,
+    )
 
 
 def _ring_radius(scene: ResolvedDesign, groove: float, flange: float) -> float:

@@ -17,11 +17,13 @@ def membrane_meridian(layout: Layout) -> Meridian:
     """Meridian from the pole inside, round the flange, back to the pole outside."""
     inner, outer, flange = layout.inner_radius, layout.outer_radius, layout.flange_radius
     low = -layout.flange_thickness
-    return Meridian((
-        Arc((0.0, 0.0), inner, math.pi / 2, 0.0, INNER_WALL),
-        Line((inner, 0.0), (inner, low), HELD),
-        Line((inner, low), (flange, low), HELD),
-        Line((flange, low), (flange, 0.0), HELD),
-        Line((flange, 0.0), (outer, 0.0), "flange top"),
-        Arc((0.0, 0.0), outer, 0.0, math.pi / 2, OUTER_WALL),
-    ))  # fmt: skip
+    return Meridian(
+        (
+            Arc((0.0, 0.0), inner, math.pi / 2, 0.0, INNER_WALL),
+            Line((inner, 0.0), (inner, low), HELD),
+            Line((inner, low), (flange, low), HELD),
+            Line((flange, low), (flange, 0.0), HELD),
+            Line((flange, 0.0), (outer, 0.0), "flange top"),
+            Arc((0.0, 0.0), outer, 0.0, math.pi / 2, OUTER_WALL),
+        )
+    )

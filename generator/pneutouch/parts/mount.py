@@ -21,8 +21,13 @@ def underside(scene: ResolvedDesign, layout: Layout) -> TracedPath:
     if isinstance(mount, Sleeve):
         finger = finger_radius(scene)
         outer, end = finger + mount.sleeve_wall, low - mount.sleeve_length
-        return [("plate underside", (finger, low)), ("finger", (finger, end)), ("sleeve end", (outer, end)),
-                ("sleeve", (outer, low)), edge]  # fmt: skip
+        return [
+            ("plate underside", (finger, low)),
+            ("finger", (finger, end)),
+            ("sleeve end", (outer, end)),
+            ("sleeve", (outer, low)),
+            edge,
+        ]
     return [edge]
 
 
@@ -36,10 +41,16 @@ def mounting_bores(scene: ResolvedDesign, layout: Layout) -> tuple[Bore, ...]:
     angles = [2 * math.pi * (k + 0.5) / mount.count for k in range(mount.count)]
     radius = 0.5 * (mount.hole_diameter + wider)
     holes = [
-        Bore(circle * math.cos(angle), circle * math.sin(angle), radius, low, high if depth is None else low + depth,
-             closed="" if depth is None else "high")
+        Bore(
+            circle * math.cos(angle),
+            circle * math.sin(angle),
+            radius,
+            low,
+            high if depth is None else low + depth,
+            closed="" if depth is None else "high",
+        )
         for angle in angles
-    ]  # fmt: skip
+    ]
     if isinstance(mount, RobotFlange):
         holes.append(Bore(0.0, circle, 0.5 * (mount.pin_diameter + wider), low, high))
     return tuple(holes)

@@ -93,9 +93,11 @@ def _barb(port: Barb, tube: Tube, undersize: float) -> PortShape:
     # The tip must enter the tube and keep a wall around the bore.
     tip = max(0.5 * tube.inner_diameter, bore + TIP_WALL)
     outside = (
-        ((tip, length), "port mouth"), ((barb, port.stem_length), "barb"), ((stem, port.stem_length), "barb shoulder"),
+        ((tip, length), "port mouth"),
+        ((barb, port.stem_length), "barb"),
+        ((stem, port.stem_length), "barb shoulder"),
         ((stem, 0.0), "stem"),
-    )  # fmt: skip
+    )
     return PortShape(outside, ((bore, length), (bore, 0.0)), length)
 
 
@@ -106,9 +108,7 @@ def _thread(port: Thread, tube: Tube, undersize: float) -> PortShape:
     chamfer = max(chamfer, core + 0.1)
     hollow = [(chamfer, length), (core, length - (chamfer - core)), (core, bottom), (passage, bottom)]
     outside = (((face, length), "port face"), ((face, 0.0), "boss"))
-    return PortShape(
-        outside, _to_plate(hollow), length, port.fitting_engagement, 0.5 * port.fitting_bore_diameter
-    )  # fmt: skip
+    return PortShape(outside, _to_plate(hollow), length, port.fitting_engagement, 0.5 * port.fitting_bore_diameter)
 
 
 def _luer(port: Luer, tube: Tube, undersize: float) -> PortShape:
@@ -120,9 +120,14 @@ def _luer(port: Luer, tube: Tube, undersize: float) -> PortShape:
     angle = math.radians(port.lug_angle_deg)
     added = 2 * 0.5 * angle * ((0.5 * port.lug_diameter) ** 2 - body**2) * port.lug_thickness
     return PortShape(
-        (((body, length), "port mouth"), ((body, 0.0), "boss")), _to_plate(hollow), length,
-        port.fitting_engagement, 0.5 * port.fitting_bore_diameter, lugs, added,
-    )  # fmt: skip
+        (((body, length), "port mouth"), ((body, 0.0), "boss")),
+        _to_plate(hollow),
+        length,
+        port.fitting_engagement,
+        0.5 * port.fitting_bore_diameter,
+        lugs,
+        added,
+    )
 
 
 def _lug(port: Luer, turn: float) -> Prism:
@@ -147,6 +152,4 @@ def _to_plate(hollow: list[Point]) -> tuple[Point, ...]:
     return (*hollow, (radius, 0.0)) if height > 0 else tuple(hollow)
 
 
-_FAMILIES: dict[str, Callable[..., PortShape]] = {
-    "barb": _barb, "thread": _thread, "luer": _luer, "push-in": _push_in,
-}  # fmt: skip
+_FAMILIES: dict[str, Callable[..., PortShape]] = {"barb": _barb, "thread": _thread, "luer": _luer, "push-in": _push_in}

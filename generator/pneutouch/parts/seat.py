@@ -28,14 +28,20 @@ def seat_faces(seat: AnySeat, layout: Layout) -> TracedPath:
             (SEAT, (inner, 0.0)),
         ]
     floor: TracedPath = [
-        ("groove floor", (flange, high)), (SEAT, (inner, high)), ("groove floor", (layout.groove_inner, high)),
+        ("groove floor", (flange, high)),
+        (SEAT, (inner, high)),
+        ("groove floor", (layout.groove_inner, high)),
         ("groove inner", (layout.groove_inner, 0.0)),
-    ]  # fmt: skip
+    ]
     if isinstance(seat, ClampedFlange):
         return [*plate, *floor]
     return [
-        *plate, *ring, ("ring top", (layout.groove_outer, 0.0)), ("groove outer", (layout.groove_outer, high)), *floor
-    ]  # fmt: skip
+        *plate,
+        *ring,
+        ("ring top", (layout.groove_outer, 0.0)),
+        ("groove outer", (layout.groove_outer, high)),
+        *floor,
+    ]
 
 
 def clamping_bores(seat: AnySeat, layout: Layout, undersize: float) -> tuple[Bore, ...]:

@@ -53,9 +53,7 @@ def wording(size: float, limit: float, severity: Severity) -> str:
     return f"{size:.2f} mm; at least {limit:g} mm is recommended"
 
 
-def _alike(
-    broken: list[tuple[Severity, float, ThinPlace]],
-) -> Iterator[tuple[Severity, float, list[ThinPlace]]]:
+def _alike(broken: list[tuple[Severity, float, ThinPlace]]) -> Iterator[tuple[Severity, float, list[ThinPlace]]]:
     """Places of one size together; they come narrowest first."""
     left = list(broken)
     while left:

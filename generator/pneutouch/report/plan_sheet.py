@@ -6,38 +6,92 @@ from itertools import groupby
 from typing import Any
 
 _WORDS = {
-    "leak": "Leak", "injection": "Dead volume", "steps": "Sensitivity", "loop": "Hysteresis", "saturation": "Saturation",
+    "leak": "Leak",
+    "injection": "Dead volume",
+    "steps": "Sensitivity",
+    "loop": "Hysteresis",
+    "saturation": "Saturation",
     "relaxation": "Relaxation",
-}  # fmt: skip
+}
 
 _AMISS = (
-    ("Pressure falls in the leak run by more than the limit", "wet the joints with soap water; press the tube on, renew the glue; then the leak run again. Do not go on with a leak: it looks like relaxation"),
-    ("Injected air reads less than expected, by the same share at each volume", "dead volume is larger than stated: shorten the tube, or measure it with the line alone (above) and give it as pneumatics.dead_volume_mL"),
-    ("Injected air reads more than expected", "a blocked bore, an unopened valve, or a smaller cavity: look for resin or support left inside"),
-    ("Force and pressure rise both off by one factor at every depth", "the resin: note its lot, age and storage; print age and temperature move a modulus by tens of percent. Nothing is wrong with the rig"),
+    (
+        "Pressure falls in the leak run by more than the limit",
+        "wet the joints with soap water; press the tube on, renew the glue; then the leak run again. Do not go on with a leak: it looks like relaxation",
+    ),
+    (
+        "Injected air reads less than expected, by the same share at each volume",
+        "dead volume is larger than stated: shorten the tube, or measure it with the line alone (above) and give it as pneumatics.dead_volume_mL",
+    ),
+    (
+        "Injected air reads more than expected",
+        "a blocked bore, an unopened valve, or a smaller cavity: look for resin or support left inside",
+    ),
+    (
+        "Force and pressure rise both off by one factor at every depth",
+        "the resin: note its lot, age and storage; print age and temperature move a modulus by tens of percent. Nothing is wrong with the rig",
+    ),
     ("Force right, pressure rise too small", "dead volume or leak"),
-    ("First contact earlier or later from run to run by more than 0.1 mm", "the sensor moves in its seat, or the driving pressure was not the same: check both"),
-    ("Force before contact not near zero, or other after the run", "zero the force sensor without contact; keep the tube from pulling"),
+    (
+        "First contact earlier or later from run to run by more than 0.1 mm",
+        "the sensor moves in its seat, or the driving pressure was not the same: check both",
+    ),
+    (
+        "Force before contact not near zero, or other after the run",
+        "zero the force sensor without contact; keep the tube from pulling",
+    ),
     ("Curve jumps down in force", "the wall buckled inward: the range has ended, stop there; note the depth"),
     ("Readings stand still at one value", "an instrument is at the end of its range: lift off"),
-)  # fmt: skip
+)
 """Sign, and what to do."""
 
 
 def plan_sheet(plan: dict[str, Any]) -> str:
     """Markdown of a plan's document (see `workflows.plan`)."""
-    return "\n".join([
-        f"# Test plan: {_escaped(plan['title'])}", "", *_head(plan),
-        "## Warnings", "", *_warnings(plan), "",
-        "## Instruments", "", *_instruments(plan), "",
-        "## Order", "", *_order(plan), "",
-        "## Before the first run of a specimen", "", *_before(plan), "",
-        "## Leak and dead volume", "", *_air(plan), "",
-        "## Steps", "", *_steps(plan), "",
-        "## Expected values", "", *_expected(plan), "",
-        "## When a value is off", "", "| sign | what to do |", "|---|---|", *(f"| {sign} | {do} |" for sign, do in _AMISS), "",
-        "## Record", "", *_record(plan),
-    ])  # fmt: skip
+    return "\n".join(
+        [
+            f"# Test plan: {_escaped(plan['title'])}",
+            "",
+            *_head(plan),
+            "## Warnings",
+            "",
+            *_warnings(plan),
+            "",
+            "## Instruments",
+            "",
+            *_instruments(plan),
+            "",
+            "## Order",
+            "",
+            *_order(plan),
+            "",
+            "## Before the first run of a specimen",
+            "",
+            *_before(plan),
+            "",
+            "## Leak and dead volume",
+            "",
+            *_air(plan),
+            "",
+            "## Steps",
+            "",
+            *_steps(plan),
+            "",
+            "## Expected values",
+            "",
+            *_expected(plan),
+            "",
+            "## When a value is off",
+            "",
+            "| sign | what to do |",
+            "|---|---|",
+            *(f"| {sign} | {do} |" for sign, do in _AMISS),
+            "",
+            "## Record",
+            "",
+            *_record(plan),
+        ]
+    )
 
 
 def _head(plan: dict[str, Any]) -> list[str]:
@@ -45,12 +99,16 @@ def _head(plan: dict[str, Any]) -> list[str]:
     pressures = _list(plan["driving_pressures_kPa"])
     return [
         f"Design {_escaped(plan['design'])}: R0 {plan['inner_radius_mm']:g} mm, wall {plan['wall_thickness_mm']:g} mm, dead volume "
-        f"{plan['dead_volume_mL']:.3g} mL, driving pressures {pressures} kPa, plate {plan['plate_diameter_mm']:g} mm.", "",
+        f"{plan['dead_volume_mL']:.3g} mL, driving pressures {pressures} kPa, plate {plan['plate_diameter_mm']:g} mm.",
+        "",
         f"{len(plan['runs'])} runs on {len(names)} specimen{'s' if len(names) > 1 else ''} ({', '.join(map(_escaped, names))}): "
-        f"**{_time(plan['total_s'])}** on the rig, mounting and looking aside.", "",
-        "Laboratory: ______________________  Operator: ______________________  Date: ______________", "",
-        "Room: ______ °C  Air pressure: ________ hPa  Resin lots: ________________________________", "",
-    ]  # fmt: skip
+        f"**{_time(plan['total_s'])}** on the rig, mounting and looking aside.",
+        "",
+        "Laboratory: ______________________  Operator: ______________________  Date: ______________",
+        "",
+        "Room: ______ °C  Air pressure: ________ hPa  Resin lots: ________________________________",
+        "",
+    ]
 
 
 def _warnings(plan: dict[str, Any]) -> list[str]:
@@ -68,13 +126,15 @@ def _instruments(plan: dict[str, Any]) -> list[str]:
     pressure = max((p["cavity_pressure_kPa"] for p in points), default=0.0)
     travel = max(depth for test in plan["tests"].values() for depth in test["depths_mm"]) + plan["clearance_mm"]
     return [
-        _escaped(rig["name"]), "",
-        "| instrument | range | resolution | greatest expected | instrument used, number |", "|---|---|---|---|---|",
+        _escaped(rig["name"]),
+        "",
+        "| instrument | range | resolution | greatest expected | instrument used, number |",
+        "|---|---|---|---|---|",
         f"| force sensor | {rig['force_range_N']:g} N | {rig['force_resolution_N']:g} N | {force:.1f} N | |",
         f"| pressure gauge | {rig['pressure_range_kPa']:g} kPa | | {pressure:.1f} kPa | |",
         f"| stage | {rig['travel_mm']:g} mm | | {travel:.2f} mm | |",
         f"| recorder | {rig['rate_Hz']:g} Hz | | time, position, force, pressure | |",
-    ]  # fmt: skip
+    ]
 
 
 def _order(plan: dict[str, Any]) -> list[str]:
@@ -111,11 +171,13 @@ def _before(plan: dict[str, Any]) -> list[str]:
 
 def _air(plan: dict[str, Any]) -> list[str]:
     lines = [
-        "Leak: fill to the pressure, close the valve, record 10 minutes, plate clear.", "",
+        "Leak: fill to the pressure, close the valve, record 10 minutes, plate clear.",
+        "",
         "Dead volume: vent and close. Draw room air into a syringe and push the volumes below in turn, 20 s after each read the "
         "pressure. With a round volume pushed into the line alone (sensor off, end capped) the dead volume is "
-        f"ambient pressure ({plan['ambient_pressure_kPa']:g} kPa) x pushed volume / gauge pressure.", "",
-    ]  # fmt: skip
+        f"ambient pressure ({plan['ambient_pressure_kPa']:g} kPa) x pushed volume / gauge pressure.",
+        "",
+    ]
     for resin in plan["resins"]:
         air, leak = resin["injection"], resin["leak_limit_kPa_per_min"]
         lines += [f"### {_escaped(resin['resin'])}", ""]
@@ -144,9 +206,7 @@ def _pushes(air: dict[str, Any]) -> list[str]:
     head = ["pushed into the sensor, mL", f"with {air['dead_volume_mL']:.3g} mL dead volume, kPa"]
     keys = ["pressure_kPa", *([] if bare else ["without_dead_volume_kPa"]), "with_more_dead_volume_kPa"]
     head += [*([] if bare else ["without any, kPa"]), f"with {air['more_dead_volume_mL']:g} mL more, kPa", "read, kPa"]
-    rows = [
-        f"| {row['volume_mL']:.4g} | {' | '.join(f'{row[key]:.2f}' for key in keys)} | |" for row in air["sensor"]
-    ]  # fmt: skip
+    rows = [f"| {row['volume_mL']:.4g} | {' | '.join(f'{row[key]:.2f}' for key in keys)} | |" for row in air["sensor"]]
     return [f"| {' | '.join(head)} |", "|---" * len(head) + "|", *rows]
 
 
@@ -166,29 +226,36 @@ def _steps(plan: dict[str, Any]) -> list[str]:
         )
         lines += [
             f"**{_WORDS[kind]}** (`{kind}`, at {_list(test['driving_pressures_kPa'])} kPa, {test['runs']} run"
-            f"{'s' if test['runs'] > 1 else ''} each, {_time(test['duration_s'])} a run)", "",
+            f"{'s' if test['runs'] > 1 else ''} each, {_time(test['duration_s'])} a run)",
+            "",
             "1. Start recording.",
             f"2. Plate {plan['clearance_mm']:g} mm clear, rest {test['rest_s']:g} s: {reset}.",
             f"3. To depth at {test['speed_mm_per_s']:g} mm/s: {step}"
-            + (f"; hold {hold:g} s" if hold else "; no hold") + f"; back to {plan['clearance_mm']:g} mm clear.",
+            + (f"; hold {hold:g} s" if hold else "; no hold")
+            + f"; back to {plan['clearance_mm']:g} mm clear.",
             f"4. Again from 2, {len(depths)} times in all." if len(depths) > 1 else "4. Once.",
-            "5. Stop and save under the name in the record.", "",
-        ]  # fmt: skip
+            "5. Stop and save under the name in the record.",
+            "",
+        ]
     return lines[:-1]
 
 
 def _expected(plan: dict[str, Any]) -> list[str]:
     lines = [
         "Predictions, to be compared with the readings at the end of each hold; force and pressure rise count from before contact. "
-        "Their uncertainty: `pneutouch predict`. A dash: beyond the predicted range. An exclamation mark: beyond an instrument's range, do not go there.", "",
-    ]  # fmt: skip
+        "Their uncertainty: `pneutouch predict`. A dash: beyond the predicted range. An exclamation mark: beyond an instrument's range, do not go there.",
+        "",
+    ]
     for resin in plan["resins"]:
         states = resin["states"]
         lines += [
-            f"### {_escaped(resin['resin'])} (model {resin['model']}; may be driven to {resin['limit_kPa']:.1f} kPa, {resin['limit_by']})", "",
-            "| depth, mm | " + " | ".join(f"{s['driving_pressure_kPa']:g} kPa: force, N | rise, kPa" for s in states) + " |",
+            f"### {_escaped(resin['resin'])} (model {resin['model']}; may be driven to {resin['limit_kPa']:.1f} kPa, {resin['limit_by']})",
+            "",
+            "| depth, mm | "
+            + " | ".join(f"{s['driving_pressure_kPa']:g} kPa: force, N | rise, kPa" for s in states)
+            + " |",
             "|---" * (1 + 2 * len(states)) + "|",
-        ]  # fmt: skip
+        ]
         for row in zip(*(state["points"] for state in states), strict=True):
             cells = " | ".join(
                 f"{_number(p['force_N'])}{_mark(p, plan)} | {_number(p['pressure_rise_kPa'])}{_mark(p, plan)}"
@@ -206,9 +273,13 @@ def _record(plan: dict[str, Any]) -> list[str]:
     ]
     for sensor, group in groupby(plan["runs"], key=lambda run: run["sensor"]):
         lines += [
-            f"### {_escaped(sensor)}", "", "Printed on: ______________  Lot: ______________  Wall: ________ mm  Height: ________ mm", "",
-            "| no. | file | ☐ | date, time | °C | first contact, mm | depth, mm | force, N | rise, kPa | remarks |", "|---" * 10 + "|",
-        ]  # fmt: skip
+            f"### {_escaped(sensor)}",
+            "",
+            "Printed on: ______________  Lot: ______________  Wall: ________ mm  Height: ________ mm",
+            "",
+            "| no. | file | ☐ | date, time | °C | first contact, mm | depth, mm | force, N | rise, kPa | remarks |",
+            "|---" * 10 + "|",
+        ]
         for run in group:
             usable = [p for p in run["expected"] if p["force_N"] is not None and not _mark(p, plan)]
             cells = ["", "", ""]

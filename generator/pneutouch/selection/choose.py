@@ -159,11 +159,16 @@ def _judged(
     cost = weights[0] * np.nan_to_num(expanded, nan=1.0) - weights[1] * np.nan_to_num(moves) - 0.1 * least
     return [
         Candidate(
-            problem.resins[int(pool.resin[i])], pool.take(np.array([i])), {name: float(m[i]) for name, m in margin_of.items()},
-            float(expanded[i]), (float(span[0][i]), float(span[1][i])), float(rated[i]), float(cost[i]),
+            problem.resins[int(pool.resin[i])],
+            pool.take(np.array([i])),
+            {name: float(m[i]) for name, m in margin_of.items()},
+            float(expanded[i]),
+            (float(span[0][i]), float(span[1][i])),
+            float(rated[i]),
+            float(cost[i]),
         )
         for i in range(pool.radius.size)
-    ]  # fmt: skip
+    ]
 
 
 def _span(problem: SelectionProblem, pool: CandidatePool) -> tuple[Array, tuple[Array, Array]]:

@@ -169,9 +169,9 @@ def _expected(target: GradeTarget, top: float, trials: list[GradeTrial], places:
     table = np.log([[*t.sensitivity_kPa_per_N, *np.maximum(t.force, 1e-9), t.rated] for t in known])
     values = np.exp(RBFInterpolator(at, table, kernel=surface, degree=1)(places / top))
     n = len(target.pressures)
-    costs = np.array([
-        cost(target, GradeTrial(0.0, 0.0, tuple(v[:n]), tuple(v[n : 2 * n]), v[-1]), _SPARE) for v in values.tolist()
-    ])  # fmt: skip
+    costs = np.array(
+        [cost(target, GradeTrial(0.0, 0.0, tuple(v[:n]), tuple(v[n : 2 * n]), v[-1]), _SPARE) for v in values.tolist()]
+    )
     every = np.array([(t.pole, t.rim) for t in trials])
     away = np.hypot(*np.moveaxis(places[:, None, :] - every[None, :, :], -1, 0)) / top
     unknown = np.array([not np.isfinite(t.sensitivity_kPa_per_N).all() for t in trials])

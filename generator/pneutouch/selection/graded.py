@@ -67,14 +67,21 @@ def nearest_fraction(
         for pressure in target.pressures
     ]
     lines = [answer.lines for answer in answers]
-    costs = np.array([
-        cost(target, GradeTrial(
-            at[k], at[k], tuple(float(line.sensitivity_kPa_per_N[k]) for line in lines),
-            tuple(float(np.fmin(line.force_high[k], line.saturation_force[k])) for line in lines),
-            RATED_SHARE * float(np.fmin(answers[0].limit_pressure[k], problem.gauge_limit)),
-        ))
-        for k in range(at.size)
-    ])  # fmt: skip
+    costs = np.array(
+        [
+            cost(
+                target,
+                GradeTrial(
+                    at[k],
+                    at[k],
+                    tuple(float(line.sensitivity_kPa_per_N[k]) for line in lines),
+                    tuple(float(np.fmin(line.force_high[k], line.saturation_force[k])) for line in lines),
+                    RATED_SHARE * float(np.fmin(answers[0].limit_pressure[k], problem.gauge_limit)),
+                ),
+            )
+            for k in range(at.size)
+        ]
+    )
     known = np.all([np.isfinite(line.sensitivity_kPa_per_N) for line in lines], axis=0)
     return float(at[np.argmin(np.where(known, costs, np.inf))]) if known.any() else None
 

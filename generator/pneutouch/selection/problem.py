@@ -55,10 +55,17 @@ class SelectionProblem:
         index = resin.astype(np.intp)
         ones = np.ones(radius.size)
         return SensorBatch(
-            inner_radius=radius, wall_thickness=wall, shear_modulus=np.array([r.shear_modulus for r in self.resins])[index], ambient_pressure=ones * self.ambient_pressure,
-            dead_volume=self.dead_volume(radius), driving_pressure=pressure, depth=radius * self.depth_share, plate_radius=ones * self.plate_radius,
-            gauge_limit=ones * self.gauge_limit, break_stretch=np.array([r.break_stretch for r in self.resins])[index],
-        )  # fmt: skip
+            inner_radius=radius,
+            wall_thickness=wall,
+            shear_modulus=np.array([r.shear_modulus for r in self.resins])[index],
+            ambient_pressure=ones * self.ambient_pressure,
+            dead_volume=self.dead_volume(radius),
+            driving_pressure=pressure,
+            depth=radius * self.depth_share,
+            plate_radius=ones * self.plate_radius,
+            gauge_limit=ones * self.gauge_limit,
+            break_stretch=np.array([r.break_stretch for r in self.resins])[index],
+        )
 
     def radii(self, ratio: Array) -> tuple[Array, Array]:
         """Least and greatest inner radius for wall ratios: by the printer's least wall and by the size limit."""

@@ -23,11 +23,17 @@ UNITS: dict[str, dict[str, float]] = {
     "position": {"mm": 1.0, "um": 1e-3, "m": 1e3, "in": 25.4},
     "force": {"N": 1.0, "mN": 1e-3, "kN": 1e3, "gf": 9.80665e-3, "kgf": 9.80665, "lbf": 4.4482216152605},
     "pressure": {
-        "kPa": 1e-3, "Pa": 1e-6, "MPa": 1.0, "hPa": 1e-4, "mbar": 1e-4, "bar": 0.1, "psi": 6.894757293168e-3,
+        "kPa": 1e-3,
+        "Pa": 1e-6,
+        "MPa": 1.0,
+        "hPa": 1e-4,
+        "mbar": 1e-4,
+        "bar": 0.1,
+        "psi": 6.894757293168e-3,
         "mmHg": 1.33322387415e-4,
     },
     "volume": {"mL": 1e3, "uL": 1.0, "mm3": 1.0, "L": 1e6},
-}  # fmt: skip
+}
 """Units a column may have, with their factor to the inner units: s, mm, N, MPa, mm3."""
 
 

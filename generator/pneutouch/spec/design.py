@@ -48,9 +48,10 @@ class Membrane(Table):
     inner_radius_mm: float = number(9.25, unit="mm", low=1, high=100, help="Inner radius R0 of the unloaded dome.")
     wall_thickness_mm: float = number(1.5, unit="mm", low=0.05, high=50, help="Wall thickness t0 of the unloaded dome.")
     material: ResinOrMix = Field(
-        default="TangoPlus", json_schema_extra={"registry": "materials"},
+        default="TangoPlus",
+        json_schema_extra={"registry": "materials"},
         description="Resin of the dome, the offline stiffness; or a mix such as { from, to, fraction = 0.2 }.",
-    )  # fmt: skip
+    )
 
     @model_validator(mode="after")
     def _wall_below_radius(self) -> Membrane:
@@ -75,32 +76,43 @@ class Pneumatics(Table):
     """[pneumatics]: the air."""
 
     driving_pressures_kPa: Annotated[list[float], _within(0, 1000, "kPa")] = numbers(
-        [0.0, 5.0, 12.0, 22.0], unit="kPa", low=0, high=1000,
+        [0.0, 5.0, 12.0, 22.0],
+        unit="kPa",
+        low=0,
+        high=1000,
         help="Gauge pressures before contact at which the sensor is used: the online stiffness.",
-    )  # fmt: skip
+    )
     ambient_pressure_kPa: float = number(
         101.325, unit="kPa", low=20, high=1000, help="Absolute pressure around the sensor."
     )
     tube: str | None = Field(
-        default=None, min_length=1, description="Tube between port and pressure sensor; left out: the port's usual one.",
+        default=None,
+        min_length=1,
+        description="Tube between port and pressure sensor; left out: the port's usual one.",
         json_schema_extra={"registry": "tubes"},
-    )  # fmt: skip
+    )
     tube_length_mm: float = number(
         300.0, unit="mm", low=0, high=20000, help="Tube between the port and the pressure sensor."
     )
     dead_volume_mL: float | None = number(
-        None, unit="mL", low=0, high=1000,
+        None,
+        unit="mL",
+        low=0,
+        high=1000,
         help="Total gas volume behind the cavity; left out: computed from connector and tube.",
-    )  # fmt: skip
+    )
 
 
 class Indentation(Table):
     """[indentation]: how the sensor is pressed (paper, section 3-B)."""
 
     depth_mm: float | None = number(
-        None, unit="mm", low=0.01, high=200,
+        None,
+        unit="mm",
+        low=0.01,
+        high=200,
         help="Plate travel after first contact; left out: three quarters of the inner radius.",
-    )  # fmt: skip
+    )
     steps: int = number(14, unit="", low=2, high=1000, help="Number of equal plate steps.")
     plate_diameter_mm: float = number(30.0, unit="mm", low=1, high=500, help="Diameter of the rigid flat plate.")
 

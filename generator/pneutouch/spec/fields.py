@@ -51,9 +51,8 @@ def numbers(default: list[float], *, unit: str, low: float, high: float, help: s
     """Declare a non-empty list of numbers; each entry obeys the bounds."""
     extra: dict[str, JsonValue] = {"unit": unit, "low": low, "high": high}
     return Field(
-        default=default, min_length=1, max_length=50, description=help, json_schema_extra=extra,
-        validate_default=True,
-    )  # fmt: skip
+        default=default, min_length=1, max_length=50, description=help, json_schema_extra=extra, validate_default=True
+    )
 
 
 def name(default: str, *, registry: str, help: str) -> Any:
@@ -70,10 +69,14 @@ def declaration(model: type[BaseModel], key: str) -> Declaration:
         return extra.get(word)
 
     return Declaration(
-        key=key, unit=str(entry("unit") or ""), low=entry("low"), high=entry("high"),
-        default=info.get_default(call_default_factory=True), help=info.description or "",
+        key=key,
+        unit=str(entry("unit") or ""),
+        low=entry("low"),
+        high=entry("high"),
+        default=info.get_default(call_default_factory=True),
+        help=info.description or "",
         registry=entry("registry"),
-    )  # fmt: skip
+    )
 
 
 def declarations(model: type[BaseModel]) -> list[Declaration]:

@@ -185,6 +185,10 @@ AnyMount = PlainPlate | BoltCircle | RobotFlange | Sleeve
 PORTS: dict[str, type[Part]] = {"barb": Barb, "thread": Thread, "luer": Luer, "push-in": PushIn}
 SEATS: dict[str, type[Part]] = {"glued-flange": GluedFlange, "clamped-flange": ClampedFlange, "one-piece": OnePiece}
 MOUNTS: dict[str, type[Part]] = {
-    "plain": PlainPlate, "through": BoltCircle, "blind": BoltCircle, "robot-flange": RobotFlange, "sleeve": Sleeve,
-}  # fmt: skip
+    "plain": PlainPlate,
+    "through": BoltCircle,
+    "blind": BoltCircle,
+    "robot-flange": RobotFlange,
+    "sleeve": Sleeve,
+}
 """Models by family: a file states its family, and with it its keys."""

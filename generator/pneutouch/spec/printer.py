@@ -126,9 +126,10 @@ class Printer(Table):
             return None
         mixed = any(material.is_digital for material in materials)
         modes = [
-            mode for mode in self.mode
+            mode
+            for mode in self.mode
             if (mode.digital_materials or not mixed) and len(resins) <= (mode.resins_at_once or self.resins_at_once)
-        ]  # fmt: skip
+        ]
         return min(modes, key=lambda mode: mode.layer_height_um, default=None)
 
     def finest_step(self, mode: Mode) -> float:

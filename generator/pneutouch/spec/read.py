@@ -115,12 +115,19 @@ def _keys(owner: type[BaseModel]) -> list[str]:
 def _expected(detail: Any) -> str:
     """The kind of value a field takes, where the value is of the wrong kind altogether."""
     kinds = {
-        "float_type": "a number ", "int_type": "a whole number ", "finite_number": "a finite number ",
-        "string_type": "text: ", "list_type": "a list of numbers, ", "model_type": "a table ",
-        "dict_type": "a table ", "date_type": "a date such as 2026-11-21: ",
-        "date_from_datetime_parsing": "a date such as 2026-11-21: ", "date_parsing": "a date such as 2026-11-21: ", "too_short": "a list with at least one entry ",
+        "float_type": "a number ",
+        "int_type": "a whole number ",
+        "finite_number": "a finite number ",
+        "string_type": "text: ",
+        "list_type": "a list of numbers, ",
+        "model_type": "a table ",
+        "dict_type": "a table ",
+        "date_type": "a date such as 2026-11-21: ",
+        "date_from_datetime_parsing": "a date such as 2026-11-21: ",
+        "date_parsing": "a date such as 2026-11-21: ",
+        "too_short": "a list with at least one entry ",
         "too_long": "a list with at most 50 entries ",
-    }  # fmt: skip
+    }
     return kinds.get(detail["type"], "")
 
 

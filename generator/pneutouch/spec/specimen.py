@@ -115,11 +115,11 @@ class RandomPhase(Layer):
 
     kind: Literal["random-phase"]
     pitches_mm: list[Annotated[float, Field(ge=0.001, le=1000)]] | None = Field(
-        default=None, min_length=1, max_length=50, description="pitches along the path, each from 0.001 to 1000 mm",
-    )  # fmt: skip
+        default=None, min_length=1, max_length=50, description="pitches along the path, each from 0.001 to 1000 mm"
+    )
     target_frequencies_Hz: list[Annotated[float, Field(ge=1e-4, le=1e5)]] | None = Field(
-        default=None, min_length=1, max_length=50, description="frequencies at the speed of the scan, Hz",
-    )  # fmt: skip
+        default=None, min_length=1, max_length=50, description="frequencies at the speed of the scan, Hz"
+    )
     amplitude_mm: float = number(0.3, unit="mm", low=0.001, high=500, help="Amplitude of each sine.")
     height_mm: float = number(1.0, unit="mm", low=0.001, high=500, help="Thickness under the lowest trough.")
     seed: int = Field(default=1, ge=0, le=2**31 - 1, description="Seed of the phases; a whole number from 0.")
@@ -204,9 +204,11 @@ class FramePlate(Table):
     """[frame]: a rigid plate under the block, wider than it, with a hole in each corner and a cut corner at x = y = 0."""
 
     material: str | None = Field(
-        default=None, min_length=1, description="Material; left out: that of the patterns.",
+        default=None,
+        min_length=1,
+        description="Material; left out: that of the patterns.",
         json_schema_extra={"registry": "materials"},
-    )  # fmt: skip
+    )
     border_mm: float = number(8.0, unit="mm", low=1, high=100, help="Width of the plate beyond the block.")
     thickness_mm: float = number(3.0, unit="mm", low=0.5, high=50, help="Thickness of the plate.")
     hole_diameter_mm: float = number(
@@ -237,10 +239,12 @@ class Specimen(Table):
 
 
 _KINDS: tuple[tuple[type[Layer], Any], ...] = (
-    (Bars, ("bars",)), (Sinusoid, ("sinusoid",)), (RandomPhase, ("random-phase",)),
+    (Bars, ("bars",)),
+    (Sinusoid, ("sinusoid",)),
+    (RandomPhase, ("random-phase",)),
     (StrutLattice, ("simple-cubic", "bcc", "fcc", "octet", "kelvin")),
     (MinimalSurface, ("gyroid", "schwarz-p", "diamond")),
-)  # fmt: skip
+)
 
 LAYERS: dict[str, type[Layer]] = {kind: model for model, kinds in _KINDS for kind in kinds}
 """Models of a [[layer]] by its kind."""

@@ -34,9 +34,11 @@ class TargetFigures(Table):
         None, unit="mm", low=2, high=300, help="Greatest outer diameter of the unloaded dome, 2 (R0 + t0)."
     )
     same_sensitivity_at_kPa: list[float] | None = Field(
-        default=None, min_length=2, max_length=2,
+        default=None,
+        min_length=2,
+        max_length=2,
         description="Two driving pressures, kPa, at both of which the sensitivity holds; for a grade.",
-    )  # fmt: skip
+    )
     same_within_percent: float = number(
         2.0, unit="%", low=0.01, high=100, help="How far the sensitivities at the two driving pressures may differ."
     )

@@ -35,15 +35,19 @@ class TrayHead(Table):
 
     title: Printable = Field(default="Tray of touch sensors", max_length=80, description="Title of the label list.")
     profile: str | None = Field(
-        default=None, min_length=1, description="Printer; left out: the printer of the first entry's membrane.",
+        default=None,
+        min_length=1,
+        description="Printer; left out: the printer of the first entry's membrane.",
         json_schema_extra={"registry": "printers"},
-    )  # fmt: skip
+    )
     spacing_mm: float = number(3.0, unit="mm", low=0.5, high=50, help="Least distance between bounding boxes.")
     margin_mm: float = number(5.0, unit="mm", low=0, high=50, help="Border of the envelope that is left free.")
     bodies: list[Role] | None = Field(
-        default=None, min_length=1, max_length=50,
+        default=None,
+        min_length=1,
+        max_length=50,
         description="a list of membrane, connector, ring, plug; left out: all that this printer prints.",
-    )  # fmt: skip
+    )
     marks: Marks = Field(default="engraved", description="engraved, raised or none.")
 
 

@@ -84,7 +84,7 @@ class BackgroundFitter:
 
 def fitter(
     count: int, rate: float, low: float, high: float, lines: Array, overtones: Array, band: float
-) -> BackgroundFitter:  # fmt: skip
+) -> BackgroundFitter:
     """A fitter for records of ``count`` samples at ``rate`` Hz over ``low`` to ``high`` Hz, without ``lines`` (m,) Hz.
 
     Left out around each line are the share ``band`` and the two bins that the Hann taper spreads a tone over; clear

@@ -102,10 +102,20 @@ def touch(sensor: Sensor, driving_pressure: float, preload: float) -> PreloadCon
             f"{sensor.gas.gauge_limit / KPA:g} kPa; give less"
         )
     return PreloadContact(
-        driving_pressure=driving_pressure, preload=preload, indentation=at, contact_radius=float(np.interp(at, travel, radius)), pressure=pressure,
-        stiffness=float(np.interp(at, travel, force_slope)), pressure_slope=float(np.interp(at, travel, rise_slope)), model=model,
-        travel=travel, force=force, rise=rise, force_slope=force_slope, rise_slope=rise_slope,
-    )  # fmt: skip
+        driving_pressure=driving_pressure,
+        preload=preload,
+        indentation=at,
+        contact_radius=float(np.interp(at, travel, radius)),
+        pressure=pressure,
+        stiffness=float(np.interp(at, travel, force_slope)),
+        pressure_slope=float(np.interp(at, travel, rise_slope)),
+        model=model,
+        travel=travel,
+        force=force,
+        rise=rise,
+        force_slope=force_slope,
+        rise_slope=rise_slope,
+    )
 
 
 def touches(batch: SensorBatch, preload: float) -> PreloadContacts:
@@ -175,9 +185,13 @@ def _dimensional(press: AtlasPress, track: PressTrack) -> LoadingCurve:
     rise_slope = point.by_volume * swell - point.by_height
     radius = np.maximum.accumulate(np.maximum(press.field("contact_radius", track), 0.0), axis=1)
     return (
-        (press.apex[:, None] - track.height) * size, point.force * mu * size**2,
-        (point.pressure - press.pressure[:, None]) * mu, radius * size, force_slope * mu * size, rise_slope * mu / size,
-    )  # fmt: skip
+        (press.apex[:, None] - track.height) * size,
+        point.force * mu * size**2,
+        (point.pressure - press.pressure[:, None]) * mu,
+        radius * size,
+        force_slope * mu * size,
+        rise_slope * mu / size,
+    )
 
 
 def _solid_curve(sensor: Sensor, pressure: float) -> LoadingCurve:

@@ -99,9 +99,13 @@ class _Reader:
 
 
 def detect(
-    given: Signal, target: Sequence[float], surrogates: int = SURROGATES, level: float = LEVEL, seed: int = 0,
+    given: Signal,
+    target: Sequence[float],
+    surrogates: int = SURROGATES,
+    level: float = LEVEL,
+    seed: int = 0,
     where: str = "signal",
-) -> tuple[Detection, ...]:  # fmt: skip
+) -> tuple[Detection, ...]:
     """Detection of each target frequency in Hz, in the order given.
 
     The statistic is the highest time-averaged |W| within ``BAND`` of the target frequency, outside the cone of influence,
@@ -117,7 +121,7 @@ def detect(
 
 def _detect(
     given: Signal, target: float, lines: Array, surrogates: int, level: float, seed: int, where: str
-) -> Detection:  # fmt: skip
+) -> Detection:
     reader, values = _reader(given, target, lines, where)
     peak, floor = reader.read(values)
     # The same seed for each frequency: the result at one does not depend on which others were tested before it.
@@ -127,9 +131,16 @@ def _detect(
     as_much = int(np.count_nonzero(ratios >= float(peak.amplitude) / float(floor)))
     threshold = float(ratios[surrogates - math.floor(level * (surrogates + 1) + 1e-9)])
     return Detection(
-        target=target, frequency=float(peak.frequency), amplitude=float(peak.amplitude), floor=float(floor), threshold=threshold, p_value=(1 + as_much) / (1 + surrogates),
-        surrogates=surrogates, level=level, is_ridge=bool(peak.inner),
-    )  # fmt: skip
+        target=target,
+        frequency=float(peak.frequency),
+        amplitude=float(peak.amplitude),
+        floor=float(floor),
+        threshold=threshold,
+        p_value=(1 + as_much) / (1 + surrogates),
+        surrogates=surrogates,
+        level=level,
+        is_ridge=bool(peak.inner),
+    )
 
 
 def least_duration(frequency: float) -> float:

@@ -45,8 +45,13 @@ class Ridge(NamedTuple):
 
 
 def scalogram(
-    given: Signal, low: float, high: float, per_octave: int = VOICES, wavelet: Morse = MORSE, boundary: Boundary = "reflect"
-) -> Scalogram:  # fmt: skip
+    given: Signal,
+    low: float,
+    high: float,
+    per_octave: int = VOICES,
+    wavelet: Morse = MORSE,
+    boundary: Boundary = "reflect",
+) -> Scalogram:
     """Scalogram from ``low`` to ``high`` Hz of a signal, decimated for ``high`` first.
 
     Raises InputError for a range that is empty or that the signal's sampling cannot read.

@@ -83,14 +83,14 @@ def amplitudes(batch: SensorBatch, preload: float, matrix: MatrixLayer, patterns
     radius = np.where(contact.indentation >= LEAST_TRAVEL * batch.inner_radius, contact.contact_radius, np.nan)
     gain = contact.pressure_slope * preload / (1.0 + contact.stiffness * matrix.compliance(radius))
     radii = radius[:, None] * np.array(BLUR)
-    return np.stack([
-        gain * np.sqrt((amplitude(matrix, pattern.bars, radii) ** 2).mean(axis=1)) for pattern in patterns
-    ], axis=1)  # fmt: skip
+    return np.stack(
+        [gain * np.sqrt((amplitude(matrix, pattern.bars, radii) ** 2).mean(axis=1)) for pattern in patterns], axis=1
+    )
 
 
 def recommend(
     pattern: BarPattern, sensor: Sensor, matrix: MatrixLayer, highest: float, preload: float = 0.5
-) -> PressureAdvice:  # fmt: skip
+) -> PressureAdvice:
     """The driving pressure up to ``highest`` (MPa) at which a sensor shows a pattern with the greatest amplitude.
 
     The sensor must lie in the atlas. Raises InputError where it reaches the preload at none.
@@ -107,8 +107,13 @@ def recommend(
 
 
 def separate(
-    batch: SensorBatch, dome: Array, preload: float, matrix: MatrixLayer, patterns: tuple[BarPattern, BarPattern], floor: tuple[float, float]
-) -> Separation:  # fmt: skip
+    batch: SensorBatch,
+    dome: Array,
+    preload: float,
+    matrix: MatrixLayer,
+    patterns: tuple[BarPattern, BarPattern],
+    floor: tuple[float, float],
+) -> Separation:
     """Rank domes by how differently two driving pressures weigh two patterns.
 
     ``dome`` (n,) numbers the rows of ``batch`` that are one dome at several pressures; ``floor`` is the noise of each
@@ -132,9 +137,11 @@ def separate(
     rows.sort(key=lambda row: (-row[0], row[1]))
     one, two = (np.array([row[k] for row in rows], dtype=np.intp) for k in (1, 2))
     return Separation(
-        dome[one], np.stack([batch.driving_pressure[one], batch.driving_pressure[two]], axis=1),
-        np.stack([levels[one], levels[two]], axis=1), np.array([row[0] for row in rows]),
-    )  # fmt: skip
+        dome[one],
+        np.stack([batch.driving_pressure[one], batch.driving_pressure[two]], axis=1),
+        np.stack([levels[one], levels[two]], axis=1),
+        np.array([row[0] for row in rows]),
+    )
 
 
 def check(pattern: BarPattern, matrix: MatrixLayer) -> None:

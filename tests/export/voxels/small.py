@@ -15,9 +15,12 @@ from pneutouch.spec.read import parse_changes
 from tests.conftest import ROOT
 
 SETS = (
-    "membrane.inner_radius_mm=4", "membrane.wall_thickness_mm=1", "indentation.plate_diameter_mm=20",
-    "connector.mount=plain", "pneumatics.driving_pressures_kPa=[0]",
-)  # fmt: skip
+    "membrane.inner_radius_mm=4",
+    "membrane.wall_thickness_mm=1",
+    "indentation.plate_diameter_mm=20",
+    "connector.mount=plain",
+    "pneumatics.driving_pressures_kPa=[0]",
+)
 RESINS = ("Agilus30", "TangoPlus", "VeroClear")
 
 
@@ -32,9 +35,13 @@ def material(name: str):
 
 def block(low: float, high: float, radius: float, name: str = "block", resin: str = "TangoPlus") -> Solid:
     """A disc about the z axis."""
-    outline = Meridian((
-        Line((0.0, low), (radius, low), ""), Line((radius, low), (radius, high), ""), Line((radius, high), (0.0, high), "")
-    ))  # fmt: skip
+    outline = Meridian(
+        (
+            Line((0.0, low), (radius, low), ""),
+            Line((radius, low), (radius, high), ""),
+            Line((radius, high), (0.0, high), ""),
+        )
+    )
     return Solid(name, "coupon", material(resin), outline)
 
 

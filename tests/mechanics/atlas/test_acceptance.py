@@ -68,16 +68,21 @@ def test_most_presses_can_be_compared(gaps, say):
     assert len(gaps) >= 0.98 * COUNT
 
 
-@pytest.mark.parametrize(("name", "every", "scale"), [
-    ("force", "every_force", "the press's own greatest force"),
-    ("pressure", "every_pressure", "the press's own greatest pressure rise"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("name", "every", "scale"),
+    [
+        ("force", "every_force", "the press's own greatest force"),
+        ("pressure", "every_pressure", "the press's own greatest pressure rise"),
+    ],
+)
 def test_states_within_half_a_percent_of_full_scale(gaps, say, name, every, scale):
     inside, edge = parted(gaps)
     errors, states = of(inside, name), np.concatenate([getattr(gap, every) for gap in inside])
-    say(f"atlas, {name} over {scale}: all {states.size} states {spread(states)};\n  worst state of each of {len(inside)} "
+    say(
+        f"atlas, {name} over {scale}: all {states.size} states {spread(states)};\n  worst state of each of {len(inside)} "
         f"presses {spread(errors)}\n{worst(inside, errors)}\n  the {len(edge)} that buckle or soon would: "
-        f"{spread(of(edge, name))}")  # fmt: skip
+        f"{spread(of(edge, name))}"
+    )
     assert of(edge, name).max() <= 0.03
     say(f"  beyond {HALF:.1%}: {np.sum(errors > HALF)} of {errors.size} presses")
     assert np.median(errors) <= 0.002
@@ -97,8 +102,10 @@ def test_pressure_beside_the_greatest_gauge_pressure(gaps, say):
 def test_sensitivity_over_the_common_range(gaps, say):
     inside, edge = parted(gaps)
     errors = of(inside, "common")
-    say(f"atlas, sensitivity over the common range: {spread(errors)}\n{worst(inside, errors)}\n  the {len(edge)} that "
-        f"buckle or soon would: {spread(of(edge, 'common'))}")  # fmt: skip
+    say(
+        f"atlas, sensitivity over the common range: {spread(errors)}\n{worst(inside, errors)}\n  the {len(edge)} that "
+        f"buckle or soon would: {spread(of(edge, 'common'))}"
+    )
     say(f"  beyond {HALF:.1%}: {np.sum(np.abs(errors) > HALF)} of {errors.size} presses")
     assert np.quantile(np.abs(errors), 0.995) <= HALF
     assert np.abs(errors).max() <= TABULATION
@@ -108,9 +115,11 @@ def test_sensitivity_over_each_ones_own_range(gaps, say):
     """Held where `auto` takes the atlas; ranges that buckling or tearing ends it leaves to the solid."""
     errors, left = of(gaps, "own"), np.array([bool({*gap.ends} & LEFT_TO_THE_SOLID) or gap.near for gap in gaps])
     taken = [gap for gap, out in zip(gaps, left, strict=True) if not out]
-    say(f"atlas, sensitivity over each one's own range: all {spread(errors)}\n  the {len(taken)} that end at depth or gauge "
+    say(
+        f"atlas, sensitivity over each one's own range: all {spread(errors)}\n  the {len(taken)} that end at depth or gauge "
         f"{spread(errors[~left])}\n{worst(taken, errors[~left])}\n  the {left.sum()} that buckle, soon would, or tear "
-        f"{spread(errors[left])}")  # fmt: skip
+        f"{spread(errors[left])}"
+    )
     assert np.quantile(np.abs(errors[~left]), 0.995) <= HALF
     assert np.abs(errors[~left]).max() <= TABULATION
 
@@ -126,9 +135,12 @@ def test_ends_of_ranges(gaps, say):
     off = np.array([gap.positions[1] - gap.positions[0] for gap in gaps])
     rows = [f"  {theirs} / {ours}: {count}" for (theirs, ours), count in kinds.most_common()]
     same = np.array([gap.ends[0] == gap.ends[1] for gap in gaps])
-    say(f"atlas, ends of ranges: {same.sum()} of {len(gaps)} of the same kind; position in R0 off by "
+    say(
+        f"atlas, ends of ranges: {same.sum()} of {len(gaps)} of the same kind; position in R0 off by "
         f"{np.median(np.abs(off)):.1e} in the median, by {np.abs(off).max():.4f} at most\n  solid / atlas\n"
-        + "\n".join(rows) + f"\n{worst(gaps, off)}")  # fmt: skip
+        + "\n".join(rows)
+        + f"\n{worst(gaps, off)}"
+    )
     assert same.mean() >= 0.99
     tear = np.array(["break strain" in gap.ends for gap in gaps])
     assert np.abs(off[same & ~tear]).max() <= 0.01

@@ -16,8 +16,9 @@ from pneutouch.mechanics.solid_states import _curve
 pytestmark = pytest.mark.slow
 
 THIN_DEEP_AND_WITHOUT_PRESSURE = [
-    Case(0.08028308, 0.0, 0.07860522, 1.58331124, 0.73951777), Case(0.08296570, 0.0, 0.05298905, 0.0, 0.72772881),
-]  # fmt: skip
+    Case(0.08028308, 0.0, 0.07860522, 1.58331124, 0.73951777),
+    Case(0.08296570, 0.0, 0.05298905, 0.0, 0.72772881),
+]
 
 
 def force(case: Case, arc: int | None, through: int | None) -> np.ndarray:

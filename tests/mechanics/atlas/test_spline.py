@@ -13,8 +13,12 @@ from pneutouch.mechanics.atlas.spline import SplineAxis, pieces
 
 axes = st.builds(
     lambda low, length, cells, degree, stretch: SplineAxis(low, low + length, cells, degree, stretch),
-    st.floats(-2.0, 2.0), st.floats(0.3, 3.0), st.integers(1, 12), st.integers(2, 5), st.none() | st.floats(0.05, 1.0),
-)  # fmt: skip
+    st.floats(-2.0, 2.0),
+    st.floats(0.3, 3.0),
+    st.integers(1, 12),
+    st.integers(2, 5),
+    st.none() | st.floats(0.05, 1.0),
+)
 
 
 def inside(axis: SplineAxis, count: int = 41) -> np.ndarray:

@@ -179,9 +179,11 @@ def figures_of(modulus: np.ndarray, pressure: float, travel: float = 2.0) -> dic
     free = state_at(solid, pressure, run)
     pressed = indent(solid, free, PressSettings(travel, 4)).states[-1]
     return {
-        "limit": run.limit.pressure, "first slope": run.states[0].stiffness, "give": -free.volume,
+        "limit": run.limit.pressure,
+        "first slope": run.states[0].stiffness,
+        "give": -free.volume,
         "force": pressed.force if pressed.indentation == pytest.approx(travel) else np.nan,
-    }  # fmt: skip
+    }
 
 
 def stiffened(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:

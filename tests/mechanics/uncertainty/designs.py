@@ -32,7 +32,7 @@ TEN = (
     Case("FLX9985", 0.05, False, {"inner_radius": 6.0, "wall_thickness": 1.0, "depth": 3.0, "dead_volume": 300.0}),
     Case("FLX9995", 0.0, True, {}),
     Case("Agilus30", 0.005, False, {"inner_radius": 12.0, "wall_thickness": 1.2, "depth": 6.0, "dead_volume": 3e3}),
-)  # fmt: skip
+)
 
 
 def materials(library: Library) -> dict[str, Material]:
@@ -44,9 +44,7 @@ def batch_for(library: Library, case: Case) -> SensorBatch:
     return batch_of(sensor, [case.driving_pressure])
 
 
-def budget_for(
-    library: Library, batch: SensorBatch, resin: str, near_paper: bool, **more: Any
-) -> Budget:  # fmt: skip
+def budget_for(library: Library, batch: SensorBatch, resin: str, near_paper: bool, **more: Any) -> Budget:
     paths = materials(library)
     printer: Printer = library.load("printers", "objet260-connex")
     errors = model_errors(paths[resin], paths.values())

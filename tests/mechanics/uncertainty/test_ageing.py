@@ -16,8 +16,15 @@ from tests.conftest import ROOT
 from tests.mechanics.viscous.tables import PAPER_RESINS, ageing_shift_as_measured, ageing_table, resin
 
 MEASURED = {"TangoPlus": 0.148, "FLX9950": 0.170, "FLX9970": 0.349}
-HARDNESS = {"TangoPlus": (27.6, 29.5), "FLX9940": (38.5, 42.4), "FLX9950": (50.4, 51.1), "FLX9960": (59.9, 60.5),
-            "FLX9970": (68.9, 68.2), "FLX9985": (80.4, 76.0), "FLX9995": (91.3, 87.0)}  # fmt: skip
+HARDNESS = {
+    "TangoPlus": (27.6, 29.5),
+    "FLX9940": (38.5, 42.4),
+    "FLX9950": (50.4, 51.1),
+    "FLX9960": (59.9, 60.5),
+    "FLX9970": (68.9, 68.2),
+    "FLX9985": (80.4, 76.0),
+    "FLX9995": (91.3, 87.0),
+}
 
 
 def gent(shore: float) -> float:

@@ -39,9 +39,14 @@ def combined(sources, batch, elasticity):
 @given(st.floats(0.08, 0.3), st.floats(0.0, 0.8), st.floats(0.1, 1.0), st.floats(0.0, 3000.0))
 def test_stresses_scale_together(wall, share, mu, dead):
     """A factor on every stress changes forces by it and sensitivities, heights and ranges not at all."""
-    sensor = PAPER.replace(wall_thickness=wall * PAPER.dome.inner_radius, shear_modulus=mu, dead_volume=dead, depth=4.0,
-        gauge_limit=1e3, break_stretch=None,
-    )  # fmt: skip
+    sensor = PAPER.replace(
+        wall_thickness=wall * PAPER.dome.inner_radius,
+        shear_modulus=mu,
+        dead_volume=dead,
+        depth=4.0,
+        gauge_limit=1e3,
+        break_stretch=None,
+    )
     limit = float(respond(batch_of(sensor, [0.0])).limit_pressure[0])
     batch = batch_of(sensor, [share * limit])
     found = respond(batch)

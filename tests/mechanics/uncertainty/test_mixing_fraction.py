@@ -34,9 +34,13 @@ def budget_of(material):
     every = [m for m in LIBRARY.all("materials", Material).values() if m.kind == "elastomer"]
     batch = batch_of(material_sensor(material), [0.0, 12 * KPA])
     return budget(
-        batch, material, LIBRARY.load("printers", "objet260-connex"), near_paper=True,
-        errors=model_errors(material, every), numerical={},
-    )  # fmt: skip
+        batch,
+        material,
+        LIBRARY.load("printers", "objet260-connex"),
+        near_paper=True,
+        errors=model_errors(material, every),
+        numerical={},
+    )
 
 
 @pytest.mark.parametrize("fraction", [0.06, 0.1, 0.2, 0.4, [0.0, 0.25]])

@@ -33,12 +33,16 @@ def test_the_limit_pressure_adds_up_by_hand(library):
 @settings(max_examples=15)
 @given(
     st.sampled_from(["TangoPlus", "FLX9940", "FLX9960", "FLX9985", "Agilus30"]),
-    st.floats(1.0, 50.0), st.floats(0.06, 0.35), st.floats(0.0, 0.02), st.floats(0.0, 5000.0), st.booleans(),
-)  # fmt: skip
+    st.floats(1.0, 50.0),
+    st.floats(0.06, 0.35),
+    st.floats(0.0, 0.02),
+    st.floats(0.0, 5000.0),
+    st.booleans(),
+)
 def test_shares_sum_to_one_wherever_there_is_an_uncertainty(library, resin, radius, wall, pressure, dead, near):
-    sensor = material_sensor(materials(library)[resin]).replace(inner_radius=radius, wall_thickness=wall * radius, dead_volume=dead,
-        depth=0.5 * radius, plate_radius=2 * radius,
-    )  # fmt: skip
+    sensor = material_sensor(materials(library)[resin]).replace(
+        inner_radius=radius, wall_thickness=wall * radius, dead_volume=dead, depth=0.5 * radius, plate_radius=2 * radius
+    )
     found = budget_for(library, batch_of(sensor, [pressure]), resin, near)
     some = found.variances.sum(axis=0) > 1e-10
     assert found.shares.sum(axis=0)[some] == pytest.approx(1.0)

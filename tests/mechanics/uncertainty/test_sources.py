@@ -107,9 +107,13 @@ def test_an_error_of_a_figure_that_there_is_not_is_refused(library):
     batch = batch_of(material_sensor(tango), [0.0])
     with pytest.raises(InputError, match="no such figure"):
         budget(
-            batch, tango, library.load("printers", "objet260-connex"),
-            near_paper=False, errors=model_errors(tango, [tango]), numerical={"colour": 0.1},
-        )  # fmt: skip
+            batch,
+            tango,
+            library.load("printers", "objet260-connex"),
+            near_paper=False,
+            errors=model_errors(tango, [tango]),
+            numerical={"colour": 0.1},
+        )
 
 
 def test_the_resin_that_nothing_explains_keeps_its_own_error(library):

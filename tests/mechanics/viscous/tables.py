@@ -41,9 +41,11 @@ def _runs(sensor: Sensor, material: Material, depth: float) -> list[list[str]]:
     for i, pressure in enumerate(PRESSURES):
         for j in range(len(series)):
             run = held[i][j]
-            lost = [run.ended, "-", "-"] if run.ended else [
-                f"{100 * x:.1f} %" for x in (run.drop(run.force)[0], *run.drop(run.rise))
-            ]  # fmt: skip
+            lost = (
+                [run.ended, "-", "-"]
+                if run.ended
+                else [f"{100 * x:.1f} %" for x in (run.drop(run.force)[0], *run.drop(run.rise))]
+            )
             wide = [one[i][j] for one in loops]
             cells = [w.ended if w.ended else " / ".join(f"{100 * x:.1f}" for x in w.hysteresis()) + " %" for w in wide]
             found.append([f"{pressure:g}", "AB"[j], *lost, *cells])
@@ -54,8 +56,15 @@ def agilus_table(library: Library) -> list[str]:
     """The paper's dome in Agilus30, by depth, pressure and source."""
     material = resin(library, "Agilus30")
     sensor = material_sensor(material)
-    head = ["depth", "driving, kPa", "data", "force, 1 to 600 s", "pressure rise", "a decade",
-            *(f"hysteresis at {v:g} mm/s, width / area" for v in LOOP_SPEEDS)]  # fmt: skip
+    head = [
+        "depth",
+        "driving, kPa",
+        "data",
+        "force, 1 to 600 s",
+        "pressure rise",
+        "a decade",
+        *(f"hysteresis at {v:g} mm/s, width / area" for v in LOOP_SPEEDS),
+    ]
     rows = [_row(head), _row(["---"] * len(head))]
     for share in (0.25, 0.5, 0.75):
         rows += [_row([f"{share:g} R0", *cells]) for cells in _runs(sensor, material, share * sensor.dome.inner_radius)]
@@ -109,16 +118,34 @@ def needed(material: Material, measured: float) -> str:
 
 def ageing_table(library: Library) -> list[str]:
     """The resins whose aged sensors the paper measured."""
-    head = ["resin", "Shore A, fresh to a year", "modulus by Gent", "sensitivity by that", "its size", "measured (sign not given)",
-            "of it explained", "modulus ratio that would do it"]  # fmt: skip
+    head = [
+        "resin",
+        "Shore A, fresh to a year",
+        "modulus by Gent",
+        "sensitivity by that",
+        "its size",
+        "measured (sign not given)",
+        "of it explained",
+        "modulus ratio that would do it",
+    ]
     rows = [_row(head), _row(["---"] * len(head))]
     for name in ("TangoPlus", "FLX9950", "FLX9970"):
         material = resin(library, name)
         ratio = ageing_ratio(material)
         signed, size = ageing_shift_as_measured(material, ratio)
         measured = material.measured.sensitivity_change_one_year_percent.nominal
-        rows.append(_row([
-            material.title, f"{material.shore_a.nominal:g} to {material.shore_a_one_year.nominal:g}", f"{ratio - 1:+.1%}",
-            f"{signed:+.1%}", f"{size:.1%}", f"{measured:.1f} %", f"{100 * size / measured:.0%}", needed(material, measured / 100),
-        ]))  # fmt: skip
+        rows.append(
+            _row(
+                [
+                    material.title,
+                    f"{material.shore_a.nominal:g} to {material.shore_a_one_year.nominal:g}",
+                    f"{ratio - 1:+.1%}",
+                    f"{signed:+.1%}",
+                    f"{size:.1%}",
+                    f"{measured:.1f} %",
+                    f"{100 * size / measured:.0%}",
+                    needed(material, measured / 100),
+                ]
+            )
+        )
     return rows

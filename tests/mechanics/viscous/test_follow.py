@@ -48,9 +48,16 @@ def springs(gas: float) -> SimpleNamespace:
     """One quadratic dome with gas at absolute pressure ``gas`` in a room of 2, at rest; 0 is none."""
     one = np.ones(1)
     press = SimpleNamespace(
-        slices=Springs(), k=np.zeros(1, dtype=np.intp), ambient=gas * one, dead=0 * one, reach=one, free=0 * one,
-        apex=one, content=2.0 * gas * one, volume=lambda nu: 2.0 + nu,
-    )  # fmt: skip
+        slices=Springs(),
+        k=np.zeros(1, dtype=np.intp),
+        ambient=gas * one,
+        dead=0 * one,
+        reach=one,
+        free=0 * one,
+        apex=one,
+        content=2.0 * gas * one,
+        volume=lambda nu: 2.0 + nu,
+    )
     press.solve = partial(AtlasPress.solve, press)
     return press
 
@@ -59,9 +66,12 @@ def run(press, prony, clock, travel):
     size = press.free.size
     shape = (size, clock.size)
     return follow(
-        press, np.tile(prony.excess, (size, 1)), np.tile(prony.times, (size, 1)), np.broadcast_to(clock, shape),
+        press,
+        np.tile(prony.excess, (size, 1)),
+        np.tile(prony.times, (size, 1)),
+        np.broadcast_to(clock, shape),
         np.broadcast_to(travel, shape),
-    )  # fmt: skip
+    )
 
 
 @given(st.sampled_from([A, B]), st.floats(1e-3, 1e3), st.lists(st.floats(1e-3, 300.0), min_size=1, max_size=5))

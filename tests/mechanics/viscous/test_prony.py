@@ -59,11 +59,19 @@ def terms(*pairs):
     return [{"share": share, "time_s": time} for share, time in pairs]
 
 
-@pytest.mark.parametrize(("bad", "word"), [
-    (terms((0.5, 1.0), (0.5, 2.0)), "add up to 1"), (terms((0.5, 2.0), (0.1, 1.0)), "more than the one before"),
-    (terms((0.5, 2.0), (0.1, 2.0)), "more than the one before"), (terms((0.0, 1.0)), "greater than 0"),
-    (terms((-0.1, 1.0)), "greater than 0"), (terms((0.5, 0.0)), "greater than 0"), (terms((1.0, 1.0)), "less than 1"), ([], "at least 1"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("bad", "word"),
+    [
+        (terms((0.5, 1.0), (0.5, 2.0)), "add up to 1"),
+        (terms((0.5, 2.0), (0.1, 1.0)), "more than the one before"),
+        (terms((0.5, 2.0), (0.1, 2.0)), "more than the one before"),
+        (terms((0.0, 1.0)), "greater than 0"),
+        (terms((-0.1, 1.0)), "greater than 0"),
+        (terms((0.5, 0.0)), "greater than 0"),
+        (terms((1.0, 1.0)), "less than 1"),
+        ([], "at least 1"),
+    ],
+)
 def test_what_is_no_relaxation_is_refused(bad, word):
     with pytest.raises(ValidationError, match=word):
         Relaxation.model_validate({"terms": bad, "source": "invented for a test"})

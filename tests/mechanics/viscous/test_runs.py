@@ -27,9 +27,10 @@ def effective(modulus: float, driving_pressure: float):
     It needs ``modulus`` times the driving pressure to stand there; the surroundings are lowered by the difference, so that the
     gas has its absolute pressure.
     """
-    return SENSOR.replace(shear_modulus=modulus * SENSOR.wall.shear_modulus,
+    return SENSOR.replace(
+        shear_modulus=modulus * SENSOR.wall.shear_modulus,
         ambient_pressure=SENSOR.gas.ambient_pressure - (modulus - 1) * driving_pressure,
-    ), modulus * driving_pressure  # fmt: skip
+    ), modulus * driving_pressure
 
 
 def atlas_press(modulus: float, driving_pressure: float) -> tuple[float, float]:

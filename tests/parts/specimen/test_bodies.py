@@ -96,9 +96,13 @@ def test_a_sheet_of_a_thickness_has_it_times_its_middle_surface(kind, step):
 
 
 @given(
-    count=st.integers(1, 12), width=st.floats(0.7, 4.0), space=st.floats(0.7, 4.0), height=st.floats(0.7, 3.0),
-    depth=st.one_of(st.just(0.0), st.floats(0.5, 4.0)), span=st.one_of(st.none(), st.floats(2.0, 9.0)),
-)  # fmt: skip
+    count=st.integers(1, 12),
+    width=st.floats(0.7, 4.0),
+    space=st.floats(0.7, 4.0),
+    height=st.floats(0.7, 3.0),
+    depth=st.one_of(st.just(0.0), st.floats(0.5, 4.0)),
+    span=st.one_of(st.none(), st.floats(2.0, 9.0)),
+)
 def test_bars_of_any_size_are_exact(count, width, space, height, depth, span):
     width, space, height, depth = (round(value, 3) for value in (width, space, height, depth))
     at = context(round(count * (width + space), 3), 10.0, 8.0)

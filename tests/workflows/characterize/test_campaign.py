@@ -20,8 +20,13 @@ from pneutouch.workflows.simulate.options import SimulationOptions
 from pneutouch.workflows.simulate.run import simulate
 
 ASKED = SimulationOptions(
-    specimens=2, driving_pressures_kPa=(0.0, 22.0), runs=1, kinds=("steps", "injection", "leak"), model="atlas", truth=SimulationTruth(rest=5.0)
-)  # fmt: skip
+    specimens=2,
+    driving_pressures_kPa=(0.0, 22.0),
+    runs=1,
+    kinds=("steps", "injection", "leak"),
+    model="atlas",
+    truth=SimulationTruth(rest=5.0),
+)
 FIRST = "runs/TangoPlus-1-0kPa-steps-1.csv"
 
 
@@ -145,9 +150,13 @@ def test_a_wrong_sign_is_seen_where_nothing_is_predicted(folder, library):
 
 def test_the_ambient_pressure_of_the_flag_is_the_injections_too(folder, library):
     low, high = (
-        [row[2] for row in run(folder, library, f"pneumatics.ambient_pressure_kPa={p}").measured.injections if "gas" in row[1]]
+        [
+            row[2]
+            for row in run(folder, library, f"pneumatics.ambient_pressure_kPa={p}").measured.injections
+            if "gas" in row[1]
+        ]
         for p in (80.0, 101.325)
-    )  # fmt: skip
+    )
     assert low == pytest.approx([value * 80.0 / 101.325 for value in high], rel=1e-6)
 
 

@@ -20,11 +20,16 @@ def curves(slopes, pressure=12.0, age=0.0):
     force = 1.5 * DEPTHS**1.5
     return [
         MeasuredCurve(
-            CampaignRun(file=f"{k}{age}", sensor=f"s{k}", resin="TangoPlus", driving_pressure_kPa=pressure, age_days=age), DEPTHS, force,
-            slope * KPA * force, pressure * KPA,
+            CampaignRun(
+                file=f"{k}{age}", sensor=f"s{k}", resin="TangoPlus", driving_pressure_kPa=pressure, age_days=age
+            ),
+            DEPTHS,
+            force,
+            slope * KPA * force,
+            pressure * KPA,
         )
         for k, slope in enumerate(slopes)
-    ]  # fmt: skip
+    ]
 
 
 def judged(wanted, slopes, pressure=12.0):

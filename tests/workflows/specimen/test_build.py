@@ -33,9 +33,16 @@ def test_the_folder_holds_every_file_of_the_manifest(folder):
     for name, said in manifest["files"].items():
         assert hashlib.sha256((folder / name).read_bytes()).hexdigest() == said["sha256"]
     assert set(manifest["files"]) == {
-        f"{NAME}.3mf", f"{NAME}.glb", f"{NAME}.step", "drawing.svg", "print-sheet.md", "specimen.json",
-        "stl/matrix.stl", "stl/inclusion.stl", "stl/frame.stl",
-    }  # fmt: skip
+        f"{NAME}.3mf",
+        f"{NAME}.glb",
+        f"{NAME}.step",
+        "drawing.svg",
+        "print-sheet.md",
+        "specimen.json",
+        "stl/matrix.stl",
+        "stl/inclusion.stl",
+        "stl/frame.stl",
+    }
 
 
 def test_the_same_input_gives_the_same_bytes(folder, tmp_path):

@@ -15,29 +15,50 @@ REFUSED = {
     "thin bars": ('kind = "bars"\npitch_mm = 3\nwidth_mm = 0.4\n', ["width_mm = 0.4", "0.6 mm"]),
     "low bars": ('kind = "bars"\npitch_mm = 3\nheight_mm = 0.2\n', ["height_mm = 0.2", "0.6 mm"]),
     "no matrix between bars": ('kind = "bars"\npitch_mm = 2\nwidth_mm = 1.8\n', ["width_mm = 1.8", "0.2 mm of matrix"]),
-    "thin struts": ('kind = "bcc"\ncell_mm = 5\nstrut_radius_mm = 0.2\n', ["strut_radius_mm = 0.2", "at least 0.25 mm"]),
+    "thin struts": (
+        'kind = "bcc"\ncell_mm = 5\nstrut_radius_mm = 0.2\n',
+        ["strut_radius_mm = 0.2", "at least 0.25 mm"],
+    ),
     "thick struts": ('kind = "bcc"\ncell_mm = 5\nstrut_radius_mm = 1.8\n', ["strut_radius_mm = 1.8", "at most"]),
-    "thin by its fraction": ('kind = "octet"\ncell_mm = 4\nvolume_fraction = 0.05\n', ["volume_fraction = 0.05", "from"]),
-    "cell too fine for its fraction": ('kind = "bcc"\ncell_mm = 0.5\nvolume_fraction = 0.2\n', ["volume_fraction", "cell_mm"]),
-    "both": ('kind = "bcc"\ncell_mm = 5\nstrut_radius_mm = 0.5\nvolume_fraction = 0.2\n', ["exactly one of strut_radius_mm"]),
+    "thin by its fraction": (
+        'kind = "octet"\ncell_mm = 4\nvolume_fraction = 0.05\n',
+        ["volume_fraction = 0.05", "from"],
+    ),
+    "cell too fine for its fraction": (
+        'kind = "bcc"\ncell_mm = 0.5\nvolume_fraction = 0.2\n',
+        ["volume_fraction", "cell_mm"],
+    ),
+    "both": (
+        'kind = "bcc"\ncell_mm = 5\nstrut_radius_mm = 0.5\nvolume_fraction = 0.2\n',
+        ["exactly one of strut_radius_mm"],
+    ),
     "neither": ('kind = "bcc"\ncell_mm = 5\n', ["exactly one of strut_radius_mm", "neither"]),
-    "pitch and frequency": (BARS + "target_frequency_Hz = 1\n", ["exactly one of pitch_mm and target_frequency_Hz", "both"]),
+    "pitch and frequency": (
+        BARS + "target_frequency_Hz = 1\n",
+        ["exactly one of pitch_mm and target_frequency_Hz", "both"],
+    ),
     "no pitch": ('kind = "bars"\n', ["exactly one of pitch_mm", "neither"]),
     "negative depth": (BARS + "depth_mm = -1\n", ["depth_mm = -1", "from 0 to 500 mm"]),
     "too deep": (BARS + "depth_mm = 7.5\n", ["depth_mm = 7.5", "block.height_mm"]),
     "beyond the end": (BARS + "end_mm = 30\n", ["end_mm = 30", "block.length_mm"]),
     "wider than the block": (BARS + "span_mm = 9\n", ["span_mm = 9", "block.width_mm"]),
     "nearly flush": (BARS + "span_mm = 7.9996\n", ["span_mm", "flush"]),
-    "too full a surface": ('kind = "schwarz-p"\nform = "network"\ncell_mm = 4\nvolume_fraction = 0.9\n', ["volume_fraction = 0.9", "0.21"]),
+    "too full a surface": (
+        'kind = "schwarz-p"\nform = "network"\ncell_mm = 4\nvolume_fraction = 0.9\n',
+        ["volume_fraction = 0.9", "0.21"],
+    ),
     "thin sheet": ('kind = "gyroid"\ncell_mm = 4\nvolume_fraction = 0.2\n', ["volume_fraction = 0.2", "0.6 mm"]),
     "thin sheet by thickness": ('kind = "gyroid"\ncell_mm = 4\nthickness_mm = 0.3\n', ["thickness_mm = 0.3", "0.6 mm"]),
-    "network with thickness": ('kind = "gyroid"\nform = "network"\ncell_mm = 4\nthickness_mm = 1\n', ["a network has none"]),
+    "network with thickness": (
+        'kind = "gyroid"\nform = "network"\ncell_mm = 4\nthickness_mm = 1\n',
+        ["a network has none"],
+    ),
     "crests at the surface": ('kind = "sinusoid"\npitch_mm = 4\n', ["depth_mm = 0", "at least 0.6 mm"]),
     "unknown kind": ('kind = "bcd"\n', ["kind = 'bcd'", "bcc"]),
     "unknown key": (BARS + "widht_mm = 1\n", ["widht_mm", "width_mm"]),
     "wrong type": ('kind = "bars"\npitch_mm = "3"\n', ["pitch_mm = '3'", "a number"]),
     "list of frequencies": ('kind = "random-phase"\ntarget_frequency_Hz = 1\n', ["target_frequencies_Hz"]),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", REFUSED)

@@ -83,9 +83,15 @@ def held(out, *words, after=1, group=False):
     command = ["pneutouch", "sweep", *WORDS, "--out", str(out), *words]
     code = HELD.format(after=after, pipe=pipe, patience=PATIENCE, words=command)
     process = subprocess.Popen(
-        [sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-        pass_fds=[pipe], start_new_session=group, preexec_fn=_listening,
-    )  # fmt: skip
+        [sys.executable, "-c", code],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        pass_fds=[pipe],
+        start_new_session=group,
+        preexec_fn=_listening,
+    )
     os.close(pipe)
     with os.fdopen(reading, "rb") as stream:
         assert stream.read(4) == b"held", ended(process)

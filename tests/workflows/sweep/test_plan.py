@@ -17,44 +17,89 @@ BASE = 'design = "paper-dome"\nmodel = "membrane"\n'
 WALL = '"membrane.wall_thickness_mm"'
 
 BAD = {
-    "unknown key": (f"{BASE}[grid]\n{WALL[:-4]}s_mm\" = [1]", ["membrane.wall_thicknes", "unknown key", "Did you mean wall_thickness_mm?"]),
-    "unknown table": (f"{BASE}[grid]\n\"membran.material\" = [\"TangoPlus\"]", ["unknown table membran", "Did you mean membrane?"]),
+    "unknown key": (
+        f'{BASE}[grid]\n{WALL[:-4]}s_mm" = [1]',
+        ["membrane.wall_thicknes", "unknown key", "Did you mean wall_thickness_mm?"],
+    ),
+    "unknown table": (
+        f'{BASE}[grid]\n"membran.material" = ["TangoPlus"]',
+        ["unknown table membran", "Did you mean membrane?"],
+    ),
     "no table": (f"{BASE}[grid]\nwall = [1, 2]", ["wall", "write table.key"]),
     "out of bounds": (f"{BASE}[grid]\n{WALL} = [1, 60]", ["membrane.wall_thickness_mm = 60", "from 0.05 to 50 mm"]),
-    "of another kind": (f"{BASE}[grid]\n{WALL} = [1, \"thick\"]", ["membrane.wall_thickness_mm = 'thick'", "must be a number"]),
-    "fits no radius": (f"{BASE}[grid]\n{WALL} = [1, 12]\n\"membrane.inner_radius_mm\" = [5, 9.25]", ["wall_thickness_mm = 12", "no point of the sweep", "less than"]),
-    "no such resin": (f"{BASE}[grid]\n\"membrane.material\" = [\"TangoPlus\", \"FLX9941\"]", ["membrane.material = 'FLX9941'", "Did you mean FLX9940?"]),
-    "rigid dome": (f"{BASE}[grid]\n\"membrane.material\" = [\"TangoPlus\", \"VeroClear\"]", ["membrane.material = 'VeroClear'", "must be elastomer"]),
-    "no such printer": (f"{BASE}[grid]\n{WALL} = [1]\n[set]\n\"print.profile\" = \"j736\"", ["print.profile = 'j736'", "Did you mean j735?"]),
-    "set and varied": (f"{BASE}[grid]\n{WALL} = [1]\n[set]\n{WALL} = 2", ["membrane.wall_thickness_mm = 2", "set for all points and varied too"]),
-    "pressures set and varied": (f"{BASE}[grid]\n\"pneumatics.driving_pressures_kPa\" = [1]\n[set]\n\"pneumatics.driving_pressures_kPa\" = [2]", ["driving_pressures_kPa", "varied too"]),
+    "of another kind": (
+        f'{BASE}[grid]\n{WALL} = [1, "thick"]',
+        ["membrane.wall_thickness_mm = 'thick'", "must be a number"],
+    ),
+    "fits no radius": (
+        f'{BASE}[grid]\n{WALL} = [1, 12]\n"membrane.inner_radius_mm" = [5, 9.25]',
+        ["wall_thickness_mm = 12", "no point of the sweep", "less than"],
+    ),
+    "no such resin": (
+        f'{BASE}[grid]\n"membrane.material" = ["TangoPlus", "FLX9941"]',
+        ["membrane.material = 'FLX9941'", "Did you mean FLX9940?"],
+    ),
+    "rigid dome": (
+        f'{BASE}[grid]\n"membrane.material" = ["TangoPlus", "VeroClear"]',
+        ["membrane.material = 'VeroClear'", "must be elastomer"],
+    ),
+    "no such printer": (
+        f'{BASE}[grid]\n{WALL} = [1]\n[set]\n"print.profile" = "j736"',
+        ["print.profile = 'j736'", "Did you mean j735?"],
+    ),
+    "set and varied": (
+        f"{BASE}[grid]\n{WALL} = [1]\n[set]\n{WALL} = 2",
+        ["membrane.wall_thickness_mm = 2", "set for all points and varied too"],
+    ),
+    "pressures set and varied": (
+        f'{BASE}[grid]\n"pneumatics.driving_pressures_kPa" = [1]\n[set]\n"pneumatics.driving_pressures_kPa" = [2]',
+        ["driving_pressures_kPa", "varied too"],
+    ),
     "grid and list": (f"{BASE}[grid]\n{WALL} = [1]\n[[point]]\n{WALL} = 1", ["either a grid or a list"]),
     "neither": (BASE, ["either a grid or a list"]),
-    "twice": (f"{BASE}[grid]\n{WALL} = [1]\nmembrane.wall_thickness_mm = [2]", ["membrane.wall_thickness_mm is given twice"]),
+    "twice": (
+        f"{BASE}[grid]\n{WALL} = [1]\nmembrane.wall_thickness_mm = [2]",
+        ["membrane.wall_thickness_mm is given twice"],
+    ),
     "equal values": (f"{BASE}[grid]\n{WALL} = [1, 2, 1.0]", ["membrane.wall_thickness_mm[2] = 1.0", "once only"]),
     "empty axis": (f"{BASE}[grid]\n{WALL} = []", ["membrane.wall_thickness_mm = []", "1 to 10000 values"]),
     "one value": (f"{BASE}[grid]\n{WALL} = 1.5", ["membrane.wall_thickness_mm = 1.5", "must be a list"]),
     "infinite": (f"{BASE}[grid]\n{WALL} = [1, inf]", ["membrane.wall_thickness_mm[1] = inf", "finite number"]),
     "true": (f"{BASE}[grid]\n{WALL} = [true]", ["membrane.wall_thickness_mm[0] = True", "finite number"]),
     "half a range": (f"{BASE}[grid]\n{WALL} = {{from = 1, to = 2}}", ["from, to and count"]),
-    "range of one": (f"{BASE}[grid]\n{WALL} = {{from = 1, to = 2, count = 1}}", ["from 1 to 2 count 1", "from 2 to 10000"]),
-    "range of names": (f"{BASE}[grid]\n{WALL} = {{from = \"a\", to = 2, count = 3}}", ["finite numbers"]),
-    "no range at all": (f"{BASE}[grid]\n{WALL} = {{from = 1, to = 1, count = 3}}", ["membrane.wall_thickness_mm[1] = 1", "once only"]),
-    "too many": (f"{BASE}[grid]\n{WALL} = {{from = 1, to = 2, count = 10000}}\n\"membrane.inner_radius_mm\" = {{from = 8, to = 9, count = 11}}", ["110000 points", "at most 100000"]),
+    "range of one": (
+        f"{BASE}[grid]\n{WALL} = {{from = 1, to = 2, count = 1}}",
+        ["from 1 to 2 count 1", "from 2 to 10000"],
+    ),
+    "range of names": (f'{BASE}[grid]\n{WALL} = {{from = "a", to = 2, count = 3}}', ["finite numbers"]),
+    "no range at all": (
+        f"{BASE}[grid]\n{WALL} = {{from = 1, to = 1, count = 3}}",
+        ["membrane.wall_thickness_mm[1] = 1", "once only"],
+    ),
+    "too many": (
+        f'{BASE}[grid]\n{WALL} = {{from = 1, to = 2, count = 10000}}\n"membrane.inner_radius_mm" = {{from = 8, to = 9, count = 11}}',
+        ["110000 points", "at most 100000"],
+    ),
     "bad point": (f"{BASE}[[point]]\n{WALL} = 1\n[[point]]\n{WALL} = 60", ["point[1]", "from 0.05 to 50 mm"]),
-    "pressures out of bounds": (f"{BASE}[grid]\n{WALL} = [1]\n\"pneumatics.driving_pressures_kPa\" = [0, -5]", ["driving_pressures_kPa", "from 0 to 1000 kPa"]),
-    "title": (f"{BASE}[grid]\n\"document.title\" = [\"a\"]", ["document.title", "no prediction depends on it"]),
+    "pressures out of bounds": (
+        f'{BASE}[grid]\n{WALL} = [1]\n"pneumatics.driving_pressures_kPa" = [0, -5]',
+        ["driving_pressures_kPa", "from 0 to 1000 kPa"],
+    ),
+    "title": (f'{BASE}[grid]\n"document.title" = ["a"]', ["document.title", "no prediction depends on it"]),
     "no design": (f"[grid]\n{WALL} = [1]", ["design: missing"]),
-    "no such design": (f"design = \"paper-doom\"\n[grid]\n{WALL} = [1]", ["paper-doom", "Did you mean paper-dome?"]),
-    "design missing beside": (f"design = \"x.toml\"\n[grid]\n{WALL} = [1]", ["x.toml: no such file"]),
+    "no such design": (f'design = "paper-doom"\n[grid]\n{WALL} = [1]', ["paper-doom", "Did you mean paper-dome?"]),
+    "design missing beside": (f'design = "x.toml"\n[grid]\n{WALL} = [1]', ["x.toml: no such file"]),
     "design a list": (f"[[design]]\n{WALL} = [1]", ["design = [", "must be a name"]),
-    "unknown model": (f"design = \"paper-dome\"\nmodel = \"solit\"\n[grid]\n{WALL} = [1]", ["model = 'solit'", "Did you mean solid?"]),
-    "unknown clamp": (f"{BASE}clamp = \"bases\"\n[grid]\n{WALL} = [1]", ["clamp = 'bases'", "Did you mean base?"]),
+    "unknown model": (
+        f'design = "paper-dome"\nmodel = "solit"\n[grid]\n{WALL} = [1]',
+        ["model = 'solit'", "Did you mean solid?"],
+    ),
+    "unknown clamp": (f'{BASE}clamp = "bases"\n[grid]\n{WALL} = [1]', ["clamp = 'bases'", "Did you mean base?"]),
     "unknown word": (f"{BASE}grit = 1", ["grit: unknown key", "Did you mean grid?"]),
     "grid a number": (f"{BASE}grid = 1", ["grid = 1: must be a table"]),
     "points a table": (f"{BASE}[point]\n{WALL} = 1", ["point: must be a list of tables"]),
     "no TOML": ("design = ", ["not valid TOML"]),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("case", BAD)
@@ -95,11 +140,18 @@ def test_options_come_before_the_file_and_paths_lie_beside_it(tmp_path):
 @pytest.mark.parametrize(
     ("text", "values"),
     [
-        ("TangoPlus,FLX9940", ["TangoPlus", "FLX9940"]), ("TangoPlus", ["TangoPlus"]), ("1, 2.5", [1, 2.5]),
-        ("[1, 2.5]", [1, 2.5]), ("'a,b',\"c\"", ["a,b", "c"]), ("1.0:2.0:5", [1.0, 1.25, 1.5, 1.75, 2.0]),
-        ("6:14:3", [6, 10, 14]), ("2:1:3", [2.0, 1.5, 1.0]), ("barb-4x2.5", ["barb-4x2.5"]), ("1,2,", [1, 2]),
+        ("TangoPlus,FLX9940", ["TangoPlus", "FLX9940"]),
+        ("TangoPlus", ["TangoPlus"]),
+        ("1, 2.5", [1, 2.5]),
+        ("[1, 2.5]", [1, 2.5]),
+        ("'a,b',\"c\"", ["a,b", "c"]),
+        ("1.0:2.0:5", [1.0, 1.25, 1.5, 1.75, 2.0]),
+        ("6:14:3", [6, 10, 14]),
+        ("2:1:3", [2.0, 1.5, 1.0]),
+        ("barb-4x2.5", ["barb-4x2.5"]),
+        ("1,2,", [1, 2]),
     ],
-)  # fmt: skip
+)
 def test_flags_are_read(text, values):
     (axis,) = plan_of_flags("x", [f"membrane.material={text}"]).axes
     assert list(axis.values) == values
@@ -138,9 +190,11 @@ def test_a_range_has_its_ends_its_count_and_equal_steps(start, stop, count):
 
 
 KEYS = {
-    "membrane.wall_thickness_mm": st.floats(0.1, 5), "membrane.inner_radius_mm": st.floats(6, 20),
-    "indentation.steps": st.integers(2, 50), "membrane.material": st.sampled_from(["TangoPlus", "FLX9940", "FLX9950"]),
-}  # fmt: skip
+    "membrane.wall_thickness_mm": st.floats(0.1, 5),
+    "membrane.inner_radius_mm": st.floats(6, 20),
+    "indentation.steps": st.integers(2, 50),
+    "membrane.material": st.sampled_from(["TangoPlus", "FLX9940", "FLX9950"]),
+}
 grids = st.lists(st.sampled_from(sorted(KEYS)), min_size=1, unique=True).flatmap(
     lambda keys: st.fixed_dictionaries({key: st.lists(KEYS[key], min_size=1, max_size=4, unique=True) for key in keys})
 )

@@ -17,9 +17,17 @@ from tests.workflows.sweep.conftest import load, small
 ALONE = ComputeResources(workers=1)
 
 FIGURES = (
-    "sensitivity_kPa_per_N", "sensitivity_through_origin_kPa_per_N", "r_squared", "nonlinearity_percent",
-    "stiffness_N_per_mm", "range_end_mm", "saturation_force_N", "apex_height_inner_mm", "apex_height_outer_mm", "cavity_volume_mL",
-)  # fmt: skip
+    "sensitivity_kPa_per_N",
+    "sensitivity_through_origin_kPa_per_N",
+    "r_squared",
+    "nonlinearity_percent",
+    "stiffness_N_per_mm",
+    "range_end_mm",
+    "saturation_force_N",
+    "apex_height_inner_mm",
+    "apex_height_outer_mm",
+    "cavity_volume_mL",
+)
 
 
 def same(found, expected):
@@ -58,8 +66,9 @@ def agrees(point, document):
 def test_every_figure_is_that_of_predict(model, resins, walls, evaluated, library, tmp_path):
     plan = small(
         [f"membrane.material={','.join(resins)}", f"membrane.wall_thickness_mm={walls[0]}:{walls[-1]}:{len(walls)}"],
-        settings=["pneumatics.dead_volume_mL=0.3"], model=model,
-    )  # fmt: skip
+        settings=["pneumatics.dead_volume_mL=0.3"],
+        model=model,
+    )
     sweep(plan, tmp_path / "x.nc", ALONE, library=library)
     data = load(tmp_path / "x.nc")
     assert data.sizes == {

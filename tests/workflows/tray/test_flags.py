@@ -20,11 +20,17 @@ def over(text):
 @pytest.mark.parametrize(
     ("text", "values"),
     [
-        ("[1,2]", [[1, 2]]), ("[0, 10], [0,20,]", [[0, 10], [0, 20]]), ("1,2.5", [1, 2.5]),
-        ("TangoPlus,FLX9940", ["TangoPlus", "FLX9940"]), ("TangoPlus, 'a,b',[1, 2] ,3", ["TangoPlus", "a,b", [1, 2], 3]),
-        ('"a, b"', ["a, b"]), ("M3,1,[2]", ["M3", 1, [2]]), ("robot-50-4-M6", ["robot-50-4-M6"]), ("1,2,", [1, 2]),
+        ("[1,2]", [[1, 2]]),
+        ("[0, 10], [0,20,]", [[0, 10], [0, 20]]),
+        ("1,2.5", [1, 2.5]),
+        ("TangoPlus,FLX9940", ["TangoPlus", "FLX9940"]),
+        ("TangoPlus, 'a,b',[1, 2] ,3", ["TangoPlus", "a,b", [1, 2], 3]),
+        ('"a, b"', ["a, b"]),
+        ("M3,1,[2]", ["M3", 1, [2]]),
+        ("robot-50-4-M6", ["robot-50-4-M6"]),
+        ("1,2,", [1, 2]),
     ],
-)  # fmt: skip
+)
 def test_values_are_parted_as_toml_parts_them(text, values):
     assert over(text) == values
 

@@ -98,8 +98,11 @@ CASES = [
 @pytest.mark.parametrize(("seat", "mount", "marks"), CASES)
 def test_marked_meshes_stay_closed_and_differ_by_the_mark_alone(drawn, seat, mount, marks):
     assembly = drawn(
-        f"connector.seat={seat}", f"connector.mount={mount}", "membrane.inner_radius_mm=9", "membrane.wall_thickness_mm=1.5"
-    )  # fmt: skip
+        f"connector.seat={seat}",
+        f"connector.mount={mount}",
+        "membrane.inner_radius_mm=9",
+        "membrane.wall_thickness_mm=1.5",
+    )
     least = assembly.scene.printer.smallest.emboss_mm.recommended
     for solid, plain, marked, mark in bodies(assembly, marks):
         assert marked.is_closed()
@@ -165,14 +168,21 @@ def test_the_tally_keeps_off_the_dome_and_the_seals(drawn, seat, marks):
 
 @settings(max_examples=15)
 @given(
-    radius=st.floats(4, 30), wall=st.floats(0.6, 3.0), index=st.integers(1, 24), copy=st.integers(1, 12),
-    seat=st.sampled_from(SEATS[:2]), marks=st.sampled_from(["engraved", "raised"]),
-)  # fmt: skip
+    radius=st.floats(4, 30),
+    wall=st.floats(0.6, 3.0),
+    index=st.integers(1, 24),
+    copy=st.integers(1, 12),
+    seat=st.sampled_from(SEATS[:2]),
+    marks=st.sampled_from(["engraved", "raised"]),
+)
 def test_any_membrane_is_marked_and_closed_or_says_why_not(drawn, radius, wall, index, copy, seat, marks):
     assembly = drawn(
-        f"membrane.inner_radius_mm={radius}", f"membrane.wall_thickness_mm={wall}", f"connector.seat={seat}",
-        "indentation.plate_diameter_mm=90", "connector.mount=plain",
-    )  # fmt: skip
+        f"membrane.inner_radius_mm={radius}",
+        f"membrane.wall_thickness_mm={wall}",
+        f"connector.seat={seat}",
+        "indentation.plate_diameter_mm=90",
+        "connector.mount=plain",
+    )
     _, plain, marked, mark = next(bodies(assembly, marks, number=(index, copy)))
     assert marked.welded().is_closed()
     assert (mark.kind == "tally") == (marked is not plain)

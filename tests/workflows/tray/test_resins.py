@@ -19,9 +19,13 @@ RESINS = ["Tango", "Agilus", "Clear", "White"]
 
 def material(*resins):
     content = {
-        "title": "+".join(resins), "code": "X", "kind": "rigid", "base_resins": list(resins), "colour": "#AAAAAA",
+        "title": "+".join(resins),
+        "code": "X",
+        "kind": "rigid",
+        "base_resins": list(resins),
+        "colour": "#AAAAAA",
         "density_g_per_cm3": {"value": 1.1, "source": "assumed here"},
-    }  # fmt: skip
+    }
     return validate(Material, content, "lab.toml")
 
 

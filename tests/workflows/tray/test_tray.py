@@ -76,9 +76,13 @@ def test_fill_is_the_area_of_boxes_and_discs(seven):
 def test_the_folder_holds_what_is_promised(folder):
     labels = [f"{letter}{copy}" for letter in "ABCDEFG" for copy in (1, 2, 3)]
     assert set(content(folder)) == {
-        "seven.3mf".replace("seven", "seven-resins"), "labels.csv", "labels.md", "tray.svg", "manifest.json",
+        "seven.3mf".replace("seven", "seven-resins"),
+        "labels.csv",
+        "labels.md",
+        "tray.svg",
+        "manifest.json",
         *(f"stl/{label}-membrane.stl" for label in labels),
-    }  # fmt: skip
+    }
     manifest = json.loads((folder / "manifest.json").read_text())
     for name, said in manifest["files"].items():
         assert hashlib.sha256((folder / name).read_bytes()).hexdigest() == said["sha256"]

@@ -18,8 +18,15 @@ def batch_of(sensor: Sensor, driving_pressures: Sequence[float] | Array) -> Sens
     """
     size = len(driving_pressures)
     facts = (
-        sensor.dome.inner_radius, sensor.dome.wall_thickness, sensor.wall.shear_modulus, sensor.gas.ambient_pressure, sensor.gas.dead_volume,
-        np.asarray(driving_pressures, dtype=float), sensor.protocol.depth, sensor.protocol.plate_radius, sensor.gas.gauge_limit,
+        sensor.dome.inner_radius,
+        sensor.dome.wall_thickness,
+        sensor.wall.shear_modulus,
+        sensor.gas.ambient_pressure,
+        sensor.gas.dead_volume,
+        np.asarray(driving_pressures, dtype=float),
+        sensor.protocol.depth,
+        sensor.protocol.plate_radius,
+        sensor.gas.gauge_limit,
         np.inf if sensor.wall.break_stretch is None else sensor.wall.break_stretch,
-    )  # fmt: skip
+    )
     return SensorBatch(*(np.array(np.broadcast_to(fact, size), dtype=float) for fact in facts))

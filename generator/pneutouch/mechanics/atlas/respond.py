@@ -67,14 +67,20 @@ def inside(batch: SensorBatch, atlas: Atlas) -> Flags:
     """
     recipe, size, slack = atlas.recipe, batch.inner_radius, 1e-9
     return np.asarray(
-        (size > 0.0) & (batch.shear_modulus > 0.0) & (batch.depth > 0.0) & (batch.plate_radius > 0.0)
-        & (batch.ambient_pressure >= 0.0) & (batch.dead_volume >= -0.5 * REST_VOLUME * size**3) & (batch.driving_pressure >= 0.0)
+        (size > 0.0)
+        & (batch.shear_modulus > 0.0)
+        & (batch.depth > 0.0)
+        & (batch.plate_radius > 0.0)
+        & (batch.ambient_pressure >= 0.0)
+        & (batch.dead_volume >= -0.5 * REST_VOLUME * size**3)
+        & (batch.driving_pressure >= 0.0)
         & (batch.wall_thickness >= recipe.thinnest * (1 - slack) * size)
         & (batch.wall_thickness <= recipe.thickest * (1 + slack) * size)
         & (batch.depth <= recipe.deepest * (1 + slack) * size)
         & (batch.ambient_pressure <= recipe.stiffest * batch.shear_modulus)
-        & ~np.isnan(batch.gauge_limit) & ~np.isnan(batch.break_stretch)
-    )  # fmt: skip
+        & ~np.isnan(batch.gauge_limit)
+        & ~np.isnan(batch.break_stretch)
+    )
 
 
 def _harmless(batch: SensorBatch, good: Flags, atlas: Atlas) -> SensorBatch:
@@ -121,12 +127,18 @@ def _respond(batch: SensorBatch, steps: int, atlas: Atlas) -> AtlasResponse:
         array[infeasible] = np.nan
     stretch = press.field("stretch", track).max(axis=1)
     return AtlasResponse(
-        lines=lines(indentation, force, rise / KPA), ends=np.where(good, ends, OUTSIDE), near_buckling=good & _near(press, track),
-        range_end=np.where(infeasible, np.nan, end * batch.inner_radius), limit_pressure=np.where(good, limit, np.nan),
+        lines=lines(indentation, force, rise / KPA),
+        ends=np.where(good, ends, OUTSIDE),
+        near_buckling=good & _near(press, track),
+        range_end=np.where(infeasible, np.nan, end * batch.inner_radius),
+        limit_pressure=np.where(good, limit, np.nan),
         apex_outer=np.where(infeasible, np.nan, press.apex * batch.inner_radius),
         cavity_volume=np.where(infeasible, np.nan, press.volume(press.free) * batch.inner_radius**3),
-        max_stretch=np.where(infeasible, np.nan, stretch), indentation=indentation, force=force, rise=rise,
-    )  # fmt: skip
+        max_stretch=np.where(infeasible, np.nan, stretch),
+        indentation=indentation,
+        force=force,
+        rise=rise,
+    )
 
 
 def _near(press: AtlasPress, track: PressTrack) -> Flags:

@@ -87,9 +87,14 @@ class AtlasSlices:
         along = jet[:, 2, 0] + 2 * jet[:, 1, 1] * rise + jet[:, 0, 2] * rise**2 + force * bend
         folded = self.folded(k, nu, height) if with_folded else np.zeros(nu.size, dtype=bool)
         return AtlasPoint(
-            (jet[:, 1, 0] + force * rise) / reach, force, along / reach**2, -mixed, -jet[:, 0, 2],
-            self.support[k, cell, depth], folded,
-        )  # fmt: skip
+            (jet[:, 1, 0] + force * rise) / reach,
+            force,
+            along / reach**2,
+            -mixed,
+            -jet[:, 0, 2],
+            self.support[k, cell, depth],
+            folded,
+        )
 
     @cached_property
     def _windows(self) -> Array:
@@ -166,10 +171,18 @@ class Atlas:
             return values
 
         return AtlasSlices(
-            grid=self._grid, limit_volume=cut("limit_volume"), limit_pressure=cut("limit_pressure"), apex=cut("apex"), potential=cut("potential"),
-            support=support[below] & support[below + 1], rest_apex=1.0 + wall_ratio, fold_from=between("fold_from")[:, 0], fold_volume=between("fold_volume"),
-            fold_depths=self.recipe.fold_depths, fields={part: cut(part) for name in names for part in parts(name)},
-        )  # fmt: skip
+            grid=self._grid,
+            limit_volume=cut("limit_volume"),
+            limit_pressure=cut("limit_pressure"),
+            apex=cut("apex"),
+            potential=cut("potential"),
+            support=support[below] & support[below + 1],
+            rest_apex=1.0 + wall_ratio,
+            fold_from=between("fold_from")[:, 0],
+            fold_volume=between("fold_volume"),
+            fold_depths=self.recipe.fold_depths,
+            fields={part: cut(part) for name in names for part in parts(name)},
+        )
 
 
 @cache

@@ -10,6 +10,21 @@ from pneutouch.mechanics.uncertainty.source import FIGURES, INPUTS, UncertaintyS
 from pneutouch.mechanics.uncertainty.sources.model import ModelErrors, measured_errors, model_errors
 
 __all__ = [
-    "COVERAGE", "FIGURES", "INPUTS", "Budget", "GasNotes", "ModelErrors", "UncertaintySource", "batch_of", "budget", "document",
-    "gas_notes", "gas_text", "measured_errors", "model_errors", "monte_carlo", "shares", "text",
-]  # fmt: skip
+    "COVERAGE",
+    "FIGURES",
+    "INPUTS",
+    "Budget",
+    "GasNotes",
+    "ModelErrors",
+    "UncertaintySource",
+    "batch_of",
+    "budget",
+    "document",
+    "gas_notes",
+    "gas_text",
+    "measured_errors",
+    "model_errors",
+    "monte_carlo",
+    "shares",
+    "text",
+]

@@ -14,9 +14,15 @@ from pneutouch.spec.printer import Printer
 
 
 def budget(
-    batch: SensorBatch, material: Material, printer: Printer, *,
-    near_paper: Flags | bool, errors: ModelErrors, numerical: Mapping[str, float], aged: bool = True,
-) -> Budget:  # fmt: skip
+    batch: SensorBatch,
+    material: Material,
+    printer: Printer,
+    *,
+    near_paper: Flags | bool,
+    errors: ModelErrors,
+    numerical: Mapping[str, float],
+    aged: bool = True,
+) -> Budget:
     """The uncertainty of the figures of n sensors that share a resin and a printer.
 
     Args:
@@ -33,5 +39,5 @@ def budget(
     """
     source_list = sources(
         batch, material, printer, near_paper=near_paper, errors=errors, numerical=numerical, aged=aged
-    )  # fmt: skip
+    )
     return propagate(batch, source_list)

@@ -62,7 +62,7 @@ def monte_carlo(
 
 def _through_model(
     batch: SensorBatch, sources: Sequence[UncertaintySource], row: int, count: int, seed: int, figure: int
-) -> Array:  # fmt: skip
+) -> Array:
     """Logarithms of all figures, (figures, count), under the sources on inputs that count for one figure."""
     many = batch.take(np.full(count, row))
     draw = np.random.default_rng([seed, 0])

@@ -71,9 +71,13 @@ def log_figures(batch: SensorBatch) -> Array:
     response = respond(batch.take(order), atlas=neighbourhood())
     figures = np.empty((len(FIGURES), len(batch)))
     figures[:, order] = [
-        response.lines.sensitivity_kPa_per_N, response.limit_pressure / KPA, response.lines.stiffness, response.lines.force_high,
-        response.range_end, response.apex_outer,
-    ]  # fmt: skip
+        response.lines.sensitivity_kPa_per_N,
+        response.limit_pressure / KPA,
+        response.lines.stiffness,
+        response.lines.force_high,
+        response.range_end,
+        response.apex_outer,
+    ]
     with np.errstate(invalid="ignore", divide="ignore"):
         logs = np.log(figures)
     return np.where(np.isfinite(logs), logs, np.nan)

@@ -98,10 +98,14 @@ def propagate(batch: SensorBatch, sources: list[UncertaintySource]) -> Budget:
 
 def _variances(sources: list[UncertaintySource], slopes: Array) -> Array:
     """Of the logarithms, (sources, figures, n)."""
-    return np.stack([
-        np.where(s.counts, ((1.0 if s.acts_on == FIGURE else slopes[INPUTS.index(s.acts_on)]) * s.standard) ** 2, 0.0)
-        for s in sources
-    ])  # fmt: skip
+    return np.stack(
+        [
+            np.where(
+                s.counts, ((1.0 if s.acts_on == FIGURE else slopes[INPUTS.index(s.acts_on)]) * s.standard) ** 2, 0.0
+            )
+            for s in sources
+        ]
+    )
 
 
 def _by_input(batch: SensorBatch, sources: list[UncertaintySource]) -> tuple[Array, Array]:

@@ -10,14 +10,16 @@ import numpy as np
 from pneutouch.arrays import Array, Flags
 
 FIGURES = (
-    "sensitivity_kPa_per_N", "limit_pressure_kPa", "stiffness_N_per_mm", "force_at_range_end_N", "range_end_mm",
+    "sensitivity_kPa_per_N",
+    "limit_pressure_kPa",
+    "stiffness_N_per_mm",
+    "force_at_range_end_N",
+    "range_end_mm",
     "apex_height_outer_mm",
-)  # fmt: skip
+)
 """The predicted figures, in the order of every array over figures."""
 
-INPUTS = (
-    "shear_modulus", "wall_thickness", "inner_radius", "dead_volume", "ambient_pressure", "driving_pressure"
-)  # fmt: skip
+INPUTS = ("shear_modulus", "wall_thickness", "inner_radius", "dead_volume", "ambient_pressure", "driving_pressure")
 """What a source may act on through the model, in the order of every array over inputs; names of `SensorBatch`."""
 
 FIGURE = "figure"

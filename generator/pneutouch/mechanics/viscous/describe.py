@@ -47,21 +47,26 @@ class ViscousRuns:
     def document(self) -> dict[str, Any]:
         """The figures as data: one entry a state, one a source in it."""
         return {
-            "depth_mm": self.depth, "ramp_speed_mm_per_s": RAMP_SPEED, "sources": list(self.sources), "basis": list(BASIS),
+            "depth_mm": self.depth,
+            "ramp_speed_mm_per_s": RAMP_SPEED,
+            "sources": list(self.sources),
+            "basis": list(BASIS),
             "states": [
                 {
                     "driving_pressure_kPa": pressure / KPA,
                     "by_source": [
                         {
                             "relaxation": _held(self.held[i][j]),
-                            "hysteresis": [{"speed_mm_per_s": v, **_looped(runs[i][j])} for v, runs in self.loops.items()],
+                            "hysteresis": [
+                                {"speed_mm_per_s": v, **_looped(runs[i][j])} for v, runs in self.loops.items()
+                            ],
                         }
                         for j in range(len(self.sources))
                     ],
                 }
                 for i, pressure in enumerate(self.driving_pressures)
             ],
-        }  # fmt: skip
+        }
 
 
 def describe(sensor: Sensor, material: Material, driving_pressures: Sequence[float], depth: float) -> ViscousRuns:
@@ -80,9 +85,12 @@ def describe(sensor: Sensor, material: Material, driving_pressures: Sequence[flo
         loops.append({v: loop(relaxed_sensor, [series], driving_pressures, depth, v) for v in LOOP_SPEEDS})
     states = range(len(driving_pressures))
     return ViscousRuns(
-        tuple(kept), tuple(driving_pressures), depth, [[one[i][0] for one in held] for i in states],
+        tuple(kept),
+        tuple(driving_pressures),
+        depth,
+        [[one[i][0] for one in held] for i in states],
         {v: [[one[v][i][0] for one in loops] for i in states] for v in LOOP_SPEEDS},
-    )  # fmt: skip
+    )
 
 
 def chosen_depth(sensor: Sensor, range_ends: Sequence[float]) -> float:
@@ -109,10 +117,13 @@ def _held(run: RelaxationRun) -> dict[str, Any]:
         return {"ended": run.ended}
     (force, force_decade), (rise, rise_decade) = run.drop(run.force), run.drop(run.rise)
     return {
-        "force_loss_percent": 100 * force, "force_loss_percent_per_decade": 100 * force_decade,
-        "pressure_rise_loss_percent": 100 * rise, "pressure_rise_loss_percent_per_decade": 100 * rise_decade,
-        "from_s": 1.0, "to_s": float(np.round(run.times[-1], 9)),
-    }  # fmt: skip
+        "force_loss_percent": 100 * force,
+        "force_loss_percent_per_decade": 100 * force_decade,
+        "pressure_rise_loss_percent": 100 * rise,
+        "pressure_rise_loss_percent_per_decade": 100 * rise_decade,
+        "from_s": 1.0,
+        "to_s": float(np.round(run.times[-1], 9)),
+    }
 
 
 def _looped(run: LoopRun) -> dict[str, Any]:
@@ -120,5 +131,8 @@ def _looped(run: LoopRun) -> dict[str, Any]:
     if hysteresis is None:
         return ended
     return {
-        "width_percent": 100 * hysteresis[0], "area_percent": 100 * hysteresis[1], "contact_lost_at_mm": run.contact_lost, **ended,
-    }  # fmt: skip
+        "width_percent": 100 * hysteresis[0],
+        "area_percent": 100 * hysteresis[1],
+        "contact_lost_at_mm": run.contact_lost,
+        **ended,
+    }

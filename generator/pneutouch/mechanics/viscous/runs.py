@@ -77,9 +77,15 @@ class LoopRun:
 
 
 def relaxation(
-    sensor: Sensor, series: Sequence[Prony], driving_pressures: Sequence[float], depth: float, speed: float,
-    times: Array = HOLD_TIMES, steps: int = _RAMP_STEPS, atlas: Atlas | None = None,
-) -> list[list[RelaxationRun]]:  # fmt: skip
+    sensor: Sensor,
+    series: Sequence[Prony],
+    driving_pressures: Sequence[float],
+    depth: float,
+    speed: float,
+    times: Array = HOLD_TIMES,
+    steps: int = _RAMP_STEPS,
+    atlas: Atlas | None = None,
+) -> list[list[RelaxationRun]]:
     """Press to ``depth`` mm at ``speed`` mm/s and hold for ``times`` (ascending, s, above 0); one list a driving pressure (MPa), one run a series.
 
     The sensor's modulus is the relaxed one and the sensor lies inside the atlas (`atlas_states.outside_atlas`).
@@ -107,9 +113,14 @@ def relaxation(
 
 
 def loop(
-    sensor: Sensor, series: Sequence[Prony], driving_pressures: Sequence[float], depth: float, speed: float,
-    steps: int = _LOOP_STEPS, atlas: Atlas | None = None,
-) -> list[list[LoopRun]]:  # fmt: skip
+    sensor: Sensor,
+    series: Sequence[Prony],
+    driving_pressures: Sequence[float],
+    depth: float,
+    speed: float,
+    steps: int = _LOOP_STEPS,
+    atlas: Atlas | None = None,
+) -> list[list[LoopRun]]:
     """Press to ``depth`` mm and back at ``speed`` mm/s; one list a driving pressure (MPa), one run a series; see `relaxation`."""
     share = np.linspace(0.0, 1.0, steps + 1)
     travel = np.concatenate([share, share[-2::-1]]) * depth
@@ -145,9 +156,13 @@ def _loop(travel: Array, force: Array, rise: Array, known: int, ended: str | Non
 
 
 def _followed(
-    sensor: Sensor, series: Sequence[Prony], driving_pressures: Sequence[float], clock: Array, travel: Array,
+    sensor: Sensor,
+    series: Sequence[Prony],
+    driving_pressures: Sequence[float],
+    clock: Array,
+    travel: Array,
     atlas: Atlas | None,
-) -> tuple[AtlasPress, ViscousPath]:  # fmt: skip
+) -> tuple[AtlasPress, ViscousPath]:
     """Every state with every series, series running fastest."""
     batch = batch_of(sensor, np.repeat(np.asarray(driving_pressures, dtype=float), len(series)))
     terms = max(len(one.shares) for one in series)
@@ -159,9 +174,12 @@ def _followed(
     many = len(driving_pressures)
     shape = (len(batch), clock.size)
     path = follow(
-        press, np.tile(excess, (many, 1)), np.tile(times, (many, 1)), np.broadcast_to(clock, shape),
+        press,
+        np.tile(excess, (many, 1)),
+        np.tile(times, (many, 1)),
+        np.broadcast_to(clock, shape),
         np.broadcast_to(travel / sensor.dome.inner_radius, shape),
-    )  # fmt: skip
+    )
     return press, path
 
 

@@ -61,7 +61,12 @@ def nominals(context: CouponContext) -> tuple[Nominal, ...]:
 
 
 DUMBBELL = Coupon(
-    "dumbbell", "tensile dumbbell, ASTM D412 die C", "material", 5, draw, nominals,
+    "dumbbell",
+    "tensile dumbbell, ASTM D412 die C",
+    "material",
+    5,
+    draw,
+    nominals,
     steps=(
         "Print flat, all lengthwise along x, and one set more along y where the direction matters.",
         "Mark two lines 25 mm apart in the middle. Measure width and thickness at three places between them.",
@@ -75,5 +80,6 @@ DUMBBELL = Coupon(
         "for comparison E / (2 (1 + nu)) with the secant E = s / (L - 1) at 10 % strain; 8 % lower in a neo-Hookean resin",
         "over the dumbbells: mean, standard deviation, least and greatest",
     ),
-    each="specimen", kinds=("elastomer",),
-)  # fmt: skip
+    each="specimen",
+    kinds=("elastomer",),
+)

@@ -122,7 +122,12 @@ def _pin(x: float, diameter: float, middle: float) -> Feature:
 
 
 GAUGE = Coupon(
-    "gauge", "wall and hole gauge with a step block", "printer", 1, draw, nominals,
+    "gauge",
+    "wall and hole gauge with a step block",
+    "printer",
+    1,
+    draw,
+    nominals,
     steps=(
         "Print gauge and block as they lie in the file: x, y and z are the machine's.",
         "The cut corner of the gauge is at the least x and y. From it, sizes rise along x; along y the rows are walls, pins, "
@@ -136,4 +141,4 @@ GAUGE = Coupon(
         "hole undersize = mean of (nominal - mean reading) over the holes that came out, with its standard deviation",
         "least wall, pin, hole and gap = the smallest that came out together with all larger ones",
     ),
-)  # fmt: skip
+)

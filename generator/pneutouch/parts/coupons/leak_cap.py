@@ -33,10 +33,19 @@ def cap(context: CouponContext, hollow: TracedPath, top: float) -> Meridian:
     slack = scene.fit_clearance - layout.clearance
     inner, flange, low = layout.inner_radius + slack, layout.flange_radius - slack, -layout.flange_thickness
     rim, high = rim_radius(context, layout), top + disc_thickness(layout)
-    return trace((0.0, top), [
-        *hollow, ("base plane", (inner, 0.0)), ("held", (inner, low)), ("held", (flange, low)), ("held", (flange, 0.0)),
-        ("flange top", (rim, 0.0)), ("side", (rim, high)), ("top", (0.0, high)),
-    ])  # fmt: skip
+    return trace(
+        (0.0, top),
+        [
+            *hollow,
+            ("base plane", (inner, 0.0)),
+            ("held", (inner, low)),
+            ("held", (flange, low)),
+            ("held", (flange, 0.0)),
+            ("flange top", (rim, 0.0)),
+            ("side", (rim, high)),
+            ("top", (0.0, high)),
+        ],
+    )
 
 
 def rim_radius(context: CouponContext, layout: Layout) -> float:
@@ -62,7 +71,12 @@ def nominals(context: CouponContext) -> tuple[Nominal, ...]:
 
 
 LEAK_CAP = Coupon(
-    "leak-cap", "leak-test cap", "design", 1, draw, nominals,
+    "leak-cap",
+    "leak-test cap",
+    "design",
+    1,
+    draw,
+    nominals,
     steps=(
         "Print as it lies in the file, the flange up. Fix it in the connector's seat as the membrane would be: glued, or under "
         "the ring with a film of grease, for a rigid flange is not squeezed. A membrane grown onto its connector: print the "
@@ -73,4 +87,4 @@ LEAK_CAP = Coupon(
     ),
     formulas=("leak rate = (start - end) / time, kPa/min", "the push is used with the dead-volume plug"),
     turned_over=True,
-)  # fmt: skip
+)

@@ -37,7 +37,12 @@ def nominals(context: CouponContext) -> tuple[Nominal, ...]:
 
 
 PUCK = Coupon(
-    "puck", "hardness puck", "material", 4, draw, nominals,
+    "puck",
+    "hardness puck",
+    "material",
+    4,
+    draw,
+    nominals,
     steps=(
         "Print flat, matte all over, so that both faces are alike. Clean, dry, and wait 24 h; note the age.",
         "Weigh each puck; measure diameter and thickness once each, at the middle.",
@@ -49,4 +54,4 @@ PUCK = Coupon(
         "hardness: mean and standard deviation of all readings",
         "density = 4 m / (pi d^2 t) a puck, then mean and standard deviation",
     ),
-)  # fmt: skip
+)

@@ -62,14 +62,16 @@ def draw(context: CouponContext) -> tuple[Solid, ...]:
 def nominals(context: CouponContext) -> tuple[Nominal, ...]:
     """The pressure after the same push of air as over the cap, and the cavity's volume by weighed water."""
     volume_mL = cavity_volume(context.design().design.membrane.inner_radius_mm) / ML
-    return (
-        Nominal("pressure_kPa", None, "kPa", PRESSURE),
-        Nominal("water_g", WATER * volume_mL, "g", BALANCE),
-    )
+    return (Nominal("pressure_kPa", None, "kPa", PRESSURE), Nominal("water_g", WATER * volume_mL, "g", BALANCE))
 
 
 VOLUME_PLUG = Coupon(
-    "volume-plug", "dead-volume plug", "design", 1, draw, nominals,
+    "volume-plug",
+    "dead-volume plug",
+    "design",
+    1,
+    draw,
+    nominals,
     steps=(
         "Print as it lies in the file, the cavity up. Before it goes in, fill the cavity up to its ledge with water at room "
         "temperature and weigh what it holds, three times; dry it. Left out, the drawn volume counts, with the printer's accuracy.",
@@ -84,4 +86,4 @@ VOLUME_PLUG = Coupon(
         "p_plug; each u the standard error of the mean, the gauge's own added in squares",
     ),
     turned_over=True,
-)  # fmt: skip
+)

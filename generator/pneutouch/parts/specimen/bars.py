@@ -28,10 +28,20 @@ _CORNERS = np.array(
 )
 _FACES = np.array(
     [
-        [0, 2, 1], [0, 3, 2], [4, 5, 6], [4, 6, 7], [0, 1, 5], [0, 5, 4],
-        [1, 2, 6], [1, 6, 5], [2, 3, 7], [2, 7, 6], [3, 0, 4], [3, 4, 7],
+        [0, 2, 1],
+        [0, 3, 2],
+        [4, 5, 6],
+        [4, 6, 7],
+        [0, 1, 5],
+        [0, 5, 4],
+        [1, 2, 6],
+        [1, 6, 5],
+        [2, 3, 7],
+        [2, 7, 6],
+        [3, 0, 4],
+        [3, 4, 7],
     ]
-)  # fmt: skip
+)
 
 _MOST_EXACT = 500
 """Bars that are written to STEP: beyond it Open CASCADE takes minutes."""
@@ -55,9 +65,12 @@ def box(layer: Bars, context: PatternContext, number: int) -> Box:
     between = pitch - layer.width_mm
     if between < context.least_matrix() - 1e-9:
         raise context.refuse(
-            number, "width_mm", layer.width_mm, f"leaves {between:.4g} mm of matrix between bars at a pitch of {pitch:.4g} mm; "
+            number,
+            "width_mm",
+            layer.width_mm,
+            f"leaves {between:.4g} mm of matrix between bars at a pitch of {pitch:.4g} mm; "
             f"the {context.printer.title} makes no wall of {context.matrix.label} thinner than {context.least_matrix():g} mm",
-        )  # fmt: skip
+        )
     check_count(context, number, layer.period_key(), pitch, 30 * (context.block.high[0] / pitch))
     lefts = places(layer, context)
     if not len(lefts):
@@ -89,12 +102,18 @@ def draw(layer: Bars, context: PatternContext, number: int) -> PatternGeometry:
     triangles = _FACES + 8 * np.arange(len(lefts))[:, None, None]
     side = (around.high[1] - around.low[1]) * (around.high[2] - around.low[2])
     return PatternGeometry(
-        Mesh(vertices.reshape(-1, 3), triangles.reshape(-1, 3)), around, (layer.pitch(context.speed),),
+        Mesh(vertices.reshape(-1, 3), triangles.reshape(-1, 3)),
+        around,
+        (layer.pitch(context.speed),),
         {"count": len(lefts), "width_mm": layer.width_mm, "first_mm": float(lefts[0]), "offset_mm": layer.offset_mm},
         float((rights - lefts).sum()) * side,
-        tuple(_solid(context, number, k, float(x), around, float(end)) for k, (x, end) in enumerate(zip(lefts, rights, strict=True)))
-        if len(lefts) <= _MOST_EXACT else (),
-    )  # fmt: skip
+        tuple(
+            _solid(context, number, k, float(x), around, float(end))
+            for k, (x, end) in enumerate(zip(lefts, rights, strict=True))
+        )
+        if len(lefts) <= _MOST_EXACT
+        else (),
+    )
 
 
 def _solid(context: PatternContext, number: int, k: int, left: float, around: Box, right: float) -> Solid:

@@ -96,10 +96,12 @@ def check_inside(box: Box, context: PatternContext, number: int, layer: Layer) -
         if box.low[axis] < low - 1e-9 or box.high[axis] > high + 1e-9:
             size = ("length_mm", "width_mm", "height_mm")[axis]
             raise context.refuse(
-                number, key, getattr(layer, key, high),
+                number,
+                key,
+                getattr(layer, key, high),
                 f"the pattern reaches from {box.low[axis]:g} to {box.high[axis]:g} mm along {'xyz'[axis]}; it must stay "
                 f"between {low:g} and {high:g} mm, so make it smaller or raise block.{size}",
-            )  # fmt: skip
+            )
         for gap in (box.low[axis] - low, high - box.high[axis]):
             if 0 < gap < 1e-3:
                 text = f"a gap of {1e3 * gap:.2g} um to the side of the block; make it flush or at least 1 um"
@@ -111,15 +113,21 @@ def check_least(context: PatternContext, number: int, key: str, value: float, ki
     least = context.least(kind)
     if factor * value < least - 1e-9:
         raise context.refuse(
-            number, key, value, f"the {context.printer.title} makes no {kind} of {context.inclusion.label} thinner than {least:g} mm; "
+            number,
+            key,
+            value,
+            f"the {context.printer.title} makes no {kind} of {context.inclusion.label} thinner than {least:g} mm; "
             f"it must be at least {least / factor:g} mm",
-        )  # fmt: skip
+        )
 
 
 def check_count(context: PatternContext, number: int, key: str, value: float, triangles: float) -> None:
     """Raise InputError where a pattern would take more triangles than files can carry."""
     if triangles > MOST_TRIANGLES:
         raise context.refuse(
-            number, key, value, f"the pattern would take about {triangles / 1e6:.3g} million triangles; the most is "
+            number,
+            key,
+            value,
+            f"the pattern would take about {triangles / 1e6:.3g} million triangles; the most is "
             f"{MOST_TRIANGLES / 1e6:g} million (about 1.5 GiB), so take a larger cell or pitch, or a smaller block",
-        )  # fmt: skip
+        )

@@ -27,9 +27,7 @@ class Box:
 
     def gap(self, other: Box) -> float:
         """Greatest distance along an axis between the boxes, mm; negative where they overlap."""
-        return max(
-            max(self.low[k] - other.high[k], other.low[k] - self.high[k]) for k in range(3)
-        )  # fmt: skip
+        return max(max(self.low[k] - other.high[k], other.low[k] - self.high[k]) for k in range(3))
 
 
 @dataclass(frozen=True)

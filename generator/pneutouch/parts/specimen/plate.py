@@ -23,9 +23,15 @@ def holes(block: Box, border: float) -> list[tuple[float, float]]:
 
 
 def plate(
-    block: Box, bodies: Sequence[Mesh], border: float, thickness: float, diameter: float, tolerance: float,
-    letters: Sequence[Array] = (), depth: float = 0.0,
-) -> Mesh:  # fmt: skip
+    block: Box,
+    bodies: Sequence[Mesh],
+    border: float,
+    thickness: float,
+    diameter: float,
+    tolerance: float,
+    letters: Sequence[Array] = (),
+    depth: float = 0.0,
+) -> Mesh:
     """The plate, its top at the bottom of the block; lengths in mm.
 
     ``bodies`` are what stands on it: their triangles on that plane are taken over, turned round. ``letters`` are plane

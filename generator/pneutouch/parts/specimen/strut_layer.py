@@ -51,9 +51,12 @@ def box(layer: StrutLattice, context: PatternContext, number: int) -> Box:
         most = _LARGEST * _greatest(layer.kind, cell)
         if layer.strut_radius_mm > most:
             raise context.refuse(
-                number, "strut_radius_mm", layer.strut_radius_mm, f"leaves no matrix between the struts of a {layer.kind} cell of "
+                number,
+                "strut_radius_mm",
+                layer.strut_radius_mm,
+                f"leaves no matrix between the struts of a {layer.kind} cell of "
                 f"{cell:.4g} mm; it must be at most {most:.3g} mm",
-            )  # fmt: skip
+            )
     return around
 
 
@@ -71,9 +74,11 @@ def draw(layer: StrutLattice, context: PatternContext, number: int) -> PatternGe
         lattice, mesh = _solved(layer, context, number, around, sides)
         check_count(context, number, layer.period_key(), cell, len(mesh.triangles))
     truth = {
-        "cell_mm": cell, "strut_radius_mm": lattice.radius, "sides": lattice.sides,
+        "cell_mm": cell,
+        "strut_radius_mm": lattice.radius,
+        "sides": lattice.sides,
         "volume_fraction": mesh.volume / around.volume,
-    }  # fmt: skip
+    }
     return PatternGeometry(mesh, around, (cell,), truth)
 
 
@@ -117,10 +122,16 @@ def _check_fraction(layer: StrutLattice, context: PatternContext, number: int, c
     radius = _guess(layer.kind, cell, target)
     if radius > thickest or radius < thinnest:
         raise context.refuse(
-            number, "volume_fraction", target, f"{layer.kind} struts in a cell of {cell:.4g} mm would be {2 * radius:.3g} mm thick; "
-            + (f"it must be from {low:.3f} to {high:.3f}, {2 * thinnest:g} to {2 * thickest:.3g} mm" if thinnest < thickest else
-               f"no fraction is printable, so take a cell_mm over {cell * thinnest / thickest:.3g}"),
-        )  # fmt: skip
+            number,
+            "volume_fraction",
+            target,
+            f"{layer.kind} struts in a cell of {cell:.4g} mm would be {2 * radius:.3g} mm thick; "
+            + (
+                f"it must be from {low:.3f} to {high:.3f}, {2 * thinnest:g} to {2 * thickest:.3g} mm"
+                if thinnest < thickest
+                else f"no fraction is printable, so take a cell_mm over {cell * thinnest / thickest:.3g}"
+            ),
+        )
 
 
 def _guess(kind: str, cell: float, fraction: float) -> float:

@@ -28,9 +28,7 @@ Ends = tuple[tuple[float, float, float], tuple[float, float, float]]
 
 _A, _B, _C = (0.5, 0.5, 0.0), (0.5, 0.0, 0.5), (0.0, 0.5, 0.5)
 _O = (0.0, 0.0, 0.0)
-_KELVIN = [
-    (0.0, 0.25, 0.5), (0.25, 0.0, 0.5), (0.5, 0.0, 0.25), (0.5, 0.25, 0.0), (0.25, 0.5, 0.0), (0.0, 0.5, 0.25),
-]  # fmt: skip
+_KELVIN = [(0.0, 0.25, 0.5), (0.25, 0.0, 0.5), (0.5, 0.0, 0.25), (0.5, 0.25, 0.0), (0.25, 0.5, 0.0), (0.0, 0.5, 0.25)]
 
 STRUTS: dict[str, tuple[Ends, ...]] = {
     "simple-cubic": ((_O, (0.5, 0.0, 0.0)), (_O, (0.0, 0.5, 0.0)), (_O, (0.0, 0.0, 0.5))),
@@ -77,9 +75,12 @@ class Lattice:
         steps = self.sides // 4
         corners = [
             (i * sx, j * sy, (steps - i - j) * sz)
-            for i in range(steps + 1) for j in range(steps + 1 - i)
-            for sx in (-1, 1) for sy in (-1, 1) for sz in (-1, 1)
-        ]  # fmt: skip
+            for i in range(steps + 1)
+            for j in range(steps + 1 - i)
+            for sx in (-1, 1)
+            for sy in (-1, 1)
+            for sz in (-1, 1)
+        ]
         points = np.unique(np.array(corners, float), axis=0)
         # Equal angles along the edges: plain normalising would crowd the corners of the octahedron.
         bent = np.sign(points) * np.sin(0.5 * np.pi * np.abs(points) / steps)
@@ -158,9 +159,7 @@ def tiled(piece: Mesh, half: float, counts: tuple[int, int, int], origin: Array)
     # Planes have even codes, what lies between them odd ones.
     code = 2 * index[:, None, :] + 1 - on_first + on_last
     local = np.where(odd[:, None, :], 1.0 - vertices, vertices)
-    place = np.where(
-        code % 2 == 0, (code // 2) * half, (index[:, None, :] + local) * half
-    )  # fmt: skip
+    place = np.where(code % 2 == 0, (code // 2) * half, (index[:, None, :] + local) * half)
     sizes = [2 * n + 1 for n in counts]
     key = ((np.arange(len(vertices)) * sizes[0] + code[..., 0]) * sizes[1] + code[..., 1]) * sizes[2] + code[..., 2]
     _, first, number = np.unique(key.reshape(-1), return_index=True, return_inverse=True)

@@ -51,20 +51,28 @@ def draw(layer: MinimalSurface, context: PatternContext, number: int) -> Pattern
     if not low < fraction < high:
         key, value = ("thickness_mm", layer.thickness_mm) if requested is None else ("volume_fraction", requested)
         raise context.refuse(
-            number, key, value, f"the {layer.kind} {layer.form} would fill {fraction:.3g} of the layer; it hangs together from "
+            number,
+            key,
+            value,
+            f"the {layer.kind} {layer.form} would fill {fraction:.3g} of the layer; it hangs together from "
             f"{low:.3f} to {high:.3f} only",
-        )  # fmt: skip
+        )
     mean = fraction / fraction_of(surface, around, 1.0)
     if layer.form == "sheet" and requested is not None and mean < context.least("wall") - 1e-9:
         raise context.refuse(
-            number, "volume_fraction", requested, f"the sheet would be {mean:.3g} mm thick on average; the {context.printer.title} makes no "
+            number,
+            "volume_fraction",
+            requested,
+            f"the sheet would be {mean:.3g} mm thick on average; the {context.printer.title} makes no "
             f"wall thinner than {context.least('wall'):g} mm, so it must be at least {requested * context.least('wall') / mean:.3f}, or take a larger cell_mm",
-        )  # fmt: skip
+        )
     mesh = fill(surface, around, fraction)
     truth = {
-        "cell_mm": cell, "form": layer.form, "volume_fraction": mesh.volume / around.volume,
+        "cell_mm": cell,
+        "form": layer.form,
+        "volume_fraction": mesh.volume / around.volume,
         **({"mean_thickness_mm": mean} if layer.form == "sheet" else {}),
-    }  # fmt: skip
+    }
     return PatternGeometry(mesh, around, (cell,), truth)
 
 

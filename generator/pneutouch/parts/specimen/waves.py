@@ -48,9 +48,12 @@ def _section(layer: Sinusoid | RandomPhase, context: PatternContext, number: int
     least = context.least_matrix()
     if layer.depth_mm < least - 1e-9:
         raise context.refuse(
-            number, "depth_mm", layer.depth_mm, f"the matrix would thin to nothing over the crests; it must be at least {least:g} mm, the "
+            number,
+            "depth_mm",
+            layer.depth_mm,
+            f"the matrix would thin to nothing over the crests; it must be at least {least:g} mm, the "
             f"thinnest wall of {context.matrix.label} on the {context.printer.title}",
-        )  # fmt: skip
+        )
     start, end = along(layer, context)
     wave = _wave(layer, context)
     key = layer.period_key()
@@ -74,10 +77,12 @@ def draw(layer: Sinusoid | RandomPhase, context: PatternContext, number: int) ->
     low, high = context.block.low[1], context.block.high[1]
     area = float(np.sum(0.5 * (top[1:] + top[:-1] - 2 * floor) * np.diff(x)))
     return PatternGeometry(
-        _swept(x, top, floor, low, high), box(layer, context, number), pitches,
+        _swept(x, top, floor, low, high),
+        box(layer, context, number),
+        pitches,
         {"amplitude_mm": amplitude, "phases_rad": list(phases), "start_mm": float(x[0])},
         area * (high - low),
-    )  # fmt: skip
+    )
 
 
 def _swept(x: Array, top: Array, floor: float, low: float, high: float) -> Mesh:

@@ -83,9 +83,17 @@ def chords(manifold: Any, surface: SurfaceMesh, samples: SurfaceSamples, reach: 
         rows = np.flatnonzero(np.isfinite(length) & (length <= reach) & (facing < _OPPOSING))
         wide = np.full(len(rows), np.inf)
         sides[cast(Side, side)] = Chords(
-            start=samples.points[rows], direction=sign * normals[rows], length=length[rows], near=samples.faces[rows], far=far[rows],
-            area=samples.areas[rows], second=wide, sides=np.zeros((len(rows), 2), np.int64), axis=np.zeros((len(rows), 3)), flank=wide,
-        )  # fmt: skip
+            start=samples.points[rows],
+            direction=sign * normals[rows],
+            length=length[rows],
+            near=samples.faces[rows],
+            far=far[rows],
+            area=samples.areas[rows],
+            second=wide,
+            sides=np.zeros((len(rows), 2), np.int64),
+            axis=np.zeros((len(rows), 3)),
+            flank=wide,
+        )
     return sides
 
 

@@ -54,9 +54,10 @@ def sample(surface: SurfaceMesh, spacing: float = SPACING, most: int = MOST) -> 
     points = np.einsum("nk,nkd->nd", weights, surface.corners[faces])
     near, near_faces = _near_edges(surface, spacing)
     return SurfaceSamples(
-        np.concatenate([points, near]), np.concatenate([faces, near_faces]),
+        np.concatenate([points, near]),
+        np.concatenate([faces, near_faces]),
         np.concatenate([areas[faces] / counts[faces], np.zeros(len(near_faces))]),
-    )  # fmt: skip
+    )
 
 
 def _near_edges(surface: SurfaceMesh, spacing: float) -> tuple[Array, Indices]:

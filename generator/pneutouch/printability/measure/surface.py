@@ -159,9 +159,9 @@ class SurfaceMesh:
         """Unit normals at each triangle's corners, (m, 3, 3), averaged over the smooth group's faces there by angle."""
         a, b, c = np.moveaxis(self.corners, 1, 0)
         sides = [(b - a, c - a), (c - b, a - b), (a - c, b - c)]
-        angles = np.stack([
-            np.arctan2(np.linalg.norm(np.cross(u, v), axis=1), np.einsum("ij,ij->i", u, v)) for u, v in sides
-        ], axis=1)  # fmt: skip
+        angles = np.stack(
+            [np.arctan2(np.linalg.norm(np.cross(u, v), axis=1), np.einsum("ij,ij->i", u, v)) for u, v in sides], axis=1
+        )
         key = self.triangles * (int(self.groups.max()) + 1) + self.groups[:, None]
         _, number = np.unique(key.reshape(-1), return_inverse=True)
         weighted = (angles[:, :, None] * self.normals[:, None, :]).reshape(-1, 3)
@@ -173,8 +173,9 @@ class SurfaceMesh:
         """Outward unit normals of the smooth surface that the mesh stands for, (n, 3), at points on given faces."""
         a, b, c = np.moveaxis(self.corners[faces], 1, 0)
         twice = np.maximum(2 * self.areas[faces], 1e-30)
-        weights = np.stack([
-            np.linalg.norm(np.cross(u - points, v - points), axis=1) / twice for u, v in ((b, c), (c, a), (a, b))
-        ], axis=1)  # fmt: skip
+        weights = np.stack(
+            [np.linalg.norm(np.cross(u - points, v - points), axis=1) / twice for u, v in ((b, c), (c, a), (a, b))],
+            axis=1,
+        )
         mixed = np.einsum("nk,nkd->nd", weights, self._corner_normals[faces])
         return cast(Array, mixed / np.maximum(np.linalg.norm(mixed, axis=1, keepdims=True), 1e-30))

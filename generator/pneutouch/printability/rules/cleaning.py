@@ -127,7 +127,7 @@ def _slender(job: PrintJob) -> list[Finding]:
 
 def _finding(
     job: PrintJob, severity: Severity, text: str, fix: str, source: str, where: Point3, excess: Excess
-) -> Finding:  # fmt: skip
+) -> Finding:
     part = job.nearest(where)
     fix = part.item.hints.get("cleaning", fix)
     return Finding("cleaning", severity, part.name, text, fix, source, where, excess)

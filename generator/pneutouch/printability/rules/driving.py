@@ -28,8 +28,13 @@ def check(view: PrintView) -> list[Finding]:
     text = f"{highest / KPA:g} kPa against the {limits.binding} at {limits.lowest / KPA:.1f} kPa"
     return [
         Finding(
-            "driving", "error" if highest > limits.lowest else "warning", view.sensor.membrane, text,
-            f"lower pneumatics.driving_pressures_kPa below {rated_kPa:.1f}", _SOURCES[limits.binding], apex,
+            "driving",
+            "error" if highest > limits.lowest else "warning",
+            view.sensor.membrane,
+            text,
+            f"lower pneumatics.driving_pressures_kPa below {rated_kPa:.1f}",
+            _SOURCES[limits.binding],
+            apex,
             Excess(highest / KPA, rated_kPa, "kPa"),
         )
-    ]  # fmt: skip
+    ]

@@ -27,9 +27,7 @@ SIZE_RULES = {
     "pins": SizeRule("pin", {"pin": "a pin"}, "make the pin thicker, or let it lean on a wall"),
     "holes": SizeRule("hole", {"hole": "a hole"}, "make the hole wider, or drill it through after printing"),
     "channels": SizeRule(
-        "channel",
-        {"channel": "a channel"},
-        "make the channel wider or shorter, or drill it through after printing",
+        "channel", {"channel": "a channel"}, "make the channel wider or shorter, or drill it through after printing"
     ),
     "emboss": SizeRule("emboss", _DETAIL, "make the detail wider and higher"),
 }

@@ -47,8 +47,11 @@ def _deepest(part: PrintPart, plane: Array) -> tuple[float, tuple[float, float, 
     if not len(points):
         return 0.0, (0.0, 0.0, 0.0)
     solid = part.item.solid
-    gaps = solid.distance(points) if solid is not None else np.min(np.linalg.norm(
-        part.item.body.vertices[None] - points[:, None], axis=2), axis=1)  # fmt: skip
+    gaps = (
+        solid.distance(points)
+        if solid is not None
+        else np.min(np.linalg.norm(part.item.body.vertices[None] - points[:, None], axis=2), axis=1)
+    )
     k = int(np.argmax(gaps))
     x, y, z = (float(value) for value in points[k])
     return float(gaps[k]), (x, y, z)

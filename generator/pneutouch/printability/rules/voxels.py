@@ -31,8 +31,16 @@ def check_stack(
     if len(resins) > most:
         text = f"{len(resins)} resins ({', '.join(resins)}); a stack in the mode {mode.name} has {most} colours at most"
         findings.append(
-            Finding(RULE, "error", body, text, "take fewer resins", rules.source, excess=Excess(len(resins), most, "colours"))
-        )  # fmt: skip
+            Finding(
+                RULE,
+                "error",
+                body,
+                text,
+                "take fewer resins",
+                rules.source,
+                excess=Excess(len(resins), most, "colours"),
+            )
+        )
     if layers < rules.least_slices:
         text = f"{layers} slices of {mode.layer_height_um:g} um; the utility takes no fewer than {rules.least_slices}"
         fix = "take a mode of thinner layers, or make the part taller"

@@ -31,13 +31,22 @@ LINES = {
 """By key of `bench.figure.FIGURES`."""
 
 TERMS = (
-    ("95 % interval", "Of a mean: over specimens, Student's t; with one specimen over its runs, which does not include other specimens. Of a standard deviation: chi-square."),
+    (
+        "95 % interval",
+        "Of a mean: over specimens, Student's t; with one specimen over its runs, which does not include other specimens. Of a standard deviation: chi-square.",
+    ),
     ("n", "Specimens / runs behind a value."),
-    ("Predicted band", "The interval that holds the figure of a printed sensor with 95 %, as the predicted datasheet states it."),
+    (
+        "Predicted band",
+        "The interval that holds the figure of a printed sensor with 95 %, as the predicted datasheet states it.",
+    ),
     ("Difference", "Measured less predicted, in percent of the predicted."),
-    ("Overlap", "Whether the measured interval and the predicted band share a value; a measured value without an interval counts as itself. Empty where the prediction has no band."),
+    (
+        "Overlap",
+        "Whether the measured interval and the predicted band share a value; a measured value without an interval counts as itself. Empty where the prediction has no band.",
+    ),
     ("Full scale", "Difference of the greatest and the least pressure rise of the run."),
-)  # fmt: skip
+)
 """Further words of the tables."""
 
 

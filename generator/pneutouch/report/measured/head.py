@@ -172,9 +172,11 @@ def conditions(measured: CampaignReport) -> list[list[str]]:
     campaign, rig, scene = measured.campaign, measured.campaign.rig, measured.scene
     kinds = Counter(run.kind for run in campaign.runs)
     ambient_kPa = campaign.ambient_pressure_kPa
-    air = f"{ambient_kPa:g} kPa absolute, as measured" if ambient_kPa is not None else (
-        f"{scene.design.pneumatics.ambient_pressure_kPa:g} kPa absolute, as the design states"
-    )  # fmt: skip
+    air = (
+        f"{ambient_kPa:g} kPa absolute, as measured"
+        if ambient_kPa is not None
+        else (f"{scene.design.pneumatics.ambient_pressure_kPa:g} kPa absolute, as the design states")
+    )
     design = scene.design.membrane
     return [
         ["Laboratory", campaign.lab or "not named"],
@@ -186,10 +188,16 @@ def conditions(measured: CampaignReport) -> list[list[str]]:
         ["Sampling", f"{rig.rate_Hz:g} Hz"],
         ["Ambient pressure", air],
         ["Runs", listed([f"{count} {kind}" for kind, count in sorted(kinds.items())])],
-        ["Ages", listed(list({b.group.key.age_days: b.group.key.age for b in sorted(measured.comparisons, key=_age)}.values())) or "none"],
+        [
+            "Ages",
+            listed(
+                list({b.group.key.age_days: b.group.key.age for b in sorted(measured.comparisons, key=_age)}.values())
+            )
+            or "none",
+        ],
         ["Driving pressure as read", _as_read(measured)],
         ["Predicted by", measured.model],
-    ]  # fmt: skip
+    ]
 
 
 def _age(comparison: GroupComparison) -> float:

@@ -106,9 +106,13 @@ def some(curves: Sequence[MeasuredCurve]) -> list[MeasuredCurve]:
 
 
 def multiples(
-    panels: Sequence[Panel], draw: Callable[[Axes, Panel], None], labels: tuple[str, str], legend: dict[str, Any], *,
+    panels: Sequence[Panel],
+    draw: Callable[[Axes, Panel], None],
+    labels: tuple[str, str],
+    legend: dict[str, Any],
+    *,
     shared: bool = False,
-) -> Plot:  # fmt: skip
+) -> Plot:
     """One panel a resin.
 
     ``labels`` are those of the axes, ``legend`` handles by their words. ``shared`` panels have the same axes.
@@ -144,9 +148,15 @@ def _legend(drawn: Figure, legend: dict[str, Any], wide: float) -> None:
         # matplotlib fills columns: taken in this order the entries read row by row.
         words = [word for k in range(ncols) for word in list(legend)[k::ncols]]
         drawn.legend(
-            [legend[word] for word in words], words, loc="outside upper left", ncols=ncols, handlelength=2.2,
-            columnspacing=1.4, handletextpad=0.5, borderpad=0.1,
-        )  # fmt: skip
+            [legend[word] for word in words],
+            words,
+            loc="outside upper left",
+            ncols=ncols,
+            handlelength=2.2,
+            columnspacing=1.4,
+            handletextpad=0.5,
+            borderpad=0.1,
+        )
 
 
 def key(panels: Sequence[Panel]) -> dict[str, Any]:

@@ -67,12 +67,36 @@ def _figures(measured: CampaignReport, panels: Sequence[Panel]) -> DrawnPlots:
         else ""
     )
     listed = {
-        "sensitivity": ("Sensitivity over driving pressure", "Mean over specimens with its 95 % interval, in the predicted band.", plots.sensitivities(panels)),
-        "response": ("Response", f"Pressure rise over contact force. Markers: every run; lines: predicted, with the band of the sensitivity{ends}.{joined}{some}", plots.responses(panels)),
-        "indentation": ("Force over indentation", f"Contact force over indentation. Markers: every run; lines: predicted, with the band of the stiffness{ends}.{joined}{some}", plots.indentations(panels)),
-        "loops": ("Hysteresis", "Pressure rise over contact force: the first run at the lowest and at the highest driving pressure, all its cycles.", slow.loops(panels)),
-        "relaxation": ("Relaxation", f"Force and pressure rise in a long hold, in percent of their value at 1 s; every driving pressure.{some}", slow.relaxations(panels)),
-        "ageing": ("Ageing", "Change of the sensitivity since fresh, in percent of the aged one, with its 95 % interval.", slow.ageings(measured)),
-    }  # fmt: skip
+        "sensitivity": (
+            "Sensitivity over driving pressure",
+            "Mean over specimens with its 95 % interval, in the predicted band.",
+            plots.sensitivities(panels),
+        ),
+        "response": (
+            "Response",
+            f"Pressure rise over contact force. Markers: every run; lines: predicted, with the band of the sensitivity{ends}.{joined}{some}",
+            plots.responses(panels),
+        ),
+        "indentation": (
+            "Force over indentation",
+            f"Contact force over indentation. Markers: every run; lines: predicted, with the band of the stiffness{ends}.{joined}{some}",
+            plots.indentations(panels),
+        ),
+        "loops": (
+            "Hysteresis",
+            "Pressure rise over contact force: the first run at the lowest and at the highest driving pressure, all its cycles.",
+            slow.loops(panels),
+        ),
+        "relaxation": (
+            "Relaxation",
+            f"Force and pressure rise in a long hold, in percent of their value at 1 s; every driving pressure.{some}",
+            slow.relaxations(panels),
+        ),
+        "ageing": (
+            "Ageing",
+            "Change of the sensitivity since fresh, in percent of the aged one, with its 95 % interval.",
+            slow.ageings(measured),
+        ),
+    }
     drawn = {name: (title, caption, plot) for name, (title, caption, plot) in listed.items() if plot is not None}
     return dict(sorted(drawn.items(), key=lambda item: not item[1][2].wide))

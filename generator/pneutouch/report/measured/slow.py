@@ -47,8 +47,9 @@ def loops(panels: Sequence[Panel]) -> Plot | None:
     tones = {pressure_kPa: TONES[k % len(TONES)] for k, pressure_kPa in enumerate(pressures_kPa)}
     legend: dict[str, Any] = {
         **{f"{p:g} kPa": Line2D([], [], ls="", marker="s", ms=5, color=tone) for p, tone in tones.items()},
-        "loading": Line2D([], [], color=INK, lw=0.9), "unloading": Line2D([], [], color=INK, lw=0.9, ls=LINES[1]),
-    }  # fmt: skip
+        "loading": Line2D([], [], color=INK, lw=0.9),
+        "unloading": Line2D([], [], color=INK, lw=0.9, ls=LINES[1]),
+    }
 
     def draw(ax: Axes, panel: Panel) -> None:
         for pressure_kPa in ends_of(panel.driving_pressures_kPa):
@@ -64,9 +65,12 @@ def loops(panels: Sequence[Panel]) -> Plot | None:
 def _loop_of(panel: Panel, driving_pressure_kPa: float) -> MeasuredCurve | None:
     """The first loop run at a driving pressure."""
     runs = (
-        curve for comparison in panel.comparisons if comparison.group.key.driving_pressure_kPa == driving_pressure_kPa
-        for curve in comparison.group.of_kind("loop") if curve.loop
-    )  # fmt: skip
+        curve
+        for comparison in panel.comparisons
+        if comparison.group.key.driving_pressure_kPa == driving_pressure_kPa
+        for curve in comparison.group.of_kind("loop")
+        if curve.loop
+    )
     return next(runs, None)
 
 
@@ -83,9 +87,10 @@ def relaxations(panels: Sequence[Panel]) -> Plot | None:
     if not panels:
         return None
     legend: dict[str, Any] = {
-        **key(panels), "force": Line2D([], [], color=INK, lw=0.9),
+        **key(panels),
+        "force": Line2D([], [], color=INK, lw=0.9),
         "pressure rise": Line2D([], [], color=MUTED, lw=0.9, ls=LINES[1]),
-    }  # fmt: skip
+    }
 
     def draw(ax: Axes, panel: Panel) -> None:
         ax.set_xscale("log")

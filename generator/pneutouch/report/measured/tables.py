@@ -10,17 +10,7 @@ import numpy as np
 from pneutouch.bench.figure import FIGURES, FigureDefinition
 from pneutouch.report.measured.comparison import CampaignReport, GroupComparison
 from pneutouch.report.measured.panels import Panel
-from pneutouch.report.measured.words import (
-    DASH,
-    Bounds,
-    between,
-    cut,
-    difference,
-    number,
-    overlap,
-    signed,
-    word_of,
-)
+from pneutouch.report.measured.words import DASH, Bounds, between, cut, difference, number, overlap, signed, word_of
 from pneutouch.report.style import MARKERS
 
 MOST = 40
@@ -135,8 +125,10 @@ def warning_rows(measured: CampaignReport) -> tuple[list[Row], str]:
     """Stretches not to be trusted: file, seconds, why, used or not; mere notes are in figures.json."""
     rows = [
         [curve.run.file, f"{warning.start:.2f} to {warning.end:.2f}", warning.why, word_of(warning.used)]
-        for curve in measured.curves for warning in curve.warnings if warning.kind != "note"
-    ]  # fmt: skip
+        for curve in measured.curves
+        for warning in curve.warnings
+        if warning.kind != "note"
+    ]
     return cut(rows, MOST)
 
 

@@ -44,8 +44,9 @@ def write_calibration(calibration: Calibration, out: Path) -> Path:
     folder = out / name
     check_writable(folder)
     files = {
-        "calibration.json": json_bytes(calibration.document), "residuals.svg": residual_chart(calibration.residuals, _CHART).encode(),
-    }  # fmt: skip
+        "calibration.json": json_bytes(calibration.document),
+        "residuals.svg": residual_chart(calibration.residuals, _CHART).encode(),
+    }
     listed = {path: digest(content) for path, content in sorted(files.items())}
     write_folder(folder, {**files, MANIFEST: json_bytes({"files": listed})})
     return folder

@@ -69,27 +69,46 @@ class Calibration:
     def document(self) -> dict[str, Any]:
         """The calibration as data."""
         return {
-            "design": self.scene.name, "sensor": self.sensor, "campaign": self.title,
-            "runs": len(self.fit.observations.curves), "injections": len(self.fit.observations.injections),
+            "design": self.scene.name,
+            "sensor": self.sensor,
+            "campaign": self.title,
+            "runs": len(self.fit.observations.curves),
+            "injections": len(self.fit.observations.injections),
             "driving_pressures_kPa": list(self.fit.observations.driving_pressures_kPa),
             "ambient_pressure_kPa": self.fit.observations.ambient / KPA,
-            "estimates": self.estimates, "correlation": _correlation(self.fit), "fit": _goodness(self.fit),
+            "estimates": self.estimates,
+            "correlation": _correlation(self.fit),
+            "fit": _goodness(self.fit),
             "residuals": [_residual(run) for run in self.residuals],
             "misses": [
-                {"driving_pressure_kPa": m.driving_pressure_kPa, "channel": m.channel, "from_mm": m.start, "to_mm": m.end, "share": m.share}
+                {
+                    "driving_pressure_kPa": m.driving_pressure_kPa,
+                    "channel": m.channel,
+                    "from_mm": m.start,
+                    "to_mm": m.end,
+                    "share": m.share,
+                }
                 for m in self.misses
             ],
             "strongly_correlated": [_ambiguity(group) for group in self.identified.ambiguities],
             "unidentified": [NAMES[k] for k in self.identified.unseen],
             "further_tests": [_further(self.fit, test) for test in self.further],
-            "held_out": [_held_out(one) for one in self.held_out], "notes": self.notes_for_reader,
-        }  # fmt: skip
+            "held_out": [_held_out(one) for one in self.held_out],
+            "notes": self.notes_for_reader,
+        }
 
 
 def calibrate(
-    observations: Observations, scene: ResolvedDesign, names: Sequence[str] = NAMES, *, priors: bool = True,
-    hold_out_kPa: Sequence[float] = (), sensor: str = "", title: str = "", notes: Sequence[str] = (),
-) -> Calibration:  # fmt: skip
+    observations: Observations,
+    scene: ResolvedDesign,
+    names: Sequence[str] = NAMES,
+    *,
+    priors: bool = True,
+    hold_out_kPa: Sequence[float] = (),
+    sensor: str = "",
+    title: str = "",
+    notes: Sequence[str] = (),
+) -> Calibration:
     """Fit the parameters ``names`` of a design to observations, and predict the pressures ``hold_out_kPa`` (kPa) by the others.
 
     Raises InputError for what cannot be fitted, ComputationError where no fit is found.
@@ -117,9 +136,12 @@ def calibrate(
 
 
 def observations_of(
-    campaign: Campaign, curves: Sequence[MeasuredCurve], injections: Sequence[tuple[CampaignRun, Array, Array]], scene: ResolvedDesign,
+    campaign: Campaign,
+    curves: Sequence[MeasuredCurve],
+    injections: Sequence[tuple[CampaignRun, Array, Array]],
+    scene: ResolvedDesign,
     sensor: str | None = None,
-) -> tuple[str, Observations, list[str]]:  # fmt: skip
+) -> tuple[str, Observations, list[str]]:
     """The sensor's name, its runs of kinds steps and injection, and remarks.
 
     Raises InputError where the campaign holds several sensors and none is named, or not the one named, or nothing of it.
@@ -176,13 +198,20 @@ def _estimate(fitted: CalibrationFit, place: int) -> dict[str, Any]:
         interval = [outside_value(k, low), outside_value(k, at + half)]
     prior_spread = float(fitted.parameters.prior_spread[k])
     return {
-        "parameter": NAMES[k], "key": KEYS[k], "unit": UNITS[k], "value": outside_value(k, at), "interval_95": interval,
-        "on_bound": bool(fitted.solution.bound[place]), "designed": outside_value(k, float(fitted.parameters.start[k])),
+        "parameter": NAMES[k],
+        "key": KEYS[k],
+        "unit": UNITS[k],
+        "value": outside_value(k, at),
+        "interval_95": interval,
+        "on_bound": bool(fitted.solution.bound[place]),
+        "designed": outside_value(k, float(fitted.parameters.start[k])),
         "prior": {
-            "counted": fitted.parameters.priors, "standard_deviation": prior_spread / (ML if k == DEAD else 1.0),
-            "relative": bool(LOGARITHMIC[k]), "source": fitted.parameters.origin[k],
+            "counted": fitted.parameters.priors,
+            "standard_deviation": prior_spread / (ML if k == DEAD else 1.0),
+            "relative": bool(LOGARITHMIC[k]),
+            "source": fitted.parameters.origin[k],
         },
-    }  # fmt: skip
+    }
 
 
 def _correlation(fitted: CalibrationFit) -> dict[str, Any]:
@@ -198,7 +227,8 @@ def _correlation(fitted: CalibrationFit) -> dict[str, Any]:
 def _goodness(fitted: CalibrationFit) -> dict[str, Any]:
     force, rise, injection = (float(x) for x in fitted.channel_factor)
     return {
-        "chi_squared": fitted.chi_squared, "degrees_of_freedom": fitted.freedom,
+        "chi_squared": fitted.chi_squared,
+        "degrees_of_freedom": fitted.freedom,
         "chi_squared_per_degree": fitted.chi_squared / fitted.freedom if fitted.freedom else None,
         "points_used": int(fitted.solution.use.sum()),
         "points_left_out": int(fitted.left_out.sum() + fitted.injections_left_out.sum()),
@@ -207,42 +237,52 @@ def _goodness(fitted: CalibrationFit) -> dict[str, Any]:
             zip(("force", "pressure", "injection"), (float(x) for x in fitted.sizes), strict=True)
         ),
         "considered": [NAMES[k] for k in fitted.parameters.others],
-        "variance_of_runs_over_points": fitted.run_factor, "interval_from_runs": fitted.covariance.clustered,
-    }  # fmt: skip
+        "variance_of_runs_over_points": fitted.run_factor,
+        "interval_from_runs": fitted.covariance.clustered,
+    }
 
 
 def _residual(run: RunResiduals) -> dict[str, Any]:
     return {
-        "run": run.label, "driving_pressure_kPa": _number(run.driving_pressure_kPa),
-        "force_share_of_full_scale": _number(run.force_error), "pressure_share_of_full_scale": _number(run.rise_error),
-    }  # fmt: skip
+        "run": run.label,
+        "driving_pressure_kPa": _number(run.driving_pressure_kPa),
+        "force_share_of_full_scale": _number(run.force_error),
+        "pressure_share_of_full_scale": _number(run.rise_error),
+    }
 
 
 def _ambiguity(group: CorrelatedParameters) -> dict[str, Any]:
     return {
-        "parameters": [NAMES[k] for k in group.members], "correlation": group.correlation,
+        "parameters": [NAMES[k] for k in group.members],
+        "correlation": group.correlation,
         "standard_deviation_alone": [_leaving(k, x) for k, x in zip(group.members, group.alone, strict=True)],
         "standard_deviation_others_known": [_leaving(k, x) for k, x in zip(group.members, group.given, strict=True)],
         "modulus_times_wall_to_the": group.combination,
-    }  # fmt: skip
+    }
 
 
 def _further(fitted: CalibrationFit, test: SuggestedTest) -> dict[str, Any]:
     widths = zip(fitted.parameters.fitted, test.half_width, strict=True)
     return {
-        "test": test.what, "widest_interval_shrinks": test.gain,
+        "test": test.what,
+        "widest_interval_shrinks": test.gain,
         "expected_half_widths": {NAMES[k]: _leaving(k, width) for k, width in widths},
-    }  # fmt: skip
+    }
 
 
 def _held_out(one: HeldOutPrediction) -> dict[str, Any]:
     return {
-        "driving_pressure_kPa": one.driving_pressure_kPa, "sensitivity_measured_kPa_per_N": one.measured_kPa_per_N,
-        "sensitivity_predicted_kPa_per_N": one.predicted_kPa_per_N, "sensitivity_error": one.error,
-        "force_rms_share": one.force_error, "force_greatest_share": one.force_worst,
-        "pressure_rms_share": one.rise_error, "pressure_greatest_share": one.rise_worst,
-        "points": one.points, "points_left_out": one.left_out,
-    }  # fmt: skip
+        "driving_pressure_kPa": one.driving_pressure_kPa,
+        "sensitivity_measured_kPa_per_N": one.measured_kPa_per_N,
+        "sensitivity_predicted_kPa_per_N": one.predicted_kPa_per_N,
+        "sensitivity_error": one.error,
+        "force_rms_share": one.force_error,
+        "force_greatest_share": one.force_worst,
+        "pressure_rms_share": one.rise_error,
+        "pressure_greatest_share": one.rise_worst,
+        "points": one.points,
+        "points_left_out": one.left_out,
+    }
 
 
 def _leaving(k: int, deviation: float) -> float | None:

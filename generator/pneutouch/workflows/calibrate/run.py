@@ -52,9 +52,15 @@ def run_calibration(
     used_files = {curve.run.file for curve in observations.curves}
     notes = [*notes, *(f"{file}: {text}" for file, text in questions if file in used_files)]
     calibration = calibrate(
-        observations, scene, options.names, priors=options.priors, hold_out_kPa=options.hold_out, sensor=sensor,
-        title=loaded.campaign.title, notes=notes,
-    )  # fmt: skip
+        observations,
+        scene,
+        options.names,
+        priors=options.priors,
+        hold_out_kPa=options.hold_out,
+        sensor=sensor,
+        title=loaded.campaign.title,
+        notes=notes,
+    )
     saved = None if options.save is None else prepare(calibration, options.save, Path(), library, shadow=options.shadow)
     folder = write_calibration(calibration, options.out)
     written = [str(folder)]

@@ -14,43 +14,66 @@ def document(measured: CampaignReport) -> dict[str, Any]:
     """A campaign as plain data."""
     campaign = measured.campaign
     return {
-        "title": campaign.title, "lab": campaign.lab, "simulated": campaign.simulated, "design": measured.scene.name,
-        "input_hash": measured.input_hash, "model": measured.model, "level": LEVEL,
+        "title": campaign.title,
+        "lab": campaign.lab,
+        "simulated": campaign.simulated,
+        "design": measured.scene.name,
+        "input_hash": measured.input_hash,
+        "model": measured.model,
+        "level": LEVEL,
         "groups": [_group(comparison) for comparison in measured.comparisons],
-        "runs": [_run(curve, values) for b in measured.comparisons for curve, values in zip(b.group.curves, b.group.each, strict=True)],
+        "runs": [
+            _run(curve, values)
+            for b in measured.comparisons
+            for curve, values in zip(b.group.curves, b.group.each, strict=True)
+        ],
         "injections": [
             {"sensor": sensor, "figure": name, "value": value, "standard_error": error, "unit": unit}
             for sensor, name, value, error, unit in measured.injections
         ],
         "ageing": [
             {
-                "resin": resin, "driving_pressure_kPa": pressure_kPa, "age": age, "sensitivity_change_percent": value, "low": low, "high": high,
+                "resin": resin,
+                "driving_pressure_kPa": pressure_kPa,
+                "age": age,
+                "sensitivity_change_percent": value,
+                "low": low,
+                "high": high,
                 "published_change_one_year_percent": published,
             }
             for resin, pressure_kPa, age, value, low, high, published in measured.ageing
         ],
         "target": [
-            {"what": v.what, "required": v.required, "measured": v.measured, "passed": v.passed} for v in measured.verdicts
+            {"what": v.what, "required": v.required, "measured": v.measured, "passed": v.passed}
+            for v in measured.verdicts
         ],
         "questions": [{"file": file, "question": text} for file, text in measured.questions],
         "failures": [{"file": file, "message": text} for file, text in measured.failures],
-    }  # fmt: skip
+    }
 
 
 def _group(comparison: GroupComparison) -> dict[str, Any]:
     group = comparison.group
     return {
-        "resin": group.key.resin, "age": group.key.age, "driving_pressure_kPa": group.key.driving_pressure_kPa,
-        "sensors": group.sensors, "why_not_predicted": comparison.why or None,
+        "resin": group.key.resin,
+        "age": group.key.age,
+        "driving_pressure_kPa": group.key.driving_pressure_kPa,
+        "sensors": group.sensors,
+        "why_not_predicted": comparison.why or None,
         "figures": {key: _figure(key, estimate, comparison) for key, estimate in group.figures.items()},
-    }  # fmt: skip
+    }
 
 
 def _figure(key: str, estimate: Estimate, comparison: GroupComparison) -> dict[str, Any]:
     figure: dict[str, Any] = {
-        "value": estimate.value, "low": estimate.low, "high": estimate.high, "unit": BY_KEY[key].unit,
-        "specimens": estimate.specimens, "runs": estimate.runs, "interval_over": estimate.over or None,
-    }  # fmt: skip
+        "value": estimate.value,
+        "low": estimate.low,
+        "high": estimate.high,
+        "unit": BY_KEY[key].unit,
+        "specimens": estimate.specimens,
+        "runs": estimate.runs,
+        "interval_over": estimate.over or None,
+    }
     if key in comparison.predicted:
         value, low, high = comparison.predicted[key]
         off = 100 * (estimate.value / value - 1) if value else None
@@ -61,10 +84,17 @@ def _figure(key: str, estimate: Estimate, comparison: GroupComparison) -> dict[s
 def _run(curve: MeasuredCurve, values: dict[str, float]) -> dict[str, Any]:
     run = curve.run
     return {
-        "file": run.file, "kind": run.kind, "sensor": run.sensor, "resin": run.resin, "run": run.run,
-        "driving_pressure_kPa": run.driving_pressure_kPa, "age_days": run.age_days, "points": len(curve.force) - 1,
+        "file": run.file,
+        "kind": run.kind,
+        "sensor": run.sensor,
+        "resin": run.resin,
+        "run": run.run,
+        "driving_pressure_kPa": run.driving_pressure_kPa,
+        "age_days": run.age_days,
+        "points": len(curve.force) - 1,
         "figures": dict(values),
         "warnings": [
-            {"start_s": round(d.start, 4), "end_s": round(d.end, 4), "why": d.why, "used": d.used, "kind": d.kind} for d in curve.warnings
+            {"start_s": round(d.start, 4), "end_s": round(d.end, 4), "why": d.why, "used": d.used, "kind": d.kind}
+            for d in curve.warnings
         ],
-    }  # fmt: skip
+    }

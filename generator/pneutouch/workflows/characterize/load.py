@@ -105,9 +105,15 @@ def load_curves(
         gathered.curves = [_at_its_pressure(curve, scene) for curve in gathered.curves]
         campaign = campaign.model_copy(update={"runs": [curve.run for curve in gathered.curves]})
     return CampaignData(
-        campaign, folder, tuple(gathered.curves), gathered.traces, tuple(gathered.injections), tuple(gathered.leaks),
-        tuple(gathered.failures), tuple(gathered.questions),
-    )  # fmt: skip
+        campaign,
+        folder,
+        tuple(gathered.curves),
+        gathered.traces,
+        tuple(gathered.injections),
+        tuple(gathered.leaks),
+        tuple(gathered.failures),
+        tuple(gathered.questions),
+    )
 
 
 class _Meter:
@@ -136,7 +142,7 @@ def _size(path: Path) -> int:
 
 def _read(
     run: CampaignRun, campaign: Campaign, folder: Path, gathered: _Gathered, progress: Callable[[float], None]
-) -> None:  # fmt: skip
+) -> None:
     path = folder / run.file
     if not path.is_file():
         raise InputError("no such file", file=path, remedy=f"the campaign names it as {run.label}")

@@ -47,10 +47,11 @@ class StatePrediction:
             return None
         state_figures, kept = state.figures, state.indentation <= state.range_end * (1 + 1e-12)
         return ExpectedRun(
-            depth=float(state.indentation[kept][-1]), force=state_figures.force_range[1],
+            depth=float(state.indentation[kept][-1]),
+            force=state_figures.force_range[1],
             rise=float(state.pressure_rise[kept][-1]),
             curve=(state.indentation[kept], state.force[kept], state.pressure_rise[kept]),
-        )  # fmt: skip
+        )
 
 
 def answers(
@@ -84,7 +85,7 @@ def _alone(
 
 def _evaluated(
     design: str | DesignSource, changes: Changes, resin: str, pressures_kPa: list[float], model: str, library: Library
-) -> Evaluation:  # fmt: skip
+) -> Evaluation:
     material = {} if resin == AS_DESIGNED else {"membrane.material": resin}
     pressed = {"pneumatics.driving_pressures_kPa": pressures_kPa}
     return evaluate(design, {**changes, **material, **pressed}, model=model, library=library)
@@ -130,10 +131,13 @@ def _figures(
     if figures_there is None or state_figures is None:
         return {}
     plain = {
-        "sensitivity_kPa_per_N": figures_there.sensitivity_kPa_per_N, "sensitivity_through_origin_kPa_per_N": figures_there.sensitivity_through_origin_kPa_per_N,
-        "r_squared": figures_there.r_squared, "nonlinearity_percent": 100 * figures_there.nonlinearity, "stiffness_N_per_mm": figures_there.stiffness,
+        "sensitivity_kPa_per_N": figures_there.sensitivity_kPa_per_N,
+        "sensitivity_through_origin_kPa_per_N": figures_there.sensitivity_through_origin_kPa_per_N,
+        "r_squared": figures_there.r_squared,
+        "nonlinearity_percent": 100 * figures_there.nonlinearity,
+        "stiffness_N_per_mm": figures_there.stiffness,
         "force_range_N": figures_there.force_range[1],
-    }  # fmt: skip
+    }
     if figures_there.saturation_force is not None:
         plain["saturation_force_N"] = figures_there.saturation_force
     names = {**{name: name for name in _OF_STATE}, "force_range_N": "force_at_range_end_N"}

@@ -56,9 +56,15 @@ class CharacterizationResult:
 
 
 def characterize(
-    data: Path, design: str | DesignSource | None = None, changes: Changes | None = None, *, target: Path | None = None,
-    model: str = "solid", library: Library | None = None, progress: Progress = lambda done, total: None,
-) -> CharacterizationResult:  # fmt: skip
+    data: Path,
+    design: str | DesignSource | None = None,
+    changes: Changes | None = None,
+    *,
+    target: Path | None = None,
+    model: str = "solid",
+    library: Library | None = None,
+    progress: Progress = lambda done, total: None,
+) -> CharacterizationResult:
     """Read a campaign's folder or one file, and compare its figures with the prediction of its design.
 
     ``design`` comes before the one that the campaign names; ``changes`` are laid over either. Raises InputError where nothing can
@@ -79,12 +85,21 @@ def characterize(
     scene = load_scene(name, given, library)
     pushed, unread = injections(loaded, scene)
     measured = CampaignReport(
-        campaign=loaded.campaign, scene=scene, folder=loaded.folder,
-        comparisons=tuple(compared(group, _answer(answer_of, group.key.resin, group.key.driving_pressure_kPa)) for group in groups),
-        curves=tuple(curves), failures=(*loaded.failures, *failures, *unread), questions=questions,
-        verdicts=() if request is None else verdicts(request, groups), injections=pushed,
-        ageing=ageing(groups, library), model=model, input_hash=_hash(loaded, scene.design.model_dump(mode="json")),
-    )  # fmt: skip
+        campaign=loaded.campaign,
+        scene=scene,
+        folder=loaded.folder,
+        comparisons=tuple(
+            compared(group, _answer(answer_of, group.key.resin, group.key.driving_pressure_kPa)) for group in groups
+        ),
+        curves=tuple(curves),
+        failures=(*loaded.failures, *failures, *unread),
+        questions=questions,
+        verdicts=() if request is None else verdicts(request, groups),
+        injections=pushed,
+        ageing=ageing(groups, library),
+        model=model,
+        input_hash=_hash(loaded, scene.design.model_dump(mode="json")),
+    )
     return CharacterizationResult(measured, loaded.traces, f"{_stem(data)}-measured")
 
 
@@ -164,9 +179,11 @@ def write(outcome: CharacterizationResult, out: Path, evidence: str = "doubtful"
     check_writable(folder)
     measured = outcome.measured
     files = {
-        **measured_datasheet(measured), "figures.json": json_bytes(outcome.document),
-        "points.csv": points_csv(measured.curves), "segments.csv": segments_csv(measured.curves),
-    }  # fmt: skip
+        **measured_datasheet(measured),
+        "figures.json": json_bytes(outcome.document),
+        "points.csv": points_csv(measured.curves),
+        "segments.csv": segments_csv(measured.curves),
+    }
     for curve in _shown(measured, evidence):
         number = measured.campaign.runs.index(curve.run) + 1
         path = f"evidence/{number:03d}-{Path(curve.run.file).stem}.svg"

@@ -58,9 +58,19 @@ def segments_csv(curves: Iterable[MeasuredCurve]) -> bytes:
                 ]
             )
     head = (
-        *_RUN, "what", "contact_or_start_s", "hold_start_or_end_s", "hold_end_s", "read_start_s", "read_end_s", "release_s",
-        "onset_mm", "driving_kPa", "why", "used",
-    )  # fmt: skip
+        *_RUN,
+        "what",
+        "contact_or_start_s",
+        "hold_start_or_end_s",
+        "hold_end_s",
+        "read_start_s",
+        "read_end_s",
+        "release_s",
+        "onset_mm",
+        "driving_kPa",
+        "why",
+        "used",
+    )
     return _csv(head, rows)
 
 

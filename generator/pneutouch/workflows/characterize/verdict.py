@@ -33,9 +33,11 @@ def verdicts(target: Target, groups: Sequence[RunGroup]) -> tuple[Verdict, ...]:
     for what, key, low, high, text in _requirements(figures):
         only_kPa = figures.driving_pressure_kPa
         answers = [
-            group for group in groups
-            if key in group.figures and (only_kPa is None or np.isclose(only_kPa, group.key.driving_pressure_kPa, atol=_SAME_KPA))
-        ]  # fmt: skip
+            group
+            for group in groups
+            if key in group.figures
+            and (only_kPa is None or np.isclose(only_kPa, group.key.driving_pressure_kPa, atol=_SAME_KPA))
+        ]
         for group in answers:
             where = f"{group.key.resin}, {group.key.age}, {group.key.driving_pressure_kPa:g} kPa"
             estimate = group.figures[key]

@@ -55,12 +55,13 @@ def points(curve: PressCurve, depths: tuple[float, ...]) -> list[dict[str, float
     driving_kPa = curve.driving / KPA
     return [
         {
-            "depth_mm": depth, "force_N": known_points[depth][0] if depth in known_points else None,
+            "depth_mm": depth,
+            "force_N": known_points[depth][0] if depth in known_points else None,
             "pressure_rise_kPa": known_points[depth][1] if depth in known_points else None,
             "cavity_pressure_kPa": driving_kPa + known_points[depth][1] if depth in known_points else None,
         }
         for depth in depths
-    ]  # fmt: skip
+    ]
 
 
 def curve_warnings(
@@ -118,7 +119,7 @@ def curve_warnings(
             None,
             f"expected force of {first:.3f} N at the first step, {depths[0]:g} mm, is below {RESOLVED:g} resolutions of {rig.force_resolution_N:g} N",
         )
-    return violations  # fmt: skip
+    return violations
 
 
 def travel_warnings(depths: tuple[float, ...], rig: Rig) -> list[PlanViolation]:
@@ -146,12 +147,16 @@ def injection(pressed: PressCurves, rig: Rig) -> dict[str, Any]:
         into_line = None if not fits.size else float(volumes[fits[-1]])
     rows = [] if into_sensor is None else _rows(pressed, into_sensor)
     return {
-        "dead_volume_mL": sensor.gas.dead_volume / ML, "cavity_volume_mL": float(pressed.inflation.volume[0]) / ML,
-        "sensor_volume_mL": None if into_sensor is None else into_sensor / ML, "sensor": rows,
+        "dead_volume_mL": sensor.gas.dead_volume / ML,
+        "cavity_volume_mL": float(pressed.inflation.volume[0]) / ML,
+        "sensor_volume_mL": None if into_sensor is None else into_sensor / ML,
+        "sensor": rows,
         "more_dead_volume_mL": MORE / ML,
         "line_volume_mL": None if into_line is None else into_line / ML,
-        "line_pressure_kPa": None if into_line is None else float(line_pressure(np.array(into_line), sensor.gas.dead_volume, ambient)) / KPA,
-    }  # fmt: skip
+        "line_pressure_kPa": None
+        if into_line is None
+        else float(line_pressure(np.array(into_line), sensor.gas.dead_volume, ambient)) / KPA,
+    }
 
 
 def _rows(pressed: PressCurves, most: float) -> list[dict[str, float]]:
@@ -163,10 +168,13 @@ def _rows(pressed: PressCurves, most: float) -> list[dict[str, float]]:
     )
     return [
         {
-            "volume_mL": float(v) / ML, "pressure_kPa": float(p), "without_dead_volume_kPa": float(q),
+            "volume_mL": float(v) / ML,
+            "pressure_kPa": float(p),
+            "without_dead_volume_kPa": float(q),
             "with_more_dead_volume_kPa": float(r),
-        } for v, p, q, r in zip(volumes, stated_kPa, bare_kPa, more_kPa, strict=True)
-    ]  # fmt: skip
+        }
+        for v, p, q, r in zip(volumes, stated_kPa, bare_kPa, more_kPa, strict=True)
+    ]
 
 
 def leak_limit(rise: float, test: RunProtocol) -> float:

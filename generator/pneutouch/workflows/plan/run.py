@@ -61,9 +61,15 @@ def rig_of(file: Path | None) -> Rig:
 
 
 def make_plan(
-    design: str | DesignSource, changes: Changes | None = None, *, resins: tuple[str, ...] = (), specimens: int = 3,
-    rig: Rig = PAPER, rig_name: str = "", library: Library | None = None,
-) -> CampaignPlan:  # fmt: skip
+    design: str | DesignSource,
+    changes: Changes | None = None,
+    *,
+    resins: tuple[str, ...] = (),
+    specimens: int = 3,
+    rig: Rig = PAPER,
+    rig_name: str = "",
+    library: Library | None = None,
+) -> CampaignPlan:
     """Plan a campaign of the paper's tests for a design in each resin. Raises InputError for what cannot be."""
     if not 1 <= specimens <= 1000:
         raise InputError("must be from 1 to 1000", key="specimens", value=specimens)
@@ -79,27 +85,47 @@ def make_plan(
     depths = tuple(depth for test, _ in tests.values() for depth in test.depths)
     pneumatics, membrane = scene.design.pneumatics, scene.design.membrane
     document = {
-        "name": f"{scene.name}-plan", "design": scene.name, "title": scene.design.document.title,
-        "inner_radius_mm": membrane.inner_radius_mm, "wall_thickness_mm": membrane.wall_thickness_mm,
-        "ambient_pressure_kPa": pneumatics.ambient_pressure_kPa, "driving_pressures_kPa": pneumatics.driving_pressures_kPa,
-        "dead_volume_mL": subjects[0].sensor.gas.dead_volume / ML, "clearance_mm": CLEARANCE,
+        "name": f"{scene.name}-plan",
+        "design": scene.name,
+        "title": scene.design.document.title,
+        "inner_radius_mm": membrane.inner_radius_mm,
+        "wall_thickness_mm": membrane.wall_thickness_mm,
+        "ambient_pressure_kPa": pneumatics.ambient_pressure_kPa,
+        "driving_pressures_kPa": pneumatics.driving_pressures_kPa,
+        "dead_volume_mL": subjects[0].sensor.gas.dead_volume / ML,
+        "clearance_mm": CLEARANCE,
         "plate_diameter_mm": scene.design.indentation.plate_diameter_mm,
         "rig": {**rig.model_dump(mode="json"), "file": rig_name or None},
         "sensors": [{"sensor": f"{s.name}-{k + 1}", "resin": s.name} for s in subjects for k in range(specimens)],
         "resins": [_expected(s, curves[s.name], tests, rig) for s in subjects],
         "tests": {
             kind: {
-                "depths_mm": list(t.depths), "hold_s": t.hold, "rest_s": t.rest, "reset": t.reset, "speed_mm_per_s": t.speed,
-                "duration_s": t.duration, "driving_pressures_kPa": list(at), "runs": _times(kind),
-            } for kind, (t, at) in tests.items()
+                "depths_mm": list(t.depths),
+                "hold_s": t.hold,
+                "rest_s": t.rest,
+                "reset": t.reset,
+                "speed_mm_per_s": t.speed,
+                "duration_s": t.duration,
+                "driving_pressures_kPa": list(at),
+                "runs": _times(kind),
+            }
+            for kind, (t, at) in tests.items()
         },
-        "runs": listed, "total_s": sum(run["duration_s"] for run in listed),
+        "runs": listed,
+        "total_s": sum(run["duration_s"] for run in listed),
         "warnings": [w.document() for w in travel_warnings(depths, rig)] + warnings,
-    }  # fmt: skip
+    }
     campaign = Campaign(
-        title=f"Campaign of {scene.design.document.title}"[:120], design=name_of(design), assignments=assignments(changes or {}), ambient_pressure_kPa=pneumatics.ambient_pressure_kPa,
-        rig=rig, runs=[CampaignRun(**{key: run[key] for key in ("file", "kind", "sensor", "resin", "driving_pressure_kPa", "run")}) for run in listed],
-    )  # fmt: skip
+        title=f"Campaign of {scene.design.document.title}"[:120],
+        design=name_of(design),
+        assignments=assignments(changes or {}),
+        ambient_pressure_kPa=pneumatics.ambient_pressure_kPa,
+        rig=rig,
+        runs=[
+            CampaignRun(**{key: run[key] for key in ("file", "kind", "sensor", "resin", "driving_pressure_kPa", "run")})
+            for run in listed
+        ],
+    )
     return CampaignPlan(str(document["name"]), document, campaign)
 
 
@@ -109,9 +135,10 @@ def write_plan(plan: CampaignPlan, out: Path) -> Path:
     check_writable(folder)
     note = "# Fill in lab, and date and age_days of every run; measured files go to the path in `file`."
     files = {
-        "plan.json": json_bytes(plan.document), "plan.md": plan.sheet.encode(),
+        "plan.json": json_bytes(plan.document),
+        "plan.md": plan.sheet.encode(),
         "campaign.toml": campaign_toml(plan.campaign, note),
-    }  # fmt: skip
+    }
     inputs = {key: plan.document[key] for key in ("design", "rig", "sensors", "tests")}
     write_folder(folder, with_manifest(files, plan.name, inputs))
     return folder
@@ -125,9 +152,11 @@ def plated_tests(subject: SimulatedResin) -> Tests:
     driving_kPa = tuple(subject.scene.design.pneumatics.driving_pressures_kPa)
     top_kPa = min(SATURATION[-1], driving_kPa[-1])
     pressures_kPa: dict[RunKind, tuple[float, ...]] = {
-        "steps": driving_kPa, "loop": driving_kPa, "saturation": tuple(sorted({SATURATION[0], top_kPa})),
+        "steps": driving_kPa,
+        "loop": driving_kPa,
+        "saturation": tuple(sorted({SATURATION[0], top_kPa})),
         "relaxation": tuple(sorted({0.0, driving_kPa[-1]})),
-    }  # fmt: skip
+    }
     return {kind: (protocol(kind, subject.sensor.dome.inner_radius), at) for kind, at in pressures_kPa.items()}
 
 
@@ -154,18 +183,25 @@ def _expected(subject: SimulatedResin, pressed_curves: PressCurves, tests: Tests
     depths = tuple(sorted({depth for test, _ in tests.values() for depth in test.depths}))
     states = [
         {
-            "driving_pressure_kPa": curve.driving / KPA, "points": points(curve, depths), "range_end_mm": curve.reach,
+            "driving_pressure_kPa": curve.driving / KPA,
+            "points": points(curve, depths),
+            "range_end_mm": curve.reach,
             "range_ends_by": None if curve.ends is None else curve.ends[0],
-        } for curve in pressed_curves.curves
-    ]  # fmt: skip
+        }
+        for curve in pressed_curves.curves
+    ]
     steps = tests["steps"][0]
     rises = [points(curve, steps.depths[:1])[0]["pressure_rise_kPa"] for curve in pressed_curves.curves]
     least = min((rise for rise in rises if rise is not None), default=None)
     return {
-        "resin": subject.name, "model": pressed_curves.model, "states": states, "injection": injection(pressed_curves, rig),
-        "limit_kPa": pressed_curves.limits.lowest / KPA, "limit_by": pressed_curves.limits.binding,
+        "resin": subject.name,
+        "model": pressed_curves.model,
+        "states": states,
+        "injection": injection(pressed_curves, rig),
+        "limit_kPa": pressed_curves.limits.lowest / KPA,
+        "limit_by": pressed_curves.limits.binding,
         "leak_limit_kPa_per_min": None if least is None else leak_limit(least, steps),
-    }  # fmt: skip
+    }
 
 
 def _runs(
@@ -188,11 +224,19 @@ def _runs(
             ]
     return [
         {
-            "number": before + place, "kind": kind, "sensor": sensor, "resin": subject.name, "driving_pressure_kPa": pressure_kPa, "run": n,
-            "file": f"runs/{sensor}-{pressure_kPa:g}kPa-{kind}-{n}.csv", "steps": steps, "expected": expected,
+            "number": before + place,
+            "kind": kind,
+            "sensor": sensor,
+            "resin": subject.name,
+            "driving_pressure_kPa": pressure_kPa,
+            "run": n,
+            "file": f"runs/{sensor}-{pressure_kPa:g}kPa-{kind}-{n}.csv",
+            "steps": steps,
+            "expected": expected,
             "duration_s": sum(step["seconds"] for step in steps),
-        } for place, (kind, pressure_kPa, n, steps, expected) in enumerate(planned, start=1)
-    ]  # fmt: skip
+        }
+        for place, (kind, pressure_kPa, n, steps, expected) in enumerate(planned, start=1)
+    ]
 
 
 def _step(action: str, value: float | None, unit: str, seconds: float) -> dict[str, Any]:
@@ -220,9 +264,10 @@ def steps_of(test: RunProtocol, pressure_kPa: float, rig: Rig) -> list[dict[str,
 
 def _leak(pressure_kPa: float, rig: Rig) -> list[dict[str, Any]]:
     return [
-        _step("set_pressure", pressure_kPa, "kPa", FILL), _step("record", rig.rate_Hz, "Hz", 0.0),
+        _step("set_pressure", pressure_kPa, "kPa", FILL),
+        _step("record", rig.rate_Hz, "Hz", 0.0),
         _step("wait", None, "", LEAK_SECONDS),
-    ]  # fmt: skip
+    ]
 
 
 def _inject(volume: float) -> list[dict[str, Any]]:

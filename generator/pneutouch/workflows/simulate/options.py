@@ -37,10 +37,13 @@ class SimulationOptions:
 def check_options(options: SimulationOptions) -> None:
     """Raise InputError for what cannot be simulated."""
     bounds = (
-        ("specimens", options.specimens, 1, 1000), ("runs", options.runs, 1, 1000), ("rate_Hz", options.rate, 10.0, 1e5),
-        *(("driving_pressures_kPa", p, 0.0, 1000.0) for p in options.driving_pressures_kPa or ()), *(("ages", a, 0.0, 36_500.0) for a in options.ages_days),
+        ("specimens", options.specimens, 1, 1000),
+        ("runs", options.runs, 1, 1000),
+        ("rate_Hz", options.rate, 10.0, 1e5),
+        *(("driving_pressures_kPa", p, 0.0, 1000.0) for p in options.driving_pressures_kPa or ()),
+        *(("ages", a, 0.0, 36_500.0) for a in options.ages_days),
         *((("rest", options.truth.rest, 0.2, 3600.0),) if options.truth.rest is not None else ()),
-    )  # fmt: skip
+    )
     for key, value, low, high in bounds:
         if not low <= value <= high:
             raise InputError(f"must be from {low:g} to {high:g}", key=key, value=value)

@@ -42,10 +42,13 @@ Progress = Callable[[int, int], None]
 
 
 def simulate(
-    design: str | DesignSource, out: Path, changes: Changes | None = None, options: SimulationOptions = SimulationOptions(),  # noqa: B008 - immutable
+    design: str | DesignSource,
+    out: Path,
+    changes: Changes | None = None,
+    options: SimulationOptions = SimulationOptions(),  # noqa: B008 - immutable
     library: Library | None = None,
     progress: Progress = lambda done, total: None,
-) -> Path:  # fmt: skip
+) -> Path:
     """Write ``out/<design>-campaign/``: campaign.toml, runs, truth.json, manifest; the same input, the same bytes.
 
     Runs are written to a hidden folder next to it as they are made. Raises InputError for what cannot be.
@@ -97,19 +100,42 @@ def _write_all(
                 progress(truth["done"], total)
     truth.pop("done", None)
     scene, model = subjects[0].scene, subjects[0].truth
-    writer.put("campaign.toml", campaign_toml(Campaign(
-        title=f"Simulated campaign of {scene.name}"[:120], lab="none: simulated by pneutouch", design=named[0], assignments=named[1], simulated=True,
-        ambient_pressure_kPa=scene.design.pneumatics.ambient_pressure_kPa,
-        rig=Rig(name="simulated: the paper's instruments", rate_Hz=options.rate), runs=runs,
-    ), MARK))  # fmt: skip
-    writer.put("truth.json", json_bytes({
-        **truth, "simulated": True, "design": scene.name, "model": options.model, "seed": options.seed, "rate_Hz": options.rate,
-        "parameters": {
-            subject.name: {part: parameters(getattr(subject.truth, part)) for part in ("scatter", "rig", "wall")}
-            for subject in subjects
-        },
-        "rest_s": model.rest,
-    }))  # fmt: skip
+    writer.put(
+        "campaign.toml",
+        campaign_toml(
+            Campaign(
+                title=f"Simulated campaign of {scene.name}"[:120],
+                lab="none: simulated by pneutouch",
+                design=named[0],
+                assignments=named[1],
+                simulated=True,
+                ambient_pressure_kPa=scene.design.pneumatics.ambient_pressure_kPa,
+                rig=Rig(name="simulated: the paper's instruments", rate_Hz=options.rate),
+                runs=runs,
+            ),
+            MARK,
+        ),
+    )
+    writer.put(
+        "truth.json",
+        json_bytes(
+            {
+                **truth,
+                "simulated": True,
+                "design": scene.name,
+                "model": options.model,
+                "seed": options.seed,
+                "rate_Hz": options.rate,
+                "parameters": {
+                    subject.name: {
+                        part: parameters(getattr(subject.truth, part)) for part in ("scatter", "rig", "wall")
+                    }
+                    for subject in subjects
+                },
+                "rest_s": model.rest,
+            }
+        ),
+    )
 
 
 def campaign_toml(campaign: Campaign, comment: str) -> bytes:
@@ -153,9 +179,14 @@ def _populations(subject: SimulatedResin, age: float, options: SimulationOptions
             nominal, k, subject.truth, options.rate, (options.seed, _number(subject.name))
         )
         yield {
-            "resin": subject.name, "age_days": age, "driving_pressure_kPa": pressure_kPa, "figures": spread_of.figures,
-            "spread": spread_of.spread, "count": spread_of.count, "basis": spread_of.basis,
-        }  # fmt: skip
+            "resin": subject.name,
+            "age_days": age,
+            "driving_pressure_kPa": pressure_kPa,
+            "figures": spread_of.figures,
+            "spread": spread_of.spread,
+            "count": spread_of.count,
+            "basis": spread_of.basis,
+        }
 
 
 def _specimen(
@@ -169,9 +200,14 @@ def _specimen(
     sensor = aged(drawn.sensor(subject.sensor, 0), subject.truth, age)
     pressed_curves = _pressed(subject, sensor, options, name)
     known: dict[str, Any] = {
-        "resin": subject.name, "age_days": age, "shear_modulus_MPa": sensor.wall.hyperelastic.mu, "pressures": {},
-        "wall_thickness_mm": sensor.dome.wall_thickness, "dead_volume_mL": sensor.gas.dead_volume / ML, "model": pressed_curves.model,
-    }  # fmt: skip
+        "resin": subject.name,
+        "age_days": age,
+        "shear_modulus_MPa": sensor.wall.hyperelastic.mu,
+        "pressures": {},
+        "wall_thickness_mm": sensor.dome.wall_thickness,
+        "dead_volume_mL": sensor.gas.dead_volume / ML,
+        "model": pressed_curves.model,
+    }
     truth["specimens"][_label(name, age, options)] = known
     truth["done"] = truth.get("done", 0) + 1
     for place, (pressure, curve) in enumerate(
@@ -179,8 +215,9 @@ def _specimen(
     ):
         known["pressures"][f"{pressure:g}"] = {
             **specimen_figures(curve, subject.truth, sensor.dome.inner_radius, options.rate),
-            "range_end_mm": curve.reach, "range_ends_by": None if curve.ends is None else curve.ends[0],
-        }  # fmt: skip
+            "range_end_mm": curve.reach,
+            "range_ends_by": None if curve.ends is None else curve.ends[0],
+        }
         for kind in options.kinds:
             if kind == "injection" and place > 0:
                 continue
@@ -189,8 +226,12 @@ def _specimen(
                 run = CampaignRun(
                     file=f"runs/{_label(name, age, options)}-{at:g}kPa-{kind}-{number}.{'parquet' if options.parquet else 'csv'}",
                     kind=kind,  # type: ignore[arg-type]
-                    sensor=name, resin=subject.name, driving_pressure_kPa=at, run=number, age_days=age,
-                )  # fmt: skip
+                    sensor=name,
+                    resin=subject.name,
+                    driving_pressure_kPa=at,
+                    run=number,
+                    age_days=age,
+                )
                 key = [_number(subject.name), k, round(1e3 * age), round(1e6 * pressure), KINDS.index(kind), number]
                 rng = np.random.default_rng([options.seed, *key])
                 if kind in PRESSED:
@@ -234,8 +275,11 @@ def _columns(
         curve, protocol, truth.rig, options.rate, rng, wall=truth.wall, scatter=truth.scatter
     )
     return {
-        "time_s": record.time, "position_mm": record.position, "force_N": record.force, "pressure_kPa": record.pressure / KPA,
-    }  # fmt: skip
+        "time_s": record.time,
+        "position_mm": record.position,
+        "force_N": record.force,
+        "pressure_kPa": record.pressure / KPA,
+    }
 
 
 def _label(name: str, age: float, options: SimulationOptions) -> str:
@@ -253,11 +297,20 @@ def _inputs(subjects: list[SimulatedResin], options: SimulationOptions) -> dict[
         "design": first.scene.design.model_dump(mode="json"),
         "resins": {subject.name: subject.scene.membrane_material.model_dump(mode="json") for subject in subjects},
         "options": {
-            key: value for key, value in {
-                "specimens": options.specimens, "driving_pressures_kPa": options.driving_pressures_kPa, "runs": options.runs, "kinds": options.kinds,
-                "rate": options.rate, "seed": options.seed, "model": options.model, "ages_days": options.ages_days, "parquet": options.parquet,
-            }.items() if value is not None
+            key: value
+            for key, value in {
+                "specimens": options.specimens,
+                "driving_pressures_kPa": options.driving_pressures_kPa,
+                "runs": options.runs,
+                "kinds": options.kinds,
+                "rate": options.rate,
+                "seed": options.seed,
+                "model": options.model,
+                "ages_days": options.ages_days,
+                "parquet": options.parquet,
+            }.items()
+            if value is not None
         },
         "parameters": {part: parameters(getattr(first.truth, part)) for part in ("scatter", "rig", "wall")},
         "rest": first.truth.rest,
-    }  # fmt: skip
+    }

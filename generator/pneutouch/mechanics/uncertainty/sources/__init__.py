@@ -17,9 +17,15 @@ from pneutouch.spec.printer import Printer
 
 
 def sources(
-    batch: SensorBatch, material: Material, printer: Printer, *,
-    near_paper: Flags | bool, errors: ModelErrors, numerical: Mapping[str, float], aged: bool = True,
-) -> list[UncertaintySource]:  # fmt: skip
+    batch: SensorBatch,
+    material: Material,
+    printer: Printer,
+    *,
+    near_paper: Flags | bool,
+    errors: ModelErrors,
+    numerical: Mapping[str, float],
+    aged: bool = True,
+) -> list[UncertaintySource]:
     """Sources that count for at least one figure of one sensor; see `budget` for the arguments."""
     size = len(batch)
     near = np.broadcast_to(np.asarray(near_paper, dtype=bool), size)

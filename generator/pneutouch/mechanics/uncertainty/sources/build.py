@@ -44,29 +44,48 @@ def build_sources(batch: SensorBatch, printer: Printer) -> list[UncertaintySourc
         return UncertaintySource(name, acts_on, standard, shape, counting(len(batch)), origin, known)
 
     return [
-        source("wall thickness", "wall_thickness", accuracy / _ROOT / batch.wall_thickness, "rectangular", origin, True),
         source(
-            "inner radius", "inner_radius", 0.5 * accuracy / _ROOT / batch.inner_radius, "rectangular",
-            f"half of the diameter's: {origin}", True,
+            "wall thickness", "wall_thickness", accuracy / _ROOT / batch.wall_thickness, "rectangular", origin, True
         ),
         source(
-            "tube bore", "dead_volume", bore / _ROOT * np.abs(batch.dead_volume), "rectangular",
+            "inner radius",
+            "inner_radius",
+            0.5 * accuracy / _ROOT / batch.inner_radius,
+            "rectangular",
+            f"half of the diameter's: {origin}",
+            True,
+        ),
+        source(
+            "tube bore",
+            "dead_volume",
+            bore / _ROOT * np.abs(batch.dead_volume),
+            "rectangular",
             f"assumed: bore {BORE:g} +-{BORE_TOLERANCE:g} mm, so the volume +-{bore:.0%}; SMC states outer diameters only",
             False,
         ),
         source(
-            "fitting and gauge", "dead_volume", np.full(len(batch), UNSTATED_VOLUME / _ROOT), "rectangular",
-            f"assumed: up to {UNSTATED_VOLUME * 1e-3:g} mL of air that the stated dead volume does not hold", False,
+            "fitting and gauge",
+            "dead_volume",
+            np.full(len(batch), UNSTATED_VOLUME / _ROOT),
+            "rectangular",
+            f"assumed: up to {UNSTATED_VOLUME * 1e-3:g} mL of air that the stated dead volume does not hold",
+            False,
         ),
         source(
-            "weather", "ambient_pressure", WEATHER / _LIMITS / batch.ambient_pressure, "normal",
+            "weather",
+            "ambient_pressure",
+            WEATHER / _LIMITS / batch.ambient_pressure,
+            "normal",
             "960 to 1050 mbar at sea level (San Francisco State University, Geosciences M301), read as three standard "
             "deviations to either side; the height of the place is not in it",
             True,
         ),
         source(
-            "driving pressure", "driving_pressure", np.full(len(batch), GAUGE / _ROOT), "rectangular",
+            "driving pressure",
+            "driving_pressure",
+            np.full(len(batch), GAUGE / _ROOT),
+            "rectangular",
             "SMC PSE543, +-2 % (paper, Supplement C); assumed to be of the reading, the gauge being zeroed when vented",
             False,
         ),
-    ]  # fmt: skip
+    ]

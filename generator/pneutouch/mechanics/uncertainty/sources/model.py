@@ -87,13 +87,20 @@ def model_sources(near: Flags, errors: ModelErrors) -> list[UncertaintySource]:
     resin_errors = (near | _unexplained(errors.resin_errors)) & bool(errors.resin_errors)
     left = f", without {', '.join(errors.left_out)}" if errors.left_out else ""
     cases = (
-        ("model", resin_errors, errors.resin_errors, "this resin's {n} cells of the paper's Table S1; they hold the error of its modulus"),
         (
-            "model", ~resin_errors, errors.pool,
+            "model",
+            resin_errors,
+            errors.resin_errors,
+            "this resin's {n} cells of the paper's Table S1; they hold the error of its modulus",
+        ),
+        (
+            "model",
+            ~resin_errors,
+            errors.pool,
             f"all {{n}} cells of the paper's Table S1{left}: the best that is known away from the paper's sensor; they "
             "hold errors of moduli too, which so count in part twice",
         ),
-    )  # fmt: skip
+    )
     source_list = []
     for name, rows, known, origin in cases:
         if rows.any() and known:
@@ -110,8 +117,15 @@ def numerical_sources(size: int, numerical: Mapping[str, float]) -> list[Uncerta
     for name, greatest in numerical.items():
         if name not in FIGURES:
             raise InputError(f"numerical error of {name!r}: no such figure; there are {', '.join(FIGURES)}")
-        source_list.append(UncertaintySource(
-            "numerical", FIGURE, np.full(size, greatest / np.sqrt(3.0)), "rectangular",
-            counting(size, only=(FIGURES.index(name),)), f"greatest error found, {greatest:.2g} of {name}", True,
-        ))  # fmt: skip
+        source_list.append(
+            UncertaintySource(
+                "numerical",
+                FIGURE,
+                np.full(size, greatest / np.sqrt(3.0)),
+                "rectangular",
+                counting(size, only=(FIGURES.index(name),)),
+                f"greatest error found, {greatest:.2g} of {name}",
+                True,
+            )
+        )
     return source_list

@@ -48,10 +48,17 @@ def modulus_sources(material: Material, validated: Flags) -> list[UncertaintySou
     assert modulus is not None
     size = validated.size
     if modulus.spread is not None:
-        return [UncertaintySource(
-            "modulus as measured", "shear_modulus", _filled(modulus.spread / modulus.nominal, size), "lognormal",
-            counting(size), f"spread of the shear modulus, {modulus.source}; the scatter between prints is in it", True,
-        )]  # fmt: skip
+        return [
+            UncertaintySource(
+                "modulus as measured",
+                "shear_modulus",
+                _filled(modulus.spread / modulus.nominal, size),
+                "lognormal",
+                counting(size),
+                f"spread of the shear modulus, {modulus.source}; the scatter between prints is in it",
+                True,
+            )
+        ]
     if modulus.source.startswith(FROM_CURVE):
         # The band is that of the fraction alone; how well the resins' own moduli are known comes on top.
         bare = modulus.model_copy(update={"low": None, "high": None})
@@ -63,12 +70,15 @@ def modulus_sources(material: Material, validated: Flags) -> list[UncertaintySou
 def _mixing_fraction(modulus: Quantity, size: int) -> UncertaintySource:
     """How far an assumed mixing curve may be off; see `pneutouch.catalogue.mixture.Mixing.band_at`."""
     return UncertaintySource(
-        "mixing fraction", "shear_modulus", _filled(_log_rectangular(modulus.most / modulus.least), size),
-        "log-rectangular", counting(size),
+        "mixing fraction",
+        "shear_modulus",
+        _filled(_log_rectangular(modulus.most / modulus.least), size),
+        "log-rectangular",
+        counting(size),
         f"assumed: {modulus.least:.3g} to {modulus.most:.3g} MPa, as the laws differ by which the catalogue's moduli are given "
         "their fractions of the stiff resin; no greater modulus than the curve's stiffest was taken (docs/mixing.md)",
         False,
-    )  # fmt: skip
+    )
 
 
 def _log_rectangular(factor: float) -> float:
@@ -122,9 +132,15 @@ def _between_prints(material: Material, size: int) -> UncertaintySource:
         else "assumed, as the seven resins of the paper's Table 1"
     )
     return UncertaintySource(
-        "modulus between prints", "shear_modulus", _filled(logarithmic_slope(shore) * spread, size), "lognormal",
-        counting(size), origin, known, _READINGS - 1 if known else np.inf,
-    )  # fmt: skip
+        "modulus between prints",
+        "shear_modulus",
+        _filled(logarithmic_slope(shore) * spread, size),
+        "lognormal",
+        counting(size),
+        origin,
+        known,
+        _READINGS - 1 if known else np.inf,
+    )
 
 
 def ageing_sources(material: Material, size: int) -> list[UncertaintySource]:
@@ -146,9 +162,14 @@ def _ageing_by_hardness(material: Material, size: int) -> UncertaintySource:
         aged.source if aged is not None and known else "change assumed, as the seven resins of the paper's Table 1"
     )
     return UncertaintySource(
-        "ageing of the modulus", "shear_modulus", _filled(abs(change) / np.sqrt(3.0), size), "log-rectangular",
-        counting(size, without=(SENSITIVITY,)), origin, known,
-    )  # fmt: skip
+        "ageing of the modulus",
+        "shear_modulus",
+        _filled(abs(change) / np.sqrt(3.0), size),
+        "log-rectangular",
+        counting(size, without=(SENSITIVITY,)),
+        origin,
+        known,
+    )
 
 
 def _ageing_of_sensitivity(material: Material, size: int) -> UncertaintySource:
@@ -160,6 +181,11 @@ def _ageing_of_sensitivity(material: Material, size: int) -> UncertaintySource:
         else given.source
     )
     return UncertaintySource(
-        "ageing", "figure", _filled(change / np.sqrt(3.0), size), "rectangular", counting(size, only=(SENSITIVITY,)),
-        f"sensitivity {change:.1%} off after a year: {origin}", given is not None,
-    )  # fmt: skip
+        "ageing",
+        "figure",
+        _filled(change / np.sqrt(3.0), size),
+        "rectangular",
+        counting(size, only=(SENSITIVITY,)),
+        f"sensitivity {change:.1%} off after a year: {origin}",
+        given is not None,
+    )
