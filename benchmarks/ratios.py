@@ -34,8 +34,8 @@ RATIOS: dict[str, tuple[Callable[[Path], cases.Pair], float]] = {
     "1,000 responses of the atlas / one of the solid": (cases.atlas_batch, 2.0),
     "one response of the atlas / one of the solid": (cases.atlas_single, 0.1),
     "reading 100 MB to a curve / pandas reading it": (cases.reading, 4.0),
-    "fit of 40 curves / 100 responses of each": (cases.fit_of_curves, 4.0),
-    "voxels of the graded dome / a random number each": (cases.voxels, 20.0),
+    "fit of 40 curves / 100 responses of each": (cases.fit_of_curves, 0.6),
+    "voxels of the graded dome / a random number each": (cases.voxels, 5.0),
 }
 """Maker of work and measure, given an empty folder, and the ratio that must not be passed."""
 
