@@ -43,8 +43,8 @@ def measured_errors(materials: Mapping[str, Material]) -> dict[str, ModelErrors]
     every = list(materials.values())
     errors = table_s1_errors(every)
     return {
-        name: _pooled(own, every, errors)
-        for (name, material), own in zip(materials.items(), errors, strict=True)
+        name: _pooled(resin_errors, every, errors)
+        for (name, material), resin_errors in zip(materials.items(), errors, strict=True)
         if material.measured
     }
 
