@@ -7,69 +7,55 @@ from typing import Any
 
 def prediction_text(document: dict[str, Any]) -> str:
     """The prediction as a table, with limits, events, the interval of the sensitivity and the model's error."""
-    point, limits = document["limit_point"], document["limits"]
-    sampled = any("monte_carlo" in state["uncertainty"] for state in document["states"])
-    head = [
-        "kPa",
-        "apex in mm",
-        "apex out mm",
-        "S kPa/N",
-        "interval (k = 2)",
-        *(["sampled"] if sampled else []),
-        "R2",
-        "N/mm",
-        "range N",
-        "range ends at",
-    ]
-    rows = []
-    for state in document["states"]:
-        ends = [event["kind"] for event in state["events"] if event["ends_range"]]
-        force, uncertainty = state["force_range_N"], state["uncertainty"]
-        rows.append(
-            [
-                f"{state['driving_pressure_kPa']:g}",
-                f"{state['apex_height_inner_mm']:.3f}",
-                f"{state['apex_height_outer_mm']:.3f}",
-                _optional(state["sensitivity_kPa_per_N"], ".3f"),
-                _interval(uncertainty),
-                *([_interval(uncertainty.get("monte_carlo", {}))] if sampled else []),
-                _optional(state["r_squared"], ".4f"),
-                _optional(state["stiffness_N_per_mm"], ".3f"),
-                "-" if force is None else f"0-{force[1]:.2f}",
-                f"{ends[0] if ends else 'depth'}, {state['range_end_mm']:.2f} mm",
-            ]
-        )
     closure = f" ({document['closure']} contact)" if document["closure"] else ""
-    reach = (
-        f"no limit point; the {limits['binding']} binds"
-        if point is None
-        else (
-            f"limit point {point['driving_pressure_kPa']:.2f} kPa at {point['apex_height_inner_mm']:.2f} mm inside, "
-            f"{point['apex_height_outer_mm']:.2f} mm outside; the {limits['binding']} binds"
-        )
-    )
     error = document["error_estimate"]
     sensitivity = error["sensitivity_relative"]
     far = "unknown" if sensitivity is None else f"up to {sensitivity:.0%}"
-    return "\n".join(
-        [
-            f"{document['design']}: model {document['model']}{closure}, dead volume {document['dead_volume_mL']:.3f} mL",
-            reach,
-            "",
-            columns(head, rows),
-            "",
-            f"error in sensitivity {far}: {error['sensitivity_basis']}",
-            *_uncertainty(document["states"]),
-            *_viscous(document["viscous"]),
-            *(
-                [
-                    f"aged one year: modulus times {document['aged']['modulus_ratio']:.3f} by its hardness; {document['aged']['assumes']}"
-                ]
-                if "aged" in document
-                else []
-            ),
+    lines = [
+        f"{document['design']}: model {document['model']}{closure}, dead volume {document['dead_volume_mL']:.3f} mL",
+        f"{_reach(document['limit_point'])}; the {document['limits']['binding']} binds",
+        "",
+        _state_table(document["states"]),
+        "",
+        f"error in sensitivity {far}: {error['sensitivity_basis']}",
+        *_uncertainty(document["states"]),
+        *_viscous(document["viscous"]),
+    ]
+    if aged := document.get("aged"):
+        ratio = f"{aged['modulus_ratio']:.3f}"
+        lines.append(f"aged one year: modulus times {ratio} by its hardness; {aged['assumes']}")
+    return "\n".join(lines)
+
+
+def _reach(point: dict[str, float] | None) -> str:
+    if point is None:
+        return "no limit point"
+    inner, outer = point["apex_height_inner_mm"], point["apex_height_outer_mm"]
+    return f"limit point {point['driving_pressure_kPa']:.2f} kPa at {inner:.2f} mm inside, {outer:.2f} mm outside"
+
+
+def _state_table(states: list[dict[str, Any]]) -> str:
+    sampled = ["sampled"] if any("monte_carlo" in state["uncertainty"] for state in states) else []
+    head = ["kPa", "apex in mm", "apex out mm", "S kPa/N", "interval (k = 2)", *sampled]
+    head += ["R2", "N/mm", "range N", "range ends at"]
+    rows = []
+    for state in states:
+        ends = [event["kind"] for event in state["events"] if event["ends_range"]]
+        force, uncertainty = state["force_range_N"], state["uncertainty"]
+        row = [
+            f"{state['driving_pressure_kPa']:g}",
+            f"{state['apex_height_inner_mm']:.3f}",
+            f"{state['apex_height_outer_mm']:.3f}",
+            _optional(state["sensitivity_kPa_per_N"], ".3f"),
+            _interval(uncertainty),
+            *(_interval(uncertainty.get("monte_carlo", {})) for _ in sampled),
+            _optional(state["r_squared"], ".4f"),
+            _optional(state["stiffness_N_per_mm"], ".3f"),
+            "-" if force is None else f"0-{force[1]:.2f}",
+            f"{ends[0] if ends else 'depth'}, {state['range_end_mm']:.2f} mm",
         ]
-    )
+        rows.append(row)
+    return columns(head, rows)
 
 
 def _interval(uncertainty: dict[str, Any]) -> str:

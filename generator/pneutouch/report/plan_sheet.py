@@ -48,50 +48,19 @@ _AMISS = (
 
 def plan_sheet(plan: dict[str, Any]) -> str:
     """Markdown of a plan's document (see `workflows.plan`)."""
-    return "\n".join(
-        [
-            f"# Test plan: {_escaped(plan['title'])}",
-            "",
-            *_head(plan),
-            "## Warnings",
-            "",
-            *_warnings(plan),
-            "",
-            "## Instruments",
-            "",
-            *_instruments(plan),
-            "",
-            "## Order",
-            "",
-            *_order(plan),
-            "",
-            "## Before the first run of a specimen",
-            "",
-            *_before(plan),
-            "",
-            "## Leak and dead volume",
-            "",
-            *_air(plan),
-            "",
-            "## Steps",
-            "",
-            *_steps(plan),
-            "",
-            "## Expected values",
-            "",
-            *_expected(plan),
-            "",
-            "## When a value is off",
-            "",
-            "| sign | what to do |",
-            "|---|---|",
-            *(f"| {sign} | {do} |" for sign, do in _AMISS),
-            "",
-            "## Record",
-            "",
-            *_record(plan),
-        ]
-    )
+    sections = {
+        "Warnings": _warnings(plan),
+        "Instruments": _instruments(plan),
+        "Order": _order(plan),
+        "Before the first run of a specimen": _before(plan),
+        "Leak and dead volume": _air(plan),
+        "Steps": _steps(plan),
+        "Expected values": _expected(plan),
+        "When a value is off": ["| sign | what to do |", "|---|---|", *(f"| {sign} | {do} |" for sign, do in _AMISS)],
+        "Record": _record(plan),
+    }
+    parts = (f"## {name}\n\n" + "\n".join(lines) for name, lines in sections.items())
+    return "\n\n".join([f"# Test plan: {_escaped(plan['title'])}", *_head(plan), *parts]) + "\n"
 
 
 def _head(plan: dict[str, Any]) -> list[str]:
@@ -100,14 +69,10 @@ def _head(plan: dict[str, Any]) -> list[str]:
     return [
         f"Design {_escaped(plan['design'])}: R0 {plan['inner_radius_mm']:g} mm, wall {plan['wall_thickness_mm']:g} mm, dead volume "
         f"{plan['dead_volume_mL']:.3g} mL, driving pressures {pressures} kPa, plate {plan['plate_diameter_mm']:g} mm.",
-        "",
         f"{len(plan['runs'])} runs on {len(names)} specimen{'s' if len(names) > 1 else ''} ({', '.join(map(_escaped, names))}): "
         f"**{_time(plan['total_s'])}** on the rig, mounting and looking aside.",
-        "",
         "Laboratory: ______________________  Operator: ______________________  Date: ______________",
-        "",
         "Room: ______ °C  Air pressure: ________ hPa  Resin lots: ________________________________",
-        "",
     ]
 
 
@@ -119,9 +84,8 @@ def _warnings(plan: dict[str, Any]) -> list[str]:
 
 def _instruments(plan: dict[str, Any]) -> list[str]:
     rig = plan["rig"]
-    points = [
-        p for resin in plan["resins"] for state in resin["states"] for p in state["points"] if p["force_N"] is not None
-    ]
+    states = (state for resin in plan["resins"] for state in resin["states"])
+    points = [p for state in states for p in state["points"] if p["force_N"] is not None]
     force = max((p["force_N"] for p in points), default=0.0)
     pressure = max((p["cavity_pressure_kPa"] for p in points), default=0.0)
     travel = max(depth for test in plan["tests"].values() for depth in test["depths_mm"]) + plan["clearance_mm"]
@@ -141,8 +105,9 @@ def _order(plan: dict[str, Any]) -> list[str]:
     """The runs of the first specimen by kind; the others have the same."""
     first = plan["sensors"][0]["sensor"]
     all_runs = [run for run in plan["runs"] if run["sensor"] == first]
-    lines = ["Each specimen in this order; let it rest 5 minutes between kinds of test.", ""]
-    lines += [
+    lines = [
+        "Each specimen in this order; let it rest 5 minutes between kinds of test.",
+        "",
         "| | test | kind | driving pressure, kPa | runs at each | one run | together |",
         "|---|---|---|---|---|---|---|",
     ]
@@ -182,19 +147,18 @@ def _air(plan: dict[str, Any]) -> list[str]:
         air, leak = resin["injection"], resin["leak_limit_kPa_per_min"]
         lines += [f"### {_escaped(resin['resin'])}", ""]
         if leak is not None:
-            lines += [
-                f"- Leak at most {leak:.2g} kPa/min: then it takes less than 1 % of the first step's rise. Read: ________ kPa/min"
-            ]
+            within = f"- Leak at most {leak:.2g} kPa/min: then it takes less than 1 % of the first step's rise."
+            lines.append(f"{within} Read: ________ kPa/min")
         if air["line_volume_mL"] is not None:
-            lines += [
+            lines.append(
                 f"- {air['line_volume_mL']:g} mL into the capped line ({air['dead_volume_mL']:.3g} mL): "
                 f"{air['line_pressure_kPa']:.1f} kPa. Read: ________ kPa"
-            ]
+            )
         else:
-            lines += [
+            lines.append(
                 "- The design states no dead volume, so nothing can be foretold of the line alone: push the smallest volume of the "
                 "syringe into the capped line. Pushed: ________ mL  Read: ________ kPa"
-            ]
+            )
         lines += ["", *_pushes(air), ""]
     return lines[:-1]
 
@@ -214,25 +178,16 @@ def _steps(plan: dict[str, Any]) -> list[str]:
     lines = ["Depth counts from first contact at the driving pressure of the run.", ""]
     for kind, test in plan["tests"].items():
         depths, hold = test["depths_mm"], test["hold_s"]
-        reset = (
-            "vent, then set the driving pressure again, and let it settle"
-            if test["reset"]
-            else "leave the pressure as it is"
-        )
-        step = (
-            f"{depths[1] - depths[0]:g} mm steps to {depths[-1]:.2f} mm"
-            if len(set(depths)) > 1
-            else f"{depths[0]:.2f} mm"
-        )
+        reset = "vent, then set the driving pressure again, and let it settle"
+        even = f"{depths[1] - depths[0]:g} mm steps to " if len(set(depths)) > 1 else ""
         lines += [
             f"**{_WORDS[kind]}** (`{kind}`, at {_list(test['driving_pressures_kPa'])} kPa, {test['runs']} run"
             f"{'s' if test['runs'] > 1 else ''} each, {_time(test['duration_s'])} a run)",
             "",
             "1. Start recording.",
-            f"2. Plate {plan['clearance_mm']:g} mm clear, rest {test['rest_s']:g} s: {reset}.",
-            f"3. To depth at {test['speed_mm_per_s']:g} mm/s: {step}"
-            + (f"; hold {hold:g} s" if hold else "; no hold")
-            + f"; back to {plan['clearance_mm']:g} mm clear.",
+            f"2. Plate {plan['clearance_mm']:g} mm clear, rest {test['rest_s']:g} s: {reset if test['reset'] else 'leave the pressure as it is'}.",
+            f"3. To depth at {test['speed_mm_per_s']:g} mm/s: {even}{depths[-1]:.2f} mm; "
+            f"{f'hold {hold:g} s' if hold else 'no hold'}; back to {plan['clearance_mm']:g} mm clear.",
             f"4. Again from 2, {len(depths)} times in all." if len(depths) > 1 else "4. Once.",
             "5. Stop and save under the name in the record.",
             "",
@@ -248,20 +203,16 @@ def _expected(plan: dict[str, Any]) -> list[str]:
     ]
     for resin in plan["resins"]:
         states = resin["states"]
+        head = " | ".join(f"{s['driving_pressure_kPa']:g} kPa: force, N | rise, kPa" for s in states)
         lines += [
             f"### {_escaped(resin['resin'])} (model {resin['model']}; may be driven to {resin['limit_kPa']:.1f} kPa, {resin['limit_by']})",
             "",
-            "| depth, mm | "
-            + " | ".join(f"{s['driving_pressure_kPa']:g} kPa: force, N | rise, kPa" for s in states)
-            + " |",
+            f"| depth, mm | {head} |",
             "|---" * (1 + 2 * len(states)) + "|",
         ]
         for row in zip(*(state["points"] for state in states), strict=True):
-            cells = " | ".join(
-                f"{_number(p['force_N'])}{_mark(p, plan)} | {_number(p['pressure_rise_kPa'])}{_mark(p, plan)}"
-                for p in row
-            )
-            lines.append(f"| {row[0]['depth_mm']:.4g} | {cells} |")
+            values = [f"{_number(p[key])}{_mark(p, plan)}" for p in row for key in ("force_N", "pressure_rise_kPa")]
+            lines.append(f"| {row[0]['depth_mm']:.4g} | {' | '.join(values)} |")
         lines.append("")
     return lines[:-1]
 
@@ -286,11 +237,10 @@ def _record(plan: dict[str, Any]) -> list[str]:
             if usable:
                 last = usable[-1]
                 cells = [f"{last['depth_mm']:.4g}", f"{last['force_N']:.2f} /", f"{last['pressure_rise_kPa']:.2f} /"]
-            lines.append(
-                f"| {run['number']} | `{run['file'].removeprefix('runs/')}` | ☐ | | | | {' | '.join(cells)} | |"
-            )
+            file = run["file"].removeprefix("runs/")
+            lines.append(f"| {run['number']} | `{file}` | ☐ | | | | {' | '.join(cells)} | |")
         lines.append("")
-    return lines
+    return lines[:-1]
 
 
 def _mark(point: dict[str, Any], plan: dict[str, Any]) -> str:

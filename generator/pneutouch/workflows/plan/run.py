@@ -98,35 +98,35 @@ def make_plan(
         "rig": {**rig.model_dump(mode="json"), "file": rig_name or None},
         "sensors": [{"sensor": f"{s.name}-{k + 1}", "resin": s.name} for s in subjects for k in range(specimens)],
         "resins": [_expected(s, curves[s.name], tests, rig) for s in subjects],
-        "tests": {
-            kind: {
-                "depths_mm": list(t.depths),
-                "hold_s": t.hold,
-                "rest_s": t.rest,
-                "reset": t.reset,
-                "speed_mm_per_s": t.speed,
-                "duration_s": t.duration,
-                "driving_pressures_kPa": list(at),
-                "runs": _times(kind),
-            }
-            for kind, (t, at) in tests.items()
-        },
+        "tests": {kind: _test(kind, *test) for kind, test in tests.items()},
         "runs": listed,
         "total_s": sum(run["duration_s"] for run in listed),
         "warnings": [w.document() for w in travel_warnings(depths, rig)] + warnings,
     }
+    keys = ("file", "kind", "sensor", "resin", "driving_pressure_kPa", "run")
     campaign = Campaign(
         title=f"Campaign of {scene.design.document.title}"[:120],
         design=name_of(design),
         assignments=assignments(changes or {}),
         ambient_pressure_kPa=pneumatics.ambient_pressure_kPa,
         rig=rig,
-        runs=[
-            CampaignRun(**{key: run[key] for key in ("file", "kind", "sensor", "resin", "driving_pressure_kPa", "run")})
-            for run in listed
-        ],
+        runs=[CampaignRun(**{key: run[key] for key in keys}) for run in listed],
     )
     return CampaignPlan(str(document["name"]), document, campaign)
+
+
+def _test(kind: str, test: RunProtocol, driving_pressures_kPa: tuple[float, ...]) -> dict[str, Any]:
+    """A kind of run as data."""
+    return {
+        "depths_mm": list(test.depths),
+        "hold_s": test.hold,
+        "rest_s": test.rest,
+        "reset": test.reset,
+        "speed_mm_per_s": test.speed,
+        "duration_s": test.duration,
+        "driving_pressures_kPa": list(driving_pressures_kPa),
+        "runs": _times(kind),
+    }
 
 
 def write_plan(plan: CampaignPlan, out: Path) -> Path:

@@ -38,6 +38,9 @@ from pneutouch.workflows.simulate.options import KINDS, PRESSED, REPEATED, Simul
 PUSHED = np.linspace(0.0, 0.5, 11) * ML
 """Volumes of an injection run, mm3: 0 to 0.5 mL, our choice."""
 
+_OPTIONS = ("specimens", "driving_pressures_kPa", "runs", "kinds", "rate", "seed", "model", "ages_days", "parquet")
+"""Options that a campaign depends on, in addition to its resins."""
+
 Progress = Callable[[int, int], None]
 
 
@@ -100,42 +103,25 @@ def _write_all(
                 progress(truth["done"], total)
     truth.pop("done", None)
     scene, model = subjects[0].scene, subjects[0].truth
-    writer.put(
-        "campaign.toml",
-        campaign_toml(
-            Campaign(
-                title=f"Simulated campaign of {scene.name}"[:120],
-                lab="none: simulated by pneutouch",
-                design=named[0],
-                assignments=named[1],
-                simulated=True,
-                ambient_pressure_kPa=scene.design.pneumatics.ambient_pressure_kPa,
-                rig=Rig(name="simulated: the paper's instruments", rate_Hz=options.rate),
-                runs=runs,
-            ),
-            MARK,
-        ),
+    campaign = Campaign(
+        title=f"Simulated campaign of {scene.name}"[:120],
+        lab="none: simulated by pneutouch",
+        design=named[0],
+        assignments=named[1],
+        simulated=True,
+        ambient_pressure_kPa=scene.design.pneumatics.ambient_pressure_kPa,
+        rig=Rig(name="simulated: the paper's instruments", rate_Hz=options.rate),
+        runs=runs,
     )
-    writer.put(
-        "truth.json",
-        json_bytes(
-            {
-                **truth,
-                "simulated": True,
-                "design": scene.name,
-                "model": options.model,
-                "seed": options.seed,
-                "rate_Hz": options.rate,
-                "parameters": {
-                    subject.name: {
-                        part: parameters(getattr(subject.truth, part)) for part in ("scatter", "rig", "wall")
-                    }
-                    for subject in subjects
-                },
-                "rest_s": model.rest,
-            }
-        ),
-    )
+    writer.put("campaign.toml", campaign_toml(campaign, MARK))
+    truth |= {"simulated": True, "design": scene.name, "rest_s": model.rest}
+    truth |= {"model": options.model, "seed": options.seed, "rate_Hz": options.rate}
+    truth["parameters"] = {subject.name: _parameters(subject) for subject in subjects}
+    writer.put("truth.json", json_bytes(truth))
+
+
+def _parameters(subject: SimulatedResin) -> dict[str, Any]:
+    return {part: parameters(getattr(subject.truth, part)) for part in ("scatter", "rig", "wall")}
 
 
 def campaign_toml(campaign: Campaign, comment: str) -> bytes:
@@ -147,12 +133,8 @@ def campaign_toml(campaign: Campaign, comment: str) -> bytes:
 
 def _driving_pressures_kPa(subject: SimulatedResin, options: SimulationOptions) -> list[float]:
     """Driving pressures in kPa."""
-    given_kPa = (
-        subject.scene.design.pneumatics.driving_pressures_kPa
-        if options.driving_pressures_kPa is None
-        else options.driving_pressures_kPa
-    )
-    return sorted(given_kPa)
+    given_kPa = options.driving_pressures_kPa
+    return sorted(subject.scene.design.pneumatics.driving_pressures_kPa if given_kPa is None else given_kPa)
 
 
 def _depth(subject: SimulatedResin, options: SimulationOptions) -> float:
@@ -163,30 +145,17 @@ def _depth(subject: SimulatedResin, options: SimulationOptions) -> float:
 
 
 def _pressed(subject: SimulatedResin, sensor: Sensor, options: SimulationOptions, who: str) -> PressCurves:
-    return pressed(
-        who,
-        sensor,
-        [p * KPA for p in _driving_pressures_kPa(subject, options)],
-        _depth(subject, options),
-        options.model,
-    )
+    driving = [p * KPA for p in _driving_pressures_kPa(subject, options)]
+    return pressed(who, sensor, driving, _depth(subject, options), options.model)
 
 
 def _populations(subject: SimulatedResin, age: float, options: SimulationOptions) -> Iterator[dict[str, Any]]:
     nominal = _pressed(subject, aged(subject.sensor, subject.truth, age), options, subject.name)
+    seeds = options.seed, _number(subject.name)
     for k, pressure_kPa in enumerate(_driving_pressures_kPa(subject, options)):
-        spread_of: Population = population(
-            nominal, k, subject.truth, options.rate, (options.seed, _number(subject.name))
-        )
-        yield {
-            "resin": subject.name,
-            "age_days": age,
-            "driving_pressure_kPa": pressure_kPa,
-            "figures": spread_of.figures,
-            "spread": spread_of.spread,
-            "count": spread_of.count,
-            "basis": spread_of.basis,
-        }
+        spread_of: Population = population(nominal, k, subject.truth, options.rate, seeds)
+        about = {key: getattr(spread_of, key) for key in ("figures", "spread", "count", "basis")}
+        yield {"resin": subject.name, "age_days": age, "driving_pressure_kPa": pressure_kPa, **about}
 
 
 def _specimen(
@@ -194,9 +163,8 @@ def _specimen(
 ) -> Iterator[tuple[CampaignRun, bytes]]:
     """Every run of one specimen at one age, and what is true of it."""
     name = f"{subject.name}-{k + 1}"
-    drawn = SimulatedSpecimens.draw(
-        subject.truth.scatter, 1, np.random.default_rng([options.seed, _number(subject.name), k])
-    )
+    rng = np.random.default_rng([options.seed, _number(subject.name), k])
+    drawn = SimulatedSpecimens.draw(subject.truth.scatter, 1, rng)
     sensor = aged(drawn.sensor(subject.sensor, 0), subject.truth, age)
     pressed_curves = _pressed(subject, sensor, options, name)
     known: dict[str, Any] = {
@@ -210,9 +178,8 @@ def _specimen(
     }
     truth["specimens"][_label(name, age, options)] = known
     truth["done"] = truth.get("done", 0) + 1
-    for place, (pressure, curve) in enumerate(
-        zip(_driving_pressures_kPa(subject, options), pressed_curves.curves, strict=True)
-    ):
+    pressures_kPa = _driving_pressures_kPa(subject, options)
+    for place, (pressure, curve) in enumerate(zip(pressures_kPa, pressed_curves.curves, strict=True)):
         known["pressures"][f"{pressure:g}"] = {
             **specimen_figures(curve, subject.truth, sensor.dome.inner_radius, options.rate),
             "range_end_mm": curve.reach,
@@ -223,8 +190,9 @@ def _specimen(
                 continue
             for number in range(1, (options.runs if kind in REPEATED else 1) + 1):
                 at = 0.0 if kind == "injection" else pressure
+                stem = f"{_label(name, age, options)}-{at:g}kPa-{kind}-{number}"
                 run = CampaignRun(
-                    file=f"runs/{_label(name, age, options)}-{at:g}kPa-{kind}-{number}.{'parquet' if options.parquet else 'csv'}",
+                    file=f"runs/{stem}.{'parquet' if options.parquet else 'csv'}",
                     kind=kind,  # type: ignore[arg-type]
                     sensor=name,
                     resin=subject.name,
@@ -236,10 +204,8 @@ def _specimen(
                 rng = np.random.default_rng([options.seed, *key])
                 if kind in PRESSED:
                     _note_end(run, subject, curve.reach, curve.ends, truth)
-                yield (
-                    run,
-                    encoded(_columns(kind, subject, pressed_curves, place, options, rng), parquet=options.parquet),
-                )
+                samples = _columns(kind, subject, pressed_curves, place, options, rng)
+                yield run, encoded(samples, parquet=options.parquet)
 
 
 def _note_end(
@@ -261,9 +227,8 @@ def _columns(
     """The columns of one run in the units of its file."""
     truth, curve, sensor = subject.truth, pressed_curves.curves[place], pressed_curves.sensor
     if kind == "injection":
-        pressure = sensor_pressure(
-            PUSHED, pressed_curves.inflation, sensor.gas.dead_volume, sensor.gas.ambient_pressure
-        )
+        gas = sensor.gas
+        pressure = sensor_pressure(PUSHED, pressed_curves.inflation, gas.dead_volume, gas.ambient_pressure)
         read = pressure + truth.rig.noise(options.rate)[1] * rng.standard_normal(PUSHED.size)
         keep = np.isfinite(pressure)
         return {"volume_mL": PUSHED[keep] / ML, "pressure_kPa": truth.rig.stepped(read[keep]) / KPA}
@@ -296,21 +261,7 @@ def _inputs(subjects: list[SimulatedResin], options: SimulationOptions) -> dict[
     return {
         "design": first.scene.design.model_dump(mode="json"),
         "resins": {subject.name: subject.scene.membrane_material.model_dump(mode="json") for subject in subjects},
-        "options": {
-            key: value
-            for key, value in {
-                "specimens": options.specimens,
-                "driving_pressures_kPa": options.driving_pressures_kPa,
-                "runs": options.runs,
-                "kinds": options.kinds,
-                "rate": options.rate,
-                "seed": options.seed,
-                "model": options.model,
-                "ages_days": options.ages_days,
-                "parquet": options.parquet,
-            }.items()
-            if value is not None
-        },
-        "parameters": {part: parameters(getattr(first.truth, part)) for part in ("scatter", "rig", "wall")},
+        "options": {key: value for key in _OPTIONS if (value := getattr(options, key)) is not None},
+        "parameters": _parameters(first),
         "rest": first.truth.rest,
     }
