@@ -54,19 +54,15 @@ class ViscousRuns:
             "states": [
                 {
                     "driving_pressure_kPa": pressure / KPA,
-                    "by_source": [
-                        {
-                            "relaxation": _held(self.held[i][j]),
-                            "hysteresis": [
-                                {"speed_mm_per_s": v, **_looped(runs[i][j])} for v, runs in self.loops.items()
-                            ],
-                        }
-                        for j in range(len(self.sources))
-                    ],
+                    "by_source": [self._of_source(i, j) for j in range(len(self.sources))],
                 }
                 for i, pressure in enumerate(self.driving_pressures)
             ],
         }
+
+    def _of_source(self, i: int, j: int) -> dict[str, Any]:
+        loops = [{"speed_mm_per_s": speed, **_looped(runs[i][j])} for speed, runs in self.loops.items()]
+        return {"relaxation": _held(self.held[i][j]), "hysteresis": loops}
 
 
 def describe(sensor: Sensor, material: Material, driving_pressures: Sequence[float], depth: float) -> ViscousRuns:

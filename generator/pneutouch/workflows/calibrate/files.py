@@ -65,9 +65,8 @@ def prepare(
     by_name = {estimate["parameter"]: estimate for estimate in calibration.estimates}
     files = []
     if "modulus" in by_name:
-        files.append(
-            _material(calibration, by_name["modulus"], _place("materials", name, root, library, shadow), library)
-        )
+        place = _place("materials", name, root, library, shadow)
+        files.append(_material(calibration, by_name["modulus"], place, library))
     files.append(_design(calibration, by_name, name, _place("designs", name, root, library, shadow)))
     return SavedCalibration(tuple(files))
 
@@ -81,20 +80,15 @@ def _place(kind: str, name: str, root: Path, library: Library, shadow: bool) -> 
     path = root / KINDS[kind].folder / f"{name}.toml"
     other = library.paths(kind).get(name)
     if other is not None and other.resolve() != path.resolve() and not shadow:
+        remedy = "give another name, or `shadow` to hide it"
         raise InputError(
-            f"{other} is of this name, which the new file would hide",
-            key="save",
-            value=name,
-            remedy="give another name, or `shadow` to hide it",
+            f"{other} is of this name, which the new file would hide", key="save", value=name, remedy=remedy
         )
     if path.is_symlink() or path.exists():
         generated = path.is_file() and not path.is_symlink() and _is_generated(path)
         if not generated:
-            raise InputError(
-                "was not written by pneutouch calibrate, so it is left as it is",
-                file=path,
-                remedy="move it away or give another `save`",
-            )
+            kept = "was not written by pneutouch calibrate, so it is left as it is"
+            raise InputError(kept, file=path, remedy="move it away or give another `save`")
     return path
 
 
@@ -104,10 +98,8 @@ def _is_generated(path: Path) -> bool:
 
 
 def _head(calibration: Calibration, lines: list[str]) -> str:
-    first = (
-        f"{HEAD} from {_origin(calibration)}. Edit this line away and the command will no longer overwrite the file."
-    )
-    return "".join(f"{line}\n" for line in [first, *(f"# {line}" for line in lines)])
+    keep = "Edit this line away and the command will no longer overwrite the file."
+    return "".join([f"{HEAD} from {_origin(calibration)}. {keep}\n", *(f"# {line}\n" for line in lines)])
 
 
 def _origin(calibration: Calibration) -> str:
@@ -119,16 +111,12 @@ def _origin(calibration: Calibration) -> str:
 def _material(calibration: Calibration, estimate: dict[str, Any], path: Path, library: Library) -> MeasuredProfile:
     interval = estimate["interval_95"]
     if interval is None:
-        raise InputError(
-            "the shear modulus has no interval (on its bound, or not seen): there is no resin to save", key="save"
-        )
+        missing = "the shear modulus has no interval (on its bound, or not seen): there is no resin to save"
+        raise InputError(missing, key="save")
     base = calibration.scene.design.membrane.material
     if not isinstance(base, str):
-        raise InputError(
-            f"{base.label} is a mix of two resins",
-            key="save",
-            remedy="a modulus can be saved of a resin that has a file",
-        )
+        remedy = "a modulus can be saved of a resin that has a file"
+        raise InputError(f"{base.label} is a mix of two resins", key="save", remedy=remedy)
     content = read_toml(library.paths("materials")[base])
     before = content["shear_modulus_MPa"]
     # A material file holds one standard deviation; read with k = 2 it gives this interval back.
@@ -142,10 +130,8 @@ def _material(calibration: Calibration, estimate: dict[str, Any], path: Path, li
     # The paper measured another print: its values do not bear on the error of this modulus.
     content.pop("measured", None)
     KINDS["materials"].validate(content, str(path))
-    head = _head(
-        calibration,
-        [f"{base} with the shear modulus of the sensor in hand; the paper's measurements of {base} are not in it."],
-    )
+    about = f"{base} with the shear modulus of the sensor in hand; the paper's measurements of {base} are not in it."
+    head = _head(calibration, [about])
     changes = [{"file": str(path), "key": "shear_modulus_MPa", "before": before, "after": content["shear_modulus_MPa"]}]
     return MeasuredProfile(path, head + toml_text(content), changes)
 

@@ -80,16 +80,7 @@ class Calibration:
             "correlation": _correlation(self.fit),
             "fit": _goodness(self.fit),
             "residuals": [_residual(run) for run in self.residuals],
-            "misses": [
-                {
-                    "driving_pressure_kPa": m.driving_pressure_kPa,
-                    "channel": m.channel,
-                    "from_mm": m.start,
-                    "to_mm": m.end,
-                    "share": m.share,
-                }
-                for m in self.misses
-            ],
+            "misses": [_miss(m) for m in self.misses],
             "strongly_correlated": [_ambiguity(group) for group in self.identified.ambiguities],
             "unidentified": [NAMES[k] for k in self.identified.unseen],
             "further_tests": [_further(self.fit, test) for test in self.further],
@@ -121,18 +112,8 @@ def calibrate(
     chosen = parameters(built, scene.membrane_material, scene.printer, names, priors=priors)
     fitted = fit(observations, built, chosen)
     held = tuple(predict_held_out(observations, built, chosen, pressure_kPa) for pressure_kPa in hold_out_kPa)
-    return Calibration(
-        scene,
-        sensor,
-        title,
-        fitted,
-        residuals(fitted),
-        misses(fitted),
-        identify(fitted),
-        further_tests(fitted),
-        held,
-        tuple(notes),
-    )
+    judged = residuals(fitted), misses(fitted), identify(fitted), further_tests(fitted)
+    return Calibration(scene, sensor, title, fitted, *judged, held, tuple(notes))
 
 
 def observations_of(
@@ -151,27 +132,17 @@ def observations_of(
         raise InputError(f"the campaign holds {', '.join(known)}", key="sensor", remedy="name one")
     chosen = known[0] if sensor is None else sensor
     if chosen not in known:
-        raise InputError(
-            "no such sensor in the campaign", key="sensor", value=chosen, remedy=f"there are {', '.join(known)}"
-        )
+        remedy = f"there are {', '.join(known)}"
+        raise InputError("no such sensor in the campaign", key="sensor", value=chosen, remedy=remedy)
     steps = tuple(curve for curve in curves if curve.run.sensor == chosen and curve.run.kind == "steps")
     pushed = [fitted for fitted in injections if fitted[0].sensor == chosen]
     for run, _, _ in pushed:
         if run.driving_pressure_kPa:
-            raise InputError(
-                (
-                    f"driving_pressure_kPa = {run.driving_pressure_kPa:g}: an injection must begin at ambient "
-                    "pressure, 0"
-                ),
-                file=run.file,
-            )
+            given = f"driving_pressure_kPa = {run.driving_pressure_kPa:g}"
+            raise InputError(f"{given}: an injection must begin at ambient pressure, 0", file=run.file)
     if not steps and not pushed:
-        raise InputError(
-            "no readable run of kind steps or injection",
-            key="sensor",
-            value=chosen,
-            remedy="there must be at least one",
-        )
+        missing = "no readable run of kind steps or injection"
+        raise InputError(missing, key="sensor", value=chosen, remedy="there must be at least one")
     given_kPa = campaign.ambient_pressure_kPa
     ambient = (scene.design.pneumatics.ambient_pressure_kPa if given_kPa is None else given_kPa) * KPA
     blown = tuple(Injection(run.label, volume, pressure) for run, volume, pressure in pushed)
@@ -240,6 +211,11 @@ def _goodness(fitted: CalibrationFit) -> dict[str, Any]:
         "variance_of_runs_over_points": fitted.run_factor,
         "interval_from_runs": fitted.covariance.clustered,
     }
+
+
+def _miss(miss: SystematicDeviation) -> dict[str, Any]:
+    place = {"driving_pressure_kPa": miss.driving_pressure_kPa, "channel": miss.channel}
+    return {**place, "from_mm": miss.start, "to_mm": miss.end, "share": miss.share}
 
 
 def _residual(run: RunResiduals) -> dict[str, Any]:

@@ -67,8 +67,5 @@ def run_calibration(
     if saved is not None:
         save(saved)
         written += saved.paths
-    return {
-        **calibration.document,
-        "written": written,
-        "failures": [list(failure) for failure in (*loaded.failures, *refused)],
-    }
+    failures = [list(failure) for failure in (*loaded.failures, *refused)]
+    return {**calibration.document, "written": written, "failures": failures}

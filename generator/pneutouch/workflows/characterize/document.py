@@ -9,6 +9,12 @@ from pneutouch.bench.interval import LEVEL, Estimate
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.report.measured import CampaignReport, GroupComparison
 
+_INJECTION = ("sensor", "figure", "value", "standard_error", "unit")
+_CHANGE = ("sensitivity_change_percent", "low", "high", "published_change_one_year_percent")
+_AGEING = ("resin", "driving_pressure_kPa", "age", *_CHANGE)
+_VERDICT = ("what", "required", "measured", "passed")
+_OF_RUN = ("file", "kind", "sensor", "resin", "run", "driving_pressure_kPa", "age_days")
+
 
 def document(measured: CampaignReport) -> dict[str, Any]:
     """A campaign as plain data."""
@@ -22,31 +28,10 @@ def document(measured: CampaignReport) -> dict[str, Any]:
         "model": measured.model,
         "level": LEVEL,
         "groups": [_group(comparison) for comparison in measured.comparisons],
-        "runs": [
-            _run(curve, values)
-            for b in measured.comparisons
-            for curve, values in zip(b.group.curves, b.group.each, strict=True)
-        ],
-        "injections": [
-            {"sensor": sensor, "figure": name, "value": value, "standard_error": error, "unit": unit}
-            for sensor, name, value, error, unit in measured.injections
-        ],
-        "ageing": [
-            {
-                "resin": resin,
-                "driving_pressure_kPa": pressure_kPa,
-                "age": age,
-                "sensitivity_change_percent": value,
-                "low": low,
-                "high": high,
-                "published_change_one_year_percent": published,
-            }
-            for resin, pressure_kPa, age, value, low, high, published in measured.ageing
-        ],
-        "target": [
-            {"what": v.what, "required": v.required, "measured": v.measured, "passed": v.passed}
-            for v in measured.verdicts
-        ],
+        "runs": [_run(*of) for b in measured.comparisons for of in zip(b.group.curves, b.group.each, strict=True)],
+        "injections": [dict(zip(_INJECTION, row, strict=True)) for row in measured.injections],
+        "ageing": [dict(zip(_AGEING, row, strict=True)) for row in measured.ageing],
+        "target": [{key: getattr(v, key) for key in _VERDICT} for v in measured.verdicts],
         "questions": [{"file": file, "question": text} for file, text in measured.questions],
         "failures": [{"file": file, "message": text} for file, text in measured.failures],
     }
@@ -82,15 +67,8 @@ def _figure(key: str, estimate: Estimate, comparison: GroupComparison) -> dict[s
 
 
 def _run(curve: MeasuredCurve, values: dict[str, float]) -> dict[str, Any]:
-    run = curve.run
     return {
-        "file": run.file,
-        "kind": run.kind,
-        "sensor": run.sensor,
-        "resin": run.resin,
-        "run": run.run,
-        "driving_pressure_kPa": run.driving_pressure_kPa,
-        "age_days": run.age_days,
+        **{key: getattr(curve.run, key) for key in _OF_RUN},
         "points": len(curve.force) - 1,
         "figures": dict(values),
         "warnings": [

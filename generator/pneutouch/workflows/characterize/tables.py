@@ -57,20 +57,8 @@ def segments_csv(curves: Iterable[MeasuredCurve]) -> bytes:
                     "used" if warning.used else "left out",
                 ]
             )
-    head = (
-        *_RUN,
-        "what",
-        "contact_or_start_s",
-        "hold_start_or_end_s",
-        "hold_end_s",
-        "read_start_s",
-        "read_end_s",
-        "release_s",
-        "onset_mm",
-        "driving_kPa",
-        "why",
-        "used",
-    )
+    places = ("contact_or_start_s", "hold_start_or_end_s", "hold_end_s", "read_start_s", "read_end_s", "release_s")
+    head = (*_RUN, "what", *places, "onset_mm", "driving_kPa", "why", "used")
     return _csv(head, rows)
 
 

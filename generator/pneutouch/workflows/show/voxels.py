@@ -33,23 +33,8 @@ def show_stack(folder: Path, picture: Path | None = None) -> dict[str, Any]:
 def document(stack: VoxelStack) -> dict[str, Any]:
     """Sizes, counts, volumes and fractions; those of the slices, not of the manifest."""
     held, filled = stack.manifest, max(1, sum(stack.counts.values()))
-    keys = (
-        "name",
-        "printer",
-        "mode",
-        "prefix",
-        "pixels",
-        "layers",
-        "dpi",
-        "pixel_um",
-        "layer_um",
-        "size_mm",
-        "bodies",
-        "dither",
-        "assumptions",
-        "input_hash",
-        "sha256",
-    )
+    raster = ("pixels", "layers", "dpi", "pixel_um", "layer_um", "size_mm")
+    keys = ("name", "printer", "mode", "prefix", *raster, "bodies", "dither", "assumptions", "input_hash", "sha256")
     return {
         "stack": str(stack.folder),
         **{key: held[key] for key in keys if key in held},

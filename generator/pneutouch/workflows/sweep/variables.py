@@ -69,53 +69,28 @@ STATE: tuple[SweepVariable, ...] = (
 )
 """Variables of every point and driving pressure."""
 
+
+def _apex_at_limit(side: str) -> SweepVariable:
+    key, meaning = f"apex_height_{side}_mm", f"apex height of the {side} surface at the limit point"
+    return _number(f"limit_point_{key}", "mm", meaning, "limit_point", key)
+
+
+_TEAR = "driving pressure at which the resin may tear; not before the limit point: NaN"
+_ERROR = "greatest known error of the sensitivity; unknown: NaN"
+_LIMIT_ERROR = "known error of the limit pressure; unknown: NaN"
+_BASIS = "what the error of the sensitivity rests on"
+
 POINT: tuple[SweepVariable, ...] = (
     _number("limit_point_kPa", "kPa", "driving pressure of the limit point; none: NaN", "limits", "limit_point_kPa"),
-    _number(
-        "break_strain_kPa",
-        "kPa",
-        "driving pressure at which the resin may tear; not before the limit point: NaN",
-        "limits",
-        "break_strain_kPa",
-    ),
+    _number("break_strain_kPa", "kPa", _TEAR, "limits", "break_strain_kPa"),
     _number("gauge_range_kPa", "kPa", "range of the pressure sensor", "limits", "gauge_range_kPa"),
     SweepVariable("binding_limit", "", "the limit that is met first", _at("limits", "binding"), True),
-    _number(
-        "limit_point_apex_height_inner_mm",
-        "mm",
-        "apex height of the inner surface at the limit point",
-        "limit_point",
-        "apex_height_inner_mm",
-    ),
-    _number(
-        "limit_point_apex_height_outer_mm",
-        "mm",
-        "apex height of the outer surface at the limit point",
-        "limit_point",
-        "apex_height_outer_mm",
-    ),
+    _apex_at_limit("inner"),
+    _apex_at_limit("outer"),
     _number("dead_volume_mL", "mL", "gas behind the cavity"),
-    _number(
-        "error_sensitivity_relative",
-        "1",
-        "greatest known error of the sensitivity; unknown: NaN",
-        "error_estimate",
-        "sensitivity_relative",
-    ),
-    _number(
-        "error_limit_pressure_relative",
-        "1",
-        "known error of the limit pressure; unknown: NaN",
-        "error_estimate",
-        "limit_pressure_relative",
-    ),
-    SweepVariable(
-        "error_sensitivity_basis",
-        "",
-        "what the error of the sensitivity rests on",
-        _at("error_estimate", "sensitivity_basis"),
-        True,
-    ),
+    _number("error_sensitivity_relative", "1", _ERROR, "error_estimate", "sensitivity_relative"),
+    _number("error_limit_pressure_relative", "1", _LIMIT_ERROR, "error_estimate", "limit_pressure_relative"),
+    SweepVariable("error_sensitivity_basis", "", _BASIS, _at("error_estimate", "sensitivity_basis"), True),
 )
 """Variables of every point."""
 
