@@ -48,15 +48,8 @@ def graded_text(selection: GradedSelectionRun) -> str:
 
     best, sensor, grade_target = selection.search.best, selection.sensor, selection.grade_target
     pressures = [f"{p / KPA:g} kPa" for p in grade_target.pressures]
-    head = [
-        "",
-        *(f"S {p}" for p in pressures),
-        *(["apart"] if len(pressures) > 1 else []),
-        *(f"range {p}" for p in pressures),
-        "ends with",
-        "rated kPa",
-        "meets",
-    ]
+    head = ["", *(f"S {p}" for p in pressures), *(["apart"] if len(pressures) > 1 else [])]
+    head += [*(f"range {p}" for p in pressures), "ends with", "rated kPa", "meets"]
     rows = [["graded: " + selection.grade.label, *_row(selection, best)]]
     rows += [[constant.name, *_row(selection, constant.trial)] for constant in selection.constants]
     size = f"R0 {sensor.dome.inner_radius:g} mm, t0 {sensor.dome.wall_thickness:g} mm, on {selection.base.where}"
@@ -65,9 +58,8 @@ def graded_text(selection: GradedSelectionRun) -> str:
     if not selection.search.met:
         lines += [f"it misses {line}" if k == 0 else line for k, line in enumerate(missed(selection))]
     constant = [c.name for c in selection.constants if selection.meets(c.trial)]
-    lines.append(
-        f"a constant membrane does too: {', '.join(constant)}" if constant else "no constant one listed meets it"
-    )
+    too = f"a constant membrane does too: {', '.join(constant)}"
+    lines.append(too if constant else "no constant one listed meets it")
     lines.append(f"cost: {selection.solves} solid solves, {len(selection.search.trials)} of them grades")
     lines += [f"left out: {name}: {why}" for name, why in selection.left_out.items()]
     return "\n".join(lines)

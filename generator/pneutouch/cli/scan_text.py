@@ -80,10 +80,5 @@ def separation_text(document: dict[str, Any]) -> str:
             ]
         )
     head = ["", "resin", "R0 mm", "t0 mm", "1st: kPa", "Pa", "2nd: kPa", "Pa", "contrast"]
-    return "\n".join(
-        [
-            f"1st pattern {one}, 2nd {two}; {document['candidates']} candidates at {document['preload_N']:g} N",
-            "",
-            columns(head, rows),
-        ]
-    )
+    first = f"1st pattern {one}, 2nd {two}; {document['candidates']} candidates at {document['preload_N']:g} N"
+    return "\n".join([first, "", columns(head, rows)])

@@ -9,21 +9,8 @@ from pneutouch.units import KPA
 from pneutouch.workflows.select.document import would_need
 from pneutouch.workflows.select.run import SelectionRun
 
-_HEAD = [
-    "",
-    "resin",
-    "R0 mm",
-    "t0 mm",
-    "kPa",
-    "S kPa/N",
-    "U (k=2)",
-    "range N",
-    "ends with",
-    "S 0 kPa..rated",
-    "rated kPa",
-    "binds",
-    "solid S",
-]
+_HEAD = ["", "resin", "R0 mm", "t0 mm", "kPa", "S kPa/N", "U (k=2)", "range N", "ends with"]
+_HEAD += ["S 0 kPa..rated", "rated kPa", "binds", "solid S"]
 
 
 def selection_text(selection: SelectionRun) -> str:
@@ -38,21 +25,12 @@ def selection_text(selection: SelectionRun) -> str:
             label = f"{rank + 1}" + (" runner-up" if choice.resin.name in seen else "")
             seen.add(choice.resin.name)
             rows.append([label, *_row(choice), solid])
-        text = columns(_HEAD, rows)
-        return "\n".join(
-            [
-                f"{len(answer.designs)} designs of {answer.candidates} candidates, on {selection.base.where}",
-                "",
-                text,
-                "",
-                *left,
-            ]
-        ).rstrip()
+        first = f"{len(answer.designs)} designs of {answer.candidates} candidates, on {selection.base.where}"
+        return "\n".join([first, "", columns(_HEAD, rows), "", *left]).rstrip()
     lines = ["no design meets the target"]
     if answer.nearest is not None:
-        broken = ", ".join(
-            f"{name} by {-100 * margin:.0f} %" for name, margin in answer.nearest.margins.items() if margin < 0
-        )
+        margins = answer.nearest.margins.items()
+        broken = ", ".join(f"{name} by {-100 * margin:.0f} %" for name, margin in margins if margin < 0)
         lines += [
             "",
             "nearest:",

@@ -96,17 +96,8 @@ def _report(folder: Path, options: SimulationOptions, *, json: bool) -> None:
     for note in truth["notes"]:
         typer.echo(f"note: {note}", err=True)
     if json:
-        print_json(
-            {
-                "folder": str(folder),
-                "simulated": True,
-                "runs": len(files),
-                "specimens": len(truth["specimens"]),
-                "seed": options.seed,
-                "populations": truth["populations"],
-                "notes": truth["notes"],
-            }
-        )
+        content = {"folder": str(folder), "simulated": True, "runs": len(files), "specimens": len(truth["specimens"])}
+        print_json(content | {"seed": options.seed, "populations": truth["populations"], "notes": truth["notes"]})
         return
     typer.echo(f"{len(files)} simulated runs of {len(truth['specimens'])} specimens", err=True)
     typer.echo(str(folder))

@@ -61,11 +61,8 @@ def _figures(measured: CampaignReport, panels: Sequence[Panel]) -> DrawnPlots:
     some = f" At most {MOST_RUNS} runs a group are drawn." if thinned else ""
     many = panels and len(panels[0].campaign_pressures_kPa) > 2
     ends = " at the lowest and the highest driving pressure" if many else ""
-    joined = (
-        " Thin lines join the points of runs without a prediction."
-        if any(b.state is None for b in measured.comparisons)
-        else ""
-    )
+    lines = " Thin lines join the points of runs without a prediction."
+    joined = lines if any(b.state is None for b in measured.comparisons) else ""
     listed = {
         "sensitivity": (
             "Sensitivity over driving pressure",

@@ -32,16 +32,14 @@ def document(selection: SelectionRun) -> dict[str, Any]:
             for rank, (choice, solid) in enumerate(zip(answer.designs, confirmed, strict=True), start=1)
         ],
         "nearest": None if answer.nearest is None else _choice(selection, answer.nearest, None),
-        "dropped_requirements": [
-            {
-                "requirement": dropped.requirement,
-                "attainable": would_need(selection, dropped),
-                "design": _choice(selection, dropped.best, None),
-            }
-            for dropped in answer.dropped
-        ],
+        "dropped_requirements": [_dropped(selection, dropped) for dropped in answer.dropped],
         "left_out": selection.left_out,
     }
+
+
+def _dropped(selection: SelectionRun, dropped: DroppedRequirement) -> dict[str, Any]:
+    best = _choice(selection, dropped.best, None)
+    return {"requirement": dropped.requirement, "attainable": would_need(selection, dropped), "design": best}
 
 
 def _is_runner_up(designs: list[Candidate], index: int) -> bool:

@@ -29,6 +29,15 @@ _LIMITS = 3.0
 
 _ROOT = np.sqrt(3.0)
 
+_SMC_TUBES = "SMC states outer diameters only"
+_BAROMETER = (
+    "960 to 1050 mbar at sea level (San Francisco State University, Geosciences M301), read as three standard "
+    "deviations to either side; the height of the place is not in it"
+)
+_GAUGE_DATA = (
+    "SMC PSE543, +-2 % (paper, Supplement C); assumed to be of the reading, the gauge being zeroed when vented"
+)
+
 
 def build_sources(batch: SensorBatch, printer: Printer) -> list[UncertaintySource]:
     """Sources on dimensions, dead volume, ambient and driving pressure of n sensors from one printer."""
@@ -38,54 +47,21 @@ def build_sources(batch: SensorBatch, printer: Printer) -> list[UncertaintySourc
     )
     bore = 2.0 * BORE_TOLERANCE / BORE
 
-    def source(
-        name: str, acts_on: str, standard: Array, shape: Distribution, origin: str, known: bool
-    ) -> UncertaintySource:
+    bores = f"assumed: bore {BORE:g} +-{BORE_TOLERANCE:g} mm, so the volume +-{bore:.0%}; {_SMC_TUBES}"
+    unstated = f"assumed: up to {UNSTATED_VOLUME * 1e-3:g} mL of air that the stated dead volume does not hold"
+    wall, radius = accuracy / _ROOT / batch.wall_thickness, 0.5 * accuracy / _ROOT / batch.inner_radius
+    volume, fitting = bore / _ROOT * np.abs(batch.dead_volume), np.full(len(batch), UNSTATED_VOLUME / _ROOT)
+    ambient, driving = WEATHER / _LIMITS / batch.ambient_pressure, np.full(len(batch), GAUGE / _ROOT)
+
+    def source(name: str, acts_on: str, standard: Array, origin: str, known: bool) -> UncertaintySource:
+        shape: Distribution = "normal" if acts_on == "ambient_pressure" else "rectangular"
         return UncertaintySource(name, acts_on, standard, shape, counting(len(batch)), origin, known)
 
     return [
-        source(
-            "wall thickness", "wall_thickness", accuracy / _ROOT / batch.wall_thickness, "rectangular", origin, True
-        ),
-        source(
-            "inner radius",
-            "inner_radius",
-            0.5 * accuracy / _ROOT / batch.inner_radius,
-            "rectangular",
-            f"half of the diameter's: {origin}",
-            True,
-        ),
-        source(
-            "tube bore",
-            "dead_volume",
-            bore / _ROOT * np.abs(batch.dead_volume),
-            "rectangular",
-            f"assumed: bore {BORE:g} +-{BORE_TOLERANCE:g} mm, so the volume +-{bore:.0%}; SMC states outer diameters only",
-            False,
-        ),
-        source(
-            "fitting and gauge",
-            "dead_volume",
-            np.full(len(batch), UNSTATED_VOLUME / _ROOT),
-            "rectangular",
-            f"assumed: up to {UNSTATED_VOLUME * 1e-3:g} mL of air that the stated dead volume does not hold",
-            False,
-        ),
-        source(
-            "weather",
-            "ambient_pressure",
-            WEATHER / _LIMITS / batch.ambient_pressure,
-            "normal",
-            "960 to 1050 mbar at sea level (San Francisco State University, Geosciences M301), read as three standard "
-            "deviations to either side; the height of the place is not in it",
-            True,
-        ),
-        source(
-            "driving pressure",
-            "driving_pressure",
-            np.full(len(batch), GAUGE / _ROOT),
-            "rectangular",
-            "SMC PSE543, +-2 % (paper, Supplement C); assumed to be of the reading, the gauge being zeroed when vented",
-            False,
-        ),
+        source("wall thickness", "wall_thickness", wall, origin, True),
+        source("inner radius", "inner_radius", radius, f"half of the diameter's: {origin}", True),
+        source("tube bore", "dead_volume", volume, bores, False),
+        source("fitting and gauge", "dead_volume", fitting, unstated, False),
+        source("weather", "ambient_pressure", ambient, _BAROMETER, True),
+        source("driving pressure", "driving_pressure", driving, _GAUGE_DATA, False),
     ]
