@@ -84,10 +84,7 @@ class BlockCollector:
         at = int(np.flatnonzero(time <= before)[0])
         does = "stands still" if time[at] == before[at] else "runs backwards"
         raise InputError(
-            (
-                f"row {rows[at]:.0f}: column {self.names['time']}: time {does}: {time[at]:.9g} s after "
-                f"{before[at]:.9g} s"
-            ),
+            f"row {rows[at]:.0f}: column {self.names['time']}: time {does}: {time[at]:.9g} s after {before[at]:.9g} s",
             file=self.file,
             remedy="must rise from row to row (enough decimals written? two recordings in one file?)",
         )

@@ -126,10 +126,8 @@ def _smaller(hole: GaugeSize, where: str) -> float:
     less, (low, high) = hole.nominal_mm - average, HOLE_UNDERSIZE_MM
     if not low - _ROUNDING <= less <= high + _ROUNDING:
         raise InputError(
-            (
-                f"nominal_mm = {hole.nominal_mm:g}: mean of measured_mm = {average:.4g} makes hole_undersize_mm = "
-                f"{less:.4g}; it must be from {low:g} to {high:g} mm; entered in the wrong row?"
-            ),
+            f"nominal_mm = {hole.nominal_mm:g}: mean of measured_mm = {average:.4g} makes hole_undersize_mm = "
+            f"{less:.4g}; it must be from {low:g} to {high:g} mm; entered in the wrong row?",
             file=where,
         )
     return less

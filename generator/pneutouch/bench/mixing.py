@@ -85,10 +85,8 @@ def _base(soft: Material, measured: Sequence[MixedCoupons], moduli: Sequence[Mix
     at_zero = next((one for one in measured if one.fraction == 0 and one.shore_a), None)
     if at_zero is None:
         raise InputError(
-            (
-                "hardness gives a modulus by its ratio to the soft resin's alone; shore_a at fraction = 0 is "
-                "missing; measure it on the same day, or pull dumbbells"
-            ),
+            "hardness gives a modulus by its ratio to the soft resin's alone; shore_a at fraction = 0 is "
+            "missing; measure it on the same day, or pull dumbbells",
             file=where,
         )
     shore = mean(at_zero.shore_a)

@@ -92,10 +92,8 @@ def check_leak(blocks: Blocks, run: CampaignRun, rig: Rig) -> tuple[str, ...]:
     length, at = float(np.ptp(blocks.time)), sum(warning.end - warning.start for warning in lost)
     if at > 0.5 * length:
         raise InputError(
-            (
-                f"a leak run of {length:.3g} s of which {at:.3g} s are clipped ({lost[0].why}); the gauge has a "
-                f"range of {rig.pressure_range_kPa:g} kPa; must be run within it"
-            ),
+            f"a leak run of {length:.3g} s of which {at:.3g} s are clipped ({lost[0].why}); the gauge has a "
+            f"range of {rig.pressure_range_kPa:g} kPa; must be run within it",
             file=blocks.file,
         )
     if lost:
@@ -198,11 +196,9 @@ def _check_swap(curve: MeasuredCurve, columns: ColumnMap, expected: ExpectedRun,
     if swapped < 2 * math.log(FAR) and ((driven and rests) or (not driven and swapped + SWAP_MARGIN < as_stated)):
         before = f", and {_number(in_force / KPA)} before contact, the driving pressure" if driven else ""
         raise InputError(
-            (
-                f"columns {columns.force.name} and {columns.pressure.name} look swapped: {columns.force.name} "
-                f"rises by {force:.3g} where {expected_force:.3g} {columns.force.unit} are predicted and "
-                f"{expected_rise:.3g} {columns.pressure.unit} of pressure{before}"
-            ),
+            f"columns {columns.force.name} and {columns.pressure.name} look swapped: {columns.force.name} "
+            f"rises by {force:.3g} where {expected_force:.3g} {columns.force.unit} are predicted and "
+            f"{expected_rise:.3g} {columns.pressure.unit} of pressure{before}",
             file=file,
             remedy="exchange columns.force.name and columns.pressure.name",
         )

@@ -89,10 +89,8 @@ def scaled(path: Path, columns: ColumnMap, keys: Sequence[str], rows: Array, val
         place, at = np.argwhere(~(np.abs(converted) <= GREATEST))[0]
         column = getattr(columns, keys[place])
         raise InputError(
-            (
-                f"row {rows[at]:.0f}: column {column.name}: {values[place, at]:.3g} {column.unit}: no instrument "
-                "reads that"
-            ),
+            f"row {rows[at]:.0f}: column {column.name}: {values[place, at]:.3g} {column.unit}: no instrument "
+            "reads that",
             file=path,
             remedy="must be a measured number",
         )

@@ -51,10 +51,8 @@ def puck(name: str, material: Material, measured: Puck, source: ReadingSource, r
     for place, density in enumerate(densities, start=1):
         if not _DENSITIES[0] <= density <= _DENSITIES[1]:
             raise InputError(
-                (
-                    f"puck.{name}: puck {place}: mass_g = {mass[place - 1]:g}, diameter_mm = {diameter[place - 1]:g} "
-                    f"and thickness_mm = {thickness[place - 1]:g} make {density:.3g} g/cm3"
-                ),
+                f"puck.{name}: puck {place}: mass_g = {mass[place - 1]:g}, diameter_mm = {diameter[place - 1]:g} "
+                f"and thickness_mm = {thickness[place - 1]:g} make {density:.3g} g/cm3",
                 file=source.where,
                 remedy=f"must be from {_DENSITIES[0]:g} to {_DENSITIES[1]:g}",
             )
@@ -191,17 +189,15 @@ def _fit(specimen: DumbbellSpecimen, most: float, where: str) -> tuple[float, fl
     near = stretch - 1 <= most * (1 + 1e-9)
     if near.sum() < _LEAST_POINTS:
         raise InputError(
-            (f"{near.sum()} points up to a strain of {most:g} (extension_mm = {most * specimen.gauge_length_mm:g})"),
+            f"{near.sum()} points up to a strain of {most:g} (extension_mm = {most * specimen.gauge_length_mm:g})",
             file=where,
             remedy=f"at least {_LEAST_POINTS}",
         )
     modulus, error = neo_hookean(stretch[near], stress[near])
     if not _MODULI[0] <= modulus <= _MODULI[1]:
         raise InputError(
-            (
-                f"force_N over width_mm and thickness_mm makes a shear modulus of {modulus:.4g} MPa; an elastomer "
-                f"has from {_MODULI[0]:g} to {_MODULI[1]:g} MPa; must be forces in N and lengths in mm"
-            ),
+            f"force_N over width_mm and thickness_mm makes a shear modulus of {modulus:.4g} MPa; an elastomer "
+            f"has from {_MODULI[0]:g} to {_MODULI[1]:g} MPa; must be forces in N and lengths in mm",
             file=where,
         )
     return modulus, error, secant_modulus(stretch, stress, _SECANT)

@@ -108,10 +108,8 @@ def _check_direction(blocks: Blocks, place: Array, span: float) -> None:
         return
     if low.std() > _ACTIVE * high.std() and np.ptp(low) > TURN * np.ptp(blocks.force):
         raise InputError(
-            (
-                f"the force changes where position is low ({place.min():.4g} mm) and is constant where it is high "
-                f"({place.max():.4g} mm)"
-            ),
+            f"the force changes where position is low ({place.min():.4g} mm) and is constant where it is high "
+            f"({place.max():.4g} mm)",
             file=blocks.file,
             remedy="position must count into the sensor: invert columns.position.sign",
         )

@@ -81,7 +81,7 @@ def mixing(
     where = str(paths[f"{soft}+{stiff}"])
     if (curve.soft, curve.stiff) != (soft, stiff):
         raise InputError(
-            (f"soft = {curve.soft!r}, stiff = {curve.stiff!r}: must be {soft!r} and {stiff!r}, as the file's name"),
+            f"soft = {curve.soft!r}, stiff = {curve.stiff!r}: must be {soft!r} and {stiff!r}, as the file's name",
             file=where,
         )
     rows = np.array([_resolved(point, curve, library, where) for point in curve.points])

@@ -160,10 +160,8 @@ def _reader(given: Signal, target: float, lines: Array, where: str) -> tuple[_Re
     used = fitter(len(kept.pressure), kept.rate, bottom, top, lines, overtones, BAND)
     if np.count_nonzero(quiet) < _LEAST_QUIET or np.count_nonzero(used.bins) < 2 * (DEGREE + 1):
         raise InputError(
-            (
-                f"pattern frequency {target:g} Hz: the target frequencies leave no noise to compare with between "
-                f"{bottom:.3g} and {top:.3g} Hz"
-            ),
+            f"pattern frequency {target:g} Hz: the target frequencies leave no noise to compare with between "
+            f"{bottom:.3g} and {top:.3g} Hz",
             file=where,
             remedy="test fewer frequencies, or give a longer record",
         )
@@ -188,19 +186,15 @@ def _check(given: Signal, target: Sequence[float], surrogates: int, level: float
             raise InputError(f"pattern frequency {frequency:g} Hz: must be a number above 0", file=where)
         if frequency > most:
             raise InputError(
-                (
-                    f"pattern frequency {frequency:g} Hz: sampled at {given.rate:g} Hz, it can be tested up to "
-                    f"{most:.4g} Hz"
-                ),
+                f"pattern frequency {frequency:g} Hz: sampled at {given.rate:g} Hz, it can be tested up to "
+                f"{most:.4g} Hz",
                 file=where,
             )
         if given.duration < least_duration(frequency) * (1 - 1e-9):
             raise InputError(
-                (
-                    f"pattern frequency {frequency:g} Hz: the record lasts {given.duration:.4g} s and must last at "
-                    f"least {least_duration(frequency):.4g} s, so that {CYCLES:g} cycles lie outside the wavelet's "
-                    "cone of influence"
-                ),
+                f"pattern frequency {frequency:g} Hz: the record lasts {given.duration:.4g} s and must last at "
+                f"least {least_duration(frequency):.4g} s, so that {CYCLES:g} cycles lie outside the wavelet's "
+                "cone of influence",
                 file=where,
             )
     if np.ptp(given.pressure) <= 1e-12 * np.abs(given.pressure).max():

@@ -95,10 +95,8 @@ def _check_steps(time: Array, where: str, rows: Sequence[int]) -> None:
     if gap.size:
         at = int(gap[0]) + 1
         raise InputError(
-            (
-                f"row {rows[at]}: time_s = {time[at]:.9g} after {time[at - 1]:.9g}: a gap of {steps[at - 1]:.6g} "
-                f"s where steps are {usual:.6g} s"
-            ),
+            f"row {rows[at]}: time_s = {time[at]:.9g} after {time[at - 1]:.9g}: a gap of {steps[at - 1]:.6g} "
+            f"s where steps are {usual:.6g} s",
             file=where,
             remedy="fill it, or give the longer piece alone",
         )
@@ -107,10 +105,8 @@ def _check_steps(time: Array, where: str, rows: Sequence[int]) -> None:
     at = int(np.argmax(off))
     if off[at] > _OFF * float(steps.mean()) * (1 + 1e-6):
         raise InputError(
-            (
-                f"row {rows[at]}: time_s = {time[at]:.9g} where even steps of {steps.mean():.6g} s would have "
-                f"{even[at]:.9g}"
-            ),
+            f"row {rows[at]}: time_s = {time[at]:.9g} where even steps of {steps.mean():.6g} s would have "
+            f"{even[at]:.9g}",
             file=where,
             remedy="resample the signal to even steps",
         )

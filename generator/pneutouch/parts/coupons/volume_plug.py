@@ -42,10 +42,8 @@ def cavity_size(context: CouponContext) -> tuple[float, float]:
     radius = min(layout.inner_radius - ledge, rim_radius(context, layout) - wall)
     if radius <= 0.5 * layout.inner_radius:
         raise InputError(
-            (
-                f"membrane.inner_radius_mm = {layout.inner_radius:g}: too small for a volume plug, whose wall on "
-                f"the {scene.connector_printer.title} must be {wall:g} mm"
-            ),
+            f"membrane.inner_radius_mm = {layout.inner_radius:g}: too small for a volume plug, whose wall on "
+            f"the {scene.connector_printer.title} must be {wall:g} mm",
             file=scene.where,
             remedy="leave it out with `only`, or take a finer printer",
         )

@@ -213,11 +213,9 @@ def _check_length(context: ResolvedSpecimen, scan_path: ScanPath, frequencies: d
         needed = least_duration(frequency)
         if lasts < needed:
             raise InputError(
-                (
-                    f"{name}: {frequency:.4g} Hz at {scan_path.speed:g} mm/s: the path of "
-                    f"{max(scan_path.end - scan_path.start, 0):.4g} mm between the block's ends lasts "
-                    f"{max(lasts, 0):.4g} s and must last {needed:.4g} s"
-                ),
+                f"{name}: {frequency:.4g} Hz at {scan_path.speed:g} mm/s: the path of "
+                f"{max(scan_path.end - scan_path.start, 0):.4g} mm between the block's ends lasts "
+                f"{max(lasts, 0):.4g} s and must last {needed:.4g} s",
                 file=context.where,
                 remedy=f"block.length_mm must be at least {needed * scan_path.speed + 2 * scan_path.start:.4g}",
             )

@@ -130,10 +130,8 @@ def _wall(target: Target, where: str, grade_target: GradeTarget, problem: Select
         wall = middle_wall(grade_target, problem, radius, thickest) or base.dome.wall_thickness
     if wall > thickest + 1e-9:
         raise InputError(
-            (
-                f"target.max_diameter_mm = {most:g}: a dome of inner radius {radius:g} mm and wall {wall:g} mm is "
-                f"{2 * (radius + wall):g} mm wide"
-            ),
+            f"target.max_diameter_mm = {most:g}: a dome of inner radius {radius:g} mm and wall {wall:g} mm is "
+            f"{2 * (radius + wall):g} mm wide",
             file=where,
             remedy="give a smaller given.inner_radius_mm",
         )

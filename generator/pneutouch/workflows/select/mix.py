@@ -65,11 +65,9 @@ def pair_of(name: str, printer: Printer, library: Library, where: str, named: bo
     if printer.mode_for(pair.material(pair.grade(0.5 * float(pair.law.fraction[-1])))) is None:
         remedy = "name a pair that it holds with `mix`, or another printer with `profile`"
         raise InputError(
-            (
-                f"given.mix = {name!r}{'' if named else ' (none was named)'}: the {printer.title} cannot mix "
-                f"{soft} with {stiff}; it runs {', '.join(printer.resins)}, {printer.resins_at_once} at once; "
-                f"{remedy}"
-            ),
+            f"given.mix = {name!r}{'' if named else ' (none was named)'}: the {printer.title} cannot mix "
+            f"{soft} with {stiff}; it runs {', '.join(printer.resins)}, {printer.resins_at_once} at once; "
+            f"{remedy}",
             file=where,
         )
     return pair

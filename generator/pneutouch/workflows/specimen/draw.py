@@ -140,10 +140,8 @@ def _letters(scene: ResolvedSpecimen, frame: FramePlate) -> tuple[list[Array], f
         )
     if frame.thickness_mm - depth < least:
         raise InputError(
-            (
-                f"frame.thickness_mm = {frame.thickness_mm:g}: letters {depth:g} mm deep need at least "
-                f"{depth + least:g} mm"
-            ),
+            f"frame.thickness_mm = {frame.thickness_mm:g}: letters {depth:g} mm deep need at least "
+            f"{depth + least:g} mm",
             file=scene.where,
         )
     middle = np.array([0.5 * free, -0.5 * frame.border_mm])
