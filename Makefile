@@ -44,7 +44,7 @@ ratios: $(VENV)/.dev
 	$(BIN)/python -m benchmarks.start_up
 
 check-slow: $(VENV)/.dev
-	$(BIN)/python -m pytest -m slow
+	$(BIN)/python -m pytest -m slow -n 2 --dist worksteal
 
 # Needs uv; writes the locked dependencies with hashes for every platform.
 lock:

@@ -59,11 +59,18 @@ def test_folder_holds_signals_figure_document_and_manifest(scanned):
     assert np.abs(columns[:, 1] - columns[:, 3]).max() < 0.02
 
 
-def test_same_input_same_bytes(scanned, tmp_path):
-    _, folder = scanned
-    assert run(*ASKED, "--out", str(tmp_path)).exit_code == 0
-    for path in sorted(folder.iterdir()):
-        assert (tmp_path / folder.name / path.name).read_bytes() == path.read_bytes(), path.name
+@pytest.fixture(scope="module")
+def again(tmp_path_factory):
+    """The same scan, with text on stdout."""
+    out = tmp_path_factory.mktemp("again")
+    result = run(*ASKED, "--out", str(out))
+    assert result.exit_code == 0, result.stderr
+    return result.stdout, out / "texture-specimen-paper-dome-scan"
+
+
+def test_same_input_same_bytes(scanned, again):
+    for path in sorted(scanned[1].iterdir()):
+        assert (again[1] / path.name).read_bytes() == path.read_bytes(), path.name
 
 
 def test_measured_signals_are_read_like_simulated_ones(tmp_path):
@@ -89,11 +96,10 @@ def test_held_force_and_speed(tmp_path):
     assert all(pattern["model_amplitude_kPa"] == 0 for state in said["states"] for pattern in state["patterns"])
 
 
-def test_text_names_patterns_and_folder(tmp_path):
-    result = run(*ASKED, "--out", str(tmp_path))
-    assert result.exit_code == 0
-    assert "surface pattern" in result.stdout and "note: 22 kPa: pitches 3, 6 mm" in result.stdout
-    assert result.stdout.rstrip().endswith("texture-specimen-paper-dome-scan")
+def test_text_names_patterns_and_folder(again):
+    text, folder = again
+    assert "surface pattern" in text and "note: 22 kPa: pitches 3, 6 mm" in text
+    assert text.rstrip().endswith(str(folder))
 
 
 def test_separate_ranks_domes():

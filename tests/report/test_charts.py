@@ -123,14 +123,20 @@ def test_a_target_out_of_reach_still_shows_the_fronts_and_the_window(library, tm
     assert axes[0].get_xlim()[1] > 500
 
 
-def test_a_design_s_charts_mark_the_design_at_its_own_figures(evaluated):
+@pytest.fixture(scope="module")
+def drawn(evaluated):
+    """A design's trade-off."""
+    return tradeoff(evaluated("paper-dome", model="atlas"))
+
+
+def test_a_design_s_charts_mark_the_design_at_its_own_figures(evaluated, drawn):
     evaluation = evaluated("paper-dome", model="atlas")
     last = evaluation.prediction.states[-1]
-    (spot,) = tradeoff(evaluation).spots
+    (spot,) = drawn.spots
     assert (spot.sensitivity_kPa_per_N, spot.force) == pytest.approx(
         (last.figures.sensitivity_kPa_per_N, last.figures.force_range[1])
     )
-    runs = {front.resin.name for front in tradeoff(evaluation).fronts}
+    runs = {front.resin.name for front in drawn.fronts}
     assert "Agilus30" not in runs
     assert {"TangoPlus", "FLX9995"} <= runs
     found = tuning(evaluation, 0.0356)
@@ -148,10 +154,10 @@ def test_a_design_s_charts_mark_the_design_at_its_own_figures(evaluated):
         )
 
 
-def test_axes_of_the_charts_carry_quantities_and_units(evaluated, axes):
+def test_axes_of_the_charts_carry_quantities_and_units(evaluated, drawn, axes):
     evaluation = evaluated("paper-dome", model="atlas")
     tuning_chart(replace(tuning(evaluation, 0.03), published_kPa_per_N=((0.0, 2.547),)), SIZE)
-    tradeoff_chart(tradeoff(evaluation), SIZE)
+    tradeoff_chart(drawn, SIZE)
     assert len(axes) == 2
     for ax in axes:
         assert all(re.search(r"\w+  \((kPa|N|kPa/N)\)$", label) for label in (ax.get_xlabel(), ax.get_ylabel()))
