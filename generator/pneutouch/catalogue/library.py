@@ -125,6 +125,7 @@ class Library:
             return path
         if name in self.paths("specimens"):
             raise InputError(
-                f"{name}: is a texture specimen; it can be built, checked and scanned, this command needs the design of a sensor"
+                f"{name}: is a texture specimen; it can be built, checked and scanned, this command needs the design "
+                "of a sensor"
             )
         raise InputError(f"{name}: no such design or file.{nearest(name, paths)}")

@@ -44,8 +44,8 @@ class ResolvedMixingCurve:
     def band_at(self, fraction: Array) -> tuple[Array, Array]:
         """Least and greatest modulus in MPa: the points at their ``fraction_high`` and ``fraction_low``.
 
-        Straight in the logarithm between them. Nothing is known beyond the curve's stiffest point, so no modulus of the band
-        is greater than its.
+        Straight in the logarithm between them. Nothing is known beyond the curve's stiffest point, so no modulus of
+        the band is greater than its.
         """
         middle, logs = self.modulus_at(fraction), np.log(self.modulus)
         far = [np.array([getattr(point, side) for point in self.curve.points]) for side in ("high", "low")]

@@ -201,5 +201,6 @@ def _check_one_piece(scene: ResolvedDesign) -> None:
     if scene.printer.mode_for(scene.membrane_material, scene.connector_material) is None:
         raise InputError(
             f"{head}the {scene.printer.title} cannot print {scene.membrane_material.label} and "
-            f"{scene.connector_material.label} together; it holds {scene.printer.resins_at_once} of {', '.join(scene.printer.resins)}"
+            f"{scene.connector_material.label} together; it holds {scene.printer.resins_at_once} of "
+            f"{', '.join(scene.printer.resins)}"
         )

@@ -18,7 +18,8 @@ def measured_text(document: dict[str, Any]) -> str:
         lines.append(f"\ntarget {word}: {entry['what']}: required {entry['required']}, measured {entry['measured']}")
     for change in document["ageing"]:
         lines.append(
-            f"\nageing: {change['resin']}, {change['driving_pressure_kPa']:g} kPa, {change['age']}: {change['sensitivity_change_percent']:+.1f} %"
+            f"\nageing: {change['resin']}, {change['driving_pressure_kPa']:g} kPa, {change['age']}: "
+            f"{change['sensitivity_change_percent']:+.1f} %"
         )
     for entry in document["injections"]:
         error = "" if entry["standard_error"] is None else f" ± {entry['standard_error']:.2g}"

@@ -39,7 +39,8 @@ def plan_text(document: dict[str, Any]) -> str:
     count, sensors = len(document["runs"]), len(document["sensors"])
     return "\n".join(
         [
-            f"{document['design']}: {count} runs on {sensors} specimens, {document['total_s'] / 3600:.1f} h on {document['rig']['name']}",
+            f"{document['design']}: {count} runs on {sensors} specimens, {document['total_s'] / 3600:.1f} h on "
+            f"{document['rig']['name']}",
             "",
             columns(["test", "at kPa", "runs", "depth mm", "min a run"], tests),
             "",

@@ -31,8 +31,8 @@ def scan_text(document: dict[str, Any]) -> str:
     notes = [f"note: {state['label']}: {note}" for state in document["states"] for note in state.get("notes", [])]
     return "\n".join(
         [
-            f"{document['specimen']} scanned by {document['design']}: {document['preload_N']:g} N, {document['control']} held, "
-            f"{document['speed_mm_per_s']:g} mm/s from {first:.2f} to {last:.2f} mm",
+            f"{document['specimen']} scanned by {document['design']}: {document['preload_N']:g} N, "
+            f"{document['control']} held, {document['speed_mm_per_s']:g} mm/s from {first:.2f} to {last:.2f} mm",
             *(["", columns(["state", "patch radius mm", "N/mm", "kPa/mm", "kPa", "model"], states)] if states else []),
             "",
             columns(head, rows),

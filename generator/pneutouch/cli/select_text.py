@@ -40,7 +40,8 @@ def selection_text(selection: SelectionRun) -> str:
     lines += [
         "",
         *(
-            f"without the requirement on {dropped.requirement} alone a design fits: {would_need(selection, dropped)} ({dropped.best.resin.name})"
+            f"without the requirement on {dropped.requirement} alone a design fits: {would_need(selection, dropped)} "
+            f"({dropped.best.resin.name})"
             for dropped in answer.dropped
         ),
     ]

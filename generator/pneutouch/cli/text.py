@@ -82,8 +82,10 @@ def _viscous(relaxation: dict[str, Any]) -> list[str]:
     wide = [one.get("width_percent") for one in quick]
     speed = f"{quick[0]['speed_mm_per_s']:g} mm/s" if quick else ""
     return [
-        f"held at {relaxation['depth_mm']:.2f} mm and {last['driving_pressure_kPa']:g} kPa the pressure rise loses {_span(held)} from 1 s to "
-        f"600 s; hysteresis at {speed} {_span(wide)} of full scale ({len(relaxation['sources'])} source(s) of relaxation data)"
+        f"held at {relaxation['depth_mm']:.2f} mm and {last['driving_pressure_kPa']:g} kPa the pressure rise loses "
+        f"{_span(held)} from 1 s to "
+        f"600 s; hysteresis at {speed} {_span(wide)} of full scale ({len(relaxation['sources'])} source(s) of "
+        "relaxation data)"
     ]
 
 

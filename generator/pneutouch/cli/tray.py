@@ -80,7 +80,7 @@ def _text(layout: TrayLayout) -> str:
     for job in layout.jobs:
         shares = fill(job, layout.printer)
         lines.append(
-            f"{layout.name(job)}: {counted(job.parts)}, {' + '.join(job.resins)}, {job.mode.name}, {job.layers} layers, "
-            f"bounding boxes take {shares['bounding_boxes']:.1%} of the footprint"
+            f"{layout.name(job)}: {counted(job.parts)}, {' + '.join(job.resins)}, {job.mode.name}, {job.layers} "
+            f"layers, bounding boxes take {shares['bounding_boxes']:.1%} of the footprint"
         )
     return "\n".join(lines)

@@ -229,8 +229,10 @@ def _check_plate(scene: ResolvedDesign, prediction: SensorPrediction) -> None:
         if ending and ending[0].kind == "plate edge":
             safe = 2 * scene.design.membrane.inner_radius_mm
             raise InputError(
-                f"the contact reaches the plate's edge at {ending[0].indentation:.2f} mm of indentation; it must be wider "
-                f"than the contact (twice membrane.inner_radius_mm = {safe:g} mm is safe), or indentation.depth_mm less",
+                f"the contact reaches the plate's edge at {ending[0].indentation:.2f} mm of indentation; it must be "
+                "wider "
+                f"than the contact (twice membrane.inner_radius_mm = {safe:g} mm is safe), or indentation.depth_mm "
+                "less",
                 file=scene.where,
                 key="indentation.plate_diameter_mm",
                 value=scene.design.indentation.plate_diameter_mm,

@@ -17,8 +17,8 @@ def check_space(scene: ResolvedDesign, layout: Layout) -> None:
     for what, (has, least) in _least(scene, layout).items():
         if has < least:
             raise InputError(
-                f"{head} small for {what}: radius {has:.2f} mm, at least {least:.2f} mm; take a larger dome, another port, "
-                "mount or printer"
+                f"{head} small for {what}: radius {has:.2f} mm, at least {least:.2f} mm; take a larger dome, another "
+                "port, mount or printer"
             )
     mount = scene.design.connector.mount
     for what, (has, most) in _most(scene, layout).items():

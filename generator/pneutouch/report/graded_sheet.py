@@ -10,8 +10,8 @@ CAPTIONS = {
     "grade": "Graded membrane: the stiff resin's share of the wall, laid droplet by droplet; next to it share and "
     "modulus along the arc from the pole to the rim. The mixing curve behind it is assumed, see the sources.",
     "graded": "The graded membrane against constant ones of its size, all by the solid: as stiff throughout as at its "
-    "softest, on average and at its stiffest. Left the sensitivity over the driving pressure, right the response at the "
-    "highest.",
+    "softest, on average and at its stiffest. Left the sensitivity over the driving pressure, right the response at "
+    "the highest.",
 }
 
 

@@ -17,11 +17,13 @@ _WORDS = {
 _AMISS = (
     (
         "Pressure falls in the leak run by more than the limit",
-        "wet the joints with soap water; press the tube on, renew the glue; then the leak run again. Do not go on with a leak: it looks like relaxation",
+        "wet the joints with soap water; press the tube on, renew the glue; then the leak run again. Do not go on with "
+        "a leak: it looks like relaxation",
     ),
     (
         "Injected air reads less than expected, by the same share at each volume",
-        "dead volume is larger than stated: shorten the tube, or measure it with the line alone (above) and give it as pneumatics.dead_volume_mL",
+        "dead volume is larger than stated: shorten the tube, or measure it with the line alone (above) and give it as "
+        "pneumatics.dead_volume_mL",
     ),
     (
         "Injected air reads more than expected",
@@ -29,7 +31,8 @@ _AMISS = (
     ),
     (
         "Force and pressure rise both off by one factor at every depth",
-        "the resin: note its lot, age and storage; print age and temperature move a modulus by tens of percent. Nothing is wrong with the rig",
+        "the resin: note its lot, age and storage; print age and temperature move a modulus by tens of percent. "
+        "Nothing is wrong with the rig",
     ),
     ("Force right, pressure rise too small", "dead volume or leak"),
     (
@@ -67,10 +70,11 @@ def _head(plan: dict[str, Any]) -> list[str]:
     names = [one["sensor"] for one in plan["sensors"]]
     pressures = _list(plan["driving_pressures_kPa"])
     return [
-        f"Design {_escaped(plan['design'])}: R0 {plan['inner_radius_mm']:g} mm, wall {plan['wall_thickness_mm']:g} mm, dead volume "
+        f"Design {_escaped(plan['design'])}: R0 {plan['inner_radius_mm']:g} mm, wall {plan['wall_thickness_mm']:g} mm, "
+        "dead volume "
         f"{plan['dead_volume_mL']:.3g} mL, driving pressures {pressures} kPa, plate {plan['plate_diameter_mm']:g} mm.",
-        f"{len(plan['runs'])} runs on {len(names)} specimen{'s' if len(names) > 1 else ''} ({', '.join(map(_escaped, names))}): "
-        f"**{_time(plan['total_s'])}** on the rig, mounting and looking aside.",
+        f"{len(plan['runs'])} runs on {len(names)} specimen{'s' if len(names) > 1 else ''} "
+        f"({', '.join(map(_escaped, names))}): **{_time(plan['total_s'])}** on the rig, mounting and looking aside.",
         "Laboratory: ______________________  Operator: ______________________  Date: ______________",
         "Room: ______ °C  Air pressure: ________ hPa  Resin lots: ________________________________",
     ]
@@ -115,8 +119,8 @@ def _order(plan: dict[str, Any]) -> list[str]:
         runs = list(group)
         at = sorted({run["driving_pressure_kPa"] for run in runs})
         lines.append(
-            f"| {place} | {_WORDS[kind]} | `{kind}` | {_list(at)} | {len(runs) // len(at)} | {_time(runs[0]['duration_s'])} | "
-            f"{_time(sum(run['duration_s'] for run in runs))} |"
+            f"| {place} | {_WORDS[kind]} | `{kind}` | {_list(at)} | {len(runs) // len(at)} | "
+            f"{_time(runs[0]['duration_s'])} | {_time(sum(run['duration_s'] for run in runs))} |"
         )
     each = _time(sum(run["duration_s"] for run in all_runs))
     return [*lines, f"| | one specimen | | | {len(all_runs)} runs | | **{each}** |"]
@@ -127,9 +131,10 @@ def _before(plan: dict[str, Any]) -> list[str]:
         "1. ☐ Measure the wall where the dome is open, and the dome's height: note both.",
         "2. ☐ Clean and dry plate and dome; dust them with talc (the prediction has no friction).",
         "3. ☐ Plate square to the base within half a degree; dome on the plate's axis within 0.5 mm.",
-        f"4. ☐ Zero the force sensor with the plate {plan['clearance_mm']:g} mm clear, the gauge with the cavity vented.",
-        "5. ☐ Find first contact: lower slowly until the force has left zero by three resolutions; that position is depth 0. "
-        "Find it again at each driving pressure: the dome grows.",
+        f"4. ☐ Zero the force sensor with the plate {plan['clearance_mm']:g} mm clear, the gauge with the cavity "
+        "vented.",
+        "5. ☐ Find first contact: lower slowly until the force has left zero by three resolutions; that position is "
+        "depth 0. Find it again at each driving pressure: the dome grows.",
         f"6. ☐ Try the program once with the plate {plan['clearance_mm'] + 20:g} mm clear.",
     ]
 
@@ -138,7 +143,8 @@ def _air(plan: dict[str, Any]) -> list[str]:
     lines = [
         "Leak: fill to the pressure, close the valve, record 10 minutes, plate clear.",
         "",
-        "Dead volume: vent and close. Draw room air into a syringe and push the volumes below in turn, 20 s after each read the "
+        "Dead volume: vent and close. Draw room air into a syringe and push the volumes below in turn, 20 s after each "
+        "read the "
         "pressure. With a round volume pushed into the line alone (sensor off, end capped) the dead volume is "
         f"ambient pressure ({plan['ambient_pressure_kPa']:g} kPa) x pushed volume / gauge pressure.",
         "",
@@ -156,8 +162,8 @@ def _air(plan: dict[str, Any]) -> list[str]:
             )
         else:
             lines.append(
-                "- The design states no dead volume, so nothing can be foretold of the line alone: push the smallest volume of the "
-                "syringe into the capped line. Pushed: ________ mL  Read: ________ kPa"
+                "- The design states no dead volume, so nothing can be foretold of the line alone: push the smallest "
+                "volume of the syringe into the capped line. Pushed: ________ mL  Read: ________ kPa"
             )
         lines += ["", *_pushes(air), ""]
     return lines[:-1]
@@ -185,7 +191,8 @@ def _steps(plan: dict[str, Any]) -> list[str]:
             f"{'s' if test['runs'] > 1 else ''} each, {_time(test['duration_s'])} a run)",
             "",
             "1. Start recording.",
-            f"2. Plate {plan['clearance_mm']:g} mm clear, rest {test['rest_s']:g} s: {reset if test['reset'] else 'leave the pressure as it is'}.",
+            f"2. Plate {plan['clearance_mm']:g} mm clear, rest {test['rest_s']:g} s: "
+            f"{reset if test['reset'] else 'leave the pressure as it is'}.",
             f"3. To depth at {test['speed_mm_per_s']:g} mm/s: {even}{depths[-1]:.2f} mm; "
             f"{f'hold {hold:g} s' if hold else 'no hold'}; back to {plan['clearance_mm']:g} mm clear.",
             f"4. Again from 2, {len(depths)} times in all." if len(depths) > 1 else "4. Once.",
@@ -197,15 +204,18 @@ def _steps(plan: dict[str, Any]) -> list[str]:
 
 def _expected(plan: dict[str, Any]) -> list[str]:
     lines = [
-        "Predictions, to be compared with the readings at the end of each hold; force and pressure rise count from before contact. "
-        "Their uncertainty: `pneutouch predict`. A dash: beyond the predicted range. An exclamation mark: beyond an instrument's range, do not go there.",
+        "Predictions, to be compared with the readings at the end of each hold; force and pressure rise count from "
+        "before contact. "
+        "Their uncertainty: `pneutouch predict`. A dash: beyond the predicted range. An exclamation mark: beyond an "
+        "instrument's range, do not go there.",
         "",
     ]
     for resin in plan["resins"]:
         states = resin["states"]
         head = " | ".join(f"{s['driving_pressure_kPa']:g} kPa: force, N | rise, kPa" for s in states)
         lines += [
-            f"### {_escaped(resin['resin'])} (model {resin['model']}; may be driven to {resin['limit_kPa']:.1f} kPa, {resin['limit_by']})",
+            f"### {_escaped(resin['resin'])} (model {resin['model']}; may be driven to {resin['limit_kPa']:.1f} kPa, "
+            f"{resin['limit_by']})",
             "",
             f"| depth, mm | {head} |",
             "|---" * (1 + 2 * len(states)) + "|",
@@ -219,7 +229,8 @@ def _expected(plan: dict[str, Any]) -> list[str]:
 
 def _record(plan: dict[str, Any]) -> list[str]:
     lines = [
-        "Depth: the deepest that prediction and instruments allow; there, force and rise expected before the stroke, read after it.",
+        "Depth: the deepest that prediction and instruments allow; there, force and rise expected before the stroke, "
+        "read after it.",
         "",
     ]
     for sensor, group in groupby(plan["runs"], key=lambda run: run["sensor"]):

@@ -30,9 +30,9 @@ class TradeOffFront(NamedTuple):
 def front(problem: SelectionProblem) -> list[TradeOffFront]:
     """Fronts of all resins at the problem's driving pressure (none given: no pressure), inside the size limit and every other.
 
-    No point of a front has both more sensitivity and more force than another. A scan over wall ratio and radius; then, at
-    each of many levels, closer and closer looks around the candidate of most force that is at least so sensitive. Ends
-    of ranges jump with the dimensions, so that no slope could be followed.
+    No point of a front has both more sensitivity and more force than another. A scan over wall ratio and radius; then,
+    at each of many levels, closer and closer looks around the candidate of most force that is at least so sensitive.
+    Ends of ranges jump with the dimensions, so that no slope could be followed.
     """
     return [_of(problem, number) for number in range(len(problem.resins))]
 

@@ -36,8 +36,8 @@ def met_by_fraction(
 ) -> tuple[SelectionProblem, CandidatePool]:
     """The best few candidates with the fraction at which the sensitivity is met at their sizes and pressures.
 
-    Returns a problem whose resins are these mixes, one each, and the candidates evaluated. Bisected where two neighbouring
-    fractions bracket the sensitivity; else a candidate stays as it is.
+    Returns a problem whose resins are these mixes, one each, and the candidates evaluated. Bisected where two
+    neighbouring fractions bracket the sensitivity; else a candidate stays as it is.
     """
     pool = pool.take(_best(problem, pool))
     at = np.array([_fraction(problem.resins[int(number)]) for number in pool.resin])

@@ -54,8 +54,8 @@ def joined(pools: list[CandidatePool]) -> CandidatePool:
 def margins(problem: SelectionProblem, pool: CandidatePool) -> dict[str, Array]:
     """Relative margin to each limit, (n,) each: negative where it is broken, -inf where it is unknown.
 
-    Requirements: sensitivity (1 on the spot, 0 at the tolerance), force range, stiffness, outer diameter. Limits: limit point
-    (to RATED_SHARE of it), break strain, gauge range (at the required force), printable wall.
+    Requirements: sensitivity (1 on the spot, 0 at the tolerance), force range, stiffness, outer diameter. Limits:
+    limit point (to RATED_SHARE of it), break strain, gauge range (at the required force), printable wall.
     """
     lines, margin_of = pool.response.lines, {}
     if problem.sensitivity_kPa_per_N is not None:

@@ -139,7 +139,7 @@ class Campaign(Table):
                 )
             if resins.setdefault(run.sensor, run.resin) != run.resin:
                 raise ValueError(
-                    f"runs[{place}] ({run.file}): sensor {run.sensor!r} is of {run.resin} here and of {resins[run.sensor]} "
-                    "before; a sensor must be of one resin"
+                    f"runs[{place}] ({run.file}): sensor {run.sensor!r} is of {run.resin} here and of "
+                    f"{resins[run.sensor]} before; a sensor must be of one resin"
                 )
         return self

@@ -25,8 +25,8 @@ FractionOrMany = Annotated[
 class Grade(Table):
     """[membrane] material as a table: ``{ from = "TangoPlus", to = "VeroClear", fraction = 0.2 }``.
 
-    ``fraction`` is the volume fraction of ``to``: one number, or values at knots along the arc from the pole (0) to the rim
-    (1), monotone cubic between them. ``at`` are the knots; left out, they are even.
+    ``fraction`` is the volume fraction of ``to``: one number, or values at knots along the arc from the pole (0) to
+    the rim (1), monotone cubic between them. ``at`` are the knots; left out, they are even.
     """
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False, populate_by_name=True)

@@ -1,7 +1,7 @@
 """The specimen file: a soft block with rigid patterns in it, one TOML a specimen, known by its [block] table.
 
-Section 5 of the paper slides a sensor over such a block (Figure 9). A pattern is given by its pitch, or by the frequency
-that it is to have at the speed of the scan; the pitch is then speed over frequency.
+Section 5 of the paper slides a sensor over such a block (Figure 9). A pattern is given by its pitch, or by the
+frequency that it is to have at the speed of the scan; the pitch is then speed over frequency.
 """
 
 from __future__ import annotations

@@ -71,8 +71,8 @@ class TargetFigures(Table):
             )
         if self.driving_pressure_kPa is not None:
             raise ValueError(
-                f"driving_pressure_kPa = {self.driving_pressure_kPa:g} and same_sensitivity_at_kPa = {both_kPa} contradict "
-                f"each other; give one of them"
+                f"driving_pressure_kPa = {self.driving_pressure_kPa:g} and same_sensitivity_at_kPa = {both_kPa} "
+                f"contradict each other; give one of them"
             )
         return self
 

@@ -91,8 +91,8 @@ def touch(sensor: Sensor, driving_pressure: float, preload: float) -> PreloadCon
     travel, force, rise, radius, force_slope, rise_slope = curve
     if force[-1] < preload:
         raise InputError(
-            f"preload = {preload:g} N: at {driving_pressure / KPA:g} kPa the sensor reaches {force[-1]:.3g} N within its "
-            f"{travel[-1]:.2f} mm of travel; give less, or a design with more indentation.depth_mm"
+            f"preload = {preload:g} N: at {driving_pressure / KPA:g} kPa the sensor reaches {force[-1]:.3g} N within "
+            f"its {travel[-1]:.2f} mm of travel; give less, or a design with more indentation.depth_mm"
         )
     at = float(_inverse(np.array([preload]), travel[None], force[None], force_slope[None])[0])
     pressure = driving_pressure + float(_along(np.array(at), travel, rise, rise_slope))
@@ -144,7 +144,8 @@ def _check(sensor: Sensor, pressure: float, preload: float) -> None:
         raise InputError(f"driving pressure {pressure / KPA:g} kPa: must be a finite number, 0 or more")
     if pressure >= sensor.gas.gauge_limit:
         raise InputError(
-            f"driving pressure {pressure / KPA:g} kPa: beyond the pressure sensor's range of {sensor.gas.gauge_limit / KPA:g} kPa"
+            f"driving pressure {pressure / KPA:g} kPa: beyond the pressure sensor's range of "
+            f"{sensor.gas.gauge_limit / KPA:g} kPa"
         )
     if outside_atlas(sensor) is None:
         ratio = np.array([sensor.dome.wall_thickness / sensor.dome.inner_radius])

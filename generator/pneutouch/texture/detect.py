@@ -108,9 +108,10 @@ def detect(
 ) -> tuple[Detection, ...]:
     """Detection of each target frequency in Hz, in the order given.
 
-    The statistic is the highest time-averaged |W| within ``BAND`` of the target frequency, outside the cone of influence,
-    over the floor: the median of the time-averaged spectrum over its expected course (``background``) away from all target
-    frequencies. Noise records are read in the same way, fit and all. A pattern that
+    The statistic is the highest time-averaged |W| within ``BAND`` of the target frequency, outside the cone of
+    influence,
+    over the floor: the median of the time-averaged spectrum over its expected course (``background``) away from all
+    target frequencies. Noise records are read in the same way, fit and all. A pattern that
     fills a part of the record counts with that part. Each frequency is judged alone: of twenty, one passes by chance.
     Raises InputError for frequencies the sampling or the length of the record cannot read, and for a constant signal.
     """

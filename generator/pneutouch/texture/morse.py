@@ -77,8 +77,9 @@ def transform(
 ) -> Complex:
     """Wavelet transform of ``values`` (..., n), sampled at ``rate`` Hz, at voices ``frequency`` (k,) Hz: (..., k, n).
 
-    ``boundary`` selects what stands beyond the ends: ``reflect`` the record mirrored at its first and last sample, ``zero``
-    its mean. Neither is data: see ``e_folding``. Raises ValueError for voices above ``HIGHEST_SHARE`` of the rate.
+    ``boundary`` selects what stands beyond the ends: ``reflect`` the record mirrored at its first and last sample,
+    ``zero`` its mean. Neither is data: see ``e_folding``. Raises ValueError for voices above ``HIGHEST_SHARE`` of the
+    rate.
     """
     import scipy.fft
 

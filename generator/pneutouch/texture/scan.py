@@ -5,8 +5,8 @@ height the dome is pressed by what the specimen does not give, delta(F) + c(x) F
 
     dp = -dp/d(delta) F dc/(1 + k c)
 
-to first order (physics.md 4.2); here the dome's whole curve is used. At a held force the dome's state does not change at
-all in this model: only the sensor's height follows the specimen. No friction, no inertia, no relaxation, no relief.
+to first order (physics.md 4.2); here the dome's whole curve is used. At a held force the dome's state does not change
+at all in this model: only the sensor's height follows the specimen. No friction, no inertia, no relaxation, no relief.
 """
 
 from __future__ import annotations
@@ -132,8 +132,8 @@ def _held(touch: PreloadContact, compliance: Array, approach: float) -> Array:
         at = at - excess / (1.0 + compliance * touch.force_slope_at(at))
     if at.max() > touch.travel[-1] or at.min() < 0:
         raise InputError(
-            f"preload = {touch.preload:g} N: the specimen moves the dome to {at.max():.3f} mm of indentation, beyond the "
-            f"{touch.travel[-1]:.3f} mm that are known; give less preload"
+            f"preload = {touch.preload:g} N: the specimen moves the dome to {at.max():.3f} mm of indentation, beyond "
+            f"the {touch.travel[-1]:.3f} mm that are known; give less preload"
         )
     return at
 

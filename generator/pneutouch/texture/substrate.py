@@ -2,16 +2,18 @@
 
 How stiff bars enter. Vero is some 4,000 times stiffer than Agilus30, so a first-order theory in the contrast of moduli
 is of no use: a little volume of it already takes away all the strain it can. But a bar as stiff as that is a beam that
-spreads the patch's load along its length (`BarRow.bending_length`) and hardly sinks. So bars are taken to stand still, and
+spreads the patch's load along its length (`BarRow.bending_length`) and hardly sinks. So bars are taken to stand still,
+and
 
     over a bar      only the cover sinks, a layer as thin as the bar is deep, bonded to it;
     over a gap      the whole layer sinks;
-    in between      the share of bars that the patch feels: the true profile, harmonic by harmonic, through the filter of
-                    the patch and that of the cover, which gives how much of a load on top still reaches the bars' depth;
+    in between      the share of bars that the patch feels: the true profile, harmonic by harmonic, through the filter
+                    of the patch and that of the cover, which gives how much of a load on top still reaches the bars'
+                    depth;
     field           all of it in the field of the specimen with its bars: times mean compliance over bare compliance.
 
-Both filters and both compliances are exact for their layers (Airy's function; Johnson, Contact Mechanics, 1985, ch. 13);
-how they are put together is an approximation, which docs/texture.md measures against finite elements. Linear, no
+Both filters and both compliances are exact for their layers (Airy's function; Johnson, Contact Mechanics, 1985, ch.
+13); how they are put together is an approximation, which docs/texture.md measures against finite elements. Linear, no
 friction, uniform pressure over a disc, no surface relief.
 """
 

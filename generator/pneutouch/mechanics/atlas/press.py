@@ -120,7 +120,8 @@ class AtlasPress:
     ) -> AtlasSolution:
         """States in which wall and gas have one pressure, from guesses of their volume, by Newton's method; (n,).
 
-        The wall's pressure is that of the atlas times ``stiffening``, plus ``memory``. The last step is so small that the values follow it along their tangents, to its square.
+        The wall's pressure is that of the atlas times ``stiffening``, plus ``memory``. The last step is so small that
+        the values follow it along their tangents, to its square.
         """
         at, reached = nu, np.zeros(nu.size, dtype=bool)
         for _ in range(iterations):

@@ -20,7 +20,8 @@ class AtlasRecipe:
     how far the plate is below the free apex at that volume. A press with trapped gas leaves nu = 0 downwards where the
     cavity is squeezed below its unloaded volume. ambients, first_pressures: presses with trapped
     gas from these ambient pressures (in mu; 0: vented) and shares of the limit pressure, which line the edge at zero
-    pressure. stiffest_gas: greatest ambient pressure over mu that is solved; stiffest: that is inside the box. deepest: greatest plate travel;
+    pressure. stiffest_gas: greatest ambient pressure over mu that is solved; stiffest: that is inside the box.
+    deepest: greatest plate travel;
     states are solved to ``beyond``, so that the edge of the box is not the edge of the data.
     """
 

@@ -30,9 +30,9 @@ class AtlasResponse(NamedTuple):
     """Answers for n sensors; (n,) or (n, m) arrays in mm, N, MPa, sensitivities in kPa/N.
 
     ends: number in `ENDS`. near_buckling: the wall would buckle within NEAR more of travel, so close to the edge of the
-    tabulated states that they are less certain. range_end: mm of indentation. limit_pressure: of the limit point. Curves
-    reach from first contact to range_end in equal steps. max_stretch: over the range, the free state included. Rows that cannot be
-    (beyond the limit point, outside the box) are NaN throughout.
+    tabulated states that they are less certain. range_end: mm of indentation. limit_pressure: of the limit point.
+    Curves reach from first contact to range_end in equal steps. max_stretch: over the range, the free state included.
+    Rows that cannot be (beyond the limit point, outside the box) are NaN throughout.
     """
 
     lines: FigureArrays

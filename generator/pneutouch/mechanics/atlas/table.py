@@ -42,7 +42,8 @@ class AtlasPoint(NamedTuple):
 @dataclass(frozen=True)
 class AtlasSlices:
     """The tables cut at wall ratios: limit_volume, limit_pressure (k,), apex (k, volume), potential (k, volume, depth),
-    support (k, volume cells, depth cells), fields: tables (k, volume, depth) by name. rest_apex: outer height of the unloaded dome;
+    support (k, volume cells, depth cells), fields: tables (k, volume, depth) by name. rest_apex: outer height of the
+    unloaded dome;
     fold_from, fold_volume (k,), (k, folds): the buckling edge, see `survey._fold`."""
 
     grid: AtlasAxes

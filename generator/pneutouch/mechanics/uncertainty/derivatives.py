@@ -13,8 +13,8 @@ from pneutouch.mechanics.uncertainty.source import DEAD, INPUTS
 
 STEP = 0.02
 """Half of the central difference, relative. Below it the noise of tabulated ends of ranges grows (the buckling edge is
-kept in straight pieces), above it curvature: half and twice the step move a derivative of the sensitivity by less than 0.04
-and the combined uncertainty by less than 1.5 %, in most sensors by less than 0.1 %
+kept in straight pieces), above it curvature: half and twice the step move a derivative of the sensitivity by less than
+0.04 and the combined uncertainty by less than 1.5 %, in most sensors by less than 0.1 %
 (`tests/mechanics/uncertainty/test_derivatives.py`)."""
 
 _BENT = 0.05

@@ -23,7 +23,8 @@ def neighbourhood() -> Atlas:
     """The shipped atlas with its box opened to nearly all the data it holds.
 
     A sensor pressed to three quarters of R0 lies on the edge of the box, where a smaller radius with the same travel is
-    outside. The survey went on to `AtlasRecipe.beyond` and to walls outside the box, so that its neighbours can be evaluated.
+    outside. The survey went on to `AtlasRecipe.beyond` and to walls outside the box, so that its neighbours can be
+    evaluated.
     """
     known = shipped()
     recipe, walls = known.recipe, known.recipe.wall_ratios

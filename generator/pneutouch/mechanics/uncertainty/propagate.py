@@ -27,8 +27,8 @@ _NOTHING = 1e-6
 class Budget:
     """Uncertainties of the figures of n sensors.
 
-    Everything is computed in natural logarithms: a figure lies between value / exp(k u) and value * exp(k u). For small u
-    that is value +- k u value; for wide ones it keeps positive quantities positive.
+    Everything is computed in natural logarithms: a figure lies between value / exp(k u) and value * exp(k u). For
+    small u that is value +- k u value; for wide ones it keeps positive quantities positive.
 
     Attributes:
         sources: The sources, in the order of the first axis of ``variances``.
@@ -71,8 +71,8 @@ class Budget:
     def nonlinear(self) -> Flags:
         """Figures whose uncertainty differs from the derivatives' alone by more than 5 %, (figures, n).
 
-        There the response bends within the spread of an input, mostly because another event ends the range; the figure's
-        distribution is not normal, and k = 2 need not cover 95 %.
+        There the response bends within the spread of an input, mostly because another event ends the range; the
+        figure's distribution is not normal, and k = 2 need not cover 95 %.
         """
         combined = self.standard
         with np.errstate(invalid="ignore"):

@@ -29,7 +29,8 @@ DEPTH_SHARE = 0.5
 """Depth as a share of R0: our choice, the paper gives no depth for its relaxation test. Deeper, stiff resins pressed fast buckle."""
 
 BASIS = (
-    "quasi-linear viscoelasticity on the atlas, gas isothermal and sealed; the inflated dome has relaxed before contact",
+    "quasi-linear viscoelasticity on the atlas, gas isothermal and sealed; the inflated dome has relaxed before "
+    "contact",
     "one relaxation for all stresses of the resin, that of small strain; no temperature dependence",
 )
 

@@ -1,13 +1,14 @@
 """A press followed in time: wall forces with memory, trapped gas, plate travel given.
 
-Quasi-linear viscoelasticity (Fung 1993, Biomechanics, section 7.6) in two coordinates, cavity volume V and plate height h. The elastic
-dome answers them with the wall pressure P(V, h) and the plate force F(V, h) of the atlas; the viscous one with
+Quasi-linear viscoelasticity (Fung 1993, Biomechanics, section 7.6) in two coordinates, cavity volume V and plate height
+h. The elastic dome answers them with the wall pressure P(V, h) and the plate force F(V, h) of the atlas; the viscous
+one with
 
     p = p_I + int k(t - s) dP(s),  F = int k(t - s) dF(s),  k(t) = G(t)/G_inf
 
-from an inflated state in which everything has relaxed. At every time the volume is the one at which p is the gas's pressure.
-It is exact for small strains, for the first moment (the elastic dome of the instantaneous modulus, built up on the relaxed
-inflated state) and in the end (the elastic dome of the relaxed one).
+from an inflated state in which everything has relaxed. At every time the volume is the one at which p is the gas's
+pressure. It is exact for small strains, for the first moment (the elastic dome of the instantaneous modulus, built up
+on the relaxed inflated state) and in the end (the elastic dome of the relaxed one).
 """
 
 from __future__ import annotations
@@ -28,8 +29,9 @@ _NO_TRAVEL = 1.0e-9
 class ViscousPath(NamedTuple):
     """Where n domes went, (n, m) each; nondimensional by the relaxed modulus.
 
-    elastic_force, elastic_pressure: of the relaxed dome at the same volume and plate height. known: the state and all before
-    it were found. folded: the wall buckled, or its gas no longer held it; what is lost otherwise lies outside the atlas.
+    elastic_force, elastic_pressure: of the relaxed dome at the same volume and plate height. known: the state and all
+    before it were found. folded: the wall buckled, or its gas no longer held it; what is lost otherwise lies outside
+    the atlas.
     """
 
     nu: Array

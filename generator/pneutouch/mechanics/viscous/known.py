@@ -10,9 +10,10 @@ from pneutouch.spec.material import Material
 _MEMBRANE = "the membrane has no stiffness of its own to relax; take model atlas, solid or auto"
 
 AGED = (
-    "The ratio alone of Gent's relation of Shore A to modulus (Rubber Chem. Technol. 31, 896, 1958) is used, not its level; above "
-    "Shore A 80, where the scale is compressed, it grows steep. Hardness is read in seconds and is applied to the relaxed modulus; "
-    "what light and air harden may be a skin, and is taken as the whole wall"
+    "The ratio alone of Gent's relation of Shore A to modulus (Rubber Chem. Technol. 31, 896, 1958) is used, not its "
+    "level; above "
+    "Shore A 80, where the scale is compressed, it grows steep. Hardness is read in seconds and is applied to the "
+    "relaxed modulus; what light and air harden may be a skin, and is taken as the whole wall"
 )
 """What the step from hardness to modulus assumes."""
 

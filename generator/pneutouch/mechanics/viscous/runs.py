@@ -55,9 +55,9 @@ class RelaxationRun:
 class LoopRun:
     """A sensor pressed evenly to a depth and let go: indentation (mm), force (N), pressure rise (MPa) in and out.
 
-    ``contact_lost`` is the plate travel (mm) at which the dome no longer follows the plate while it retracts, where the loop
-    ends; None where it follows to the end. ``ended`` states where the run could not be followed further, or None; one that
-    does not reach its depth has no retraction.
+    ``contact_lost`` is the plate travel (mm) at which the dome no longer follows the plate while it retracts, where the
+    loop ends; None where it follows to the end. ``ended`` states where the run could not be followed further, or None;
+    one that does not reach its depth has no retraction.
     """
 
     indentation_in: Array

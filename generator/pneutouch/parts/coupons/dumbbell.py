@@ -1,8 +1,10 @@
 """The tensile dumbbell, die C of ASTM D412.
 
-Overall 115 mm, ends 25 mm wide, narrow part 33 mm x 6 mm, radii 14 and 25 mm, bench marks 25 mm apart: ASTM D412, Fig. 2
-(die C), the same outline as type 1 of ISO 37. Which radius lies where is read from type IV of ASTM D638, which is die C
-with narrower ends: its fillet at the narrow part has 14 mm, its outer radius at the end 25 mm (kcafrp.com, table of D638).
+Overall 115 mm, ends 25 mm wide, narrow part 33 mm x 6 mm, radii 14 and 25 mm, bench marks 25 mm apart: ASTM D412, Fig.
+2 (die C), the same outline as type 1 of ISO 37. Which radius lies where is read from type IV of ASTM D638, which is die
+C
+with narrower ends: its fillet at the narrow part has 14 mm, its outer radius at the end 25 mm (kcafrp.com, table of
+D638).
 """
 
 from __future__ import annotations
@@ -70,14 +72,18 @@ DUMBBELL = Coupon(
     steps=(
         "Print flat, all lengthwise along x, and one set more along y where the direction matters.",
         "Mark two lines 25 mm apart in the middle. Measure width and thickness at three places between them.",
-        "Stretch in about ten steps to 20 % of the gauge length (5 mm), more if you like; at each wait 60 s and read the "
-        "force. The sensor's model takes the relaxed modulus: at the 500 mm/min of ASTM D412 these resins read far stiffer.",
+        "Stretch in about ten steps to 20 % of the gauge length (5 mm), more if you like; at each wait 60 s and read "
+        "the "
+        "force. The sensor's model takes the relaxed modulus: at the 500 mm/min of ASTM D412 these resins read far "
+        "stiffer.",
         "Extension is that of the 25 mm between the marks, never of the grips.",
     ),
     formulas=(
         "stretch L = 1 + extension / gauge length; stress s = force / (width x thickness), medians of three",
-        "shear modulus mu = sum(s g) / sum(g^2) with g = L - 1/L^2, over all points up to the largest strain (neo-Hookean)",
-        "for comparison E / (2 (1 + nu)) with the secant E = s / (L - 1) at 10 % strain; 8 % lower in a neo-Hookean resin",
+        "shear modulus mu = sum(s g) / sum(g^2) with g = L - 1/L^2, over all points up to the largest strain "
+        "(neo-Hookean)",
+        "for comparison E / (2 (1 + nu)) with the secant E = s / (L - 1) at 10 % strain; 8 % lower in a neo-Hookean "
+        "resin",
         "over the dumbbells: mean, standard deviation, least and greatest",
     ),
     each="specimen",

@@ -1,8 +1,9 @@
 """The wall and hole gauge and the step block: what the machine makes of small features, and how true its lengths are.
 
-The gauge is a plate with four rows, each in rising order away from the cut corner: walls, pins, holes, slots. The block is
-a staircase: four lengths along x, four along z and one along y, each measured between flat faces. The sizes run from half
-of the least that vendors state to above what they recommend; they are our own choice.
+The gauge is a plate with four rows, each in rising order away from the cut corner: walls, pins, holes, slots. The
+block is
+a staircase: four lengths along x, four along z and one along y, each measured between flat faces. The sizes run from
+half of the least that vendors state to above what they recommend; they are our own choice.
 """
 
 from __future__ import annotations
@@ -130,11 +131,13 @@ GAUGE = Coupon(
     nominals,
     steps=(
         "Print gauge and block as they lie in the file: x, y and z are the machine's.",
-        "The cut corner of the gauge is at the least x and y. From it, sizes rise along x; along y the rows are walls, pins, "
-        "holes, slots. Look at each feature first: missing, broken, bent, blocked or grown together is came_out = false.",
+        "The cut corner of the gauge is at the least x and y. From it, sizes rise along x; along y the rows are walls, "
+        "pins, "
+        "holes, slots. Look at each feature first: missing, broken, bent, blocked or grown together is came_out = "
+        "false.",
         "Measure what came out, three times each. Soft walls and pins: microscope, or a caliper that just touches.",
-        "The block is a staircase. Lying as printed, x is the width over each step counted from the top (5, 10, 15, 20), z the "
-        "height of each step over the base, y the length across. Three readings each.",
+        "The block is a staircase. Lying as printed, x is the width over each step counted from the top (5, 10, 15, "
+        "20), z the height of each step over the base, y the length across. Three readings each.",
     ),
     formulas=(
         "accuracy = greatest |mean reading - nominal| over the block's lengths",

@@ -1,7 +1,7 @@
 """The leak-test cap: closes the connector in place of the membrane, and leaves no cavity.
 
-It has the membrane's flange and sits in the same seat; a rigid disc stands in for the dome, its underside level with the
-base plane. What gas is left is the dead volume alone, and what leaks is not the membrane.
+It has the membrane's flange and sits in the same seat; a rigid disc stands in for the dome, its underside level with
+the base plane. What gas is left is the dead volume alone, and what leaks is not the membrane.
 """
 
 from __future__ import annotations
@@ -78,12 +78,14 @@ LEAK_CAP = Coupon(
     draw,
     nominals,
     steps=(
-        "Print as it lies in the file, the flange up. Fix it in the connector's seat as the membrane would be: glued, or under "
-        "the ring with a film of grease, for a rigid flange is not squeezed. A membrane grown onto its connector: print the "
-        "connector without the membrane and glue the cap into the seat.",
-        "Leak: pump to about 20 kPa, close the valve, wait 60 s, read the start; read the end after 600 s. Three runs. Hold cap "
-        "and tube under water where it falls by more than 1 kPa.",
-        "Push: vent, fill a syringe with the same volume of air each time, connect, push it home, wait 30 s, read. Three times.",
+        "Print as it lies in the file, the flange up. Fix it in the connector's seat as the membrane would be: glued, "
+        "or under "
+        "the ring with a film of grease, for a rigid flange is not squeezed. A membrane grown onto its connector: "
+        "print the connector without the membrane and glue the cap into the seat.",
+        "Leak: pump to about 20 kPa, close the valve, wait 60 s, read the start; read the end after 600 s. Three runs. "
+        "Hold cap and tube under water where it falls by more than 1 kPa.",
+        "Push: vent, fill a syringe with the same volume of air each time, connect, push it home, wait 30 s, read. "
+        "Three times.",
     ),
     formulas=("leak rate = (start - end) / time, kPa/min", "the push is used with the dead-volume plug"),
     turned_over=True,

@@ -1,7 +1,7 @@
 """The hardness puck: a plain disc as the paper's, and with its mass the density.
 
-20 mm x 3 mm, four of them, five readings each: the paper's 20 trials (Supplement A, Table 1). ISO 868 and ASTM D2240 require
-6 mm under the durometer, so two pucks are laid on one another for that; the paper does not state that it did.
+20 mm x 3 mm, four of them, five readings each: the paper's 20 trials (Supplement A, Table 1). ISO 868 and ASTM D2240
+require 6 mm under the durometer, so two pucks are laid on one another for that; the paper does not state that it did.
 """
 
 from __future__ import annotations
@@ -46,9 +46,10 @@ PUCK = Coupon(
     steps=(
         "Print flat, matte all over, so that both faces are alike. Clean, dry, and wait 24 h; note the age.",
         "Weigh each puck; measure diameter and thickness once each, at the middle.",
-        "Five hardness readings a puck, 6 mm apart and 5 mm from the edge, each read after 1 s; 20 in all, as in the paper.",
-        "ISO 868 and ASTM D2240 require 6 mm of material: under one puck of 3 mm the table shows through. Lay two on one "
-        "another, or read single ones as the paper seems to have done, and note which; compare like with like.",
+        "Five hardness readings a puck, 6 mm apart and 5 mm from the edge, each read after 1 s; 20 in all, as in the "
+        "paper.",
+        "ISO 868 and ASTM D2240 require 6 mm of material: under one puck of 3 mm the table shows through. Lay two on "
+        "one another, or read single ones as the paper seems to have done, and note which; compare like with like.",
     ),
     formulas=(
         "hardness: mean and standard deviation of all readings",

@@ -85,7 +85,8 @@ def triangulated(points: Array, edges: Indices) -> Indices:
         groups = _grouped(points, _loops(points, edges))
     except (IndexError, KeyError):
         raise ComputationError(
-            "a pattern's footprint leaves no clean face on the block's side; move or resize a layer by 0.1 mm, or report it"
+            "a pattern's footprint leaves no clean face on the block's side; move or resize a layer by 0.1 mm, or "
+            "report it"
         ) from None
     filled = [_filled(points, group) for group in groups]
     return np.concatenate(filled) if filled else np.zeros((0, 3), np.int64)

@@ -99,8 +99,8 @@ def check_inside(box: Box, context: PatternContext, number: int, layer: Layer) -
                 number,
                 key,
                 getattr(layer, key, high),
-                f"the pattern reaches from {box.low[axis]:g} to {box.high[axis]:g} mm along {'xyz'[axis]}; it must stay "
-                f"between {low:g} and {high:g} mm, so make it smaller or raise block.{size}",
+                f"the pattern reaches from {box.low[axis]:g} to {box.high[axis]:g} mm along {'xyz'[axis]}; it must "
+                f"stay between {low:g} and {high:g} mm, so make it smaller or raise block.{size}",
             )
         for gap in (box.low[axis] - low, high - box.high[axis]):
             if 0 < gap < 1e-3:

@@ -1,8 +1,10 @@
 """Strut lattices: one octant of the cell by one batch boolean, mirrored and tiled by index.
 
-Every lattice here is its own mirror image in the planes at all multiples of half a cell. So an octant, [0, a/2]^3, and its
+Every lattice here is its own mirror image in the planes at all multiples of half a cell. So an octant, [0, a/2]^3, and
+its
 mirror images fill any number of half cells, and what two of them share is the same outline by construction: nothing is
-intersected twice and no positions are compared. Only a block that ends inside a half cell is cut to size, in one boolean.
+intersected twice and no positions are compared. Only a block that ends inside a half cell is cut to size, in one
+boolean.
 
 A strut is the convex hull of two balls. All balls of a lattice are one polyhedron, turned the same way. The octant is
 made with a side of one, its nodes and its balls on a grid of 2^-20: sums are exact, and the struts that join at a node
@@ -115,8 +117,9 @@ class Lattice:
 def octant(lattice: Lattice) -> Mesh:
     """The lattice in an octant of the cell whose side is one, closed: one batch union of its struts and one cut.
 
-    Struts that cross at symmetric places can leave a spike or a touching edge (manifold3d 3.5.4: octet, cell 7.7 mm, radius
-    0.5 mm). The radius is then changed by some parts in 100,000. Raises ComputationError where that does not help.
+    Struts that cross at symmetric places can leave a spike or a touching edge (manifold3d 3.5.4: octet, cell 7.7 mm,
+    radius 0.5 mm). The radius is then changed by some parts in 100,000. Raises ComputationError where that does not
+    help.
     """
     for nudge in _NUDGES:
         tried = replace(lattice, radius=lattice.radius * (1 + nudge))
@@ -124,7 +127,8 @@ def octant(lattice: Lattice) -> Mesh:
         if _sound(tried, piece):
             return piece
     raise ComputationError(
-        f"{lattice.kind}: no clean cell of {lattice.cell:g} mm with struts of {lattice.radius:g} mm; change either by 0.01 mm"
+        f"{lattice.kind}: no clean cell of {lattice.cell:g} mm with struts of {lattice.radius:g} mm; change either by "
+        "0.01 mm"
     )
 
 
@@ -148,7 +152,8 @@ def _sound(lattice: Lattice, piece: Mesh) -> bool:
 def tiled(piece: Mesh, half: float, counts: tuple[int, int, int], origin: Array) -> Mesh:
     """An octant, drawn ``half`` mm wide, and its mirror images, ``counts`` of them along each axis, from ``origin`` (3,).
 
-    A vertex on a plane between octants is one vertex of both, by its number and the plane's: positions are not compared.
+    A vertex on a plane between octants is one vertex of both, by its number and the plane's: positions are not
+    compared.
     """
     vertices, triangles = piece.vertices, piece.triangles
     on_low, on_high = vertices == 0.0, vertices == 1.0

@@ -64,7 +64,8 @@ def draw(layer: MinimalSurface, context: PatternContext, number: int) -> Pattern
             "volume_fraction",
             requested,
             f"the sheet would be {mean:.3g} mm thick on average; the {context.printer.title} makes no "
-            f"wall thinner than {context.least('wall'):g} mm, so it must be at least {requested * context.least('wall') / mean:.3f}, or take a larger cell_mm",
+            f"wall thinner than {context.least('wall'):g} mm, so it must be at least "
+            f"{requested * context.least('wall') / mean:.3f}, or take a larger cell_mm",
         )
     mesh = fill(surface, around, fraction)
     truth = {

@@ -48,8 +48,8 @@ class Pocket:
 def pockets(voxels: PartVoxels, radius: Array, most: float = NARROW) -> list[Pocket]:
     """Hollows whose opening is at most the share ``most`` of their width.
 
-    The space where a ball of a radius fits falls into pieces as the radius grows; a piece that does not reach the outside
-    lies behind an opening narrower than that. ``radius`` is that of `balls`, good to half a cube.
+    The space where a ball of a radius fits falls into pieces as the radius grows; a piece that does not reach the
+    outside lies behind an opening narrower than that. ``radius`` is that of `balls`, good to half a cube.
     """
     outside = _outside(voxels.label == 0)
     pockets: list[Pocket] = []

@@ -2,8 +2,8 @@
 
 From points all over the surface a line is cast along the normal, into the body and out of it. Where it ends on a face
 that looks back, within 40 degrees, its length is a thickness of the body or a width of the air. Lines across the middle
-then show whether the place is thin in one direction (a wall, a gap) or in two (a pin, a hole), and lines along the flank how high
-the flank is (a ridge or a groove on a face).
+then show whether the place is thin in one direction (a wall, a gap) or in two (a pin, a hole), and lines along the
+flank how high the flank is (a ridge or a groove on a face).
 """
 
 from __future__ import annotations
@@ -37,9 +37,8 @@ class Chords:
     """Lines of one side from ``start`` (n, 3) along unit ``direction`` (n, 3) over ``length`` (n,), mm.
 
     ``near`` and ``far`` are the faces at both ends, ``area`` the surface each start stands for, mm2. After `described`,
-    ``second`` is the narrowest width across the middle (inf where the place is wide) between the faces ``sides`` (n, 2),
-    ``axis`` the direction along the place,
-    ``flank`` the height of the flank (inf where it is no flank).
+    ``second`` is the narrowest width across the middle (inf where the place is wide) between the faces ``sides`` (n,
+    2), ``axis`` the direction along the place, ``flank`` the height of the flank (inf where it is no flank).
     """
 
     start: Array
@@ -178,8 +177,8 @@ def _tangents(directions: Array) -> tuple[Array, Array]:
 def refined(chords: Chords, distance: Any) -> Array:
     """Lengths (n,) from exact surface to exact surface, ``distance`` being the solid's.
 
-    An end moves along the chord, outwards, inwards or not at all, to where it is nearest to the exact surface. The mesh leaves a
-    circle by its tolerance on both sides, so that a bore measured from flat to flat is that much too narrow.
+    An end moves along the chord, outwards, inwards or not at all, to where it is nearest to the exact surface. The mesh
+    leaves a circle by its tolerance on both sides, so that a bore measured from flat to flat is that much too narrow.
     """
     length = chords.length.copy()
     for points, outwards in ((chords.start, -chords.direction), (chords.end, chords.direction)):

@@ -1,7 +1,7 @@
 """Thin places of a part by kind: walls, pins, holes, channels, gaps, ridges and grooves, each as one place.
 
-A place is what chords join of smooth face groups. Where fillets make one face of several features they are one place, described
-by its narrowest.
+A place is what chords join of smooth face groups. Where fillets make one face of several features they are one place,
+described by its narrowest.
 """
 
 from __future__ import annotations

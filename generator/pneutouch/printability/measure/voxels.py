@@ -23,8 +23,8 @@ _OFF = (0.4142135623730951, 0.7320508075688772)
 class PartVoxels:
     """Number of the part that fills each cube, from 1, and 0 where none does, (i, j, k); one empty cube all around.
 
-    ``pitch`` in mm, ``origin`` the centre of cube (0, 0, 0) in the build frame, whose z points up; ``frame`` (3, 3) turns
-    the design frame into the build frame.
+    ``pitch`` in mm, ``origin`` the centre of cube (0, 0, 0) in the build frame, whose z points up; ``frame`` (3, 3)
+    turns the design frame into the build frame.
     """
 
     label: NDArray[np.int8]

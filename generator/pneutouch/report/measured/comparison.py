@@ -62,8 +62,8 @@ class CampaignReport:
         questions: What looks wrong and was not changed: file or run, and the question.
         verdicts: Of the target, empty without one.
         injections: Figures of leak and injection runs: sensor, name, value, standard error, unit.
-        ageing: Change of sensitivity between ages: resin, pressure, age, change in percent with its interval, and what the
-            paper measured of this resin in a year, or None.
+        ageing: Change of sensitivity between ages: resin, pressure, age, change in percent with its interval, and what
+            the paper measured of this resin in a year, or None.
         model: Model of the predictions.
         input_hash: Of campaign, design and files.
     """

@@ -33,7 +33,8 @@ LINES = {
 TERMS = (
     (
         "95 % interval",
-        "Of a mean: over specimens, Student's t; with one specimen over its runs, which does not include other specimens. Of a standard deviation: chi-square.",
+        "Of a mean: over specimens, Student's t; with one specimen over its runs, which does not include other "
+        "specimens. Of a standard deviation: chi-square.",
     ),
     ("n", "Specimens / runs behind a value."),
     (
@@ -43,7 +44,8 @@ TERMS = (
     ("Difference", "Measured less predicted, in percent of the predicted."),
     (
         "Overlap",
-        "Whether the measured interval and the predicted band share a value; a measured value without an interval counts as itself. Empty where the prediction has no band.",
+        "Whether the measured interval and the predicted band share a value; a measured value without an interval "
+        "counts as itself. Empty where the prediction has no band.",
     ),
     ("Full scale", "Difference of the greatest and the least pressure rise of the run."),
 )

@@ -71,17 +71,20 @@ def _figures(measured: CampaignReport, panels: Sequence[Panel]) -> DrawnPlots:
         ),
         "response": (
             "Response",
-            f"Pressure rise over contact force. Markers: every run; lines: predicted, with the band of the sensitivity{ends}.{joined}{some}",
+            "Pressure rise over contact force. Markers: every run; lines: predicted, with the band of the "
+            f"sensitivity{ends}.{joined}{some}",
             plots.responses(panels),
         ),
         "indentation": (
             "Force over indentation",
-            f"Contact force over indentation. Markers: every run; lines: predicted, with the band of the stiffness{ends}.{joined}{some}",
+            "Contact force over indentation. Markers: every run; lines: predicted, with the band of the "
+            f"stiffness{ends}.{joined}{some}",
             plots.indentations(panels),
         ),
         "loops": (
             "Hysteresis",
-            "Pressure rise over contact force: the first run at the lowest and at the highest driving pressure, all its cycles.",
+            "Pressure rise over contact force: the first run at the lowest and at the highest driving pressure, all "
+            "its cycles.",
             slow.loops(panels),
         ),
         "relaxation": (

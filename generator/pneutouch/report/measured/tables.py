@@ -29,8 +29,8 @@ Row = list[str]
 def resin_table(panel: Panel) -> dict[str, Any]:
     """Every figure of a resin over driving pressure and age: measured and predicted.
 
-    A figure has its name, unit and rows of driving pressure, age, measured, interval, n, predicted, band, difference, overlap.
-    ``absent`` names what was not measured, ``why`` driving pressures without a prediction.
+    A figure has its name, unit and rows of driving pressure, age, measured, interval, n, predicted, band, difference,
+    overlap. ``absent`` names what was not measured, ``why`` driving pressures without a prediction.
     """
     groups: list[dict[str, Any]] = []
     absent: list[str] = []

@@ -57,8 +57,8 @@ def prepare(
 ) -> SavedCalibration:
     """Check and word the files of ``name`` under ``root``: the resin where its modulus was fitted, and the design.
 
-    Nothing is written. Raises InputError for a bad name, one that would hide another resin or design (unless ``shadow``), a file
-    that the command did not write, and estimates that have no interval.
+    Nothing is written. Raises InputError for a bad name, one that would hide another resin or design (unless
+    ``shadow``), a file that the command did not write, and estimates that have no interval.
     """
     if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]*", name):
         raise InputError("use letters, digits, - and _, starting with a letter or digit", key="save", value=name)
@@ -123,7 +123,8 @@ def _material(calibration: Calibration, estimate: dict[str, Any], path: Path, li
     spread = 0.5 * (interval[1] - interval[0]) / _TWO_SIDED
     wording = (
         f"calibrated on {_origin(calibration)}; 95 % interval {interval[0]:.4g} to {interval[1]:.4g} MPa; "
-        f"{'priors counted' if calibration.fit.parameters.priors else 'no priors'}; before {before.get('value', 'a range')}: {base}.toml"
+        f"{'priors counted' if calibration.fit.parameters.priors else 'no priors'}; before "
+        f"{before.get('value', 'a range')}: {base}.toml"
     )
     content["shear_modulus_MPa"] = {"value": rounded(estimate["value"]), "spread": rounded(spread), "source": wording}
     content["title"] = f"{content['title']}, {path.stem}"

@@ -125,7 +125,8 @@ def observations_of(
 ) -> tuple[str, Observations, list[str]]:
     """The sensor's name, its runs of kinds steps and injection, and remarks.
 
-    Raises InputError where the campaign holds several sensors and none is named, or not the one named, or nothing of it.
+    Raises InputError where the campaign holds several sensors and none is named, or not the one named, or nothing of
+    it.
     """
     known = sorted({run.sensor for run in campaign.runs})
     if sensor is None and len(known) > 1:
@@ -154,8 +155,8 @@ def _remarks(campaign: Campaign, scene: ResolvedDesign, sensor: str) -> list[str
     fitted = ["the campaign's files are simulated, not measured"] if campaign.simulated else []
     if resin != scene.design.membrane.material:
         fitted.append(
-            f"the campaign states {sensor} to be of {resin}, the design states {scene.design.membrane.material}: the design's resin "
-            "gives the start and the prior of the modulus"
+            f"the campaign states {sensor} to be of {resin}, the design states {scene.design.membrane.material}: the "
+            "design's resin gives the start and the prior of the modulus"
         )
     return fitted
 

@@ -67,8 +67,8 @@ def characterize(
 ) -> CharacterizationResult:
     """Read a campaign's folder or one file, and compare its figures with the prediction of its design.
 
-    ``design`` comes before the one that the campaign names; ``changes`` are laid over either. Raises InputError where nothing can
-    be read; files that fail are listed in the outcome.
+    ``design`` comes before the one that the campaign names; ``changes`` are laid over either. Raises InputError where
+    nothing can be read; files that fail are listed in the outcome.
     """
     library = library or Library.default()
     name, named = (design, {}) if design is not None else _design_of(data)

@@ -86,7 +86,8 @@ AgeingChange = tuple[str, float, str, float, float | None, float | None, float |
 def ageing(groups: Sequence[RunGroup], library: Library) -> tuple[AgeingChange, ...]:
     """Change of the sensitivity since fresh, in percent of the aged one as in the paper's Supplement E.
 
-    Resin, pressure, age, change with the ends of its 95 % interval, and the paper's change in a year where it measured one.
+    Resin, pressure, age, change with the ends of its 95 % interval, and the paper's change in a year where it measured
+    one.
     """
     known = [group for group in groups if "sensitivity_kPa_per_N" in group.figures]
     by_sensor: Callable[[RunGroup], tuple[str, float]] = lambda group: (group.key.resin, group.key.driving_pressure_kPa)  # noqa: E731

@@ -90,13 +90,15 @@ def curve_warnings(
         "force range",
         "force_N",
         rig.force_range_N,
-        "expected force of {least:.1f} to {most:.1f} N passes the force sensor's {limit:g} N; {stop}, or take a larger sensor",
+        "expected force of {least:.1f} to {most:.1f} N passes the force sensor's {limit:g} N; {stop}, or take a larger "
+        "sensor",
     )
     over(
         "pressure range",
         "cavity_pressure_kPa",
         rig.pressure_range_kPa,
-        "expected cavity pressure of {least:.1f} to {most:.1f} kPa passes the gauge's {limit:g} kPa; {stop}, or take a wider gauge",
+        "expected cavity pressure of {least:.1f} to {most:.1f} kPa passes the gauge's {limit:g} kPa; {stop}, or take a "
+        "wider gauge",
     )
     lost = [depth for depth in depths if not curve.covers(depth)]
     if lost and curve.ends is not None:
@@ -110,14 +112,16 @@ def curve_warnings(
         report(
             "rated pressure",
             None,
-            f"driving pressure is above {rated / KPA:.1f} kPa, {RATED_SHARE:.0%} of the limit ({pressed.limits.binding})",
+            f"driving pressure is above {rated / KPA:.1f} kPa, {RATED_SHARE:.0%} of the limit "
+            f"({pressed.limits.binding})",
         )
     first = expected[0]["force_N"]
     if first is not None and first < RESOLVED * rig.force_resolution_N:
         report(
             "force resolution",
             None,
-            f"expected force of {first:.3f} N at the first step, {depths[0]:g} mm, is below {RESOLVED:g} resolutions of {rig.force_resolution_N:g} N",
+            f"expected force of {first:.3f} N at the first step, {depths[0]:g} mm, is below {RESOLVED:g} resolutions "
+            f"of {rig.force_resolution_N:g} N",
         )
     return violations
 

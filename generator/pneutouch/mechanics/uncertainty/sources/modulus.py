@@ -75,7 +75,8 @@ def _mixing_fraction(modulus: Quantity, size: int) -> UncertaintySource:
         _filled(_log_rectangular(modulus.most / modulus.least), size),
         "log-rectangular",
         counting(size),
-        f"assumed: {modulus.least:.3g} to {modulus.most:.3g} MPa, as the laws differ by which the catalogue's moduli are given "
+        f"assumed: {modulus.least:.3g} to {modulus.most:.3g} MPa, as the laws differ by which the catalogue's moduli "
+        "are given "
         "their fractions of the stiff resin; no greater modulus than the curve's stiffest was taken (docs/mixing.md)",
         False,
     )
@@ -146,8 +147,9 @@ def _between_prints(material: Material, size: int) -> UncertaintySource:
 def ageing_sources(material: Material, size: int) -> list[UncertaintySource]:
     """What a year in light and air does: to the modulus by the hardness, to the sensitivity as it was measured.
 
-    The age at use is taken as anything from fresh to a year. A deviation even over 0 to c has the mean square c^2/3 about
-    the fresh value, that of a rectangle of half-width c: the drift is not corrected for but enters whole (JCGM 100, F.2.4.5).
+    The age at use is taken as anything from fresh to a year. A deviation even over 0 to c has the mean square c^2/3
+    about the fresh value, that of a rectangle of half-width c: the drift is not corrected for but enters whole (JCGM
+    100, F.2.4.5).
     """
     return [_ageing_by_hardness(material, size), _ageing_of_sensitivity(material, size)]
 
