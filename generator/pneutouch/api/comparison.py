@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from pneutouch.api import show
 from pneutouch.api.design import Design, load
-from pneutouch.api.fields import keywords
+from pneutouch.api.fields import keywords, plain
 from pneutouch.api.prediction import Prediction
+from pneutouch.errors import InputError
 from pneutouch.spec.design import DesignFile
 
 if TYPE_CHECKING:
@@ -53,9 +54,11 @@ class Comparison(show.Shown):
 def compare(
     *designs: Design | str | Path, driving_pressures_kPa: Iterable[float] | None = None, **options: Any
 ) -> Comparison:
-    """Predict designs and set them side by side; ``options`` are those of `Design.predict`."""
+    """Predict designs and set them side by side; ``options`` are those of `Design.predict`. Raises InputError."""
+    if not designs:
+        raise InputError("no design to compare", key="designs", remedy="give designs, their names or their paths")
     chosen = tuple(design if isinstance(design, Design) else load(design) for design in designs)
-    pressures_kPa = None if driving_pressures_kPa is None else list(driving_pressures_kPa)
+    pressures_kPa = plain(driving_pressures_kPa)
     return Comparison(chosen, tuple(design.predict(pressures_kPa, **options) for design in chosen))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 from collections.abc import Iterable
 from functools import cached_property
 from pathlib import Path
@@ -14,9 +15,10 @@ from pneutouch.api.prediction import Prediction
 from pneutouch.api.results import CheckResult
 from pneutouch.body import Body
 from pneutouch.catalogue import DesignSource, Library, load_scene
+from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
 from pneutouch.mechanics.models import model_options
-from pneutouch.output.new import write_design
+from pneutouch.output.new import NAME_PATTERN, NAME_RULE, write_design
 from pneutouch.parts import Assembly, assemble
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.material import Material
@@ -39,6 +41,8 @@ class Design(show.Shown):
         self._take(name, {}, fields)
 
     def _take(self, name: str, content: Any, fields: dict[str, Any]) -> None:
+        if not re.fullmatch(NAME_PATTERN, str(name)):
+            raise InputError(NAME_RULE, key="name", value=name)
         with named_by_keyword():
             whole = override(content, changes(DesignFile, fields), DesignFile)
             self.file = DesignSource(name, whole, WHERE).changed({})
@@ -66,6 +70,11 @@ class Design(show.Shown):
             raise AttributeError(f"a design has no {keyword!r}; it has {', '.join(keywords(DesignFile))}")
         table, _, key = field.partition(".")
         return getattr(getattr(self.file, table), key)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name in keywords(DesignFile):
+            raise AttributeError(f"a design does not change; use design.replace({name}=...)")
+        super().__setattr__(name, value)
 
     def __dir__(self) -> Iterable[str]:
         return [*super().__dir__(), *keywords(DesignFile)]
@@ -103,7 +112,7 @@ class Design(show.Shown):
         ``model`` is "membrane", "atlas", "solid" (None) or "auto": the cheapest whose error meets ``tolerance``, a
         fraction. See `evaluation.evaluate` for the rest. Raises InputError where the design cannot work.
         """
-        changed = {} if driving_pressures_kPa is None else {PRESSURES: plain(list(driving_pressures_kPa))}
+        changed = {} if driving_pressures_kPa is None else {PRESSURES: plain(driving_pressures_kPa)}
         options = model_options(model, None if tolerance is None else str(tolerance))
         with named_by_keyword():
             return Prediction(evaluate(self.source, changed, closure=closure, clamp=clamp, aged=aged, **options))

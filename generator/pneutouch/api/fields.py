@@ -14,7 +14,7 @@ from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import table_of
 
 WHERE = "the keyword arguments"
-"""Stands for the file of what was given as keywords, until an error is raised."""
+"""Stands for the file where values are keyword arguments; `named_by_keyword` takes it out of an error."""
 
 
 @cache
@@ -29,23 +29,25 @@ def keywords(model: type[BaseModel]) -> dict[str, str]:
 
 
 def plain(value: Any) -> Any:
-    """A value as a file holds it: arrays and tuples as lists, scalars of NumPy as Python's."""
+    """A value as a file holds it: arrays, tuples and ranges as lists, scalars of NumPy as Python's."""
     if hasattr(value, "tolist"):
         return value.tolist()
-    if isinstance(value, list | tuple):
+    if isinstance(value, list | tuple | range | Iterator):
         return [plain(item) for item in value]
     return {key: plain(item) for key, item in value.items()} if isinstance(value, Mapping) else value
 
 
-def changes(model: type[BaseModel], given: Mapping[str, Any]) -> dict[str, Any]:
+def changes(model: type[BaseModel], arguments: Mapping[str, Any]) -> dict[str, Any]:
     """Keyword arguments as values by ``table.key``; a table may be given whole, as a mapping. Raises InputError."""
     known = keywords(model)
     fields: dict[str, Any] = {}
-    for name, value in given.items():
+    for name, value in arguments.items():
         if name in known:
             entries = {known[name]: plain(value)}
         elif name in model.model_fields and isinstance(value, Mapping):
             entries = {f"{name}.{key}": item for key, item in plain(value).items()}
+        elif name in model.model_fields:
+            raise InputError("must be a mapping of the table's keys", key=name, value=value)
         else:
             raise InputError(f"unknown.{nearest(name, known)}", key=name, value=value)
         for key in entries.keys() & fields.keys():

@@ -140,10 +140,10 @@ def calibrate(
     """
     from pneutouch.workflows.calibrate.run import CalibrationOptions, run_calibration
 
-    given = None if design is None else source_of(design)
+    source = None if design is None else source_of(design)
     names, held = tuple(fit), _floats(hold_out_kPa)
     with named_by_keyword():
-        options = CalibrationOptions(Path(data), given, sensor, names, held, priors, save, shadow, Path(out))
+        options = CalibrationOptions(Path(data), source, sensor, names, held, priors, save, shadow, Path(out))
         document: dict[str, Any] = run_calibration(options)
     return Result("Calibration", document)
 

@@ -1,4 +1,4 @@
-"""What checks and workflows found: data with a short text of itself."""
+"""Results of checks and workflows: data with a short text of itself."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class CheckResult(show.Shown):
 
 
 class Result(show.Shown):
-    """What a workflow found, by key as its command prints it as JSON; `save` writes its folder."""
+    """The results of a workflow, by key as its command prints them as JSON; `save` writes its folder."""
 
     def __init__(self, title: str, document: dict[str, Any], write: Callable[[Path], Path] | None = None) -> None:
         self.title, self._document, self._write = title, document, write
@@ -45,7 +45,7 @@ class Result(show.Shown):
         return self._document[key]
 
     def keys(self) -> list[str]:
-        """Keys of what was found."""
+        """Keys of the results."""
         return list(self._document)
 
     def to_dict(self) -> dict[str, Any]:
@@ -55,7 +55,7 @@ class Result(show.Shown):
     def save(self, out: str | Path = "outputs") -> Path:
         """Write the command's folder into ``out`` and return it."""
         if self._write is None:
-            raise InputError(f"{self.title}: is written already")
+            raise InputError(f"{self.title} is written already")
         return self._write(Path(out))
 
     def _head(self) -> str:

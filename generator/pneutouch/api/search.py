@@ -11,6 +11,7 @@ from pneutouch.api import show
 from pneutouch.api.design import Design, source_of
 from pneutouch.api.fields import WHERE, changes, named_by_keyword
 from pneutouch.catalogue import DesignSource
+from pneutouch.errors import InputError
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import override, read_toml, validate
 from pneutouch.spec.target import Target
@@ -74,7 +75,7 @@ def select(target: str | Path | None = None, **fields: Any) -> Selection:
     stem = base.name if goal.setting.base else "selected"
     names = [f"{stem}-{rank}" for rank in range(1, len(sets) + 1)]
     sources = [
-        DesignSource(name, assigned(base.design, one, name), WHERE) for name, one in zip(names, sets, strict=True)
+        DesignSource(name, assigned(base.design, fields, name), WHERE) for name, fields in zip(names, sets, strict=True)
     ]
     return Selection(tuple(Design.of(source) for source in sources), content)
 
@@ -102,10 +103,12 @@ def sweep(
     from pneutouch.workflows.sweep.run import ComputeResources
 
     with named_by_keyword(), tempfile.TemporaryDirectory() as folder:
-        given = changes(DesignFile, fields)
-        grid = {key: value for key, value in given.items() if isinstance(value, list) or _is_range(value)}
-        fixed = {key: value for key, value in given.items() if key not in grid}
-        plan = plan_of_grid(source_of(design), grid, fixed, model=model, closure=closure, clamp=clamp)
+        values = changes(DesignFile, fields)
+        grid = {key: value for key, value in values.items() if isinstance(value, list) or _is_range(value)}
+        fixed = {key: value for key, value in values.items() if key not in grid}
+        if not grid:
+            raise InputError("no field has several values", remedy="give a list, such as wall_thickness_mm=[1, 1.2]")
+        plan = plan_of_grid(source_of(design), grid, fixed, WHERE, model=model, closure=closure, clamp=clamp)
         path = Path(folder) / "sweep.nc" if out is None else Path(out)
         run(plan, path, ComputeResources(workers), fresh=fresh)
         return xarray.load_dataset(path, engine="scipy")

@@ -64,7 +64,7 @@ def excursions(blocks: Blocks) -> tuple[list[Excursion], bool]:
     turns = _turns(place, max(2 * NOISE * noise, TURN * span))
     tops = [at for at, high in turns if high]
     lows = [at for at, high in turns if not high]
-    excursions_: list[Excursion] = []
+    parts: list[Excursion] = []
     previous = 0
     for top in tops:
         before = [low for low in lows if low < top]
@@ -72,15 +72,15 @@ def excursions(blocks: Blocks) -> tuple[list[Excursion], bool]:
         if not before:
             previous = after
             continue
-        start = max(previous, excursions_[-1].hold[1] if excursions_ else 0)
+        start = max(previous, parts[-1].hold[1] if parts else 0)
         hold = _stay(place[before[-1] : after + 1], place[before[-1]], noise)
         hold = (hold[0] + before[-1], hold[1] + before[-1])
         clear = _clear(place[start : hold[0]], float(place[before[-1]]), float(place[top]), noise)
-        excursions_.append(Excursion((clear[0] + start, clear[1] + start), hold, place.size))
+        parts.append(Excursion((clear[0] + start, clear[1] + start), hold, place.size))
         previous = after
-    ends = [*(one.clear[0] for one in excursions_[1:]), place.size]
-    excursions_ = [one._replace(out=end) for one, end in zip(excursions_, ends, strict=True)]
-    return excursions_, bool(tops) and (not lows or tops[0] < lows[0])
+    ends = [*(one.clear[0] for one in parts[1:]), place.size]
+    parts = [one._replace(out=end) for one, end in zip(parts, ends, strict=True)]
+    return parts, bool(tops) and (not lows or tops[0] < lows[0])
 
 
 def position_noise(position: Array) -> float:

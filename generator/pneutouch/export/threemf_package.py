@@ -167,12 +167,12 @@ class Components:
 
     def _count(self, first: Name, counts: dict[Name, int]) -> None:
         """Children before parents, without recursion: the chain may be as long as the file."""
-        stack, open_ = [(first, False)], set()
+        stack, ancestors = [(first, False)], set()
         while stack:
             name, done = stack.pop()
             children = self.references.get(name, [])
             if done:
-                open_.discard(name)
+                ancestors.discard(name)
                 counts[name] = 1 + sum(counts.get(child, 1) for child in children)
                 if counts[name] > MOST_COMPONENTS:
                     raise InputError(
@@ -180,9 +180,9 @@ class Components:
                         file=self.where,
                     )
             elif name not in counts:
-                if name in open_:
+                if name in ancestors:
                     raise InputError(f"object {name[1][:40]} is a component of itself", file=self.where)
-                open_.add(name)
+                ancestors.add(name)
                 stack.append((name, True))
                 stack += [(child, False) for child in dict.fromkeys(children) if child not in counts]
 

@@ -10,6 +10,9 @@ from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
 from pneutouch.spec.template import design_template
 
+NAME_PATTERN = r"[A-Za-z0-9][A-Za-z0-9_-]*"
+NAME_RULE = "use letters, digits, - and _, starting with a letter or digit"
+
 
 def new_design(name: str, folder: Path) -> Path:
     """Write ``folder/name.toml`` with every key, its default, unit, bounds and help; never over a file."""
@@ -18,8 +21,8 @@ def new_design(name: str, folder: Path) -> Path:
 
 def check_name(name: str, folder: Path) -> Path:
     """The file of a new design. Raises InputError for a bad name, and for one that would hide another design."""
-    if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]*", name):
-        raise InputError("use letters, digits, - and _, starting with a letter or digit", key="name", value=name)
+    if not re.fullmatch(NAME_PATTERN, name):
+        raise InputError(NAME_RULE, key="name", value=name)
     path = folder / f"{name}.toml"
     known = Library.default().paths("designs").get(name)
     if known is not None and known.resolve() != path.resolve():

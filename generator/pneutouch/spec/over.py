@@ -30,12 +30,12 @@ def parse_over(texts: Sequence[str]) -> dict[str, list[Any]]:
 
 def spread(where: str, key: str, start: Any, stop: Any, count: Any) -> list[float | int]:
     """``count`` values at equal distances, both ends included; whole numbers where all of them are."""
-    shown = f"{key}: from {start} to {stop} count {count}"
+    shown = f"from {start} to {stop} count {count}"
     ends = (start, stop)
     if any(isinstance(end, bool) or not isinstance(end, int | float) or not math.isfinite(end) for end in ends):
-        raise InputError(f"{shown}: the ends must be finite numbers", file=where)
+        raise InputError(f"{shown}: the ends must be finite numbers", file=where, key=key)
     if isinstance(count, bool) or not isinstance(count, int) or not 2 <= count <= MAX_VALUES:
-        raise InputError(f"{shown}: the count must be a whole number from 2 to {MAX_VALUES}", file=where)
+        raise InputError(f"{shown}: the count must be a whole number from 2 to {MAX_VALUES}", file=where, key=key)
     # Twelve digits: the values are read and selected by people, and 1.1 must be 1.1.
     inner = [float(f"{start + (stop - start) * (k / (count - 1)):.12g}") for k in range(1, count - 1)]
     values: list[float | int] = [start, *inner, stop]

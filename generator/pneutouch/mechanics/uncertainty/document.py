@@ -70,10 +70,10 @@ def _figure(budget: Budget, figure: int, row: int, given: float | None) -> dict[
 
 def shares(budget: Budget, figure: str, row: int = 0) -> dict[str, float]:
     """Shares of the variance of a figure by source, greatest first; sources of one name added, tiny ones left out."""
-    notes: dict[str, float] = {}
+    by_name: dict[str, float] = {}
     for source, share in zip(budget.sources, budget.shares[:, FIGURES.index(figure), row], strict=True):
-        notes[source.name] = notes.get(source.name, 0.0) + float(share)
-    kept = {name: share for name, share in notes.items() if share > _LEAST_SHARE}
+        by_name[source.name] = by_name.get(source.name, 0.0) + float(share)
+    kept = {name: share for name, share in by_name.items() if share > _LEAST_SHARE}
     total = sum(kept.values())
     return {name: share / total for name, share in sorted(kept.items(), key=lambda item: (-item[1], item[0]))}
 

@@ -116,13 +116,13 @@ def _leftmost(points: Array, before: int, here: int, exits: list[int]) -> int:
         return exits.pop()
     back = points[before] - points[here]
 
-    def turn(exit_: int) -> float:
-        out = points[exit_] - points[here]
+    def turn(vertex: int) -> float:
+        out = points[vertex] - points[here]
         # Clockwise from where we came from: the region lies between.
         angle = np.arctan2(back[0] * out[1] - back[1] * out[0], back @ out)
         return float(-angle % (2 * np.pi))
 
-    best = min(exits, key=lambda exit_: turn(exit_) or 2 * np.pi)
+    best = min(exits, key=lambda vertex: turn(vertex) or 2 * np.pi)
     exits.remove(best)
     return best
 

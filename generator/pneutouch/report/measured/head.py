@@ -63,7 +63,7 @@ def verdict(measured: CampaignReport) -> dict[str, Any]:
 def _notes(measured: CampaignReport) -> list[str]:
     """Notes under the verdicts."""
     failed, runs = len(measured.failures), len(measured.campaign.runs)
-    warnings_ = sum(warning.kind != "note" for curve in measured.curves for warning in curve.warnings)
+    suspect = sum(warning.kind != "note" for curve in measured.curves for warning in curve.warnings)
     notes = []
     if any(v.passed is None for v in measured.verdicts):
         notes.append("Not decided: the interval holds values on both sides of the limit; more specimens would decide.")
@@ -71,8 +71,8 @@ def _notes(measured: CampaignReport) -> list[str]:
         notes.append(f"{failed} of {counted(runs, 'run')} could not be read: see Failures.")
     else:
         notes.append(f"All {runs} runs were read." if runs > 1 else "The run was read.")
-    if warnings_:
-        notes.append(f"{warnings_} {'stretches are' if warnings_ > 1 else 'stretch is'} suspect: see Warnings.")
+    if suspect:
+        notes.append(f"{suspect} {'stretches are' if suspect > 1 else 'stretch is'} suspect: see Warnings.")
     return notes
 
 

@@ -68,7 +68,9 @@ class SweepPlan:
             _check_key(self.where, key)
         for key in dict.fromkeys(varied):
             if key in self.settings:
-                raise InputError(f"{key} = {self.settings[key]!r}: set for all points and varied too", file=self.where)
+                raise InputError(
+                    "set for all points and varied too", file=self.where, key=key, value=self.settings[key]
+                )
         if self.count > MAX_POINTS:
             raise InputError(f"{self.count} points", file=self.where, remedy=f"it must be at most {MAX_POINTS}")
 
@@ -113,12 +115,11 @@ def _check_key(where: str, key: str) -> None:
     table_name, dot, field = key.partition(".")
     table = table_of(DesignFile, table_name)
     if not dot:
-        raise InputError(f"{key}: write table.key, such as membrane.wall_thickness_mm", file=where)
+        raise InputError("write table.key, such as membrane.wall_thickness_mm", file=where, key=key)
     if table is None:
-        raise InputError(
-            f"{key}: unknown table {table_name}.{nearest(table_name, DesignFile.model_fields)}", file=where
-        )
+        problem = f"unknown table {table_name}.{nearest(table_name, DesignFile.model_fields)}"
+        raise InputError(problem, file=where, key=key)
     if field not in table.model_fields:
-        raise InputError(f"{key}: unknown key.{nearest(field, table.model_fields)}", file=where)
+        raise InputError(f"unknown key.{nearest(field, table.model_fields)}", file=where, key=key)
     if table_name == "document":
-        raise InputError(f"{key}: no prediction depends on it", file=where, remedy="sweep over another table")
+        raise InputError("no prediction depends on it", file=where, key=key, remedy="sweep over another table")

@@ -56,13 +56,20 @@ def plan_of_flags(design: str, over: list[str], changes: Changes | None = None, 
 
 
 def plan_of_grid(
-    design: str | DesignSource, grid: Mapping[str, Any], changes: Changes | None = None, **options: str | None
+    design: str | DesignSource,
+    grid: Mapping[str, Any],
+    changes: Changes | None = None,
+    where: str = "over",
+    **options: str | None,
 ) -> SweepPlan:
-    """A grid over the values of each ``table.key``: a list, or a mapping of ``from``, ``to`` and ``count``."""
-    values = {key: _values("over", key, given) for key, given in grid.items()}
+    """A grid over the values of each ``table.key``: a list, or a mapping of ``from``, ``to`` and ``count``.
+
+    ``where`` stands for the file in messages.
+    """
+    values = {key: _values(where, key, entry) for key, entry in grid.items()}
     words = {key: value for key, value in options.items() if value is not None}
     name = design.name if isinstance(design, DesignSource) else Path(design).stem
-    return _plan(f"{name}-sweep", "over", design, _checked(changes), values, (), words)
+    return _plan(f"{name}-sweep", where, design, _checked(changes), values, (), words)
 
 
 def _plan(
@@ -77,7 +84,7 @@ def _plan(
     """The plan; a grid's driving pressures become those of every point, for they are a dimension already."""
     if PRESSURES in grid:
         if PRESSURES in fixed:
-            raise InputError(f"{PRESSURES} = {fixed[PRESSURES]!r}: set for all points and varied too", file=where)
+            raise InputError("set for all points and varied too", file=where, key=PRESSURES, value=fixed[PRESSURES])
         fixed = {**fixed, PRESSURES: grid[PRESSURES]}
     axes = tuple(SweepAxis(key, tuple(values)) for key, values in grid.items() if key != PRESSURES)
     return SweepPlan(
@@ -89,17 +96,16 @@ def _values(where: str, key: str, given: Any) -> list[Any]:
     """The values of one axis: a list, or a table ``{from, to, count}``."""
     if isinstance(given, dict):
         if set(given) != _RANGE:
-            raise InputError(f"{key} = {given!r}: a range has the keys from, to and count", file=where)
+            raise InputError("a range has the keys from, to and count", file=where, key=key, value=given)
         given = spread(where, key, given["from"], given["to"], given["count"])
     if not isinstance(given, list) or not 1 <= len(given) <= MAX_VALUES:
-        raise InputError(
-            f"{where}: {key} = {given!r}: must be a list of 1 to {MAX_VALUES} values, or {{from=, to=, count=}}"
-        )
+        problem = f"must be a list of 1 to {MAX_VALUES} values, or {{from=, to=, count=}}"
+        raise InputError(problem, file=where, key=key, value=given)
     values = [_scalar(where, f"{key}[{k}]", value) for k, value in enumerate(given)]
     seen: set[Any] = set()
     for k, value in enumerate(values):
         if value in seen:
-            raise InputError(f"{key}[{k}] = {value!r}: every value may appear once only", file=where)
+            raise InputError("every value may appear once only", file=where, key=f"{key}[{k}]", value=value)
         seen.add(value)
     return values
 
@@ -119,7 +125,7 @@ def _value(where: str, key: str, given: Any) -> Value:
 def _scalar(where: str, key: str, given: Any) -> float | int | str:
     number = isinstance(given, int | float) and not isinstance(given, bool) and math.isfinite(given)
     if not number and not isinstance(given, str):
-        raise InputError(f"{key} = {given!r}: must be a finite number or a name", file=where)
+        raise InputError("must be a finite number or a name", file=where, key=key, value=given)
     return given  # type: ignore[no-any-return]
 
 

@@ -124,9 +124,9 @@ def _check(plan: SweepPlan, library: Library) -> None:
                 indices = (i for i in range(plan.count) if i // strides[k] % plan.shape[k] == position)
                 fault = _common_fault(plan, indices, library)
                 if fault:
-                    raise InputError(
-                        f"{axis.key} = {value!r}: no point of the sweep can have it: {fault}", file=plan.where
-                    )
+                    reason = fault.problem if fault.key == axis.key else str(fault)
+                    problem = f"no point of the sweep can have it: {reason}"
+                    raise InputError(problem, file=plan.where, key=axis.key, value=value)
 
 
 def _stride(shape: tuple[int, ...], k: int) -> int:
@@ -136,8 +136,8 @@ def _stride(shape: tuple[int, ...], k: int) -> int:
     return stride
 
 
-def _common_fault(plan: SweepPlan, indices: Iterable[int], library: Library) -> str | None:
-    """Why none of the points is possible, in the words of the first, or None where one is."""
+def _common_fault(plan: SweepPlan, indices: Iterable[int], library: Library) -> InputError | None:
+    """Why none of the points is possible: the first error, or None where one point is possible."""
     first = None
     for index in indices:
         fault = _fault(plan, index, library)
@@ -147,10 +147,10 @@ def _common_fault(plan: SweepPlan, indices: Iterable[int], library: Library) -> 
     return first
 
 
-def _fault(plan: SweepPlan, index: int, library: Library) -> str | None:
+def _fault(plan: SweepPlan, index: int, library: Library) -> InputError | None:
     """Why a point is not a design, or None."""
     try:
         load_scene(plan.design, plan.overrides(index), library)
     except InputError as error:
-        return str(error)
+        return error
     return None
