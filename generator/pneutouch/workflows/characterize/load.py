@@ -159,6 +159,8 @@ def _read(
 
 
 def _single(data: Path, scene: ResolvedDesign | None) -> Campaign:
+    if not data.exists():
+        raise InputError("no such file or folder", file=data)
     if scene is None:
         raise InputError("a single file needs its sensor", file=data, remedy="give `design`")
     run = CampaignRun(file=data.name, sensor=data.stem[:_LONGEST], resin=resin_of(scene))

@@ -29,7 +29,7 @@ def verdicts(target: Target, groups: Sequence[RunGroup]) -> tuple[Verdict, ...]:
     A requirement that no group measures is not decided.
     """
     figures = target.target
-    verdicts_ = []
+    outcomes = []
     for what, key, low, high, text in _requirements(figures):
         only_kPa = figures.driving_pressure_kPa
         answers = [
@@ -41,11 +41,11 @@ def verdicts(target: Target, groups: Sequence[RunGroup]) -> tuple[Verdict, ...]:
         for group in answers:
             where = f"{group.key.resin}, {group.key.age}, {group.key.driving_pressure_kPa:g} kPa"
             estimate = group.figures[key]
-            verdicts_.append(Verdict(f"{what}, {where}", text, _interval(estimate), _passed(estimate, low, high)))
+            outcomes.append(Verdict(f"{what}, {where}", text, _interval(estimate), _passed(estimate, low, high)))
         if not answers:
             where = "" if only_kPa is None else f", {only_kPa:g} kPa"
-            verdicts_.append(Verdict(f"{what}{where}", text, "not measured", None))
-    return tuple(verdicts_)
+            outcomes.append(Verdict(f"{what}{where}", text, "not measured", None))
+    return tuple(outcomes)
 
 
 def _requirements(figures: TargetFigures) -> list[tuple[str, str, float, float, str]]:

@@ -49,12 +49,12 @@ class GradedSelectionRun:
 
     @property
     def solves(self) -> int:
-        """Solid solves in all, each inflated once and pressed at every pressure of the grade_target."""
+        """Number of solid models solved, each inflated once and pressed at every pressure of the target."""
         return len(self.search.trials) + len(self.constants)
 
     @property
     def nearest(self) -> UniformMembrane:
-        """The constant mix nearest to the grade_target."""
+        """The constant mix nearest to the target."""
         return self.constants[-1]
 
     @property

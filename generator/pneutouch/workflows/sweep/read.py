@@ -50,9 +50,8 @@ def plan_of_file(path: Path, changes: Changes | None = None, **options: str | No
 
 def plan_of_flags(design: str, over: list[str], changes: Changes | None = None, **options: str | None) -> SweepPlan:
     """A grid from ``table.key=VALUES``: values with commas between, or ``from:to:count``."""
-    return plan_of_grid(
-        design, {key: _unwrapped(values) for key, values in parse_over(over).items()}, changes, **options
-    )
+    grid = {key: _unwrapped(values) for key, values in parse_over(over).items()}
+    return plan_of_grid(design, grid, changes, "over", **options)
 
 
 def plan_of_grid(
