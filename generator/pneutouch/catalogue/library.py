@@ -129,3 +129,19 @@ class Library:
                 "of a sensor"
             )
         raise InputError(f"{name}: no such design or file.{nearest(name, paths)}")
+
+    def specimen_file(self, name: str) -> Path | None:
+        """The file of a specimen given by name or path, or None where the name is a sensor's or of nothing."""
+        files = self.paths("specimens")
+        if name in files:
+            return files[name]
+        try:
+            path = self.design_file(name)
+        except InputError:
+            return None
+        return path if path.is_file() and is_specimen(read_toml(path)) else None
+
+
+def is_specimen(content: dict[str, Any]) -> bool:
+    """Whether the content of a design file is a specimen's: it has a [block] table."""
+    return "block" in content

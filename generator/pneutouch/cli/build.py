@@ -135,9 +135,8 @@ def _evaluated(
 
 def _is_specimen(design: str) -> bool:
     from pneutouch.catalogue import Library
-    from pneutouch.workflows.specimen.load import specimen_file
 
-    return not design.lower().endswith(".3mf") and specimen_file(design, Library.default()) is not None
+    return not design.lower().endswith(".3mf") and Library.default().specimen_file(design) is not None
 
 
 def _build_specimen(design: str, out: Path, changed: dict[str, Any]) -> tuple[str, Path, list[Finding]]:

@@ -38,8 +38,10 @@ def figure(width_mm: float, height_mm: float) -> Iterator[Figure]:
     from matplotlib import font_manager
     from matplotlib.figure import Figure as MplFigure
 
-    for name in ("Inter-Regular.otf", "Inter-SemiBold.otf"):
-        font_manager.fontManager.addfont(FONTS / name)
+    known = {font.fname for font in font_manager.fontManager.ttflist}
+    for path in (FONTS / "Inter-Regular.otf", FONTS / "Inter-SemiBold.otf"):
+        if str(path) not in known:
+            font_manager.fontManager.addfont(path)
     with matplotlib.rc_context(fname=_SETTINGS):
         yield MplFigure(figsize=(width_mm * MM, height_mm * MM), layout="constrained")
 

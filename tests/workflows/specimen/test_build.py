@@ -11,12 +11,13 @@ import numpy as np
 import pytest
 
 from pneutouch.catalogue import Library
+from pneutouch.catalogue.library import is_specimen
 from pneutouch.export.threemf import read_strictly
 from pneutouch.printability.rules.contact_faces import overlap_volume, shared_area
 from pneutouch.spec.read import read_toml
 from pneutouch.workflows.specimen.build import build_specimen, check_specimen
 from pneutouch.workflows.specimen.draw import draw
-from pneutouch.workflows.specimen.load import is_specimen, load_specimen, specimen_file
+from pneutouch.workflows.specimen.load import load_specimen
 from tests.conftest import ROOT
 
 LIBRARY = Library((ROOT,))
@@ -125,9 +126,9 @@ def test_the_shipped_specimen_breaks_no_rule():
 def test_a_specimen_is_known_by_its_block():
     assert list(LIBRARY.paths("specimens")) == [NAME]
     assert is_specimen(read_toml(LIBRARY.paths("specimens")[NAME]))
-    assert specimen_file(NAME, LIBRARY) is not None
-    assert specimen_file("paper-dome", LIBRARY) is None
-    assert specimen_file("no-such-thing", LIBRARY) is None
+    assert LIBRARY.specimen_file(NAME) is not None
+    assert LIBRARY.specimen_file("paper-dome") is None
+    assert LIBRARY.specimen_file("no-such-thing") is None
 
 
 @pytest.mark.parametrize("kind", [pytest.param("octet", marks=pytest.mark.slow), "gyroid"])

@@ -24,7 +24,7 @@ from pneutouch.texture.scan import CONTROLS, NOISE, PRELOAD, Recorder, ScanPath,
 from pneutouch.texture.signal import Signal
 from pneutouch.texture.substrate import BarRow, MatrixLayer, Substrate
 from pneutouch.units import KPA
-from pneutouch.workflows.specimen import ResolvedSpecimen, draw, load_specimen, specimen_file
+from pneutouch.workflows.specimen import ResolvedSpecimen, draw, load_specimen
 
 KEPT = 20.0
 """Highest frequency of signals in CSV files, Hz, or twice the highest pattern's; with five times as many samples."""
@@ -129,7 +129,7 @@ def load_both(
     Raises InputError, also where one is the other.
     """
     context = load_specimen(specimen, None, library)
-    if isinstance(design, str) and specimen_file(design, library) is not None:
+    if isinstance(design, str) and library.specimen_file(design) is not None:
         raise InputError(
             "is a specimen", key="design", value=design, remedy="give the name or path of a sensor's design"
         )

@@ -2,6 +2,6 @@
 
 from pneutouch.workflows.specimen.build import inputs
 from pneutouch.workflows.specimen.draw import draw
-from pneutouch.workflows.specimen.load import ResolvedSpecimen, load_specimen, specimen_file
+from pneutouch.workflows.specimen.load import ResolvedSpecimen, load_specimen
 
-__all__ = ["ResolvedSpecimen", "draw", "inputs", "load_specimen", "specimen_file"]
+__all__ = ["ResolvedSpecimen", "draw", "inputs", "load_specimen"]

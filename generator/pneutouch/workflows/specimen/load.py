@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from pneutouch.catalogue import Library
+from pneutouch.catalogue.library import is_specimen
 from pneutouch.errors import InputError
 from pneutouch.parts.specimen import Box, PatternContext
 from pneutouch.spec.fields import Table
@@ -45,23 +45,6 @@ class ResolvedSpecimen:
         """What patterns are drawn in."""
         speed = self.specimen.scan.speed_mm_per_s
         return PatternContext(self.block, self.printer, self.matrix, self.inclusion, speed, self.tolerance, self.where)
-
-
-def is_specimen(content: dict[str, Any]) -> bool:
-    """Whether the content of a design file is a specimen's: it has a [block] table."""
-    return "block" in content
-
-
-def specimen_file(name: str, library: Library) -> Path | None:
-    """The file of a specimen given by name or path, or None where the name is a sensor's or of nothing."""
-    files = library.paths("specimens")
-    if name in files:
-        return files[name]
-    try:
-        path = library.design_file(name)
-    except InputError:
-        return None
-    return path if path.is_file() and is_specimen(read_toml(path)) else None
 
 
 def load_specimen(name: str, changes: Changes | None = None, library: Library | None = None) -> ResolvedSpecimen:
