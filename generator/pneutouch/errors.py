@@ -111,5 +111,6 @@ def _restored(kind: type[PneutouchError], args: tuple[Any, ...]) -> PneutouchErr
 
 
 def _short(value: Any) -> str:
-    text = repr(value)
+    # A whole number in a file is read as a float: 500 is shown as it was written.
+    text = f"{value:g}" if isinstance(value, float) and float(f"{value:g}") == value else repr(value)
     return text if len(text) <= 60 else f"{text[:57]}..."
