@@ -111,6 +111,5 @@ def _restored(kind: type[PneutouchError], args: tuple[Any, ...]) -> PneutouchErr
 
 
 def _short(value: Any) -> str:
-    # A whole number in a file is read as a float: 500 is shown as it was written.
-    text = f"{value:g}" if isinstance(value, float) and float(f"{value:g}") == value else repr(value)
+    text = repr(value)
     return text if len(text) <= 60 else f"{text[:57]}..."
