@@ -51,8 +51,8 @@ def evaluated(library: Library) -> Callable[..., Evaluation]:
 
 @pytest.fixture(scope="session")
 def built_as_a_user(shared: Shared) -> tuple[subprocess.CompletedProcess[str], Path]:
-    """What ``pneutouch build paper-dome --json`` prints in a process and folder of its own, and that folder."""
-    words = ("build", "paper-dome", "--json")
+    """What ``pneutouch build paper-dome --out sensors --json`` prints in a process and folder of its own, and that folder."""
+    words = ["build", "paper-dome", "--out", "sensors", "--json"]
 
     def fill(folder: Path) -> None:
         done = in_new_process(words, folder, {"PYTHONHASHSEED": "1"})
@@ -74,8 +74,8 @@ def built(
             done, folder = request.getfixturevalue("built_as_a_user")
             assert done.returncode == 0, done.stderr
         else:
-            folder = shared.folder(f"build-{name}", lambda fresh: build(evaluated(name), fresh / "outputs"))
-        return folder / "outputs" / name
+            folder = shared.folder(f"build-{name}", lambda fresh: build(evaluated(name), fresh / "sensors"))
+        return folder / "sensors" / name
 
     return run
 

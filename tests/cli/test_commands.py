@@ -84,7 +84,7 @@ def test_build_prints_the_folder_and_nothing_else_on_stdout(built_as_a_user):
     result, folder = built_as_a_user
     assert result.returncode == 0, result.stderr
     document = json.loads(result.stdout)
-    assert document["folder"] == "outputs/paper-dome"
+    assert document["folder"] == "sensors/paper-dome"
     assert (folder / document["folder"] / "manifest.json").is_file()
     assert "warning" in result.stderr
 

@@ -127,21 +127,28 @@ def test_model_and_why_it_was_taken_stand_on_the_sheet(evaluated):
     assert "requested" in dict(uncertainty_section(sheet_data(asked, ""))["model"])["Why this model"]
 
 
-def test_without_the_solid_the_sheet_says_where_shapes_come_from(evaluated, tmp_path):
-    from pneutouch.workflows.build import build
+@pytest.fixture
+def page(monkeypatch):
+    """The HTML page of an evaluation alone, without its 3D view and the PDF."""
+    from pneutouch.evaluation.sheet import sheet_data
+    from pneutouch.report import datasheet, pages
 
-    page = (build(evaluated("fingertip-dome", model="atlas"), tmp_path) / "datasheet.html").read_text(encoding="utf-8")
+    monkeypatch.setattr(pages, "pdf", lambda *_: b"")
+    return lambda evaluation: datasheet(sheet_data(evaluation, "0"), "")["datasheet.html"].decode()
+
+
+def test_without_the_solid_the_sheet_says_where_shapes_come_from(evaluated, page):
+    page = page(evaluated("fingertip-dome", model="atlas"))
     assert "build with model solid" in page
     assert "greatest principal stretch; thin" not in page
     assert page.count("<svg") == 8
 
 
-def test_a_sensor_outside_the_atlas_says_so_on_its_sheet(tmp_path):
+def test_a_sensor_outside_the_atlas_says_so_on_its_sheet(page):
     from pneutouch.evaluation import evaluate
-    from pneutouch.workflows.build import build
 
     evaluation = evaluate("fingertip-dome", {"pneumatics.driving_pressures_kPa": [10]}, clamp="flange")
-    page = (build(evaluation, tmp_path) / "datasheet.html").read_text(encoding="utf-8")
+    page = page(evaluation)
     assert "No interval is given: the sensor is outside the atlas: the flange is held as printed" in page
     assert "Trade-off and tuning charts are not drawn: the sensor is outside the atlas" in page
     assert "drawn by the solid" in page

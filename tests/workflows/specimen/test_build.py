@@ -134,7 +134,8 @@ def test_a_specimen_is_known_by_its_block():
 @pytest.mark.parametrize("kind", [pytest.param("octet", marks=pytest.mark.slow), "gyroid"])
 def test_a_lattice_is_built_whole(kind, tmp_path):
     layer = f'[[layer]]\nkind = "{kind}"\ncell_mm = 5\nvolume_fraction = 0.4\ndepth_mm = 1\nheight_mm = 5\n'
-    folder, _ = build_specimen(written(tmp_path, layer), tmp_path / "out", library=LIBRARY)
+    block = "length_mm = 10\nwidth_mm = 8\n"
+    folder, _ = build_specimen(written(tmp_path, layer, block=block), tmp_path / "out", library=LIBRARY)
     assert (folder / "part.3mf").stat().st_size > 10_000
     assert not (folder / "part.step").exists()
     truth = json.loads((folder / "specimen.json").read_text())

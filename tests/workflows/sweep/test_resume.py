@@ -17,10 +17,10 @@ from hypothesis import strategies as st
 from pneutouch.errors import ComputationError, InputError
 from pneutouch.workflows.sweep import sweep, workfolder
 from pneutouch.workflows.sweep.journal import Journal
+from tests.running import in_new_process
 from tests.workflows.sweep.conftest import (
     ALONE,
     POINTS,
-    WORDS,
     ended,
     held,
     journal_lines,
@@ -230,8 +230,10 @@ def test_a_worker_that_dies_is_said_and_the_progress_kept(undisturbed, tmp_path)
     assert out.read_bytes() == undisturbed
 
 
-def test_another_hash_seed_and_process_give_the_same_bytes(undisturbed, tmp_path):
+def test_another_hash_seed_and_process_give_the_same_bytes(library, tmp_path):
     out = tmp_path / "again.nc"
-    words = [sys.executable, "-m", "pneutouch", "sweep", *WORDS, "--out", str(out), "--workers", "1"]
-    subprocess.run(words, check=True, capture_output=True, env={**os.environ, "PYTHONHASHSEED": "7"}, cwd=tmp_path)
-    assert out.read_bytes() == undisturbed
+    sweep(small(), tmp_path / "plain.nc", ALONE, library=library)
+    over = ["--design", "paper-dome", "--over", "membrane.wall_thickness_mm=0.5,0.9,1.5", "--model", "membrane"]
+    done = in_new_process(["sweep", *over, "--out", str(out), "--workers", "1"], tmp_path, {"PYTHONHASHSEED": "7"})
+    assert done.returncode == 0, done.stderr
+    assert out.read_bytes() == (tmp_path / "plain.nc").read_bytes()
