@@ -27,6 +27,7 @@ def stored(name: str):
     return json.loads((DOCS / name).read_text(encoding="utf-8"))
 
 
+@pytest.mark.slow
 def test_theory_sections_are_what_the_code_gives(library):
     assert "\n".join(inflation_section()) in page()
     assert "\n".join(contact_section(table_s1(library))) in page()

@@ -108,7 +108,12 @@ def test_separate_ranks_domes():
     said = json.loads(result.stdout)
     contrasts = [dome["contrast"] for dome in said["domes"]]
     assert contrasts == sorted(contrasts, reverse=True) and contrasts[0] > 1
-    assert run(*ASKED, "--separate", "3@0,6@2").stdout.count("\n") == len(contrasts) + 3
+
+
+@pytest.mark.slow
+def test_separate_prints_a_line_a_dome_and_says_where_none_can():
+    said = json.loads(run(*ASKED, "--separate", "3@0,6@2", "--json").stdout)
+    assert run(*ASKED, "--separate", "3@0,6@2").stdout.count("\n") == len(said["domes"]) + 3
     none = run(*ASKED, "--separate", "3@7,6@7.9", "--noise", "100")
     assert none.exit_code == 1 and "none of" in none.stdout
 

@@ -35,6 +35,7 @@ def told(found):
     return [(finding.severity, finding.rule, finding.body) for finding in found]
 
 
+@pytest.mark.slow  # every day the stored findings of every design say so
 @pytest.mark.parametrize("name", DESIGNS)
 def test_no_shipped_design_breaks_a_rule(name):
     assert "error" not in [finding.severity for finding in check(subject(name))]

@@ -163,6 +163,7 @@ def test_too_few_states_for_a_line_give_no_figures():
     assert press(4.0, 0.0, depth=0.75 * 9.25, steps=1).figures() is None
 
 
+@pytest.mark.slow
 def test_random_sensors_all_end_well():
     rng = np.random.default_rng(7)
     for _ in range(25):
