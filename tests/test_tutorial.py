@@ -33,6 +33,7 @@ def walked(tmp_path_factory):
     return folder, said
 
 
+@pytest.mark.slow
 def test_the_steps_leave_what_the_page_says(walked):
     folder, said = walked
     assert set(said) == {"plan", "simulate", "characterize", "calibrate", "predict"}
@@ -45,6 +46,7 @@ def test_the_steps_leave_what_the_page_says(walked):
     assert (folder / "designs" / "my-sensor.toml").is_file()
 
 
+@pytest.mark.slow
 def test_the_truth_lies_in_the_intervals_of_what_was_measured(walked):
     folder, _ = walked
     truth = json.loads((folder / "outputs/paper-dome-campaign/truth.json").read_text())
@@ -58,6 +60,7 @@ def test_the_truth_lies_in_the_intervals_of_what_was_measured(walked):
         assert abs(group["figures"]["sensitivity_kPa_per_N"]["predicted"]["measured_off_percent"]) < 10
 
 
+@pytest.mark.slow
 def test_what_is_predicted_again_is_the_sensor_in_hand(walked):
     """The calibrated sensor's prediction is nearer to its own measured sensitivity than the design's is."""
     folder, said = walked

@@ -70,6 +70,7 @@ def test_a_3mf_of_another_maker_is_shown_without_recipe(command, foreign):
     assert json.loads(command("show", "foreign.3mf", "--json").stdout)["recipe"] is None
 
 
+@pytest.mark.slow
 def test_build_from_a_3mf_gives_the_same_bytes_in_a_folder_whose_library_changed(command, built, built_file, tmp_path):
     paths = tmp_path / "printprofiles"
     (paths / "materials").mkdir(parents=True)
@@ -85,7 +86,7 @@ def test_build_from_a_3mf_gives_the_same_bytes_in_a_folder_whose_library_changed
 
 
 def test_another_version_is_said_on_stderr(command, built_file, tmp_path, monkeypatch):
-    """What a rebuild writes is tested above: here nothing is written."""
+    """What a rebuild writes is tested elsewhere: here nothing is written."""
     monkeypatch.setattr(
         "pneutouch.workflows.build.run.build", lambda evaluation, out, report: out / evaluation.scene.name
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import re
 
@@ -148,7 +149,9 @@ def test_a_sensor_outside_the_atlas_says_so_on_its_sheet(page):
     from pneutouch.evaluation import evaluate
 
     evaluation = evaluate("fingertip-dome", {"pneumatics.driving_pressures_kPa": [10]}, clamp="flange")
-    page = page(evaluation)
+    # Two resins stand for all: their curves are solved one by one here.
+    few = {name: evaluation.resins[name] for name in ("TangoPlus", "FLX9960")}
+    page = page(dataclasses.replace(evaluation, find_resins=lambda: few))
     assert "No interval is given: the sensor is outside the atlas: the flange is held as printed" in page
     assert "Trade-off and tuning charts are not drawn: the sensor is outside the atlas" in page
     assert "drawn by the solid" in page
