@@ -1,7 +1,5 @@
 """The array types that the package's annotations use; shapes and units stand in each docstring."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -10,8 +10,6 @@ A parameter of a Python function is named by ``key``, without a file. Inside a p
 stands in backquotes (``give `design` ``). The command line alone turns both into its options.
 """
 
-from __future__ import annotations
-
 import difflib
 import re
 from collections.abc import Callable, Iterable, Sequence

@@ -1,7 +1,5 @@
 """Shelf packing: rectangles in rows, the deepest first, each turned by 90 degrees where that makes a row less deep."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

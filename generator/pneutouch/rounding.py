@@ -1,7 +1,5 @@
 """Numbers of a document rounded: the last bits differ between processors, and no figure needs them."""
 
-from __future__ import annotations
-
 from typing import Any
 
 

@@ -4,8 +4,6 @@ These three are consistent, so no factor stands in any formula. Names that leave
 their unit (``driving_pressure_kPa``); names inside it do not.
 """
 
-from __future__ import annotations
-
 KPA = 1e-3
 """One kilopascal in MPa."""
 

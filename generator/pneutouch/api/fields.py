@@ -1,7 +1,5 @@
 """Fields of a file as keyword arguments: their names alone where they are unique, else with their table's in front."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from functools import cache

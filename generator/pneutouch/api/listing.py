@@ -1,7 +1,5 @@
 """What can be named: designs, materials and printers."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from pneutouch.api import show

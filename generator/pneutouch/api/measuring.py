@@ -1,7 +1,5 @@
 """Scans, and campaigns: planned, simulated, read and fitted."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Results of checks and workflows: data with a short text of itself."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Samples averaged into blocks of equal time as they arrive, with a record of missing samples."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A run's blocks to its curve: points read at the ends of holds, or the loading of a run without holds."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

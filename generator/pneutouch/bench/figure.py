@@ -1,7 +1,5 @@
 """Figures of a run: measured curves go through the same `mechanics.response` as predicted ones."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal
 

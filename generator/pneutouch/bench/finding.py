@@ -1,7 +1,5 @@
 """Results of measured coupons: quantities of profiles, figures for the reader, and notes."""
 
-from __future__ import annotations
-
 import datetime
 from dataclasses import dataclass, field
 from typing import Any, Literal

@@ -1,7 +1,5 @@
 """Each loading and unloading to an indentation: the readings before contact and at the end of the hold."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

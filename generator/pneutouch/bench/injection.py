@@ -1,7 +1,5 @@
 """Runs without a plate: air pushed into the closed line, and the line left to itself."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import NamedTuple

@@ -8,8 +8,6 @@ sqrt((n-1)/n) s/sqrt(n), so that this is s/sqrt(n) times t. Specimens are what i
 runs as well would count their scatter twice (Davison & Hinkley, Bootstrap Methods, 1997, section 3.8). The bootstrap of
 a standard deviation of three is no better for being widened; chi-square is exact for normal values."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 

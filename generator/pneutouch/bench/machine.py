@@ -1,7 +1,5 @@
 """Gauges and step blocks: small features and lengths as one printer makes them."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from types import MappingProxyType
 

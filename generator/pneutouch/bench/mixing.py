@@ -1,7 +1,5 @@
 """Coupons of two resins in known fractions: the modulus of each mix, by dumbbells or by hardness ratio."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

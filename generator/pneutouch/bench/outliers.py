@@ -1,7 +1,5 @@
 """Runs that deviate from the others of their sensor, as a file of another sensor does."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Plausibility of a run against its campaign: wrong units, signs and columns are questioned, never corrected."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from pathlib import Path

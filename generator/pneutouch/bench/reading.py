@@ -1,7 +1,5 @@
 """A measured file to blocks: units and signs, and values that a channel cannot have measured."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path

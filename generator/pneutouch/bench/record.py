@@ -1,7 +1,5 @@
 """A run between file and figures: blocks of samples, indentations, a curve."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal, NamedTuple

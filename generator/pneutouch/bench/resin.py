@@ -1,7 +1,5 @@
 """Pucks and dumbbells: hardness, density and shear modulus of one resin."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import pairwise
 

@@ -1,7 +1,5 @@
 """Where the plate is clear, where it goes in, where it stays: a run cut into its indentations by its position."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Statistics of readings: mean, standard deviation, and the fits and formulas of the coupons."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

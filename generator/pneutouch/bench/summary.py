@@ -1,7 +1,5 @@
 """A campaign in figures: runs of a resin, an age and a driving pressure made one, each figure with its interval."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 

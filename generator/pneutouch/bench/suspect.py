@@ -1,7 +1,5 @@
 """Warnings about a run, each with its time interval and reason; nothing is dropped without one."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Sequence

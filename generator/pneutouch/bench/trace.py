@@ -1,7 +1,5 @@
 """A run thinned for looking at: few enough points to plot, and where it was read."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

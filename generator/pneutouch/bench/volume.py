@@ -1,7 +1,5 @@
 """Caps and plugs: leak rate and dead volume of one design."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -6,8 +6,6 @@ zipped. A ring's count depends on its radius, lean and error alone: two bodies t
 with the same rings get the same triangles there.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import dataclass

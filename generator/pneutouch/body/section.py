@@ -3,8 +3,6 @@
 Faces are half-open (`pneutouch.meridian.crossings`): where two bodies meet, a point belongs to one of them.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 

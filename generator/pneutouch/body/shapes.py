@@ -1,7 +1,5 @@
 """Shapes that a solid is put together from: a body turned about any axis, a prism on any plane, a round hole along z."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Literal, Protocol

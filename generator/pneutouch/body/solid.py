@@ -1,7 +1,5 @@
 """The exact solid: a turned body or a prism with what is added to it and cut from it, a material and a role."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any

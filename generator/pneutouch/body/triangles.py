@@ -1,7 +1,5 @@
 """Measures of a triangle mesh, given as vertices (n, 3) in mm and triangles (m, 3) counter-clockwise seen from outside."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pneutouch.arrays import Array, Indices

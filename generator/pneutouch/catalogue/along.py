@@ -1,7 +1,5 @@
 """A quantity along the arc of the dome: values at knots, monotone cubic between them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Names and titles of what can be named, by kind."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from pneutouch.catalogue.library import KINDS, Library

@@ -1,7 +1,5 @@
 """A material mixed from two base resins: what a mixing curve and the catalogue's materials make of it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any

@@ -1,7 +1,5 @@
 """The command line. Heavy packages load inside the commands that use them: ``--help`` never pays."""
 
-from __future__ import annotations
-
 import gc
 import os
 import sys

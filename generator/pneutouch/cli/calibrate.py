@@ -1,7 +1,5 @@
 """``pneutouch calibrate``: fit the model to the sensor in hand."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

@@ -1,7 +1,5 @@
 """``pneutouch characterize``: measured data to figures, compared with the predicted ones."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

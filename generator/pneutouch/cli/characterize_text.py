@@ -1,7 +1,5 @@
 """A characterization as text."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from pneutouch.bench.figure import BY_KEY

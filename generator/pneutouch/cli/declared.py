@@ -1,7 +1,5 @@
 """Options of a command made from the declared fields of a file, so that unit, type and help stand in one place."""
 
-from __future__ import annotations
-
 import inspect
 import types
 import typing

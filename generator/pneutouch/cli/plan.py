@@ -1,7 +1,5 @@
 """``pneutouch plan``: a test plan for the laboratory."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

@@ -1,7 +1,5 @@
 """A test plan as text for people."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from pneutouch.cli.text import columns

@@ -1,7 +1,5 @@
 """A scan as text for people."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from pneutouch.cli.text import columns

@@ -1,7 +1,5 @@
 """``pneutouch select``: the inverse."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated, Any
 

@@ -1,7 +1,5 @@
 """A selection as text for people."""
 
-from __future__ import annotations
-
 from pneutouch.cli.text import columns
 from pneutouch.mechanics.atlas.respond import DEPTH, ENDS
 from pneutouch.selection import Candidate

@@ -1,7 +1,5 @@
 """``pneutouch show``: what a 3MF or a voxel stack holds."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

@@ -1,7 +1,5 @@
 """The content of a 3MF or of a voxel stack as text."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from pneutouch.cli.text import columns

@@ -1,7 +1,5 @@
 """What the commands print for people: plain text tables that fit a terminal."""
 
-from __future__ import annotations
-
 from typing import Any
 
 

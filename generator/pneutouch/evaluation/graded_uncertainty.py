@@ -7,8 +7,6 @@ the wall of `designs/graded-dome.toml`, unpressurised, is +0.05, on the usual me
 of the even wall of the same mean modulus, -0.47 too.
 """
 
-from __future__ import annotations
-
 from pneutouch.mechanics import Sensor
 
 GAP, STEEP_GAP = 0.2, 0.45

@@ -1,7 +1,5 @@
 """One design in several resins: what a campaign is planned for and simulated with."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 

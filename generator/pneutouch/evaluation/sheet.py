@@ -1,7 +1,5 @@
 """A datasheet's record made from an evaluation."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

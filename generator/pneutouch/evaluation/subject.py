@@ -1,7 +1,5 @@
 """A sensor as the print rules look at it: its bodies on their machines, and where they must meet."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

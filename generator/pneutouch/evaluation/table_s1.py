@@ -4,8 +4,6 @@ The solid's errors are computed once and shipped (``make chart`` writes the file
 computing them again would double the time of every prediction. The membrane's cost nothing and are computed here.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 from functools import lru_cache

@@ -1,7 +1,5 @@
 """A sensor's sensitivity over the driving pressure, with its interval, by the atlas."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

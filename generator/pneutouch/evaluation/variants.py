@@ -1,7 +1,5 @@
 """The same sensor in every resin: the curves that show what the offline parameter does."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pneutouch.errors import ComputationError

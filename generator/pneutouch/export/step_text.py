@@ -6,8 +6,6 @@ renumbered by walking the file from its roots, the roots are sorted by a hash of
 numbers are rounded above the noise of floating-point sums.
 """
 
-from __future__ import annotations
-
 import hashlib
 import itertools
 import re

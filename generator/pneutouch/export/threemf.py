@@ -6,8 +6,6 @@ whose mix is known is a composite of its base resins, any other material a base 
 because tray software rejects separate objects whose bounding boxes overlap.
 """
 
-from __future__ import annotations
-
 import ctypes
 import uuid
 from typing import Any

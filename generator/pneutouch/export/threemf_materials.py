@@ -1,7 +1,5 @@
 """Materials of a 3MF: a base material a body, or a composite of base resins where the mix is known."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from pneutouch.body import Body

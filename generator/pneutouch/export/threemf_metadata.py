@@ -6,8 +6,6 @@ therefore percent-encoded where XML would escape, continued in further entries w
 stand last.
 """
 
-from __future__ import annotations
-
 from typing import Any
 from urllib.parse import unquote
 

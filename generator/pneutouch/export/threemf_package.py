@@ -4,8 +4,6 @@ What is handed on is a fresh, plain archive of exactly the parts that were check
 anything else in the file. Nothing is extracted to disk.
 """
 
-from __future__ import annotations
-
 import io
 import struct
 import zipfile

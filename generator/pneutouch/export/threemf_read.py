@@ -1,7 +1,5 @@
 """Read a 3MF back: bodies with their materials, metadata, the recipe where there is one."""
 
-from __future__ import annotations
-
 import ctypes
 from collections.abc import Iterator
 from dataclasses import dataclass

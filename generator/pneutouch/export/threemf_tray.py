@@ -4,8 +4,6 @@ Materials sit on mesh objects, never on components objects (3MF core 1.4). Bodie
 components of one object: tray software rejects separate objects whose bounding boxes overlap.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any

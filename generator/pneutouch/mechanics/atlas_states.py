@@ -1,7 +1,5 @@
 """The model ``atlas``: the solid's answers looked up for a sensor, in the form that every model returns."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -10,8 +10,6 @@ a = (c^2 + h^2)/(2h) for the arc's radius and theta for the angle it spans; then
 rho = 0 gives the cap of state I.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Events under the plate: detected and located, never averaged over."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

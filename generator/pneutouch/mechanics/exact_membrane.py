@@ -4,8 +4,6 @@ The membrane equations solved by shooting, without assuming constant curvature o
 tests solve them again with an independent program and compare every row.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from pneutouch.arrays import Array

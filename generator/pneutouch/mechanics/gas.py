@@ -3,8 +3,6 @@
 The paper's eq. (15), (p_II + p_m) V_gt = (p_I + p_m) V_g, with a dead volume added on both sides.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from pneutouch.arrays import Array

@@ -3,8 +3,6 @@
 Equal to SciPy's `CubicHermiteSpline` to 3e-16; importing that takes 0.3 s, all imports of the solver 0.5 s.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from pneutouch.arrays import Array

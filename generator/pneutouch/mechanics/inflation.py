@@ -8,8 +8,6 @@ with C1 = mu/2,
 Its maximum is the limit point: beyond it the dome goes on growing at falling pressure.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """How far a sensor may be driven: limit point, break strain of the resin, range of the gauge."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

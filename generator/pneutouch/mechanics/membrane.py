@@ -1,7 +1,5 @@
 """The model ``membrane``: the paper's theory run for a sensor, states I and II."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pneutouch.arrays import Array

@@ -3,8 +3,6 @@
 With thickness stretch lambda and in-plane stretches lambda**-1/2, W = C1 (lambda^2 + 2/lambda - 3), C1 = mu/2.
 """
 
-from __future__ import annotations
-
 from pneutouch.arrays import Array
 
 

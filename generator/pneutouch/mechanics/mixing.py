@@ -4,8 +4,6 @@ Shear moduli in MPa, ``fraction`` the volume fraction of the stiff solid, arrays
 modulus at 0 and the stiff one at 1, and rises between.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The models, cheapest first: what the error of each is, where it holds, and the cheapest one that is good enough."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

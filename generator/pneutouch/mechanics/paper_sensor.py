@@ -1,7 +1,5 @@
 """The paper's sensor in any resin: the one with measurements, and the wall that a material file gives."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 

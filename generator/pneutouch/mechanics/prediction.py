@@ -1,7 +1,5 @@
 """A prediction: the results of a model for a sensor, and their document in boundary units."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, TypedDict
 

@@ -5,8 +5,6 @@ follow the paper where it gives one (sensitivity, section 3-B; stiffness dF/d(de
 the sensor makers' usual ones.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import NamedTuple
 

@@ -3,8 +3,6 @@
 SciPy's `elementwise.find_root` takes 9 ms for 100 roots where this takes 1.1 ms, and 0.5 s to import.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The model ``solid``: the paper's finite element study (section 2-C and Supplement B) run for a sensor."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Where on the arc of the dome a point of its wall lies."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pneutouch.arrays import Array

@@ -4,8 +4,6 @@ A piece counts at its lower end and not at its upper one, and a point on a cross
 share a piece therefore never both hold a point of it, and never both leave it out.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The meridian: a closed loop of pieces that sweeps a solid."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from itertools import pairwise

@@ -5,8 +5,6 @@ Moving the inner vertices of an arc off it by two thirds of the sagitta makes ev
 area of its arc. The greatest error falls to two thirds, so fewer chords meet the same tolerance.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Exact pieces of a meridian: straight lines and circular arcs in the (r, z) plane, lengths in mm."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

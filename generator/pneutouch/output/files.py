@@ -1,7 +1,5 @@
 """Write an output folder whole or not at all: written next to its place, then renamed into it."""
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import json

@@ -1,7 +1,5 @@
 """The manifest of an output folder: what it was made from, by which versions, and the digest of every file in it."""
 
-from __future__ import annotations
-
 import importlib.metadata
 from collections.abc import Mapping
 from typing import Any

@@ -1,7 +1,5 @@
 """Write a commented design file for a new design."""
 
-from __future__ import annotations
-
 import os
 import re
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Read a recipe that a 3MF carries: nothing in it is used before it is validated."""
 
-from __future__ import annotations
-
 import datetime
 import json
 import math

@@ -1,7 +1,5 @@
 """A sensor's bodies in one frame, and the gas that lies behind its cavity."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,7 +1,5 @@
 """The rigid bodies: a connector with its seat, port and mount, and the ring or plug that some seats add."""
 
-from __future__ import annotations
-
 from pneutouch.body import Solid
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.meridian import Meridian

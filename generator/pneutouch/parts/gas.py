@@ -1,7 +1,5 @@
 """The gas behind the cavity, exactly: channel, port and the gaps that are open to it, less what fills them."""
 
-from __future__ import annotations
-
 import math
 
 from pneutouch.catalogue import ResolvedDesign

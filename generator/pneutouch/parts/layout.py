@@ -11,8 +11,6 @@ flange; the seat holds it there, so the dome is clamped at z = 0.
                     | | | |             port: behind, or out of the plate's side
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The membrane: a hemisphere with a clamped rim and a flange, open at its base so that it can be cleaned."""
 
-from __future__ import annotations
-
 import math
 
 from pneutouch.meridian import Arc, Line, Meridian

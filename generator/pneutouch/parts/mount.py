@@ -1,7 +1,5 @@
 """Mounts: the rear faces of the connector and its mounting holes."""
 
-from __future__ import annotations
-
 import math
 
 from pneutouch.body import Bore, Feature, Frame, Turned, crossing

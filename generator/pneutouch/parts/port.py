@@ -4,8 +4,6 @@ A port is drawn in (radius, height over the plate's face): heights grow away fro
 goes on inside the plate.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

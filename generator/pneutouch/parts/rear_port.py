@@ -1,7 +1,5 @@
 """A port that points backwards, turned in one with the body that carries it."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from pneutouch.body import Feature, Frame

@@ -1,7 +1,5 @@
 """Seats: the faces of the connector that hold the flange, and the screws of a clamping ring."""
 
-from __future__ import annotations
-
 import math
 
 from pneutouch.body import Bore

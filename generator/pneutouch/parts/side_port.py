@@ -1,7 +1,5 @@
 """A port in the side of the plate, along +x: its boss, and the bore from the channel or the opening to its mouth."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Whether a layout has space for its parts: refused before anything is drawn, with the lengths that do not fit."""
 
-from __future__ import annotations
-
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.parts.layout import HEAD_GAP, Layout, finger_radius

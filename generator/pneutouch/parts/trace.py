@@ -1,7 +1,5 @@
 """Draw an outline corner by corner: a start, then for each face its tag and where it ends."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 

@@ -1,7 +1,5 @@
 """Run every rule over a subject."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from pneutouch.printability.finding import Finding

@@ -1,7 +1,5 @@
 """A second opinion on one mesh by pymeshlab, which is GPL and not part of the package's dependencies."""
 
-from __future__ import annotations
-
 import importlib
 from typing import Any, Protocol
 

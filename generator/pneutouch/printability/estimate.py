@@ -3,8 +3,6 @@
 Estimates for planning, from the same cubes that the rules look at; a slicer is more exact.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """A finding of a rule: what, where, how far off, and what would fix it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from os import PathLike

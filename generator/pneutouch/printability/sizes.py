@@ -1,7 +1,5 @@
 """Thin places against the printer's limits: what the rules on sizes share."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from pneutouch.printability.finding import Excess, Finding, Severity

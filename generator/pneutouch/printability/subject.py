@@ -17,8 +17,6 @@ A sensor's bodies become a subject like this::
 A coupon is a subject of one item and no joints.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Protocol

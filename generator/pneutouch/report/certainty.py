@@ -1,7 +1,5 @@
 """The section "Uncertainty" of a datasheet: intervals, sources and the model, as plain data."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from pneutouch.evaluation.sheet_data import SheetData

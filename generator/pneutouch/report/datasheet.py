@@ -1,7 +1,5 @@
 """The datasheet: one HTML page and one PDF from the same content and the same figures."""
 
-from __future__ import annotations
-
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.export.scene import cut_open
 from pneutouch.report import curves, pages, relaxation

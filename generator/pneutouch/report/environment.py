@@ -1,7 +1,5 @@
 """Temperature, speed, humidity and ageing: calculated or quoted, never guessed."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pneutouch.arrays import Array

@@ -1,7 +1,5 @@
 """What a datasheet adds for a graded membrane: two pictures, and the constant mixes it is compared with."""
 
-from __future__ import annotations
-
 from pneutouch.evaluation.chart_data import ComparedMembrane
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.report.graded import grade_section, graded_against_constant

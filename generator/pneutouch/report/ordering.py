@@ -1,7 +1,5 @@
 """The ordering code: every field of a part number has a meaning that can be read back."""
 
-from __future__ import annotations
-
 from pneutouch.catalogue import ResolvedDesign
 
 

@@ -1,7 +1,5 @@
 """A page and a PDF from the same content and the same figures: Jinja sets the one, Typst the other."""
 
-from __future__ import annotations
-
 import base64
 import datetime
 import json

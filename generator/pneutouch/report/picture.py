@@ -3,8 +3,6 @@
 Used for the PDF and the README, where a page cannot turn.
 """
 
-from __future__ import annotations
-
 import io
 import math
 

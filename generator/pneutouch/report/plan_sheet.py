@@ -1,7 +1,5 @@
 """The test plan as a sheet to print: order, instruments, steps, what must be read, and what to do when it is not."""
 
-from __future__ import annotations
-
 from itertools import groupby
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Notes on a port for drawing, print sheet and datasheet."""
 
-from __future__ import annotations
-
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.spec.part import Barb, Luer, PushIn, Thread
 

@@ -1,7 +1,5 @@
 """The print sheet: which body takes which resin, on which machine, in which orientation, and how to clean it."""
 
-from __future__ import annotations
-
 from pneutouch.body import Body
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.report import prose

@@ -1,7 +1,5 @@
 """The sentences of a datasheet that do not depend on a calculation."""
 
-from __future__ import annotations
-
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.report.port_note import port_steps
 from pneutouch.spec.part import ClampedFlange, OnePiece, RobotFlange, Sleeve

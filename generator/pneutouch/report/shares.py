@@ -1,7 +1,5 @@
 """What makes a sensitivity uncertain: the sources' shares of its variance, as bars."""
 
-from __future__ import annotations
-
 from pneutouch.report.style import ACCENT, BOLD, INK, MUTED, figure, svg
 
 _MOST = 5

@@ -1,7 +1,5 @@
 """Contents of a datasheet as plain data: both the page and the PDF are set from it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from pneutouch import __version__

@@ -1,7 +1,5 @@
 """From candidates to an answer: the few best of each resin, or the requirements that prevent one."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 

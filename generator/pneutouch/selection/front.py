@@ -1,7 +1,5 @@
 """The trade-off: for each resin the greatest force range that goes with each sensitivity, at one driving pressure."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The search for a grade: fractions at the pole and at the rim that meet a target, by as few solid solves as possible."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

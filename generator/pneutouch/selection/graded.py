@@ -1,7 +1,5 @@
 """Graded membranes compared with constant ones: the solid's figures of each, and the constant mix that comes nearest to a target."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

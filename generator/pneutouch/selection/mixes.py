@@ -1,7 +1,5 @@
 """A mix of two resins as something to choose: fractions tried as if each were a resin, the best met exactly."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

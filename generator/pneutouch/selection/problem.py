@@ -1,7 +1,5 @@
 """The search in numbers: resins, bounds, the target. mm, N, MPa; sensitivities in kPa/N."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

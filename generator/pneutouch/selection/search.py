@@ -1,7 +1,5 @@
 """Candidates over all resins and all that is free: a coarse scan, and the sensitivity met exactly along one direction."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

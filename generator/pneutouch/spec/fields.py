@@ -4,8 +4,6 @@ The command line, the commented design file, the datasheet's table and the error
 declaration; nothing repeats it.
 """
 
-from __future__ import annotations
-
 import typing
 from dataclasses import dataclass
 from typing import Any, Literal

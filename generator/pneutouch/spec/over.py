@@ -1,7 +1,5 @@
 """The grammar of ``table.key=VALUES``: values with commas between, or a range ``from:to:count``."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

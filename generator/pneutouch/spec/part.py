@@ -1,7 +1,5 @@
 """Catalogue parts of the connector: tubes, ports, seats and mounts, each one TOML with its source. Lengths in mm."""
 
-from __future__ import annotations
-
 from typing import Annotated, Literal
 
 from pydantic import Field

@@ -1,7 +1,5 @@
 """A printer profile: what the machine can hold, resolve and build."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 from pydantic import Field, field_validator

@@ -1,7 +1,5 @@
 """Read a TOML file into a model, or report which key is wrong and the correct form."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Iterable, Mapping
 from pathlib import Path

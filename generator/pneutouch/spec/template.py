@@ -1,7 +1,5 @@
 """A commented design file, written from the declarations."""
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Mapping
 from typing import Any

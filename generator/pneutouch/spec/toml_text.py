@@ -1,7 +1,5 @@
 """Data as TOML text: plain values first, then tables, then arrays of tables."""
 
-from __future__ import annotations
-
 import datetime
 import json
 import re

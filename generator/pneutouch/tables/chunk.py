@@ -1,7 +1,5 @@
 """The result of every table reader: rows in chunks, and columns located by their names."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """CSV files in chunks of bytes that end at a line end, so that every row and every fault has its row number."""
 
-from __future__ import annotations
-
 import codecs
 import csv
 import io

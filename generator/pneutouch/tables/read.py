@@ -1,7 +1,5 @@
 """Columns of a CSV or parquet file, in chunks: a recording of any length is never in memory as a whole."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 

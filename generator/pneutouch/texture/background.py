@@ -7,8 +7,6 @@ are typical realisations (Schreiber & Schmitz 2000, doi 10.1016/S0167-2789(00)00
 and magnitudes random, with a smooth spectrum fitted between the lines.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

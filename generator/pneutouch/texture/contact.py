@@ -4,8 +4,6 @@ The plate is flat, rigid and frictionless, the gas trapped (Boyle, with the dead
 under the dome in a scan sinks far less than the dome itself (`substrate`), so the flat plate's contact is kept.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Is there a pattern at a target frequency: its amplitude over the noise floor, and how often noise alone would show that."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -5,8 +5,6 @@ that Psi is 2 at its peak w = (beta/gamma)^(1/gamma): L1 normalisation, where eq
 frequency. gamma = 3 and P^2 = 60 are MATLAB's ``cwt`` defaults, which the paper's figure 9 states.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass

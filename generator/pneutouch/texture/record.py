@@ -1,7 +1,5 @@
 """A measured signal from a CSV or parquet file: times in s and pressures in kPa."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """A scalogram: the wavelet transform of a signal with its times, voices and cone of influence, and its ridges."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import NamedTuple

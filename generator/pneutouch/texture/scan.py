@@ -9,8 +9,6 @@ to first order (physics.md 4.2); here the dome's whole curve is used. At a held 
 at all in this model: only the sensor's height follows the specimen. No friction, no inertia, no relaxation, no relief.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal
 

@@ -1,7 +1,5 @@
 """Which driving pressure shows a pattern, and which dome separates two patterns: many domes at once, by the atlas."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

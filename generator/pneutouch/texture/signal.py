@@ -1,7 +1,5 @@
 """A pressure signal sampled at even times, and its decimation."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -17,8 +17,6 @@ Both filters and both compliances are exact for their layers (Airy's function; J
 friction, uniform pressure over a disc, no surface relief.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple

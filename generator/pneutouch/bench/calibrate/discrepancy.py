@@ -5,8 +5,6 @@ Kennedy and O'Hagan (J. R. Stat. Soc. B 63, 2001, 425-464, DOI 10.1111/1467-9868
 parameter has too small an interval around a wrong value (Brynjarsdottir and O'Hagan, Inverse Problems 30, 2014,
 114007)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

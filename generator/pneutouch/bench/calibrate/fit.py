@@ -1,7 +1,5 @@
 """The fit: parameters of one sensor from measurements of it, with intervals."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

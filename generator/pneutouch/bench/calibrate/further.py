@@ -1,7 +1,5 @@
 """Further tests that would reduce the uncertainty most, predicted at the estimate before any measurement."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """What no interval holds: an error that all runs share, such as a gauge that reads too much."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pneutouch.arrays import Array

@@ -1,7 +1,5 @@
 """How well the fitted model meets the data: residuals by run, and what the model misses in every run alike."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Cross-validation: fit without a driving pressure, predict it, compare."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

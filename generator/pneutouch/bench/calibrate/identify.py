@@ -1,7 +1,5 @@
 """Parameters that the data alone, without priors, cannot determine."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Air injected into the closed sensor: the pressure at which wall and gas are in equilibrium."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pneutouch.arrays import Array, Flags, Index

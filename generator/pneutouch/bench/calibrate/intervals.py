@@ -3,8 +3,6 @@
 Errors that many values share (`discrepancy`) are unknowns next to the parameters: given them, runs are independent.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import NamedTuple
 

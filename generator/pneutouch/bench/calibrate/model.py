@@ -1,7 +1,5 @@
 """Values of the atlas at the measured travels and volumes, for many sets of parameters in one batch."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

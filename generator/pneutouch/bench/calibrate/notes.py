@@ -1,7 +1,5 @@
 """Notes on a calibration: data left out, undetermined parameters, further tests, and deviations of the model."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

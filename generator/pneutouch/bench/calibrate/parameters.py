@@ -1,7 +1,5 @@
 """The parameters that can be fitted: coordinates, bounds and priors."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 

@@ -4,8 +4,6 @@ SciPy's least_squares cannot leave out points that are outside the model during 
 12 times as often (8 to 15 calls for 1 to 4, four fits of simulated curves), for sums of squares equal within 1e-6.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The pressed curve of one specimen, as the simulator and the test plan read it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 

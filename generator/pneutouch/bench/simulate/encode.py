@@ -1,7 +1,5 @@
 """A simulated record as the bytes of a file, marked as simulated."""
 
-from __future__ import annotations
-
 import io
 
 import numpy as np

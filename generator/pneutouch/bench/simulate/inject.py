@@ -1,7 +1,5 @@
 """Air pushed in with a syringe: what the pressure must be, into the closed line alone and into the sensor."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pneutouch.arrays import Array

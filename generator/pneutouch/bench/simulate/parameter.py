@@ -1,7 +1,5 @@
 """A parameter of the simulator: declared once, with unit, default and the reason for it."""
 
-from __future__ import annotations
-
 from dataclasses import field, fields
 from typing import Any, TypedDict
 

@@ -1,7 +1,5 @@
 """One run on the simulated rig: a protocol, a curve, and the readings of the instruments."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import NamedTuple
 

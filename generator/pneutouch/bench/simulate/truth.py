@@ -1,7 +1,5 @@
 """True values of simulated runs: figures of each specimen and of its population."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 from typing import cast
 

@@ -3,8 +3,6 @@
 A standard linear solid on the curve: each term follows q' + q/tau = share f', with f the relaxed force or pressure
 rise. No Prony data of TangoPlus or its digital materials are published: shares and times are the simulator's own."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What a body is jetted from at every voxel: one base resin, or a share of a second one."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """What a stack is made from: the bodies of one print job, their blends, the raster and the seed."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """The manifest of a stack, ``stack.json``: what every colour and number in it stands for."""
 
-from __future__ import annotations
-
 import hashlib
 import math
 from collections.abc import Mapping, Sequence

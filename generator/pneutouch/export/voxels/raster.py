@@ -1,7 +1,5 @@
 """The raster of a stack: where the droplets of a print job lie in the design frame."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

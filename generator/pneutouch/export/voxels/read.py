@@ -1,7 +1,5 @@
 """Read a stack back, and hold it to the rules of the voxel print utility and to its own manifest."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import re

@@ -5,8 +5,6 @@ A voxel is skin where one of its six neighbours lies outside the body, whatever 
 face, where air could leak along it, and the membrane's faces are as smooth as the soft resin's.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from typing import Generic, TypeVar
 

@@ -1,8 +1,6 @@
 """The slices of a job: which resin lies in every voxel, layer by layer, in memory that does not grow with their
 number."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """Sensors as the atlas takes them."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

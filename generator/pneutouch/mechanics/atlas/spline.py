@@ -1,7 +1,5 @@
 """Uniform B-splines: few numbers, smooth derivatives, and a value from a handful of products."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 

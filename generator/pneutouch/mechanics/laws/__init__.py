@@ -1,7 +1,5 @@
 """Hyperelastic laws: one file each, and one line here."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from pneutouch.errors import InputError, nearest

@@ -1,7 +1,5 @@
 """A hyperelastic material: an isochoric energy with Poisson's ratio; its modulus is read off the energy."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """Mooney-Rivlin law, W = c10 (I1 - 3) + c01 (I2 - 3), mu = 2 (c10 + c01)."""
 
-from __future__ import annotations
-
 from functools import partial
 
 from pneutouch.mechanics.laws.hyperelastic import Hyperelastic

@@ -1,7 +1,5 @@
 """Neo-Hookean law, W = (mu/2)(I1 - 3): the paper's, eq. 7 with C1 = mu/2."""
 
-from __future__ import annotations
-
 from functools import partial
 
 from pneutouch.mechanics.laws.hyperelastic import Hyperelastic

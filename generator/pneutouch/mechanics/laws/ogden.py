@@ -3,8 +3,6 @@
 In this convention mu = sum mu_i. Sets in Ogden's 1972 form (mu_i/alpha_i) convert by mu_i -> mu_i alpha_i/2.
 """
 
-from __future__ import annotations
-
 from functools import partial, reduce
 
 from pneutouch.errors import InputError

@@ -1,7 +1,5 @@
 """Yeoh law, W = c10 (I1 - 3) + c20 (I1 - 3)^2 + c30 (I1 - 3)^3, mu = 2 c10."""
 
-from __future__ import annotations
-
 from functools import partial
 
 from pneutouch.mechanics.laws.hyperelastic import Hyperelastic

@@ -1,7 +1,5 @@
 """Banded storage of a symmetric matrix assembled from blocks, its factorisations and its inertia."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The exact volume a meridian line encloses, as a cubic polynomial of its nodal positions."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pneutouch.arrays import Array, Index

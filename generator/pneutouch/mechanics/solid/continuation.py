@@ -1,7 +1,5 @@
 """Follows one branch of equilibria as the plate comes down: predictor, solution, stability, cutback."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

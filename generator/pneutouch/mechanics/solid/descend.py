@@ -1,7 +1,5 @@
 """Bringing the plate down on one branch, and how the branch ends."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

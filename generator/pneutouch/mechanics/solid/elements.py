@@ -1,7 +1,5 @@
 """Shape functions, quadrature and the constant strain operators of a mesh (total Lagrangian)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

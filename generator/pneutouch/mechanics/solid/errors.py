@@ -1,7 +1,5 @@
 """Failures of a solve that callers handle; users see a ComputationError."""
 
-from __future__ import annotations
-
 from pneutouch.errors import BeyondLimitError, ComputationError
 
 

@@ -3,8 +3,6 @@
 This file does not load the solver, and so not SciPy: the atlas detects the same events.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Study 1: free inflation by volume, through and past the limit point, and the state at a driving pressure."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 

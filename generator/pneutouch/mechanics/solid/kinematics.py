@@ -1,7 +1,5 @@
 """Rows of strains and of unknowns in the arrays of the finite elements."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pneutouch.arrays import Array

@@ -1,7 +1,5 @@
 """Meridian meshes: quadrilaterals in the (r, z) half plane with named boundaries."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

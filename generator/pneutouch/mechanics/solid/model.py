@@ -1,7 +1,5 @@
 """The discrete body: energy, forces and stiffness of a wall, in lengths of R0 and stresses of mu."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Newton's method on the total energy of wall, filling and contact, with an energy line search."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The mesh of the meridian that is printed: the dome on its flange, held where the connector holds it."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pneutouch.arrays import Array, Index

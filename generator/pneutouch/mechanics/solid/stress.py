@@ -1,7 +1,5 @@
 """Stretch and stress on the two faces of the wall, where bending puts the largest."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The one entry: sensors, resin and printer to a budget."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from pneutouch.arrays import Flags

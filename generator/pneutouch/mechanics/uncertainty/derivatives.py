@@ -1,7 +1,5 @@
 """How the figures of many sensors move with their inputs: local derivatives, and what the inputs' whole spread does."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A budget as it leaves the program: the document of one sensor, and sentences for its datasheet."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

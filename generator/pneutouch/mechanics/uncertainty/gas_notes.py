@@ -1,7 +1,5 @@
 """What the air does to a sealed sensor: its temperature, and how fast it is pressed. Computed at the sensor's own states."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -5,8 +5,6 @@ level is not trusted for a relaxed modulus (it gives TangoPlus twice the modulus
 scale is compressed and the slope grows without bound towards 100.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 _OFFSET, _RISE = 56.0, 7.62336

@@ -1,7 +1,5 @@
 """The same sources sampled through the same atlas: the check of `propagate` (JCGM 101)."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """A batch with its inputs moved, and the figures of all that, in one call of the atlas."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 

@@ -1,7 +1,5 @@
 """From sources and derivatives to combined uncertainties and the share of each source (JCGM 100, 5.1)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

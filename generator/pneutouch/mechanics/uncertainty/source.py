@@ -1,7 +1,5 @@
 """One source of uncertainty: what it acts on, how far it spreads, and where its number comes from."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, Literal
 

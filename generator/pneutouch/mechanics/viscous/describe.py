@@ -1,7 +1,5 @@
 """Figures of a press, a hold and a loop of every state."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any

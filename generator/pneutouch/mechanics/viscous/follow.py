@@ -11,8 +11,6 @@ pressure. It is exact for small strains, for the first moment (the elastic dome 
 on the relaxed inflated state) and in the end (the elastic dome of the relaxed one).
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Whether a resin's relaxation and its ageing are known."""
 
-from __future__ import annotations
-
 from pneutouch.errors import InputError
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.viscous.prony import prony_series, relaxed

@@ -1,7 +1,5 @@
 """Linear relaxation of a resin as a Prony series."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The two runs of a viscous sensor: pressed and held, and pressed and let go; in mm, N, MPa and s."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TypeVar

@@ -1,7 +1,5 @@
 """The declaration of a coupon family: what it belongs to, how it is drawn, what is measured on it and with what."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal

@@ -7,8 +7,6 @@ with narrower ends: its fillet at the narrow part has 14 mm, its outer radius at
 D638).
 """
 
-from __future__ import annotations
-
 import math
 
 from pneutouch.body import Prism, Solid

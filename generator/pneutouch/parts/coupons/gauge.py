@@ -6,8 +6,6 @@ a staircase: four lengths along x, four along z and one along y, each measured b
 half of the least that vendors state to above what they recommend; they are our own choice.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import accumulate, pairwise
 

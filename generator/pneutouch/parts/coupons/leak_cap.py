@@ -4,8 +4,6 @@ It has the membrane's flange and sits in the same seat; a rigid disc stands in f
 the base plane. What gas is left is the dead volume alone, and what leaks is not the membrane.
 """
 
-from __future__ import annotations
-
 from pneutouch.body import Solid
 from pneutouch.meridian import Meridian
 from pneutouch.parts.coupons.coupon import PRESSURE, ROLE, Coupon, CouponContext, Nominal

@@ -4,8 +4,6 @@
 require 6 mm under the durometer, so two pucks are laid on one another for that; the paper does not state that it did.
 """
 
-from __future__ import annotations
-
 from pneutouch.body import Solid
 from pneutouch.parts.coupons.coupon import BALANCE, CALIPER, ROLE, Coupon, CouponContext, Nominal
 from pneutouch.parts.trace import cylinder

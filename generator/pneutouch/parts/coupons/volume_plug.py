@@ -4,8 +4,6 @@ The same push of air raises the pressure over the cap by one amount and over the
 volume known, the two give the dead volume behind them, and neither the syringe nor the weather enters (Boyle).
 """
 
-from __future__ import annotations
-
 import math
 
 from pneutouch.body import Solid

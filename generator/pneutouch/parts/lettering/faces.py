@@ -1,7 +1,5 @@
 """Flat faces that may carry a part mark: away from seals, glue, screw heads and the dome, with solid behind them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

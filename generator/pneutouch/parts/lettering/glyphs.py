@@ -1,7 +1,5 @@
 """Short labels as flat shapes whose strokes and gaps a printer can make, and how narrow a flat shape is."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 from pathlib import Path
 from typing import Any

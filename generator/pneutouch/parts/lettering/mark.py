@@ -1,7 +1,5 @@
 """Part marks: lettering on rigid bodies, a tally on the membrane's flange, cut in or raised in one batch."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any

@@ -4,8 +4,6 @@ Read counter-clockwise, looking onto the dome. A long groove is the start; then 
 wider gap, and a group for the copy. A narrow groove counts one, a middle one five. A is 1, B is 2 and so on.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

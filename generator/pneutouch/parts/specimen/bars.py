@@ -1,7 +1,5 @@
 """Straight bars across the path: built corner by corner, flush where they meet a side of the block, never cut."""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 

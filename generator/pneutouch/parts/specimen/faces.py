@@ -1,7 +1,5 @@
 """Triangulate a flat region from its directed boundary edges, in parts: ear clipping costs the square of the corners."""
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import dataclass
 

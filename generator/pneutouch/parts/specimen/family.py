@@ -1,7 +1,5 @@
 """What a family of patterns is given and gives back."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any

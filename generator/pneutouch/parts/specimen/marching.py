@@ -4,8 +4,6 @@ Each cube of the grid is six tetrahedra about its diagonal, the same six everywh
 ambiguous: a level set is closed but for its rim on the box, and two level sets of one function never touch.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Callable
 from dataclasses import dataclass

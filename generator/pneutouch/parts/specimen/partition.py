@@ -4,8 +4,6 @@ The common face is taken once and turned round, so both bodies have it corner by
 triangulated again, around the inclusion's footprints. No boolean is made, so nothing depends on a tolerance.
 """
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The rigid frame under a specimen: a plate with a hole in each corner and letters, conforming with the block on it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The family of strut lattices: checked, sized to the required volume fraction, and drawn."""
 
-from __future__ import annotations
-
 import itertools
 import math
 

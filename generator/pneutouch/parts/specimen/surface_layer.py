@@ -1,7 +1,5 @@
 """The family of minimal surfaces: checked, levelled to the volume fraction or thickness required, and drawn."""
 
-from __future__ import annotations
-
 from pneutouch.parts.specimen.family import (
     PatternContext,
     PatternFamily,

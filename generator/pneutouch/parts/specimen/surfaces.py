@@ -1,7 +1,5 @@
 """Minimal surfaces as sheets or networks: level sets of a sum of waves, marched on a grid that ends with the box."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

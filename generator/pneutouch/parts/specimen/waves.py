@@ -1,7 +1,5 @@
 """Sheets across the block whose top is a sine or a sum of sines: a section, sampled to the tolerance and drawn across."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Hollows that support has to come out of: what lies behind a neck, and what no straight jet reaches."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import product
 from typing import Any, cast

@@ -1,7 +1,5 @@
 """Rays through a mesh."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Points spread over a surface, the same ones every time."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import cast
 

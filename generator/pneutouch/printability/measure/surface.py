@@ -1,7 +1,5 @@
 """Faces, edges and smooth face groups of a triangle mesh."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from typing import cast

@@ -4,8 +4,6 @@ A place is what chords join of smooth face groups. Where fillets make one face o
 described by its narrowest.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any, Literal

@@ -1,7 +1,5 @@
 """Parts in cubes: what rays alone do not show, such as what lies behind a neck or under an overhang."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

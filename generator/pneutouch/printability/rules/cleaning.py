@@ -1,7 +1,5 @@
 """Whether support can be reached and washed out: hollows behind necks, corners out of sight, long thin channels."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pneutouch.arrays import Flags, Indices

@@ -1,7 +1,5 @@
 """Bodies must not overlap, and must meet where they are bonded. Measured on the meshes."""
 
-from __future__ import annotations
-
 from itertools import combinations
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Driving pressures against the limits of the sensor: limit point, break strain, gauge."""
 
-from __future__ import annotations
-
 from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.printability.finding import Excess, Finding
 from pneutouch.printability.view import PrintView

@@ -1,7 +1,5 @@
 """Edges too sharp to print, and triangles too thin to be written."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pneutouch.arrays import Array

@@ -1,7 +1,5 @@
 """Each job, as it stands, against the build envelope of its machine."""
 
-from __future__ import annotations
-
 from pneutouch.printability.finding import Excess, Finding
 from pneutouch.printability.view import PrintJob, PrintView
 

@@ -1,7 +1,5 @@
 """Features of one body against the smallest that its machine prints in its material. Measured on the mesh."""
 
-from __future__ import annotations
-
 from functools import partial
 from typing import NamedTuple
 

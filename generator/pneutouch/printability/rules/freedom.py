@@ -1,7 +1,5 @@
 """Whether the dome is free to move: its predicted shapes against the rigid bodies around it."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pneutouch.arrays import Array

@@ -1,7 +1,5 @@
 """Gaps inside a body and between bodies printed together against the narrowest that stays open."""
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import numpy as np

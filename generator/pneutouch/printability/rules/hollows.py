@@ -1,7 +1,5 @@
 """Closed hollows: support cannot be removed from them, and they cannot be inspected."""
 
-from __future__ import annotations
-
 from pneutouch.printability.finding import Excess, Finding
 from pneutouch.printability.view import PrintView
 

@@ -1,7 +1,5 @@
 """The dome's wall in whole layers and pixels, and what rounding it does to the sensitivity."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pneutouch.mechanics import Sensor

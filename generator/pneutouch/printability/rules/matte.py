@@ -1,7 +1,5 @@
 """Whether support touches the face that senses: it leaves it matte and rough."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pneutouch.arrays import Array, Flags

@@ -1,7 +1,5 @@
 """Whether the mesh is a solid, and as fine as the machine: no coarser, and not much finer."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pneutouch.arrays import Array

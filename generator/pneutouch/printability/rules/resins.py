@@ -1,7 +1,5 @@
 """The resins of each job against what its machine runs at once, in one mode."""
 
-from __future__ import annotations
-
 from pneutouch.printability.finding import Excess, Finding
 from pneutouch.printability.view import PrintJob, PrintView
 from pneutouch.spec.printer import Mode

@@ -1,7 +1,5 @@
 """A voxel stack before it is made: whether the machine takes one, and one of this size and so many colours."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from pneutouch.printability.finding import Excess, Finding

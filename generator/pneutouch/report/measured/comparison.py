@@ -1,7 +1,5 @@
 """What the measured datasheet is made from: groups of runs, each compared with its prediction."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any

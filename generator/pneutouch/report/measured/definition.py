@@ -1,7 +1,5 @@
 """What each figure means, in one line; formulas and sources are in docs/measuring.md."""
 
-from __future__ import annotations
-
 from pneutouch.bench.figure import FIGURES
 
 WHERE = "Formulas, units and sources: docs/measuring.md, section Definitions."

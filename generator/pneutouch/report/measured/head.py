@@ -1,7 +1,5 @@
 """The first page in words: what was measured, whether the target is met, the figures that count, and the conditions."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from statistics import median

@@ -1,7 +1,5 @@
 """The measured datasheet: one HTML page and one PDF from the same content and the same figures."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Numbers as the sheet prints them, and the relation of two intervals."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

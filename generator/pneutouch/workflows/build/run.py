@@ -1,7 +1,5 @@
 """Build a design: print files, prediction, datasheet, print sheet and manifest, in one folder."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """A voxel stack of a design: the bodies printed with the membrane, one PNG a layer, in a folder of its own."""
 
-from __future__ import annotations
-
 import re
 import shutil
 import tempfile

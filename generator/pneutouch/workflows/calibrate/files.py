@@ -1,7 +1,5 @@
 """A calibration as files: its folder, and the resin and design that predict, select and build take."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from pathlib import Path

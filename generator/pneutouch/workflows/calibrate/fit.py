@@ -1,7 +1,5 @@
 """A campaign and a design to the sensor in hand: its modulus, wall, dead volume and contact offset with their uncertainty."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """The command behind ``pneutouch calibrate``: a campaign's folder in, its calibration and files out."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any

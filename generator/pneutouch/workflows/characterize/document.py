@@ -1,7 +1,5 @@
 """What ``characterize`` prints: every figure measured and predicted, and everything that is doubtful."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from pneutouch.bench.figure import BY_KEY

@@ -1,7 +1,5 @@
 """A campaign's folder, or one file, to curves; a file that fails does not stop the others."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The prediction for each group of runs, and the plausibility of the files against it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """A campaign characterized: read, reduced to figures, compared with the prediction, written."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The small tables of a characterization: points, segments, and the results of leak and injection runs."""
 
-from __future__ import annotations
-
 import csv
 import io
 from collections.abc import Iterable, Sequence

@@ -1,7 +1,5 @@
 """What was measured against a target, and one age against another."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from itertools import groupby
 

@@ -1,7 +1,5 @@
 """Mixes of two resins in known fractions, to be printed as coupons."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from pneutouch.catalogue import Library

@@ -1,7 +1,5 @@
 """Write a set of coupons: STL, 3MF, the print-and-measure sheet, the results file to fill in, and a manifest."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 from pathlib import Path

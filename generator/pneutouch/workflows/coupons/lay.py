@@ -1,7 +1,5 @@
 """Coupons on a printer's tray: side by side in rows, never turned, because a gauge's x and y are the machine's."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The lab's own mixing curve, from coupons of two resins mixed in known fractions."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path

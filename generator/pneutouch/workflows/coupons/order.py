@@ -1,7 +1,5 @@
 """Which coupons are requested, each on its machine and in its material."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 

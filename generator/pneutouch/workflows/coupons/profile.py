@@ -1,7 +1,5 @@
 """A lab's own profile: the shipped one with what was measured in place of what was quoted."""
 
-from __future__ import annotations
-
 import os
 import tempfile
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Measured coupons to figures, and to profiles of the lab's own."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """The print-and-measure sheet: what to print and how, what to measure with what, cells to fill, formulas."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from pneutouch.parts.coupons import Coupon, Nominal

@@ -1,7 +1,5 @@
 """The results file to fill in: every nominal listed, every reading empty."""
 
-from __future__ import annotations
-
 import textwrap
 from typing import Any
 

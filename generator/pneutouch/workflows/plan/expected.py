@@ -1,7 +1,5 @@
 """What a planned campaign must read if the prediction holds, and where the rig cannot follow."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any

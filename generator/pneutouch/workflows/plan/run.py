@@ -1,7 +1,5 @@
 """A test plan: every run of a campaign in order, what it must read, and where the rig cannot follow."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A scan as the document that ``scan`` prints and ``scan.json`` keeps, and as its figure."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

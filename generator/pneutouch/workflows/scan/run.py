@@ -1,7 +1,5 @@
 """A sensor's scan over a specimen: both loaded, scanned at each driving pressure, patterns looked for, all written."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field, replace
 from pathlib import Path

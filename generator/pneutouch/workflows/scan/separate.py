@@ -1,7 +1,5 @@
 """Which dome distinguishes two patterns of a specimen: candidates over radius, wall, resin and driving pressure."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from typing import Any

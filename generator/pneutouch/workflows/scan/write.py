@@ -1,7 +1,5 @@
 """A scan as a folder: signals, document, figure and manifest."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The charts of a selection: what its target costs, and how far the chosen design can be tuned."""
 
-from __future__ import annotations
-
 import os
 import tempfile
 from dataclasses import replace

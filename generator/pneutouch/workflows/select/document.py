@@ -1,7 +1,5 @@
 """A selection as data and as text; and the chosen design as a file."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

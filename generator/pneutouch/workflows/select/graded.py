@@ -1,7 +1,5 @@
 """A graded selection: a grade for a target that no constant mix meets, and the constant mixes of its size."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

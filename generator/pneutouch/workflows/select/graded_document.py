@@ -1,7 +1,5 @@
 """A search for a grade as data, and the grade as a design file."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

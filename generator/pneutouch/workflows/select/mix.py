@@ -1,7 +1,5 @@
 """Two base resins to mix: resolved, checked against the printer, and offered to the search as resins."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

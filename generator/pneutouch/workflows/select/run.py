@@ -1,7 +1,5 @@
 """A target to designs: resolves its names, searches, confirms the best by the solid, writes the chosen one."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any

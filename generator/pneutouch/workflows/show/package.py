@@ -1,7 +1,5 @@
 """What a 3MF holds, as data."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """What a voxel stack holds, as data and as a picture."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The options of a simulation, and the check of them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import get_args
 

@@ -1,7 +1,5 @@
 """A campaign that was never measured: simulated runs of known sensors in a folder that reads like a measured one."""
 
-from __future__ import annotations
-
 import zlib
 from collections.abc import Callable, Iterator
 from pathlib import Path

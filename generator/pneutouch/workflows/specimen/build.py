@@ -1,7 +1,5 @@
 """Build a specimen: 3MF, STL, GLB, STEP of exact shapes, drawing, print sheet, true patterns and manifest."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path

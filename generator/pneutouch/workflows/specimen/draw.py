@@ -1,7 +1,5 @@
 """A specimen drawn: its patterns, and the two or three closed bodies that share their faces."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 

@@ -1,7 +1,5 @@
 """The print rules on a specimen. Bodies that fill one another leave no open space, so two subjects are checked."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

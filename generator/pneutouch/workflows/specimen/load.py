@@ -1,7 +1,5 @@
 """A specimen's file with every name resolved: its materials, its printer and the context of its patterns."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The print sheet of a specimen: resins, orientation, cleaning, layers with their frequencies, findings."""
 
-from __future__ import annotations
-
 from pneutouch.printability import Finding
 from pneutouch.units import grams
 from pneutouch.workflows.specimen.draw import SpecimenBodies

@@ -1,7 +1,5 @@
 """What is true of a specimen's patterns, as data: the ground truth that a scan is compared with."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from pneutouch.parts.specimen import PatternGeometry

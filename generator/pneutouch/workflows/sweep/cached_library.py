@@ -1,7 +1,5 @@
 """A library that reads every file once: thousands of points name the same few materials, printers and parts."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any

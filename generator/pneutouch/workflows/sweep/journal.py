@@ -4,8 +4,6 @@ A line is ``checksum json``. What does not agree with its checksum was torn by a
 and its points are computed again.
 """
 
-from __future__ import annotations
-
 import json
 import os
 from pathlib import Path

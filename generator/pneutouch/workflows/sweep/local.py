@@ -1,7 +1,5 @@
 """Chunks computed on this machine: in this process, or in a pool of others."""
 
-from __future__ import annotations
-
 import concurrent.futures as futures
 import contextlib
 import multiprocessing

@@ -1,7 +1,5 @@
 """A plan: which fields of a design are varied, over which values, and what each point of the sweep is."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """A plan from a sweep file or from the flags of the command line."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Run a sweep: resolve, go on where it stopped, compute, write the dataset, clear up."""
 
-from __future__ import annotations
-
 import contextlib
 from collections import Counter
 from collections.abc import Callable, Generator, Iterator

@@ -1,7 +1,5 @@
 """A plan with every name in it resolved: checked before any work starts, and carrying all that the work reads."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """The variables of a sweep's dataset: each declared once, with its place in a prediction, unit and meaning."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any

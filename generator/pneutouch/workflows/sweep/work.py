@@ -3,8 +3,6 @@
 A model that takes many points at once has its place in ``compute``.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """A tray's entries as designs, one a value, and the bodies of each that the tray's printer prints."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

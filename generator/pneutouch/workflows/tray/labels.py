@@ -1,7 +1,5 @@
 """The label list: which part is which, where it lies, what it is made of, and how its mark is read."""
 
-from __future__ import annotations
-
 import csv
 import io
 from typing import Any

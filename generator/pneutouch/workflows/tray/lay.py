@@ -1,7 +1,5 @@
 """A tray laid out: its parts meshed once a geometry, marked, packed, and split into jobs by resin."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace

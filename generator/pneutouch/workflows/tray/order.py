@@ -1,7 +1,5 @@
 """What a tray must hold: from a tray file or from the flags of the command line."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path

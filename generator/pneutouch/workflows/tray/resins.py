@@ -1,7 +1,5 @@
 """Resin changes: which materials can share a job of a printer, in how few jobs, and in which order."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise, permutations
 

@@ -1,7 +1,5 @@
 """The print rules over a tray: each distinct shape once, in the mode of its job, with its mark."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from pneutouch.parts.lettering.mark import shape_of

@@ -1,7 +1,5 @@
 """A part of a tray as the print rules look at it, its mark included."""
 
-from __future__ import annotations
-
 from pneutouch.printability.subject import PrintItem, PrintSubject
 from pneutouch.spec.printer import Mode, Printer
 from pneutouch.workflows.tray.lay import TrayPart

@@ -1,7 +1,5 @@
 """Write a tray's folder: 3MF, STL, label lists, views from above and the manifest, whole or not at all."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from pathlib import Path

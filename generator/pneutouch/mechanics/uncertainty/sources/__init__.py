@@ -1,7 +1,5 @@
 """Every source of uncertainty of n sensors that share a resin and a printer."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

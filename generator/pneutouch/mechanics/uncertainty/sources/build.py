@@ -1,7 +1,5 @@
 """The uncertainty of the print and its surroundings: wall, radius, air behind the cavity, weather, driving pressure."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pneutouch.arrays import Array

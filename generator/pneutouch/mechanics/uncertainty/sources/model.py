@@ -1,7 +1,5 @@
 """The uncertainty of the model itself: its errors against the paper's Table S1, and the numbers' own error."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 

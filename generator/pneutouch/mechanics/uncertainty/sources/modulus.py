@@ -1,7 +1,5 @@
 """The uncertainty of the shear modulus: between prints, between laboratories, and as the resin ages."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
