@@ -1,14 +1,13 @@
 """The small tables of a characterization: points, segments, and the results of leak and injection runs."""
 
-import csv
-import io
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import Any
 
 from pneutouch.bench.injection import dead_volume_of_cap
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.spec.campaign import CampaignRun
+from pneutouch.tables.csv_write import csv_bytes
 from pneutouch.units import KPA, ML
 from pneutouch.workflows.characterize.load import CampaignData
 
@@ -22,7 +21,7 @@ def points_csv(curves: Iterable[MeasuredCurve]) -> bytes:
         for curve in curves
         for d, f, p in zip(curve.indentation, curve.force, curve.rise, strict=True)
     ]
-    return _csv((*_RUN, "indentation_mm", "contact_force_N", "pressure_rise_kPa"), rows)
+    return csv_bytes((*_RUN, "indentation_mm", "contact_force_N", "pressure_rise_kPa"), rows)
 
 
 def segments_csv(curves: Iterable[MeasuredCurve]) -> bytes:
@@ -57,20 +56,12 @@ def segments_csv(curves: Iterable[MeasuredCurve]) -> bytes:
             )
     places = ("contact_or_start_s", "hold_start_or_end_s", "hold_end_s", "read_start_s", "read_end_s", "release_s")
     head = (*_RUN, "what", *places, "onset_mm", "driving_kPa", "why", "used")
-    return _csv(head, rows)
+    return csv_bytes(head, rows)
 
 
 def _of(curve: MeasuredCurve) -> list[Any]:
     run = curve.run
     return [run.file, run.sensor, run.resin, f"{run.driving_pressure_kPa:g}", run.run, f"{run.age_days:g}"]
-
-
-def _csv(head: Sequence[str], rows: Iterable[Sequence[Any]]) -> bytes:
-    buffer = io.StringIO()
-    writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(head)
-    writer.writerows(rows)
-    return buffer.getvalue().encode()
 
 
 InjectionRow = tuple[str, str, float, float | None, str]

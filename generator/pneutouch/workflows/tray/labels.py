@@ -1,10 +1,9 @@
 """The label list: which part is which, where it lies, what it is made of, and how its mark is read."""
 
-import csv
-import io
 from typing import Any
 
 from pneutouch.parts.lettering.tally import EXPLAINED
+from pneutouch.tables.csv_write import csv_bytes
 from pneutouch.units import grams
 from pneutouch.workflows.tray.lay import TrayJob, TrayLayout, TrayPart, counted, fill, layers
 from pneutouch.workflows.tray.rules import TrayFinding
@@ -17,11 +16,8 @@ def rows(layout: TrayLayout) -> list[dict[str, Any]]:
 
 def labels_csv(layout: TrayLayout) -> bytes:
     """The list for a spreadsheet or a label printer."""
-    text, listed = io.StringIO(), rows(layout)
-    writer = csv.DictWriter(text, list(listed[0]), lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(listed)
-    return text.getvalue().encode()
+    listed = rows(layout)
+    return csv_bytes(list(listed[0]), [list(row.values()) for row in listed])
 
 
 def labels_md(layout: TrayLayout, findings: tuple[TrayFinding, ...] = ()) -> bytes:
