@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 from collections.abc import Callable
 from functools import cache
@@ -18,6 +19,8 @@ from pneutouch.workflows.build import build
 from tests.running import Shared, in_new_process, in_process
 
 ROOT = Path(__file__).resolve().parents[1]
+
+os.environ.pop("PNEUTOUCH_HOME", None)
 
 settings.register_profile("everyday", deadline=None, max_examples=40, derandomize=True)
 settings.load_profile("everyday")

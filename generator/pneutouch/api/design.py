@@ -14,7 +14,7 @@ from pneutouch.api.fields import WHERE, changes, keywords, named_by_keyword, pla
 from pneutouch.api.prediction import Prediction
 from pneutouch.api.results import CheckResult
 from pneutouch.body import Body
-from pneutouch.catalogue import DesignSource, Library, load_scene
+from pneutouch.catalogue import DesignSource, Library, load_scene, user_folder
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
 from pneutouch.mechanics.models import model_options
@@ -91,9 +91,9 @@ class Design(show.Shown):
         return design
 
     def save(self, name_or_path: str | Path | None = None) -> Path:
-        """Write the design file, never over another; a bare name goes to ``designs/``. Returns its path."""
+        """Write the design file, never over another; a bare name goes to the user's ``designs/``. Returns its path."""
         path = Path(name_or_path or self.name)
-        folder = path.parent if path.suffix == ".toml" or len(path.parts) > 1 else Path("designs")
+        folder = path.parent if path.suffix == ".toml" or len(path.parts) > 1 else user_folder() / "designs"
         text = design_template(self.name, self.file.model_dump(by_alias=True), "Every key may be left out.")
         return write_design(path.name.removesuffix(".toml"), folder, text)
 

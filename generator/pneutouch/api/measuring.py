@@ -134,7 +134,7 @@ def calibrate(
     """Fit the model to the runs of one sensor of a campaign, and write the fit into ``out``.
 
     ``hold_out_kPa`` are driving pressures to predict from the others. ``save`` names a resin and a design to be written
-    into the working folder, which ``shadow`` lets hide others of that name.
+    into the user's folder, which ``shadow`` lets hide others of that name.
     """
     from pneutouch.workflows.calibrate.run import CalibrationOptions, run_calibration
 

@@ -1,6 +1,6 @@
 """The library: every kind of thing is a folder of TOML files, and a file's name is the thing's name.
 
-Files in the working folder come before the shipped ones, so a lab's own printer profile overrides ours.
+Files in the user's folder come before the shipped ones, so a lab's own printer profile overrides ours.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from typing import Any, TypeVar, cast
 
 from pydantic import BaseModel
 
+from pneutouch.catalogue.places import PACKAGE, shipped_root, user_folder
 from pneutouch.errors import InputError, nearest
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.material import Material
@@ -21,10 +22,6 @@ from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import read_toml, validate
 
 Model = TypeVar("Model", bound=BaseModel)
-
-_PACKAGE = Path(__file__).resolve().parents[1]
-_CHECKOUT = _PACKAGE.parents[1]
-
 
 ValidateFile = Callable[[dict[str, Any], str], BaseModel]
 """Validates a file's content; the second argument names the file. Raises InputError that names the key."""
@@ -75,12 +72,6 @@ KINDS: dict[str, FileKind] = {
 }
 
 
-def shipped_root() -> Path:
-    """The folder that holds ``designs`` and ``printprofiles``: the checkout, else the installed data."""
-    installed = _PACKAGE / "data"
-    return installed if installed.is_dir() else _CHECKOUT
-
-
 @dataclass(frozen=True, slots=True)
 class Library:
     """Everything that can be named. ``folders`` are searched in order; the first hit wins."""
@@ -89,13 +80,13 @@ class Library:
 
     @staticmethod
     def default() -> Library:
-        """The working folder, then what is shipped."""
-        return Library((Path.cwd(), shipped_root()))
+        """The user's folder, then what is shipped."""
+        return Library((user_folder().absolute(), shipped_root()))
 
     def paths(self, kind: str) -> dict[str, Path]:
         """Names of one kind with their files, sorted by name."""
         entry = KINDS[kind]
-        roots = (*self.folders, _PACKAGE) if entry.part else self.folders
+        roots = (*self.folders, PACKAGE) if entry.part else self.folders
         content: dict[str, Path] = {}
         for root in roots:
             folder = root / entry.folder

@@ -102,6 +102,10 @@ ClampOption = Annotated[
 ]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON document and nothing else.")]
 OutOption = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder that takes the output folder.")]
+DesignFolderOption = Annotated[
+    Path | None,
+    typer.Option("--out", metavar="DIR", help="Folder of the design file.", show_default="designs in your folder"),
+]
 
 
 @contextmanager
@@ -203,13 +207,20 @@ def list_(
 @app.command()
 def new(
     name: Annotated[str, typer.Argument(help="Name of the design: letters, digits, - and _.")],
-    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder of the design file.")] = Path("designs"),
+    out: DesignFolderOption = None,
 ) -> None:
     """Write a commented design file."""
     with reporting():
         from pneutouch.output.new import new_design
 
-        typer.echo(str(new_design(name, out)))
+        typer.echo(str(new_design(name, design_folder(out))))
+
+
+def design_folder(out: Path | None) -> Path:
+    """The folder given for a design file, else ``designs`` in the user's folder."""
+    from pneutouch.catalogue import user_folder
+
+    return user_folder() / "designs" if out is None else out
 
 
 def changes(set_: list[str] | None) -> dict[str, Any]:

@@ -27,7 +27,7 @@ def calibrate(
     ] = None,
     no_priors: Annotated[bool, typer.Option("--no-priors", help="Leave aside what is known before measuring.")] = False,
     save: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Write resin and design of this name into the working folder.")
+        str | None, typer.Option(metavar="NAME", help="Write resin and design of this name into your folder.")
     ] = None,
     shadow: Annotated[
         bool, typer.Option("--shadow", help="With --save: NAME may hide a resin or design of that name.")

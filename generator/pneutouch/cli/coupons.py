@@ -44,7 +44,7 @@ def coupons(
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option("--out", metavar="DIR", help="Folder.", show_default="outputs; with --results the working folder"),
+        typer.Option("--out", metavar="DIR", help="Folder.", show_default="outputs; with --results your folder"),
     ] = None,
     json: JsonOption = False,
 ) -> None:
@@ -52,7 +52,7 @@ def coupons(
     given = {key: value for key, value in locals().items() if key in _FLAGS and value}
     with reporting():
         if results is not None:
-            _enter(results, out or Path(), given, json)
+            _enter(results, out, given, json)
             return
         from pneutouch.workflows.coupons.build import build_coupons
 
@@ -63,7 +63,7 @@ def coupons(
             typer.echo(str(folder))
 
 
-def _enter(path: Path, out: Path, given: dict[str, Any], json: bool) -> None:
+def _enter(path: Path, out: Path | None, given: dict[str, Any], json: bool) -> None:
     """Write local profiles from a results file and report what changed."""
     from pneutouch.errors import InputError
 

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from pneutouch.cli.app import JsonOption, app, print_json, reporting
+from pneutouch.cli.app import DesignFolderOption, JsonOption, app, design_folder, print_json, reporting
 from pneutouch.cli.declared import FieldOption, field_tables, with_fields
 from pneutouch.errors import InputError
 from pneutouch.spec.target import Target
@@ -62,7 +62,7 @@ def select(
     charts: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Folder for the trade-off and tuning charts, SVG.")
     ] = None,
-    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder of the design file.")] = Path("designs"),
+    out: DesignFolderOption = None,
     json: JsonOption = False,
     **fields: Any,
 ) -> None:
@@ -72,17 +72,18 @@ def select(
         from pneutouch.workflows.select import document as shown
         from pneutouch.workflows.select.run import select as run
 
+        folder = design_folder(out)
         if write is not None:
-            check_name(write, out)
+            check_name(write, folder)
         request, where = _target(target, fields), str(target or "select")
         if request.given.graded:
-            _graded(request, where, write, out, charts=charts is not None, pick=pick != 1, json=json)
+            _graded(request, where, write, folder, charts=charts is not None, pick=pick != 1, json=json)
             return
         selection = run(request, where)
         designs, choice, path = selection.answer.designs, None, None
         if designs:
             choice = shown.pick(selection, pick)
-            path = shown.write_choice(selection, choice, write, out) if write is not None else None
+            path = shown.write_choice(selection, choice, write, folder) if write is not None else None
         if charts is not None:
             from pneutouch.workflows.select.charts import write_charts
 

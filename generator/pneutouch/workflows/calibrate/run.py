@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pneutouch.catalogue import DesignSource, Library, load_scene
+from pneutouch.catalogue import DesignSource, Library, load_scene, user_folder
 from pneutouch.errors import InputError
 from pneutouch.spec.read import parse_changes
 from pneutouch.workflows.calibrate.files import prepare, save, write_calibration
@@ -59,7 +59,11 @@ def run_calibration(
         title=loaded.campaign.title,
         notes=notes,
     )
-    saved = None if options.save is None else prepare(calibration, options.save, Path(), library, shadow=options.shadow)
+    saved = (
+        None
+        if options.save is None
+        else prepare(calibration, options.save, user_folder(), library, shadow=options.shadow)
+    )
     folder = write_calibration(calibration, options.out)
     written = [str(folder)]
     if saved is not None:

@@ -8,7 +8,7 @@ from pneutouch.bench.finding import CouponFindings, ReadingSource
 from pneutouch.bench.machine import gauges
 from pneutouch.bench.resin import dumbbell, puck
 from pneutouch.bench.volume import leak, volume
-from pneutouch.catalogue import KINDS, Library, load_scene
+from pneutouch.catalogue import KINDS, Library, load_scene, user_folder
 from pneutouch.errors import InputError
 from pneutouch.spec.coupon import CouponResults, Gauge, read_results
 from pneutouch.spec.material import Material
@@ -18,12 +18,12 @@ from pneutouch.workflows.coupons.mixing import local_curve
 from pneutouch.workflows.coupons.profile import MeasuredProfile, base_file, local_profiles, write_profiles
 
 
-def enter_results(path: Path, out: Path, library: Library | None = None) -> dict[str, Any]:
-    """Read a results file, compute, and write local profiles under ``out``; what was found and written, as data.
+def enter_results(path: Path, out: Path | None = None, library: Library | None = None) -> dict[str, Any]:
+    """Read a results file, compute, and write local profiles under ``out``, else in the user's folder; what was found and written, as data.
 
     Raises InputError for a bad file, for one without readings, and rather than overwrite a profile that is not ours.
     """
-    library = library or Library.default()
+    library, out = library or Library.default(), out or user_folder()
     results = read_results(path)
     findings = evaluate_results(results, str(path), library)
     here = ReadingSource(str(path), results.lab, results.date)

@@ -1,0 +1,36 @@
+"""Where files live: the user's folder, and the shipped one."""
+
+import os
+from pathlib import Path
+
+HOME = "PNEUTOUCH_HOME"
+"""Environment variable that names the user's folder."""
+
+IN_CHECKOUT = "user"
+"""The user's folder inside a checkout of the program, whose own ``designs`` are the shipped ones; git ignores it."""
+
+PACKAGE = Path(__file__).resolve().parents[1]
+_CHECKOUT = PACKAGE.parents[1]
+
+
+def shipped_root() -> Path:
+    """The folder that holds what is shipped, ``designs`` and ``printprofiles``: the installed data, else the checkout."""
+    installed = PACKAGE / "data"
+    return installed if installed.is_dir() else _CHECKOUT
+
+
+def user_folder() -> Path:
+    """The folder that holds the user's ``designs``, ``calibrations`` and ``printprofiles``.
+
+    It is ``$PNEUTOUCH_HOME``, else the working folder; in a checkout of the program, whose folders of these names are
+    shipped, it is ``user/``. Relative where it is found from the working folder, so that messages stay short.
+    """
+    named = os.environ.get(HOME)
+    if named:
+        return Path(named).expanduser()
+    return Path(IN_CHECKOUT) if _is_checkout(Path()) else Path()
+
+
+def _is_checkout(folder: Path) -> bool:
+    """Whether a folder is a checkout of the program: this one's, or another one's where the program is installed."""
+    return (folder / "generator/pneutouch/catalogue" / Path(__file__).name).is_file()
