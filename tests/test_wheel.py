@@ -1,53 +1,133 @@
-"""The wheel carries all that a user without a checkout needs, and works from there."""
+"""Wheel and source archive hold all that a user without a checkout needs, nothing private, and work from there."""
 
 from __future__ import annotations
 
+import re
+import shutil
 import subprocess
 import sys
+import tarfile
+import tomllib
 import zipfile
 
 import pytest
 
 from tests.conftest import ROOT
 
+SHIPPED = ("designs", "printprofiles", "docs/examples")
+PRIVATE = (
+    "designs/private.toml",
+    "designs/specimens/private.toml",
+    "designs/designs/private.toml",
+    "printprofiles/materials/private.toml",
+    "docs/examples/private.toml",
+    "user/designs/private.toml",
+    "calibrations/private.toml",
+)
+
+
+def tracked(*folders):
+    """Files that git knows, by their paths in the checkout."""
+    done = subprocess.run(["git", "ls-files", "-z", *folders], cwd=ROOT, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        pytest.skip("no git checkout")
+    return {name for name in done.stdout.split("\0") if name and (ROOT / name).is_file()}
+
 
 @pytest.fixture(scope="module")
-def unpacked(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("wheel")
-    subprocess.run(
-        [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(folder)],
-        cwd=ROOT,
-        check=True,
-        capture_output=True,
-    )
-    (wheel,) = folder.glob("*.whl")
+def checkout(tmp_path_factory):
+    """A copy of the checkout with private files in it, which no .gitignore hides."""
+    folder = tmp_path_factory.mktemp("checkout")
+    for name in tracked("generator", "tests", "README.md", "LICENSE", "pyproject.toml", *SHIPPED):
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / name, folder / name)
+    for name in PRIVATE:
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / "designs/paper-dome.toml", folder / name)
+    return folder
+
+
+def packed(checkout, kind, folder):
+    """The archive of a kind that is built from the checkout."""
+    words = [sys.executable, "-m", "hatchling", "build", "-t", kind, "-d", str(folder)]
+    subprocess.run(words, cwd=checkout, check=True, capture_output=True)
+    (archive,) = folder.iterdir()
+    return archive
+
+
+@pytest.fixture(scope="module")
+def unpacked(checkout, tmp_path_factory):
+    wheel = packed(checkout, "wheel", tmp_path_factory.mktemp("wheel"))
+    site = tmp_path_factory.mktemp("site")
     with zipfile.ZipFile(wheel) as archive:
-        archive.extractall(folder / "site")
-    return folder / "site"
+        archive.extractall(site)
+    return site
 
 
-def test_designs_profiles_parts_templates_and_fonts_are_inside(unpacked):
-    for name in (
-        "data/designs/paper-dome.toml",
-        "data/printprofiles/objet260-connex.toml",
-        "data/printprofiles/materials/FLX9960.toml",
-        "parts/ports/barb-4x2.5.toml",
-        "report/templates/datasheet.typ",
-        "parts/lettering/fonts/Inter-Regular.otf",
-        "parts/lettering/fonts/OFL.txt",
-    ):
-        assert (unpacked / "pneutouch" / name).is_file(), name
+def listed():
+    return tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["pneutouch"]["shipped"]
+
+
+def test_the_list_of_shipped_files_is_what_git_knows():
+    assert listed() == sorted(tracked(*SHIPPED))
+
+
+def test_the_wheel_holds_the_shipped_files_and_nothing_private(unpacked):
+    data = unpacked / "pneutouch/data"
+    assert sorted(p.relative_to(data).as_posix() for p in data.rglob("*") if p.is_file()) == listed()
+    code = {p.relative_to(unpacked).as_posix() for p in (unpacked / "pneutouch").rglob("*") if data not in p.parents}
+    known = {name.removeprefix("generator/") for name in tracked("generator/pneutouch")}
+    assert {name for name in code if (unpacked / name).is_file()} == known
+    assert not list(unpacked.rglob("*private*"))
+
+
+@pytest.mark.slow
+def test_the_source_archive_holds_nothing_that_git_does_not_know_and_makes_the_same_wheel(
+    checkout, unpacked, tmp_path_factory
+):
+    with tarfile.open(packed(checkout, "sdist", tmp_path_factory.mktemp("sdist"))) as archive:
+        folder = tmp_path_factory.mktemp("source")
+        archive.extractall(folder, filter="data")
+    (top,) = folder.iterdir()
+    held = {path.relative_to(top).as_posix() for path in top.rglob("*") if path.is_file()}
+    assert held - tracked() == {"PKG-INFO"}
+    assert set(listed()) <= held
+    with zipfile.ZipFile(packed(top, "wheel", tmp_path_factory.mktemp("again"))) as archive:
+        names = {name for name in archive.namelist() if name.startswith("pneutouch/")}
+    assert names == {p.relative_to(unpacked).as_posix() for p in (unpacked / "pneutouch").rglob("*") if p.is_file()}
+
+
+def run(unpacked, folder, code):
+    """Run code that sees the unpacked wheel and not the checkout."""
+    head = f"import sys; sys.path.insert(0, {str(unpacked)!r}); import pneutouch\nassert pneutouch.__file__.startswith({str(unpacked)!r})\n"
+    words = [sys.executable, "-I", "-c", head + code]
+    return subprocess.run(words, cwd=folder, capture_output=True, text=True, check=False)
 
 
 def test_the_installed_package_predicts_without_the_checkout(unpacked, tmp_path):
     code = (
-        f"import sys; sys.path.insert(0, {str(unpacked)!r}); import pneutouch\n"
-        f"assert pneutouch.__file__.startswith({str(unpacked)!r})\n"
         "from pneutouch.evaluation import evaluate\n"
         "e = evaluate('paper-dome'); assert e.scene.where.startswith(sys.path[0]), e.scene.where\n"
         "print(round(1e3 * e.prediction.limit_point.driving_pressure, 2))"
     )
-    result = subprocess.run(
-        [sys.executable, "-I", "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False
-    )
+    result = run(unpacked, tmp_path, code)
     assert result.stdout.strip() == "39.59", result.stderr
+
+
+def test_every_example_that_the_docs_name_is_reached_from_the_installed_package(unpacked, tmp_path):
+    pages = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+    named = {name for page in pages for name in re.findall(r"new .*?--from ([\w-]+)", page.read_text(encoding="utf-8"))}
+    assert {"fingertip", "seven-resins", "wall-and-resin", "campaign"} <= named
+    code = (
+        "from pneutouch.output.new import new_from\n"
+        f"for name in {sorted(named)!r}: print(*new_from(name, f'my-{{name}}').command)"
+    )
+    result = run(unpacked, tmp_path, code)
+    assert result.returncode == 0, result.stderr
+    for line in result.stdout.splitlines():
+        assert (tmp_path / line.split()[1]).exists() or line.startswith("check"), line
+
+
+def test_no_page_names_an_example_by_its_place_in_the_checkout():
+    for page in (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))):
+        assert "docs/examples" not in page.read_text(encoding="utf-8"), page

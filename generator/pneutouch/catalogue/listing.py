@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from pneutouch.catalogue.examples import examples
 from pneutouch.catalogue.library import KINDS, Library
 from pneutouch.errors import InputError, nearest
 from pneutouch.spec.design import DesignFile
@@ -13,6 +14,7 @@ from pneutouch.spec.specimen import Specimen
 _GROUPS = {
     "designs": ["designs"],
     "specimens": ["specimens"],
+    "examples": [],
     "materials": ["materials"],
     "mixing": ["mixing"],
     "printers": ["printers"],
@@ -21,12 +23,12 @@ _GROUPS = {
 
 
 def listing(kind: str | None, library: Library | None = None) -> dict[str, list[dict[str, str]]]:
-    """Names and titles by kind; ``kind`` is one of designs, specimens, materials, mixing, printers, parts, or None for all."""
+    """Names and titles by kind: designs, specimens, examples, materials, mixing, printers or parts; None for all."""
     if kind is not None and kind not in _GROUPS:
         raise InputError(f"unknown.{nearest(kind, _GROUPS)}", key="kind", value=kind)
     library = library or Library.default()
     groups = _GROUPS if kind is None else {kind: _GROUPS[kind]}
-    return {
+    listed = {
         group: [
             {"name": name, "title": _title(library.load(each, name)), **({"kind": each} if KINDS[each].part else {})}
             for each in kinds
@@ -34,6 +36,10 @@ def listing(kind: str | None, library: Library | None = None) -> dict[str, list[
         ]
         for group, kinds in groups.items()
     }
+    if "examples" in listed:
+        entries = [{"name": name, "title": one.title, "kind": one.kind} for name, one in examples().items()]
+        listed["examples"] = entries
+    return listed
 
 
 def _title(thing: Any) -> str:

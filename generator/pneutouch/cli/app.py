@@ -2,6 +2,7 @@
 
 import gc
 import os
+import shlex
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -188,11 +189,11 @@ def predict(
 @app.command("list")
 def list_(
     kind: Annotated[
-        str | None, typer.Argument(help="designs, specimens, materials, mixing, printers or parts.")
+        str | None, typer.Argument(help="designs, specimens, examples, materials, mixing, printers or parts.")
     ] = None,
     json: JsonOption = False,
 ) -> None:
-    """List designs, specimens, materials, mixing curves, printers and parts."""
+    """List designs, specimens, examples, materials, mixing curves, printers and parts."""
     with reporting():
         from pneutouch.catalogue.listing import listing
         from pneutouch.cli.text import listing_text
@@ -206,14 +207,27 @@ def list_(
 
 @app.command()
 def new(
-    name: Annotated[str, typer.Argument(help="Name of the design: letters, digits, - and _.")],
+    name: Annotated[str | None, typer.Argument(help="Name of the new file: letters, digits, - and _.")] = None,
+    from_: Annotated[
+        str | None,
+        typer.Option("--from", metavar="EXAMPLE", help="Copy a design, a specimen or an example: see pneutouch list."),
+    ] = None,
     out: DesignFolderOption = None,
 ) -> None:
-    """Write a commented design file."""
+    """Write a commented design file, or a copy of an example."""
     with reporting():
-        from pneutouch.output.new import new_design
+        from pneutouch.errors import InputError
+        from pneutouch.output.new import NewFile, new_design, new_from
 
-        typer.echo(str(new_design(name, design_folder(out))))
+        if from_ is not None:
+            made = new_from(from_, name, out)
+        elif name is not None:
+            path = new_design(name, design_folder(out))
+            made = NewFile(path, ("check", name if out is None else str(path)))
+        else:
+            raise InputError("no name for the new design", remedy="give a name, or an example with `from`")
+        typer.echo(str(made.path))
+        typer.echo(f"next: pneutouch {shlex.join(made.command)}", err=True)
 
 
 def design_folder(out: Path | None) -> Path:

@@ -82,6 +82,7 @@ def build(
             stack = None if plan is None else _write_voxels(plan, evaluation, out)
         for finding in findings:
             typer.echo(f"{finding.severity}: {finding.rule}: {finding.message}; {finding.fix}", err=True)
+        _report_left_out(folder)
         if json:
             print_json({"design": name, "folder": str(folder), **({"voxels": str(stack)} if stack else {})})
         else:
@@ -156,6 +157,17 @@ def _build_sensor(evaluation: Evaluation, out: Path) -> tuple[str, Path, list[Fi
     with _progress(STEPS) as report:
         folder = run(evaluation, out, report)
     return evaluation.scene.name, folder, evaluation.findings
+
+
+def _report_left_out(folder: Path) -> None:
+    """Report on stderr which files a build left out, and why: STEP where CadQuery is missing."""
+    from json import loads
+
+    from pneutouch.output.files import MANIFEST
+
+    manifest = loads((folder / MANIFEST).read_text(encoding="utf-8"))
+    for name, why in manifest.get("left_out", {}).items():
+        typer.echo(f"note: {name} is not written: {why}", err=True)
 
 
 def _planned(evaluation: Evaluation, out: Path, mode: str | None) -> VoxelPlan:

@@ -1,4 +1,7 @@
-"""STEP through CadQuery: the exact solids, revolved from their meridians, with names and colours."""
+"""STEP through CadQuery: the exact solids, revolved from their meridians, with names and colours.
+
+CadQuery is an extra; `step_obstacle` states why there is no STEP file without it.
+"""
 
 from __future__ import annotations
 
@@ -16,6 +19,19 @@ if TYPE_CHECKING:
     import cadquery as cq
 
 
+def step_obstacle() -> str | None:
+    """Why no STEP file can be written, in words; None where CadQuery is there."""
+    try:
+        import cadquery  # noqa: F401
+    except ModuleNotFoundError as error:
+        if (error.name or "").partition(".")[0] == "cadquery":
+            return 'CadQuery is not installed; pip install "pneutouch[cad]" adds it'
+        return f"CadQuery cannot be loaded: {error}"
+    except ImportError as error:
+        return f"CadQuery cannot be loaded: {error}"
+    return None
+
+
 def exact_solid(solid: Solid) -> cq.Solid:
     """The solid as a boundary representation, in the design frame, mm."""
     body = _turned(Turned(solid.base)) if isinstance(solid.base, Meridian) else _prism(solid.base)
@@ -24,6 +40,12 @@ def exact_solid(solid: Solid) -> cq.Solid:
     tools = [*map(_drill, solid.bores), *(_shape(feature.shape) for feature in solid.cuts)]
     whole = body.cut(*tools) if tools else body
     return whole.Solids()[0] if hasattr(whole, "Solids") else whole
+
+
+def step_files(name: str, solids: tuple[Solid, ...], offset: Array) -> tuple[dict[str, bytes], dict[str, str]]:
+    """``name.step`` with its content (see `step`); without CadQuery instead ``name.step`` with why it is left out."""
+    file, obstacle = f"{name}.step", step_obstacle()
+    return ({file: step(name, solids, offset)}, {}) if obstacle is None else ({}, {file: obstacle})
 
 
 def step(name: str, solids: tuple[Solid, ...], offset: Array) -> bytes:

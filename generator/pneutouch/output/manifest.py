@@ -25,8 +25,16 @@ def short_digest(document: Mapping[str, Any]) -> str:
 
 
 def versions() -> dict[str, str]:
-    """The versions that the bytes of a build depend on."""
-    return {"pneutouch": __version__, **{name: importlib.metadata.version(name) for name in LIBRARIES}}
+    """The versions that the bytes of a build depend on; an extra that is not installed is left out."""
+    installed = {name: version for name in LIBRARIES if (version := _installed(name)) is not None}
+    return {"pneutouch": __version__, **installed}
+
+
+def _installed(library: str) -> str | None:
+    try:
+        return importlib.metadata.version(library)
+    except importlib.metadata.PackageNotFoundError:
+        return None
 
 
 def entry(content: bytes) -> dict[str, Any]:

@@ -1,15 +1,27 @@
-"""Write a commented design file for a new design."""
+"""Write a new file to start from: a commented design, or a copy of a design, a specimen or an example."""
 
 import os
 import re
+from dataclasses import dataclass
 from pathlib import Path
 
-from pneutouch.catalogue import Library
-from pneutouch.errors import InputError
+from pneutouch.catalogue import KINDS, Library, user_folder
+from pneutouch.catalogue.examples import COMMANDS, examples
+from pneutouch.catalogue.library import is_specimen
+from pneutouch.errors import InputError, nearest
+from pneutouch.spec.read import read_toml
 from pneutouch.spec.template import design_template
 
 NAME_PATTERN = r"[A-Za-z0-9][A-Za-z0-9_-]*"
 NAME_RULE = "use letters, digits, - and _, starting with a letter or digit"
+
+
+@dataclass(frozen=True, slots=True)
+class NewFile:
+    """A file that was written, and the words of the command that takes it: ``("select", "fingertip.toml")``."""
+
+    path: Path
+    command: tuple[str, str]
 
 
 def new_design(name: str, folder: Path) -> Path:
@@ -17,27 +29,72 @@ def new_design(name: str, folder: Path) -> Path:
     return write_design(name, folder, design_template(name))
 
 
-def check_name(name: str, folder: Path) -> Path:
-    """The file of a new design. Raises InputError for a bad name, and for one that would hide another design."""
+def new_from(source: str, name: str | None = None, out: Path | None = None) -> NewFile:
+    """Copy a design, a specimen or an example, by name, or a design or a specimen by path, to a new name.
+
+    The copy goes to ``out``, else a design or a specimen to the user's folder, where it is found by its name, and an
+    example to the working folder; ``name`` left out is the example's own. Never over a file. Raises InputError.
+    """
+    library, shipped = Library.default(), examples()
+    for kind in ("designs", "specimens"):
+        if source in library.paths(kind):
+            return _copied(kind, library.paths(kind)[source], name, out)
+    if source in shipped:
+        example = shipped[source]
+        called, text = name or source, example.path.read_text(encoding="utf-8")
+        if example.kind == "campaign":
+            # The runs of a campaign lie in the folder of its file.
+            path = _create((out or Path()) / plain_name(called) / "campaign.toml", text)
+            return NewFile(path, (COMMANDS[example.kind], str(path.parent)))
+        path = _create((out or Path()) / f"{plain_name(called)}.toml", text)
+        return NewFile(path, (COMMANDS[example.kind], str(path)))
+    path = Path(source)
+    if path.suffix == ".toml" or path.is_file():
+        return _copied("specimens" if is_specimen(read_toml(path)) else "designs", path, name, out)
+    known = [*library.paths("designs"), *library.paths("specimens"), *shipped]
+    raise InputError(f"no such design, specimen or example.{nearest(source, known)}", key="from", value=source)
+
+
+def _copied(kind: str, path: Path, name: str | None, out: Path | None) -> NewFile:
+    KINDS[kind].validate(read_toml(path), str(path))
+    if name is None:
+        raise InputError(f"{path.stem} is the name of the original", key="name", remedy="give the copy another name")
+    folder = out or user_folder() / KINDS[kind].folder
+    written = write_design(name, folder, path.read_text(encoding="utf-8-sig"), kind)
+    # A name finds what lies in the user's folder alone.
+    return NewFile(written, ("check", name if out is None else str(written)))
+
+
+def plain_name(name: str) -> str:
+    """The name of a new file. Raises InputError where it is none."""
     if not re.fullmatch(NAME_PATTERN, name):
         raise InputError(NAME_RULE, key="name", value=name)
-    path = folder / f"{name}.toml"
-    known = Library.default().paths("designs").get(name)
+    return name
+
+
+def check_name(name: str, folder: Path, kind: str = "designs") -> Path:
+    """The file of a new design. Raises InputError for a bad name, and for one that would hide another design."""
+    path = folder / f"{plain_name(name)}.toml"
+    known = Library.default().paths(kind).get(name)
     if known is not None and known.resolve() != path.resolve():
-        problem = f"{known} is a design of this name, which the new file would hide"
+        problem = f"{known} is a {kind.removesuffix('s')} of this name, which the new file would hide"
         raise InputError(problem, key="name", value=name, remedy="give another name")
     return path
 
 
-def write_design(name: str, folder: Path, text: str) -> Path:
+def write_design(name: str, folder: Path, text: str, kind: str = "designs") -> Path:
     """Write the text of a design as ``folder/name.toml``; never over a file."""
-    path = check_name(name, folder)
+    return _create(check_name(name, folder, kind), text)
+
+
+def _create(path: Path, text: str) -> Path:
+    """Write a file that is not there yet."""
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        path.parent.mkdir(parents=True, exist_ok=True)
         handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)
     except FileExistsError:
-        what = "there is such a file already; give another name" if path.exists() else f"{folder} is not a folder"
-        raise InputError(f"{what}", file=path) from None
+        what = "there is such a file already; give another name" if path.exists() else f"{path.parent} is not a folder"
+        raise InputError(what, file=path) from None
     except OSError as error:
         raise InputError(str(error.strerror), file=path, remedy="give a folder you may write to with `out`") from None
     with os.fdopen(handle, "w", encoding="utf-8") as file:

@@ -1,5 +1,7 @@
 """The print sheet: which body takes which resin, on which machine, in which orientation, and how to clean it."""
 
+from collections.abc import Mapping
+
 from pneutouch.body import Body
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.report import prose
@@ -7,8 +9,11 @@ from pneutouch.report.ordering import part_number
 from pneutouch.units import ML
 
 
-def print_sheet(sheet: SheetData) -> str:
-    """Markdown for the operator. Print files carry names and colours; the resin is chosen at the machine."""
+def print_sheet(sheet: SheetData, left_out: Mapping[str, str]) -> str:
+    """Markdown for the operator. Print files carry names and colours; the resin is chosen at the machine.
+
+    ``left_out`` are files that were not written, and why.
+    """
     scene, assembly = sheet.scene, sheet.assembly
     rows = []
     for body, solid in zip(assembly.bodies, assembly.solids, strict=True):
@@ -20,6 +25,7 @@ def print_sheet(sheet: SheetData) -> str:
     deviation = max(assembly.deviation(body) for body in assembly.bodies)
     findings = "\n".join([f"- {f.severity}: {f.body}: {f.message}; {f.fix}." for f in sheet.findings] or ["- none"])
     table = "\n".join(rows)
+    missing = "".join(f"Not written: `{name}`. {why}.\n\n" for name, why in left_out.items())
     steps = "\n".join(f"{k}. {line}" for k, line in enumerate(prose.printing(scene), start=1))
     return f"""\
 # Print sheet: {_escaped(scene.design.document.title)}
@@ -34,7 +40,7 @@ All files share one frame, in millimetres, all coordinates positive. `{scene.nam
 assembly with material names and display colours; colours carry no meaning and the machine's software may ignore \
 the names: **choose the resin of each body by hand**.
 
-Chord tolerance {1e3 * scene.mesh_tolerance:g} µm, the finest step of the machines; greatest measured distance \
+{missing}Chord tolerance {1e3 * scene.mesh_tolerance:g} µm, the finest step of the machines; greatest measured distance \
 between mesh and exact surface {1e3 * deviation:.1f} µm.
 
 ## Steps

@@ -11,7 +11,7 @@ from pneutouch.evaluation.document import full_document
 from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.evaluation.sheet import sheet_data
 from pneutouch.export.scene import cut_open, glb, stl, viewer_html
-from pneutouch.export.step import step
+from pneutouch.export.step import step_files
 from pneutouch.export.threemf import threemf
 from pneutouch.export.threemf_read import RECIPE
 from pneutouch.output.files import check_writable, json_bytes, write_folder
@@ -55,13 +55,15 @@ def build(evaluation: Evaluation, out: Path, progress: StepReport = lambda step:
     progress("GLB")
     files[f"{scene.name}.glb"] = glb(bodies)
     progress("STEP")
-    files[f"{scene.name}.step"] = step(scene.name, assembly.solids, assembly.print_offset)
+    exact, left_out = step_files(scene.name, assembly.solids, assembly.print_offset)
+    files |= exact
     progress("datasheet")
     sheet = sheet_data(evaluation, input_hash(evaluation))
     files |= datasheet(sheet, viewer_html(bodies))
-    files["print-sheet.md"] = print_sheet(sheet).encode()
+    files["print-sheet.md"] = print_sheet(sheet, left_out).encode()
     progress("files")
-    write_folder(folder, with_manifest(files, scene.name, inputs(evaluation), **_measured(evaluation, bodies)))
+    about = {**_measured(evaluation, bodies), **({"left_out": left_out} if left_out else {})}
+    write_folder(folder, with_manifest(files, scene.name, inputs(evaluation), **about))
     return folder
 
 

@@ -49,9 +49,9 @@ def build_specimen(
     progress("rules")
     checked = findings(drawn)
     refuse(checked, scene.where)
-    files = _files(drawn, checked, progress)
+    files, left_out = _files(drawn, checked, progress)
     progress("files")
-    write_folder(folder, with_manifest(files, scene.name, inputs(scene), **_measured(drawn, checked)))
+    write_folder(folder, with_manifest(files, scene.name, inputs(scene), **_measured(drawn, checked), **left_out))
     return folder, checked
 
 
@@ -107,7 +107,10 @@ def _polygon(corners: list[tuple[float, float]]) -> tuple[Line, ...]:
     return tuple(Line(a, b, "") for a, b in pairwise([*corners, corners[0]]))
 
 
-def _files(drawn: SpecimenBodies, checked: list[Finding], progress: StepReport) -> dict[str, bytes]:
+def _files(
+    drawn: SpecimenBodies, checked: list[Finding], progress: StepReport
+) -> tuple[dict[str, bytes], dict[str, Any]]:
+    """The files, and the manifest's entry on what is left out."""
     scene, bodies = drawn.scene, drawn.printed
     whole = input_hash(inputs(scene))
     progress("3MF")
@@ -118,15 +121,17 @@ def _files(drawn: SpecimenBodies, checked: list[Finding], progress: StepReport) 
     files[f"{scene.name}.glb"] = glb(bodies)
     progress("STEP")
     exact = solids(drawn)
+    left_out: dict[str, str] = {}
     if exact:
-        from pneutouch.export.step import step
+        from pneutouch.export.step import step_files
 
-        files[f"{scene.name}.step"] = step(scene.name, exact, drawn.offset)
+        written, left_out = step_files(scene.name, exact, drawn.offset)
+        files |= written
     progress("drawing")
     files["drawing.svg"] = drawing_svg(drawn)
-    files["print-sheet.md"] = sheet(drawn, checked, whole).encode()
+    files["print-sheet.md"] = sheet(drawn, checked, whole, left_out).encode()
     files["specimen.json"] = json_bytes(truth(drawn))
-    return files
+    return files, {"left_out": left_out} if left_out else {}
 
 
 def _metadata(drawn: SpecimenBodies, whole: str) -> dict[str, str]:

@@ -1,13 +1,18 @@
 """The print sheet of a specimen: resins, orientation, cleaning, layers with their frequencies, findings."""
 
+from collections.abc import Mapping
+
 from pneutouch.printability import Finding
 from pneutouch.units import grams
 from pneutouch.workflows.specimen.draw import SpecimenBodies
 from pneutouch.workflows.specimen.truth import frequencies, title
 
 
-def sheet(drawn: SpecimenBodies, findings: list[Finding], input_hash: str) -> str:
-    """Markdown for the operator. Print files carry names and colours; the resin is chosen at the machine."""
+def sheet(drawn: SpecimenBodies, findings: list[Finding], input_hash: str, left_out: Mapping[str, str]) -> str:
+    """Markdown for the operator. Print files carry names and colours; the resin is chosen at the machine.
+
+    ``left_out`` are files that were not written, and why.
+    """
     scene, document = drawn.scene, drawn.scene.specimen.document
     speed = scene.specimen.scan.speed_mm_per_s
     listed = [f"- {f.severity}: {f.rule}: {f.body}: {f.message}; {f.fix}." for f in findings] or ["- none"]
@@ -22,6 +27,7 @@ def sheet(drawn: SpecimenBodies, findings: list[Finding], input_hash: str) -> st
         "one frame, "
         "in millimetres, all coordinates positive. Colours carry no meaning: **choose the resin of each body by "
         "hand**.",
+        *(f"Not written: `{name}`. {why}." for name, why in left_out.items()),
         "## Layers",
         f"Depths are from the scanned surface to the pattern's top; frequencies at {speed:g} mm/s.",
         "\n".join(_layers(drawn)),

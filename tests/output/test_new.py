@@ -1,0 +1,74 @@
+"""New files: a commented design, and copies of designs, specimens and examples."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from pneutouch.catalogue.examples import COMMANDS, examples
+from tests.conftest import ROOT
+
+
+def test_a_design_is_copied_with_its_comments_to_a_name_of_its_own(command, tmp_path):
+    done = command("new", "mine", "--from", "graded-dome")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "designs/mine.toml\n", "next: pneutouch check mine\n")
+    assert (tmp_path / "designs/mine.toml").read_text() == (ROOT / "designs/graded-dome.toml").read_text()
+    again = command("new", "mine", "--from", "graded-dome")
+    assert again.returncode == 2 and "there is such a file already" in again.stderr
+    nameless = command("new", "--from", "graded-dome")
+    assert nameless.returncode == 2 and "NAME: graded-dome is the name of the original" in nameless.stderr
+
+
+def test_a_design_is_copied_from_a_path_as_well_and_a_bad_one_is_not(command, tmp_path):
+    (tmp_path / "theirs.toml").write_text("[membrane]\ninner_radius_mm = 7\n")
+    assert command("new", "mine", "--from", "theirs.toml").returncode == 0
+    assert (tmp_path / "designs/mine.toml").read_text() == "[membrane]\ninner_radius_mm = 7\n"
+    (tmp_path / "bad.toml").write_text("[membrane]\ninner_radius_mm = -7\n")
+    bad = command("new", "other", "--from", "bad.toml")
+    assert bad.returncode == 2 and "inner_radius_mm = -7" in bad.stderr
+    assert not (tmp_path / "designs/other.toml").exists()
+
+
+def test_a_specimen_goes_where_specimens_are_found(command):
+    done = command("new", "waves", "--from", "texture-specimen")
+    assert (done.stdout, done.stderr) == ("designs/specimens/waves.toml\n", "next: pneutouch check waves\n")
+    found = json.loads(command("list", "specimens", "--json").stdout)["specimens"]
+    assert "waves" in [entry["name"] for entry in found]
+
+
+@pytest.mark.parametrize("name", examples())
+def test_an_example_goes_to_the_working_folder_and_its_command_is_named(name, command, tmp_path):
+    done = command("new", "--from", name)
+    kind = examples()[name].kind
+    path = f"{name}/campaign.toml" if kind == "campaign" else f"{name}.toml"
+    assert (done.returncode, done.stdout) == (0, f"{path}\n")
+    assert (tmp_path / path).read_bytes() == (ROOT / "docs/examples" / f"{name}.toml").read_bytes()
+    assert done.stderr == f"next: pneutouch {COMMANDS[kind]} {name if kind == 'campaign' else path}\n"
+    assert command("new", "--from", name).returncode == 2
+
+
+def test_the_campaign_is_one_whose_files_are_still_to_come(command):
+    command("new", "mine", "--from", "campaign")
+    done = command("characterize", "mine")
+    assert done.returncode == 2
+    assert "mine/tip-1-0kPa-1.csv: no such file" in done.stderr
+
+
+def test_examples_are_listed_with_their_kind(command):
+    listed = json.loads(command("list", "examples", "--json").stdout)["examples"]
+    assert {entry["name"]: entry["kind"] for entry in listed} == {
+        "campaign": "campaign",
+        "fingertip": "target",
+        "seven-resins": "tray",
+        "wall-and-resin": "sweep",
+    }
+    assert "What a fingertip needs" in command("list", "examples").stdout
+
+
+def test_what_there_is_not_is_refused(command):
+    unknown = command("new", "mine", "--from", "fingertipp")
+    assert unknown.returncode == 2 and "--from fingertipp" in unknown.stderr and "fingertip" in unknown.stderr
+    assert command("new").returncode == 2
+    assert command("new", "../x", "--from", "fingertip").returncode == 2
+    assert command("new", "paper-dome", "--from", "fingertip-dome").returncode == 2
