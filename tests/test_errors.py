@@ -3,14 +3,25 @@
 from __future__ import annotations
 
 import ast
+import datetime
 import pickle
 import re
+import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import pneutouch
-from pneutouch.errors import BeyondLimitError, ComputationError, InputError, PneutouchError, RuleBrokenError, joined
+from pneutouch.errors import (
+    BeyondLimitError,
+    ComputationError,
+    InputError,
+    PneutouchError,
+    RuleBrokenError,
+    joined,
+    shown,
+)
 from pneutouch.mechanics.solid.errors import NoConvergenceError
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import validate
@@ -28,8 +39,12 @@ COMMAND_LINE = re.compile(r"\bpneutouch [a-z]+ [^`\n]*")
         ({"file": "a.toml"}, "a.toml: wrong"),
         ({"file": Path("a.toml"), "key": "membrane.material"}, "a.toml: membrane.material: wrong"),
         ({"file": "a.toml", "key": "x", "value": 1.5, "remedy": "mend it"}, "a.toml: x = 1.5: wrong; mend it"),
-        ({"key": "noise_kPa", "value": "loud"}, "noise_kPa = 'loud': wrong"),
-        ({"key": "x", "value": "a" * 99}, f"x = '{'a' * 56}...: wrong"),
+        ({"key": "noise_kPa", "value": "loud"}, 'noise_kPa = "loud": wrong'),
+        ({"key": "x", "value": "a" * 300}, f'x = "{"a" * 199}...: wrong'),
+        (
+            {"file": "a\x1b[2J.toml", "key": "x", "value": "\x1b]0;y\x07"},
+            'a\\u001B[2J.toml: x = "\\u001b]0;y\\u0007": wrong',
+        ),
     ],
 )
 def test_a_message_is_composed_of_the_fields(fields, message):
@@ -39,6 +54,45 @@ def test_a_message_is_composed_of_the_fields(fields, message):
     for name in ("file", "key", "value", "remedy"):
         given = fields.get(name)
         assert getattr(error, name) == (str(given) if name == "file" and given else given)
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        "",
+        'a "b" \\ c',
+        "two\nlines\t\x7f\x85",
+        True,
+        3,
+        2.5,
+        1e-9,
+        ["a", "b"],
+        [[1, 2], []],
+        {"a": 1, "b": {"c": "d"}},
+        {},
+        datetime.date(2026, 11, 21),
+        float("inf"),
+    ],
+)
+def test_a_value_is_shown_as_toml_that_reads_back(value):
+    assert tomllib.loads(f"value = {shown(value)}")["value"] == value
+    assert shown(value).isprintable()
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (np.float64(1.5), "1.5"),
+        (np.array([1, 2]), "[1, 2]"),
+        (Path("a/b"), '"a/b"'),
+        (("a", None), '["a", nothing]'),
+        (..., "a Python object of type ellipsis"),
+        ([10**5000], "[a number of more than 200 digits]"),
+        ({"b", "a"}, '["a", "b"]'),
+    ],
+)
+def test_no_value_is_shown_as_python_shows_it(value, text):
+    assert shown(value) == text
 
 
 def test_the_command_line_turns_parameters_into_its_options():

@@ -4,17 +4,26 @@ Every error carries the exit code of the command line: 1 a rule or a target is n
 wrong, 3 a computation could not be completed. To raise one, give the problem and what is known about it::
 
     raise InputError("unknown material", file="a.toml", key="membrane.material", value="Tanga", remedy="give TangoPlus")
-    # a.toml: membrane.material = 'Tanga': unknown material; give TangoPlus
+    # a.toml: membrane.material = "Tanga": unknown material; give TangoPlus
 
 A parameter of a Python function is named by ``key``, without a file. Inside a problem or a remedy it
 stands in backquotes (``give `design` ``). The command line alone turns both into its options.
+
+A value inside a problem or a remedy is written by `shown`: as a user types it, never as Python shows it.
 """
 
+import datetime
 import difflib
+import json
+import math
+import numbers
 import re
-from collections.abc import Callable, Iterable, Sequence
-from os import PathLike
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from os import PathLike, fspath
 from typing import Any
+
+_LONGEST = 200
+"""Characters of a value that a message shows: enough to find it again."""
 
 
 class PneutouchError(Exception):
@@ -43,14 +52,16 @@ class PneutouchError(Exception):
     def message(self, option: Callable[[str], str | None] = lambda parameter: None) -> str:
         """The whole message; ``option`` translates a parameter's name into the name that the reader uses, or None."""
         known = option(self.key) if self.key and not self.file else None
-        if known:
-            value = f"{self.value:g}" if isinstance(self.value, float) else self.value
-            place = known if value is None else f"{known} {value}"
-        else:
-            place = self.key or "" if self.value is None else f"{self.key} = {_short(self.value)}"
+        place = known or self.key or ""
+        if self.value is not None:
+            # An option takes its value after a space, a field of a file after an equals sign.
+            equals = " = " if not known else "=" if " " in known else " "
+            place = f"{place}{equals}{_typed(self.value) if known else shown(self.value)}"
         text = self.problem if not self.remedy else f"{self.problem}; {self.remedy}"
         text = re.sub(r"`(\w+)`", lambda name: option(name[1]) or name[0], text)
-        first = ": ".join(part for part in (self.file, place, text) if part)
+        first = ": ".join(
+            part for part in (_escaped(self.file or ""), _escaped(place), _escaped(text, keep="\n")) if part
+        )
         return "\n".join((first, *(error.message(option) for error in self.others)))
 
     def __str__(self) -> str:
@@ -104,10 +115,61 @@ def nearest(word: str, known: Iterable[str]) -> str:
     return f" Known: {', '.join(candidates)}." if candidates else ""
 
 
+def shown(value: Any) -> str:
+    """A value in the form in which a user types it into a TOML file, on one line and cut where it is long.
+
+    Text stands in double quotes with control characters escaped; what TOML has no form for is named by its type.
+    """
+    return _cut(_toml(value))
+
+
 def _restored(kind: type[PneutouchError], args: tuple[Any, ...]) -> PneutouchError:
     return kind.__new__(kind, *args)
 
 
-def _short(value: Any) -> str:
-    text = repr(value)
-    return text if len(text) <= 60 else f"{text[:57]}..."
+def _typed(value: Any) -> str:
+    """A value as it is typed on a command line: text bare, a number in its shortest form."""
+    if isinstance(value, float):
+        return f"{value:g}"
+    return _cut(_escaped(value)) if isinstance(value, str) else shown(value)
+
+
+def _toml(value: Any) -> str:
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str | PathLike):
+        return _escaped(json.dumps(fspath(value), ensure_ascii=False))
+    if isinstance(value, numbers.Real):
+        return _number(value)
+    if isinstance(value, Mapping):
+        entries = (f"{_escaped(str(key))} = {_toml(item)}" for key, item in value.items() if item is not None)
+        return f"{{ {', '.join(entries)} }}" if value else "{}"
+    if isinstance(value, set | frozenset):
+        return _toml(sorted(value, key=str))
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(_toml, value))}]"
+    if isinstance(value, datetime.date | datetime.time):
+        return value.isoformat()
+    return "nothing" if value is None else f"a Python object of type {type(value).__name__}"
+
+
+def _number(value: numbers.Real) -> str:
+    if isinstance(value, numbers.Integral):
+        # Python writes no integer of more than 4300 digits.
+        return str(int(value)) if abs(int(value)) < 10**_LONGEST else "a number of more than 200 digits"
+    return repr(float(value)) if math.isfinite(value) else f"{float(value)}"
+
+
+def _escaped(text: str, keep: str = "") -> str:
+    """The text with what moves the cursor, rings or colours written as TOML escapes it."""
+    return "".join(c if c.isprintable() or c in keep else _code(c) for c in text)
+
+
+def _code(character: str) -> str:
+    return f"\\u{ord(character):04X}" if ord(character) < 0x10000 else f"\\U{ord(character):08X}"
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."

@@ -159,7 +159,7 @@ BAD = [
     ({"points": [ZERO, point(0.2, material="Agilus30")]}, "has Agilus30 in it"),
     ({"points": [ZERO, point(0.2, material="VeroClear")]}, "has no shear_modulus_MPa"),
     ({"points": [ZERO, point(0.2, shear_modulus_MPa=-1.0)]}, "shear_modulus_MPa"),
-    ({"soft": "Agilus30"}, "must be 'TangoPlus' and 'VeroClear', as the file's name"),
+    ({"soft": "Agilus30"}, 'must be "TangoPlus" and "VeroClear"'),
     ({"stiff": "TangoPlus"}, "another resin than soft"),
 ]
 

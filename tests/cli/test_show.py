@@ -75,7 +75,7 @@ def test_build_from_a_3mf_gives_the_same_bytes_in_a_folder_whose_library_changed
     paths = tmp_path / "printprofiles"
     (paths / "materials").mkdir(parents=True)
     for name in ("materials/TangoPlus", "materials/Agilus30", "materials/ABS", "objet260-connex", "abs-filament"):
-        (paths / f"{name}.toml").write_text("title = 'broken'\n")
+        (paths / f"{name}.toml").write_text('title = "broken"\n')
     result = command("build", "sensor.3mf", "--out", "again")
     assert result.returncode == 0, result.stderr
     assert "was made with" not in result.stderr

@@ -112,7 +112,7 @@ def test_an_aged_sensor_is_the_fresh_one_with_the_shifted_modulus(library):
 
 def test_ageing_of_a_resin_that_is_not_known_is_refused_with_the_designs_name(library, command):
     with pytest.raises(
-        InputError, match=r"agilus-dome.*membrane\.material = 'Agilus30': aged: the hardness of Agilus30"
+        InputError, match=r'agilus-dome.*membrane\.material = "Agilus30": aged: the hardness of Agilus30'
     ):
         evaluate("agilus-dome", model="atlas", library=library, aged=True)
     refused = command("predict", str(ROOT / "designs" / "agilus-dome.toml"), "--aged", "--model", "membrane")

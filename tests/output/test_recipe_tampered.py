@@ -58,13 +58,13 @@ TAMPERED = {
     ),
     "wall as text": (
         put("thick", *at("design", "membrane", "wall_thickness_mm")),
-        "design: membrane.wall_thickness_mm = 'thick': must be a number",
+        'design: membrane.wall_thickness_mm = "thick": must be a number',
     ),
     "unknown key": (put(1, *at("design", "membrane", "radius")), "design: membrane.radius: unknown key"),
     "steps without end": (put(10**9, *at("design", "indentation", "steps")), "from 2 to 1000"),
     "not a date": (put("soon", *at("design", "document", "date")), "document.date"),
     "document a list": (put([], *at("design", "document")), "document"),
-    "design a number": (put(3, *at("design")), "design = '3': must be a table"),
+    "design a number": (put(3, *at("design")), "design = 3: must be a table"),
     "a bad colour": (put("red", *at("membrane_material", "colour")), "membrane_material: colour"),
     "no source": (
         remove(*at("membrane_material", "shear_modulus_MPa", "source")),
@@ -79,17 +79,17 @@ TAMPERED = {
     "a step without end": (put(1e-12, *at("printer", "resolution", "x_um")), "their steps must be at least 0.001 mm"),
     "a rigid resin to compare": (put({}, *at("compared_resins", "ABS")), "compared_resins.ABS"),
     "resins a list": (put([], *at("compared_resins")), "compared_resins: must be a table"),
-    "model": (put("oracle", *at("model")), "model = 'oracle': unknown"),
+    "model": (put("oracle", *at("model")), 'model = "oracle": unknown'),
     "model a list": (put(["solid"], *at("model")), "model = "),
-    "clamp": (put("knee", *at("clamp")), "clamp = 'knee': unknown"),
-    "closure": (put("open", *at("closure")), "closure = 'open': unknown"),
-    "closure missing": (put(None, *at("closure")), "closure = None: must be given with model membrane"),
+    "clamp": (put("knee", *at("clamp")), 'clamp = "knee": unknown'),
+    "closure": (put("open", *at("closure")), 'closure = "open": unknown'),
+    "closure missing": (put(None, *at("closure")), "closure = nothing: must be given with model membrane"),
     "tolerance given": (put(0.1, *at("tolerance")), "tolerance = 0.1: must not be given with model membrane"),
     "inputs a list": (put([], "inputs"), "inputs"),
     "no inputs": (remove("inputs"), "inputs: missing"),
     "another form": (put(2, "format"), "of form 2; pneutouch"),
-    "form as text": (put("1", "format"), "of form '1'"),
-    "name with a way out": (put("../../home/x", "name"), "name = '../../home/x': must be a plain file name"),
+    "form as text": (put("1", "format"), 'of form "1"'),
+    "name with a way out": (put("../../home/x", "name"), 'name = "../../home/x": must be a plain file name'),
     "name absolute": (put("/etc/x", "name"), "must be a plain file name"),
     "name of another system": (put("..\\x", "name"), "must be a plain file name"),
     "name of dots": (put("..", "name"), "must be a plain file name"),
@@ -150,7 +150,7 @@ def test_what_cannot_be_evaluated_names_the_3mf(cheap, tmp_path):
         recipe["inputs"] |= {"model": "auto", "closure": "variational", "tolerance": 1e-4}
 
     strict = with_recipe(cheap, tmp_path / "b.3mf", tight)
-    with pytest.raises(InputError, match=r"b\.3mf: tolerance = '0\.01%'"):
+    with pytest.raises(InputError, match=r'b\.3mf: tolerance = "0\.01%"'):
         evaluate_recipe(read_recipe(read_threemf(strict)))
 
 

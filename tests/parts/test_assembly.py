@@ -62,7 +62,7 @@ def test_every_combination_of_parts_has_sound_bodies(parts):
 def test_a_plug_that_does_not_pass_through_the_sleeve_is_refused():
     parts = ("barb-4x2.5", "one-piece", "finger-16")
     with pytest.raises(
-        InputError, match=r"9\.25: too large for connector\.mount = 'finger-16': the plug, which goes in"
+        InputError, match=r'9\.25: too large for connector\.mount = "finger-16": the plug, which goes in'
     ):
         assembled(LIBRARY, parts)
     assembled(LIBRARY, parts, *SMALL)
@@ -176,10 +176,10 @@ def test_a_clamping_ring_rests_on_the_flange_and_closes_by_the_squeeze():
     [
         (
             "connector.seat=one-piece",
-            ["connector.seat = 'one-piece'", "print.connector_profile = 'abs-filament'", "'objet260-connex'"],
+            ['connector.seat = "one-piece"', 'print.connector_profile = "abs-filament"', '"objet260-connex"'],
         ),
-        ("pneumatics.tube=6x4", ["pneumatics.tube = '6x4'", "barb-4x2.5 takes 4x2.5"]),
-        ("pneumatics.tube=5x3", ["pneumatics.tube = '5x3'", "no such name among the tubes"]),
+        ("pneumatics.tube=6x4", ['pneumatics.tube = "6x4"', "barb-4x2.5 takes 4x2.5"]),
+        ("pneumatics.tube=5x3", ['pneumatics.tube = "5x3"', "no such name among the tubes"]),
         ("connector.port=barb-4.2x2.5", ["no such name among the ports", "Did you mean barb-4x2.5"]),
     ],
 )

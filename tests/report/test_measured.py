@@ -24,7 +24,7 @@ from pneutouch.report.measured.words import MINUS, between, difference, number, 
 from .campaign import INJECTIONS, RESINS, VERDICTS, measured_of
 
 PLOTS = ("Sensitivity over driving pressure", "Response", "Force over indentation", "Hysteresis", "Relaxation")
-FAILURE = ("runs/FLX9940-2-steps.csv", "row 20418: force_N = 'nan.': not a number; must be one")
+FAILURE = ("runs/FLX9940-2-steps.csv", 'row 20418: force_N = "nan.": not a number; must be one')
 QUESTION = ("runs/TangoPlus-1.csv", "driving pressure reads 12.1 kPa where the campaign says 0: swapped files?")
 
 

@@ -19,9 +19,9 @@ CASES = [
     (f"{PAIR}, fraction = -0.1", ["fraction = -0.1", "from 0 to 1"]),
     (f"{PAIR}, fraction = [0.1, 1.5]", ["fraction = 1.5", "from 0 to 1"]),
     (f"{PAIR}, fraction = nan", ["membrane.material.fraction = nan", "finite number"]),
-    (f'{PAIR}, fraction = "0.2"', ["membrane.material.fraction = '0.2'", "a number"]),
-    (f"{PAIR}, fraction = true", ["membrane.material.fraction = True", "a number"]),
-    (f'{PAIR}, fraction = [0.1, "a"]', ["membrane.material.fraction[1] = 'a'", "a number"]),
+    (f'{PAIR}, fraction = "0.2"', ['membrane.material.fraction = "0.2"', "a number"]),
+    (f"{PAIR}, fraction = true", ["membrane.material.fraction = true", "a number"]),
+    (f'{PAIR}, fraction = [0.1, "a"]', ['membrane.material.fraction[1] = "a"', "a number"]),
     (f"{PAIR}, fraction = [0.1]", ["1 values", "one number or 2 to 12 values"]),
     (f"{PAIR}, fraction = []", ["0 values", "one number or 2 to 12 values"]),
     (f"{PAIR}, fraction = [{LONG}]", ["13 values", "one number or 2 to 12 values"]),
@@ -37,12 +37,12 @@ CASES = [
     ),
     (f"{PAIR}, fraction = [0, 0.1, 0.2, 0.1], at = [0, 0.7, 0.6, 1]", ["at = [0.0, 0.7, 0.6, 1.0]: out of order"]),
     (f"{PAIR}, fraction = [0, 0.1, 0.2, 0.1], at = [0, 0.7, 0.7, 1]", ["out of order"]),
-    ('from = "TangoPlus", to = "TangoPlus", fraction = 0.1', ["to = 'TangoPlus'", "another resin than from"]),
+    ('from = "TangoPlus", to = "TangoPlus", fraction = 0.1', ['to = "TangoPlus"', "another resin than from"]),
     (
         'from = "TangoPlsu", to = "VeroClear", fraction = 0.1',
-        ["material.from = 'TangoPlsu'", "Did you mean TangoPlus?"],
+        ['material.from = "TangoPlsu"', "Did you mean TangoPlus?"],
     ),
-    ('from = "TangoPlus", to = "VeroClera", fraction = 0.1', ["material.to = 'VeroClera'", "Did you mean VeroClear?"]),
+    ('from = "TangoPlus", to = "VeroClera", fraction = 0.1', ['material.to = "VeroClera"', "Did you mean VeroClear?"]),
     (
         'from = "TangoPlus", to = "ABS", fraction = 0.1',
         ["no mixing curve of ABS in TangoPlus", "known: TangoPlus+VeroClear"],
@@ -74,7 +74,7 @@ def test_a_wrong_grade_says_what_is_wrong_and_what_would_be_right(tmp_path, grad
 @pytest.mark.parametrize("fraction", ["0.1", "[0, 0.2]"])
 def test_a_printer_that_does_not_hold_both_resins_is_refused(tmp_path, fraction):
     path = design(tmp_path, f"{PAIR}, fraction = {fraction}", '[print]\nprofile = "abs-filament"')
-    with pytest.raises(InputError, match=r"print\.profile = 'abs-filament'.*cannot run TangoPlus \+ .* VeroClear"):
+    with pytest.raises(InputError, match=r'print\.profile = "abs-filament".*cannot run TangoPlus \+ .* VeroClear'):
         load_scene(path, None, LIBRARY)
 
 

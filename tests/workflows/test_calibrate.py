@@ -177,9 +177,9 @@ def test_runs_of_other_sensors_and_kinds_are_not_taken(observations, scene):
     assert notes == []
     with pytest.raises(InputError, match="sensor: the campaign holds A, B; name one"):
         observations_of(both, [curve], [], scene)
-    with pytest.raises(InputError, match="sensor = 'C': no such sensor"):
+    with pytest.raises(InputError, match='sensor = "C": no such sensor'):
         observations_of(both, [curve], [], scene, "C")
-    with pytest.raises(InputError, match="sensor = 'B': no readable run"):
+    with pytest.raises(InputError, match='sensor = "B": no readable run'):
         observations_of(both, [curve], [], scene, "B")
     held = CampaignRun(file="i.csv", sensor="A", resin="TangoPlus", kind="injection", driving_pressure_kPa=5.0)
     with pytest.raises(InputError, match=r"i\.csv: driving_pressure_kPa = 5: an injection must begin at ambient"):

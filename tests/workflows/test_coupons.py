@@ -83,13 +83,13 @@ def test_what_does_not_fit_is_refused():
 @pytest.mark.parametrize(
     ("asked", "said"),
     [
-        (CouponOptions(profile="objet"), "profile = 'objet': no such name among the printers"),
+        (CouponOptions(profile="objet"), 'profile = "objet": no such name among the printers'),
         (CouponOptions(materials=("Tango",)), "Did you mean TangoPlus"),
         (CouponOptions(materials=("Agilus30",)), "cannot run Agilus30"),
-        (CouponOptions(only=("pucks",)), "only = 'pucks': no such coupon. Did you mean puck"),
+        (CouponOptions(only=("pucks",)), 'only = "pucks": no such coupon. Did you mean puck'),
         (CouponOptions(only=("leak-cap",)), "give `design`"),
         (CouponOptions(only=("dumbbell",), materials=("VeroClear",)), "is for elastomer"),
-        (CouponOptions(copies={"puck": 0}), "copies = 'puck=0'"),
+        (CouponOptions(copies={"puck": 0}), 'copies = "puck=0"'),
         (CouponOptions(design="paper"), "paper: no such design"),
     ],
 )

@@ -177,7 +177,7 @@ def test_bad_readings_name_what_would_be_right(enter, tmp_path, points, said):
     [
         ("TangoPlus", "write two resins, SOFT+STIFF"),
         ("TangoPlus+TangoPlus", "write two resins, SOFT+STIFF"),
-        ("TangoPlus+Verro", "'Verro': no such name among the materials"),
+        ("TangoPlus+Verro", '"Verro": no such name among the materials'),
         ("VeroClear+TangoPlus", "is rigid; write the soft resin first"),
     ],
 )
@@ -190,14 +190,14 @@ def test_bad_pairs_are_said(enter, pair, said):
 @pytest.mark.parametrize(
     ("asked", "said"),
     [
-        (CouponOptions(mixing=("TangoPlus",)), "mixing = 'TangoPlus': write two resins"),
+        (CouponOptions(mixing=("TangoPlus",)), 'mixing = "TangoPlus": write two resins'),
         (CouponOptions(mixing=("TangoPlus+VeroBlue",)), "no such name among the materials"),
         (
             CouponOptions(mixing=("TangoPlus+ABS",)),
             "mixing: no mixing curve of ABS in TangoPlus; known: TangoPlus+VeroClear",
         ),
-        (CouponOptions(mixing=(PAIR,), profile="abs-filament"), f"mixing = '{PAIR}': the"),
-        (CouponOptions(mixing=(PAIR,), only=("gauge",)), "only = 'gauge'"),
+        (CouponOptions(mixing=(PAIR,), profile="abs-filament"), f'mixing = "{PAIR}": the'),
+        (CouponOptions(mixing=(PAIR,), only=("gauge",)), 'only = "gauge"'),
     ],
 )
 def test_bad_orders_are_said(asked, said):

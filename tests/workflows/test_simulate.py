@@ -145,14 +145,14 @@ def test_what_stops_short_is_said(library, tmp_path):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"kinds": ("stps",)}, "kinds = 'stps': unknown. Did you mean steps"),
+        ({"kinds": ("stps",)}, 'kinds = "stps": unknown. Did you mean steps'),
         ({"driving_pressures_kPa": (22.0, 22.0)}, "each once"),
         ({"driving_pressures_kPa": (45.0,)}, "beyond the limit point"),
         ({"rate": 1.0}, "rate_Hz = 1.0: must be from 10"),
         ({"specimens": 0}, "specimens = 0: must be from 1"),
         ({"resins": ("TangoPlus", "TangoPlus")}, "named twice"),
         ({"truth": SimulationTruth(rest=-1.0)}, "rest = -1"),
-        ({"kinds": KINDS, "model": "atlas"}, "model = 'atlas'"),
+        ({"kinds": KINDS, "model": "atlas"}, 'model = "atlas"'),
     ],
 )
 def test_what_cannot_be_is_refused_and_leaves_nothing(change, words, library, tmp_path):

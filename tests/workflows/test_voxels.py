@@ -126,7 +126,7 @@ def test_a_printer_without_voxels_is_refused_before_anything_is_written(library,
     scene = load_scene("paper-dome", None, library)
     plan = plan_voxels(assemble(scene), library=library)
     with pytest.raises(
-        RuleBrokenError, match=r"print\.profile = 'objet260-connex': .* takes no voxel stacks .* such as j735"
+        RuleBrokenError, match=r'print\.profile = "objet260-connex": .* takes no voxel stacks .* such as j735'
     ):
         write_voxels(plan, tmp_path, "abc")
     assert list(tmp_path.iterdir()) == []
@@ -154,7 +154,7 @@ def test_too_large_too_low_and_too_many_colours_are_found(library, tmp_path):
 
 
 def test_an_unknown_mode_is_named(library):
-    with pytest.raises(InputError, match=r"voxel_mode = 'High Mixx': unknown\. Did you mean High Mix"):
+    with pytest.raises(InputError, match=r'voxel_mode = "High Mixx": unknown\. Did you mean High Mix'):
         plan_voxels(small_assembly(), mode="High Mixx", library=library)
 
 
@@ -171,7 +171,7 @@ def test_a_mix_on_no_curve_is_refused(library):
     other = scene.membrane_material.model_copy(update={"base_resins": ["Agilus30", "VeroClear"]})
     assembly = assemble(replace(scene, membrane_material=other))
     with pytest.raises(
-        InputError, match=r"membrane\.material = 'FLX9960': no vendor publishes how much VeroClear is in it"
+        InputError, match=r'membrane\.material = "FLX9960": no vendor publishes how much VeroClear is in it'
     ):
         plan_voxels(assembly, library=library)
 
@@ -232,7 +232,7 @@ def test_check_and_build_refuse_a_printer_without_voxels(tmp_path):
     runner = CliRunner()
     result = runner.invoke(app, ["build", "paper-dome", "--model", "membrane", "--voxels", "--out", str(tmp_path)])
     assert result.exit_code == 1
-    assert "print.profile = 'objet260-connex'" in result.stderr
+    assert 'print.profile = "objet260-connex"' in result.stderr
     assert list(tmp_path.iterdir()) == []
     result = runner.invoke(app, ["check", "paper-dome", "--voxels"])
     assert result.exit_code == 1

@@ -48,7 +48,7 @@ class Comparison(show.Shown):
         return [*((name, *values) for name, values in self.inputs.items()), *figures]
 
     def _head(self) -> str:
-        return f"Comparison of {', '.join(repr(design.name) for design in self.designs)}"
+        return f"Comparison of {', '.join(design.name for design in self.designs)}"
 
 
 def compare(

@@ -9,7 +9,7 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.catalogue.along import ArcProfile
 from pneutouch.catalogue.library import Library
-from pneutouch.errors import InputError
+from pneutouch.errors import InputError, shown
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import ArcGrading, Material
 from pneutouch.spec.mixing import MixingCurve, MixingPoint
@@ -79,7 +79,7 @@ def mixing(
     where = str(paths[f"{soft}+{stiff}"])
     if (curve.soft, curve.stiff) != (soft, stiff):
         raise InputError(
-            f"soft = {curve.soft!r}, stiff = {curve.stiff!r}: must be {soft!r} and {stiff!r}, as the file's name",
+            f"soft = {shown(curve.soft)}, stiff = {shown(curve.stiff)}: must be {shown(soft)} and {shown(stiff)}, as the file's name",
             file=where,
         )
     rows = np.array([_resolved(point, curve, library, where) for point in curve.points])

@@ -8,7 +8,7 @@ from typing import Any
 
 from pneutouch.catalogue.library import Library
 from pneutouch.catalogue.mixture import mixed_material
-from pneutouch.errors import InputError
+from pneutouch.errors import InputError, shown
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import MaterialKind
 from pneutouch.spec.grade import Grade
@@ -182,7 +182,7 @@ def _check_runs(scene: ResolvedDesign, key: str, printer: Printer, material: Mat
         table, name = key.split(".")
         value = getattr(getattr(scene.design, table), name)
         raise InputError(
-            f"{key} = {value!r}: the {printer.title} cannot run {material.label}",
+            f"{key} = {shown(value)}: the {printer.title} cannot run {material.label}",
             file=scene.where,
             remedy=f"it runs {', '.join(printer.resins)}, {printer.resins_at_once} at once",
         )
@@ -192,11 +192,11 @@ def _check_one_piece(scene: ResolvedDesign) -> None:
     """A membrane grown onto its connector needs one machine that holds both."""
     if not isinstance(scene.seat, OnePiece):
         return
-    chosen, head = scene.design.print, f"{scene.where}: connector.seat = {scene.design.connector.seat!r}: "
+    chosen, head = scene.design.print, f"{scene.where}: connector.seat = {shown(scene.design.connector.seat)}: "
     if chosen.profile != chosen.connector_profile:
         raise InputError(
-            f"{head}both bodies grow in one print, so print.connector_profile = {chosen.connector_profile!r} must be "
-            f"{chosen.profile!r}, as print.profile"
+            f"{head}both bodies grow in one print, so print.connector_profile = {shown(chosen.connector_profile)} must be "
+            f"{shown(chosen.profile)}, as print.profile"
         )
     if scene.printer.mode_for(scene.membrane_material, scene.connector_material) is None:
         raise InputError(

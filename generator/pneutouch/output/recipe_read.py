@@ -9,7 +9,7 @@ from typing import Any, NoReturn
 
 from pneutouch import __version__
 from pneutouch.catalogue import KINDS, ResolvedDesign, check_scene
-from pneutouch.errors import InputError, nearest
+from pneutouch.errors import InputError, nearest, shown
 from pneutouch.evaluation.evaluate import CLAMPS, PredictionOptions, Resins
 from pneutouch.export.threemf_read import Package
 from pneutouch.mechanics.contact import CLOSURES
@@ -71,7 +71,7 @@ def _head(text: str, where: str) -> _Head:
         raise InputError("damaged: must be a table", file=where)
     if content.get("format", FORMAT) != FORMAT:
         raise InputError(
-            f"of form {content['format']!r}", file=where, remedy=f"pneutouch {__version__} reads form {FORMAT}"
+            f"of form {shown(content['format'])}", file=where, remedy=f"pneutouch {__version__} reads form {FORMAT}"
         )
     head = validate(_Head, content, where)
     name = head.name
@@ -98,7 +98,7 @@ def _check_keys(content: dict[str, Any], known: set[str], where: str) -> None:
 def _part(kind: str, content: Any, where: str) -> Any:
     """One thing of a kind, validated as its file would be."""
     if not isinstance(content, dict):
-        raise InputError(f"{where} = {str(content)[:60]!r}: must be a table")
+        raise InputError(f"{where} = {shown(content)}: must be a table")
     return KINDS[kind].validate(_dated(content) if kind == "designs" else content, where)
 
 
@@ -132,14 +132,14 @@ def _options(inputs: dict[str, Any], where: str) -> PredictionOptions:
     for key, used in needed.items():
         if used == (inputs[key] is None):
             raise InputError(
-                f"{key} = {inputs[key]!r}: must {'' if used else 'not '}be given with model {model}", file=where
+                f"{key} = {shown(inputs[key])}: must {'' if used else 'not '}be given with model {model}", file=where
             )
     if needed["closure"]:
         given["closure"] = _one_of(inputs, "closure", CLOSURES, where)
     if needed["tolerance"]:
         value = inputs["tolerance"]
         if type(value) not in (int, float) or not (math.isfinite(value) and 0 < value < 100):
-            raise InputError(f"tolerance = {str(value)[:60]}: must be a positive share, such as 0.02", file=where)
+            raise InputError(f"tolerance = {shown(value)}: must be a positive share, such as 0.02", file=where)
         given["tolerance"] = float(value)
     return PredictionOptions(**given)
 
@@ -147,7 +147,7 @@ def _options(inputs: dict[str, Any], where: str) -> PredictionOptions:
 def _one_of(inputs: dict[str, Any], key: str, known: Collection[str], where: str) -> str:
     value = inputs[key]
     if not isinstance(value, str) or value not in known:
-        raise InputError(f"{key} = {str(value)[:60]!r}: unknown.{nearest(str(value)[:60], known)}", file=where)
+        raise InputError(f"{key} = {shown(value)}: unknown.{nearest(str(value)[:60], known)}", file=where)
     return value
 
 

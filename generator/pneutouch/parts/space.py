@@ -1,7 +1,7 @@
 """Whether a layout has space for its parts: refused before anything is drawn, with the lengths that do not fit."""
 
 from pneutouch.catalogue import ResolvedDesign
-from pneutouch.errors import InputError
+from pneutouch.errors import InputError, shown
 from pneutouch.parts.layout import HEAD_GAP, Layout, finger_radius
 from pneutouch.spec.part import BoltCircle, OnePiece, RobotFlange, Sleeve
 
@@ -22,7 +22,7 @@ def check_space(scene: ResolvedDesign, layout: Layout) -> None:
     for what, (has, most) in _most(scene, layout).items():
         if has > most:
             raise InputError(
-                f"{head} large for connector.mount = {mount!r}: {what} is {has:.2f} mm in radius, there is space for "
+                f"{head} large for connector.mount = {shown(mount)}: {what} is {has:.2f} mm in radius, there is space for "
                 f"{most:.2f} mm; take a smaller dome, another seat or mount"
             )
 

@@ -9,6 +9,7 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
+from pneutouch.errors import shown
 from pneutouch.spec.design import Printable
 from pneutouch.spec.fields import Table, number
 
@@ -63,11 +64,11 @@ class ColumnMap(Table):
         for key, units in UNITS.items():
             unit = getattr(self, key).unit
             if unit not in units:
-                raise ValueError(f"{key}.unit = {unit!r}: must be one of {', '.join(units)}")
+                raise ValueError(f"{key}.unit = {shown(unit)}: must be one of {', '.join(units)}")
         names = [getattr(self, key).name for key in UNITS]
         for key, name in zip(UNITS, names, strict=True):
             if names.count(name) > 1:
-                raise ValueError(f"{key}.name = {name!r}: declared for two channels; must be one column each")
+                raise ValueError(f"{key}.name = {shown(name)}: declared for two channels; must be one column each")
         return self
 
 
@@ -90,7 +91,7 @@ class CampaignRun(Table):
     file: str = Field(min_length=1, description="Path of the CSV or parquet file, from the campaign's folder.")
     kind: RunKind = Field(default="steps", description="Kind of run: " + ", ".join(RunKind.__args__) + ".")  # type: ignore[attr-defined]
     sensor: Printable = Field(min_length=1, max_length=60, description="Name of the specimen.")
-    resin: str = Field(min_length=1, description=f"Name of its material, or {AS_DESIGNED!r}.")
+    resin: str = Field(min_length=1, description=f"Name of its material, or {shown(AS_DESIGNED)}.")
     driving_pressure_kPa: float = number(0.0, unit="kPa", low=0, high=1000, help="Gauge pressure before contact.")
     run: int = Field(default=1, ge=1, le=10_000, description="Number of the repetition.")
     date: datetime.date | None = Field(default=None, description="Day of the run.")
@@ -130,7 +131,7 @@ class Campaign(Table):
             same_file, same_run = files.setdefault(file, place), keys.setdefault(key, place)
             if same_file != place:
                 raise ValueError(
-                    f"runs[{place}].file = {run.file!r}: is that of runs[{same_file}] too; must be there once"
+                    f"runs[{place}].file = {shown(run.file)}: is that of runs[{same_file}] too; must be there once"
                 )
             if same_run != place:
                 raise ValueError(
@@ -139,7 +140,7 @@ class Campaign(Table):
                 )
             if resins.setdefault(run.sensor, run.resin) != run.resin:
                 raise ValueError(
-                    f"runs[{place}] ({run.file}): sensor {run.sensor!r} is of {run.resin} here and of "
+                    f"runs[{place}] ({run.file}): sensor {shown(run.sensor)} is of {run.resin} here and of "
                     f"{resins[run.sensor]} before; a sensor must be of one resin"
                 )
         return self

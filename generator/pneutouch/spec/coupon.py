@@ -12,7 +12,7 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, Field, ValidationError, model_validator
 
-from pneutouch.errors import InputError, nearest
+from pneutouch.errors import InputError, nearest, shown
 from pneutouch.spec.design import Printable
 from pneutouch.spec.fields import Table, table_of
 from pneutouch.spec.read import read_toml
@@ -29,7 +29,7 @@ def _readings(low: float, high: float, unit: str, least: int = LEAST_READINGS) -
                 raise ValueError(f"reading {place} = {value:g}: must be from {low:g} to {high:g} {unit}".rstrip())
         if values and len(values) < least:
             raise ValueError(
-                f"{values}: at least {least} readings, so that a spread can be computed; or [] if not measured"
+                f"{shown(values)}: at least {least} readings, so that a spread can be computed; or [] if not measured"
             )
         return values
 
@@ -207,7 +207,7 @@ def _explained(detail: Any) -> str:
     if kind == "missing":
         return f"{key}: missing; give {CouponResults.model_fields[last].description if last in CouponResults.model_fields else 'a number'}"
     message = str(detail["msg"]).removeprefix("Input ").replace("valid ", "").replace("dictionary", "table")
-    return f"{key} = {detail['input']!r}: {message}"
+    return f"{key} = {shown(detail['input'])}: {message}"
 
 
 def _owner(path: list[str]) -> type[Table]:

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
+from pneutouch.errors import shown
 from pneutouch.spec.fields import Table, name, number, numbers
 from pneutouch.spec.grade import ResinOrMix
 
@@ -25,7 +26,7 @@ def _within(low: float, high: float, unit: str) -> AfterValidator:
 
 def _printable(text: str) -> str:
     if not text.isprintable():
-        raise ValueError(f"{text!r} has characters that cannot be printed; it must be one line of printable text")
+        raise ValueError(f"{shown(text)} has characters that cannot be printed; it must be one line of printable text")
     return text
 
 

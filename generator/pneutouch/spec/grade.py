@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 from pydantic import ConfigDict, Discriminator, Field, Tag, model_validator
 
+from pneutouch.errors import shown
 from pneutouch.spec.fields import Table
 
 MOST_KNOTS = 12
@@ -44,7 +45,7 @@ class Grade(Table):
             if not 0 <= value <= 1:
                 raise ValueError(f"fraction = {value:g}: must be from 0 to 1")
         if self.from_ == self.to:
-            raise ValueError(f"to = {self.to!r}: must be another resin than from")
+            raise ValueError(f"to = {shown(self.to)}: must be another resin than from")
         if isinstance(self.fraction, float):
             if self.at is not None:
                 raise ValueError("at: knots need a fraction at each; give fraction = [..]")

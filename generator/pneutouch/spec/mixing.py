@@ -6,6 +6,7 @@ from itertools import pairwise
 
 from pydantic import Field, model_validator
 
+from pneutouch.errors import shown
 from pneutouch.spec.fields import Table
 
 
@@ -73,7 +74,7 @@ class MixingCurve(Table):
                         f"{getattr(one, side):g} at {one.fraction:g}; it must not fall"
                     )
         if self.soft == self.stiff:
-            raise ValueError(f"stiff = {self.stiff!r}: must be another resin than soft")
+            raise ValueError(f"stiff = {shown(self.stiff)}: must be another resin than soft")
         if fractions[0] != 0:
             raise ValueError(f"points: the first fraction is {fractions[0]:g}; must be 0, the soft resin alone")
         return self

@@ -99,7 +99,8 @@ def _explain(model: type[BaseModel], detail: Any, where: str) -> InputError:
     if not path:
         return InputError(str(detail["msg"]), file=where)
     if detail["type"] == "literal_error":
-        return InputError(f"must be {detail['ctx']['expected']}", file=where, key=key, value=detail["input"])
+        known = str(detail["ctx"]["expected"]).replace("'", '"')
+        return InputError(f"must be {known}", file=where, key=key, value=detail["input"])
     label = f"{key}[{index}]" if index is not None else key
     right = f"{_expected(detail)}{_right(owner, path)}".strip()
     return InputError(f"must be {right}" if right else detail["msg"], file=where, key=label, value=detail["input"])
@@ -116,6 +117,7 @@ def _expected(detail: Any) -> str:
         "float_type": "a number ",
         "int_type": "a whole number ",
         "finite_number": "a finite number ",
+        "bool_type": "true or false: ",
         "string_type": "text: ",
         "list_type": "a list of numbers, ",
         "model_type": "a table ",

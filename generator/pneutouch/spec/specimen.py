@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, SerializeAsAny, model_validator
 
-from pneutouch.errors import InputError, nearest
+from pneutouch.errors import InputError, nearest, shown
 from pneutouch.spec.design import DocumentHead, Printable
 from pneutouch.spec.fields import Table, name, number
 from pneutouch.spec.read import validate
@@ -32,7 +32,7 @@ class Block(Table):
     @model_validator(mode="after")
     def _two(self) -> Block:
         if self.matrix == self.inclusion:
-            raise ValueError(f"inclusion = {self.inclusion!r} is the matrix too; it must be another material")
+            raise ValueError(f"inclusion = {shown(self.inclusion)} is the matrix too; it must be another material")
         return self
 
 
@@ -262,5 +262,5 @@ def validate_specimen(content: dict[str, Any], where: str) -> Specimen:
 def _layer(content: Any, where: str) -> Layer:
     kind = content.get("kind") if isinstance(content, dict) else None
     if not isinstance(kind, str) or kind not in LAYERS:
-        raise InputError(f"{where}.kind = {kind!r}: unknown.{nearest(str(kind), LAYERS)}")
+        raise InputError(f"{where}.kind = {shown(kind)}: unknown.{nearest(str(kind), LAYERS)}")
     return validate(LAYERS[kind], content, where)

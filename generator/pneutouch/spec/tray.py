@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
+from pneutouch.errors import shown
 from pneutouch.spec.design import Printable
 from pneutouch.spec.fields import Table, number
 
@@ -84,7 +85,7 @@ class Entry(Table):
                 raise ValueError(f"{key} is in set and in over; it must be in one of them")
             repeated = next((value for k, value in enumerate(values) if value in values[:k]), None)
             if repeated is not None:
-                raise ValueError(f"over: {key}: {repeated!r} is there twice; raise copies instead")
+                raise ValueError(f"over: {key}: {shown(repeated)} is there twice; raise copies instead")
         return self
 
 

@@ -66,7 +66,7 @@ def test_a_dome_that_stood_its_pressure_is_stiffer_than_its_limit_pressure_impli
 @pytest.mark.parametrize(
     ("names", "words"),
     [
-        (["moduls"], "fit = 'moduls': no such parameter. Did you mean modulus"),
+        (["moduls"], 'fit = "moduls": no such parameter. Did you mean modulus'),
         (["wall", "wall"], "wall is there twice"),
         ([], "empty"),
     ],

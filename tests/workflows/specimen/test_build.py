@@ -105,7 +105,7 @@ def test_frame_matrix_and_inclusion_share_their_faces():
 
 def test_a_frame_takes_over_the_footprints_of_a_lattice(tmp_path):
     path = written(
-        tmp_path, '[[layer]]\nkind = "bcc"\ncell_mm = 4\nvolume_fraction = 0.2\n', "\n[frame]\nmark = 'A1'\n"
+        tmp_path, '[[layer]]\nkind = "bcc"\ncell_mm = 4\nvolume_fraction = 0.2\n', '\n[frame]\nmark = "A1"\n'
     )
     matrix, inclusion, frame = draw(load_specimen(path, library=LIBRARY)).bodies
     assert shared_area(matrix, frame) + shared_area(inclusion, frame) == pytest.approx(20 * 8)

@@ -54,9 +54,9 @@ REFUSED = {
         ["a network has none"],
     ),
     "crests at the surface": ('kind = "sinusoid"\npitch_mm = 4\n', ["depth_mm = 0", "at least 0.6 mm"]),
-    "unknown kind": ('kind = "bcd"\n', ["kind = 'bcd'", "bcc"]),
+    "unknown kind": ('kind = "bcd"\n', ['kind = "bcd"', "bcc"]),
     "unknown key": (BARS + "widht_mm = 1\n", ["widht_mm", "width_mm"]),
-    "wrong type": ('kind = "bars"\npitch_mm = "3"\n', ["pitch_mm = '3'", "a number"]),
+    "wrong type": ('kind = "bars"\npitch_mm = "3"\n', ['pitch_mm = "3"', "a number"]),
     "list of frequencies": ('kind = "random-phase"\ntarget_frequency_Hz = 1\n', ["target_frequencies_Hz"]),
 }
 
@@ -92,10 +92,10 @@ def test_far_too_many_cells(tmp_path):
 @pytest.mark.parametrize(
     ("assignment", "words"),
     [
-        ("block.inclusion=Agilus30", ["inclusion = 'Agilus30' is the matrix too"]),
-        ("block.inclusion=ABS", ["print.profile = 'j735'", "cannot hold", "ABS"]),
-        ("block.matrix=Agilus31", ["block.matrix = 'Agilus31'", "Agilus30"]),
-        ("print.profile=j736", ["print.profile = 'j736'", "j735"]),
+        ("block.inclusion=Agilus30", ['inclusion = "Agilus30" is the matrix too']),
+        ("block.inclusion=ABS", ['print.profile = "j735"', "cannot hold", "ABS"]),
+        ("block.matrix=Agilus31", ['block.matrix = "Agilus31"', "Agilus30"]),
+        ("print.profile=j736", ['print.profile = "j736"', "j735"]),
         ("block.length_mm=-3", ["block.length_mm = -3", "from 1 to 1000 mm"]),
         ("scan.speed_mm_per_s=0", ["scan.speed_mm_per_s = 0", "mm/s"]),
         ("frame.hole_diameter_mm=7", ["frame.hole_diameter_mm = 7", "frame.border_mm"]),

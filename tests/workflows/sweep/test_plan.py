@@ -29,7 +29,7 @@ BAD = {
     "out of bounds": (f"{BASE}[grid]\n{WALL} = [1, 60]", ["membrane.wall_thickness_mm = 60", "from 0.05 to 50 mm"]),
     "of another kind": (
         f'{BASE}[grid]\n{WALL} = [1, "thick"]',
-        ["membrane.wall_thickness_mm = 'thick'", "must be a number"],
+        ['membrane.wall_thickness_mm = "thick"', "must be a number"],
     ),
     "fits no radius": (
         f'{BASE}[grid]\n{WALL} = [1, 12]\n"membrane.inner_radius_mm" = [5, 9.25]',
@@ -37,15 +37,15 @@ BAD = {
     ),
     "no such resin": (
         f'{BASE}[grid]\n"membrane.material" = ["TangoPlus", "FLX9941"]',
-        ["membrane.material = 'FLX9941'", "Did you mean FLX9940?"],
+        ['membrane.material = "FLX9941"', "Did you mean FLX9940?"],
     ),
     "rigid dome": (
         f'{BASE}[grid]\n"membrane.material" = ["TangoPlus", "VeroClear"]',
-        ["membrane.material = 'VeroClear'", "must be elastomer"],
+        ['membrane.material = "VeroClear"', "must be elastomer"],
     ),
     "no such printer": (
         f'{BASE}[grid]\n{WALL} = [1]\n[set]\n"print.profile" = "j736"',
-        ["print.profile = 'j736'", "Did you mean j735?"],
+        ['print.profile = "j736"', "Did you mean j735?"],
     ),
     "set and varied": (
         f"{BASE}[grid]\n{WALL} = [1]\n[set]\n{WALL} = 2",
@@ -65,7 +65,7 @@ BAD = {
     "empty axis": (f"{BASE}[grid]\n{WALL} = []", ["membrane.wall_thickness_mm = []", "1 to 10000 values"]),
     "one value": (f"{BASE}[grid]\n{WALL} = 1.5", ["membrane.wall_thickness_mm = 1.5", "must be a list"]),
     "infinite": (f"{BASE}[grid]\n{WALL} = [1, inf]", ["membrane.wall_thickness_mm[1] = inf", "finite number"]),
-    "true": (f"{BASE}[grid]\n{WALL} = [true]", ["membrane.wall_thickness_mm[0] = True", "finite number"]),
+    "true": (f"{BASE}[grid]\n{WALL} = [true]", ["membrane.wall_thickness_mm[0] = true", "finite number"]),
     "half a range": (f"{BASE}[grid]\n{WALL} = {{from = 1, to = 2}}", ["from, to and count"]),
     "range of one": (
         f"{BASE}[grid]\n{WALL} = {{from = 1, to = 2, count = 1}}",
@@ -92,9 +92,9 @@ BAD = {
     "design a list": (f"[[design]]\n{WALL} = [1]", ["design = [", "must be a name"]),
     "unknown model": (
         f'design = "paper-dome"\nmodel = "solit"\n[grid]\n{WALL} = [1]',
-        ["model = 'solit'", "Did you mean solid?"],
+        ['model = "solit"', "Did you mean solid?"],
     ),
-    "unknown clamp": (f'{BASE}clamp = "bases"\n[grid]\n{WALL} = [1]', ["clamp = 'bases'", "Did you mean base?"]),
+    "unknown clamp": (f'{BASE}clamp = "bases"\n[grid]\n{WALL} = [1]', ['clamp = "bases"', "Did you mean base?"]),
     "unknown word": (f"{BASE}grit = 1", ["grit: unknown key", "Did you mean grid?"]),
     "grid a number": (f"{BASE}grid = 1", ["grid = 1: must be a table"]),
     "points a table": (f"{BASE}[point]\n{WALL} = 1", ["point: must be a list of tables"]),

@@ -7,7 +7,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.catalogue import Library
-from pneutouch.errors import InputError
+from pneutouch.errors import InputError, shown
 from pneutouch.meridian.arc import arc_share
 from pneutouch.spec.material import Material
 from pneutouch.spec.mixing import MixingCurve
@@ -40,7 +40,7 @@ def blend(material: Material, name: str, library: Library, where: str) -> ResinB
     if len(resins) == 1:
         return ResinBlend(resins)
     if len(resins) > 2:
-        raise InputError(f"{where} = {name!r}: mixed from {len(resins)} resins; voxels are mixed from two at most")
+        raise InputError(f"{where} = {shown(name)}: mixed from {len(resins)} resins; voxels are mixed from two at most")
     if material.along is not None:
         along = material.along
         stations, fractions = np.array(along.arc), np.array(along.stiff_fraction)
@@ -65,7 +65,7 @@ def _assumed(name: str, resins: tuple[str, ...], library: Library, where: str) -
             if point.material == name:
                 return point.fraction, point.source
     raise InputError(
-        f"{where} = {name!r}: no vendor publishes how much {resins[1]} is in it, and "
+        f"{where} = {shown(name)}: no vendor publishes how much {resins[1]} is in it, and "
         f"printprofiles/mixing/{curve_name}.toml has no point for it; give "
-        f"{{ from = {resins[0]!r}, to = {resins[1]!r}, fraction = .. }} instead"
+        f"{{ from = {shown(resins[0])}, to = {shown(resins[1])}, fraction = .. }} instead"
     )

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from pneutouch.body import Solid
-from pneutouch.errors import InputError
+from pneutouch.errors import InputError, shown
 from pneutouch.parts.specimen.mesh import Box, Mesh
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
@@ -32,8 +32,8 @@ class PatternContext:
 
     def refuse(self, number: int, key: str, value: Any, right: str) -> InputError:
         """The error for one value of a layer: names file, layer, key and value, and states what would be right."""
-        shown = f"{value:g}" if isinstance(value, float | int) else repr(value)
-        return InputError(f"layer[{number}].{key} = {shown}: {right}", file=self.where)
+        given = f"{value:g}" if isinstance(value, float | int) else shown(value)
+        return InputError(f"layer[{number}].{key} = {given}: {right}", file=self.where)
 
     def least(self, kind: str) -> float:
         """Smallest wall or pin in mm that the printer makes of the patterns' material."""

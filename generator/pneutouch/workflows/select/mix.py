@@ -6,7 +6,7 @@ import numpy as np
 
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.mixture import ResolvedMixingCurve, mixed_material, mixing
-from pneutouch.errors import InputError
+from pneutouch.errors import InputError, shown
 from pneutouch.mechanics.atlas_states import resin_outside_atlas
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.selection.mixes import levels
@@ -63,7 +63,7 @@ def pair_of(name: str, printer: Printer, library: Library, where: str, named: bo
     if printer.mode_for(pair.material(pair.grade(0.5 * float(pair.law.fraction[-1])))) is None:
         remedy = "name a pair that it holds with `mix`, or another printer with `profile`"
         raise InputError(
-            f"given.mix = {name!r}{'' if named else ' (none was named)'}: the {printer.title} cannot mix "
+            f"given.mix = {shown(name)}{'' if named else ' (none was named)'}: the {printer.title} cannot mix "
             f"{soft} with {stiff}; it runs {', '.join(printer.resins)}, {printer.resins_at_once} at once; "
             f"{remedy}",
             file=where,

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from pneutouch.catalogue import DesignSource
-from pneutouch.errors import InputError, nearest
+from pneutouch.errors import InputError, nearest, shown
 from pneutouch.evaluation.evaluate import CLAMPS
 from pneutouch.mechanics import MODEL_CHOICES
 from pneutouch.mechanics.contact import CLOSURES
@@ -58,7 +58,7 @@ class SweepPlan:
             ("clamp", self.clamp, CLAMPS),
         ):
             if value not in known:
-                raise InputError(f"{option} = {value!r}: unknown.{nearest(value, known)}", file=self.where)
+                raise InputError(f"{option} = {shown(value)}: unknown.{nearest(value, known)}", file=self.where)
         if bool(self.axes) == bool(self.points):
             raise InputError("give either a grid or a list of points, one of them and not both", file=self.where)
         varied = [axis.key for axis in self.axes] + [key for point in self.points for key in point]

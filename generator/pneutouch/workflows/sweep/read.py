@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from pneutouch.catalogue import DesignSource
-from pneutouch.errors import InputError, nearest
+from pneutouch.errors import InputError, nearest, shown
 from pneutouch.spec.over import MAX_VALUES, parse_over, spread
 from pneutouch.spec.read import Changes, read_toml
 from pneutouch.workflows.sweep.plan import PRESSURES, Settings, SweepAxis, SweepPlan, Value
@@ -129,7 +129,7 @@ def _scalar(where: str, key: str, given: Any) -> float | int | str:
 def _flat(where: str, table: str, given: Any) -> dict[str, Any]:
     """Keys as ``table.key``, whether they were written with quotes or TOML made tables of the dots."""
     if not isinstance(given, dict):
-        raise InputError(f"{table} = {given!r}: must be a table", file=where)
+        raise InputError(f"{table} = {shown(given)}: must be a table", file=where)
     flat: dict[str, Any] = {}
     for key, value in given.items():
         inner = (
@@ -148,5 +148,5 @@ def _checked(changes: Changes | None) -> Settings:
 
 def _text(where: str, key: str, given: Any) -> str:
     if not isinstance(given, str) or not given:
-        raise InputError(f"{key} = {given!r}: must be a name", file=where)
+        raise InputError(f"{key} = {shown(given)}: must be a name", file=where)
     return given

@@ -5,7 +5,7 @@ from typing import Any
 
 from pneutouch.body import Solid
 from pneutouch.catalogue import Library, load_scene
-from pneutouch.errors import InputError
+from pneutouch.errors import InputError, shown
 from pneutouch.parts import Assembly, assemble
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
@@ -75,7 +75,7 @@ def expand(order: TrayOrder, library: Library | None = None) -> ExpandedTray:
         raise InputError(
             f"nothing is left for the {printer.title}: {'; '.join(left_out) or 'no design has such a body'}",
             file=order.where,
-            remedy=f"give another tray.profile or tray.bodies, or set print.profile to {profile!r}",
+            remedy=f"give another tray.profile or tray.bodies, or set print.profile to {shown(profile)}",
         )
     if sum(len(piece.solids) * piece.value.copies for piece in pieces) > MOST_PARTS:
         raise InputError(f"more than {MOST_PARTS} bodies", file=order.where, remedy="take fewer copies")
@@ -105,7 +105,7 @@ def _assembly(order: TrayOrder, entry: Entry, settings: dict[str, Any], library:
     try:
         return assemble(load_scene(order.design(entry.design), {**settings, **order.overrides}, library))
     except InputError as error:
-        raise InputError(f"entry {entry.design!r}: {error}", file=order.where) from None
+        raise InputError(f"entry {shown(entry.design)}: {error}", file=order.where) from None
 
 
 def _pieces(value: TrayVariant, printer: Printer, order: TrayOrder) -> tuple[list[TrayPiece], list[str]]:

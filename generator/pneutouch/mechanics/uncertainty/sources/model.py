@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
-from pneutouch.errors import InputError
+from pneutouch.errors import InputError, shown
 from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.paper_sensor import material_sensor
@@ -114,7 +114,7 @@ def numerical_sources(size: int, numerical: Mapping[str, float]) -> list[Uncerta
     source_list = []
     for name, greatest in numerical.items():
         if name not in FIGURES:
-            raise InputError(f"numerical error of {name!r}: no such figure; there are {', '.join(FIGURES)}")
+            raise InputError(f"numerical error of {shown(name)}: no such figure; there are {', '.join(FIGURES)}")
         source_list.append(
             UncertaintySource(
                 "numerical",

@@ -1,0 +1,6 @@
+"""Words that follow from numbers."""
+
+
+def counted(count: int, one: str, many: str = "") -> str:
+    """``1 design``, ``2 designs``; ``many`` where the plural is not the singular with an s: ``2 bodies``."""
+    return f"{count} {one if count == 1 else many or one + 's'}"
