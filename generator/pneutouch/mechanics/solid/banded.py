@@ -66,13 +66,21 @@ def solve(band: Array, b: Array) -> BandedSolution:
 
     A singular matrix returns non-finite x.
     """
-    factor, info = lapack.dpbtrf(band, lower=1)
-    if info == 0:
-        x, _ = lapack.dpbtrs(factor, b, lower=1)
-        return BandedSolution(x, True)
+    definite = solve_definite(band, b)
+    if definite is not None:
+        return BandedSolution(definite, True)
     width = band.shape[0] - 1
     _, _, x, info = lapack.dgbsv(width, width, _general(band), b)
     return BandedSolution(x if info == 0 else np.full_like(b, np.nan), False)
+
+
+def solve_definite(band: Array, b: Array) -> Array | None:
+    """Solution of K x = b (size, n_rhs) by Cholesky; None where the matrix is not positive definite."""
+    factor, info = lapack.dpbtrf(band, lower=1)
+    if info:
+        return None
+    x: Array = lapack.dpbtrs(factor, b, lower=1)[0]
+    return x
 
 
 def _general(band: Array) -> Array:

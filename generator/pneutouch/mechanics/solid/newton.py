@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
-from pneutouch.mechanics.solid.banded import negative_pivots, solve
+from pneutouch.mechanics.solid.banded import negative_pivots, solve, solve_definite
 from pneutouch.mechanics.solid.contact import ContactEvaluation, Plate
 from pneutouch.mechanics.solid.model import PointFields, SolidModel
 from pneutouch.mechanics.solid.supply import FillingState, Supply
@@ -196,9 +196,9 @@ def _safe_step(state: SolverState, band: Array, residual: Array) -> tuple[Array,
     for _ in range(12):
         raised = band.copy(order="F")
         raised[0] += lift
-        solved = solve(raised, rhs)
-        if solved.definite:
-            plain, soft = solved.x[:, 0], solved.x[:, 1]
+        solution = solve_definite(raised, rhs)
+        if solution is not None:
+            plain, soft = solution.T
             rate = state.filling.rate
             share = rate * float(state.by_volume @ plain) / (1.0 + rate * float(state.by_volume @ soft))
             return np.asarray(plain - soft * share), lift

@@ -75,8 +75,8 @@ class StrainProbe:
                 edges.append((int(cell), np.array([along[k] + share * (along[1] - along[0]), face])))
         return edges
 
-    def principal(self, x: Array) -> tuple[Array, Array]:
-        """Principal stretches and deviator-carrying stresses lambda dW/dlambda / J (MPa), (3, n_points) each."""
+    def _strains(self, x: Array) -> tuple[Array, Array, Array, Array]:
+        """Squared norm and area ratio of the in-plane gradient, hoop stretch (n_points,); principal stretches (3, n_points)."""
         nodes = x[self.solid.mesh.cells].reshape(self.solid.mesh.cells.shape[0], -1, 1)
         f = np.matmul(self._b, nodes).reshape(-1, 5)[self._far]
         f = np.concatenate([f, np.matmul(self._edge_b, nodes[self._edge_cells])[..., 0]])
@@ -84,7 +84,15 @@ class StrainProbe:
         j = np.maximum(area_ratio(f), _TURNED_OVER)
         a, h = np.maximum((f[:, IN_PLANE] ** 2).sum(axis=1), 2.0 * j), np.maximum(f[:, HOOP], _TURNED_OVER)
         plus, minus = np.sqrt(a + 2.0 * j), np.sqrt(np.maximum(a - 2.0 * j, 0.0))
-        stretch = np.stack([0.5 * (plus + minus), 0.5 * (plus - minus), h])
+        return a, j, h, np.stack([0.5 * (plus + minus), 0.5 * (plus - minus), h])
+
+    def greatest_stretch(self, x: Array) -> float:
+        """Greatest principal stretch over both faces for nondimensional positions x (n_nodes, 2)."""
+        return float(self._strains(x)[3].max())
+
+    def principal(self, x: Array) -> tuple[Array, Array]:
+        """Principal stretches and deviator-carrying stresses lambda dW/dlambda / J (MPa), (3, n_points) each."""
+        a, j, h, stretch = self._strains(x)
         jet = self.solid.material.energy(Strain(a, j, h)).data
         common = jet[BY_J] * j
         stress = np.stack(
@@ -94,7 +102,7 @@ class StrainProbe:
 
     def stretch_by_zone(self, x: Array) -> Array:
         """Greatest principal stretch on each face and third of the arc, inner face first, from the base up; (6,)."""
-        greatest = self.principal(x)[0].max(axis=0)
+        greatest = self._strains(x)[3].max(axis=0)
         return np.array([greatest[self._zone == zone].max(initial=0.0) for zone in range(6)])
 
     def cell_stretch(self, x: Array) -> Array:
@@ -129,12 +137,12 @@ def burst(probe: StrainProbe, inflation: Inflation, break_strain: float) -> tupl
     """
     solid = probe.solid
     for a, b in zip(inflation.states, inflation.states[1:], strict=False):
-        if probe.peak(b.unit.x).stretch - 1.0 < break_strain:
+        if probe.greatest_stretch(b.unit.x) - 1.0 < break_strain:
             continue
         low, high = a.unit.volume, b.unit.volume
         for _ in range(40):
             middle = 0.5 * (low + high)
-            over = probe.peak(between(a, b, middle)).stretch - 1.0 >= break_strain
+            over = probe.greatest_stretch(between(a, b, middle)) - 1.0 >= break_strain
             low, high = (low, middle) if over else (middle, high)
         x = between(a, b, high)
         share = (high - a.unit.volume) / (b.unit.volume - a.unit.volume)
