@@ -7,9 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from pneutouch.arrays import Array
-from pneutouch.catalogue.mixture import ResolvedMixingCurve
-from pneutouch.mechanics.mixing import (
+from benchmarks.mixing_theory import (
     THRESHOLD,
     Law,
     hashin_shtrikman_high,
@@ -18,6 +16,8 @@ from pneutouch.mechanics.mixing import (
     reuss,
     voigt,
 )
+from pneutouch.arrays import Array
+from pneutouch.catalogue.mixture import ResolvedMixingCurve
 from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MUTED, figure, halo, plain_ticks, svg
 
 if TYPE_CHECKING:

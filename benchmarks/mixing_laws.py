@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from benchmarks.mixing_theory import THRESHOLD, Law, hashin_shtrikman_low, percolation
 from pneutouch.arrays import Array
-from pneutouch.mechanics.mixing import THRESHOLD, Law, hashin_shtrikman_low, percolation
 from pneutouch.spec.material import Material
 
 VOXEL_THRESHOLD = 0.3116

@@ -8,9 +8,9 @@ import numpy as np
 
 from benchmarks.mixing_chart import mixing_chart, mixing_data
 from benchmarks.mixing_laws import LONG_TERM, PLACING, VOXEL_THRESHOLD, placings, stiff_moduli
+from benchmarks.mixing_theory import THRESHOLD, hashin_shtrikman_low, percolation
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.mixture import ResolvedMixingCurve, mixing
-from pneutouch.mechanics.mixing import THRESHOLD, hashin_shtrikman_low, percolation
 from pneutouch.spec.material import Material
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -17,12 +17,12 @@ from benchmarks.mixing_laws import (
     placings,
     stiff_moduli,
 )
+from benchmarks.mixing_theory import THRESHOLD, hashin_shtrikman_high, hashin_shtrikman_low, percolation, reuss, voigt
 from hypothesis import given
 from hypothesis import strategies as st
 
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.mixture import mixing
-from pneutouch.mechanics.mixing import THRESHOLD, hashin_shtrikman_high, hashin_shtrikman_low, percolation, reuss, voigt
 from tests.conftest import ROOT
 
 LIBRARY = Library((ROOT,))

@@ -11,9 +11,9 @@ import pytest
 from benchmarks.mixing_chart import mixing_chart, mixing_data
 from benchmarks.mixing_laws import fraction_of, placings
 from benchmarks.mixing_page import DOCS, STIFF, WHERE, measure, page
+from benchmarks.mixing_theory import hashin_shtrikman_low
 
 from pneutouch.catalogue import load_scene
-from pneutouch.mechanics.mixing import hashin_shtrikman_low
 
 
 @pytest.fixture(scope="module")

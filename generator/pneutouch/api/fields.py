@@ -17,7 +17,7 @@ WHERE = "the keyword arguments"
 
 @cache
 def keywords(model: type[BaseModel]) -> dict[str, str]:
-    """Every field of a file's ``model`` as ``table.key``, by its keyword; the first table of a key keeps the bare name."""
+    """Every field of a file's ``model`` as ``table.key``, by keyword; the first table of a key keeps the bare name."""
     fields: dict[str, str] = {}
     for name in model.model_fields:
         table = table_of(model, name)

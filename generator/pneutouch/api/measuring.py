@@ -74,7 +74,7 @@ def simulate(
     model: str = "solid",
     parquet: bool = False,
 ) -> Path:
-    """Simulate a measurement campaign with known truth; returns its folder, which `characterize` and `calibrate` read."""
+    """Simulate a campaign with known truth; returns its folder, which `characterize` and `calibrate` read."""
     from pneutouch.bench.simulate import SimulationTruth
     from pneutouch.workflows.simulate.options import SimulationOptions
     from pneutouch.workflows.simulate.run import simulate as run

@@ -1,4 +1,4 @@
-"""Shapes that a solid is put together from: a body turned about any axis, a prism on any plane, a round hole along z."""
+"""Shapes that make up a solid: a body turned about any axis, a prism on any plane, a round hole along z."""
 
 import math
 from dataclasses import dataclass
@@ -112,7 +112,7 @@ class Prism:
 
 @dataclass(frozen=True, slots=True)
 class Bore:
-    """A round hole along z: centre (x, y), radius, and the two faces it runs between, mm; ``closed`` names its bottom."""
+    """A round hole along z: centre (x, y), radius, the two faces it runs between, mm; ``closed`` names its bottom."""
 
     x: float
     y: float

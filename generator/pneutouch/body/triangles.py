@@ -1,4 +1,4 @@
-"""Measures of a triangle mesh, given as vertices (n, 3) in mm and triangles (m, 3) counter-clockwise seen from outside."""
+"""Measures of a triangle mesh: vertices (n, 3) in mm and triangles (m, 3) counter-clockwise seen from outside."""
 
 import numpy as np
 

@@ -25,7 +25,7 @@ _MODULES = {"build": "build", "check": "build"} | {
 """Modules by the commands that they register when they are imported."""
 
 _OBJECTS_BEFORE_COLLECTION = 100_000
-"""A command ends within seconds and keeps most of what it makes: collecting garbage at Python's 700 objects is a sixth of
+"""A command ends within seconds and keeps most of what it makes: collecting garbage at Python's 700 is a sixth of
 the time that CadQuery and matplotlib take to load."""
 
 

@@ -13,7 +13,7 @@ from pneutouch.spec.fields import Declaration, declaration, table_of
 
 
 class FieldOption(NamedTuple):
-    """The field ``table.key`` behind an option; ``parse`` where the option is a text in a form of its own, ``metavar``."""
+    """The field ``table.key`` behind an option; ``parse`` where the option is a text in its own form, ``metavar``."""
 
     table: str
     key: str
@@ -22,7 +22,7 @@ class FieldOption(NamedTuple):
 
 
 def with_fields(model: type[BaseModel], options: Mapping[str, FieldOption]) -> Callable[[Callable[..., None]], Any]:
-    """Give a command one option for each field, after its arguments; the command takes them as keywords, None where left out."""
+    """Give a command an option for each field, after its arguments; it takes them as keywords, None where left out."""
 
     def decorate(command: Callable[..., None]) -> Callable[..., None]:
         hints = typing.get_type_hints(command, include_extras=True)

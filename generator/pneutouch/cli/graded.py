@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def select_graded(target: Target, where: str, write: str | None, out: Path, *, json: bool, refused: list[str]) -> None:
-    """Search, show and save a grade. Exits 1 where none meets the target; ``refused`` are flags that do not go with it."""
+    """Search, show and save a grade. Exits 1 where none meets the target; ``refused`` are flags that exclude it."""
     from pneutouch.workflows.select import graded_document as shown
     from pneutouch.workflows.select.graded import select_graded as run
 

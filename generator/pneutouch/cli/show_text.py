@@ -77,7 +77,8 @@ def _bodies(document: dict[str, Any]) -> str:
         if body["mix"]
     ]
     count = len(rows)
-    about = f"{document['file']}: {count} {'body' if count == 1 else 'bodies'}, {'with' if document['thumbnail'] else 'no'} thumbnail"
+    bodies, thumbnail = "body" if count == 1 else "bodies", "with" if document["thumbnail"] else "no"
+    about = f"{document['file']}: {count} {bodies}, {thumbnail} thumbnail"
     warned = [f"warning: {text}" for text in document["warnings"]]
     return "\n".join([about, *warned, "", columns(head, _flat(rows)), *mixes])
 

@@ -55,7 +55,7 @@ def solid_result(
 
 
 def solid_states(sensor: Sensor, driving_pressures: Array) -> tuple[SensorState, ...]:
-    """The states of `solid_result` alone: inflation ends at the highest driving pressure (MPa), short of the limit point."""
+    """The states of `solid_result` alone: inflation ends at the highest driving pressure (MPa), a stable state."""
     probe = _probe(sensor)
     run = inflate(probe.solid, to_pressure=float(np.max(driving_pressures)))
     return tuple(_state(sensor, probe, run, float(p)) for p in driving_pressures)

@@ -24,7 +24,7 @@ def side_boss(layout: Layout) -> list[Feature]:
 
 
 def side_bore(layout: Layout, across: float) -> Feature:
-    """The bore from a vertical hole of radius ``across`` to the mouth; ``net`` is what it takes in addition to that hole."""
+    """The bore from a vertical hole of radius ``across`` to the mouth; ``net`` is what it adds to that hole."""
     port = layout.port
     start = math.sqrt(across**2 - port.passage**2)
     low = 0.5 * start - layout.plate_radius
@@ -35,7 +35,7 @@ def side_bore(layout: Layout, across: float) -> Feature:
 
 
 def side_volume(layout: Layout, across: float) -> float:
-    """Volume in mm3 of the bore and the port's hollow from the wall of a vertical hole of radius ``across`` to the mouth."""
+    """Volume in mm3 of bore and port's hollow from the wall of a vertical hole of radius ``across`` to the mouth."""
     port = layout.port
     return port.hollow_volume(-layout.plate_radius) - crossing(across, port.passage)
 

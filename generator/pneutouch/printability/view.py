@@ -37,7 +37,7 @@ class SensorContext:
 
 
 NARROW = 3.0
-"""Holes up to this width (mm) are measured for their length where support has to come out of them (this project's estimate, unverified)."""
+"""Up to this width (mm) a hole's length counts where support has to come out of it (our estimate, unverified)."""
 
 
 @dataclass(frozen=True)

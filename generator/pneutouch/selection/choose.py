@@ -128,7 +128,7 @@ def _differ(pool: CandidatePool, a: int, b: int) -> bool:
 
 
 def _rounded(problem: SelectionProblem, pool: CandidatePool) -> CandidatePool:
-    """The same at sizes that can be written down, still inside the atlas and the size limit; what was given stays as given."""
+    """The same at round sizes, still inside the atlas and the size limit; what was given stays as given."""
     unit, box = 10.0**-_DIGITS, problem.recipe
     radius = pool.radius if problem.inner_radius is not None else np.floor(pool.radius / unit) * unit
     wall = pool.wall

@@ -26,7 +26,7 @@ class TradeOffFront(NamedTuple):
 
 
 def front(problem: SelectionProblem) -> list[TradeOffFront]:
-    """Fronts of all resins at the problem's driving pressure (none given: no pressure), inside the size limit and every other.
+    """Fronts of all resins at the problem's driving pressure (none given: no pressure), inside every limit.
 
     No point of a front has both more sensitivity and more force than another. A scan over wall ratio and radius; then,
     at each of many levels, closer and closer looks around the candidate of most force that is at least so sensitive.

@@ -1,4 +1,4 @@
-"""The search for a grade: fractions at the pole and at the rim that meet a target, by as few solid solves as possible."""
+"""The search for a grade: fractions at pole and rim that meet a target, by as few solid solves as possible."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ _APART = 2e-3
 """Trials lie at least so far from one another, as a share of the greatest fraction."""
 _FEWEST = 4
 _SURFACES = ("linear", "thin_plate_spline")
-"""Radial bases in the order they are tried: the first does not ring where figures jump, since another event ends the range;
+"""Radial bases in the order tried: the first does not ring where figures jump, since another event ends the range;
 the second follows a smooth course better."""
 _DIGITS = 4
 """A fraction is given to a hundredth of a percent, below what a droplet pattern resolves."""
@@ -44,8 +44,8 @@ class GradeTarget:
 
 @dataclass(frozen=True)
 class GradeTrial:
-    """One membrane and the solid's figures: fractions at pole and rim, by pressure sensitivity and end of the force range
-    (NaN where there are no figures), the rated driving pressure (MPa), what ends the ranges, and why there are no figures."""
+    """One membrane and the solid's figures: fractions at pole and rim; by pressure, sensitivity and force range's end
+    (NaN without figures), the rated driving pressure (MPa), what ends the ranges, and why there are no figures."""
 
     pole: float
     rim: float
@@ -94,7 +94,7 @@ def shares(target: GradeTarget, trial: GradeTrial) -> dict[str, float]:
 
 
 def cost(target: GradeTarget, trial: GradeTrial, spare: float = 1.0) -> float:
-    """What the search makes small: the worst share of the aims; for the widest range, less the more force, where all is kept.
+    """What the search minimizes: the worst share of the aims; for the widest range, less with force once all are met.
 
     ``spare`` is the share of every tolerance that may be used up for the widest range.
     """

@@ -1,4 +1,4 @@
-"""Graded membranes compared with constant ones: the solid's figures of each, and the constant mix that comes nearest to a target."""
+"""Graded membranes against constant ones: the solid's figures of each, and the constant mix nearest to a target."""
 
 from dataclasses import dataclass, replace
 
@@ -52,7 +52,7 @@ def trial_of(sensor: Sensor, pressures: tuple[float, ...], pole: float = np.nan,
 def nearest_fraction(
     target: GradeTarget, problem: SelectionProblem, law: ResolvedMixingCurve, size: tuple[float, float]
 ) -> float | None:
-    """The constant fraction nearest to a target at an inner radius and a wall (mm), by the atlas; None where it has no answer."""
+    """The constant fraction nearest to a target at inner radius and wall (mm), by the atlas; None without an answer."""
     at = np.linspace(0.0, float(law.fraction[-1]), _FRACTIONS)
     strain = law.elongation_at(at) / 100.0
     resins = tuple(
@@ -85,7 +85,7 @@ def nearest_fraction(
 
 
 def middle_wall(target: GradeTarget, problem: SelectionProblem, radius: float, thickest: float) -> float | None:
-    """The wall (mm) with which the problem's one resin has the target sensitivity, by the atlas; None where it has no answer.
+    """The wall (mm) at which the problem's one resin has the target sensitivity, by the atlas; None without an answer.
 
     With a mix of middle modulus either end of a grade is then free to be softer or stiffer.
     """

@@ -95,7 +95,7 @@ def _limits(problem: SelectionProblem, pool: CandidatePool) -> dict[str, Array]:
 
 
 def _rise(problem: SelectionProblem, pool: CandidatePool) -> Array:
-    """Pressure rise at the required force, or at the end of the range where that comes first; none without a requirement."""
+    """Pressure rise at the required force, or at the end of a shorter range; none without a requirement."""
     force, rise = pool.response.force, pool.response.rise
     if problem.force_range is None:
         return np.zeros(force.shape[0])

@@ -1,4 +1,4 @@
-"""Candidates over all resins and all that is free: a coarse scan, and the sensitivity met exactly along one direction."""
+"""Candidates over all resins and all that is free: a coarse scan; the sensitivity met exactly along one direction."""
 
 from dataclasses import dataclass
 
@@ -37,7 +37,7 @@ def search(problem: SelectionProblem) -> CandidatePool:
 
 
 def scan(problem: SelectionProblem) -> CandidateGrid:
-    """A coarse grid over resin and whatever is free, inside the atlas's range, the size limit and the printer's least wall."""
+    """A coarse grid over resin and what is free, inside atlas range, size limit and the printer's least wall."""
     resins = np.arange(len(problem.resins), dtype=float)
     line = _RADII if problem.inner_radius is None else _LINE
     ratios = _ratios(problem, _RATIOS if problem.inner_radius is None else line)
@@ -81,7 +81,7 @@ def _ratios(problem: SelectionProblem, count: int) -> Array:
 
 
 def _pressures(problem: SelectionProblem, resins: Array, ratio: Array) -> Array:
-    """Driving pressures over (resin, pressure, wall, radius): the one given, or shares of what each may be driven to."""
+    """Driving pressures over (resin, pressure, wall, radius): the one given, or shares of what each allows."""
     if problem.driving_pressure is not None:
         return np.full((resins.size, 1, *ratio.shape), problem.driving_pressure)
     alone = problem.inner_radius is not None and problem.wall_thickness is not None

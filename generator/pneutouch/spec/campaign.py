@@ -1,4 +1,4 @@
-"""A measurement campaign: which file holds which run of which sensor, on which rig. One TOML file in the folder of the runs."""
+"""A measurement campaign: which file holds which run of which sensor, on which rig. One TOML file by the runs."""
 
 from __future__ import annotations
 

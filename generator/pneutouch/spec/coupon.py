@@ -205,7 +205,8 @@ def _explained(detail: Any) -> str:
             f"{key}: unknown {what}.{nearest(last, [info.alias or name for name, info in owner.model_fields.items()])}"
         )
     if kind == "missing":
-        return f"{key}: missing; give {CouponResults.model_fields[last].description if last in CouponResults.model_fields else 'a number'}"
+        field = CouponResults.model_fields.get(last)
+        return f"{key}: missing; give {field.description if field else 'a number'}"
     message = str(detail["msg"]).removeprefix("Input ").replace("valid ", "").replace("dictionary", "table")
     return f"{key} = {shown(detail['input'])}: {message}"
 

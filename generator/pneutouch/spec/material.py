@@ -56,7 +56,7 @@ class Mix(Table):
 
 
 class ArcGrading(Table):
-    """What a graded membrane is along its arc, from the pole (0) to the rim (1): lists of one length, straight between."""
+    """A graded membrane along its arc, from the pole (0) to the rim (1): lists of one length, straight between."""
 
     arc: list[float] = Field(min_length=2)
     stiff_fraction: list[float] = Field(min_length=2, description="Volume fraction of the second base resin.")
@@ -81,7 +81,7 @@ class RelaxationTerm(Table):
 
 
 class Relaxation(Table):
-    """How a resin's modulus falls after a step of strain: 1 - sum of share (1 - exp(-t/time_s)), over its first value."""
+    """Fall of a resin's modulus after a step of strain, over its first value: 1 - sum of share (1 - exp(-t/time_s))."""
 
     terms: list[RelaxationTerm] = Field(min_length=1, max_length=20, description="In ascending order of time_s.")
     temperature_C: float | None = Field(default=None, description="Of the test, where it is known.")

@@ -10,7 +10,7 @@ from pneutouch.spec.quantity import Quantity
 from pneutouch.units import UM
 
 HOLE_UNDERSIZE_MM = (-0.5, 1.0)
-"""Bounds of `Printer.hole_undersize_mm`, our own choice: beyond them a hole was not printed but misread, and bores drawn
+"""Bounds of `Printer.hole_undersize_mm`, our choice: beyond them a hole was not printed but misread, and bores drawn
 wider by it vanish or meet."""
 
 

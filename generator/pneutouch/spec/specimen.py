@@ -201,7 +201,7 @@ class MinimalSurface(_Celled):
 
 
 class FramePlate(Table):
-    """[frame]: a rigid plate under the block, wider than it, with a hole in each corner and a cut corner at x = y = 0."""
+    """[frame]: a rigid plate under the block, wider than it, a hole in each corner and a cut corner at x = y = 0."""
 
     material: str | None = Field(
         default=None,
@@ -251,7 +251,7 @@ LAYERS: dict[str, type[Layer]] = {kind: model for model, kinds in _KINDS for kin
 
 
 def validate_specimen(content: dict[str, Any], where: str) -> Specimen:
-    """The model of a specimen's file; each layer by the model of its kind, so that messages name the layer and its keys."""
+    """The model of a specimen's file; each layer by the model of its kind, so that messages name layer and key."""
     layers = content.get("layer", [])
     if not isinstance(layers, list):
         raise InputError("layer: must be tables, written [[layer]]", file=where)

@@ -15,10 +15,10 @@ from pneutouch.arrays import Array, Flags
 from pneutouch.texture.morse import Morse
 
 DEGREE = 3
-"""Of the polynomial of ln power over ln frequency: 0 is white, 1 any power law, 3 the knee of a low-passed noise and a floor."""
+"""Of the polynomial of ln power over ln frequency: 0 is white, 1 a power law, 3 a low-passed noise and a floor."""
 
 _CLIP = 3.0
-"""Most that a bin counts above its fit, in units of the fit: undeclared lines bend it little, 2 % of noise bins are cut."""
+"""Most that a bin counts above its fit, in units of it: undeclared lines bend it little, 2 % of noise bins are cut."""
 
 
 @dataclass(frozen=True, slots=True)

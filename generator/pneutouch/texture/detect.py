@@ -1,4 +1,4 @@
-"""Is there a pattern at a target frequency: its amplitude over the noise floor, and how often noise alone would show that."""
+"""Is there a pattern at a target frequency: amplitude over the noise floor, and how often noise alone shows it."""
 
 import math
 from collections.abc import Sequence
@@ -23,7 +23,7 @@ SURROGATES = 999
 LEVEL = 0.05
 
 _OVERTONES = (2.0, 3.0)
-"""Of a target frequency, where a pattern with edges has lines too: the bins that its taper spreads them over are no noise.
+"""Of a target frequency, where a pattern with edges has lines too: bins that its taper spreads them over are no noise.
 
 No more than these: patterns whose frequencies are multiples of one another would leave no noise between them.
 """

@@ -42,11 +42,11 @@ class Morse:
         return self.time_bandwidth / self.gamma
 
     def log_response(self, offset: Array) -> Array:
-        """Natural logarithm of what a voice reads of a tone of amplitude 1, ``offset`` = ln(tone over voice), any shape."""
+        """Logarithm of a voice's response to a tone of amplitude 1, ``offset`` = ln(tone over voice), any shape."""
         return self.beta * (offset - np.expm1(self.gamma * offset) / self.gamma)
 
     def response(self, ratio: Array) -> Array:
-        """Filter of a voice over frequency / voice, any shape: 2 at 1, 0 at 0 and below, where a real signal has its double."""
+        """Filter of a voice over frequency / voice, any shape: 2 at 1; 0 at 0 and below, the mirror half."""
         with np.errstate(over="ignore"):
             offset = np.log(np.where(ratio > 0, ratio, 1.0))
             return np.where(ratio > 0, 2.0 * np.exp(self.log_response(offset)), 0.0)
@@ -65,7 +65,7 @@ MORSE = Morse()
 
 
 def voices(low: float, high: float, per_octave: int = VOICES) -> Array:
-    """Frequencies in Hz, rising, (k,): from ``low`` in steps of 2^(1/per_octave) up to the first at or above ``high``."""
+    """Frequencies in Hz, rising, (k,): from ``low`` by steps of 2^(1/per_octave) to the first at or above ``high``."""
     count = math.ceil(per_octave * math.log2(high / low) - 1e-9) + 1
     return low * 2.0 ** (np.arange(count) / per_octave)
 

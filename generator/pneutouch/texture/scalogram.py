@@ -35,7 +35,7 @@ class Scalogram:
 
 
 class Ridge(NamedTuple):
-    """Frequency in Hz and amplitude of ridges, (...); ``inner`` is False where the given range has no maximum inside it."""
+    """Frequency in Hz and amplitude of ridges, (...); ``inner`` is False where the range has no maximum inside it."""
 
     frequency: Array
     amplitude: Array

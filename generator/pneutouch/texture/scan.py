@@ -31,7 +31,7 @@ RATE = 10_000.0
 """Samples a second, Hz; paper, Supplement C."""
 
 STEP = 20.0 / 2**16 * 50.0 * KPA
-"""Step of the recorder, MPa: 16 bits over +-10 V (NI's USB-6341, paper, Supplement C; its range as NI's manuals give it)
+"""Step of the recorder, MPa: 16 bits over +-10 V (NI's USB-6341, paper, Supplement C; range as NI's manuals give it)
 times 50 kPa/V (+-100 kPa on 1 to 5 V, SMC's usual output; assumed, the PSE543's sheet was not read)."""
 
 NOISE = 0.015 * KPA
@@ -53,7 +53,7 @@ class ScanPath:
 
 @dataclass(frozen=True, slots=True)
 class Recorder:
-    """What the pressure is recorded with: samples a second, noise (MPa rms), step and range (MPa), seed of the noise."""
+    """The pressure's recorder: samples a second, noise (MPa rms), step and range (MPa), seed of the noise."""
 
     rate: float = RATE
     noise: float = NOISE

@@ -44,7 +44,7 @@ class BarPattern(NamedTuple):
 
 
 class PressureAdvice(NamedTuple):
-    """A driving pressure (MPa), the amplitude there and at no pressure (MPa), and all that were looked at, (n,) each."""
+    """A driving pressure (MPa), the amplitude there and at no pressure (MPa), and all examined, (n,) each."""
 
     driving_pressure: float
     amplitude: float
@@ -54,7 +54,7 @@ class PressureAdvice(NamedTuple):
 
 
 class Separation(NamedTuple):
-    """Domes, best first, (n,) each: their number, the two states' pressures (MPa), amplitudes (n, 2 states, 2 patterns).
+    """Domes, best first, (n,) each: number, the two states' pressures (MPa), amplitudes (n, 2 states, 2 patterns).
 
     The first state favours the first pattern. ``contrast``: by how much more than the second state.
     """

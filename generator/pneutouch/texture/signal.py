@@ -14,7 +14,7 @@ OVERSAMPLING = 5.0
 """Sampling rate kept over the highest target frequency."""
 
 _PASSED = 1.6
-"""Highest frequency let through over the highest target frequency: the Morse response (3, 60) is at 2e-5 of its peak there."""
+"""Highest frequency passed over the highest target frequency: the Morse response (3, 60) is 2e-5 of its peak there."""
 
 _STOP_DB = 100.0
 """What folds back, and the ripple of what passes, in dB below it: 1e-5 of the amplitude."""
@@ -111,7 +111,7 @@ def _check_steps(time: Array, where: str, rows: Sequence[int]) -> None:
 
 
 def decimated(given: Signal, highest: float) -> Signal:
-    """Every q-th sample of a signal freed of what would fold back, q the largest that keeps ``OVERSAMPLING`` x ``highest`` Hz.
+    """Every q-th sample of a signal without aliases, q the largest that keeps ``OVERSAMPLING`` x ``highest`` Hz.
 
     A Kaiser low-pass without delay, evaluated only at the samples kept (polyphase), mirrored ends: amplitudes up to
     1.6 ``highest`` stay within 1e-5. The signal itself where q is 1.

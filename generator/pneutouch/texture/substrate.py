@@ -86,7 +86,7 @@ class MatrixLayer(NamedTuple):
     poisson_ratio: float
 
     def compliance(self, radius: Array, height: float | None = None) -> Array:
-        """Mean sinking under a uniform disc over its force, mm/N, radii (n,); ``height`` in the place of the layer's."""
+        """Mean sinking under a uniform disc over its force, mm/N, radii (n,); ``height`` in place of the layer's."""
         depth = self.height if height is None else height
         if depth <= 0.0:
             return np.zeros_like(radius)
@@ -184,7 +184,7 @@ class Substrate:
         return float(np.prod([share for other, share in pairs if _meet(row, other)]))
 
     def amplitude(self, row: BarRow, order: int = 1) -> float:
-        """Amplitude of the compliance at a harmonic of a row's pitch, mm/N, among the other rows; sign as `amplitude`."""
+        """Amplitude of the compliance at a harmonic of a row's pitch, mm/N, with other rows; sign as `amplitude`."""
         share = self.shares[self.bars.index(row)]
         return float(amplitude(self.matrix, row, np.array(self.radius), order)) * self.field(row) / share
 

@@ -53,7 +53,7 @@ class SensorBatch:
 
 
 class PressTrack(NamedTuple):
-    """States along the plate's travel, (n, m) each; nondimensional. ok: a stable state of the gas was found and the atlas
+    """States along the plate's travel, (n, m) each; nondimensional. ok: the gas has a stable state and the atlas
     covers it; margin: dp/dV of wall less gas, positive while stable."""
 
     nu: Array
@@ -70,7 +70,7 @@ class PressTrack(NamedTuple):
 
 
 class AtlasSolution(NamedTuple):
-    """Solutions, (n,) each; see `PressTrack`. ``converged`` without regard to whether the state is supported and unfolded."""
+    """Solutions, (n,) each; see `PressTrack`. ``converged`` also of states that are not supported or are folded."""
 
     nu: Array
     point: AtlasPoint

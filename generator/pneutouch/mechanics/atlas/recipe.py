@@ -112,7 +112,7 @@ _MOST = 0.9
 
 
 def flattened(name: str, values: Array) -> Array:
-    """A field as it is tabulated: where a face turns over at the tip of a crease, strains are immense and mean nothing."""
+    """A field as it is tabulated: where a face turns over at a crease's tip, strains are immense and mean nothing."""
     return values / (values + _HALF) if name in _SATURATING else values
 
 

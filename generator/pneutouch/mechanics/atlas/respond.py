@@ -19,7 +19,7 @@ ENDS = ("depth", "plate edge", "gauge range", "break strain", "inward buckling",
 DEPTH, EDGE, GAUGE, BREAK, BUCKLING, OUTSIDE = range(len(ENDS))
 
 NEAR = 0.03
-"""Travel in R0 before buckling at which the table is less certain: the stiffness falls there faster than it resolves."""
+"""Travel in R0 before buckling where the table is less certain: the stiffness falls faster than it resolves."""
 _CHUNK = 1000
 _FIELDS = ("stretch", "contact_radius")
 _ROUNDS = 14

@@ -65,7 +65,7 @@ class SplineAxis:
 
     @cached_property
     def _derivatives(self) -> Array:
-        """Piece matrices of the value and its first two derivatives by z, side by side; (degree + 1, 3 (degree + 1))."""
+        """Piece matrices of value and first two derivatives by z, side by side; (degree + 1, 3 (degree + 1))."""
         value = pieces(self.degree)
         n = self.degree + 1
         power = np.arange(1.0, n)

@@ -99,7 +99,7 @@ class AtlasSlices:
 
     @cached_property
     def _windows(self) -> Array:
-        """The potential's coefficients that live in each cell, (k, volume cells, depth cells, coefficients, coefficients)."""
+        """The potential's coefficients of each cell, (k, volume cells, depth cells, coefficients, coefficients)."""
         size = self.grid.volume.degree + 1, self.grid.depth.degree + 1
         return np.lib.stride_tricks.sliding_window_view(self.potential, size, axis=(1, 2))
 

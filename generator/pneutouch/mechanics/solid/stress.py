@@ -76,7 +76,7 @@ class StrainProbe:
         return edges
 
     def _strains(self, x: Array) -> tuple[Array, Array, Array, Array]:
-        """Squared norm and area ratio of the in-plane gradient, hoop stretch (n_points,); principal stretches (3, n_points)."""
+        """Squared norm and area ratio in plane, hoop stretch (n_points,); principal stretches (3, n_points)."""
         nodes = x[self.solid.mesh.cells].reshape(self.solid.mesh.cells.shape[0], -1, 1)
         f = np.matmul(self._b, nodes).reshape(-1, 5)[self._far]
         f = np.concatenate([f, np.matmul(self._edge_b, nodes[self._edge_cells])[..., 0]])

@@ -29,7 +29,7 @@ def document(
     Args:
         budget: What `budget` gave.
         row: Which of its sensors.
-        values: The figures as another model has them, by name, with the budget's relative uncertainty; the atlas's else.
+        values: The figures by another model, by name, with the budget's relative uncertainty; the atlas's else.
         notes: More notes, such as `gas_text`.
 
     Returns:
@@ -83,8 +83,8 @@ def _notes(budget: Budget, row: int) -> list[str]:
     bent = [name for name, flag in zip(FIGURES, budget.nonlinear[:, row], strict=True) if flag]
     if bent:
         notes.append(
-            f"nonlinear within the uncertainties: {', '.join(bent)}: near the limit point, or because another event ends "
-            "the range. Their uncertainty is taken over the inputs' whole spread"
+            f"nonlinear within the uncertainties: {', '.join(bent)}: near the limit point, or another event ends the "
+            "range. Their uncertainty is taken over the inputs' whole spread"
         )
     if budget.doubtful[row]:
         notes.append("within its uncertainties the sensor may be beyond its limit point, or leaves the atlas")
@@ -118,8 +118,8 @@ def gas_text(batch: SensorBatch) -> list[tuple[str, ...]]:
     notes = gas_notes(batch)
     return [
         (
-            f"sealed and untouched, the pressure moves by {rise:.2g} kPa/K at {REFERENCE_TEMPERATURE - 273.15:g} C, which reads as "
-            f"{force:.2g} N/K; the wall leaves {give:.0%} of what a rigid cavity would show",
+            f"sealed and untouched, the pressure moves by {rise:.2g} kPa/K at {REFERENCE_TEMPERATURE - 273.15:g} C, "
+            f"which reads as {force:.2g} N/K; the wall leaves {give:.0%} of what a rigid cavity would show",
             f"pressed so fast that the air is adiabatic (p V^{ADIABATIC:g}) the sensitivity is {fast:.2f} times the "
             "isothermal one given here",
         )

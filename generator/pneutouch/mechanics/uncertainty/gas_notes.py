@@ -1,4 +1,4 @@
-"""What the air does to a sealed sensor: its temperature, and how fast it is pressed. Computed at the sensor's own states."""
+"""What the air does to a sealed sensor: temperature, and speed of the press. Computed at the sensor's own states."""
 
 from typing import NamedTuple
 
@@ -69,7 +69,7 @@ def _wall_stiffness(press: AtlasPress, k: Index) -> Array:
 
 
 def _sensitivity_kPa_per_N(press: AtlasPress, indentation: Array, exponent: float) -> Array:
-    """Slope of pressure over force, kPa/N, at plate travels (n, m) in mm; NaN where no state is found at one of them."""
+    """Slope of pressure over force, kPa/N, at plate travels (n, m) in mm; NaN where one of them has no state."""
     mu, radius = press.batch.shear_modulus[:, None], press.batch.inner_radius[:, None]
     pressure, force, converged = _pressed(press, np.nan_to_num(indentation) / radius, exponent)
     rise_kPa = (pressure - press.pressure[:, None]) * mu / KPA
@@ -78,7 +78,7 @@ def _sensitivity_kPa_per_N(press: AtlasPress, indentation: Array, exponent: floa
 
 
 def _pressed(press: AtlasPress, indentation: Array, exponent: float) -> tuple[Array, Array, Flags]:
-    """Pressure and force (n, m) at plate travels in R0 with gas of constant p V^exponent, and where all were found (n,)."""
+    """Pressure and force (n, m) at plate travels in R0 with constant p V^exponent, and where all were found (n,)."""
     nu, good = press.free, np.ones(press.free.size, dtype=bool)
     start = press.volume(press.free) + press.dead
     columns = []

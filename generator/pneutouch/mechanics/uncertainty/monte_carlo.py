@@ -14,7 +14,7 @@ _COVERED = 0.9545
 """Share of a normal distribution within two standard deviations."""
 
 _GRAIN = 5e-4
-"""Wall ratios are rounded to this, relative: the atlas is cut once a ratio, and walls are not known to a hundredth of that."""
+"""Wall ratios are rounded to this, relative: the atlas is cut once a ratio; no wall is known to a hundred times it."""
 
 
 @dataclass(frozen=True)

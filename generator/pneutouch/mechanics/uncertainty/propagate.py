@@ -107,7 +107,7 @@ def _variances(sources: list[UncertaintySource], slopes: Array) -> Array:
 
 
 def _by_input(batch: SensorBatch, sources: list[UncertaintySource]) -> tuple[Array, Array]:
-    """Of each input: standard uncertainty as it counts for each figure (inputs, figures, n), and kurtosis (inputs, n)."""
+    """Of each input: standard uncertainty as each figure counts it (inputs, figures, n), and kurtosis (inputs, n)."""
     size = len(batch)
     second = np.zeros((len(INPUTS), len(FIGURES), size))
     every, fourth = np.zeros((len(INPUTS), size)), np.zeros((len(INPUTS), size))

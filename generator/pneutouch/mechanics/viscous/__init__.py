@@ -1,1 +1,1 @@
-"""What the resin's relaxation and its ageing do to a sensor. Nothing loads here: the atlas, which loads scipy, is for the runs alone."""
+"""What the resin's relaxation and its ageing do to a sensor. Nothing loads here: only the runs need the atlas."""

@@ -24,7 +24,7 @@ LOOP_SPEEDS = (0.5, 5.0)
 """mm/s: our choice, a slow and a quick hand."""
 
 DEPTH_SHARE = 0.5
-"""Depth as a share of R0: our choice, the paper gives no depth for its relaxation test. Deeper, stiff resins pressed fast buckle."""
+"""Depth over R0: our choice, the paper's relaxation test gives none. Deeper, stiff resins pressed fast buckle."""
 
 BASIS = (
     "quasi-linear viscoelasticity on the atlas, gas isothermal and sealed; the inflated dome has relaxed before "
@@ -35,7 +35,7 @@ BASIS = (
 
 @dataclass(frozen=True)
 class ViscousRuns:
-    """Runs of one sensor: ``held[i][j]`` and ``loops[speed][i][j]`` of state i in series j; pressures in MPa, depth in mm."""
+    """Runs of one sensor: ``held[i][j]``, ``loops[speed][i][j]`` of state i in series j; MPa, depth in mm."""
 
     sources: tuple[str, ...]
     driving_pressures: tuple[float, ...]

@@ -21,12 +21,12 @@ HOLD_TIMES = np.concatenate([np.geomspace(1e-2, 1.0, 13)[:-1], np.geomspace(1.0,
 """Seconds after the ramp: to the paper's 600 s (Supplement D), even in the logarithm, 1 s among them."""
 
 _RAMP_STEPS, _LOOP_STEPS = 30, 48
-"""Equal steps of travel in a ramp and in each half of a loop: losses stand to 0.1, hysteresis to 0.2 percentage points (tests)."""
+"""Equal steps of travel in a ramp and half a loop: losses hold to 0.1, hysteresis to 0.2 percentage points (tests)."""
 
 
 @dataclass(frozen=True)
 class RelaxationRun:
-    """A sensor pressed evenly to a depth and held: force (N) and pressure rise (MPa) over times (s) since the ramp's end.
+    """A sensor pressed evenly to a depth and held: force (N), pressure rise (MPa) over times (s) since the ramp's end.
 
     ``ended`` states where the run could not be followed further, with what is known before; None where it was followed.
     """
@@ -37,7 +37,7 @@ class RelaxationRun:
     ended: str | None = None
 
     def drop(self, values: Array) -> tuple[float, float]:
-        """What a value loses from 1 s to the end, and a decade (least squares over log10 t from 1 s); over its value at 1 s.
+        """What a value loses from 1 s to the end, and a decade (least squares over log10 t from 1 s), over that at 1 s.
 
         Raises ValueError where the run does not reach from 1 s onwards.
         """
@@ -84,7 +84,7 @@ def relaxation(
     steps: int = _RAMP_STEPS,
     atlas: Atlas | None = None,
 ) -> list[list[RelaxationRun]]:
-    """Press to ``depth`` mm at ``speed`` mm/s and hold for ``times`` (ascending, s, above 0); one list a driving pressure (MPa), one run a series.
+    """Press to ``depth`` mm at ``speed`` mm/s and hold for ``times`` (ascending, s, > 0); lists by pressure, series.
 
     The sensor's modulus is the relaxed one and the sensor lies inside the atlas (`atlas_states.outside_atlas`).
     """
@@ -119,7 +119,7 @@ def loop(
     steps: int = _LOOP_STEPS,
     atlas: Atlas | None = None,
 ) -> list[list[LoopRun]]:
-    """Press to ``depth`` mm and back at ``speed`` mm/s; one list a driving pressure (MPa), one run a series; see `relaxation`."""
+    """Press to ``depth`` mm and back at ``speed`` mm/s; one list a driving pressure (MPa), one run a series."""
     share = np.linspace(0.0, 1.0, steps + 1)
     travel = np.concatenate([share, share[-2::-1]]) * depth
     clock = np.linspace(0.0, 2.0 * depth / speed, 2 * steps + 1)
@@ -130,7 +130,7 @@ def loop(
 
 
 def _loop(travel: Array, force: Array, rise: Array, known: int, ended: str | None) -> LoopRun:
-    """One run of 2 n + 1 points, of which the first ``known`` are; cut where the plate pulls the dome, which it cannot."""
+    """One run of 2 n + 1 points, the first ``known`` of them known; cut where the plate would pull the dome."""
     turn, last = travel.size // 2, travel.size - 1
     where = None if ended is None else f"{ended} at {travel[known]:.2f} mm"
     there = slice(0, min(known, turn + 1))

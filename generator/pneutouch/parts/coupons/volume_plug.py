@@ -16,7 +16,7 @@ WATER = 0.9982
 """Density of water at 20 °C, g/mL (CRC Handbook of Chemistry and Physics)."""
 
 _LEDGE, _LEDGE_SHARE = 1.0, 0.15
-"""Width in mm, and most over R0, of the ledge at the base plane: it rests on the connector and shows how far to fill."""
+"""Width in mm, and most over R0, of the ledge at the base plane: it rests on the connector and shows the fill line."""
 
 _SERIES = (5.0, 2.0, 1.0)
 """Round volumes within a decade."""

@@ -21,7 +21,7 @@ HEIGHTS = (5.0, 4.5, 4.0, 3.5, 3.0)
 
 @dataclass(frozen=True, slots=True)
 class RingFace:
-    """A ring of a horizontal face between two radii (mm) at height ``z``; ``mates`` with something it must lie flat on."""
+    """A ring of a horizontal face between two radii (mm) at height ``z``; ``mates``: it must lie flat on something."""
 
     name: str
     z: float
@@ -33,7 +33,7 @@ class RingFace:
 
 @dataclass(frozen=True, slots=True)
 class LabelPosition:
-    """Where a label goes: capitals ``height`` mm tall, centred ``radius`` mm from the axis, its foot towards the axis."""
+    """Where a label goes: capitals ``height`` mm tall, centred ``radius`` mm from the axis, foot towards the axis."""
 
     face: RingFace
     height: float

@@ -1,4 +1,4 @@
-"""Triangulate a flat region from its directed boundary edges, in parts: ear clipping costs the square of the corners."""
+"""Triangulate a flat region by its directed boundary edges, in parts: ear clipping costs the square of the corners."""
 
 import itertools
 from dataclasses import dataclass

@@ -62,7 +62,7 @@ def level_set(grid: MarchingGrid, wave: LevelFunction, values: Array, level: flo
 
 
 def between(grid: MarchingGrid, wave: LevelFunction, values: Array, low: float | None, high: float) -> Mesh:
-    """The closed body in which a wave, ``values`` at the grid's nodes, is below ``high`` and, if given, not below ``low``."""
+    """The closed body in which ``values`` at the grid's nodes are below ``high`` and, if given, not below ``low``."""
     top = level_set(grid, wave, values, high)
     inside = _corners(values) < high
     if low is None:

@@ -42,7 +42,7 @@ def box(layer: StrutLattice, context: PatternContext, number: int) -> Box:
     for axis, key in ((0, "cell_mm"), (1, "cell_mm"), (2, "height_mm" if layer.height_mm else "cell_mm")):
         if around.high[axis] - around.low[axis] < 0.5 * cell - 1e-9:
             length = around.high[axis] - around.low[axis]
-            text = f"half a cell of {cell:.4g} mm does not fit into {length:.4g} mm along {'xyz'[axis]}; take a smaller cell"
+            text = f"half a cell of {cell:.4g} mm does not fit into {length:.4g} mm along {'xyz'[axis]}; take a smaller"
             raise context.refuse(number, key, getattr(layer, key) or cell, text)
     if layer.strut_radius_mm is not None:
         check_least(context, number, "strut_radius_mm", layer.strut_radius_mm, "pin", 2.0)

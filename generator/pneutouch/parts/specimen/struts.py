@@ -51,7 +51,7 @@ _NUDGES = (0.0, 1e-5, -1e-5, 3e-5, -3e-5, 1e-4, -1e-4, 3e-4)
 """Relative changes of a radius that does not come out clean, in the order tried."""
 
 _CUTS = (1e-3, 1e-4, 3e-3, 2e-5, 6e-3)
-"""Detail in mm left out where a lattice is cut to size, in the order tried: a knife may pass as near to its corners as it
+"""Detail in mm left out where a lattice is cut to size, in the order tried: a cut may pass as near to its corners as it
 likes, and what is left there must be neither nearly nothing nor pressed into the face."""
 
 
@@ -150,7 +150,7 @@ def _sound(lattice: Lattice, piece: Mesh) -> bool:
 
 
 def tiled(piece: Mesh, half: float, counts: tuple[int, int, int], origin: Array) -> Mesh:
-    """An octant, drawn ``half`` mm wide, and its mirror images, ``counts`` of them along each axis, from ``origin`` (3,).
+    """An octant, drawn ``half`` mm wide, and its mirror images, ``counts`` along each axis, from ``origin`` (3,).
 
     A vertex on a plane between octants is one vertex of both, by its number and the plane's: positions are not
     compared.
@@ -193,7 +193,7 @@ def half_cells(cell: float, box: Box) -> tuple[tuple[int, int, int], bool]:
 
 
 def fill(lattice: Lattice, box: Box, piece: Mesh | None = None) -> Mesh:
-    """The lattice in a box, closed; cells start at its least corner. Cut in one boolean where half cells do not fill it.
+    """The lattice in a box, closed; cells start at its least corner. One boolean cuts it where half cells do not fit.
 
     ``piece`` is its octant, where it is there already.
     """

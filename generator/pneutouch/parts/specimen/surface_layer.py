@@ -14,7 +14,7 @@ from pneutouch.parts.specimen.surfaces import PeriodicSurface, fill, fraction_of
 from pneutouch.spec.specimen import MinimalSurface
 
 _PER_CELL = 7.0
-"""Triangles that a sheet takes per step of the grid squared and per cell's area of its two faces, measured, rounded up."""
+"""Triangles of a sheet per step of the grid squared and per cell's area of its two faces, measured, rounded up."""
 
 
 def box(layer: MinimalSurface, context: PatternContext, number: int) -> Box:

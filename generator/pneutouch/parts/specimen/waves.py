@@ -1,4 +1,4 @@
-"""Sheets across the block whose top is a sine or a sum of sines: a section, sampled to the tolerance and drawn across."""
+"""Sheets across the block with a sine or a sum of sines on top: a section, sampled to tolerance and drawn across."""
 
 import math
 

@@ -22,7 +22,7 @@ _BIAS = 0.25
 """From the middle of the nearest full cube to the surface, in cubes: half a one at a flat wall, less at a round one."""
 
 _TILTS = (-1.0, -0.5, 0.0, 0.5, 1.0)
-"""Slopes of the lines of sight against the axis they mostly follow, in both directions across it: 98 directions in all."""
+"""Slopes of the lines of sight against the axis they mostly follow, in both directions across it: 98 in all."""
 
 
 @dataclass(frozen=True)

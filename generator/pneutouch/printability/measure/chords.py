@@ -121,7 +121,7 @@ def described(manifold: Any, surface: SurfaceMesh, chords: Chords) -> Chords:
 
 @dataclass(frozen=True)
 class _Line:
-    """Width across (n,) where both ends face each other, and the distance to the faces at both ends (n, 2) where they are
+    """Width across (n,) where both ends face each other, and distance to the faces at both ends (n, 2) where they are
     about square to the line; inf elsewhere. The faces at both ends, (n, 2)."""
 
     across: Array

@@ -21,7 +21,7 @@ class Neighbours:
 
 
 def neighbours(manifold: Any, middles: Array, directions: Array, reach: float) -> Neighbours:
-    """Cast lines through ``middles`` (n, 3), from ``reach`` mm before along unit ``directions`` (n, 3) to as far behind.
+    """Cast lines through ``middles`` (n, 3), from ``reach`` mm before along unit ``directions`` (n, 3) to as far past.
 
     ``manifold`` is manifold3d's; its hits come in order along the line.
     """

@@ -13,7 +13,7 @@ CREASE = np.radians(40.0)
 
 _OCTAGON = np.radians(46.0)
 _EQUAL = 0.05
-"""Edges that turn no more than a regular octagon's approximate a curve where the faces on both sides are equally wide, to
+"""Edges that turn no more than a regular octagon's approximate a curve where the faces at both sides are as wide, to
 this share: meshes of the smallest circles have eight sides, chamfers of 45 degrees have not."""
 
 _FLAT = 1e-4

@@ -21,6 +21,7 @@ def _check(job: PrintJob) -> Finding | None:
     ]
     worst = max(excesses, key=lambda excess: excess.measured / excess.limit)
     part = job.parts[0]
-    text = f"{x:.1f} x {y:.1f} x {z:.1f} mm as it stands; the machine builds {envelope.x:g} x {envelope.y:g} x {envelope.z:g} mm"
+    limits = f"{envelope.x:g} x {envelope.y:g} x {envelope.z:g} mm"
+    text = f"{x:.1f} x {y:.1f} x {z:.1f} mm as it stands; the machine builds {limits}"
     fix = part.item.hints.get("envelope", "make it smaller, lay it down, or take a larger printer")
     return Finding("envelope", "error", part.name, text, fix, envelope.source, None, worst)

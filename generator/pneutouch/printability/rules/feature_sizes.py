@@ -10,7 +10,7 @@ from pneutouch.printability.view import PrintView
 
 
 class SizeRule(NamedTuple):
-    """The printer's ``limit`` that a rule compares with, the kinds of feature with their names, and what would fix one."""
+    """The printer's ``limit`` that a rule compares with, the kinds of feature by name, and what would fix one."""
 
     limit: str
     features: dict[FeatureKind, str]

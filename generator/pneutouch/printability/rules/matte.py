@@ -12,7 +12,7 @@ _SOURCE = "vendor: faces that support touches come out matte (DOC-37004 p. 5-34)
 _MOST = 0.01
 """Share of the sensing face that support may touch."""
 _DOWN = {"polyjet": -0.02, "filament": -0.7}
-"""Vertical part of the normal below which a face needs support: any overhang (polyjet), beyond 45 degrees (filament)."""
+"""Vertical part of the normal below which a face needs support: any overhang (PolyJet), past 45 degrees (filament)."""
 _OFF = 1e-3
 """Distance from the face in mm at which the look upwards starts."""
 

@@ -48,7 +48,10 @@ def check_stack(
     envelope = (printer.envelope_mm.x, printer.envelope_mm.y, printer.envelope_mm.z)
     worst = max(zip(size, envelope, strict=True), key=lambda pair: pair[0] / pair[1])
     if worst[0] > worst[1]:
-        text = f"the stack is {size[0]:.1f} x {size[1]:.1f} x {size[2]:.1f} mm; the machine builds {envelope[0]:g} x {envelope[1]:g} x {envelope[2]:g} mm"
+        stack, limits = (
+            " x ".join(format(side, form) for side in box) for box, form in ((size, ".1f"), (envelope, "g"))
+        )
+        text = f"the stack is {stack} mm; the machine builds {limits} mm"
         fix = "make it smaller, or take a larger printer"
         findings.append(Finding(RULE, "error", body, text, fix, printer.envelope_mm.source, excess=Excess(*worst)))
     return findings

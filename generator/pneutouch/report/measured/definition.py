@@ -5,17 +5,17 @@ from pneutouch.bench.figure import FIGURES
 WHERE = "Formulas, units and sources: docs/measuring.md, section Definitions."
 
 LINES = {
-    "sensitivity_kPa_per_N": "Slope of the least-squares line of pressure rise over force, with intercept, over all points of a run.",
+    "sensitivity_kPa_per_N": "Slope of the least-squares line of pressure rise over force, with intercept, over a run.",
     "sensitivity_through_origin_kPa_per_N": "Slope of the least-squares line through the origin.",
     "r_squared": "Share of the variance of the rise that the line with intercept explains.",
     "nonlinearity_percent": "Greatest distance from that line over the full-scale rise.",
-    "repeatability_kPa_per_N": "Standard deviation of the sensitivity between runs of one specimen, pooled over specimens.",
+    "repeatability_kPa_per_N": "Standard deviation of the sensitivity between runs of a specimen, pooled.",
     "part_to_part_kPa_per_N": "Standard deviation of the specimens' mean sensitivities.",
     "stiffness_N_per_mm": "Force at the greatest depth over that depth.",
     "force_range_N": "Greatest force of the sensitivity test, at its greatest depth.",
     "saturation_force_N": "Force at which the local slope of rise over force falls below half the fitted one.",
     "sensing_range_N": "Saturation force, or the greatest force reached where the sensor did not saturate.",
-    "hysteresis_width_percent": "Greatest difference in rise between loading and unloading at equal force, over the full-scale rise.",
+    "hysteresis_width_percent": "Greatest difference in rise between loading and unloading, over the full-scale rise.",
     "hysteresis_area_percent": "Area between loading and unloading over the area under loading.",
     "relaxation_force_percent": "Loss of force from 1 s of the hold to its end, over the force at 1 s.",
     "relaxation_force_percent_per_decade": "Slope of that loss over the decimal logarithm of time.",

@@ -27,7 +27,9 @@ def head(measured: CampaignReport) -> dict[str, Any]:
         "design": f"{measured.scene.name}, {measured.scene.design.document.title}",
         "lab": campaign.lab or "not named",
         "dates": dates(measured),
-        "count": f"{counted(len(sensors), 'specimen')}, {counted(len(campaign.runs), 'run')}, {counted(len(resins), 'resin')}",
+        "count": ", ".join(
+            counted(len(x), n) for x, n in ((sensors, "specimen"), (campaign.runs, "run"), (resins, "resin"))
+        ),
         "tool": f"pneutouch {__version__}",
         "input_hash": measured.input_hash,
         "simulated": SIMULATED if campaign.simulated else "",

@@ -135,7 +135,7 @@ def _relaxation(ax: Axes, curve: MeasuredCurve, look: dict[str, Any]) -> None:
 
 
 def ageings(measured: CampaignReport) -> Plot | None:
-    """Change of sensitivity between ages with its interval, one row a group; compared with the paper's change in a year."""
+    """Change of sensitivity between ages with its interval, one row a group; and the paper's change in a year."""
     rows = measured.ageing
     if not rows:
         return None

@@ -1,4 +1,4 @@
-"""A campaign and a design to the sensor in hand: its modulus, wall, dead volume and contact offset with their uncertainty."""
+"""A campaign and a design to the sensor in hand: modulus, wall, dead volume and contact offset, each uncertain."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -98,7 +98,7 @@ def calibrate(
     title: str = "",
     notes: Sequence[str] = (),
 ) -> Calibration:
-    """Fit the parameters ``names`` of a design to observations, and predict the pressures ``hold_out_kPa`` (kPa) by the others.
+    """Fit the parameters ``names`` of a design to observations, and predict pressures ``hold_out_kPa`` by the others.
 
     Raises InputError for what cannot be fitted, ComputationError where no fit is found.
     """

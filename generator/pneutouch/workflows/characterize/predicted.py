@@ -108,7 +108,7 @@ def depths_of(group: RunGroup) -> Array | None:
 
 
 def read_at(state: SensorState, depths: Array) -> Figures | None:
-    """The predicted curve's figures at measured depths, as far as its range goes: S belongs to the range it is fitted over."""
+    """The predicted curve's figures at measured depths, as far as its range goes: S belongs to its fitted range."""
     from scipy.interpolate import PchipInterpolator
 
     kept = state.indentation <= state.range_end * (1 + _ROUNDING)

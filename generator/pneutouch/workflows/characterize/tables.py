@@ -68,7 +68,7 @@ InjectionRow = tuple[str, str, float, float | None, str]
 
 
 def injections(loaded: CampaignData, scene: ResolvedDesign) -> tuple[tuple[InjectionRow, ...], list[tuple[str, str]]]:
-    """Leak rates, and the dead volume that an injection would mean if the line were rigid; files that give neither, and why.
+    """Leak rates, and the dead volume an injection would mean in a rigid line; files that give neither, and why.
 
     An injection into a sensor swells the dome, so that its dead volume is an upper bound; `calibrate`
     takes the dome into account.

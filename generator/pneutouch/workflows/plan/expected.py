@@ -14,7 +14,7 @@ from pneutouch.spec.campaign import Rig
 from pneutouch.units import KPA, ML
 
 RESOLVED = 3.0
-"""A first step below this many resolutions of the force sensor is not distinguished from zero (IUPAC's limit of detection)."""
+"""A first step below this many resolutions of the force sensor is no detection (IUPAC's limit of detection)."""
 
 ROUND = tuple(ML * digit * 10.0**power for power in (-2, -1, 0, 1) for digit in (1, 2, 5))
 """Round volumes that a syringe can push, mm3."""
@@ -23,7 +23,7 @@ MORE = 0.1 * ML
 """Extra dead volume whose effect is shown as well, mm3: 20 mm of a 2.5 mm bore, our choice."""
 
 _OF_RATED, _OF_RANGE = 0.5, 0.8
-"""Air pushed into the sensor may take it to this share of its rated pressure, into the line to this share of the gauge's
+"""Air pushed into the sensor may take it to this share of its rated pressure, into the line to this one of the gauge's
 range: our choice, so that neither is strained by the test."""
 
 _LEAK_SHARE = 0.01
@@ -129,12 +129,12 @@ def travel_warnings(depths: tuple[float, ...], rig: Rig) -> list[PlanViolation]:
     need = max(depths) + CLEARANCE
     if need <= rig.travel_mm:
         return []
-    text = f"the deepest step needs {need:.2f} mm of travel with {CLEARANCE:g} mm clearance; the stage has {rig.travel_mm:g} mm"
+    text = f"the deepest step and {CLEARANCE:g} mm clearance need {need:.2f} mm; the stage has {rig.travel_mm:g} mm"
     return [PlanViolation("travel", text, depth_mm=max(depths))]
 
 
 def injection(pressed: PressCurves, rig: Rig) -> dict[str, Any]:
-    """Pressures after round volumes of room air, into the closed line and into the unpressed sensor; kPa, null where unknown."""
+    """Pressures after round volumes of room air, into closed line and unpressed sensor; kPa, null where unknown."""
     sensor, ambient = pressed.sensor, pressed.sensor.gas.ambient_pressure
     volumes = np.array(ROUND)
     bare = sensor_pressure(volumes, pressed.inflation, 0.0, ambient)

@@ -26,7 +26,7 @@ SATURATION = (0.0, 12.0)
 """Driving pressures of the saturation test, kPa (paper, section 3-C)."""
 
 FILL, PUSH, SETTLE = 30.0, 2.0, 20.0
-"""Seconds: to fill before a leak run, to push one volume, and to let it settle: our choice; air compressed warms and cools again."""
+"""Seconds to fill before a leak run, to push one volume, and to let it settle and cool: our choice."""
 
 _REST = (("wait", 0.2), ("vent", 0.2), ("set_pressure", 0.2), ("wait", 0.4))
 """A rest with reset, in shares of it: our choice; the last share lets the pressure settle."""
@@ -205,7 +205,7 @@ def _expected(subject: SimulatedResin, pressed_curves: PressCurves, tests: Tests
 def _runs(
     subject: SimulatedResin, sensor: str, tests: Tests, pressed_curves: PressCurves, rig: Rig, before: int
 ) -> list[dict[str, Any]]:
-    """Every run of one specimen in order: leak and dead volume first, relaxation last, for it strains the wall longest."""
+    """Every run of one specimen in order: leak and dead volume first, relaxation last: it strains the wall longest."""
     top_kPa = max(subject.scene.design.pneumatics.driving_pressures_kPa)
     volume = injection(pressed_curves, rig)["sensor_volume_mL"]
     planned: list[tuple[str, float, int, list[dict[str, Any]], list[Any]]] = [

@@ -16,7 +16,7 @@ UNSTATED_VOLUME = 100.0
 """Air in fitting and gauge that a stated dead volume may have missed, mm3: an assumption, 20 mm of a 2.5 mm bore."""
 
 WEATHER = 4.5 * KPA
-"""Sea level pressure typically stays within 960 and 1050 mbar (San Francisco State University, Geosciences, course M301,
+"""Sea level pressure mostly stays within 960 and 1050 mbar (San Francisco State University, Geosciences, course M301,
 Atmospheric Pressure)."""
 
 GAUGE = 0.02
