@@ -1,4 +1,4 @@
-"""Build hook: the wheel and the source archive hold the shipped designs, profiles and examples that pyproject.toml lists.
+"""Build hook: wheel and source archive hold the shipped designs, profiles and examples that pyproject.toml lists.
 
 Other files of those folders, such as a user's private design, are left out.
 """

@@ -79,7 +79,8 @@ def mixing(
     where = str(paths[f"{soft}+{stiff}"])
     if (curve.soft, curve.stiff) != (soft, stiff):
         raise InputError(
-            f"soft = {shown(curve.soft)}, stiff = {shown(curve.stiff)}: must be {shown(soft)} and {shown(stiff)}, as the file's name",
+            f"soft = {shown(curve.soft)}, stiff = {shown(curve.stiff)}: must be {shown(soft)} and "
+            f"{shown(stiff)}, as the file's name",
             file=where,
         )
     rows = np.array([_resolved(point, curve, library, where) for point in curve.points])

@@ -195,8 +195,8 @@ def _check_one_piece(scene: ResolvedDesign) -> None:
     chosen, head = scene.design.print, f"{scene.where}: connector.seat = {shown(scene.design.connector.seat)}: "
     if chosen.profile != chosen.connector_profile:
         raise InputError(
-            f"{head}both bodies grow in one print, so print.connector_profile = {shown(chosen.connector_profile)} must be "
-            f"{shown(chosen.profile)}, as print.profile"
+            f"{head}both bodies grow in one print, so print.connector_profile = {shown(chosen.connector_profile)} must "
+            f"be {shown(chosen.profile)}, as print.profile"
         )
     if scene.printer.mode_for(scene.membrane_material, scene.connector_material) is None:
         raise InputError(

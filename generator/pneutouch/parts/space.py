@@ -22,8 +22,8 @@ def check_space(scene: ResolvedDesign, layout: Layout) -> None:
     for what, (has, most) in _most(scene, layout).items():
         if has > most:
             raise InputError(
-                f"{head} large for connector.mount = {shown(mount)}: {what} is {has:.2f} mm in radius, there is space for "
-                f"{most:.2f} mm; take a smaller dome, another seat or mount"
+                f"{head} large for connector.mount = {shown(mount)}: {what} is {has:.2f} mm in radius, there is space "
+                f"for {most:.2f} mm; take a smaller dome, another seat or mount"
             )
 
 

@@ -40,8 +40,8 @@ All files share one frame, in millimetres, all coordinates positive. `{scene.nam
 assembly with material names and display colours; colours carry no meaning and the machine's software may ignore \
 the names: **choose the resin of each body by hand**.
 
-{missing}Chord tolerance {1e3 * scene.mesh_tolerance:g} µm, the finest step of the machines; greatest measured distance \
-between mesh and exact surface {1e3 * deviation:.1f} µm.
+{missing}Chord tolerance {1e3 * scene.mesh_tolerance:g} µm, the finest step of the machines; greatest measured \
+distance between mesh and exact surface {1e3 * deviation:.1f} µm.
 
 ## Steps
 

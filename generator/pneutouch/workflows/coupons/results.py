@@ -19,7 +19,7 @@ from pneutouch.workflows.coupons.profile import MeasuredProfile, base_file, loca
 
 
 def enter_results(path: Path, out: Path | None = None, library: Library | None = None) -> dict[str, Any]:
-    """Read a results file, compute, and write local profiles under ``out``, else in the user's folder; what was found and written, as data.
+    """Read a results file, compute, and write local profiles under ``out``, else in the user's folder; all as data.
 
     Raises InputError for a bad file, for one without readings, and rather than overwrite a profile that is not ours.
     """
