@@ -58,11 +58,26 @@ def test_a_comparison_lists_what_differs_and_the_figures_of_each():
     thick = design.replace(name="thick", wall_thickness_mm=2.0)
     found = pt.compare(design, thick, driving_pressures_kPa=[0, 12], model="atlas")
     assert found.inputs == {"wall_thickness_mm": (1.5, 2.0)}
+    assert found.labels == ("paper-dome", "thick")
     frame = found.to_frame()
-    for k, own in enumerate((design, thick), start=1):
+    for own in (design, thick):
         state = own.predict([0, 12], model="atlas").at(12)
-        assert frame.loc["sensitivity_kPa_per_N", (12, f"{k}: {own.name}")] == state.sensitivity_kPa_per_N
-    assert pt.compare("paper-dome", "paper-dome", model="membrane").inputs == {}
+        row = frame.loc[(12, "sensitivity_kPa_per_N")]
+        assert row[own.name, "value"] == pytest.approx(state.sensitivity_kPa_per_N, rel=1e-5)
+        assert row[own.name, "low"] == pytest.approx(state.sensitivity.interval[0], rel=1e-5)
+    assert frame.loc[(None, "limit_pressure_kPa")][("thick", "exceeds")] is True
+    assert found.to_dict()["inputs"] == {"membrane.wall_thickness_mm": [1.5, 2.0]}
+
+
+def test_a_comparison_shows_names_that_differ_and_a_figure_shows_itself():
+    design = pt.Design(inner_radius_mm=6)
+    found = pt.compare(design, design.replace(wall_thickness_mm=1.2), model="membrane")
+    assert found.labels == ("design (1)", "design (2)")
+    assert "<th>design (1)</th><th>design (2)</th>" in found._repr_html_()
+    figure = design.predict([0], model="atlas").at(0).sensitivity
+    assert f"<td>{figure.value:.4g}</td>" in figure._repr_html_() and "kPa/N" in figure._repr_html_()
+    with pytest.raises(pt.InputError, match="paper-dome is given twice"):
+        pt.compare("paper-dome", "paper-dome", model="membrane")
 
 
 def test_listings_are_the_command_lines(printed):

@@ -1,4 +1,4 @@
-"""Designs side by side: what differs between them, and their figures with intervals."""
+"""Designs, builds and measurements side by side: what differs between them, and their figures with intervals."""
 
 from __future__ import annotations
 
@@ -7,60 +7,100 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pneutouch.api import show
-from pneutouch.api.design import Design, load
-from pneutouch.api.fields import keywords, plain
+from pneutouch.api.design import PRESSURES, Design
+from pneutouch.api.fields import keywords, named_by_keyword, plain
 from pneutouch.api.prediction import Prediction
 from pneutouch.errors import InputError
+from pneutouch.mechanics.models import model_options
+from pneutouch.report.compared import words
 from pneutouch.spec.design import DesignFile
+from pneutouch.workflows.compare import CompareResult, write
+from pneutouch.workflows.compare import compare as run
 
 if TYPE_CHECKING:
     from pandas import DataFrame
 
 
 class Comparison(show.Shown):
-    """Predictions side by side. ``inputs`` holds the fields that differ, a value a design."""
+    """Columns side by side. ``inputs`` holds the fields that differ, a value a column; ``predictions`` are those of the
+    designs, ``designs`` what was given as an object."""
 
-    def __init__(self, designs: tuple[Design, ...], predictions: tuple[Prediction, ...]) -> None:
-        self.designs, self.predictions = designs, predictions
-        every = {name: tuple(getattr(design, name) for design in designs) for name in keywords(DesignFile)}
-        self.inputs = {name: values for name, values in every.items() if any(v != values[0] for v in values)}
+    def __init__(self, result: CompareResult, designs: tuple[Design, ...] = ()) -> None:
+        self._result, self.designs = result, designs
+        self.predictions = tuple(Prediction(e) for e in result.evaluations if e is not None)
+        names = {field: keyword for keyword, field in keywords(DesignFile).items()}
+        self.inputs = {names.get(key, key): tuple(values) for key, values in result.document["inputs"].items()}
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Names of the columns, each another."""
+        return tuple(words.labels(self._result.document))
 
     def to_frame(self) -> DataFrame:
-        """A row a figure and driving pressure; per design its value, and ``low`` and ``high`` where they are known."""
-        from pandas import concat
+        """A row a figure and driving pressure (None: of the whole sensor); columns ``value``, ``low`` and ``high`` of
+        each label, then ``percent``, its ends and ``exceeds`` of each difference from the first."""
+        from pandas import DataFrame, MultiIndex
 
-        frames = {f"{k + 1}: {p.name}": p.to_frame().T for k, p in enumerate(self.predictions)}
-        return concat(frames, axis="columns").swaplevel(axis="columns").sort_index(axis="columns", level=0)
+        rows = self._result.document["figures"]
+        index = MultiIndex.from_tuples(
+            [(row["driving_pressure_kPa"], row["figure"]) for row in rows], names=["driving_pressure_kPa", "figure"]
+        )
+        columns: dict[tuple[str, str], list[Any]] = {}
+        for k, label in enumerate(self.labels):
+            for key in ("value", "low", "high"):
+                columns[label, key] = [None if row["values"][k] is None else row["values"][k][key] for row in rows]
+        for k, label in enumerate(self.labels[1:]):
+            for key in ("percent", "low_percent", "high_percent", "exceeds"):
+                entries = [row["differences"][k] for row in rows]
+                columns[label, key] = [None if one is None else one[key] for one in entries]
+        return DataFrame(columns, index)
 
     def to_dict(self) -> dict[str, Any]:
-        """The fields that differ, and every prediction."""
-        return {"inputs": self.inputs, "predictions": [prediction.to_dict() for prediction in self.predictions]}
+        """The comparison as the command ``compare`` prints it as JSON."""
+        return dict(self._result.document)
+
+    def write(self, out: str | Path = "outputs") -> Path:
+        """Write the comparison as HTML, PDF and JSON into a folder of ``out``; returns that folder."""
+        return write(self._result, Path(out))
+
+    @property
+    def _columns(self) -> tuple[str, ...]:  # type: ignore[override]
+        return ("", *self.labels, *(f"{label}, difference" for label in self.labels[1:]))
 
     def _rows(self) -> list[Any]:
-        states = self.predictions[0].states
-        shared_kPa = [
-            s.driving_pressure_kPa for s in states if all(_has(p, s.driving_pressure_kPa) for p in self.predictions)
-        ]
-        figures = [
-            (f"sensitivity at {at:g} kPa", *(str(p.at(at).sensitivity or "-") for p in self.predictions))
-            for at in shared_kPa
-        ]
-        return [*((name, *values) for name, values in self.inputs.items()), *figures]
+        inputs = [(key, *(show.short(value) for value in values)) for key, values in self.inputs.items()]
+        figures = sorted(self._result.document["figures"], key=lambda row: row["figure"] != "sensitivity_kPa_per_N")
+        return [*inputs, *(self._row(row) for row in figures)]
+
+    def _row(self, row: dict[str, Any]) -> tuple[str, ...]:
+        at = "" if row["driving_pressure_kPa"] is None else f" {words.heading(row['driving_pressure_kPa'])}"
+        values = [f"{value} ({ends})" if ends else value for value, ends in words.figure_cells(row)]
+        return (f"{row['name']}{at}", *values, *(f"{p}, {word}" for p, _, word in words.difference_cells(row)))
 
     def _head(self) -> str:
-        return f"Comparison of {', '.join(design.name for design in self.designs)}"
+        return f"Comparison of {', '.join(self.labels)}"
 
 
 def compare(
-    *designs: Design | str | Path, driving_pressures_kPa: Iterable[float] | None = None, **options: Any
+    *things: Design | str | Path,
+    driving_pressures_kPa: Iterable[float] | None = None,
+    model: str | None = None,
+    tolerance: float | str | None = None,
+    closure: str = "variational",
+    clamp: str = "base",
+    aged: bool = False,
 ) -> Comparison:
-    """Predict designs and set them side by side; ``options`` are those of `Design.predict`. Raises InputError."""
-    if not designs:
+    """Set designs (objects, names, files), folders of builds and folders of measured results side by side.
+
+    ``driving_pressures_kPa`` are those of all designs (None: their own); the rest is as for `Design.predict`. Raises
+    InputError.
+    """
+    if not things:
         raise InputError("no design to compare", key="designs", remedy="give designs, their names or their paths")
-    chosen = tuple(design if isinstance(design, Design) else load(design) for design in designs)
     pressures_kPa = plain(driving_pressures_kPa)
-    return Comparison(chosen, tuple(design.predict(pressures_kPa, **options) for design in chosen))
-
-
-def _has(prediction: Prediction, pressure_kPa: float) -> bool:
-    return any(state.driving_pressure_kPa == pressure_kPa for state in prediction.states)
+    changed = {} if pressures_kPa is None else {PRESSURES: pressures_kPa}
+    given = [thing.source if isinstance(thing, Design) else str(thing) for thing in things]
+    options = model_options(model, None if tolerance is None else str(tolerance))
+    with named_by_keyword():
+        result = run(given, changed, closure=closure, clamp=clamp, aged=aged, **options)
+    return Comparison(result, tuple(thing for thing in things if isinstance(thing, Design)))

@@ -40,8 +40,16 @@ class FigureValue:
         return self.value
 
     def __str__(self) -> str:
-        known = "" if self.interval is None else f" ({self.interval[0]:.4g} to {self.interval[1]:.4g})"
+        known = "" if self.interval is None else f" ({self._ends()})"
         return f"{self.value:.4g}{known} {self.unit}".rstrip()
+
+    def _ends(self) -> str:
+        return "-" if self.interval is None else f"{self.interval[0]:.4g} to {self.interval[1]:.4g}"
+
+    def _repr_html_(self) -> str:
+        return show.html(
+            self.name, [(f"{self.value:.4g}", self._ends(), self.unit)], ("value", "interval (k = 2)", "unit"), None
+        )
 
 
 class PredictedState(show.Shown):

@@ -20,7 +20,19 @@ from pneutouch.errors import PneutouchError
 
 _MODULES = {"build": "build", "check": "build"} | {
     name: name
-    for name in ["calibrate", "characterize", "coupons", "simulate", "plan", "scan", "select", "show", "sweep", "tray"]
+    for name in [
+        "calibrate",
+        "characterize",
+        "compare",
+        "coupons",
+        "simulate",
+        "plan",
+        "scan",
+        "select",
+        "show",
+        "sweep",
+        "tray",
+    ]
 }
 """Modules by the commands that they register when they are imported."""
 

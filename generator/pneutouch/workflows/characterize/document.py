@@ -42,6 +42,7 @@ def _group(comparison: GroupComparison) -> dict[str, Any]:
         "age": group.key.age,
         "driving_pressure_kPa": group.key.driving_pressure_kPa,
         "sensors": group.sensors,
+        "files": [curve.run.file for curve in group.curves],
         "why_not_predicted": comparison.why or None,
         "figures": {key: _figure(key, estimate, comparison) for key, estimate in group.figures.items()},
     }

@@ -4,22 +4,19 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from pneutouch.arrays import Array
 from pneutouch.bench.plausible import ExpectedRun
 from pneutouch.bench.summary import RunGroup
 from pneutouch.catalogue import DesignSource, Library
 from pneutouch.errors import PneutouchError
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
+from pneutouch.evaluation.read_at import figures_at
 from pneutouch.mechanics.prediction import SensorState
-from pneutouch.mechanics.response import Figures, figures
+from pneutouch.mechanics.response import Figures
 from pneutouch.report.measured import GroupComparison
 from pneutouch.spec.campaign import AS_DESIGNED
 from pneutouch.spec.read import Changes
 from pneutouch.units import KPA
-
-_ROUNDING, _LEAST_POINTS = 1e-9, 3
 
 _OF_STATE = ("sensitivity_kPa_per_N", "stiffness_N_per_mm")
 """Figures whose uncertainty goes by the same name; the force at the greatest depth is the range's end's."""
@@ -109,16 +106,7 @@ def depths_of(group: RunGroup) -> Array | None:
 
 def read_at(state: SensorState, depths: Array) -> Figures | None:
     """The predicted curve's figures at measured depths, as far as its range goes: S belongs to its fitted range."""
-    from scipy.interpolate import PchipInterpolator
-
-    kept = state.indentation <= state.range_end * (1 + _ROUNDING)
-    travel, first = np.unique(state.indentation[kept], return_index=True)
-    if travel.size < _LEAST_POINTS:
-        return None
-    at = depths[depths <= state.range_end * (1 + _ROUNDING)]
-    curves = np.stack([state.force[kept][first], state.pressure_rise[kept][first]], axis=1)
-    force, rise = PchipInterpolator(travel, curves)(np.minimum(at, travel[-1])).T
-    return figures(at, force, rise / KPA)
+    return figures_at(state.indentation, state.force, state.pressure_rise / KPA, state.range_end, depths)[0]
 
 
 def _figures(

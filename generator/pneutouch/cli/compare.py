@@ -1,0 +1,59 @@
+"""``pneutouch compare``: designs, builds and measurements side by side."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pneutouch.cli.app import (
+    ClampOption,
+    ClosureOption,
+    JsonOption,
+    ModelOption,
+    OutOption,
+    SetOption,
+    ToleranceOption,
+    app,
+    changes,
+    print_json,
+    reporting,
+)
+
+
+@app.command()
+def compare(
+    things: Annotated[
+        list[str], typer.Argument(metavar="A B...", help="Designs, folders that build or characterize wrote.")
+    ],
+    set_: SetOption = None,
+    model: ModelOption = None,
+    tolerance: ToleranceOption = None,
+    closure: ClosureOption = "variational",
+    clamp: ClampOption = "base",
+    out: OutOption = Path("outputs"),
+    json: JsonOption = False,
+) -> None:
+    """Compare designs, builds and measurements: what differs, and which differences exceed their uncertainty."""
+    with reporting():
+        from pneutouch.cli.progress import bar
+        from pneutouch.mechanics.models import model_options
+        from pneutouch.workflows.compare import compare as run
+        from pneutouch.workflows.compare import write
+
+        with bar("compared") as progress:
+            result = run(
+                things,
+                changes(set_),
+                closure=closure,
+                clamp=clamp,
+                progress=progress,
+                **model_options(model, tolerance),
+            )
+        folder = write(result, out)
+        if json:
+            print_json({**result.document, "folder": str(folder)})
+        else:
+            from pneutouch.cli.compare_text import comparison_text
+
+            typer.echo(comparison_text(result.document))
+            typer.echo(f"\n{folder}")

@@ -1,0 +1,38 @@
+"""What ``compare`` prints for people."""
+
+from typing import Any
+
+from pneutouch.cli.table import paragraph, table_text
+from pneutouch.report.compared import words
+
+
+def comparison_text(document: dict[str, Any]) -> str:
+    """What differs, every figure with its interval, what exceeds its uncertainty, and what is assumed."""
+    labels = words.labels(document)
+    lines = [f"{one['label']}: {one['kind']}{_from(one)}" for one in document["compared"]]
+    inputs = words.input_rows(document)
+    if inputs:
+        lines += ["", table_text(["inputs that differ", *labels], inputs)]
+    for pressure_kPa in words.pressures(document):
+        rows = [_row(row) for row in document["figures"] if row["driving_pressure_kPa"] == pressure_kPa]
+        head = [words.heading(pressure_kPa), *labels, *_difference_heads(labels)]
+        lines += ["", table_text(head, rows)]
+    lines += ["", *(paragraph(sentence) for sentence in words.summary(document)), ""]
+    return "\n".join([*lines, *(paragraph(note) for note in (document["criterion"], *document["notes"]))])
+
+
+def _difference_heads(labels: list[str]) -> list[str]:
+    return ["difference"] if len(labels) == 2 else [f"{label}, difference" for label in labels[1:]]
+
+
+def _from(one: dict[str, Any]) -> str:
+    return f", {one['source']}" if one["source"] not in ("", one["label"]) else ""
+
+
+def _row(row: dict[str, Any]) -> list[str]:
+    values = [f"{value} ({interval})" if interval else value for value, interval in words.figure_cells(row)]
+    differences = [
+        f"{percent} ({interval}): {word}" if interval else f"{percent}: {word}" if percent != word else word
+        for percent, interval, word in words.difference_cells(row)
+    ]
+    return [words.figure_name(row), *values, *differences]

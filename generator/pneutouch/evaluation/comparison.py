@@ -1,0 +1,239 @@
+"""Sensors side by side, predicted or measured: what differs in their inputs, and which figures differ significantly."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from pneutouch.errors import InputError
+from pneutouch.evaluation.correlation import MODEL_CORRELATION, SourceEffect, variance_of_ratio
+from pneutouch.rounding import rounded
+
+if TYPE_CHECKING:
+    from pneutouch.parts import Assembly
+
+COVERAGE = 2.0
+"""k of every interval; a difference that exceeds k combined standard uncertainties is no chance at about 95 %."""
+
+_CLOSE, _EXACT, _DIGITS = 1e-6, 1e-9, 6
+
+CRITERION = (
+    "A difference exceeds its uncertainty where the logarithm of the ratio of two figures is greater than "
+    f"{COVERAGE:g} combined standard uncertainties (k = {COVERAGE:g}, about 95 %; JCGM 100, 5.2.2)."
+)
+
+
+class FigureColumn(NamedTuple):
+    """A figure that is compared: its key, name and unit; of a state or of the whole sensor."""
+
+    key: str
+    name: str
+    unit: str
+    of_state: bool = True
+
+
+FIGURES = (
+    FigureColumn("limit_pressure_kPa", "limit pressure", "kPa", of_state=False),
+    FigureColumn("sensitivity_kPa_per_N", "sensitivity", "kPa/N"),
+    FigureColumn("stiffness_N_per_mm", "stiffness", "N/mm"),
+    FigureColumn("force_at_range_end_N", "force at the range's end", "N"),
+    FigureColumn("range_end_mm", "end of the range", "mm"),
+    FigureColumn("apex_height_outer_mm", "apex height, outer", "mm"),
+    FigureColumn("saturation_force_N", "saturation force", "N"),
+    FigureColumn("nonlinearity_percent", "nonlinearity", "% of full scale"),
+    FigureColumn("r_squared", "R²", ""),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class ComparedFigure:
+    """A figure, its expanded interval (None where it is not known) and the effects of its sources of uncertainty."""
+
+    value: float
+    low: float | None = None
+    high: float | None = None
+    effects: tuple[SourceEffect, ...] = ()
+
+    @property
+    def variance(self) -> float | None:
+        """Variance of the logarithm as the interval gives it, k = 2; None without an interval."""
+        if self.effects:
+            return sum(effect.size**2 for effect in self.effects)
+        if self.low is None or self.high is None or self.value == 0:
+            return None
+        if min(self.low, self.value) <= 0:
+            return float(((self.high - self.low) / (2 * COVERAGE * self.value)) ** 2)
+        return (math.log(self.high / self.low) / (2 * COVERAGE)) ** 2
+
+
+@dataclass(frozen=True, slots=True)
+class ComparedState:
+    """A driving pressure: figures by key, and curves of arrays of one length: one predicted, or one a measured run."""
+
+    driving_pressure_kPa: float
+    figures: Mapping[str, ComparedFigure]
+    curves: tuple[Mapping[str, Sequence[float]], ...]
+
+
+@dataclass(frozen=True)
+class ComparedSensor:
+    """One column of a comparison.
+
+    ``inputs`` are by ``table.key``; ``resin`` is all that is known of the membrane's, None where it was measured;
+    ``assembly`` draws the parts.
+    """
+
+    name: str
+    kind: str
+    source: str
+    inputs: Mapping[str, Any]
+    resin: Any
+    states: tuple[ComparedState, ...]
+    notes: tuple[str, ...] = ()
+    assembly: Callable[[], Assembly] | None = None
+    label: str = ""
+
+    def state(self, pressure_kPa: float) -> ComparedState | None:
+        """The state at a driving pressure, or None."""
+        return next((s for s in self.states if abs(s.driving_pressure_kPa - pressure_kPa) < _CLOSE), None)
+
+
+def labelled(sensors: Sequence[ComparedSensor]) -> tuple[str, ...]:
+    """A name for each column: the sensor's, its source where two have the same, numbered where that does not help."""
+    names = [sensor.name for sensor in sensors]
+    texts = [s.source if names.count(s.name) > 1 and s.source else s.name for s in sensors]
+    return tuple(f"{text} ({k})" if texts.count(text) > 1 else text for k, text in enumerate(texts, start=1))
+
+
+def shared_pressures_kPa(sensors: Sequence[ComparedSensor]) -> list[float]:
+    """Driving pressures that all have. Raises InputError where there are none."""
+    first, *others = sensors
+    shared_kPa = [
+        s.driving_pressure_kPa for s in first.states if all(other.state(s.driving_pressure_kPa) for other in others)
+    ]
+    if not shared_kPa:
+        listed = "; ".join(f"{sensor.label}: {_listed(sensor)}" for sensor in sensors)
+        raise InputError(
+            f"no driving pressure is common to all ({listed})",
+            remedy="give the designs the driving pressures of the others, such as pneumatics.driving_pressures_kPa="
+            f"[{', '.join(f'{s.driving_pressure_kPa:g}' for s in others[-1].states)}]",
+        )
+    return shared_kPa
+
+
+def _listed(sensor: ComparedSensor) -> str:
+    return ", ".join(f"{state.driving_pressure_kPa:g}" for state in sensor.states) + " kPa"
+
+
+def different_inputs(sensors: Sequence[ComparedSensor]) -> dict[str, list[Any]]:
+    """The inputs that differ, a value a sensor; None where it is not known."""
+    keys = dict.fromkeys(key for sensor in sensors for key in sensor.inputs)
+    rows = {key: [sensor.inputs.get(key) for sensor in sensors] for key in keys}
+    known = {key: [s.inputs[key] for s in sensors if key in s.inputs] for key in keys}
+    return {key: values for key, values in rows.items() if any(value != known[key][0] for value in known[key])}
+
+
+def comparison_document(sensors: Sequence[ComparedSensor]) -> dict[str, Any]:
+    """Everything a comparison states, as plain data; the first sensor is what the others are compared with.
+
+    Raises InputError where there is nothing to compare.
+    """
+    pressures_kPa = shared_pressures_kPa(sensors)
+    rows = [_row(figure, None, sensors) for figure in FIGURES if not figure.of_state]
+    rows += [_row(figure, p, sensors) for p in pressures_kPa for figure in FIGURES if figure.of_state]
+    inputs = different_inputs(sensors)
+    content = {
+        "compared": [
+            {
+                "label": s.label,
+                "name": s.name,
+                "kind": s.kind,
+                "source": s.source,
+                "driving_pressures_kPa": [state.driving_pressure_kPa for state in s.states],
+            }
+            for s in sensors
+        ],
+        "inputs": inputs,
+        "driving_pressures_kPa": pressures_kPa,
+        "coverage_factor": COVERAGE,
+        "criterion": CRITERION,
+        "figures": [row for row in rows if sum(value is not None for value in row["values"]) > 1],
+        "notes": _notes(sensors, pressures_kPa, inputs),
+        "curves": [
+            {"label": s.label, "measured": s.kind == "measured", "driving_pressure_kPa": p, **curve}
+            for p in pressures_kPa
+            for s in sensors
+            for state in [s.state(p)]
+            for curve in (() if state is None else state.curves)
+        ],
+    }
+    return rounded(content, _DIGITS, 1e-12)  # type: ignore[no-any-return]
+
+
+def _row(figure: FigureColumn, pressure_kPa: float | None, sensors: Sequence[ComparedSensor]) -> dict[str, Any]:
+    values = [_of(sensor, figure.key, pressure_kPa) for sensor in sensors]
+    return {
+        "figure": figure.key,
+        "name": figure.name,
+        "unit": figure.unit,
+        "driving_pressure_kPa": pressure_kPa,
+        "values": [None if f is None else {"value": f.value, "low": f.low, "high": f.high} for f in values],
+        "differences": [
+            _difference(values[0], other, same_resin=sensors[0].resin is not None and sensors[0].resin == sensor.resin)
+            for other, sensor in zip(values[1:], sensors[1:], strict=True)
+        ],
+    }
+
+
+def _of(sensor: ComparedSensor, key: str, pressure_kPa: float | None) -> ComparedFigure | None:
+    states = sensor.states if pressure_kPa is None else (sensor.state(pressure_kPa),)
+    return next((s.figures[key] for s in states if s is not None and key in s.figures), None)
+
+
+def _difference(one: ComparedFigure | None, other: ComparedFigure | None, *, same_resin: bool) -> dict[str, Any] | None:
+    """The second figure less the first, with the interval of the difference in percent, and whether it exceeds it."""
+    if one is None or other is None:
+        return None
+    row: dict[str, Any] = {"difference": other.value - one.value, "percent": None, "exceeds": None}
+    row |= {"low_percent": None, "high_percent": None}
+    if one.value * other.value <= 0:
+        return row
+    ratio = math.log(other.value / one.value)
+    row["percent"] = 100 * math.expm1(ratio)
+    first, second = one.variance, other.variance
+    if first is None or second is None:
+        return row
+    both = one.effects and other.effects
+    total = variance_of_ratio(one.effects, other.effects, same_resin=same_resin) if both else first + second
+    width = COVERAGE * math.sqrt(total)
+    row |= {"low_percent": 100 * math.expm1(ratio - width), "high_percent": 100 * math.expm1(ratio + width)}
+    return {**row, "exceeds": abs(ratio) > max(width, _EXACT)}
+
+
+def _notes(sensors: Sequence[ComparedSensor], pressures_kPa: Sequence[float], inputs: Mapping[str, Any]) -> list[str]:
+    """What is assumed, and what was left out."""
+    notes = []
+    predicted = [s for s in sensors if s.resin is not None]
+    if len(predicted) > 1 and sensors[0].resin is not None:
+        if any(s.resin == sensors[0].resin for s in predicted[1:]):
+            notes.append(
+                "Of sensors in one resin the resin's modulus and ageing are one unknown, so they cancel as far as they "
+                f"act alike; the model's errors correlate by {MODEL_CORRELATION:g}, as between 0 and 22 kPa in one "
+                "resin of the paper's Table S1."
+            )
+        notes.append(
+            "Print, tube, gauge and weather count for each sensor by itself; so do resins and model errors of "
+            "different resins, which do not correlate in Table S1."
+        )
+    if any(s.kind != "measured" for s in sensors):
+        notes.append("The model's own error is known for the sensitivity alone: in other figures it is not counted.")
+    if any(s.kind == "measured" for s in sensors):
+        notes.append("A measured interval (95 %) holds the scatter that was seen; it is taken as independent.")
+    left_kPa = sorted({state.driving_pressure_kPa for s in sensors for state in s.states} - set(pressures_kPa))
+    if left_kPa:
+        notes.append(f"Not compared, because not all have them: {', '.join(f'{p:g}' for p in left_kPa)} kPa.")
+    if not inputs and len(predicted) == len(sensors):
+        notes.append("No input differs.")
+    return [*notes, *dict.fromkeys(note for sensor in sensors for note in sensor.notes)]

@@ -1,0 +1,1 @@
+"""The sheet of a comparison: what differs, figures with intervals, overlaid curves and sections."""

@@ -1,0 +1,191 @@
+"""The pictures of a comparison: curves with their bands, differences with their intervals, and sections laid over one
+another. Sensors differ by line and marker, and stay apart in grayscale."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pneutouch.parts import Assembly
+from pneutouch.report.compared.words import labels
+from pneutouch.report.section import section
+from pneutouch.report.style import ACCENT, INK, LINES, MARKERS, MUTED, figure, svg
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+WIDTH = 86.0
+"""Width in mm: two in a row on A4, and readable on a phone."""
+
+MOST = 6
+"""Sensors that are drawn: more cover one another."""
+
+_TONES = (INK, "#3F8FBF", "#B4631D", MUTED, ACCENT, "#8C8C8C")
+_PANELS, _RUNS, _TOLERANCE, _TALLEST = 4, 30, 5e-3, 1.6
+
+
+def _look(k: int) -> dict[str, Any]:
+    return {"color": _TONES[k % len(_TONES)], "ls": LINES[k % len(LINES)], "lw": 1.2}
+
+
+def _spots(k: int) -> dict[str, Any]:
+    tone = _TONES[k % len(_TONES)]
+    return {"ls": "", "marker": MARKERS[k % len(MARKERS)], "ms": 2.8, "mew": 0.6, "mec": tone, "mfc": "white"}
+
+
+def responses(document: Mapping[str, Any]) -> dict[str, str]:
+    """Pressure rise over contact force with the band of the sensitivity, a plot a driving pressure."""
+    axes = "contact_force_N", "pressure_rise_kPa"
+    words = "contact force  (N)", "pressure rise  (kPa)"
+    return _curves(document, axes, words, "sensitivity_kPa_per_N")
+
+
+def indentations(document: Mapping[str, Any]) -> dict[str, str]:
+    """Contact force over indentation in the same way; the band is that of the stiffness."""
+    axes = "indentation_mm", "contact_force_N"
+    words = "indentation  (mm)", "contact force  (N)"
+    return _curves(document, axes, words, "stiffness_N_per_mm")
+
+
+def _curves(document: Mapping[str, Any], keys: tuple[str, str], words: tuple[str, str], band: str) -> dict[str, str]:
+    """A plot a driving pressure, by its title; all have the same axes."""
+    names, plots = labels(document)[:MOST], {}
+    ends = [max((max(c[key]) for c in document["curves"] if c["label"] in names), default=0.0) for key in keys]
+    if not all(ends):
+        return {}
+    for pressure_kPa in _spread([float(p) for p in document["driving_pressures_kPa"]]):
+        with figure(WIDTH, 56 + 4 * math.ceil(len(names) / 2)) as drawn:
+            ax = drawn.subplots()
+            for k, name in enumerate(names):
+                _draw(ax, k, _of(document, name, pressure_kPa), keys, _ends(document, band, k, pressure_kPa))
+            ax.set(xlabel=words[0], ylabel=words[1], xlim=(0, 1.04 * ends[0]), ylim=(0, _top(document, band) * ends[1]))
+            _legend(drawn, document, names)
+            plots[f"{pressure_kPa:g} kPa"] = svg(drawn)
+    return plots
+
+
+def _top(document: Mapping[str, Any], band: str) -> float:
+    """Height of the axis over the greatest value: space for the bands, as far as they do not flatten the curves."""
+    shown = [(k, row["driving_pressure_kPa"]) for row in document["figures"] for k in range(len(row["values"][:MOST]))]
+    ratios = [matching[1] for k, p in shown if (matching := _ends(document, band, k, p)) is not None]
+    return min(1.05 * max(ratios, default=1.0), _TALLEST)
+
+
+def _spread(values: Sequence[float]) -> list[float]:
+    """All of them where they are few, else some spread evenly over all."""
+    if len(values) <= _PANELS:
+        return list(values)
+    return [values[round(k * (len(values) - 1) / (_PANELS - 1))] for k in range(_PANELS)]
+
+
+def _of(document: Mapping[str, Any], label: str, pressure_kPa: float) -> list[Mapping[str, Any]]:
+    matching = [c for c in document["curves"] if c["label"] == label and c["driving_pressure_kPa"] == pressure_kPa]
+    return matching[:: math.ceil(len(matching) / _RUNS) or 1]
+
+
+def _ends(document: Mapping[str, Any], key: str, k: int, pressure_kPa: float) -> tuple[float, float] | None:
+    """Ends of a figure's interval over its value."""
+    for row in document["figures"]:
+        if row["figure"] == key and row["driving_pressure_kPa"] == pressure_kPa:
+            one = row["values"][k]
+            if one is not None and one["low"] is not None and one["value"] and one["high"] is not None:
+                return one["low"] / one["value"], one["high"] / one["value"]
+    return None
+
+
+def _draw(
+    ax: Axes, k: int, curves: Sequence[Mapping[str, Any]], keys: tuple[str, str], ends: tuple[float, float] | None
+) -> None:
+    """One predicted curve with its band, or the points of measured runs."""
+    for curve in curves:
+        x, y = (np.array(curve[key]) for key in keys)
+        if curve["measured"]:
+            ax.plot(x, y, zorder=4, **_spots(k))
+            continue
+        ax.plot(x, y, zorder=3, **_look(k))
+        if ends is not None:
+            tone = _TONES[k % len(_TONES)]
+            ax.fill_between(x, ends[0] * y, ends[1] * y, fc=tone, alpha=0.13, ec="none", zorder=1)
+            for end in ends:
+                ax.plot(x, end * y, color=tone, lw=0.4, ls=LINES[k % len(LINES)], zorder=2)
+
+
+def _legend(drawn: Figure, document: Mapping[str, Any], names: Sequence[str]) -> None:
+    from matplotlib.lines import Line2D
+
+    measured = [one["kind"] == "measured" for one in document["compared"]]
+    handles = [Line2D([], [], **(_spots(k) if measured[k] else _look(k))) for k in range(len(names))]
+    drawn.legend(handles, [_cut(n) for n in names], loc="outside upper left", ncols=2, handlelength=2.6)
+
+
+def _cut(text: str, most: int = 26) -> str:
+    plain = text.replace("$", r"\$")
+    return plain if len(text) <= most else f"{plain[: most - 1]}…"
+
+
+def differences(document: Mapping[str, Any]) -> str | None:
+    """Differences from the first sensor in percent with their intervals; filled where they exceed them."""
+    rows = [
+        (f"{row['name']}{_at(row)}", one, k)
+        for row in document["figures"]
+        for k, one in enumerate(row["differences"][: MOST - 1])
+        if one is not None and one["low_percent"] is not None and one["high_percent"] > one["low_percent"]
+    ]
+    if not rows:
+        return None
+    names = list(dict.fromkeys(name for name, _, _ in rows))
+    others = labels(document)[1:MOST]
+    with figure(WIDTH, 14 + 4.2 * len(names) + 4 * math.ceil(len(others) / 2) * (len(others) > 1)) as drawn:
+        ax = drawn.subplots()
+        for name, one, k in rows:
+            place = names.index(name) + 0.22 * (k - 0.5 * (len(others) - 1))
+            tone = _TONES[(k + 1) % len(_TONES)] if len(others) > 1 else INK
+            ax.plot([one["low_percent"], one["high_percent"]], [place, place], color=tone, lw=1.0, marker="|", ms=4)
+            marker = MARKERS[k % len(MARKERS)]
+            face = tone if one["exceeds"] else "white"
+            ax.plot(one["percent"], place, ls="", marker=marker, ms=4.4, mec=tone, mfc=face, zorder=4)
+        ax.axvline(0, color=INK, lw=0.8)
+        ax.set_yticks(range(len(names)), names)
+        ax.set(xlabel=f"difference from {_cut(labels(document)[0])}  (%)", ylim=(len(names) - 0.5, -0.5))
+        ax.grid(visible=False, axis="y")
+        if len(others) > 1:
+            _key(drawn, others)
+        return svg(drawn)
+
+
+def _at(row: Mapping[str, Any]) -> str:
+    return "" if row["driving_pressure_kPa"] is None else f" at {row['driving_pressure_kPa']:g} kPa"
+
+
+def _key(drawn: Figure, others: Sequence[str]) -> None:
+    from matplotlib.lines import Line2D
+
+    handles = [
+        Line2D([], [], color=_TONES[k + 1], marker=MARKERS[k % len(MARKERS)], ms=4, lw=1.0) for k in range(len(others))
+    ]
+    drawn.legend(handles, [_cut(name) for name in others], loc="outside upper left", ncols=2)
+
+
+def sections(document: Mapping[str, Any], parts: Mapping[str, Assembly]) -> str | None:
+    """Outlines of the sections of all sensors on one another, their domes' base planes at one height."""
+    names = [name for name in labels(document)[:MOST] if name in parts]
+    if not names:
+        return None
+    from matplotlib.lines import Line2D
+
+    with figure(WIDTH, 62 + 4 * math.ceil(len(names) / 2)) as drawn:
+        ax = drawn.subplots()
+        for name in names:
+            look = _look(labels(document).index(name))
+            for solid in parts[name].solids:
+                for loop in section(solid.mesh(_TOLERANCE)):
+                    closed = np.vstack([loop, loop[:1]])
+                    ax.plot(closed[:, 0], closed[:, 1], **{**look, "lw": 0.9})
+        ax.set(aspect="equal", xlabel="x  (mm)", ylabel="z  (mm)")
+        handles = [Line2D([], [], **_look(labels(document).index(name))) for name in names]
+        drawn.legend(handles, [_cut(name) for name in names], loc="outside upper left", ncols=2, handlelength=2.6)
+        return svg(drawn)

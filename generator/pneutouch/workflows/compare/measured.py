@@ -1,0 +1,118 @@
+"""Measured columns of a comparison: the groups of a folder that ``characterize`` wrote, one a resin and age."""
+
+import csv
+import io
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.errors import InputError
+from pneutouch.evaluation.comparison import ComparedFigure, ComparedSensor, ComparedState
+from pneutouch.workflows.compare.folder import listed_file, manifest_of
+
+_NAMES = {"force_range_N": "force_at_range_end_N"}
+"""Measured figures that a prediction names otherwise."""
+
+_CURVE = ("indentation_mm", "contact_force_N", "pressure_rise_kPa")
+
+
+@dataclass(frozen=True)
+class MeasuredColumn:
+    """Groups of one resin and age, by driving pressure, and the loading points of their runs in steps.
+
+    ``kind`` is "measured", or "design" for the prediction that the results were compared with.
+    """
+
+    name: str
+    source: str
+    states: tuple[ComparedState, ...]
+    simulated: bool = False
+    kind: str = "measured"
+
+    def sensor(self) -> ComparedSensor:
+        """The column."""
+        notes = (f"{self.source} is simulated, not measured.",) if self.simulated else ()
+        return ComparedSensor(self.name, self.kind, self.source, {}, None, self.states, notes)
+
+    def depths(self) -> dict[float, Array]:
+        """Depths of the shallowest run by driving pressure, mm and kPa."""
+        return {
+            state.driving_pressure_kPa: min(
+                (np.array(curve["indentation_mm"]) for curve in state.curves), key=lambda depths: float(depths[-1])
+            )
+            for state in self.states
+            if state.curves
+        }
+
+
+def measured_columns(folder: Path, *, predicted: bool = False) -> list[MeasuredColumn]:
+    """The columns of a folder of results; ``predicted`` adds the prediction that stands in it, before each.
+
+    Raises InputError where the folder is damaged or holds no group.
+    """
+    manifest = manifest_of(folder)
+    try:
+        content = json.loads(listed_file(folder, "figures.json", manifest))
+        curves = _curves(content, listed_file(folder, "points.csv", manifest))
+        columns = _columns(content, curves, str(manifest.get("name", folder.name)), str(folder))
+    except (KeyError, ValueError, TypeError) as error:
+        raise InputError(
+            f"figures.json is not as this version writes it ({error})",
+            file=folder,
+            remedy="characterize the campaign again",
+        ) from None
+    if not columns:
+        raise InputError(
+            "holds no group of runs with figures", file=folder, remedy="see the failures on its measured datasheet"
+        )
+    return [column for pair in columns for column in pair if predicted or column.kind == "measured"]
+
+
+def _columns(
+    content: Mapping[str, Any], curves: Mapping[str, dict[str, list[float]]], name: str, source: str
+) -> list[tuple[MeasuredColumn, MeasuredColumn]]:
+    """The prediction and the measurement of each resin and age."""
+    groups: dict[tuple[str, str], list[dict[str, Any]]] = {}
+    for group in content["groups"]:
+        groups.setdefault((group["resin"], group["age"]), []).append(group)
+    columns = []
+    for (resin, age), members in groups.items():
+        more = "" if len(groups) == 1 else f", {resin}, {age}"
+        expected, seen = (
+            tuple(_state(group, curves, measured=measured) for group in members) for measured in (False, True)
+        )
+        columns.append(
+            (
+                MeasuredColumn(f"{content['design']}{more}", source, expected, kind="design"),
+                MeasuredColumn(f"{name}{more}", source, seen, bool(content["simulated"])),
+            )
+        )
+    return columns
+
+
+def _state(group: Mapping[str, Any], curves: Mapping[str, dict[str, list[float]]], *, measured: bool) -> ComparedState:
+    entries = {
+        _NAMES.get(key, key): entry if measured else entry["predicted"]
+        for key, entry in group["figures"].items()
+        if measured or "predicted" in entry
+    }
+    figures = {key: ComparedFigure(entry["value"], entry["low"], entry["high"]) for key, entry in entries.items()}
+    runs = tuple(curves[file] for file in group["files"] if measured and file in curves)
+    return ComparedState(float(group["driving_pressure_kPa"]), figures, runs)
+
+
+def _curves(content: Mapping[str, Any], points: bytes) -> dict[str, dict[str, list[float]]]:
+    """Loading points of the runs in steps, by file."""
+    stepped = {run["file"] for run in content["runs"] if run["kind"] == "steps"}
+    curves: dict[str, dict[str, list[float]]] = {}
+    for row in csv.DictReader(io.StringIO(points.decode(), newline="")):
+        if row["file"] in stepped:
+            curve = curves.setdefault(row["file"], {key: [] for key in _CURVE})
+            for key in _CURVE:
+                curve[key].append(float(row[key]))
+    return curves

@@ -1,0 +1,169 @@
+"""A predicted column of a comparison: a design evaluated now, or the recorded prediction of a build."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pneutouch import __version__
+from pneutouch.arrays import Array
+from pneutouch.catalogue import ResolvedDesign
+from pneutouch.evaluation.comparison import FIGURES, ComparedFigure, ComparedSensor, ComparedState
+from pneutouch.evaluation.correlation import effects_of
+from pneutouch.evaluation.document import prediction_document
+from pneutouch.evaluation.evaluate import Evaluation
+from pneutouch.evaluation.read_at import figures_at
+from pneutouch.export.threemf_read import Package
+from pneutouch.output.recipe import FORMAT
+from pneutouch.output.recipe_read import read_recipe
+from pneutouch.parts import assemble
+from pneutouch.workflows.compare.folder import listed_file, manifest_of
+
+if TYPE_CHECKING:
+    from pneutouch.parts import Assembly
+
+Depths = Mapping[float, Array]
+"""Depths of a measurement, mm, by driving pressure in kPa."""
+
+_CURVE = ("indentation_mm", "contact_force_N", "pressure_rise_kPa")
+_CLOSE = 1e-6
+
+
+@dataclass(frozen=True)
+class PredictedColumn:
+    """A prediction as ``predict`` prints it, the scene it is of, and where it comes from."""
+
+    document: Mapping[str, Any]
+    scene: ResolvedDesign
+    model: str
+    clamp: str
+    kind: str
+    source: str
+    evaluation: Evaluation | None = None
+    notes: tuple[str, ...] = ()
+
+    def sensor(self, depths: Depths) -> ComparedSensor:
+        """The column; where there is a measurement, figures of the curve are read at its depths."""
+        states = [_state(state, self.document, depths) for state in self.document["states"]]
+        return ComparedSensor(
+            name=self.scene.name,
+            kind=self.kind,
+            source=self.source,
+            inputs=self._inputs(),
+            resin=self.scene.membrane_material.model_dump(mode="json"),
+            states=tuple(state for state, _ in states),
+            notes=tuple(dict.fromkeys((*self.notes, *(note for _, note in states if note)))),
+            assembly=self._assembly,
+        )
+
+    def _inputs(self) -> dict[str, Any]:
+        tables = self.scene.design.model_dump(mode="json", by_alias=True)
+        fields = {
+            f"{table}.{key}": value
+            for table, content in tables.items()
+            if table != "document" and isinstance(content, dict)
+            for key, value in content.items()
+        }
+        top = {key: value for key, value in tables.items() if not isinstance(value, dict)}
+        modulus = self.scene.membrane_material.shear_modulus_MPa
+        more = {"shear_modulus_MPa": modulus.nominal} if modulus is not None else {}
+        return {**top, **fields, "model": self.model, "clamp": self.clamp, **more}
+
+    def _assembly(self) -> Assembly:
+        return assemble(self.scene) if self.evaluation is None else self.evaluation.assembly
+
+
+def of_design(evaluation: Evaluation, source: str) -> PredictedColumn:
+    """The column of a design that was just evaluated."""
+    model, clamp = evaluation.prediction.model, evaluation.options.clamp
+    document = prediction_document(evaluation)
+    return PredictedColumn(document, evaluation.scene, model, clamp, "design", source, evaluation)
+
+
+def of_build(folder: Path) -> PredictedColumn:
+    """The column of a build's output folder: its recorded prediction, and the scene of its recipe.
+
+    Raises InputError where the folder is damaged.
+    """
+    manifest = manifest_of(folder)
+    document = json.loads(listed_file(folder, "prediction.json", manifest))
+    made_by = str(manifest.get("versions", {}).get("pneutouch", ""))
+    recipe_text = json.dumps(
+        {"format": FORMAT, "name": manifest.get("name", ""), "version": made_by, "inputs": manifest.get("inputs", {})}
+    )
+    stated = {"input-hash": str(manifest.get("input_hash", ""))}
+    recipe = read_recipe(Package(folder, (), stated, recipe_text, thumbnail=False, warnings=()))
+    notes = () if made_by == __version__ else (f"{folder} was built by pneutouch {made_by} (here {__version__}).",)
+    clamp = recipe.options.clamp
+    return PredictedColumn(document, recipe.scene, document["model"], clamp, "build", str(folder), notes=notes)
+
+
+def _state(state: Mapping[str, Any], document: Mapping[str, Any], depths: Depths) -> tuple[ComparedState, str]:
+    known = state["uncertainty"].get("figures", {})
+    pressure_kPa = float(state["driving_pressure_kPa"])
+    plain = {
+        "limit_pressure_kPa": document["limits"]["limit_point_kPa"],
+        "force_at_range_end_N": None if state["force_range_N"] is None else state["force_range_N"][1],
+        **{figure.key: state.get(figure.key) for figure in FIGURES if figure.key in state},
+    }
+    figures = {key: ComparedFigure(float(value)) for key, value in plain.items() if value is not None}
+    figures |= {
+        key: ComparedFigure(entry["value"], entry["low"], entry["high"], effects_of(state["uncertainty"], key))
+        for key, entry in known.items()
+    }
+    measured = next((at for p, at in depths.items() if abs(p - pressure_kPa) < _CLOSE), None)
+    note = ""
+    if measured is not None:
+        read, note = _read(state, measured)
+        figures = {key: value for key, value in figures.items() if key not in _OF_CURVE}
+        figures |= {key: _scaled(value, known.get(key), state) for key, value in read.items()}
+    curve = {key: state["curve"][key] for key in _CURVE}
+    kept = sum(at <= state["range_end_mm"] * (1 + 1e-9) for at in curve["indentation_mm"])
+    return ComparedState(pressure_kPa, figures, ({key: values[:kept] for key, values in curve.items()},)), note
+
+
+_OF_CURVE = (
+    "sensitivity_kPa_per_N",
+    "stiffness_N_per_mm",
+    "force_at_range_end_N",
+    "r_squared",
+    "nonlinearity_percent",
+    "saturation_force_N",
+    "range_end_mm",
+)
+"""Figures that depend on the range that they are read over."""
+
+
+def _read(state: Mapping[str, Any], depths: Array) -> tuple[dict[str, float], str]:
+    """Figures at the depths of a measurement, and a note on them."""
+    curve = [np.array(state["curve"][key]) for key in _CURVE]
+    at_depths, reached = figures_at(curve[0], curve[1], curve[2], state["range_end_mm"], depths)
+    if at_depths is None:
+        return {}, ""
+    read = {
+        "sensitivity_kPa_per_N": at_depths.sensitivity_kPa_per_N,
+        "stiffness_N_per_mm": at_depths.stiffness,
+        "force_at_range_end_N": at_depths.force_range[1],
+        "r_squared": at_depths.r_squared,
+        "nonlinearity_percent": 100 * at_depths.nonlinearity,
+        **({} if at_depths.saturation_force is None else {"saturation_force_N": at_depths.saturation_force}),
+    }
+    short = f"; the prediction ends at {reached:.2f} mm" if reached < float(depths[-1]) * (1 - 1e-6) else ""
+    note = (
+        f"At {state['driving_pressure_kPa']:g} kPa figures of predicted curves are read at the measured depths, up to "
+    )
+    return read, f"{note}{float(depths[-1]):.2f} mm{short}."
+
+
+def _scaled(value: float, known: Mapping[str, Any] | None, state: Mapping[str, Any]) -> ComparedFigure:
+    """A figure of a shorter range with the relative uncertainty of the whole range."""
+    if known is None or not known["value"]:
+        return ComparedFigure(value)
+    scale = value / known["value"]
+    key = next(key for key, entry in state["uncertainty"]["figures"].items() if entry is known)
+    return ComparedFigure(value, scale * known["low"], scale * known["high"], effects_of(state["uncertainty"], key))
