@@ -32,7 +32,7 @@ COMMANDS = [line for block in blocks("sh") for line in block.splitlines() if lin
 @pytest.fixture
 def bench(tmp_path):
     """A folder with the example in it that the page names."""
-    shutil.copy(ROOT / "wall-and-resin.toml", tmp_path)
+    shutil.copy(ROOT / "docs/examples/wall-and-resin.toml", tmp_path)
     return tmp_path
 
 
@@ -105,7 +105,7 @@ def test_bad_words_exit_2_and_leave_nothing(words, message, command, bench):
     assert (result.returncode, result.stdout) == (2, "")
     assert message in result.stderr
     assert "Traceback" not in result.stderr
-    assert list(bench.iterdir()) == [bench / "docs"]
+    assert list(bench.iterdir()) == [bench / "wall-and-resin.toml"]
 
 
 def test_other_commands_load_nothing_of_it():

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import re
 from collections.abc import Iterable
 from functools import cached_property
 from pathlib import Path
@@ -15,13 +14,13 @@ from pneutouch.api.prediction import Prediction
 from pneutouch.api.results import CheckResult
 from pneutouch.body import Body
 from pneutouch.catalogue import DesignSource, Library, load_scene, user_folder
-from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
 from pneutouch.mechanics.models import model_options
-from pneutouch.output.new import NAME_PATTERN, NAME_RULE, write_design
+from pneutouch.output.new import write_design
 from pneutouch.parts import Assembly, assemble
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.material import Material
+from pneutouch.spec.names import plain_name
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import override
 from pneutouch.spec.template import design_template
@@ -41,8 +40,7 @@ class Design(show.Shown):
         self._take(name, {}, fields)
 
     def _take(self, name: str, content: Any, fields: dict[str, Any]) -> None:
-        if not re.fullmatch(NAME_PATTERN, str(name)):
-            raise InputError(NAME_RULE, key="name", value=name)
+        plain_name(str(name), key="name")
         with named_by_keyword():
             whole = override(content, changes(DesignFile, fields), DesignFile)
             self.file = DesignSource(name, whole, WHERE).changed({})
@@ -90,15 +88,12 @@ class Design(show.Shown):
         design._take(name or self.name, self.source.content, fields)
         return design
 
-    def save(self, name_or_path: str | Path | None = None, *, overwrite: bool = False) -> Path:
-        """Write the design file, over another with ``overwrite`` alone; a bare name goes to the user's ``designs/``.
-
-        Returns its path.
-        """
+    def save(self, name_or_path: str | Path | None = None) -> Path:
+        """Write the design file, never over another; a bare name goes to the user's ``designs/``. Returns its path."""
         path = Path(name_or_path or self.name)
         folder = path.parent if path.suffix == ".toml" or len(path.parts) > 1 else user_folder() / "designs"
         text = design_template(self.name, self.file.model_dump(by_alias=True), "Every key may be left out.")
-        return write_design(path.name.removesuffix(".toml"), folder, text, overwrite=overwrite)
+        return write_design(path.name.removesuffix(".toml"), folder, text)
 
     def predict(
         self,

@@ -15,6 +15,7 @@ from pydantic import BaseModel
 from pneutouch.catalogue.places import PACKAGE, shipped_root, user_folder
 from pneutouch.errors import InputError, nearest
 from pneutouch.spec.design import DesignFile
+from pneutouch.spec.files import is_file
 from pneutouch.spec.material import Material
 from pneutouch.spec.mixing import MixingCurve
 from pneutouch.spec.part import MOUNTS, PORTS, SEATS, Tube
@@ -112,19 +113,14 @@ class Library:
         path, paths = Path(name), self.paths("designs")
         if name in paths:
             return paths[name]
-        if path.suffix == ".toml" or "/" in name or path.is_file():
+        if path.suffix == ".toml" or "/" in name or is_file(path):
             return path
         if name in self.paths("specimens"):
             raise InputError(
                 f"{name}: is a texture specimen; it can be built, checked and scanned, this command needs the design "
                 "of a sensor"
             )
-        raise InputError(
-            "no such design or file",
-            key="design",
-            value=name,
-            remedy=f"give the name or the path of a design.{nearest(name, paths)}",
-        )
+        raise InputError(f"{name}: no such design or file.{nearest(name, paths)}")
 
     def specimen_file(self, name: str) -> Path | None:
         """The file of a specimen given by name or path, or None where the name is a sensor's or of nothing."""
@@ -135,7 +131,7 @@ class Library:
             path = self.design_file(name)
         except InputError:
             return None
-        return path if path.is_file() and is_specimen(read_toml(path)) else None
+        return path if is_file(path) and is_specimen(read_toml(path)) else None
 
 
 def is_specimen(content: dict[str, Any]) -> bool:

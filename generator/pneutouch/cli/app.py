@@ -2,6 +2,7 @@
 
 import gc
 import os
+import shlex
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -15,8 +16,7 @@ from typer.core import TyperGroup
 from typer.main import get_command_from_info
 
 from pneutouch import __version__
-from pneutouch.cli.next_step import report_next
-from pneutouch.errors import PneutouchError
+from pneutouch.errors import ComputationError, InputError, PneutouchError
 
 _MODULES = {"build": "build", "check": "build"} | {
     name: name
@@ -121,9 +121,6 @@ DesignFolderOption = Annotated[
 ]
 
 
-ForceOption = Annotated[bool, typer.Option("--force", help="Replace a design file of this name.")]
-
-
 @contextmanager
 def reporting() -> Iterator[None]:
     """Turn a fault of ours into one message on stderr and exit code 3; errors of the library go on to `Commands`."""
@@ -134,6 +131,11 @@ def reporting() -> Iterator[None]:
         raise typer.Exit(0) from None
     except (typer.Exit, PneutouchError):
         raise
+    except OSError as error:
+        # A name that no file can have, a folder that may not be read, a full disk: the system's own words.
+        raise InputError(error.strerror or str(error), file=error.filename) from None
+    except MemoryError:
+        raise ComputationError("not enough memory", remedy="request less at once, or close other programs") from None
     except Exception as error:
         if isinstance(error.__cause__ or error.__context__, KeyboardInterrupt):
             # A library that is interrupted while it loads reports that it cannot be loaded.
@@ -231,7 +233,6 @@ def new(
 ) -> None:
     """Write a commented design file, or a copy of an example."""
     with reporting():
-        from pneutouch.errors import InputError
         from pneutouch.output.new import NewFile, new_design, new_from
 
         if from_ is not None:
@@ -242,7 +243,7 @@ def new(
         else:
             raise InputError("no name for the new design", remedy="give a name, or an example with `from`")
         typer.echo(str(made.path))
-        report_next(*made.command)
+        typer.echo(f"next: pneutouch {shlex.join(made.command)}", err=True)
 
 
 def design_folder(out: Path | None) -> Path:
@@ -261,7 +262,6 @@ def changes(set_: list[str] | None) -> dict[str, Any]:
 
 def refuse_flags(context: typer.Context, flags: Mapping[str, str], what: str, file: str) -> None:
     """Raise InputError where one of ``flags`` (by parameter) was given, which does not go with ``what``."""
-    from pneutouch.errors import InputError
 
     given = [
         flag for key, flag in flags.items() if getattr(context.get_parameter_source(key), "name", "") == "COMMANDLINE"

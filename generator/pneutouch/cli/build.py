@@ -24,7 +24,6 @@ from pneutouch.cli.app import (
     refuse_flags,
     reporting,
 )
-from pneutouch.cli.next_step import report_next, set_words
 from pneutouch.cli.progress import bar
 
 if TYPE_CHECKING:
@@ -75,7 +74,7 @@ def build(
         else:
             evaluation = (
                 _from_3mf(design, context)
-                if _is_3mf(design)
+                if design.lower().endswith(".3mf")
                 else _evaluated(design, changes(set_), model, tolerance, closure=closure, clamp=clamp)
             )
             plan = _planned(evaluation, out, voxel_mode) if voxels or voxel_mode else None
@@ -90,8 +89,6 @@ def build(
             typer.echo(str(folder))
             if stack is not None:
                 typer.echo(str(stack))
-            if not _is_specimen(design) and not _is_3mf(design):
-                report_next("plan", design, *set_words(set_))
 
 
 @app.command()
@@ -124,8 +121,6 @@ def check(
             from pneutouch.cli.text import findings_text
 
             typer.echo(findings_text([finding.document() for finding in findings]))
-            if not broken:
-                report_next("build", design, *set_words(set_), *(["--voxels"] if voxels else []))
         if broken:
             raise typer.Exit(1)
 
@@ -142,11 +137,7 @@ def _evaluated(
 def _is_specimen(design: str) -> bool:
     from pneutouch.catalogue import Library
 
-    return not _is_3mf(design) and Library.default().specimen_file(design) is not None
-
-
-def _is_3mf(design: str) -> bool:
-    return design.lower().endswith(".3mf")
+    return not design.lower().endswith(".3mf") and Library.default().specimen_file(design) is not None
 
 
 def _build_specimen(design: str, out: Path, changed: dict[str, Any]) -> tuple[str, Path, list[Finding]]:
@@ -174,7 +165,8 @@ def _report_left_out(folder: Path) -> None:
 
     from pneutouch.output.files import MANIFEST
 
-    manifest = loads((folder / MANIFEST).read_text(encoding="utf-8"))
+    path = folder / MANIFEST
+    manifest = loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
     for name, why in manifest.get("left_out", {}).items():
         typer.echo(f"note: {name} is not written: {why}", err=True)
 

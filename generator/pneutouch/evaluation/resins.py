@@ -64,11 +64,6 @@ def resins_of(
     return simulated
 
 
-def name_of(design: str | DesignSource) -> str:
-    """How a campaign names its design: as it was given, or by its own name."""
-    return design.name if isinstance(design, DesignSource) else design
-
-
 def resin_of(scene: ResolvedDesign) -> str:
     """How a campaign calls the membrane of a design: its resin, or as designed where it is a mix."""
     chosen = scene.design.membrane.material

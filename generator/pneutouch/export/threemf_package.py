@@ -13,6 +13,7 @@ from typing import Any, NoReturn
 from xml.parsers import expat
 
 from pneutouch.errors import InputError
+from pneutouch.spec.files import read_bytes
 
 MOST_BYTES = 256 * 2**20
 """Greatest size of a file, and of all its parts inflated: a sensor has less than 1 MB, a fine one some tens."""
@@ -66,18 +67,7 @@ def checked_package(path: Path) -> bytes:
 
 
 def _content(path: Path) -> bytes:
-    if path.is_dir():
-        raise InputError("this is a folder", file=path, remedy="give a 3MF file")
-    if not path.exists():
-        raise InputError("no such file", file=path)
-    if not path.is_file():
-        raise InputError("not a plain file", file=path, remedy="give a 3MF file")
-    try:
-        if path.stat().st_size > MOST_BYTES:
-            raise InputError(f"larger than {_mega(MOST_BYTES)}, which no sensor needs", file=path)
-        return path.read_bytes()
-    except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror}", file=path) from None
+    return read_bytes(path, MOST_BYTES, "3MF file")
 
 
 def _check_end(content: bytes, path: Path) -> None:

@@ -10,8 +10,12 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from pneutouch.errors import InputError
+from pneutouch.spec.files import read_bytes
 
 MANIFEST = "manifest.json"
+
+_MOST_MANIFEST = 100_000_000
+"""Bytes; a campaign of many runs has a long one."""
 
 
 def digest(content: bytes) -> str:
@@ -24,19 +28,19 @@ def json_bytes(document: object) -> bytes:
     return (json.dumps(document, indent=2, sort_keys=True, ensure_ascii=False, allow_nan=False) + "\n").encode()
 
 
-def check_writable(folder: Path, key: str = "out") -> None:
-    """Raise InputError where an output folder cannot be made or written, or holds files of others; ``key`` names it."""
+def check_writable(folder: Path) -> None:
+    """Raise InputError where an output folder cannot be made or written, or holds files of others."""
     if folder.exists() and not folder.is_dir():
-        raise InputError(f"{folder} is a file", key=key, remedy="it must be a folder")
+        raise InputError(f"{folder} is a file", key="out", remedy="it must be a folder")
     if folder.is_symlink():
-        raise InputError(f"{folder} is a link", key=key, remedy="give the folder it leads to")
+        raise InputError(f"{folder} is a link", key="out", remedy="give the folder it leads to")
     if folder.is_dir() and any(folder.iterdir()):
         _our_files(folder)
     parent = next(path for path in (folder.parent, *folder.parent.parents) if path.exists())
     if not parent.is_dir():
-        raise InputError(f"{parent} is a file", key=key, remedy="it must be a folder")
+        raise InputError(f"{parent} is a file", key="out", remedy="it must be a folder")
     if not os.access(parent, os.W_OK | os.X_OK):
-        raise InputError(f"{parent} cannot be written", key=key, remedy="give a folder you may write to")
+        raise InputError(f"{parent} cannot be written", key="out", remedy="give a folder you may write to")
 
 
 def write_folder(folder: Path, files: dict[str, bytes]) -> None:
@@ -101,13 +105,23 @@ def exchange(folder: Path, fresh: Path) -> None:
 def _our_files(folder: Path) -> set[str]:
     """The files that the folder's manifest lists; raises InputError where the folder is not one of ours."""
     try:
-        manifest = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
+        manifest = json.loads(read_bytes(folder / MANIFEST, _MOST_MANIFEST, "manifest"))
         return {*manifest["files"], MANIFEST}
-    except FileNotFoundError:
-        text = f"holds files but no {MANIFEST}: not written by pneutouch"
-    except (OSError, ValueError, KeyError, TypeError):
+    except (InputError, ValueError, KeyError, TypeError, RecursionError):
+        if not os.path.lexists(folder / MANIFEST):
+            text = f"holds files but no {MANIFEST}: not written by pneutouch"
+            raise InputError(f"{folder} {text}", key="out", remedy="give another folder, or empty this one") from None
         text = f"has a {MANIFEST} that pneutouch did not write or that is damaged"
     raise InputError(f"{folder} {text}", key="out", remedy="give another folder, or empty this one")
+
+
+def stated_digest(folder: Path, name: str) -> str | None:
+    """The SHA-256 that the folder's manifest states of a file; None where it states none."""
+    try:
+        digest_ = json.loads(read_bytes(folder / MANIFEST, _MOST_MANIFEST, "manifest"))["files"][name]["sha256"]
+    except (InputError, ValueError, KeyError, TypeError, RecursionError):
+        return None
+    return str(digest_)
 
 
 def _keep_foreign(folder: Path, fresh: Path) -> None:

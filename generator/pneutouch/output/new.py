@@ -1,8 +1,6 @@
 """Write a new file to start from: a commented design, or a copy of a design, a specimen or an example."""
 
 import os
-import re
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,11 +8,10 @@ from pneutouch.catalogue import KINDS, Library, user_folder
 from pneutouch.catalogue.examples import COMMANDS, examples
 from pneutouch.catalogue.library import is_specimen
 from pneutouch.errors import InputError, nearest
+from pneutouch.spec.files import is_file, read_bytes
+from pneutouch.spec.names import plain_name
 from pneutouch.spec.read import read_toml
 from pneutouch.spec.template import design_template
-
-NAME_PATTERN = r"[A-Za-z0-9][A-Za-z0-9_-]*"
-NAME_RULE = "use letters, digits, - and _, starting with a letter or digit"
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,15 +39,15 @@ def new_from(source: str, name: str | None = None, out: Path | None = None) -> N
             return _copied(kind, library.paths(kind)[source], name, out)
     if source in shipped:
         example = shipped[source]
-        called, text = name or source, example.path.read_text(encoding="utf-8")
+        called, text = plain_name(name or source, key="name"), example.path.read_text(encoding="utf-8")
         if example.kind == "campaign":
             # The runs of a campaign lie in the folder of its file.
-            path = _create((out or Path()) / plain_name(called) / "campaign.toml", text)
+            path = _create((out or Path()) / called / "campaign.toml", text)
             return NewFile(path, (COMMANDS[example.kind], str(path.parent)))
-        path = _create((out or Path()) / f"{plain_name(called)}.toml", text)
+        path = _create((out or Path()) / f"{called}.toml", text)
         return NewFile(path, (COMMANDS[example.kind], str(path)))
     path = Path(source)
-    if path.suffix == ".toml" or path.is_file():
+    if path.suffix == ".toml" or is_file(path):
         return _copied("specimens" if is_specimen(read_toml(path)) else "designs", path, name, out)
     known = [*library.paths("designs"), *library.paths("specimens"), *shipped]
     raise InputError(f"no such design, specimen or example.{nearest(source, known)}", key="from", value=source)
@@ -61,21 +58,14 @@ def _copied(kind: str, path: Path, name: str | None, out: Path | None) -> NewFil
     if name is None:
         raise InputError(f"{path.stem} is the name of the original", key="name", remedy="give the copy another name")
     folder = out or user_folder() / KINDS[kind].folder
-    written = write_design(name, folder, path.read_text(encoding="utf-8-sig"), kind)
+    written = write_design(name, folder, read_bytes(path).decode("utf-8-sig"), kind)
     # A name finds what lies in the user's folder alone.
     return NewFile(written, ("check", name if out is None else str(written)))
 
 
-def plain_name(name: str) -> str:
-    """The name of a new file. Raises InputError where it is none."""
-    if not re.fullmatch(NAME_PATTERN, name):
-        raise InputError(NAME_RULE, key="name", value=name)
-    return name
-
-
 def check_name(name: str, folder: Path, kind: str = "designs") -> Path:
     """The file of a new design. Raises InputError for a bad name, and for one that would hide another design."""
-    path = folder / f"{plain_name(name)}.toml"
+    path = folder / f"{plain_name(name, key='name')}.toml"
     known = Library.default().paths(kind).get(name)
     if known is not None and known.resolve() != path.resolve():
         problem = f"{known} is a {kind.removesuffix('s')} of this name, which the new file would hide"
@@ -83,47 +73,9 @@ def check_name(name: str, folder: Path, kind: str = "designs") -> Path:
     return path
 
 
-def check_free(name: str, folder: Path, *, overwrite: bool = False) -> Path:
-    """The file of a new design, before anything is computed for it.
-
-    Raises InputError as `check_name` does, for a file that is there already (but with ``overwrite``), and for a folder
-    that cannot be written.
-    """
-    path = check_name(name, folder)
-    if path.is_dir():
-        raise InputError("this is a folder", file=path, remedy="give another name")
-    if not overwrite and (path.exists() or path.is_symlink()):
-        problem = "there is such a file already"
-        raise InputError(problem, file=path, remedy="give another name, or `overwrite` to replace it")
-    parent = next(one for one in (folder, *folder.absolute().parents) if one.exists())
-    if not parent.is_dir():
-        raise InputError(f"{parent} is not a folder", file=path)
-    if not os.access(parent, os.W_OK | os.X_OK):
-        raise InputError(f"{parent} cannot be written", file=path, remedy="give a folder you may write to with `out`")
-    return path
-
-
-def write_design(name: str, folder: Path, text: str, kind: str = "designs", *, overwrite: bool = False) -> Path:
-    """Write the text of a design as ``folder/name.toml``; over a file with ``overwrite`` alone."""
-    path = check_name(name, folder, kind)
-    return _replace(path, text) if overwrite else _create(path, text)
-
-
-def _replace(path: Path, text: str) -> Path:
-    """Write a file, in place of one that is there; that one stays until the new one is whole."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, fresh = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-        try:
-            with os.fdopen(handle, "w", encoding="utf-8") as file:
-                file.write(text)
-            Path(fresh).chmod(0o644)
-            Path(fresh).replace(path)
-        finally:
-            Path(fresh).unlink(missing_ok=True)
-    except OSError as error:
-        raise InputError(str(error.strerror), file=path, remedy="give a folder you may write to with `out`") from None
-    return path
+def write_design(name: str, folder: Path, text: str, kind: str = "designs") -> Path:
+    """Write the text of a design as ``folder/name.toml``; never over a file."""
+    return _create(check_name(name, folder, kind), text)
 
 
 def _create(path: Path, text: str) -> Path:

@@ -17,6 +17,7 @@ from pneutouch.mechanics.models import MODEL_CHOICES
 from pneutouch.output.manifest import input_hash, versions
 from pneutouch.output.recipe import FORMAT, SETTINGS, BuildRecipe, scene_kinds
 from pneutouch.spec.fields import Table
+from pneutouch.spec.names import plain_name
 from pneutouch.spec.read import validate
 
 FINEST_STEP = 1e-3
@@ -74,11 +75,7 @@ def _head(text: str, where: str) -> _Head:
             f"of form {shown(content['format'])}", file=where, remedy=f"pneutouch {__version__} reads form {FORMAT}"
         )
     head = validate(_Head, content, where)
-    name = head.name
-    if not name.isprintable() or not name.strip(". ") or "/" in name or "\\" in name or len(name.encode()) > 200:
-        raise InputError(
-            "must be a plain file name, for it names the output folder", file=where, key="name", value=name
-        )
+    plain_name(head.name, file=where, key="name")
     if not head.version.isprintable() or len(head.version) > 40:
         raise InputError("must be a version number", file=where, key="version", value=head.version[:60])
     return head
@@ -161,13 +158,18 @@ def _check_steps(scene: ResolvedDesign, where: str) -> None:
         )
 
 
+def stored_versions(package: Package) -> dict[str, Any]:
+    """The versions that a 3MF states, nothing where that is damaged: no build depends on it."""
+    try:
+        stored = json.loads(package.metadata.get("versions", "{}"))
+    except (ValueError, RecursionError):
+        return {}
+    return stored if isinstance(stored, dict) else {}
+
+
 def other_versions(package: Package, recipe: BuildRecipe) -> list[str]:
     """What made a 3MF and is of another version here, in words: ``pneutouch 0.1 (here 0.2)``."""
-    try:
-        recorded = json.loads(package.metadata.get("versions", "{}"))
-    except (ValueError, RecursionError):
-        recorded = {}
-    made = {**(recorded if isinstance(recorded, dict) else {}), "pneutouch": recipe.version}
+    made = {**stored_versions(package), "pneutouch": recipe.version}
     return [
         f"{name} {str(made[name])[:40]} (here {here})"
         for name, here in versions().items()

@@ -88,7 +88,9 @@ class Rig(Table):
 class CampaignRun(Table):
     """One [[runs]] entry: a file and what was measured in it."""
 
-    file: str = Field(min_length=1, description="Path of the CSV or parquet file, from the campaign's folder.")
+    file: Printable = Field(
+        min_length=1, max_length=1000, description="Path of the CSV or parquet file, from the campaign's folder."
+    )
     kind: RunKind = Field(default="steps", description="Kind of run: " + ", ".join(RunKind.__args__) + ".")  # type: ignore[attr-defined]
     sensor: Printable = Field(min_length=1, max_length=60, description="Name of the specimen.")
     resin: str = Field(min_length=1, description=f"Name of its material, or {shown(AS_DESIGNED)}.")

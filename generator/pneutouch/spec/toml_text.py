@@ -19,7 +19,7 @@ def toml_value(text: str) -> Any:
     """The value that TOML reads from a text; the very same text where it is a bare word."""
     try:
         content = tomllib.loads(f"value = {text}")
-    except tomllib.TOMLDecodeError:
+    except (ValueError, RecursionError):
         return text
     return content["value"] if set(content) == {"value"} else text
 

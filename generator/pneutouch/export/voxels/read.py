@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import os
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -14,6 +15,10 @@ from pneutouch.arrays import Labels, Pixels
 from pneutouch.errors import InputError
 from pneutouch.export.voxels.manifest import FORMAT, MANIFEST, slice_name, whole_hash
 from pneutouch.export.voxels.png import decode, table
+from pneutouch.spec.files import read_bytes
+
+_MOST_BYTES = 100_000_000
+"""Of a slice, and of the manifest."""
 
 LEAST_SLICES = 30
 MOST_COLOURS = 6
@@ -77,12 +82,10 @@ def read_stack(folder: Path) -> VoxelStack:
 def _manifest(folder: Path) -> dict[str, Any]:
     path = folder / MANIFEST
     try:
-        document: Any = json.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise InputError(f"holds no {MANIFEST}: not a voxel stack that pneutouch wrote", file=folder) from None
-    except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror}", file=path) from None
-    except ValueError:
+        if not os.path.lexists(path):
+            raise InputError(f"holds no {MANIFEST}: not a voxel stack that pneutouch wrote", file=folder)
+        document: Any = json.loads(read_bytes(path, _MOST_BYTES, "manifest"))
+    except (ValueError, RecursionError):
         raise InputError("not JSON", file=path, remedy="write the stack again") from None
     content: dict[str, Any] = document if isinstance(document, dict) else {}
     for key, kind in _NEEDED.items():
@@ -167,10 +170,7 @@ def _labels(content: bytes, manifest: dict[str, Any], where: str) -> Labels:
 
 
 def _read(path: Path) -> bytes:
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror}", file=path) from None
+    return read_bytes(path, _MOST_BYTES, "PNG file")
 
 
 def _check_counts(folder: Path, manifest: dict[str, Any], counts: dict[str, int]) -> None:

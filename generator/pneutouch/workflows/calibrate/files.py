@@ -92,7 +92,7 @@ def _place(kind: str, name: str, root: Path, library: Library, shadow: bool) -> 
 
 def _is_generated(path: Path) -> bool:
     with path.open(encoding="utf-8", errors="replace") as file:
-        return file.readline().startswith(HEAD)
+        return file.read(len(HEAD)) == HEAD
 
 
 def _head(calibration: Calibration, lines: list[str]) -> str:

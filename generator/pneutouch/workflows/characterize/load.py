@@ -15,6 +15,8 @@ from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError, PneutouchError
 from pneutouch.evaluation.resins import resin_of
 from pneutouch.spec.campaign import Campaign, CampaignRun
+from pneutouch.spec.files import inside, is_file
+from pneutouch.spec.names import file_name
 from pneutouch.spec.read import read_toml, validate
 from pneutouch.units import KPA
 
@@ -66,11 +68,14 @@ class _Gathered:
 
 
 def campaign_of(data: Path) -> tuple[Campaign, Path]:
-    """The campaign of a folder or of its campaign file. Raises InputError."""
+    """The campaign of a folder or of its campaign file, whose runs lie in that folder. Raises InputError."""
     path = data / CAMPAIGN if data.is_dir() else data
     if data.is_dir() and not path.is_file():
         raise InputError(f"holds no {CAMPAIGN}", file=data, remedy="`pneutouch plan` writes one to be filled in")
-    return validate(Campaign, read_toml(path), str(path)), path.parent
+    campaign = validate(Campaign, read_toml(path), str(path))
+    for place, run in enumerate(campaign.runs):
+        inside(path.parent, run.file, file=path, key=f"runs[{place}].file")
+    return campaign, path.parent
 
 
 def load_curves(
@@ -135,14 +140,14 @@ class _Meter:
 
 
 def _size(path: Path) -> int:
-    return path.stat().st_size if path.is_file() else 0
+    return path.stat().st_size if is_file(path) else 0
 
 
 def _read(
     run: CampaignRun, campaign: Campaign, folder: Path, gathered: _Gathered, progress: Callable[[float], None]
 ) -> None:
     path = folder / run.file
-    if not path.is_file():
+    if not is_file(path):
         raise InputError("no such file", file=path, remedy=f"the campaign names it as {run.label}")
     if run.kind == "injection":
         gathered.injections.append((run, *read_injection(path, campaign.columns)))
@@ -161,8 +166,8 @@ def _single(data: Path, scene: ResolvedDesign | None) -> Campaign:
         raise InputError("no such file or folder", file=data)
     if scene is None:
         raise InputError("a single file needs its sensor", file=data, remedy="give `design`")
-    run = CampaignRun(file=data.name, sensor=data.stem[:_LONGEST], resin=resin_of(scene))
-    return Campaign(title=f"Run {data.name}"[:_LONGEST], runs=[run])
+    run = CampaignRun(file=data.name, sensor=file_name(data.stem)[:_LONGEST], resin=resin_of(scene))
+    return Campaign(title=f"Run {file_name(data.name)}"[:_LONGEST], runs=[run])
 
 
 def _at_its_pressure(curve: MeasuredCurve, scene: ResolvedDesign) -> MeasuredCurve:

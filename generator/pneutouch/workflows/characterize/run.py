@@ -17,10 +17,12 @@ from pneutouch.output.files import MANIFEST, check_writable, json_bytes, write_f
 from pneutouch.output.manifest import entry, input_hash, manifest
 from pneutouch.report.measured import CampaignReport
 from pneutouch.spec.campaign import AS_DESIGNED
+from pneutouch.spec.files import design_inside
+from pneutouch.spec.names import file_name
 from pneutouch.spec.read import Changes, parse_changes, read_toml, validate
 from pneutouch.spec.target import Target
 from pneutouch.workflows.characterize.document import document
-from pneutouch.workflows.characterize.load import CampaignData, Progress, campaign_of, load_curves
+from pneutouch.workflows.characterize.load import CAMPAIGN, CampaignData, Progress, campaign_of, load_curves
 from pneutouch.workflows.characterize.predicted import StatePrediction, answers, compared
 from pneutouch.workflows.characterize.tables import injections, points_csv, segments_csv
 from pneutouch.workflows.characterize.verdict import ageing, verdicts
@@ -112,14 +114,13 @@ def _design_of(data: Path) -> tuple[str, dict[str, Any]]:
         raise InputError(
             "the campaign names no design", file=folder, remedy='give `design`, or design = "..." in its file'
         )
-    design_file = folder / campaign.design
-    name = str(design_file) if design_file.suffix == ".toml" and design_file.is_file() else campaign.design
+    name = design_inside(folder, campaign.design, file=folder / CAMPAIGN, key="design")
     return name, parse_changes(campaign.assignments)
 
 
 def _stem(data: Path) -> str:
     path = data.resolve()
-    return path.parent.name if path.name == "campaign.toml" else path.stem if path.is_file() else path.name
+    return file_name(path.parent.name if path.name == CAMPAIGN else path.stem if path.is_file() else path.name)
 
 
 def _check_resins(data: Path, loaded: CampaignData, library: Library) -> None:
@@ -184,7 +185,7 @@ def write(outcome: CharacterizationResult, out: Path, evidence: str = "doubtful"
     }
     for curve in _shown(measured, evidence):
         number = measured.campaign.runs.index(curve.run) + 1
-        path = f"evidence/{number:03d}-{Path(curve.run.file).stem}.svg"
+        path = f"evidence/{number:03d}-{file_name(Path(curve.run.file).stem)}.svg"
         files[path] = evidence_svg(curve, outcome.traces[curve.run.file], measured.campaign.simulated).encode()
     listed = {name: entry(content) for name, content in sorted(files.items())}
     files[MANIFEST] = manifest(listed, outcome.name, input_hash=measured.input_hash)

@@ -1,6 +1,5 @@
 """Write a set of coupons: STL, 3MF, the print-and-measure sheet, the results file to fill in, and a manifest."""
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -11,8 +10,9 @@ from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
 from pneutouch.export.scene import stl
 from pneutouch.export.threemf import threemf
-from pneutouch.output.files import MANIFEST, check_writable, digest, write_folder
+from pneutouch.output.files import check_writable, digest, stated_digest, write_folder
 from pneutouch.output.manifest import input_hash, with_manifest
+from pneutouch.spec.files import read_bytes
 from pneutouch.workflows.coupons.lay import CouponPiece, lay
 from pneutouch.workflows.coupons.order import CouponOptions, CouponOrder, order
 from pneutouch.workflows.coupons.sheet import sheet, stl_name
@@ -70,8 +70,7 @@ def _check_unfilled(folder: Path) -> None:
     path = folder / RESULTS
     if not path.is_file():
         return
-    written = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))["files"].get(RESULTS, {}).get("sha256")
-    if digest(path.read_bytes()) != written:
+    if digest(read_bytes(path)) != stated_digest(folder, RESULTS):
         raise InputError(f"{path} has been filled in", key="out", remedy="move it away first, or give another folder")
 
 

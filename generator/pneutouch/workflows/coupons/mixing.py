@@ -12,6 +12,7 @@ from pneutouch.catalogue.mixture import mixing
 from pneutouch.errors import InputError
 from pneutouch.spec.coupon import MixedCoupons
 from pneutouch.spec.material import Material
+from pneutouch.spec.names import file_name
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.workflows.coupons.blends import resins_of
 from pneutouch.workflows.coupons.profile import MeasuredProfile, check_ours, head
@@ -63,7 +64,9 @@ def local_curve(
         "prediction "
         "has a break strain of a mixed wall"
     )
-    text = head(replace(source, where=Path(source.where).name), "the mixing curve as measured") + toml_text(content)
+    text = head(replace(source, where=file_name(Path(source.where).name)), "the mixing curve as measured") + toml_text(
+        content
+    )
     return MeasuredProfile(path, text, _changes(path, content, pair, library))
 
 

@@ -90,7 +90,7 @@ def write_profiles(profiles: Sequence[MeasuredProfile]) -> None:
 
 def _is_ours(path: Path) -> bool:
     with path.open(encoding="utf-8", errors="replace") as file:
-        return file.readline().startswith(HEAD)
+        return file.read(len(HEAD)) == HEAD
 
 
 def _earlier(path: Path, changes: Sequence[ProfileChange]) -> dict[str, Any]:

@@ -12,6 +12,7 @@ from pneutouch.catalogue import KINDS, Library, load_scene, user_folder
 from pneutouch.errors import InputError
 from pneutouch.spec.coupon import CouponResults, Gauge, read_results
 from pneutouch.spec.material import Material
+from pneutouch.spec.names import file_name
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import read_toml
 from pneutouch.workflows.coupons.mixing import local_curve
@@ -30,7 +31,7 @@ def enter_results(path: Path, out: Path | None = None, library: Library | None =
     curves = [local_curve(pair, read, here, library, out, findings) for pair, read in results.mixing.items()]
     if not (findings.changes or findings.figures or findings.notes):
         raise InputError("nothing measured: every list is empty", file=path, remedy="fill in some readings")
-    source = ReadingSource(path.name, results.lab, results.date)
+    source = ReadingSource(file_name(path.name), results.lab, results.date)
     profiles = local_profiles(findings.changes, source, library, out) + [curve for curve in curves if curve is not None]
     write_profiles(profiles)
     return _document(results, findings, profiles)

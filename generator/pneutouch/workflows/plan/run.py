@@ -10,7 +10,7 @@ from pneutouch.bench.simulate.curve import PressCurves
 from pneutouch.bench.simulate.encode import LEAK_SECONDS
 from pneutouch.catalogue import DesignSource, Library
 from pneutouch.errors import InputError
-from pneutouch.evaluation.resins import SimulatedResin, name_of, pressed, resins_of
+from pneutouch.evaluation.resins import SimulatedResin, pressed, resins_of
 from pneutouch.output.files import check_writable, json_bytes, write_folder
 from pneutouch.output.manifest import with_manifest
 from pneutouch.report.plan_sheet import plan_sheet
@@ -18,7 +18,7 @@ from pneutouch.spec.campaign import Campaign, CampaignRun, Rig, RunKind
 from pneutouch.spec.read import Changes, assignments, read_toml, validate
 from pneutouch.units import KPA, ML
 from pneutouch.workflows.plan.expected import curve_warnings, injection, leak_limit, points, travel_warnings
-from pneutouch.workflows.simulate import campaign_toml
+from pneutouch.workflows.simulate import campaign_toml, named_design
 
 PAPER = Rig()
 
@@ -39,6 +39,7 @@ class CampaignPlan:
     name: str
     document: dict[str, Any]
     campaign: Campaign
+    copied: dict[str, bytes]
 
     @property
     def sheet(self) -> str:
@@ -71,7 +72,9 @@ def make_plan(
     """Plan a campaign of the paper's tests for a design in each resin. Raises InputError for what cannot be."""
     if not 1 <= specimens <= 1000:
         raise InputError("must be from 1 to 1000", key="specimens", value=specimens)
+    library = library or Library.default()
     subjects = resins_of(design, changes, resins, library=library)
+    named, copied = named_design(design, library)
     scene = subjects[0].scene
     tests = plated_tests(subjects[0])
     curves = {s.name: _pressed(s, tests) for s in subjects}
@@ -104,13 +107,13 @@ def make_plan(
     keys = ("file", "kind", "sensor", "resin", "driving_pressure_kPa", "run")
     campaign = Campaign(
         title=f"Campaign of {scene.design.document.title}"[:120],
-        design=name_of(design),
+        design=named,
         assignments=assignments(changes or {}),
         ambient_pressure_kPa=pneumatics.ambient_pressure_kPa,
         rig=rig,
         runs=[CampaignRun(**{key: run[key] for key in keys}) for run in listed],
     )
-    return CampaignPlan(str(document["name"]), document, campaign)
+    return CampaignPlan(str(document["name"]), document, campaign, copied)
 
 
 def _test(kind: str, test: RunProtocol, driving_pressures_kPa: tuple[float, ...]) -> dict[str, Any]:
@@ -136,6 +139,7 @@ def write_plan(plan: CampaignPlan, out: Path) -> Path:
         "plan.json": json_bytes(plan.document),
         "plan.md": plan.sheet.encode(),
         "campaign.toml": campaign_toml(plan.campaign, note),
+        **plan.copied,
     }
     inputs = {key: plan.document[key] for key in ("design", "rig", "sensors", "tests")}
     write_folder(folder, with_manifest(files, plan.name, inputs))

@@ -1,12 +1,11 @@
 """What a 3MF holds, as data."""
 
-import json
 from pathlib import Path
 from typing import Any
 
 from pneutouch.export.threemf_read import RECIPE, Package, StoredBody, read_threemf
 from pneutouch.export.threemf_tray import TRAY_RECIPE
-from pneutouch.output.recipe_read import other_versions, read_recipe
+from pneutouch.output.recipe_read import other_versions, read_recipe, stored_versions
 
 _SHOWN_APART = (RECIPE, TRAY_RECIPE, "versions")
 """Entries that are shown apart, or are too long to be read."""
@@ -50,6 +49,6 @@ def _recipe(package: Package) -> dict[str, Any]:
     return {
         **recipe.document(),
         "input_hash": package.metadata["input-hash"],
-        "versions": json.loads(package.metadata.get("versions", "{}")),
+        "versions": stored_versions(package),
         "other_versions": other_versions(package, recipe),
     }

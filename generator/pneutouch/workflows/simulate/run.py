@@ -23,7 +23,7 @@ from pneutouch.bench.simulate.inject import sensor_pressure
 from pneutouch.bench.simulate.parameter import parameters
 from pneutouch.bench.simulate.truth import aged
 from pneutouch.catalogue import DesignSource, Library
-from pneutouch.evaluation.resins import SimulatedResin, name_of, pressed, resins_of
+from pneutouch.evaluation.resins import SimulatedResin, pressed, resins_of
 from pneutouch.mechanics import Sensor
 from pneutouch.output.files import MANIFEST, json_bytes, replacing
 from pneutouch.output.manifest import entry, input_hash, manifest
@@ -31,6 +31,7 @@ from pneutouch.spec.campaign import Campaign, CampaignRun, Rig
 from pneutouch.spec.read import Changes, assignments, validate
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.units import KPA, ML
+from pneutouch.workflows.simulate.named import named_design
 from pneutouch.workflows.simulate.options import KINDS, PRESSED, REPEATED, SimulationOptions, check_options
 
 PUSHED = np.linspace(0.0, 0.5, 11) * ML
@@ -55,12 +56,16 @@ def simulate(
     Runs are written to a hidden folder next to it as they are made. Raises InputError for what cannot be.
     """
     check_options(options)
+    library = library or Library.default()
     subjects = resins_of(design, changes, options.resins, options.truth, library)
+    named, copied = named_design(design, library)
     name = f"{subjects[0].scene.name}-campaign"
     folder = out / name
     with replacing(folder) as fresh:
         writer = _Writer(fresh)
-        _write_all((name_of(design), assignments(changes or {})), subjects, options, writer, progress)
+        _write_all((named, assignments(changes or {})), subjects, options, writer, progress)
+        for path, content in copied.items():
+            writer.put(path, content)
         inputs = _inputs(subjects, options)
         listed = dict(sorted(writer.files.items()))
         writer.put(MANIFEST, manifest(listed, name, inputs=inputs, input_hash=input_hash(inputs)))

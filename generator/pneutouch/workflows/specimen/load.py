@@ -9,6 +9,7 @@ from pneutouch.errors import InputError
 from pneutouch.parts.specimen import Box, PatternContext
 from pneutouch.spec.fields import Table
 from pneutouch.spec.material import Material
+from pneutouch.spec.names import name_of
 from pneutouch.spec.printer import Mode, Printer
 from pneutouch.spec.read import Changes, override, read_toml
 from pneutouch.spec.specimen import Specimen, validate_specimen
@@ -58,7 +59,7 @@ def load_specimen(name: str, changes: Changes | None = None, library: Library | 
         raise InputError(
             "has no [block] table, so it is no specimen", file=path, remedy="a sensor is built by its own name"
         )
-    return _resolved(path.stem, str(path), validate_specimen(content, str(path)), library)
+    return _resolved(name_of(path), str(path), validate_specimen(content, str(path)), library)
 
 
 def _resolved(name: str, where: str, specimen: Specimen, library: Library) -> ResolvedSpecimen:

@@ -76,9 +76,27 @@ def _checksum(text: bytes) -> bytes:
 
 
 def _content(line: bytes) -> dict[str, Any] | None:
-    """The content of a line, or None where it does not agree with its checksum."""
+    """The content of a line, or None where it does not agree with its checksum or is of another form."""
     checksum, space, text = line.partition(b" ")
     if not space or checksum != _checksum(text):
         return None
-    content: dict[str, Any] = json.loads(text)
-    return content
+    try:
+        content = json.loads(text)
+    except (ValueError, RecursionError):
+        return None
+    return content if _is_entry(content) else None
+
+
+def _is_entry(content: Any) -> bool:
+    """Whether a line holds what `Journal.append` writes; a checksum can be of anything."""
+    if not isinstance(content, dict) or not isinstance(content.get("sweep"), str):
+        return False
+    records = content.get("records")
+    return isinstance(records, list) and all(
+        isinstance(record, dict)
+        and type(record.get("point")) is int
+        and isinstance(record.get("states"), list)
+        and all(isinstance(state, dict) and "status" in state for state in record["states"])
+        and isinstance(record.get("values"), dict)
+        for record in records
+    )

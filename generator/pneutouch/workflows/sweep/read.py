@@ -7,6 +7,8 @@ from typing import Any
 
 from pneutouch.catalogue import DesignSource
 from pneutouch.errors import InputError, nearest, shown
+from pneutouch.spec.files import design_inside
+from pneutouch.spec.names import file_name, name_of
 from pneutouch.spec.over import MAX_VALUES, parse_over, spread
 from pneutouch.spec.read import Changes, read_toml
 from pneutouch.workflows.sweep.plan import PRESSURES, Settings, SweepAxis, SweepPlan, Value
@@ -31,8 +33,7 @@ def plan_of_file(path: Path, changes: Changes | None = None, **options: str | No
     design = words.pop("design", "")
     if not design:
         raise InputError("design: missing", file=where, remedy='name the base design, such as design = "paper-dome"')
-    if design.endswith(".toml"):
-        design = str(path.parent / design)
+    design = design_inside(path.parent, design, file=path, key="design")
     fixed = {key: _value(where, key, v) for key, v in _flat(where, "set", content.get("set", {})).items()}
     grid = {key: _values(where, key, v) for key, v in _flat(where, "grid", content.get("grid", {})).items()}
     entries = content.get("point", [])
@@ -43,7 +44,7 @@ def plan_of_file(path: Path, changes: Changes | None = None, **options: str | No
         for k, entry in enumerate(entries)
     )
     fixed |= _checked(changes)
-    return _plan(path.stem, where, design, fixed, grid, points, words)
+    return _plan(name_of(path), where, design, fixed, grid, points, words)
 
 
 def plan_of_flags(design: str, over: list[str], changes: Changes | None = None, **options: str | None) -> SweepPlan:
@@ -65,7 +66,7 @@ def plan_of_grid(
     """
     values = {key: _values(where, key, entry) for key, entry in grid.items()}
     words = {key: value for key, value in options.items() if value is not None}
-    name = design.name if isinstance(design, DesignSource) else Path(design).stem
+    name = design.name if isinstance(design, DesignSource) else file_name(Path(design).stem)
     return _plan(f"{name}-sweep", where, design, _checked(changes), values, (), words)
 
 

@@ -62,7 +62,7 @@ def sweep(
     resolved = study(plan, library or Library.default())
     with WorkFolder(out) as folder:
         journal = Journal(folder.journal, resolved.fingerprint)
-        records = {} if fresh else journal.read()
+        records = {} if fresh else _fitting(journal.read(), resolved)
         if _is_there(resolved, out, fresh=fresh, resumed=bool(records)):
             folder.finish(None)
             return _outcome(resolved, out, 0, stored_states(out))
@@ -74,6 +74,15 @@ def sweep(
             content = dataset(resolved, records)
             folder.finish(netcdf(content))
         return _outcome(resolved, out, plan.count - before, content["status"].values.ravel().tolist())
+
+
+def _fitting(records: dict[int, Record], study: SweepStudy) -> dict[int, Record]:
+    """Records that hold a state for every driving pressure of their point; the points of others are computed again."""
+    return {
+        index: record
+        for index, record in records.items()
+        if 0 <= index < study.plan.count and len(record["states"]) == len(study.point(index).driving_pressures_kPa)
+    }
 
 
 def _is_there(study: SweepStudy, out: Path, *, fresh: bool, resumed: bool) -> bool:

@@ -24,13 +24,14 @@ class WorkFolder:
     """
 
     def __init__(self, out: Path) -> None:
+        """Raises InputError where ``out`` cannot be a dataset's file."""
+        check_output(out)
         self.out, self.path = out, out.with_name(f"{out.name}.parts")
         self.journal, self.files = self.path / _JOURNAL, self.path / _FILES
         self._lock: FileIO | None = None
 
     def __enter__(self) -> WorkFolder:
         """Make and lock the folder. Raises InputError where it cannot be, or is held, or holds foreign files."""
-        check_output(self.out)
         try:
             while self._lock is None:
                 self.path.mkdir(parents=True, exist_ok=True)

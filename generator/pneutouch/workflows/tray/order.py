@@ -6,6 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from pneutouch.errors import InputError
+from pneutouch.spec.files import design_inside, is_file
+from pneutouch.spec.names import file_name, name_of
 from pneutouch.spec.over import parse_over
 from pneutouch.spec.read import Changes, read_toml, validate
 from pneutouch.spec.tray import LEAST_COPIES, MOST_COPIES, Tray
@@ -19,16 +21,16 @@ class TrayOrder:
     where: str
     tray: Tray
     overrides: Changes = field(default_factory=dict)
-    folder: Path = field(default=Path())
+    folder: Path | None = None
 
     def design(self, name: str) -> str:
-        """A design as the catalogue takes it: a file name in a tray file is in the folder of that file."""
-        return str(self.folder / name) if name.endswith(".toml") else name
+        """A design as the catalogue takes it: a path in a tray file is in the folder of that file."""
+        return name if self.folder is None else design_inside(self.folder, name, file=self.where, key="entry.design")
 
 
 def is_tray_file(path: Path) -> bool:
     """Whether a path is a TOML file with the tables of a tray; designs have none, and a missing file neither."""
-    return path.suffix == ".toml" and path.is_file() and not {"tray", "entry"}.isdisjoint(read_toml(path))
+    return path.suffix == ".toml" and is_file(path) and not {"tray", "entry"}.isdisjoint(read_toml(path))
 
 
 def order_of_file(path: Path, overrides: Changes | None = None, **head: Any) -> TrayOrder:
@@ -39,7 +41,7 @@ def order_of_file(path: Path, overrides: Changes | None = None, **head: Any) -> 
         table = content.setdefault("tray", {})
         if isinstance(table, dict):
             table.update(given)
-    return TrayOrder(path.stem, str(path), validate(Tray, content, str(path)), overrides or {}, path.parent)
+    return TrayOrder(name_of(path), str(path), validate(Tray, content, str(path)), overrides or {}, path.parent)
 
 
 def order_of_flags(
@@ -53,7 +55,7 @@ def order_of_flags(
         raise InputError(f"must be from {LEAST_COPIES} to {MOST_COPIES}", key="copies", value=copies)
     varied = parse_over(over)
     entries = [{"design": design, "copies": copies, "over": varied} for design in designs]
-    stem = Path(designs[0]).stem
+    stem = file_name(Path(designs[0]).stem)
     title = f"{stem}, {copies} of each" if len(designs) == 1 else f"{len(designs)} designs, {copies} of each"
     content = {"tray": {"title": title, **{k: v for k, v in head.items() if v is not None}}, "entry": entries}
     return TrayOrder(f"{stem}-tray", "the command line", validate(Tray, content, "the command line"), overrides or {})

@@ -1,0 +1,71 @@
+"""Reading files that others wrote: never a device or a pipe, never without a bound, never outside a folder."""
+
+import stat
+from os import PathLike
+from pathlib import Path
+
+from pneutouch.errors import InputError
+
+MOST_BYTES = 1_000_000
+"""A file that a person writes is smaller by far."""
+
+
+def read_bytes(path: Path, most: int = MOST_BYTES, kind: str = "TOML file") -> bytes:
+    """Content of a plain file of at most ``most`` bytes. Raises InputError for anything else, and to give a ``kind``."""
+    size = check_plain(path, kind)
+    try:
+        with path.open("rb") as file:
+            content = file.read(min(most, size) + 1)
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror}", file=path) from None
+    if len(content) > most:
+        limit = f"{most // 2**20} MiB" if most % 2**20 == 0 else f"{most / 1e6:g} MB"
+        raise InputError(f"larger than {limit}", file=path, remedy=f"no {kind} is")
+    return content
+
+
+def check_plain(path: Path, kind: str) -> int:
+    """The size of a plain file in bytes. Raises InputError for a folder, a device, a pipe, or nothing."""
+    try:
+        status = path.stat()
+    except FileNotFoundError:
+        raise InputError("no such file", file=path) from None
+    except (OSError, ValueError) as error:
+        why = error.strerror if isinstance(error, OSError) else error
+        raise InputError(f"cannot be read: {why}", file=path) from None
+    if stat.S_ISDIR(status.st_mode):
+        raise InputError("this is a folder", file=path, remedy=f"give a {kind}")
+    if not stat.S_ISREG(status.st_mode):
+        raise InputError("not a plain file, but a device or a pipe", file=path, remedy=f"give a {kind}")
+    return status.st_size
+
+
+def is_file(path: Path) -> bool:
+    """Whether there is a file of this name; False, too, for a name that no file can have."""
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
+
+
+def inside(folder: Path, name: str, *, file: str | PathLike[str], key: str) -> Path:
+    """The path of ``name`` in ``folder``. Raises InputError where it leads out of the folder, by a link too.
+
+    ``file`` and ``key`` state where the name was written: whoever wrote it decides on the files of its folder alone.
+    """
+    path = folder / name
+    try:
+        within = not Path(name).is_absolute() and path.resolve().is_relative_to(folder.resolve())
+    except (OSError, ValueError, RuntimeError):
+        within = False
+    if not within:
+        remedy = "give a path in the folder of the file that names it, without .. and without a link that leads out"
+        raise InputError("leads out of the folder", file=file, key=key, value=name, remedy=remedy)
+    return path
+
+
+def design_inside(folder: Path, design: str, *, file: str | PathLike[str], key: str) -> str:
+    """A design that a file in ``folder`` names: a name of the catalogue as it is, a path as one `inside` the folder."""
+    if design.endswith(".toml") or "/" in design or "\\" in design:
+        return str(inside(folder, design, file=file, key=key))
+    return design

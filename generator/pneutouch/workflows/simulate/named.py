@@ -1,0 +1,18 @@
+"""The design of a campaign: by its name, or as a file in the campaign's folder, which holds all that its file names."""
+
+from pneutouch.catalogue import DesignSource, Library
+from pneutouch.spec.files import read_bytes
+
+CAMPAIGN = "campaign.toml"
+
+
+def named_design(design: str | DesignSource, library: Library) -> tuple[str, dict[str, bytes]]:
+    """How a campaign names its design; and, where that was given by a path, its copy for the campaign's folder."""
+    if isinstance(design, DesignSource):
+        return design.name, {}
+    if design in library.paths("designs"):
+        return design, {}
+    path = library.design_file(design)
+    plain = path.suffix == ".toml" and path.name != CAMPAIGN
+    name = path.name if plain else f"{path.stem}-design.toml"
+    return name, {name: read_bytes(path)}
