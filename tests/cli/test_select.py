@@ -102,7 +102,7 @@ def test_a_bad_target_file_is_named_with_its_key(tmp_path, content, said):
     [
         (["--tolerance", "0"], "--tolerance 0"),
         (["--tolerance", "much"], "--tolerance much"),
-        (["--material", "Tango"], "given.materials"),
+        (["--material", "Tango"], "--material Tango: no such name"),
         (["--pick", "99"], "--pick 99"),
         (["--write", "bad name"], "--write bad name"),
     ],

@@ -88,12 +88,15 @@ class Design(show.Shown):
         design._take(name or self.name, self.source.content, fields)
         return design
 
-    def save(self, name_or_path: str | Path | None = None) -> Path:
-        """Write the design file, never over another; a bare name goes to the user's ``designs/``. Returns its path."""
+    def save(self, name_or_path: str | Path | None = None, *, overwrite: bool = False) -> Path:
+        """Write the design file, over another with ``overwrite`` alone; a bare name goes to the user's ``designs/``.
+
+        Returns its path.
+        """
         path = Path(name_or_path or self.name)
         folder = path.parent if path.suffix == ".toml" or len(path.parts) > 1 else user_folder() / "designs"
         text = design_template(self.name, self.file.model_dump(by_alias=True), "Every key may be left out.")
-        return write_design(path.name.removesuffix(".toml"), folder, text)
+        return write_design(path.name.removesuffix(".toml"), folder, text, overwrite=overwrite)
 
     def predict(
         self,

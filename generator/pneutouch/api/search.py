@@ -15,9 +15,10 @@ from pneutouch.errors import InputError
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import override, read_toml, validate
 from pneutouch.spec.target import Target
-from pneutouch.workflows.select.document import assigned, document
+from pneutouch.workflows.select.document import document
 from pneutouch.workflows.select.graded import select_graded
 from pneutouch.workflows.select.graded_document import graded_document
+from pneutouch.workflows.select.passing import assigned
 from pneutouch.workflows.select.run import select as run_select
 
 if TYPE_CHECKING:

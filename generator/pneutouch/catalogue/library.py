@@ -120,7 +120,12 @@ class Library:
                 f"{name}: is a texture specimen; it can be built, checked and scanned, this command needs the design "
                 "of a sensor"
             )
-        raise InputError(f"{name}: no such design or file.{nearest(name, paths)}")
+        raise InputError(
+            "no such design or file",
+            key="design",
+            value=name,
+            remedy=f"give the name or the path of a design.{nearest(name, paths)}",
+        )
 
     def specimen_file(self, name: str) -> Path | None:
         """The file of a specimen given by name or path, or None where the name is a sensor's or of nothing."""

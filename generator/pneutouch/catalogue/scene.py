@@ -14,7 +14,7 @@ from pneutouch.spec.fields import MaterialKind
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
 from pneutouch.spec.names import name_of
-from pneutouch.spec.part import AnyMount, AnySeat, OnePiece, Port, Tube
+from pneutouch.spec.part import AnyMount, AnySeat, OnePiece, Port, Sleeve, Tube
 from pneutouch.spec.printer import Mode, Printer
 from pneutouch.spec.read import Changes, override, read_toml, validate
 
@@ -125,7 +125,7 @@ def _resolved(name: str, where: str, design: DesignFile, library: Library) -> Re
         tube=_tube(design, where, library),
         port=find("ports", "connector", "port"),
         seat=find("seats", "connector", "seat"),
-        mount=find("mounts", "connector", "mount"),
+        mount=_mount(design, where, library),
     )
     check_scene(scene)
     return scene
@@ -165,6 +165,24 @@ def _tube(design: DesignFile, where: str, library: Library) -> Tube:
             )
     tube: Tube = library.load("tubes", name or port.tubes[0], file=where, key="tubes of connector.port")
     return tube
+
+
+def _mount(design: DesignFile, where: str, library: Library) -> AnyMount:
+    """The mount that the design names; a sleeve for the finger that it gives."""
+    chosen, finger = design.connector.mount, design.connector.finger_diameter_mm
+    mount: AnyMount = library.load("mounts", chosen, file=where, key="connector.mount")
+    if finger is None:
+        return mount
+    if not isinstance(mount, Sleeve):
+        sleeves = [name for name in library.paths("mounts") if isinstance(library.load("mounts", name), Sleeve)]
+        raise InputError(
+            f"connector.mount = {chosen!r} goes over no finger",
+            file=where,
+            key="connector.finger_diameter_mm",
+            value=finger,
+            remedy=f"take connector.mount = {' or '.join(sleeves)}, or leave it out",
+        )
+    return mount.for_finger(finger)
 
 
 def _mode(printer: Printer, *materials: Material) -> Mode:

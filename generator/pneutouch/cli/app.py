@@ -2,7 +2,6 @@
 
 import gc
 import os
-import shlex
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -16,6 +15,7 @@ from typer.core import TyperGroup
 from typer.main import get_command_from_info
 
 from pneutouch import __version__
+from pneutouch.cli.next_step import report_next
 from pneutouch.errors import ComputationError, InputError, PneutouchError
 
 _MODULES = {"build": "build", "check": "build"} | {
@@ -119,6 +119,9 @@ DesignFolderOption = Annotated[
     Path | None,
     typer.Option("--out", metavar="DIR", help="Folder of the design file.", show_default="designs in your folder"),
 ]
+
+
+ForceOption = Annotated[bool, typer.Option("--force", help="Replace a design file of this name.")]
 
 
 @contextmanager
@@ -243,7 +246,7 @@ def new(
         else:
             raise InputError("no name for the new design", remedy="give a name, or an example with `from`")
         typer.echo(str(made.path))
-        typer.echo(f"next: pneutouch {shlex.join(made.command)}", err=True)
+        report_next(*made.command)
 
 
 def design_folder(out: Path | None) -> Path:

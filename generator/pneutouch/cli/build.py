@@ -24,6 +24,7 @@ from pneutouch.cli.app import (
     refuse_flags,
     reporting,
 )
+from pneutouch.cli.next_step import report_next, set_words
 from pneutouch.cli.progress import bar
 
 if TYPE_CHECKING:
@@ -74,7 +75,7 @@ def build(
         else:
             evaluation = (
                 _from_3mf(design, context)
-                if design.lower().endswith(".3mf")
+                if _is_3mf(design)
                 else _evaluated(design, changes(set_), model, tolerance, closure=closure, clamp=clamp)
             )
             plan = _planned(evaluation, out, voxel_mode) if voxels or voxel_mode else None
@@ -89,6 +90,8 @@ def build(
             typer.echo(str(folder))
             if stack is not None:
                 typer.echo(str(stack))
+            if not _is_specimen(design) and not _is_3mf(design):
+                report_next("plan", design, *set_words(set_))
 
 
 @app.command()
@@ -121,6 +124,8 @@ def check(
             from pneutouch.cli.text import findings_text
 
             typer.echo(findings_text([finding.document() for finding in findings]))
+            if not broken:
+                report_next("build", design, *set_words(set_), *(["--voxels"] if voxels else []))
         if broken:
             raise typer.Exit(1)
 
@@ -137,7 +142,11 @@ def _evaluated(
 def _is_specimen(design: str) -> bool:
     from pneutouch.catalogue import Library
 
-    return not design.lower().endswith(".3mf") and Library.default().specimen_file(design) is not None
+    return not _is_3mf(design) and Library.default().specimen_file(design) is not None
+
+
+def _is_3mf(design: str) -> bool:
+    return design.lower().endswith(".3mf")
 
 
 def _build_specimen(design: str, out: Path, changed: dict[str, Any]) -> tuple[str, Path, list[Finding]]:

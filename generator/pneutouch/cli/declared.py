@@ -3,12 +3,14 @@
 import inspect
 import types
 import typing
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import Annotated, Any, NamedTuple
 
 import typer
 from pydantic import BaseModel
 
+from pneutouch.errors import PneutouchError
 from pneutouch.spec.fields import Declaration, declaration, table_of
 
 
@@ -44,6 +46,24 @@ def field_tables(options: Mapping[str, FieldOption], values: Mapping[str, Any]) 
             table, key, parse, _ = options[name]
             tables.setdefault(table, {})[key] = parse(value) if parse else value
     return tables
+
+
+@contextmanager
+def named_by_flag(given: Mapping[str, str], where: str) -> Iterator[None]:
+    """Name the option, and no file, in an error about a field of ``where`` that was given as one.
+
+    ``given``: the options' parameters by ``table.key``. A ``where`` that is no file is not named.
+    """
+    try:
+        yield
+    except PneutouchError as error:
+        for each in (error, *error.others):
+            parameter = given.get((each.key or "").partition("[")[0])
+            if each.file in (None, where) and parameter is not None:
+                each.file, each.key = None, parameter
+            elif each.file == where and not where.endswith(".toml"):
+                each.file = None
+        raise
 
 
 def _parameter(model: type[BaseModel], name: str, option: FieldOption) -> inspect.Parameter:

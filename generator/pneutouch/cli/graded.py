@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 import typer
 
 from pneutouch.cli.app import print_json
+from pneutouch.cli.next_step import DesignPlace, report_written
 from pneutouch.cli.progress import bar
 from pneutouch.cli.text import columns
-from pneutouch.errors import InputError
+from pneutouch.errors import InputError, RuleBrokenError
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA
 
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from pneutouch.workflows.select.graded import GradedSelectionRun
 
 
-def select_graded(target: Target, where: str, write: str | None, out: Path, *, json: bool, refused: list[str]) -> None:
+def select_graded(target: Target, where: str, place: DesignPlace | None, *, json: bool, refused: list[str]) -> None:
     """Search, show and save a grade. Exits 1 where none meets the target; ``refused`` are flags that exclude it."""
     from pneutouch.workflows.select import graded_document as shown
     from pneutouch.workflows.select.graded import select_graded as run
@@ -31,15 +32,25 @@ def select_graded(target: Target, where: str, write: str | None, out: Path, *, j
     with bar("grades of at most") as report:
         selection = run(target, where, progress=lambda trial, done, most: report(done, most))
     typer.echo(f"{selection.solves} solid solves in {time.perf_counter() - begun:.0f} s", err=True)
-    path = shown.write_graded(selection, write, out) if write is not None and selection.search.met else None
+    path = None if place is None or not selection.search.met else _saved(selection, place)
     if json:
         print_json({**shown.graded_document(selection), "written": None if path is None else str(path)})
     else:
         typer.echo(graded_text(selection))
         if path is not None:
-            typer.echo(f"\nwritten: {path}")
+            report_written(path)
     if not selection.search.met:
         raise typer.Exit(1)
+
+
+def _saved(selection: GradedSelectionRun, place: DesignPlace) -> Path:
+    """Save the grade. Raises RuleBrokenError where it would not pass ``check``."""
+    from pneutouch.workflows.select import graded_document as shown
+
+    why = selection.rejection()
+    if why is not None:
+        raise RuleBrokenError(f"the grade meets the target and is rejected by the print rules: {why}")
+    return shown.write_graded(selection, *place[:2], overwrite=place.overwrite)
 
 
 def graded_text(selection: GradedSelectionRun) -> str:

@@ -6,14 +6,15 @@ from typing import Annotated
 import typer
 
 from pneutouch.cli.app import DesignArgument, JsonOption, OutOption, SetOption, app, changes, print_json, reporting
-from pneutouch.cli.simulate import ResinsOption, SpecimensOption, words
+from pneutouch.cli.next_step import report_next, set_words
+from pneutouch.cli.simulate import SPECIMENS, ResinsOption, SpecimensOption, words
 
 
 @app.command()
 def plan(
     design: DesignArgument,
     resins: ResinsOption = "",
-    specimens: SpecimensOption = 3,
+    specimens: SpecimensOption = SPECIMENS,
     rig: Annotated[
         Path | None,
         typer.Option("--rig", metavar="RIG.toml", help="File with a [rig] table; left out: the paper's rig."),
@@ -44,3 +45,6 @@ def plan(
 
             typer.echo(plan_text(result.document))
             typer.echo(f"\n{folder}")
+            some = [] if specimens == SPECIMENS else ["--specimens", specimens]
+            which = ["--resins", resins] if resins else []
+            report_next("simulate", design, *which, *some, *set_words(set_))

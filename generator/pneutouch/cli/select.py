@@ -1,14 +1,24 @@
 """``pneutouch select``: the inverse."""
 
+from __future__ import annotations
+
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from pneutouch.cli.app import DesignFolderOption, JsonOption, app, design_folder, print_json, reporting
-from pneutouch.cli.declared import FieldOption, field_tables, with_fields
+from pneutouch.cli.app import DesignFolderOption, ForceOption, JsonOption, app, design_folder, print_json, reporting
+from pneutouch.cli.declared import FieldOption, field_tables, named_by_flag, with_fields
+from pneutouch.cli.next_step import DesignPlace, report_written
+from pneutouch.cli.progress import bar
 from pneutouch.errors import InputError
 from pneutouch.spec.target import Target
+
+if TYPE_CHECKING:
+    from pneutouch.workflows.select.run import SelectionRun
+
+_FLAGS_ALONE = "select"
+"""Stands for the target's file where there is none."""
 
 
 def _percent(text: str) -> float:
@@ -32,6 +42,8 @@ _FIELDS = {
     "stiffness_least": FieldOption("target", "stiffness_least_N_per_mm"),
     "stiffness_most": FieldOption("target", "stiffness_most_N_per_mm"),
     "max_diameter": FieldOption("target", "max_diameter_mm"),
+    "max_footprint": FieldOption("target", "max_footprint_mm"),
+    "fits": FieldOption("target", "fits", metavar="finger:MM"),
     "inner_radius": FieldOption("given", "inner_radius_mm"),
     "wall": FieldOption("given", "wall_thickness_mm"),
     "material": FieldOption("given", "materials"),
@@ -55,10 +67,15 @@ def select(
     target: Annotated[
         Path | None, typer.Argument(metavar="TARGET", help="Target file (TOML); options override it.")
     ] = None,
+    set_: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="TABLE.KEY=VALUE", help="Override a field of the base; may be repeated."),
+    ] = None,
     write: Annotated[
         str | None, typer.Option(metavar="NAME", help="Save the design picked as designs/NAME.toml.")
     ] = None,
     pick: Annotated[int, typer.Option(help="Rank of the design to save.")] = 1,
+    overwrite: ForceOption = False,
     charts: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Folder for the trade-off and tuning charts, SVG.")
     ] = None,
@@ -67,56 +84,82 @@ def select(
     **fields: Any,
 ) -> None:
     """Find designs for a target; exit 1 where there is none."""
-    with reporting():
-        from pneutouch.output.new import check_name
-        from pneutouch.workflows.select import document as shown
-        from pneutouch.workflows.select.run import select as run
+    where = str(target or _FLAGS_ALONE)
+    given = {f"{_FIELDS[name].table}.{_FIELDS[name].key}": name for name, value in fields.items() if value is not None}
+    with reporting(), named_by_flag(given, where):
+        from pneutouch.output.files import check_writable
+        from pneutouch.output.new import check_free
 
         folder = design_folder(out)
         if write is not None:
-            check_name(write, folder)
-        request, where = _target(target, fields), str(target or "select")
+            check_free(write, folder, overwrite=overwrite)
+        request = _target(target, fields, set_ or [])
         if request.given.graded:
-            _graded(request, where, write, folder, charts=charts is not None, pick=pick != 1, json=json)
+            place = None if write is None else DesignPlace(write, folder, overwrite)
+            _graded(request, where, place, charts=charts is not None, pick=pick != 1, json=json)
             return
-        selection = run(request, where)
-        designs, choice, path = selection.answer.designs, None, None
-        if designs:
-            choice = shown.pick(selection, pick)
-            path = shown.write_choice(selection, choice, write, folder) if write is not None else None
         if charts is not None:
-            from pneutouch.workflows.select.charts import write_charts
-
-            write_charts(selection, charts, choice)
-        if json:
-            print_json({**shown.document(selection), "written": None if path is None else str(path)})
-        else:
-            from pneutouch.cli.select_text import selection_text
-
-            typer.echo(selection_text(selection))
-            if path is not None:
-                typer.echo(f"\nwritten: {path}")
-        if not designs:
-            raise typer.Exit(1)
+            check_writable(charts / "chart", key="charts")
+        selection = _run(request, where, None if write is None else pick)
+        _report(selection, pick, None if write is None else DesignPlace(write, folder, overwrite), charts, json=json)
 
 
-def _graded(target: Target, where: str, write: str | None, out: Path, *, json: bool, **others: bool) -> None:
+def _run(request: Target, where: str, written: int | None) -> SelectionRun:
+    """The selection, with a bar over its steps on a terminal."""
+    from pneutouch.workflows.select.run import STEPS
+    from pneutouch.workflows.select.run import select as run
+
+    with bar("") as report:
+        return run(request, where, written=written, progress=lambda step: report(STEPS.index(step), len(STEPS), step))
+
+
+def _report(selection: SelectionRun, pick: int, place: DesignPlace | None, charts: Path | None, *, json: bool) -> None:
+    """Save what is to be saved and show the designs. Exits 1 where there are none."""
+    from pneutouch.workflows.select import document as shown
+
+    designs, choice, path = selection.answer.designs, None, None
+    if designs:
+        choice = shown.pick(selection, pick)
+        path = None if place is None else shown.write_choice(selection, choice, *place[:2], overwrite=place.overwrite)
+    if charts is not None:
+        from pneutouch.workflows.select.charts import write_charts
+
+        write_charts(selection, charts, choice)
+    if json:
+        print_json({**shown.document(selection), "written": None if path is None else str(path)})
+    else:
+        from pneutouch.cli.select_text import selection_text
+
+        typer.echo(selection_text(selection))
+        if path is not None:
+            report_written(path)
+    if not designs:
+        raise typer.Exit(1)
+
+
+def _graded(target: Target, where: str, place: DesignPlace | None, *, json: bool, **others: bool) -> None:
     """The search for a grade; ``others`` are flags that do not go with it and whether they were given."""
     from pneutouch.cli.graded import select_graded
 
-    select_graded(target, where, write, out, json=json, refused=[flag for flag, given in others.items() if given])
+    select_graded(target, where, place, json=json, refused=[flag for flag, given in others.items() if given])
 
 
-def _target(path: Path | None, fields: dict[str, Any]) -> Target:
+def _target(path: Path | None, fields: dict[str, Any], set_: list[str]) -> Target:
     """The target of a file, options in place of its fields; or of options alone."""
     from pneutouch.spec.read import read_toml, validate
 
     content = {} if path is None else read_toml(path)
-    for table, values in field_tables(_FIELDS, fields).items():
+    tables = field_tables(_FIELDS, fields)
+    for table, values in tables.items():
         section = content.setdefault(table, {})
         if not isinstance(section, dict):
             raise InputError("must be a table", file=path, key=table, value=section)
         section.update(values)
     if "target" not in content:
         raise InputError("no target", remedy="give a target file, or `sensitivity`, `force_range` or a stiffness")
-    return validate(Target, content, "select" if path is None else str(path))
+    target = validate(Target, content, _FLAGS_ALONE if path is None else str(path))
+    if not set_:
+        return target
+    # What is set last holds: the options come after the file's own changes.
+    setting = target.setting.model_copy(update={"assignments": [*target.setting.assignments, *set_]})
+    return target.model_copy(update={"setting": setting})

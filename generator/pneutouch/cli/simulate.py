@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from pneutouch.cli.app import DesignArgument, JsonOption, OutOption, SetOption, app, changes, print_json, reporting
+from pneutouch.cli.next_step import report_next
 from pneutouch.cli.progress import bar
 
 if TYPE_CHECKING:
@@ -20,13 +21,14 @@ ResinsOption = Annotated[
     ),
 ]
 SpecimensOption = Annotated[int, typer.Option("--specimens", help="Specimens of each resin.")]
+SPECIMENS = 3
 
 
 @app.command()
 def simulate(
     design: DesignArgument,
     resins: ResinsOption = "",
-    specimens: SpecimensOption = 3,
+    specimens: SpecimensOption = SPECIMENS,
     pressures: Annotated[
         str | None, typer.Option(metavar="KPA,KPA", help="Driving pressures, kPa; left out: the design's.")
     ] = None,
@@ -101,3 +103,4 @@ def _report(folder: Path, options: SimulationOptions, *, json: bool) -> None:
         return
     typer.echo(f"{len(files)} simulated runs of {len(truth['specimens'])} specimens", err=True)
     typer.echo(str(folder))
+    report_next("characterize", folder)

@@ -28,19 +28,19 @@ def json_bytes(document: object) -> bytes:
     return (json.dumps(document, indent=2, sort_keys=True, ensure_ascii=False, allow_nan=False) + "\n").encode()
 
 
-def check_writable(folder: Path) -> None:
-    """Raise InputError where an output folder cannot be made or written, or holds files of others."""
+def check_writable(folder: Path, key: str = "out") -> None:
+    """Raise InputError where an output folder cannot be made or written, or holds files of others; ``key`` names it."""
     if folder.exists() and not folder.is_dir():
-        raise InputError(f"{folder} is a file", key="out", remedy="it must be a folder")
+        raise InputError(f"{folder} is a file", key=key, remedy="it must be a folder")
     if folder.is_symlink():
-        raise InputError(f"{folder} is a link", key="out", remedy="give the folder it leads to")
+        raise InputError(f"{folder} is a link", key=key, remedy="give the folder it leads to")
     if folder.is_dir() and any(folder.iterdir()):
         _our_files(folder)
     parent = next(path for path in (folder.parent, *folder.parent.parents) if path.exists())
     if not parent.is_dir():
-        raise InputError(f"{parent} is a file", key="out", remedy="it must be a folder")
+        raise InputError(f"{parent} is a file", key=key, remedy="it must be a folder")
     if not os.access(parent, os.W_OK | os.X_OK):
-        raise InputError(f"{parent} cannot be written", key="out", remedy="give a folder you may write to")
+        raise InputError(f"{parent} cannot be written", key=key, remedy="give a folder you may write to")
 
 
 def write_folder(folder: Path, files: dict[str, bytes]) -> None:

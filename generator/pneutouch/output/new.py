@@ -1,6 +1,7 @@
 """Write a new file to start from: a commented design, or a copy of a design, a specimen or an example."""
 
 import os
+import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -73,9 +74,47 @@ def check_name(name: str, folder: Path, kind: str = "designs") -> Path:
     return path
 
 
-def write_design(name: str, folder: Path, text: str, kind: str = "designs") -> Path:
-    """Write the text of a design as ``folder/name.toml``; never over a file."""
-    return _create(check_name(name, folder, kind), text)
+def check_free(name: str, folder: Path, *, overwrite: bool = False) -> Path:
+    """The file of a new design, before anything is computed for it.
+
+    Raises InputError as `check_name` does, for a file that is there already (but with ``overwrite``), and for a folder
+    that cannot be written.
+    """
+    path = check_name(name, folder)
+    if path.is_dir():
+        raise InputError("this is a folder", file=path, remedy="give another name")
+    if not overwrite and (path.exists() or path.is_symlink()):
+        problem = "there is such a file already"
+        raise InputError(problem, file=path, remedy="give another name, or `overwrite` to replace it")
+    parent = next(one for one in (folder, *folder.absolute().parents) if one.exists())
+    if not parent.is_dir():
+        raise InputError(f"{parent} is not a folder", file=path)
+    if not os.access(parent, os.W_OK | os.X_OK):
+        raise InputError(f"{parent} cannot be written", file=path, remedy="give a folder you may write to with `out`")
+    return path
+
+
+def write_design(name: str, folder: Path, text: str, kind: str = "designs", *, overwrite: bool = False) -> Path:
+    """Write the text of a design as ``folder/name.toml``; over a file with ``overwrite`` alone."""
+    path = check_name(name, folder, kind)
+    return _replace(path, text) if overwrite else _create(path, text)
+
+
+def _replace(path: Path, text: str) -> Path:
+    """Write a file, in place of one that is there; that one stays until the new one is whole."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, fresh = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+        try:
+            with os.fdopen(handle, "w", encoding="utf-8") as file:
+                file.write(text)
+            Path(fresh).chmod(0o644)
+            Path(fresh).replace(path)
+        finally:
+            Path(fresh).unlink(missing_ok=True)
+    except OSError as error:
+        raise InputError(str(error.strerror), file=path, remedy="give a folder you may write to with `out`") from None
+    return path
 
 
 def _create(path: Path, text: str) -> Path:

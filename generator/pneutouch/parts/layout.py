@@ -93,19 +93,25 @@ class Layout:
 
 def lay_out(scene: ResolvedDesign) -> Layout:
     """Derive the layout of a scene from membrane, seat, mount, port and the printers' fits; `check_space` judges it."""
-    membrane, seat, mount = scene.design.membrane, scene.seat, scene.mount
+    membrane = scene.design.membrane
     port = port_shape(scene.port, scene.tube, scene.hole_undersize)
-    flange = max(seat.least_flange_mm, seat.flange_over_wall * membrane.wall_thickness_mm)
+    return lay_out_dome(scene, port, membrane.inner_radius_mm, membrane.wall_thickness_mm)
+
+
+def lay_out_dome(scene: ResolvedDesign, port: PortShape, inner_radius: float, wall: float) -> Layout:
+    """The layout of a scene around a dome of another size, mm."""
+    seat, mount = scene.seat, scene.mount
+    flange = max(seat.least_flange_mm, seat.flange_over_wall * wall)
     clearance = 0.0 if isinstance(seat, OnePiece) else scene.fit_clearance
-    groove = membrane.inner_radius_mm + membrane.wall_thickness_mm + flange + clearance
+    groove = inner_radius + wall + flange + clearance
     ring = _ring_radius(scene, groove, flange)
     bolts = _bolt_circle(scene, ring)
     thickness = _plate_thickness(scene, port)
     low = -flange - thickness
     side = mount.port_side == "side"
     return Layout(
-        inner_radius=membrane.inner_radius_mm,
-        wall=membrane.wall_thickness_mm,
+        inner_radius=inner_radius,
+        wall=wall,
         flange_width=flange,
         flange_thickness=flange,
         clearance=clearance,
@@ -116,7 +122,7 @@ def lay_out(scene: ResolvedDesign) -> Layout:
         under=low - mount.boss_height if isinstance(mount, RobotFlange) else low,
         bolt_circle_radius=bolts,
         channel_radius=_channel_radius(scene, port),
-        opening_radius=membrane.inner_radius_mm - seat.lip_wall_mm if isinstance(seat, OnePiece) else 0.0,
+        opening_radius=inner_radius - seat.lip_wall_mm if isinstance(seat, OnePiece) else 0.0,
         port=port,
         port_axis=low + _port_height(scene, port) if side else None,
     )

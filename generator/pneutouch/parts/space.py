@@ -1,5 +1,7 @@
 """Whether a layout has space for its parts: refused before anything is drawn, with the lengths that do not fit."""
 
+import math
+
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError, shown
 from pneutouch.parts.layout import HEAD_GAP, Layout, finger_radius
@@ -11,20 +13,31 @@ Lengths = dict[str, tuple[float, float]]
 
 def check_space(scene: ResolvedDesign, layout: Layout) -> None:
     """Raise InputError for a dome too small for its channel, port or holes, or too large for its mount."""
-    head = f"{scene.where}: membrane.inner_radius_mm = {layout.inner_radius:g}: too"
     for what, (has, least) in _least(scene, layout).items():
         if has < least:
-            raise InputError(
-                f"{head} small for {what}: radius {has:.2f} mm, at least {least:.2f} mm; take a larger dome, another "
-                "port, mount or printer"
-            )
+            problem = f"too small for {what}: radius {has:.2f} mm, at least {least:.2f} mm"
+            raise _no_space(scene, problem, "take a larger dome, another port, mount or printer")
     mount = scene.design.connector.mount
     for what, (has, most) in _most(scene, layout).items():
         if has > most:
-            raise InputError(
-                f"{head} large for connector.mount = {shown(mount)}: {what} is {has:.2f} mm in radius, there is space "
-                f"for {most:.2f} mm; take a smaller dome, another seat or mount"
+            problem = (
+                f"too large for connector.mount = {shown(mount)}: {what} is {has:.2f} mm in radius, there is space "
+                f"for {most:.2f} mm"
             )
+            raise _no_space(scene, problem, "take a smaller dome, another seat or mount")
+
+
+def space_margin(scene: ResolvedDesign, layout: Layout) -> float:
+    """The least relative margin of the radii that `check_space` compares; negative where it refuses the layout."""
+    small = [has / least - 1.0 for has, least in _least(scene, layout).values() if least > 0]
+    large = [most / has - 1.0 for has, most in _most(scene, layout).values()]
+    return min([*small, *large], default=math.inf)
+
+
+def _no_space(scene: ResolvedDesign, problem: str, remedy: str) -> InputError:
+    radius = scene.design.membrane.inner_radius_mm
+    value = int(radius) if radius.is_integer() else radius
+    return InputError(problem, file=scene.where, key="membrane.inner_radius_mm", value=value, remedy=remedy)
 
 
 def _least(scene: ResolvedDesign, layout: Layout) -> Lengths:

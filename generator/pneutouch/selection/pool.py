@@ -7,11 +7,11 @@ from typing import NamedTuple
 import numpy as np
 
 from pneutouch.arrays import Array, Flags, Index
-from pneutouch.mechanics.atlas.respond import BREAK, OUTSIDE, AtlasResponse, respond
+from pneutouch.mechanics.atlas.respond import BREAK, EDGE, OUTSIDE, AtlasResponse, respond
 from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.selection.problem import SelectionProblem
 
-REQUIREMENTS = ("sensitivity", "force range", "stiffness", "outer diameter")
+REQUIREMENTS = ("sensitivity", "force range", "stiffness", "outer diameter", "footprint")
 """What a user requires and may drop."""
 
 
@@ -54,8 +54,9 @@ def joined(pools: list[CandidatePool]) -> CandidatePool:
 def margins(problem: SelectionProblem, pool: CandidatePool) -> dict[str, Array]:
     """Relative margin to each limit, (n,) each: negative where it is broken, -inf where it is unknown.
 
-    Requirements: sensitivity (1 on the spot, 0 at the tolerance), force range, stiffness, outer diameter. Limits:
-    limit point (to RATED_SHARE of it), break strain, gauge range (at the required force), printable wall.
+    Requirements: sensitivity (1 on the spot, 0 at the tolerance), force range, stiffness, outer diameter, footprint.
+    Limits: limit point (to RATED_SHARE of it), break strain, gauge range (at the required force), printable wall, plate
+    (the contact stays off its edge), connector (space for its parts).
     """
     lines, margin_of = pool.response.lines, {}
     if problem.sensitivity_kPa_per_N is not None:
@@ -74,6 +75,7 @@ def margins(problem: SelectionProblem, pool: CandidatePool) -> dict[str, Array]:
     if problem.max_diameter is not None:
         margin_of["outer diameter"] = problem.max_diameter / (2.0 * (pool.radius + pool.wall)) - 1.0
     margin_of |= _limits(problem, pool)
+    margin_of |= _connector(problem, pool)
     known = np.isfinite(lines.sensitivity_kPa_per_N) & (pool.response.ends != OUTSIDE)
     return {
         name: np.where(known & np.isfinite(margin) | (known & (margin > 0)), margin, -np.inf)
@@ -91,7 +93,23 @@ def _limits(problem: SelectionProblem, pool: CandidatePool) -> dict[str, Array]:
             "break strain": np.where(pool.response.ends == BREAK, np.maximum(break_margin, 0.0), break_margin),
             "gauge range": (problem.gauge_limit - pool.pressure) / _rise(problem, pool) - 1.0,
             "printable wall": pool.wall / problem.least_wall - 1.0 + 1e-9,
+            "plate": np.where(
+                pool.response.ends == EDGE, pool.response.range_end / (problem.depth_share * pool.radius) - 1.0, np.inf
+            ),
         }
+
+
+def _connector(problem: SelectionProblem, pool: CandidatePool) -> dict[str, Array]:
+    """Margins of the connector, drawn once for each size of the dome."""
+    if problem.connector is None:
+        return {}
+    sizes, number = np.unique(np.stack([pool.radius, pool.wall]), axis=1, return_inverse=True)
+    fit = problem.connector(sizes[0], sizes[1])
+    # Space that is there is enough: more of it makes no better sensor.
+    margin_of = {"connector": np.where(fit.margin < 0.0, fit.margin, np.inf)[number]}
+    if problem.max_footprint is not None:
+        margin_of["footprint"] = (problem.max_footprint / fit.diameter - 1.0 + 1e-9)[number]
+    return margin_of
 
 
 def _rise(problem: SelectionProblem, pool: CandidatePool) -> Array:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,6 +14,10 @@ from pneutouch.spec.material import Material
 
 _SMALLEST, _LARGEST = 2.0, 60.0
 """Inner radii that are searched where none is given, mm."""
+_HALVINGS = 14
+"""Of a radius of at most 60 mm: 4 um are left."""
+_ROUNDED = 0.01
+"""What a wall may gain by being rounded, mm."""
 
 
 @dataclass(frozen=True)
@@ -26,9 +31,20 @@ class CandidateResin:
     grade: Grade | None = None
 
 
+class ConnectorFit(NamedTuple):
+    """Connectors around domes, (n,) each: relative margin of the space for their parts, and the whole diameter, mm."""
+
+    margin: Array
+    diameter: Array
+
+
 @dataclass(frozen=True)
 class SelectionProblem:
-    """What is required of a sensor and what is settled; None where free. depth_share: plate travel over R0."""
+    """What is required of a sensor and what is settled; None where free. depth_share: plate travel over R0.
+
+    plate_share: the plate's radius over R0 where it is larger than ``plate_radius``, for a plate that goes with the
+    dome. connector: of domes of inner radius and wall (n,), mm; None where no connector matters.
+    """
 
     resins: tuple[CandidateResin, ...]
     sensitivity_kPa_per_N: float | None
@@ -47,6 +63,13 @@ class SelectionProblem:
     depth_share: float
     steps: int
     recipe: AtlasRecipe
+    plate_share: float = 0.0
+    max_footprint: float | None = None
+    connector: Callable[[Array, Array], ConnectorFit] | None = None
+
+    def plate(self, radius: Array) -> Array:
+        """Radius of the plate for domes of inner radius (n,), mm."""
+        return np.maximum(self.plate_radius, self.plate_share * radius)
 
     def batch(self, resin: Array, radius: Array, wall: Array, pressure: Array) -> SensorBatch:
         """Candidates as sensors; resin (n,) numbers, radius and wall (n,) mm, pressure (n,) MPa."""
@@ -60,7 +83,7 @@ class SelectionProblem:
             dead_volume=self.dead_volume(radius),
             driving_pressure=pressure,
             depth=radius * self.depth_share,
-            plate_radius=ones * self.plate_radius,
+            plate_radius=self.plate(radius),
             gauge_limit=ones * self.gauge_limit,
             break_stretch=np.array([r.break_stretch for r in self.resins])[index],
         )
@@ -72,4 +95,17 @@ class SelectionProblem:
             return fixed, fixed
         low = np.maximum(self.least_wall / ratio, _SMALLEST)
         largest = _LARGEST if self.max_diameter is None else 0.5 * self.max_diameter
-        return low, np.minimum(largest / (1.0 + ratio), _LARGEST)
+        high = np.minimum(largest / (1.0 + ratio), _LARGEST)
+        return low, high if self.max_footprint is None else self._within_footprint(ratio, low, high)
+
+    def _within_footprint(self, ratio: Array, low: Array, high: Array) -> Array:
+        """Greatest radii up to ``high`` whose connector keeps the footprint, in whole hundredths; bisected, for the
+        diameter grows with the dome."""
+        assert self.connector is not None and self.max_footprint is not None
+        kept = self.connector(high, ratio * high).diameter <= self.max_footprint
+        least, most = np.zeros_like(high), high
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (least + most)
+            inside = self.connector(middle, ratio * middle).diameter <= self.max_footprint
+            least, most = np.where(inside, middle, least), np.where(inside, most, middle)
+        return np.where(kept, high, least - _ROUNDED)

@@ -71,6 +71,13 @@ class Connector(Table):
     port: str = name("barb-4x2.5", registry="ports", help="Pneumatic port.")
     seat: str = name("glued-flange", registry="seats", help="How the membrane's flange is held.")
     mount: str = name("bolt-circle-4xM3", registry="mounts", help="Pattern of the mounting holes.")
+    finger_diameter_mm: float | None = number(
+        None,
+        unit="mm",
+        low=6,
+        high=100,
+        help="Finger that a sleeve goes over, for a mount that is one; left out: the mount's own.",
+    )
 
 
 class Pneumatics(Table):

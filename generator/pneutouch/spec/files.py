@@ -11,7 +11,7 @@ MOST_BYTES = 1_000_000
 
 
 def read_bytes(path: Path, most: int = MOST_BYTES, kind: str = "TOML file") -> bytes:
-    """Content of a plain file of at most ``most`` bytes. Raises InputError for anything else, and to give a ``kind``."""
+    """Content of a plain file of at most ``most`` bytes. Raises InputError for all else, which states the ``kind``."""
     size = check_plain(path, kind)
     try:
         with path.open("rb") as file:

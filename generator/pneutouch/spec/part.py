@@ -1,5 +1,7 @@
 """Catalogue parts of the connector: tubes, ports, seats and mounts, each one TOML with its source. Lengths in mm."""
 
+from __future__ import annotations
+
 from typing import Annotated, Literal
 
 from pydantic import Field
@@ -171,11 +173,17 @@ class Sleeve(Mount):
 
     family: Literal["sleeve"]
     screw: str
-    finger_diameter: Length
+    finger_diameter: Length = Field(description="Where a design gives none.")
     sleeve_length: Length
     sleeve_wall: Length
     set_screw_count: int = Field(ge=2, le=3)
     set_screw_core_diameter: Length
+
+    def for_finger(self, diameter: float) -> Sleeve:
+        """The same sleeve for a finger of another diameter in mm, its title and code with that number."""
+        old, new = f"{self.finger_diameter:g}", f"{diameter:g}"
+        title, code = self.title.replace(f"{old} mm", f"{new} mm"), self.code.replace(old, new)
+        return self.model_copy(update={"finger_diameter": diameter, "title": title, "code": code})
 
 
 AnyMount = PlainPlate | BoltCircle | RobotFlange | Sleeve

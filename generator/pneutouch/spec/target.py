@@ -33,6 +33,18 @@ class TargetFigures(Table):
     max_diameter_mm: float | None = number(
         None, unit="mm", low=2, high=300, help="Greatest outer diameter of the unloaded dome, 2 (R0 + t0)."
     )
+    max_footprint_mm: float | None = number(
+        None,
+        unit="mm",
+        low=4,
+        high=400,
+        help="Greatest diameter of the whole sensor: membrane, flange and connector, a port at its side left out.",
+    )
+    fits: str | None = Field(
+        default=None,
+        pattern=r"^finger:[0-9]+(\.[0-9]+)?$",
+        description="finger:MM, what the sensor must fit on: a finger of that diameter, mm, by a sleeve over it.",
+    )
     same_sensitivity_at_kPa: list[float] | None = Field(
         default=None,
         min_length=2,
@@ -77,6 +89,11 @@ class TargetFigures(Table):
         return self
 
     @property
+    def finger_diameter_mm(self) -> float | None:
+        """Diameter of the finger that the sensor must fit on, None where none is required."""
+        return None if self.fits is None else float(self.fits.partition(":")[2])
+
+    @property
     def is_for_a_grade(self) -> bool:
         """Whether it requires the search of graded membranes."""
         return self.widest_range or self.same_sensitivity_at_kPa is not None
@@ -114,6 +131,9 @@ class Setting(Table):
 
     base: str | None = Field(
         default=None, min_length=1, description="Name or path of a design; left out: the defaults."
+    )
+    assignments: list[str] = Field(
+        default=[], max_length=100, description="What changes the base design, TABLE.KEY=VALUE each."
     )
     profile: str | None = Field(default=None, min_length=1, description="Printer of the membrane.")
     tube_length_mm: float | None = number(None, unit="mm", low=0, high=20000, help="Tube to the pressure sensor.")

@@ -7,12 +7,9 @@ import numpy as np
 
 from pneutouch.errors import InputError
 from pneutouch.mechanics.atlas.respond import ENDS
-from pneutouch.output.new import write_design
 from pneutouch.selection import Candidate, DroppedRequirement
-from pneutouch.spec.design import DesignFile
-from pneutouch.spec.read import override, parse_changes, validate
-from pneutouch.spec.template import design_template
 from pneutouch.units import KPA, ML
+from pneutouch.workflows.select.passing import RejectedDesign, write_assigned
 from pneutouch.workflows.select.run import Confirmation, SelectionRun
 
 
@@ -26,13 +23,24 @@ def document(selection: SelectionRun) -> dict[str, Any]:
         "met": bool(answer.designs),
         "candidates": answer.candidates,
         "designs": [
-            {"rank": rank, "runner_up": _is_runner_up(answer.designs, rank - 1), **_choice(selection, choice, solid)}
+            {
+                "rank": rank,
+                "runner_up": _is_runner_up(answer.designs, rank - 1),
+                "passes_check": True if rank <= selection.passed else None,
+                **_choice(selection, choice, solid),
+            }
             for rank, (choice, solid) in enumerate(zip(answer.designs, confirmed, strict=True), start=1)
         ],
         "nearest": None if answer.nearest is None else _choice(selection, answer.nearest, None),
         "dropped_requirements": [_dropped(selection, dropped) for dropped in answer.dropped],
+        "rejected": [_rejected(selection, rejected) for rejected in selection.rejected],
         "left_out": selection.left_out,
     }
+
+
+def _rejected(selection: SelectionRun, rejected: RejectedDesign) -> dict[str, Any]:
+    design = _choice(selection, rejected.choice, None)
+    return {"rule": rejected.rule, "reason": rejected.reason, "design": design}
 
 
 def _dropped(selection: SelectionRun, dropped: DroppedRequirement) -> dict[str, Any]:
@@ -55,6 +63,7 @@ def _choice(selection: SelectionRun, choice: Candidate, solid: Confirmation | No
         "wall_thickness_mm": float(pool.wall[0]),
         "driving_pressure_kPa": float(pool.pressure[0]) / KPA,
         "outer_diameter_mm": 2 * float(pool.radius[0] + pool.wall[0]),
+        "footprint_mm": selection.footprint(choice),
         "dead_volume_mL": float(batch.dead_volume[0]) / ML,
         "sensitivity_kPa_per_N": sensitivity_kPa_per_N,
         "expanded_uncertainty_kPa_per_N": sensitivity_kPa_per_N * choice.expanded,
@@ -89,28 +98,16 @@ def would_need(selection: SelectionRun, dropped: DroppedRequirement) -> str:
         return f"{float(pool.force[0]):.3g} N instead of {selection.problem.force_range:g}"
     if dropped.requirement == "stiffness":
         return f"{float(lines.stiffness[0]):.3g} N/mm"
+    if dropped.requirement == "footprint":
+        return f"{selection.footprint(dropped.best):.4g} mm instead of {selection.problem.max_footprint:g}"
     return f"{2 * float(pool.radius[0] + pool.wall[0]):.4g} mm instead of {selection.problem.max_diameter:g}"
 
 
-def write_choice(selection: SelectionRun, choice: Candidate, name: str, folder: Path) -> Path:
-    """Save a choice as ``folder/name.toml``, a design that ``build`` takes; never over a file."""
-    return write_assigned(selection.base.design, selection.assignments(choice), name, folder)
-
-
-def write_assigned(design: DesignFile, assignments: list[str], name: str, folder: Path) -> Path:
-    """Save a design with ``table.key=value`` assignments as ``folder/name.toml``; never over a file."""
-    chosen = validate(DesignFile, assigned(design, assignments, name), name)
-    note = "Every key may be left out; it then takes its default."
-    return write_design(name, folder, design_template(name, chosen.model_dump(by_alias=True), note))
-
-
-def assigned(design: DesignFile, assignments: list[str], name: str) -> dict[str, Any]:
-    """The tables of a design with ``table.key=value`` assignments, titled ``name``."""
-    base = design.model_dump(by_alias=True)
-    content = override(base, parse_changes(assignments), DesignFile)
-    content["document"] = {**base["document"], "title": name}
-    content["pneumatics"]["driving_pressures_kPa"] = [float(p) for p in content["pneumatics"]["driving_pressures_kPa"]]
-    return content
+def write_choice(
+    selection: SelectionRun, choice: Candidate, name: str, folder: Path, *, overwrite: bool = False
+) -> Path:
+    """Save a choice as ``folder/name.toml``, a design that ``build`` takes; over a file with ``overwrite`` alone."""
+    return write_assigned(selection.base.design, selection.assignments(choice), name, folder, overwrite=overwrite)
 
 
 def pick(selection: SelectionRun, rank: int) -> Candidate:

@@ -1,6 +1,7 @@
 """A graded selection: a grade for a target that no constant mix meets, and the constant mixes of its size."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -18,10 +19,13 @@ from pneutouch.selection.mixes import levels
 from pneutouch.selection.problem import SelectionProblem
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
+from pneutouch.spec.read import assignments
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA
+from pneutouch.workflows.select.base import base_scene, requested_pair, setting_changes
 from pneutouch.workflows.select.mix import ResinPair
-from pneutouch.workflows.select.run import base_scene, grade_text, problem_of, requested_pair, setting_changes
+from pneutouch.workflows.select.passing import rejection, source_of
+from pneutouch.workflows.select.run import grade_text, problem_of
 
 _LEVELS = 4
 """Fractions of the scan at pole and rim: moduli 3 times apart for TangoPlus and VeroClear, 16 trials."""
@@ -32,12 +36,13 @@ _TRIALS = 48
 class GradedSelectionRun:
     """A search for a grade with everything needed to show and write it.
 
-    sensor: the base's, with the radius and wall searched at. constants: catalogue resins, then the nearest mix.
-    solves: solid solves in all.
+    changes: what the target changes in its base, by ``table.key``. sensor: the base's, with the radius and wall
+    searched at. constants: catalogue resins, then the nearest mix. solves: solid solves in all.
     """
 
     target: Target
     base: ResolvedDesign
+    changes: dict[str, Any]
     sensor: Sensor
     pair: ResinPair
     grade_target: GradeTarget
@@ -73,7 +78,13 @@ class GradedSelectionRun:
             "membrane.wall_thickness_mm": f"{self.sensor.dome.wall_thickness:.6g}",
             "pneumatics.driving_pressures_kPa": pressures_kPa,
         }
-        return [f"{key}={value}" for key, value in {**values, **setting_changes(self.target)}.items()]
+        return [f"{key}={value}" for key, value in values.items()] + assignments(self.changes)
+
+    def rejection(self, library: Library | None = None) -> str | None:
+        """Why ``check`` rejects the best grade, None where it passes."""
+        source = source_of(self.base, self.assignments())
+        why = rejection(source, library or Library.default(), predicted=True)
+        return None if why is None else ": ".join(part for part in why if part)
 
 
 def select_graded(
@@ -94,6 +105,8 @@ def select_graded(
     grade_target, base = _grade_target(target), sensor_of(assemble(scene))
     problem = problem_of(target, scene, base, (pair.resin(float(levels(pair.law, 3)[1])),))
     sensor = base.replace(wall_thickness=_wall(target, where, grade_target, problem, base))
+    _check_footprint(target, where, problem, sensor)
+    changes = setting_changes(target, library)
 
     def solve(pole: float, rim: float) -> GradeTrial:
         return trial_of(in_resin(sensor, pair.material(pair.grade(pole, rim))), grade_target.pressures, pole, rim)
@@ -101,7 +114,9 @@ def select_graded(
     search = grade_search(grade_target, levels(pair.law, _LEVELS), solve, progress, trials or _TRIALS)
     constants, left_out = _catalogue(scene, sensor, grade_target, library)
     nearest = _nearest(grade_target, problem, pair, sensor, search)
-    return GradedSelectionRun(target, scene, sensor, pair, grade_target, search, (*constants, nearest), left_out)
+    return GradedSelectionRun(
+        target, scene, changes, sensor, pair, grade_target, search, (*constants, nearest), left_out
+    )
 
 
 def _grade_target(target: Target) -> GradeTarget:
@@ -138,6 +153,21 @@ def _wall(target: Target, where: str, grade_target: GradeTarget, problem: Select
             f"given.wall_thickness_mm = {wall:g}: the printer's least wall is {problem.least_wall:g} mm", file=where
         )
     return wall
+
+
+def _check_footprint(target: Target, where: str, problem: SelectionProblem, sensor: Sensor) -> None:
+    """Refuse a size whose connector has no space or is wider than the target allows."""
+    radius, wall, most = sensor.dome.inner_radius, sensor.dome.wall_thickness, target.target.max_footprint_mm
+    assert problem.connector is not None
+    footprint = float(problem.connector(np.array([radius]), np.array([wall])).diameter[0])
+    if most is not None and footprint > most:
+        raise InputError(
+            f"the sensor with a dome of inner radius {radius:g} mm and wall {wall:g} mm is {footprint:g} mm wide",
+            file=where,
+            key="target.max_footprint_mm",
+            value=most,
+            remedy="give a smaller given.inner_radius_mm or another connector",
+        )
 
 
 def _catalogue(

@@ -7,8 +7,8 @@ import numpy as np
 
 from pneutouch.selection.grade_search import GradeTrial, shares
 from pneutouch.units import KPA, ML
-from pneutouch.workflows.select.document import write_assigned
 from pneutouch.workflows.select.graded import GradedSelectionRun
+from pneutouch.workflows.select.passing import write_assigned
 
 
 def graded_document(selection: GradedSelectionRun) -> dict[str, Any]:
@@ -85,6 +85,6 @@ def missed(selection: GradedSelectionRun) -> list[str]:
     return lines
 
 
-def write_graded(selection: GradedSelectionRun, name: str, folder: Path) -> Path:
-    """Save the grade as ``folder/name.toml``, a design that ``build`` takes; never over a file."""
-    return write_assigned(selection.base.design, selection.assignments(), name, folder)
+def write_graded(selection: GradedSelectionRun, name: str, folder: Path, *, overwrite: bool = False) -> Path:
+    """Save the grade as ``folder/name.toml``, a design that ``build`` takes; over a file with ``overwrite`` alone."""
+    return write_assigned(selection.base.design, selection.assignments(), name, folder, overwrite=overwrite)

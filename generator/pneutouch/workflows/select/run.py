@@ -1,5 +1,7 @@
 """A target to designs: resolves its names, searches, confirms the best by the solid, writes the chosen one."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
@@ -7,9 +9,7 @@ from typing import Any
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.catalogue import DEFAULT, Library, ResolvedDesign, load_scene
-from pneutouch.errors import InputError, PneutouchError
-from pneutouch.evaluation.evaluate import sensor_of
+from pneutouch.catalogue import Library, ResolvedDesign
 from pneutouch.evaluation.table_s1 import is_near_paper
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.table import shipped
@@ -19,24 +19,24 @@ from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.uncertainty import ModelErrors, budget, measured_errors
 from pneutouch.mechanics.uncertainty.source import FIGURES, SENSITIVITY
-from pneutouch.parts import assemble
 from pneutouch.selection import Candidate, CandidateResin, SelectionProblem, SelectionResult, choose
 from pneutouch.selection.mixes import met_by_fraction
 from pneutouch.selection.pool import CandidatePool
-from pneutouch.spec.design import DesignFile
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
-from pneutouch.spec.printer import Printer
-from pneutouch.spec.read import read_toml, validate
+from pneutouch.spec.read import assignments
 from pneutouch.spec.target import Target
 from pneutouch.spec.toml_text import value_text
 from pneutouch.units import KPA
-from pneutouch.workflows.select.mix import USUAL, ResinPair, mix_resins, pair_of
+from pneutouch.workflows.select.base import base_scene, prints, requested_pair, setting_changes, with_connector
+from pneutouch.workflows.select.connector import base_sensor, connector_fit, dead_volume
+from pneutouch.workflows.select.mix import ResinPair, mix_resins
+from pneutouch.workflows.select.passing import RejectedDesign, rejection, source_of
 
 _CONFIRMED = 3
 """Designs that are confirmed by the solid."""
-_DEAD_VOLUMES = 8
-"""Radii at which the connector is drawn for its dead volume; between them it is straight."""
+_PLATE_SHARE = 1.25
+"""Radius over R0 of a plate that no base states: the contact of an inflated dome grows past R0."""
 
 
 @dataclass(frozen=True)
@@ -49,30 +49,46 @@ class Confirmation:
 
 @dataclass(frozen=True)
 class SelectionRun:
-    """An answer with everything needed to show, check and write it. left_out: resins and why."""
+    """An answer with everything needed to show, check and write it.
+
+    changes: what the target changes in its base, by ``table.key``. left_out: resins and why. rejected: designs that
+    ``check`` would reject, best first. passed: how many of the answer's designs, best first, are known to pass it.
+    """
 
     target: Target
     base: ResolvedDesign
+    changes: dict[str, Any]
     sensor: Sensor
     problem: SelectionProblem
     answer: SelectionResult
     left_out: dict[str, str]
-    confirmed: tuple[Confirmation, ...]
+    rejected: tuple[RejectedDesign, ...] = ()
+    passed: int = 0
+    confirmed: tuple[Confirmation, ...] = ()
 
     def assignments(self, choice: Candidate) -> list[str]:
         """What turns the base design into a choice, as ``table.key=value``."""
-        pressure_kPa = float(choice.pool.pressure[0]) / KPA
+        pool = choice.pool
+        radius, pressure_kPa = float(pool.radius[0]), float(pool.pressure[0]) / KPA
         pressures = sorted({0.0, round(pressure_kPa, 6)})
         values = [
             f"membrane.material={_written(choice.resin)}",
-            f"membrane.inner_radius_mm={float(choice.pool.radius[0]):.6g}",
-            f"membrane.wall_thickness_mm={float(choice.pool.wall[0]):.6g}",
+            f"membrane.inner_radius_mm={radius:.6g}",
+            f"membrane.wall_thickness_mm={float(pool.wall[0]):.6g}",
             f"pneumatics.driving_pressures_kPa={pressures}",
         ]
         if self.base.design.indentation.depth_mm is not None:
             # A depth in millimetres belongs to the base's own dome: it goes with the radius.
-            values.append(f"indentation.depth_mm={self.problem.depth_share * float(choice.pool.radius[0]):.8g}")
-        return values + [f"{key}={value}" for key, value in setting_changes(self.target).items()]
+            values.append(f"indentation.depth_mm={self.problem.depth_share * radius:.8g}")
+        plate = 2 * float(self.problem.plate(pool.radius)[0])
+        if plate > self.base.design.indentation.plate_diameter_mm:
+            values.append(f"indentation.plate_diameter_mm={plate:g}")
+        return values + assignments(self.changes)
+
+    def footprint(self, choice: Candidate) -> float:
+        """Diameter of the whole sensor, mm: membrane, flange and connector; a port at its side stands out of it."""
+        assert self.problem.connector is not None
+        return float(self.problem.connector(choice.pool.radius, choice.pool.wall).diameter[0])
 
     def sensor_of(self, choice: Candidate) -> Sensor:
         """A choice as a sensor, in everything else the base design's."""
@@ -87,36 +103,62 @@ class SelectionRun:
         )
 
 
-def select(target: Target, where: str, library: Library | None = None) -> SelectionRun:
-    """Answer a target. Raises InputError where it names what there is not; ``where`` names the file in messages."""
+STEPS = ("base", "search", "print rules", "solid")
+"""The steps that a selection reports, in order."""
+
+
+def select(
+    target: Target,
+    where: str,
+    library: Library | None = None,
+    *,
+    written: int | None = None,
+    progress: Callable[[str], None] = lambda step: None,
+) -> SelectionRun:
+    """Answer a target. Raises InputError where it names what there is not; ``where`` names the file in messages.
+
+    The best design passes the print rules; that of rank ``written``, to be saved, all that ``check`` looks at, and
+    those before it the print rules. Designs that do not are taken out of the answer.
+    """
     library = library or Library.default()
+    progress("base")
     scene = base_scene(target, where, library)
-    sensor = sensor_of(assemble(scene))
+    sensor = base_sensor(scene)
     pair = requested_pair(target, where, scene.printer, library)
     if pair is None:
         resins, left_out = _resins(target, where, scene, sensor, library)
     else:
         resins, left_out = mix_resins(pair, sensor.gas.ambient_pressure)
     problem = problem_of(target, scene, sensor, resins)
+    progress("search")
     answer = choose(
         problem,
         (target.weights.robustness, target.weights.tunability),
         _uncertainty(scene, sensor, library),
         None if pair is None else _refined(pair),
     )
-    run = SelectionRun(target, scene, sensor, problem, answer, left_out, ())
-    return replace(run, confirmed=tuple(_confirm(run, choice) for choice in answer.designs[:_CONFIRMED]))
+    run = SelectionRun(target, scene, setting_changes(target, library), sensor, problem, answer, left_out)
+    progress("print rules")
+    run = _passing(run, written, library)
+    progress("solid")
+    return replace(run, confirmed=tuple(_confirm(run, choice) for choice in run.answer.designs[:_CONFIRMED]))
 
 
-def setting_changes(target: Target) -> dict[str, Any]:
-    """What a target's setting changes in the base design, by ``table.key``."""
-    setting = target.setting
-    values = {
-        "print.profile": setting.profile,
-        "pneumatics.tube_length_mm": setting.tube_length_mm,
-        "pneumatics.dead_volume_mL": setting.dead_volume_mL,
-    }
-    return {key: value for key, value in values.items() if value is not None}
+def _passing(run: SelectionRun, written: int | None, library: Library) -> SelectionRun:
+    """The answer without the designs that do not pass; looked at by rank until enough do."""
+    passed: list[Candidate] = []
+    rejected: list[RejectedDesign] = []
+    waiting = list(run.answer.designs)
+    while waiting and len(passed) < (written or 1):
+        choice = waiting.pop(0)
+        source = source_of(run.base, run.assignments(choice))
+        reason = rejection(source, library, predicted=len(passed) + 1 == written)
+        if reason is None:
+            passed.append(choice)
+        else:
+            rejected.append(RejectedDesign(choice, *reason))
+    answer = replace(run.answer, designs=[*passed, *waiting])
+    return replace(run, answer=answer, rejected=tuple(rejected), passed=len(passed))
 
 
 def _written(resin: CandidateResin) -> str:
@@ -129,53 +171,8 @@ def grade_text(grade: Grade) -> str:
     return value_text(grade.model_dump(by_alias=True, exclude_none=True))
 
 
-def requested_pair(target: Target, where: str, printer: Printer, library: Library) -> ResinPair | None:
-    """The pair to mix: the one named, the usual one for a grade; None where resins are to be chosen from."""
-    given = target.given
-    if given.mix is None and not given.graded:
-        return None
-    return pair_of(given.mix or USUAL, printer, library, where, named=given.mix is not None)
-
-
 def _refined(pair: ResinPair) -> Callable[[SelectionProblem, CandidatePool], tuple[SelectionProblem, CandidatePool]]:
     return lambda problem, pool: met_by_fraction(problem, pool, pair.law, pair.resin)
-
-
-def base_scene(target: Target, where: str, library: Library) -> ResolvedDesign:
-    """The scene that gives everything the target does not; its own dome is replaced by the candidates'."""
-    given = target.given
-    changes = {**setting_changes(target), "membrane.material": _some_resin(target, where, library)}
-    sizes = {"inner_radius_mm": given.inner_radius_mm, "wall_thickness_mm": given.wall_thickness_mm}
-    changes |= {f"membrane.{key}": size for key, size in sizes.items() if size is not None}
-    try:
-        return load_scene(target.setting.base or DEFAULT, changes, library)
-    except InputError as error:
-        raise InputError(f"{error}", file=where) from None
-
-
-def _some_resin(target: Target, where: str, library: Library) -> str:
-    """A resin that the base can be drawn with: the first of those allowed that its printer runs, else the first."""
-    setting = target.setting
-    profile = setting.profile
-    if profile is None:
-        base = library.design_file(setting.base) if setting.base else None
-        design = validate(DesignFile, read_toml(base), str(base)) if base else DesignFile()
-        profile = design.print.profile
-    printer: Printer = library.load("printers", profile, file=where, key="setting.profile")
-    pair = requested_pair(target, where, printer, library)
-    names = [pair.soft] if pair else target.given.materials or sorted(library.paths("materials"))
-    loaded = {name: library.load("materials", name, file=where, key="given.materials") for name in names}
-    for name in target.given.materials or []:
-        if loaded[name].kind != "elastomer":
-            raise InputError(
-                f"{name} is {loaded[name].kind}", file=where, key="given.materials", remedy="it must be an elastomer"
-            )
-    runs = [name for name, m in loaded.items() if m.kind == "elastomer" and printer.mode_for(m) is not None]
-    if not runs:
-        raise InputError(
-            f"the {printer.title} runs none of {', '.join(names)}", file=where, remedy="give other materials or profile"
-        )
-    return runs[0]
 
 
 def _resins(
@@ -188,8 +185,8 @@ def _resins(
     for name in names:
         material = library.load("materials", name, file=where, key="given.materials")
         wall = material_sensor(material).wall
-        if scene.printer.mode_for(material) is None:
-            out[name] = f"the {scene.printer.title} cannot run it"
+        if not prints(scene, material):
+            out[name] = f"the {scene.printer.title} cannot run it{with_connector(scene)}"
         elif (why := resin_outside_atlas(wall, sensor.gas.ambient_pressure)) is not None:
             out[name] = why
         else:
@@ -215,34 +212,16 @@ def problem_of(
         wall_thickness=given.wall_thickness_mm,
         least_wall=feature.least or feature.recommended,
         ambient_pressure=sensor.gas.ambient_pressure,
-        dead_volume=_dead_volume(scene, sensor),
+        dead_volume=dead_volume(scene, sensor),
         plate_radius=sensor.protocol.plate_radius,
         gauge_limit=sensor.gas.gauge_limit,
         depth_share=min(sensor.protocol.depth / sensor.dome.inner_radius, shipped().recipe.deepest),
         steps=sensor.protocol.steps,
         recipe=shipped().recipe,
+        plate_share=0.0 if "plate_diameter_mm" in scene.design.indentation.model_fields_set else _PLATE_SHARE,
+        max_footprint=required.max_footprint_mm,
+        connector=connector_fit(scene),
     )
-
-
-def _dead_volume(scene: ResolvedDesign, sensor: Sensor) -> Callable[[Array], Array]:
-    """Dead volume (mm3) over the inner radius: drawn at a few radii where the connector's channel follows it."""
-    if scene.design.pneumatics.dead_volume_mL is not None:
-        return lambda radius: np.full_like(radius, sensor.gas.dead_volume)
-    radii = np.geomspace(2.0, 60.0, _DEAD_VOLUMES)
-    known = [(radius, volume) for radius in radii if (volume := _drawn(scene, float(radius))) is not None]
-    if not known:
-        return lambda radius: np.full_like(radius, sensor.gas.dead_volume)
-    at, volumes = np.array(known).T
-    return lambda radius: np.interp(radius, at, volumes)
-
-
-def _drawn(scene: ResolvedDesign, radius: float) -> float | None:
-    """Dead volume of the scene's connector on another dome, or None where it cannot be drawn."""
-    membrane = scene.design.membrane.model_copy(update={"inner_radius_mm": radius, "wall_thickness_mm": 0.15 * radius})
-    try:
-        return assemble(replace(scene, design=scene.design.model_copy(update={"membrane": membrane}))).dead_volume
-    except PneutouchError:
-        return None
 
 
 def _uncertainty(
@@ -272,6 +251,7 @@ def _like(sensor: Sensor, batch: SensorBatch, i: int) -> Sensor:
         inner_radius=float(batch.inner_radius[i]),
         wall_thickness=float(batch.wall_thickness[i]),
         dead_volume=float(batch.dead_volume[i]),
+        plate_radius=float(batch.plate_radius[i]),
         flange=None,
     )
 

@@ -1,0 +1,35 @@
+"""The last line of a command between a target and a measured sensor: the command that comes next."""
+
+import shlex
+from collections.abc import Iterable
+from pathlib import Path
+from typing import NamedTuple
+
+import typer
+
+
+class DesignPlace(NamedTuple):
+    """Where a design that was found is to be saved, and whether over a file."""
+
+    name: str
+    folder: Path
+    overwrite: bool
+
+
+def report_next(*words: object) -> None:
+    """Print ``next: pneutouch WORDS`` on stderr, quoted so that it works as it stands."""
+    typer.echo(f"next: {shlex.join(['pneutouch', *map(str, words)])}", err=True)
+
+
+def set_words(assignments: Iterable[str] | None) -> list[str]:
+    """The ``--set`` options of a command, to be given to the next one."""
+    return [word for text in assignments or () for word in ("--set", text)]
+
+
+def report_written(path: Path) -> None:
+    """Report a design file that was written, and that it is to be checked: by its name where that is found."""
+    from pneutouch.catalogue import Library
+
+    typer.echo(f"\nwritten: {path}")
+    known = Library.default().paths("designs").get(path.stem)
+    report_next("check", path.stem if known is not None and known.resolve() == path.resolve() else path)

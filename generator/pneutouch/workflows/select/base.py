@@ -1,0 +1,130 @@
+"""The base of a selection: the design that gives everything that the target does not."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pneutouch.catalogue import DEFAULT, DesignSource, Library, ResolvedDesign, load_scene
+from pneutouch.errors import InputError, PneutouchError
+from pneutouch.spec.design import DesignFile
+from pneutouch.spec.part import OnePiece, Sleeve
+from pneutouch.spec.printer import Printer
+from pneutouch.spec.read import parse_changes
+from pneutouch.spec.target import Target
+from pneutouch.workflows.select.mix import USUAL, ResinPair, pair_of
+
+_SEARCHED = {
+    "membrane.inner_radius_mm": "given.inner_radius_mm (`inner_radius`)",
+    "membrane.wall_thickness_mm": "given.wall_thickness_mm (`wall`)",
+    "membrane.material": "given.materials (`material`) or given.mix (`mix`)",
+    "pneumatics.driving_pressures_kPa": "target.driving_pressure_kPa (`at`)",
+}
+"""Fields of a design that the search finds, and what settles them instead."""
+
+_WALL_SHARE = 0.15
+"""Wall over radius of the dome that a base is drawn with where only the wall is given."""
+
+
+def setting_changes(target: Target, library: Library) -> dict[str, Any]:
+    """What a target changes in its base design, by ``table.key``.
+
+    Raises InputError for what the search finds itself.
+    """
+    setting = target.setting
+    changes = parse_changes(setting.assignments)
+    for key, value in changes.items():
+        if key in _SEARCHED:
+            raise InputError("the search finds it", key=key, value=value, remedy=f"settle it by {_SEARCHED[key]}")
+    values = {
+        "print.profile": setting.profile,
+        "pneumatics.tube_length_mm": setting.tube_length_mm,
+        "pneumatics.dead_volume_mL": setting.dead_volume_mL,
+    }
+    changes |= {key: value for key, value in values.items() if value is not None}
+    finger_mm = target.target.finger_diameter_mm
+    return changes if finger_mm is None else changes | _on_finger(finger_mm, _base(target, changes, library), library)
+
+
+def base_scene(target: Target, where: str, library: Library) -> ResolvedDesign:
+    """The scene that gives everything the target does not; its own dome is replaced by the candidates'.
+
+    Raises InputError where it names what there is not; ``where`` names the target's file.
+    """
+    given, chosen = target.given, setting_changes(target, library)
+    sizes = {"membrane.inner_radius_mm": given.inner_radius_mm, "membrane.wall_thickness_mm": given.wall_thickness_mm}
+    changes = chosen | {key: size for key, size in sizes.items() if size is not None}
+    source = _source(target, library)
+    membrane = source.changed(chosen).membrane
+    if given.wall_thickness_mm is not None and given.inner_radius_mm is None:
+        if given.wall_thickness_mm >= membrane.inner_radius_mm:
+            changes["membrane.inner_radius_mm"] = given.wall_thickness_mm / _WALL_SHARE
+    elif given.inner_radius_mm is not None and membrane.wall_thickness_mm >= given.inner_radius_mm:
+        changes["membrane.wall_thickness_mm"] = _WALL_SHARE * given.inner_radius_mm
+    try:
+        changes["membrane.material"] = _some_resin(target, where, chosen, library)
+        return load_scene(source, changes, library)
+    except PneutouchError as error:
+        if error.file is None and error.key not in chosen:
+            error.file = where
+        raise
+
+
+def requested_pair(target: Target, where: str, printer: Printer, library: Library) -> ResinPair | None:
+    """The pair to mix: the one named, the usual one for a grade; None where resins are to be chosen from."""
+    given = target.given
+    if given.mix is None and not given.graded:
+        return None
+    return pair_of(given.mix or USUAL, printer, library, where, named=given.mix is not None)
+
+
+def prints(scene: ResolvedDesign, material: Any) -> bool:
+    """Whether the membrane's printer runs a resin, together with the connector's where both grow in one print."""
+    with_it = (scene.connector_material,) if isinstance(scene.seat, OnePiece) else ()
+    return scene.printer.mode_for(material, *with_it) is not None
+
+
+def with_connector(scene: ResolvedDesign) -> str:
+    """What is added to "cannot run it" where a resin is printed together with the connector."""
+    return f" with {scene.connector_material.label}" if isinstance(scene.seat, OnePiece) else ""
+
+
+def _source(target: Target, library: Library) -> DesignSource:
+    return DesignSource.of(target.setting.base, library) if target.setting.base else DEFAULT
+
+
+def _base(target: Target, changes: dict[str, Any], library: Library) -> DesignFile:
+    return _source(target, library).changed(changes)
+
+
+def _on_finger(finger_mm: float, base: DesignFile, library: Library) -> dict[str, Any]:
+    """The mount for a finger: the base's where it is a sleeve, else the sleeve made for the nearest finger."""
+    sleeves = {
+        name: mount for name in library.paths("mounts") if isinstance(mount := library.load("mounts", name), Sleeve)
+    }
+    chosen = base.connector.mount
+    if chosen not in sleeves:
+        if not sleeves:
+            raise InputError("no mount goes over a finger", key="fits", value=f"finger:{finger_mm:g}")
+        chosen = min(sleeves, key=lambda name: (abs(sleeves[name].finger_diameter - finger_mm), name))
+    return {"connector.mount": chosen, "connector.finger_diameter_mm": finger_mm}
+
+
+def _some_resin(target: Target, where: str, changes: dict[str, Any], library: Library) -> str:
+    """A resin that the base can be drawn with: the first of those allowed that its printer runs, else the first."""
+    profile = _base(target, changes, library).print.profile
+    key = "setting.profile" if target.setting.profile is not None else "print.profile"
+    printer: Printer = library.load("printers", profile, file=where, key=key)
+    pair = requested_pair(target, where, printer, library)
+    names = [pair.soft] if pair else target.given.materials or sorted(library.paths("materials"))
+    loaded = {name: library.load("materials", name, file=where, key="given.materials") for name in names}
+    for name in target.given.materials or []:
+        if loaded[name].kind != "elastomer":
+            raise InputError(
+                f"{name} is {loaded[name].kind}", file=where, key="given.materials", remedy="it must be an elastomer"
+            )
+    runs = [name for name, m in loaded.items() if m.kind == "elastomer" and printer.mode_for(m) is not None]
+    if not runs:
+        raise InputError(
+            f"the {printer.title} runs none of {', '.join(names)}", file=where, remedy="give other materials or profile"
+        )
+    return runs[0]

@@ -1,0 +1,69 @@
+"""Whether a design that was found passes ``check``, and the design file that it becomes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
+from pneutouch.errors import PneutouchError
+from pneutouch.evaluation.evaluate import PredictionOptions, evaluate_scene
+from pneutouch.evaluation.subject import subject_of
+from pneutouch.output.new import write_design
+from pneutouch.parts import assemble
+from pneutouch.printability import check
+from pneutouch.selection import Candidate
+from pneutouch.spec.design import DesignFile
+from pneutouch.spec.read import override, parse_changes, validate
+from pneutouch.spec.template import design_template
+
+
+@dataclass(frozen=True)
+class RejectedDesign:
+    """A design that ``check`` rejects: the rule that it breaks, None where it cannot be drawn or predicted, and why."""
+
+    choice: Candidate
+    rule: str | None
+    reason: str
+
+
+def rejection(source: DesignSource, library: Library, *, predicted: bool) -> tuple[str | None, str] | None:
+    """The first reason for which ``check`` rejects a design, None where it passes.
+
+    ``predicted`` has the solid predict it as ``check`` does; else the print rules alone look at its bodies.
+    """
+    try:
+        scene = load_scene(source, None, library)
+        if predicted:
+            findings = evaluate_scene(scene, dict, PredictionOptions()).findings
+        else:
+            findings = check(subject_of(assemble(scene)))
+    except PneutouchError as error:
+        return None, "; ".join(part for part in (error.problem, error.remedy) if part)
+    return next(((f.rule, f"{f.body}: {f.message}") for f in findings if f.severity == "error"), None)
+
+
+def source_of(base: ResolvedDesign, assignments: list[str], name: str = "selected") -> DesignSource:
+    """The design that assignments make of a base, before it is written."""
+    return DesignSource(name, assigned(base.design, assignments, name), base.where)
+
+
+def write_assigned(
+    design: DesignFile, assignments: list[str], name: str, folder: Path, *, overwrite: bool = False
+) -> Path:
+    """Save a base with assignments as ``folder/name.toml``, over a file with ``overwrite`` alone."""
+    chosen = validate(DesignFile, assigned(design, assignments, name), name)
+    note = "Every key may be left out; it then takes its default."
+    return write_design(
+        name, folder, design_template(name, chosen.model_dump(by_alias=True), note), overwrite=overwrite
+    )
+
+
+def assigned(design: DesignFile, assignments: list[str], name: str) -> dict[str, Any]:
+    """The tables of a design with ``table.key=value`` assignments, titled ``name``."""
+    base = design.model_dump(by_alias=True)
+    content = override(base, parse_changes(assignments), DesignFile)
+    content["document"] = {**base["document"], "title": name}
+    content["pneumatics"]["driving_pressures_kPa"] = [float(p) for p in content["pneumatics"]["driving_pressures_kPa"]]
+    return content
