@@ -164,7 +164,6 @@ def test_the_library_never_speaks_of_options():
         (("predict", "paper-dome", "--tolerance", "never"), "error: --tolerance never: it must be a positive share"),
         (("predict", "paper-dome", "--set", "wall=2"), "error: --set wall=2: write table.key=value"),
         (("build", "paper-dome", "--out", "a-file"), "error: --out"),
-        (("calibrate", "none", "--shadow"), "error: --shadow: goes with --save NAME"),
         (("new", "a b"), "error: NAME"),
     ],
 )

@@ -43,7 +43,7 @@ def test_the_steps_leave_what_the_page_says(walked):
     for name in ("measured-datasheet.html", "measured-datasheet.pdf", "figures.json", "points.csv", "segments.csv"):
         assert (sheet / name).is_file()
     assert list((sheet / "evidence").glob("*.svg"))
-    assert (folder / "designs" / "my-sensor.toml").is_file()
+    assert (folder / "calibrations" / "my-sensor.toml").is_file()
 
 
 @pytest.mark.slow

@@ -11,8 +11,8 @@ _HOMES = {
     "api.results": ("CheckResult", "Result"),
     "api.search": ("Selection", "select", "sweep"),
     "api.comparison": ("Comparison", "compare"),
-    "api.measuring": ("calibrate", "characterize", "plan", "scan", "simulate"),
-    "api.listing": ("Listing", "designs", "materials", "printers"),
+    "api.measuring": ("FittedSensor", "calibrate", "characterize", "plan", "scan", "simulate"),
+    "api.listing": ("Listing", "calibrations", "designs", "materials", "printers"),
     "errors": ("ComputationError", "InputError", "PneutouchError", "RuleBrokenError"),
 }
 __all__ = [*sorted(name for names in _HOMES.values() for name in names), "__version__"]

@@ -3,9 +3,11 @@ from pneutouch.api.comparison import compare as compare
 from pneutouch.api.design import Design as Design
 from pneutouch.api.design import load as load
 from pneutouch.api.listing import Listing as Listing
+from pneutouch.api.listing import calibrations as calibrations
 from pneutouch.api.listing import designs as designs
 from pneutouch.api.listing import materials as materials
 from pneutouch.api.listing import printers as printers
+from pneutouch.api.measuring import FittedSensor as FittedSensor
 from pneutouch.api.measuring import calibrate as calibrate
 from pneutouch.api.measuring import characterize as characterize
 from pneutouch.api.measuring import plan as plan

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 import pneutouch as pt
 from pneutouch.api.fields import keywords
 from pneutouch.spec.design import DesignFile
+from pneutouch.spec.fields import table_of
 from pneutouch.spec.target import Target
 
 FIELDS = {
@@ -40,9 +41,9 @@ def test_keywords_come_back_from_the_design_and_from_its_file(fields, tmp_path_f
 def test_every_field_of_the_files_has_one_keyword():
     for model in (DesignFile, Target):
         named = keywords(model)
-        fields = [
-            f"{table}.{key}" for table, info in model.model_fields.items() for key in info.annotation.model_fields
-        ]
+        tables = {name: table_of(model, name) for name in model.model_fields}
+        fields = [f"{name}.{key}" for name, table in tables.items() if table for key in table.model_fields]
+        fields += [name for name, table in tables.items() if table is None]
         assert sorted(named.values()) == sorted(fields)
     assert keywords(DesignFile)["material"] == "membrane.material"
     assert keywords(DesignFile)["connector_material"] == "connector.material"

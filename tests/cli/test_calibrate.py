@@ -81,14 +81,16 @@ def test_the_truth_is_in_the_intervals_and_the_files_predict(campaign, place):
         assert low <= truth[key] <= high, key
     assert len(said["notes"]) <= 6
     assert "simulated" in said["notes"][0]
-    assert said["written"][1:] == ["printprofiles/materials/dome-1.toml", "designs/dome-1.toml"]
+    assert said["written"][1:] == ["calibrations/dome-1.toml"] and said["calibration"] == "dome-1"
     text = calibration_text(said)
     assert f"shear_modulus_MPa  {found['shear_modulus_MPa']['value']:.4g}" in text
 
-    scene = evaluate("dome-1", model="atlas").scene
-    assert scene.design.membrane.wall_thickness_mm == pytest.approx(found["wall_thickness_mm"]["value"], rel=1e-3)
-    predicted = run("predict", "dome-1", "--model", "atlas", "--json")
+    sensor = evaluate("mine@dome-1", model="atlas").sensor
+    assert sensor.dome.wall_thickness == pytest.approx(found["wall_thickness_mm"]["value"], rel=1e-6)
+    predicted = run("predict", "mine", "--calibration", "dome-1", "--model", "atlas", "--json")
     assert predicted.exit_code == 0, predicted.stderr
+    same = run("predict", "mine@dome-1", "--model", "atlas", "--json")
+    assert same.stdout == predicted.stdout
     state = json.loads(predicted.stdout)["states"][0]
     measured = truth["pressures"]["0"]["sensitivity_kPa_per_N"]
     assert state["sensitivity_kPa_per_N"] == pytest.approx(measured, rel=0.03)
@@ -96,7 +98,7 @@ def test_the_truth_is_in_the_intervals_and_the_files_predict(campaign, place):
 
 def test_a_part_of_the_parameters_says_what_else_counts(campaign, place):
     words = ("calibrate", str(campaign), "--design", "mine", "--fit", "modulus,dead-volume", "--out", "out", "--json")
-    counted, bare = (json.loads(run(*words, *more).stdout) for more in ((), ("--no-priors",)))
+    counted, bare = (json.loads(run(*words, *more).stdout) for more in ((), ("--no-priors", "--save", "bare")))
     (line,) = [line for line in counted["notes"] if "the intervals include" in line]
     assert "the priors of wall thickness and contact offset" in line
     assert counted["fit"]["considered"] == ["wall", "offset"]
@@ -105,14 +107,32 @@ def test_a_part_of_the_parameters_says_what_else_counts(campaign, place):
     assert width[0] > 1.5 * width[1]
 
 
+def test_the_file_is_named_by_design_and_sensor_and_kept(campaign, place):
+    words = ("calibrate", str(campaign), "--design", "mine", "--out", "out", "--fit")
+    result = run(*words, "modulus")
+    assert result.exit_code == 0, result.stderr
+    assert result.stderr.splitlines()[-1] == (
+        "next: pneutouch compare mine mine@mine-TangoPlus-1 --set pneumatics.dead_volume_mL=0.3"
+    )
+    listed = json.loads(run("list", "calibrations", "--json").stdout)["calibrations"]
+    assert listed == [{"name": "mine-TangoPlus-1", "title": "sensor TangoPlus-1, Simulated campaign of paper-dome"}]
+    assert not any(
+        "mine-TangoPlus-1" in entry["name"] for entry in json.loads(run("list", "--json").stdout)["materials"]
+    )
+    other = run(*words, "modulus,wall")
+    assert other.exit_code == 2
+    assert "there is a calibration of this name, of other content; give another --save, or --force" in other.stderr
+    assert run(*words, "modulus,wall", "--force").exit_code == 0
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [
         (("--sensor", "B"), "--sensor B: no such sensor in the campaign; there are TangoPlus-1"),
         (("--fit", "moduls"), "--fit moduls: no such parameter. Did you mean modulus"),
         (("--hold-out", "5"), "--hold-out 5: no run at this driving pressure; measured: 0, 22 kPa"),
-        (("--save", "TangoPlus"), "which the new file would hide; give another name, or --shadow"),
-        (("--shadow",), "--shadow: goes with --save NAME"),
+        (("--save", "a b"), "--save a b: use at most 100 letters, digits, - and _"),
+        (("--save", "none"), "--save none: use at most 100 letters"),
     ],
 )
 def test_wrong_words_end_with_two_and_nothing_written(words, message, campaign, place):

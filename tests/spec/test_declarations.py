@@ -13,7 +13,8 @@ from pneutouch.spec.quantity import Quantity
 from pneutouch.spec.read import validate
 from pneutouch.spec.template import design_template
 
-FIELDS = [(table, entry) for table in DesignFile.model_fields for entry in declarations(table_of(DesignFile, table))]
+TABLES = [table for table in DesignFile.model_fields if table_of(DesignFile, table)]
+FIELDS = [(table, entry) for table in TABLES for entry in declarations(table_of(DesignFile, table))]
 
 
 @pytest.mark.parametrize(("table", "entry"), FIELDS, ids=[f"{table}.{entry.key}" for table, entry in FIELDS])

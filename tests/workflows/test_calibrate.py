@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import tomllib
 import xml.etree.ElementTree as ET
 from dataclasses import replace
 
@@ -20,10 +19,12 @@ from pneutouch.output.files import json_bytes
 from pneutouch.parts import assemble
 from pneutouch.spec.campaign import Campaign, CampaignRun
 from pneutouch.units import KPA
-from pneutouch.workflows.calibrate.files import HEAD, prepare, save, write_calibration
+from pneutouch.workflows.calibrate.files import CampaignSource, calibration_content, prepare, save, write_calibration
 from pneutouch.workflows.calibrate.fit import calibrate, observations_of
 from tests.bench.calibrate.sensors import curves, injections
 
+SOURCE = CampaignSource("ab" * 32)
+DEAD = {"pneumatics.dead_volume_mL": 0.3}
 TRUTH = {"shear_modulus": 0.21, "dead_volume": 400.0}
 
 
@@ -89,24 +90,50 @@ def test_no_interval_reaches_below_no_dead_volume(observations, scene):
     assert dead["on_bound"] or dead["interval_95"][0] == 0.0
 
 
-def test_saved_files_predict_what_was_measured(found, observations, library, tmp_path):
-    library = Library((tmp_path, *library.folders))
-    saved = prepare(found, "dome-A1", tmp_path, library)
+@pytest.fixture
+def place(found, library, tmp_path):
+    """A user's folder with the calibration in it, and its library."""
+    saved = prepare(found, "dome-A1", tmp_path, SOURCE)
     save(saved)
-    assert [path.removeprefix(str(tmp_path)) for path in saved.paths] == [
-        "/printprofiles/materials/dome-A1.toml",
-        "/designs/dome-A1.toml",
-    ]
-    resin = tomllib.loads((tmp_path / "printprofiles/materials/dome-A1.toml").read_text())
-    low, high = found.estimates[0]["interval_95"]
-    assert 2 * 1.96 * resin["shear_modulus_MPa"]["spread"] == pytest.approx(high - low, rel=1e-3)
-    assert "calibrated on sensor A1, Spring campaign, 9 curves, 1 injections" in resin["shear_modulus_MPa"]["source"]
-    assert "measured" not in resin
-    assert resin["shore_a"]["value"] == 27.6
-    states = evaluate("dome-A1", model="atlas", library=library).prediction.states
-    before = evaluate(
-        "paper-dome", {"pneumatics.dead_volume_mL": 0.3}, model="atlas", library=library
-    ).prediction.states
+    assert saved.path == tmp_path / "calibrations" / "dome-A1.toml"
+    return Library((tmp_path, *library.folders))
+
+
+def test_the_file_holds_the_fit_and_what_it_was_made_for(found, place):
+    kept = place.load("calibrations", "dome-A1")
+    assert (kept.source.digest, kept.source.curves, kept.source.injections) == ("ab" * 32, 9, 1)
+    assert (kept.design.name, kept.design.material, kept.design.wall_thickness_mm) == ("paper-dome", "TangoPlus", 1.5)
+    assert kept.covered == tuple(estimate["key"] for estimate in found.estimates)
+    for k, estimate in enumerate(found.estimates):
+        assert kept.value(estimate["key"]) == pytest.approx(estimate["value"], rel=1e-6)
+        low, high = np.array(estimate["interval_95"])
+        spread = np.sqrt(kept.covariance[k][k])
+        if estimate["prior"]["relative"]:
+            assert np.log(high / low) == pytest.approx(2 * 1.96 * spread, rel=1e-6)
+        elif low > 0:
+            assert high - low == pytest.approx(2 * 1.96 * spread, rel=1e-6)
+    scale = np.sqrt(np.diag(kept.covariance))
+    assert np.allclose(kept.covariance / np.outer(scale, scale), found.document["correlation"]["matrix"], atol=1e-6)
+    text = (place.folders[0] / "calibrations/dome-A1.toml").read_text()
+    assert not re.search(r"\b20\d\d-", text)
+
+
+def test_what_is_not_fitted_stays_correlated_with_what_is(observations, scene):
+    """The wall keeps its prior; a thicker wall is a softer resin to the same data."""
+    found = calibrate(observations, scene, ("modulus", "dead-volume"))
+    content = calibration_content(found, SOURCE)
+    keys = [entry["key"] for entry in content["parameters"] if entry["covered"]]
+    covariance, prior = np.array(content["covariance"]), found.fit.parameters.prior_spread
+    wall, modulus = keys.index("wall_thickness_mm"), keys.index("shear_modulus_MPa")
+    assert covariance[wall, wall] == pytest.approx(prior[1] ** 2, rel=1e-6)
+    assert covariance[wall, modulus] / np.sqrt(covariance[wall, wall] * covariance[modulus, modulus]) < -0.5
+    bare = calibration_content(calibrate(observations, scene, ("modulus",), priors=False), SOURCE)
+    assert [entry["key"] for entry in bare["parameters"] if entry["covered"]] == ["shear_modulus_MPa"]
+
+
+def test_a_calibrated_design_predicts_what_was_measured(observations, place):
+    states = evaluate("paper-dome@dome-A1", DEAD, model="atlas", library=place).prediction.states
+    before = evaluate("paper-dome", DEAD, model="atlas", library=place).prediction.states
     for pressure, state, old in ((12.0, states[2], before[2]), (22.0, states[3], before[3])):
         curve = next(c for c in observations.curves if c.run.driving_pressure_kPa == pressure)
         ours, theirs = (np.interp(curve.indentation, s.indentation, s.force) - curve.force for s in (state, old))
@@ -114,31 +141,23 @@ def test_saved_files_predict_what_was_measured(found, observations, library, tmp
         assert np.abs(ours).max() < 0.5 * np.abs(theirs).max()
 
 
-def test_files_of_others_are_left_alone(found, library, tmp_path):
-    library = Library((tmp_path, *library.folders))
-    mine = tmp_path / "designs" / "mine.toml"
-    mine.parent.mkdir()
-    mine.write_text("[membrane]\n")
-    with pytest.raises(InputError, match="was not written by pneutouch calibrate"):
-        prepare(found, "mine", tmp_path, library)
-    assert mine.read_text() == "[membrane]\n"
-    with pytest.raises(InputError, match="which the new file would hide"):
-        prepare(found, "TangoPlus", tmp_path, library)
-    assert len(prepare(found, "TangoPlus", tmp_path, library, shadow=True).files) == 2
-    with pytest.raises(InputError, match="letters, digits"):
-        prepare(found, "../up", tmp_path, library)
+def test_a_file_of_the_name_is_left_alone(found, place):
+    root = place.folders[0]
+    path = root / "calibrations" / "dome-A1.toml"
+    first = path.read_bytes()
+    save(prepare(found, "dome-A1", root, SOURCE))
+    assert path.read_bytes() == first
+    other = replace(SOURCE, digest="cd" * 32)
+    with pytest.raises(InputError, match="there is a calibration of this name"):
+        prepare(found, "dome-A1", root, other)
+    save(prepare(found, "dome-A1", root, other, replace=True))
+    assert place.load("calibrations", "dome-A1").source.digest == "cd" * 32
+    for bad in ("../up", "none", "a b", "x" * 101):
+        with pytest.raises(InputError, match="letters, digits"):
+            prepare(found, bad, root, SOURCE)
 
 
-def test_its_own_files_are_written_anew(found, library, tmp_path):
-    library = Library((tmp_path, *library.folders))
-    save(prepare(found, "A1", tmp_path, library))
-    first = (tmp_path / "designs/A1.toml").read_bytes()
-    save(prepare(found, "A1", tmp_path, library))
-    assert (tmp_path / "designs/A1.toml").read_bytes() == first
-    assert first.decode().startswith(HEAD)
-
-
-def test_an_estimate_without_interval_is_no_resin(scene, library, tmp_path):
+def test_an_estimate_without_interval_is_no_calibration(scene, tmp_path):
     """Forces as of air alone: the modulus ends on its bound, and nothing is saved."""
     truth = sensor_of(assemble(scene)).replace(break_stretch=None)
     soft = tuple(
@@ -149,7 +168,7 @@ def test_an_estimate_without_interval_is_no_resin(scene, library, tmp_path):
     assert found.estimates[0]["on_bound"]
     assert found.estimates[0]["interval_95"] is None
     with pytest.raises(InputError, match="has no interval"):
-        prepare(found, "soft", tmp_path, library)
+        prepare(found, "soft", tmp_path, SOURCE)
 
 
 def test_the_folder_holds_document_and_chart(found, tmp_path):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Iterable
 from functools import cached_property
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -66,8 +67,7 @@ class Design(show.Shown):
         field = None if keyword.startswith("_") else keywords(DesignFile).get(keyword)
         if field is None:
             raise AttributeError(f"a design has no {keyword!r}; it has {', '.join(keywords(DesignFile))}")
-        table, _, key = field.partition(".")
-        return getattr(getattr(self.file, table), key)
+        return attrgetter(field)(self.file)
 
     def __setattr__(self, name: str, value: Any) -> None:
         if name in keywords(DesignFile):

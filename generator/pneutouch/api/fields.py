@@ -17,13 +17,15 @@ WHERE = "the keyword arguments"
 
 @cache
 def keywords(model: type[BaseModel]) -> dict[str, str]:
-    """Every field of a file's ``model`` as ``table.key``, by keyword; the first table of a key keeps the bare name."""
+    """Every field of a file's ``model`` as ``table.key``, by its keyword; the first table of a key keeps the bare name.
+
+    A key outside the tables is its own keyword, and comes last."""
     fields: dict[str, str] = {}
     for name in model.model_fields:
         table = table_of(model, name)
         for key in table.model_fields if table else ():
             fields[f"{name}_{key}" if key in fields else key] = f"{name}.{key}"
-    return fields
+    return fields | {name: name for name in model.model_fields if table_of(model, name) is None}
 
 
 def plain(value: Any) -> Any:

@@ -1,4 +1,4 @@
-"""What can be named: designs, materials and printers."""
+"""What can be named: designs, calibrations, materials and printers."""
 
 from typing import Any
 
@@ -24,6 +24,11 @@ def designs() -> Listing:
 def materials() -> Listing:
     """The cured materials."""
     return _listed("materials")
+
+
+def calibrations() -> Listing:
+    """The calibrations of sensors, which ``design.replace(calibration=NAME)`` takes."""
+    return _listed("calibrations")
 
 
 def printers() -> Listing:

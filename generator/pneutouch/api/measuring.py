@@ -1,13 +1,18 @@
 """Scans, and campaigns: planned, simulated, read and fitted."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from pneutouch.api.design import Design, source_of
 from pneutouch.api.fields import named_by_keyword
 from pneutouch.api.results import Result
 from pneutouch.units import KPA
+
+if TYPE_CHECKING:
+    from pneutouch.workflows.calibrate.run import CalibrationOutcome
 
 
 def scan(
@@ -119,6 +124,28 @@ def characterize(
     return Result(f"Measured {outcome.name}", outcome.document, lambda out: write(outcome, out, evidence))
 
 
+class FittedSensor(Result):
+    """A sensor that was calibrated; `name` is what a design names to be predicted as this sensor."""
+
+    def __init__(self, outcome: CalibrationOutcome) -> None:
+        super().__init__("Calibration", outcome.document)
+        self._outcome = outcome
+        self.name: str = outcome.document["calibration"]
+
+    def save(self, name: str | Path | None = None, *, replace: bool = False) -> Path:
+        """Write the calibration into the user's folder under a name (None: its own); returns its file.
+
+        Never over another calibration unless ``replace``. Raises InputError.
+        """
+        from pneutouch.workflows.calibrate.run import save_calibration
+
+        with named_by_keyword():
+            return save_calibration(self._outcome, self.name if name is None else str(name), replace=replace)
+
+    def _head(self) -> str:
+        return f"Calibration {self.name!r}"
+
+
 def calibrate(
     data: str | Path,
     design: Design | str | Path | None = None,
@@ -128,22 +155,22 @@ def calibrate(
     hold_out_kPa: Sequence[float] = (),
     priors: bool = True,
     save: str | None = None,
-    shadow: bool = False,
+    replace: bool = False,
     out: str | Path = "outputs",
-) -> Result:
-    """Fit the model to the runs of one sensor of a campaign, and write the fit into ``out``.
+) -> FittedSensor:
+    """Fit the model to the runs of one sensor of a campaign; write the fit into ``out``, the calibration for designs.
 
-    ``hold_out_kPa`` are driving pressures to predict from the others. ``save`` names a resin and a design to be written
-    into the user's folder, which ``shadow`` lets hide others of that name.
+    ``hold_out_kPa`` are driving pressures to predict from the others. The calibration goes into the user's folder under
+    the name ``save`` (None: of design and sensor), never over another unless ``replace``. The design with it is
+    ``design.replace(calibration=result.name)``.
     """
     from pneutouch.workflows.calibrate.run import CalibrationOptions, run_calibration
 
     source = None if design is None else source_of(design)
     names, held = tuple(fit), _floats(hold_out_kPa)
     with named_by_keyword():
-        options = CalibrationOptions(Path(data), source, sensor, names, held, priors, save, shadow, Path(out))
-        document: dict[str, Any] = run_calibration(options)
-    return Result("Calibration", document)
+        options = CalibrationOptions(Path(data), source, sensor, names, held, priors, save, replace, Path(out))
+        return FittedSensor(run_calibration(options))
 
 
 def _floats(values: Iterable[float]) -> tuple[float, ...]:

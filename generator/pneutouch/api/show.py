@@ -83,9 +83,11 @@ def html(head: str, rows: Iterable[Sequence[Any]], columns: Sequence[str], pictu
 
 def field_rows(file: BaseModel) -> list[tuple[str, Any, str]]:
     """Key, value and unit of every field of a file that has a value."""
-    return [
+    plain = [(name, value, "") for name, value in file if value is not None and not isinstance(value, BaseModel)]
+    return plain + [
         (f"{table}.{entry.key}", getattr(content, entry.key), entry.unit)
         for table, content in file
+        if isinstance(content, BaseModel)
         for entry in declarations(type(content))
         if getattr(content, entry.key) is not None
     ]
@@ -94,7 +96,9 @@ def field_rows(file: BaseModel) -> list[tuple[str, Any, str]]:
 def table_rows(file: BaseModel) -> list[tuple[str, str]]:
     """A row a table of a file: its name and its fields."""
     rows = field_rows(file)
-    return [
+    plain = [(key, short(value)) for key, value, _ in rows if "." not in key]
+    return plain + [
         (name, ", ".join(f"{key.partition('.')[2]}={short(v)}" for key, v, _ in rows if key.startswith(f"{name}.")))
-        for name, _ in file
+        for name, content in file
+        if isinstance(content, BaseModel)
     ]

@@ -48,6 +48,12 @@ def _specimen(content: dict[str, Any], where: str) -> BaseModel:
     return validate_specimen(content, where)
 
 
+def _calibration(content: dict[str, Any], where: str) -> BaseModel:
+    from pneutouch.spec.calibration import SensorCalibration
+
+    return validate(SensorCalibration, content, where)
+
+
 def _by_family(models: Mapping[str, type[BaseModel]]) -> ValidateFile:
     """A file states its family, and so which keys it has."""
 
@@ -63,6 +69,7 @@ def _by_family(models: Mapping[str, type[BaseModel]]) -> ValidateFile:
 KINDS: dict[str, FileKind] = {
     "designs": FileKind(_one(DesignFile), "designs"),
     "specimens": FileKind(_specimen, "designs/specimens"),
+    "calibrations": FileKind(_calibration, "calibrations"),
     "materials": FileKind(_one(Material), "printprofiles/materials"),
     "mixing": FileKind(_one(MixingCurve), "printprofiles/mixing"),
     "printers": FileKind(_one(Printer), "printprofiles"),

@@ -15,6 +15,7 @@ _GROUPS = {
     "designs": ["designs"],
     "specimens": ["specimens"],
     "examples": [],
+    "calibrations": ["calibrations"],
     "materials": ["materials"],
     "mixing": ["mixing"],
     "printers": ["printers"],
@@ -23,7 +24,7 @@ _GROUPS = {
 
 
 def listing(kind: str | None, library: Library | None = None) -> dict[str, list[dict[str, str]]]:
-    """Names and titles by kind: designs, specimens, examples, materials, mixing, printers or parts; None for all."""
+    """Names and titles by kind, which is a group such as designs or materials, or None for all."""
     if kind is not None and kind not in _GROUPS:
         raise InputError(f"unknown.{nearest(kind, _GROUPS)}", key="kind", value=kind)
     library = library or Library.default()

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from pneutouch.catalogue.library import Library
 from pneutouch.catalogue.mixture import mixed_material
 from pneutouch.errors import InputError, shown
-from pneutouch.spec.design import DesignFile
+from pneutouch.spec.design import CALIBRATION, DesignFile
 from pneutouch.spec.fields import MaterialKind
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
@@ -17,6 +18,9 @@ from pneutouch.spec.names import name_of
 from pneutouch.spec.part import AnyMount, AnySeat, OnePiece, Port, Sleeve, Tube
 from pneutouch.spec.printer import Mode, Printer
 from pneutouch.spec.read import Changes, override, read_toml, validate
+
+if TYPE_CHECKING:
+    from pneutouch.spec.calibration import SensorCalibration
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +38,7 @@ class ResolvedDesign:
     port: Port
     seat: AnySeat
     mount: AnyMount
+    calibration: SensorCalibration | None = None
 
     def __repr__(self) -> str:
         return f"ResolvedDesign({self.name!r}, {self.where!r})"
@@ -85,15 +90,26 @@ class DesignSource:
 
     @staticmethod
     def of(design: str | DesignSource, library: Library) -> DesignSource:
-        """A design given by name or path; one that is a source already is returned."""
+        """A design given by name or path, or as ``DESIGN@CALIBRATION``; one that is a source already is returned."""
         if isinstance(design, DesignSource):
             return design
-        path = library.design_file(design)
-        return DesignSource(name_of(path), read_toml(path), str(path))
+        plain, calibration = split_calibration(design, library)
+        path = library.design_file(plain)
+        named = {} if calibration is None else {CALIBRATION: calibration}
+        return DesignSource(name_of(path), {**read_toml(path), **named}, str(path))
 
     def changed(self, changes: Changes) -> DesignFile:
         """The design file with fields changed. Raises InputError that names file, key and value."""
         return validate(DesignFile, override(self.content, changes, DesignFile), self.where)
+
+
+def split_calibration(design: str, library: Library) -> tuple[str, str | None]:
+    """Design and calibration of ``DESIGN@CALIBRATION``; None where no calibration is named."""
+    plain, at, calibration = design.rpartition("@")
+    if not at or not plain or design in library.paths("designs") or Path(design).is_file():
+        return design, None
+    # A path may hold the sign itself: lab@home/dome.toml.
+    return (design, None) if "/" in calibration or calibration.endswith(".toml") else (plain, calibration)
 
 
 DEFAULT = DesignSource("default", {}, "the default design")
@@ -126,6 +142,7 @@ def _resolved(name: str, where: str, design: DesignFile, library: Library) -> Re
         port=find("ports", "connector", "port"),
         seat=find("seats", "connector", "seat"),
         mount=_mount(design, where, library),
+        calibration=_calibration(design, where, library),
     )
     check_scene(scene)
     return scene
@@ -140,6 +157,15 @@ def _membrane_material(design: DesignFile, where: str, library: Library) -> Mate
     return material
 
 
+def _calibration(design: DesignFile, where: str, library: Library) -> SensorCalibration | None:
+    """The calibration that the design names; None without one."""
+    name = design.calibration_name
+    if name is None:
+        return None
+    calibration: SensorCalibration = library.load("calibrations", name, file=where, key=CALIBRATION)
+    return calibration
+
+
 def check_scene(scene: ResolvedDesign) -> None:
     """What must hold between the parts of a scene. Raises InputError that names ``scene.where`` and the key."""
     _check_kind(scene, "membrane.material", scene.membrane_material, "elastomer")
@@ -147,6 +173,7 @@ def check_scene(scene: ResolvedDesign) -> None:
     _check_runs(scene, "print.profile", scene.printer, scene.membrane_material)
     _check_runs(scene, "print.connector_profile", scene.connector_printer, scene.connector_material)
     _check_one_piece(scene)
+    _check_calibration(scene)
 
 
 def _tube(design: DesignFile, where: str, library: Library) -> Tube:
@@ -222,4 +249,22 @@ def _check_one_piece(scene: ResolvedDesign) -> None:
             f"{head}the {scene.printer.title} cannot print {scene.membrane_material.label} and "
             f"{scene.connector_material.label} together; it holds {scene.printer.resins_at_once} of "
             f"{', '.join(scene.printer.resins)}"
+        )
+
+
+def _check_calibration(scene: ResolvedDesign) -> None:
+    """A calibration holds for the resin and the membrane that it was made with."""
+    name, calibration, membrane = scene.design.calibration_name, scene.calibration, scene.design.membrane
+    if (name is None) != (calibration is None):
+        raise InputError("the calibration named is not there", file=scene.where, key=CALIBRATION, value=name)
+    if calibration is None:
+        return
+    why = calibration.misfit(membrane.material, membrane.inner_radius_mm, membrane.wall_thickness_mm)
+    if why is not None:
+        raise InputError(
+            f"the calibration {why}",
+            file=scene.where,
+            key=CALIBRATION,
+            value=name,
+            remedy="calibrate a sensor of this membrane, or take the calibration's resin, radius and wall",
         )

@@ -95,6 +95,14 @@ SetOption = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="TABLE.KEY=VALUE", help="Override a field of the design; may be repeated."),
 ]
+CalibrationOption = Annotated[
+    str | None,
+    typer.Option(
+        "--calibration",
+        metavar="NAME",
+        help="Calibration of the sensor in hand, as DESIGN@NAME; none: without the design's.",
+    ),
+]
 ModelOption = Annotated[
     str | None,
     typer.Option(
@@ -172,6 +180,7 @@ def main(
 def predict(
     design: DesignArgument,
     set_: SetOption = None,
+    calibration: CalibrationOption = None,
     model: ModelOption = None,
     tolerance: ToleranceOption = None,
     closure: ClosureOption = "variational",
@@ -195,7 +204,12 @@ def predict(
         from pneutouch.mechanics.models import model_options
 
         evaluation = evaluate(
-            design, changes(set_), closure=closure, clamp=clamp, aged=aged, **model_options(model, tolerance)
+            design,
+            changes(set_, calibration),
+            closure=closure,
+            clamp=clamp,
+            aged=aged,
+            **model_options(model, tolerance),
         )
         document = full_document(evaluation, monte_carlo)
         if json:
@@ -256,11 +270,11 @@ def design_folder(out: Path | None) -> Path:
     return user_folder() / "designs" if out is None else out
 
 
-def changes(set_: list[str] | None) -> dict[str, Any]:
-    """The fields that --set changes, and their values."""
+def changes(set_: list[str] | None, calibration: str | None = None) -> dict[str, Any]:
+    """The fields that --set changes, and their values; --calibration is one of them."""
     from pneutouch.spec.read import parse_changes
 
-    return parse_changes(set_ or [])
+    return parse_changes(set_ or []) | ({} if calibration is None else {"calibration": calibration})
 
 
 def refuse_flags(context: typer.Context, flags: Mapping[str, str], what: str, file: str) -> None:

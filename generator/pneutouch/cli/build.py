@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from pneutouch.cli.app import (
+    CalibrationOption,
     ClampOption,
     ClosureOption,
     DesignArgument,
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
     from pneutouch.printability import Finding
     from pneutouch.workflows.build.voxels import VoxelPlan
 
-_FLAGS = {"set_": "--set", **{key: f"--{key}" for key in ("model", "tolerance", "closure", "clamp")}}
+_FLAGS = {"set_": "--set", **{key: f"--{key}" for key in ("calibration", "model", "tolerance", "closure", "clamp")}}
 
 _VOXEL_FLAGS = {"voxels": "--voxels", "voxel_mode": "--voxel-mode"}
 
@@ -55,6 +56,7 @@ def build(
         ),
     ],
     set_: SetOption = None,
+    calibration: CalibrationOption = None,
     model: ModelOption = None,
     tolerance: ToleranceOption = None,
     closure: ClosureOption = "variational",
@@ -71,12 +73,12 @@ def build(
             flags = {key: flag for key, flag in _FLAGS.items() if key != "set_"}
             refuse_flags(context, flags, "a specimen, which has no prediction", design)
             refuse_flags(context, _VOXEL_FLAGS, "a specimen, which has no membrane", design)
-            name, folder, findings = _build_specimen(design, out, changes(set_))
+            name, folder, findings = _build_specimen(design, out, changes(set_, calibration))
         else:
             evaluation = (
                 _from_3mf(design, context)
                 if _is_3mf(design)
-                else _evaluated(design, changes(set_), model, tolerance, closure=closure, clamp=clamp)
+                else _evaluated(design, changes(set_, calibration), model, tolerance, closure=closure, clamp=clamp)
             )
             plan = _planned(evaluation, out, voxel_mode) if voxels or voxel_mode else None
             name, folder, findings = _build_sensor(evaluation, out)
@@ -91,7 +93,7 @@ def build(
             if stack is not None:
                 typer.echo(str(stack))
             if not _is_specimen(design) and not _is_3mf(design):
-                report_next("plan", design, *set_words(set_))
+                report_next("plan", design, *set_words(set_, calibration))
 
 
 @app.command()
@@ -99,6 +101,7 @@ def check(
     context: typer.Context,
     design: DesignArgument,
     set_: SetOption = None,
+    calibration: CalibrationOption = None,
     deep: Annotated[bool, typer.Option("--deep", help="Have pymeshlab (an extra) inspect the meshes as well.")] = False,
     voxels: Annotated[bool, typer.Option("--voxels", help="Check as well what a voxel stack must keep to.")] = False,
     json: JsonOption = False,
@@ -109,9 +112,9 @@ def check(
             from pneutouch.workflows.specimen.build import check_specimen
 
             refuse_flags(context, _VOXEL_FLAGS, "a specimen, which has no membrane", design)
-            findings = check_specimen(design, changes(set_), deep=deep)
+            findings = check_specimen(design, changes(set_, calibration), deep=deep)
         else:
-            evaluation = _evaluated(design, changes(set_))
+            evaluation = _evaluated(design, changes(set_, calibration))
             findings = [*evaluation.findings, *(evaluation.deep_findings() if deep else [])]
             if voxels:
                 from pneutouch.workflows.build.voxels import plan_voxels
@@ -125,7 +128,7 @@ def check(
 
             typer.echo(findings_text([finding.document() for finding in findings]))
             if not broken:
-                report_next("build", design, *set_words(set_), *(["--voxels"] if voxels else []))
+                report_next("build", design, *set_words(set_, calibration), *(["--voxels"] if voxels else []))
         if broken:
             raise typer.Exit(1)
 

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from pneutouch.cli.app import JsonOption, OutOption, app, print_json, reporting
+from pneutouch.cli.next_step import report_next, set_words
 
 
 @app.command()
@@ -27,11 +28,12 @@ def calibrate(
     ] = None,
     no_priors: Annotated[bool, typer.Option("--no-priors", help="Leave aside what is known before measuring.")] = False,
     save: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Write resin and design of this name into your folder.")
+        str | None,
+        typer.Option(
+            metavar="NAME", help="Name of the calibration in the user's folder.", show_default="design and sensor"
+        ),
     ] = None,
-    shadow: Annotated[
-        bool, typer.Option("--shadow", help="With --save: NAME may hide a resin or design of that name.")
-    ] = False,
+    replace: Annotated[bool, typer.Option("--force", help="Replace a calibration of that name.")] = False,
     out: OutOption = Path("outputs"),
     json: JsonOption = False,
 ) -> None:
@@ -41,15 +43,18 @@ def calibrate(
         from pneutouch.workflows.calibrate.run import CalibrationOptions, run_calibration
 
         options = CalibrationOptions(
-            data, design, sensor, tuple(fit.split(",")), tuple(hold_out or ()), not no_priors, save, shadow, out
+            data, design, sensor, tuple(fit.split(",")), tuple(hold_out or ()), not no_priors, save, replace, out
         )
         with bar("MB read") as progress:
-            document = run_calibration(options, progress=progress)
+            outcome = run_calibration(options, progress=progress)
+        document = outcome.document
         if json:
             print_json(document)
         else:
             from pneutouch.cli.calibrate_text import calibration_text
 
             typer.echo(calibration_text(document))
+            plain, name = outcome.design_given, document["calibration"]
+            report_next("compare", plain, f"{plain}@{name}", *set_words(outcome.assignments))
         if document["failures"]:
             raise typer.Exit(3)

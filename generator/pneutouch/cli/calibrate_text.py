@@ -20,11 +20,23 @@ def calibration_text(document: dict[str, Any]) -> str:
         head,
         columns([], rows),
         "" if chi is None else f"chi-squared per degree of freedom: {chi:.2f}",
+        _response(document["response"]),
         "\n".join(f"note: {note}" for note in document["notes"]),
         "\n".join(f"not read: {file}: {why}" for file, why in document["failures"]),
         "\n".join(f"written: {path}" for path in document["written"]),
     ]
     return "\n\n".join(part for part in parts if part)
+
+
+def _response(response: dict[str, float] | None) -> str:
+    if response is None:
+        return "no curves: the model's error in sensitivity stays that of the resin"
+    force, pressure = response["force_factor"], response["pressure_factor"]
+    return (
+        f"correction of the fitted model: force times {force:.4g}, pressure rise times {pressure:.4g}, so sensitivity "
+        f"{pressure / force - 1:+.1%}; its error in sensitivity then: {response['sensitivity_error_relative']:.1%} "
+        "(standard uncertainty)"
+    )
 
 
 def _interval(estimate: dict[str, Any]) -> str:

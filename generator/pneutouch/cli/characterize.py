@@ -5,7 +5,8 @@ from typing import Annotated
 
 import typer
 
-from pneutouch.cli.app import JsonOption, OutOption, SetOption, app, changes, print_json, reporting
+from pneutouch.cli.app import CalibrationOption, JsonOption, OutOption, SetOption, app, changes, print_json, reporting
+from pneutouch.cli.next_step import report_next
 
 
 @app.command()
@@ -26,6 +27,7 @@ def characterize(
         str, typer.Option("--evidence", help="Runs whose evidence is plotted: doubtful, all or none.")
     ] = "doubtful",
     set_: SetOption = None,
+    calibration: CalibrationOption = None,
     out: OutOption = Path("outputs"),
     json: JsonOption = False,
 ) -> None:
@@ -39,7 +41,7 @@ def characterize(
         if evidence not in EVIDENCE:
             raise InputError(f"--evidence {evidence}: unknown.{nearest(evidence, EVIDENCE)}")
         with bar("MB read") as progress:
-            outcome = run(data, design, changes(set_), target=target, model=model, progress=progress)
+            outcome = run(data, design, changes(set_, calibration), target=target, model=model, progress=progress)
         folder = write(outcome, out, evidence)
         if json:
             print_json({**outcome.document, "folder": str(folder)})
@@ -54,3 +56,8 @@ def characterize(
             raise typer.Exit(3)
         if outcome.missed:
             raise typer.Exit(1)
+        runs = outcome.measured.campaign.runs
+        fitted = sorted({run.sensor for run in runs if run.kind in ("steps", "injection")})
+        if not json and fitted and (data.is_dir() or data.suffix == ".toml"):
+            named = ["--sensor", fitted[0]] if len({run.sensor for run in runs}) > 1 else []
+            report_next("calibrate", data, *named, *(["--design", design] if design else []))

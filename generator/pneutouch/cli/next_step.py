@@ -21,9 +21,10 @@ def report_next(*words: object) -> None:
     typer.echo(f"next: {shlex.join(['pneutouch', *map(str, words)])}", err=True)
 
 
-def set_words(assignments: Iterable[str] | None) -> list[str]:
-    """The ``--set`` options of a command, to be given to the next one."""
-    return [word for text in assignments or () for word in ("--set", text)]
+def set_words(assignments: Iterable[str] | None, calibration: str | None = None) -> list[str]:
+    """The ``--set`` options and the ``--calibration`` of a command, to be given to the next one."""
+    named = [] if calibration is None else ["--calibration", calibration]
+    return [*(word for text in assignments or () for word in ("--set", text)), *named]
 
 
 def report_written(path: Path) -> None:

@@ -5,7 +5,17 @@ from typing import Annotated
 
 import typer
 
-from pneutouch.cli.app import DesignArgument, JsonOption, OutOption, SetOption, app, changes, print_json, reporting
+from pneutouch.cli.app import (
+    CalibrationOption,
+    DesignArgument,
+    JsonOption,
+    OutOption,
+    SetOption,
+    app,
+    changes,
+    print_json,
+    reporting,
+)
 from pneutouch.cli.next_step import report_next, set_words
 from pneutouch.cli.simulate import SPECIMENS, ResinsOption, SpecimensOption, words
 
@@ -20,6 +30,7 @@ def plan(
         typer.Option("--rig", metavar="RIG.toml", help="File with a [rig] table; left out: the paper's rig."),
     ] = None,
     set_: SetOption = None,
+    calibration: CalibrationOption = None,
     out: OutOption = Path("outputs"),
     json: JsonOption = False,
 ) -> None:
@@ -29,7 +40,7 @@ def plan(
 
         result = make_plan(
             design,
-            changes(set_),
+            changes(set_, calibration),
             resins=words(resins),
             specimens=specimens,
             rig=rig_of(rig),
@@ -47,4 +58,4 @@ def plan(
             typer.echo(f"\n{folder}")
             some = [] if specimens == SPECIMENS else ["--specimens", specimens]
             which = ["--resins", resins] if resins else []
-            report_next("simulate", design, *which, *some, *set_words(set_))
+            report_next("simulate", design, *which, *some, *set_words(set_, calibration))

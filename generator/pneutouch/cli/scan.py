@@ -7,7 +7,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from pneutouch.cli.app import JsonOption, OutOption, SetOption, app, changes, print_json, refuse_flags, reporting
+from pneutouch.cli.app import (
+    CalibrationOption,
+    JsonOption,
+    OutOption,
+    SetOption,
+    app,
+    changes,
+    print_json,
+    refuse_flags,
+    reporting,
+)
 
 if TYPE_CHECKING:
     from pneutouch.workflows.scan.run import ScanOptions
@@ -46,6 +56,7 @@ def scan(
         ),
     ] = None,
     set_: SetOption = None,
+    calibration: CalibrationOption = None,
     out: OutOption = Path("outputs"),
     json: JsonOption = False,
 ) -> None:
@@ -54,13 +65,13 @@ def scan(
         options = _options(pressures, preload, speed, control, noise, seed, data or [])
         if separate is not None:
             refuse_flags(context, _NOT_SEPARATING, "--separate, which scans nothing", specimen)
-            _separate(specimen, design, separate, options, changes(set_), json=json)
+            _separate(specimen, design, separate, options, changes(set_, calibration), json=json)
             return
         from pneutouch.workflows.scan.document import document
         from pneutouch.workflows.scan.run import run_scan
         from pneutouch.workflows.scan.write import write_scan
 
-        run = run_scan(specimen, design, options, changes(set_))
+        run = run_scan(specimen, design, options, changes(set_, calibration))
         folder = write_scan(run, out)
         if json:
             print_json({**document(run), "folder": str(folder)})

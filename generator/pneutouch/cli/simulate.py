@@ -7,7 +7,17 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from pneutouch.cli.app import DesignArgument, JsonOption, OutOption, SetOption, app, changes, print_json, reporting
+from pneutouch.cli.app import (
+    CalibrationOption,
+    DesignArgument,
+    JsonOption,
+    OutOption,
+    SetOption,
+    app,
+    changes,
+    print_json,
+    reporting,
+)
 from pneutouch.cli.next_step import report_next
 from pneutouch.cli.progress import bar
 
@@ -47,6 +57,7 @@ def simulate(
     model: Annotated[str, typer.Option("--model", help="What presses the specimens: solid, atlas or auto.")] = "solid",
     parquet: Annotated[bool, typer.Option("--parquet", help="Parquet files instead of CSV.")] = False,
     set_: SetOption = None,
+    calibration: CalibrationOption = None,
     out: OutOption = Path("outputs"),
     json: JsonOption = False,
 ) -> None:
@@ -70,7 +81,7 @@ def simulate(
             truth=SimulationTruth(rest=rest),
         )
         with bar("specimens") as progress:
-            folder = simulate(design, out, changes(set_), options, progress=progress)
+            folder = simulate(design, out, changes(set_, calibration), options, progress=progress)
         _report(folder, options, json=json)
 
 

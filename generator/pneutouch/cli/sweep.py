@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from pneutouch.cli.app import JsonOption, SetOption, app, changes, print_json, reporting
+from pneutouch.cli.app import CalibrationOption, JsonOption, SetOption, app, changes, print_json, reporting
 from pneutouch.cli.progress import bar
 from pneutouch.errors import InputError
 
@@ -29,6 +29,7 @@ def sweep(
         ),
     ] = None,
     set_: SetOption = None,
+    calibration: CalibrationOption = None,
     model: Annotated[str | None, typer.Option("--model", help=_MODEL_HELP)] = None,
     closure: Annotated[str | None, typer.Option("--closure", help="Contact closure of the membrane.")] = None,
     clamp: Annotated[str | None, typer.Option("--clamp", help="Where the solid is held: base or flange.")] = None,
@@ -51,7 +52,9 @@ def sweep(
         from pneutouch.workflows.sweep import sweep as run
         from pneutouch.workflows.sweep.run import ComputeResources
 
-        plan = _plan(file, design, over or [], changes(set_), {"model": model, "closure": closure, "clamp": clamp})
+        plan = _plan(
+            file, design, over or [], changes(set_, calibration), {"model": model, "closure": closure, "clamp": clamp}
+        )
         target = Path("outputs") / f"{plan.name}.nc" if out is None else out
         with bar("points") as progress:
             done = run(plan, target, ComputeResources(workers, scheduler), fresh=fresh, progress=progress)

@@ -37,7 +37,9 @@ def tuning(evaluation: Evaluation, highest: float) -> TuningChart | None:
     if drawn is None:
         return None
     materials = list(evaluation.resins.values())
-    low, high = interval(sensor, drawn, scene.membrane_material, materials, scene.printer, prediction.model)
+    low, high = interval(
+        sensor, drawn, scene.membrane_material, materials, scene.printer, prediction.model, scene.calibration
+    )
     working = {s.driving_pressure / KPA: s.figures.sensitivity_kPa_per_N for s in prediction.states if s.figures}
     return TuningChart(drawn, low, high, working)
 

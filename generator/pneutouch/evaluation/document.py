@@ -40,7 +40,15 @@ def prediction_document(evaluation: Evaluation, samples: int = 0) -> dict[str, A
 def full_document(evaluation: Evaluation, samples: int = 0) -> dict[str, Any]:
     """`prediction_document` with ``viscous``, and ``aged`` where the prediction is of an aged sensor."""
     content = {**prediction_document(evaluation, samples), "viscous": viscous(evaluation)}
+    calibration = evaluation.scene.calibration
+    if calibration is not None:
+        content["calibration"] = {
+            "name": evaluation.scene.design.calibration,
+            "title": calibration.title,
+            **calibration.source.model_dump(mode="json"),
+        }
     if evaluation.options.aged:
-        ratio = ageing_ratio(evaluation.scene.membrane_material)
+        remaining = 1.0 if calibration is None else calibration.remaining_year
+        ratio = ageing_ratio(evaluation.scene.membrane_material) ** remaining
         content["aged"] = {"modulus_ratio": rounded(ratio, _DIGITS), "assumes": AGED}
     return content

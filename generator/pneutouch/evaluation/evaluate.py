@@ -11,10 +11,12 @@ import numpy as np
 
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
 from pneutouch.errors import BeyondLimitError, InputError, nearest
+from pneutouch.evaluation.calibrated import assumption, calibrated_error, calibrated_sensor, check_options
 from pneutouch.evaluation.table_s1 import sensitivity_error
 from pneutouch.mechanics import Sensor, SensorPrediction, predict
 from pneutouch.mechanics.models import DEFAULT_TOLERANCE
 from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.prediction import ErrorEstimate
 from pneutouch.mechanics.viscous.known import AGED, ageing_ratio
 from pneutouch.parts import Assembly, assemble
 from pneutouch.spec.material import Material
@@ -74,7 +76,9 @@ class Evaluation:
         from pneutouch.evaluation.subject import subject_of
         from pneutouch.printability import SensorContext, check
 
-        return check(subject_of(self.assembly), SensorContext(self.prediction, self.sensor))
+        # What is printed is the wall as drawn, whatever wall a calibration gives the model.
+        drawn = self.sensor.replace(wall_thickness=self.assembly.layout.wall)
+        return check(subject_of(self.assembly), SensorContext(self.prediction, drawn))
 
     @cached_property
     def estimates(self) -> tuple[JobEstimate, ...]:
@@ -137,6 +141,7 @@ def evaluate_scene(scene: ResolvedDesign, find_resins: Callable[[], Resins], opt
 
     Raises InputError where the scene cannot work.
     """
+    check_options(scene, options.model, options.clamp)
     assembly = assemble(scene)
     sensor = sensor_of(assembly, options.clamp)
     if options.aged:
@@ -150,14 +155,21 @@ def evaluate_scene(scene: ResolvedDesign, find_resins: Callable[[], Resins], opt
             model=options.model,
             closure=options.closure,
             tolerance=options.tolerance,
-            sensitivity_error=lambda model: sensitivity_error(scene.membrane_material, sensor, model, options.closure),
+            sensitivity_error=lambda model: _sensitivity_error(scene, sensor, model, options.closure),
         )
     except BeyondLimitError as error:
         raise _beyond_limit(scene, error) from None
     _check_plate(scene, prediction)
-    if options.aged:
-        prediction = replace(prediction, assumptions=(*prediction.assumptions, shift))
+    more = ([assumption(scene)] if scene.calibration else []) + ([shift] if options.aged else [])
+    if more:
+        prediction = replace(prediction, assumptions=(*prediction.assumptions, *more))
     return Evaluation(scene, assembly, sensor, prediction, options, find_resins)
+
+
+def _sensitivity_error(scene: ResolvedDesign, sensor: Sensor, model: str, closure: str) -> ErrorEstimate:
+    """The model's known error in sensitivity: by the calibration where there is one, else against Table S1."""
+    known = None if scene.calibration is None else calibrated_error(scene.calibration)
+    return known or sensitivity_error(scene.membrane_material, sensor, model, closure)
 
 
 def elastomers(library: Library) -> Resins:
@@ -167,10 +179,10 @@ def elastomers(library: Library) -> Resins:
 
 
 def sensor_of(assembly: Assembly, clamp: str = "base") -> Sensor:
-    """The mechanics' view of an assembly: mm and MPa."""
+    """The mechanics' view of an assembly: mm and MPa; of a calibrated design that of the calibrated sensor."""
     layout = assembly.layout
     design = assembly.scene.design
-    return _material_sensor(assembly.scene).replace(
+    sensor = _material_sensor(assembly.scene).replace(
         inner_radius=layout.inner_radius,
         wall_thickness=layout.wall,
         ambient_pressure=design.pneumatics.ambient_pressure_kPa * KPA,
@@ -180,6 +192,7 @@ def sensor_of(assembly: Assembly, clamp: str = "base") -> Sensor:
         steps=design.indentation.steps,
         flange=(layout.flange_width, layout.flange_thickness) if clamp == "flange" else None,
     )
+    return calibrated_sensor(sensor, assembly.scene)
 
 
 def _material_sensor(scene: ResolvedDesign) -> Sensor:
@@ -199,8 +212,9 @@ def _aged(scene: ResolvedDesign, sensor: Sensor) -> tuple[Sensor, str]:
     """The sensor after a year, and what is assumed of it. Raises InputError where the resin's hardness then is not
     known."""
     material = scene.membrane_material
+    remaining = 1.0 if scene.calibration is None else scene.calibration.remaining_year
     try:
-        ratio = ageing_ratio(material)
+        ratio = ageing_ratio(material) ** remaining
     except InputError as error:
         raise _material_error(scene, error) from None
     assert material.shore_a is not None and material.shore_a_one_year is not None

@@ -11,6 +11,7 @@ from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.atlas.respond import OUTSIDE, respond
 from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.mechanics.uncertainty import FIGURES, batch_of
+from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 from pneutouch.units import KPA
@@ -36,18 +37,25 @@ def curve(sensor: Sensor, highest: float, label: str) -> TuningCurve | None:
     kept = np.isfinite(response.lines.sensitivity_kPa_per_N) & (response.ends != OUTSIDE)
     if kept.sum() < 2:
         return None
-    return TuningCurve(label, pressures[kept] / KPA, response.lines.sensitivity_kPa_per_N[kept])
+    factor = sensor.correction.sensitivity_factor
+    return TuningCurve(label, pressures[kept] / KPA, factor * response.lines.sensitivity_kPa_per_N[kept])
 
 
 def interval(
-    sensor: Sensor, drawn: TuningCurve, material: Material, materials: Sequence[Material], printer: Printer, model: str
+    sensor: Sensor,
+    drawn: TuningCurve,
+    material: Material,
+    materials: Sequence[Material],
+    printer: Printer,
+    model: str,
+    calibration: SensorCalibration | None = None,
 ) -> tuple[Array, Array]:
     """Lower and upper end of a curve's k = 2 interval, kPa/N, (n,) each.
 
     ``materials`` are all that there are; ``model`` gives the numerical error.
     """
     at = np.linspace(drawn.driving_pressure_kPa[0], drawn.driving_pressure_kPa[-1], _BUDGETS)
-    estimate = known(sensor, (at * KPA).tolist(), material, materials, printer, model)
+    estimate = known(sensor, (at * KPA).tolist(), material, materials, printer, model, calibration)
     widths = estimate.budget.expanded[_SENSITIVITY]
     good = np.isfinite(widths)
     width = np.interp(drawn.driving_pressure_kPa, at[good], widths[good])

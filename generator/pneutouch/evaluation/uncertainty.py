@@ -12,6 +12,7 @@ from pneutouch.evaluation.table_s1 import is_near_paper
 from pneutouch.mechanics import Sensor, SensorPrediction, SensorState
 from pneutouch.mechanics.models import DISCRETISATION, NUMERICAL
 from pneutouch.rounding import rounded
+from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 from pneutouch.units import KPA
@@ -61,6 +62,7 @@ def known(
     materials: Sequence[Material],
     printer: Printer,
     model: str,
+    calibration: SensorCalibration | None = None,
 ) -> SensorBudget:
     """The budget of a sensor inside the atlas at driving pressures (MPa).
 
@@ -73,7 +75,10 @@ def known(
     limit_error = DISCRETISATION["limit_pressure_relative"]
     numerical = {"sensitivity_kPa_per_N": NUMERICAL[model], "limit_pressure_kPa": limit_error}
     near, errors = is_near_paper(sensor), model_errors(material, materials)
-    return SensorBudget(batch, budget(batch, material, printer, near_paper=near, errors=errors, numerical=numerical))
+    estimate = budget(
+        batch, material, printer, near_paper=near, errors=errors, numerical=numerical, calibration=calibration
+    )
+    return SensorBudget(batch, estimate)
 
 
 def documents(
@@ -96,16 +101,21 @@ def documents(
     from pneutouch.mechanics.uncertainty import document, gas_text, text
 
     pressures, materials = [state.driving_pressure for state in states], list(resins().values())
-    estimate = known(sensor, pressures, scene.membrane_material, materials, scene.printer, model)
+    calibrated = scene.calibration is not None
+    estimate = known(
+        sensor, pressures, scene.membrane_material, materials, scene.printer, model, calibration=scene.calibration
+    )
     content = []
     for row, (state, notes) in enumerate(zip(states, gas_text(estimate.batch), strict=True)):
         values = _values(prediction, state)
-        entry = document(estimate.budget, row, values, (*notes_of_wall, *notes))
+        entry = document(estimate.budget, row, values, (*notes_of_wall, *notes), calibrated=calibrated)
         missing = entry["figures"].keys() - values.keys()
         for name in missing:
             del entry["figures"][name], entry["elasticities"][name]
         more = {"monte_carlo": _sampled(estimate, row, samples, entry["figures"])} if samples else {}
-        content.append(rounded({**entry, "summary": text(estimate.budget, row), **more}, _DIGITS, _NOTHING))
+        content.append(
+            rounded({**entry, "summary": text(estimate.budget, row, calibrated=calibrated), **more}, _DIGITS, _NOTHING)
+        )
     return tuple(content)
 
 

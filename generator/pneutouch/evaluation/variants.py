@@ -7,6 +7,7 @@ from pneutouch.evaluation.chart_data import ResinCurve
 from pneutouch.mechanics import Sensor, predict
 from pneutouch.mechanics.limits import limit_point
 from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.sensor import ResponseCorrection
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
 
@@ -21,8 +22,8 @@ _LIMIT_SHARE = {"membrane": 1.0, "solid": 0.8}
 
 
 def in_resin(sensor: Sensor, material: Material) -> Sensor:
-    """The same sensor in another resin, with that resin's law and break strain."""
-    return sensor.replace(wall=material_sensor(material).wall)
+    """The same sensor in another resin, with that resin's law and break strain; a correction is not the other's."""
+    return sensor.replace(wall=material_sensor(material).wall, correction=ResponseCorrection())
 
 
 def resin_curves(

@@ -20,7 +20,7 @@ from pneutouch.mechanics.models import (
     models_for,
 )
 from pneutouch.mechanics.prediction import ErrorEstimate, ModelResult, SensorPrediction
-from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.sensor import ResponseCorrection, Sensor
 from pneutouch.units import KPA, ML
 
 if TYPE_CHECKING:
@@ -91,6 +91,8 @@ def predict(
         raise InputError(f"unknown closure.{nearest(closure, CLOSURES)}", key="closure", value=closure)
     pressures = np.array(driving_pressures, float)
     chosen, answer, why = _answer(sensor, pressures, model, closure, tolerance)
+    # The factors were found against the solid's answers: the membrane's errors are others.
+    correction = ResponseCorrection() if chosen == "membrane" else sensor.correction
     errors, assumptions = _stated(chosen, sensor, pressures)
     if sensitivity_error is not None:
         errors = _merged(errors, sensitivity_error(chosen))
@@ -108,7 +110,7 @@ def predict(
         limits=answer.limits,
         dead_volume=dead,
         inflation=answer.inflation,
-        states=answer.states,
+        states=tuple(state.corrected(correction) for state in answer.states),
         assumptions=(*assumptions, held, *_COMMON_ASSUMPTIONS, gas),
     )
 

@@ -1,12 +1,15 @@
 """A prediction: the results of a model for a sensor, and their document in boundary units."""
 
-from dataclasses import dataclass
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
 from typing import Any, TypedDict
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.events import Event
 from pneutouch.mechanics.limits import LimitPoint, Limits
 from pneutouch.mechanics.response import Figures, tangent_stiffness
+from pneutouch.mechanics.sensor import ResponseCorrection
 from pneutouch.rounding import rounded
 from pneutouch.units import KPA, ML
 
@@ -66,6 +69,18 @@ class SensorState:
 
     def __repr__(self) -> str:
         return f"SensorState({self.driving_pressure / KPA:g} kPa, {len(self.indentation)} points)"
+
+    def corrected(self, correction: ResponseCorrection) -> SensorState:
+        """The state with factors on force and pressure rise; its events and the end of its range stay."""
+        if correction == ResponseCorrection():
+            return self
+        by_force, by_rise = correction.force_factor, correction.rise_factor
+        return replace(
+            self,
+            force=by_force * self.force,
+            pressure_rise=by_rise * self.pressure_rise,
+            figures=None if self.figures is None else self.figures.scaled(by_force, by_rise),
+        )
 
     def document(self) -> dict[str, Any]:
         """The state as ``predict`` prints it."""

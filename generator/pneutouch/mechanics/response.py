@@ -5,7 +5,9 @@ follow the paper where it gives one (sensitivity, section 3-B; stiffness dF/d(de
 the sensor makers' usual ones.
 """
 
-from dataclasses import dataclass
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -29,6 +31,19 @@ class Figures:
     stiffness: float
     force_range: tuple[float, float]
     saturation_force: float | None
+
+    def scaled(self, force: float, rise: float) -> Figures:
+        """Figures of the curve whose forces and pressure rises are these times two factors."""
+        saturated = self.saturation_force
+        return replace(
+            self,
+            sensitivity_kPa_per_N=self.sensitivity_kPa_per_N * rise / force,
+            intercept_kPa=self.intercept_kPa * rise,
+            sensitivity_through_origin_kPa_per_N=self.sensitivity_through_origin_kPa_per_N * rise / force,
+            stiffness=self.stiffness * force,
+            force_range=(self.force_range[0] * force, self.force_range[1] * force),
+            saturation_force=None if saturated is None else saturated * force,
+        )
 
 
 class FigureArrays(NamedTuple):

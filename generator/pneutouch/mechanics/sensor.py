@@ -1,4 +1,4 @@
-"""A sensor as the mechanics takes it: four records in mm, N and MPa, without files or printers."""
+"""A sensor as the mechanics takes it: five records in mm, N and MPa, without files or printers."""
 
 from __future__ import annotations
 
@@ -61,6 +61,19 @@ class IndentationProtocol:
 
 
 @dataclass(frozen=True, slots=True)
+class ResponseCorrection:
+    """Factors on the contact force and the pressure rise of atlas and solid, as a calibration found them."""
+
+    force_factor: float = 1.0
+    rise_factor: float = 1.0
+
+    @property
+    def sensitivity_factor(self) -> float:
+        """What both make of the slope of pressure over force."""
+        return self.rise_factor / self.force_factor
+
+
+@dataclass(frozen=True, slots=True)
 class Sensor:
     """A dome of a material with its gas, and the indentation that it is tested with."""
 
@@ -68,6 +81,7 @@ class Sensor:
     wall: WallMaterial
     gas: GasCircuit
     protocol: IndentationProtocol
+    correction: ResponseCorrection = ResponseCorrection()
 
     def replace(self, **changes: Any) -> Sensor:
         """The sensor with other values of fields of its parts, for example ``replace(depth=5.0, steps=10)``.

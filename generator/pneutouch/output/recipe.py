@@ -43,7 +43,7 @@ class BuildRecipe:
             "closure": options.closure if options.model in ("membrane", "auto") else None,
             "clamp": options.clamp,
             "tolerance": options.tolerance if options.model == "auto" else None,
-            **{key: _data(getattr(self.scene, key)) for key in scene_kinds()},
+            **{key: _data(part) for key, part in scene_parts(self.scene).items()},
             "compared_resins": {name: _data(material) for name, material in self.resins.items()},
         }
 
@@ -71,6 +71,16 @@ def scene_kinds() -> dict[str, str]:
     """Fields of a scene with the catalogue's kind that each is of: ``membrane_material`` is one of the materials."""
     names = [field.name for field in fields(ResolvedDesign) if field.name not in ("name", "where")]
     return {name: f"{name.rpartition('_')[2]}s" for name in names}
+
+
+OPTIONAL = ("calibration",)
+"""Fields of a scene that a recipe leaves out where they are None: recipes without them are those of older versions."""
+
+
+def scene_parts(scene: ResolvedDesign) -> dict[str, Any]:
+    """What a scene is made of, by field; without the optional parts that it does not have."""
+    parts = {key: getattr(scene, key) for key in scene_kinds()}
+    return {key: part for key, part in parts.items() if part is not None or key not in OPTIONAL}
 
 
 def _data(model: Any) -> Any:

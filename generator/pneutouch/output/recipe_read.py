@@ -15,7 +15,7 @@ from pneutouch.export.threemf_read import Package
 from pneutouch.mechanics.contact import CLOSURES
 from pneutouch.mechanics.models import MODEL_CHOICES
 from pneutouch.output.manifest import input_hash, versions
-from pneutouch.output.recipe import FORMAT, SETTINGS, BuildRecipe, scene_kinds
+from pneutouch.output.recipe import FORMAT, OPTIONAL, SETTINGS, BuildRecipe, scene_kinds
 from pneutouch.spec.fields import Table
 from pneutouch.spec.names import plain_name
 from pneutouch.spec.read import validate
@@ -36,7 +36,8 @@ def read_recipe(package: Package) -> BuildRecipe:
     head = _head(package.recipe, f"{where}: recipe")
     inputs, kinds = head.inputs, scene_kinds()
     _check_keys(inputs, {*kinds, *SETTINGS, "compared_resins"}, f"{where}: recipe: inputs")
-    parts = {key: _part(kind, inputs[key], f"{where}: recipe: {key}") for key, kind in kinds.items()}
+    there = {key: kind for key, kind in kinds.items() if key in inputs}
+    parts = {key: _part(kind, inputs[key], f"{where}: recipe: {key}") for key, kind in there.items()}
     scene = ResolvedDesign(name=head.name, where=where, **parts)
     resins = _resins(inputs["compared_resins"], f"{where}: recipe: compared_resins")
     options = _options(inputs, f"{where}: recipe")
@@ -88,7 +89,7 @@ def _no_number(word: str) -> NoReturn:
 def _check_keys(content: dict[str, Any], known: set[str], where: str) -> None:
     for key in sorted(content.keys() - known):
         raise InputError(f"{key}: unknown.{nearest(key, known)}", file=where)
-    for key in sorted(known - content.keys()):
+    for key in sorted(known - content.keys() - {*OPTIONAL}):
         raise InputError(f"{key}: missing", file=where)
 
 

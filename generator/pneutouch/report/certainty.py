@@ -113,7 +113,11 @@ def _model_rows(sheet: SheetData) -> list[list[str]]:
     if prediction.model == "membrane":
         exact = f"up to {1 + error:.0f} times off the solid's sensitivity"
     why = prediction.error_estimate.get("model_choice", "requested by name, or the default")
-    return [["Model", prediction.model], ["Numerical error", exact], ["Why this model", why]]
+    rows = [["Model", prediction.model], ["Numerical error", exact], ["Why this model", why]]
+    calibration = sheet.scene.calibration
+    if calibration is not None:
+        rows.append(["Calibration", f"{sheet.scene.design.calibration}: {calibration.title}; of this specimen alone"])
+    return rows
 
 
 def _digits(value: float) -> str:

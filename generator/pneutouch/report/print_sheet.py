@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 from pneutouch.body import Body
+from pneutouch.catalogue import ResolvedDesign
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.report import prose
 from pneutouch.report.ordering import part_number
@@ -43,7 +44,7 @@ the names: **choose the resin of each body by hand**.
 {missing}Chord tolerance {1e3 * scene.mesh_tolerance:g} µm, the finest step of the machines; greatest measured \
 distance between mesh and exact surface {1e3 * deviation:.1f} µm.
 
-## Steps
+{_calibrated(scene)}## Steps
 
 {steps}
 
@@ -55,6 +56,19 @@ distance between mesh and exact surface {1e3 * deviation:.1f} µm.
 
 {findings}
 """
+
+
+def _calibrated(scene: ResolvedDesign) -> str:
+    """What the figures of a calibrated design are of; nothing of the print follows from a calibration."""
+    if scene.calibration is None:
+        return ""
+    source = scene.calibration.source
+    return (
+        f"Calibration `{scene.design.calibration}`: the figures of the datasheet are those of sensor "
+        f"{_escaped(source.sensor)} as it was measured ({_escaped(source.campaign or 'unnamed campaign')}). The bodies "
+        "are those of the design as drawn; a sensor printed again is another specimen and has to be calibrated itself."
+        "\n\n"
+    )
 
 
 def _takes(sheet: SheetData) -> str:

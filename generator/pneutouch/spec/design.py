@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import datetime
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from pneutouch.errors import shown
 from pneutouch.spec.fields import Table, name, number, numbers
@@ -135,15 +135,41 @@ class Print(Table):
     )
 
 
+CALIBRATION = "calibration"
+"""Key of a design file, outside its tables, that names a calibration."""
+
+NO_CALIBRATION = "none"
+"""Stands for no calibration, over one that the design file names."""
+
+
 class DesignFile(Table):
     """A whole design file."""
 
+    calibration: str | None = Field(
+        default=None,
+        min_length=1,
+        max_length=200,
+        description="Calibration of the sensor in hand, by name; left out: the design as it is drawn.",
+        json_schema_extra={"registry": "calibrations"},
+    )
     document: DocumentHead = DocumentHead()
     membrane: Membrane = Membrane()
     connector: Connector = Connector()
     pneumatics: Pneumatics = Pneumatics()
     indentation: Indentation = Indentation()
     print: Print = Print()
+
+    @model_serializer(mode="wrap")
+    def _without_no_calibration(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        content: dict[str, Any] = handler(self)
+        if content.get(CALIBRATION) is None:
+            content.pop(CALIBRATION, None)
+        return content
+
+    @property
+    def calibration_name(self) -> str | None:
+        """Name of the calibration, None without one."""
+        return None if self.calibration == NO_CALIBRATION else self.calibration
 
     @property
     def depth_mm(self) -> float:

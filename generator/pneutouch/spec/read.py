@@ -1,7 +1,7 @@
 """Read a TOML file into a model, or report which key is wrong and the correct form."""
 
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -39,7 +39,9 @@ def validate(model: type[Model], content: dict[str, Any], where: str) -> Model:
 
 
 Changes = Mapping[str, Any]
-"""Fields of a file to be changed, each ``table.key``, and their values."""
+"""Fields of a file to be changed, each ``table.key`` or a key outside the tables, and their values.
+
+A key outside the tables whose value is None is taken out."""
 
 
 def override(content: Mapping[str, Any], changes: Changes, model: type[BaseModel]) -> dict[str, Any]:
@@ -48,6 +50,11 @@ def override(content: Mapping[str, Any], changes: Changes, model: type[BaseModel
     for name, value in changes.items():
         table_name, _, key = name.partition(".")
         table = table_of(model, table_name)
+        if table is None and not key and table_name in model.model_fields:
+            result[name] = value
+            if value is None:
+                del result[name]
+            continue
         if table is None:
             raise InputError(
                 f"unknown table {table_name}.{nearest(table_name, model.model_fields)}", key=name, value=value
@@ -61,12 +68,15 @@ def override(content: Mapping[str, Any], changes: Changes, model: type[BaseModel
     return result
 
 
-def parse_changes(assignments: Iterable[str]) -> dict[str, Any]:
-    """Changes from texts ``table.key=value``, whose values are TOML or bare words. Raises InputError."""
+def parse_changes(assignments: Iterable[str], keys: Collection[str] = ("calibration",)) -> dict[str, Any]:
+    """Changes from texts ``table.key=value``, whose values are TOML or bare words. Raises InputError.
+
+    ``keys`` are those outside the tables, written without one.
+    """
     changes = {}
     for text in assignments:
         key, equals, value = (part.strip() for part in text.partition("="))
-        if not equals or key.count(".") != 1:
+        if not equals or (key.count(".") != 1 and key not in keys):
             raise InputError("write table.key=value, such as membrane.material=FLX9960", key="set", value=text)
         changes[key] = toml_value(value)
     return changes

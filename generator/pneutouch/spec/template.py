@@ -9,16 +9,18 @@ from pneutouch.spec.fields import Declaration, declarations, table_of
 from pneutouch.spec.toml_text import value_text
 
 
-def design_template(title: str, values: Mapping[str, Mapping[str, Any]] | None = None, note: str | None = None) -> str:
+def design_template(title: str, values: Mapping[str, Any] | None = None, note: str | None = None) -> str:
     """Return a design file with every table and key, its default, unit, bounds and help.
 
     ``values`` by table and key stand in place of defaults; ``note`` in place of the head's second sentence.
     """
     chosen = values or {}
     blocks = [f"# {title}: a pneutouch design. {note or 'Every key may be left out; shown are the defaults.'}"]
+    blocks += [f"{key} = {value_text(value)}" for key, value in chosen.items() if not isinstance(value, Mapping)]
     for key in DesignFile.model_fields:
         model = table_of(DesignFile, key)
-        assert model is not None
+        if model is None:
+            continue
         lines = [f"[{key}]"]
         for entry in declarations(model):
             default = title if (key, entry.key) == ("document", "title") else entry.default

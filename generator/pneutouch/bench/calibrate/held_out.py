@@ -9,6 +9,7 @@ from pneutouch.bench.calibrate.fit import fit
 from pneutouch.bench.calibrate.model import AtlasModel
 from pneutouch.bench.calibrate.observations import Observations, points_of
 from pneutouch.bench.calibrate.parameters import CalibrationParameters
+from pneutouch.bench.calibrate.response import response_gap
 from pneutouch.errors import InputError
 from pneutouch.mechanics.response import lines
 from pneutouch.mechanics.sensor import Sensor
@@ -46,7 +47,7 @@ class HeldOutPrediction:
 def predict_held_out(
     observations: Observations, sensor: Sensor, parameters: CalibrationParameters, driving_pressure_kPa: float
 ) -> HeldOutPrediction:
-    """Leave out a driving pressure (kPa), fit to the rest, predict it.
+    """Leave out a driving pressure (kPa), fit to the rest, predict it by that fit and its correction.
 
     Raises InputError for a pressure that was not measured, where nothing is left to fit, and where the model has too
     few of its points to compare."""
@@ -70,7 +71,10 @@ def predict_held_out(
             "point or buckled)"
         )
         raise InputError(problem, key="hold_out_kPa", value=driving_pressure_kPa, remedy="hold out another")
-    force, rise = (part.reshape(shape) for part in (values[0][: use.size], values[0][use.size : 2 * use.size]))
+    gap = response_gap(fitted)
+    factors = (1.0, 1.0) if gap is None else (gap.force_factor, gap.rise_factor)
+    parts = values[0][: use.size], values[0][use.size : 2 * use.size]
+    force, rise = (factor * part.reshape(shape) for factor, part in zip(factors, parts, strict=True))
     rows = [
         _row(
             travel=points.travel[i],

@@ -7,6 +7,7 @@ from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.uncertainty.propagate import Budget, propagate
 from pneutouch.mechanics.uncertainty.sources import sources
 from pneutouch.mechanics.uncertainty.sources.model import ModelErrors
+from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 
@@ -20,6 +21,7 @@ def budget(
     errors: ModelErrors,
     numerical: Mapping[str, float],
     aged: bool = True,
+    calibration: SensorCalibration | None = None,
 ) -> Budget:
     """The uncertainty of the figures of n sensors that share a resin and a printer.
 
@@ -30,12 +32,21 @@ def budget(
         near_paper: Which of them the model's error on the paper's sensor applies to, one flag or (n,).
         errors: The model's relative errors against Table S1; see `model_errors`.
         numerical: Greatest relative errors of discretisation and interpolation by figure (`FIGURES`).
-        aged: Whether the sensor may be up to a year old; else it is fresh.
+        aged: Whether the sensor may be up to a year old; else it is fresh, or of the age at which it was calibrated.
+        calibration: Of the sensor in hand; its parameters and its model error take the place of those of design and
+            resin.
 
     Raises:
         InputError: ``numerical`` names a figure that there is not.
     """
     source_list = sources(
-        batch, material, printer, near_paper=near_paper, errors=errors, numerical=numerical, aged=aged
+        batch,
+        material,
+        printer,
+        near_paper=near_paper,
+        errors=errors,
+        numerical=numerical,
+        aged=aged,
+        calibration=calibration,
     )
     return propagate(batch, source_list)

@@ -9,6 +9,7 @@ from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.uncertainty.gas_notes import ADIABATIC, REFERENCE_TEMPERATURE, gas_notes
 from pneutouch.mechanics.uncertainty.propagate import COVERAGE, Budget
 from pneutouch.mechanics.uncertainty.source import FIGURES, INPUTS, SENSITIVITY
+from pneutouch.mechanics.uncertainty.sources.modulus import AGEING
 
 _FEW = 10.0
 """Below as many degrees of freedom k = 2 covers clearly less than 95 % (JCGM 100, G.6.4)."""
@@ -22,7 +23,12 @@ _UNCOUNTED = (
 
 
 def document(
-    budget: Budget, row: int = 0, values: Mapping[str, float] | None = None, notes: tuple[str, ...] = ()
+    budget: Budget,
+    row: int = 0,
+    values: Mapping[str, float] | None = None,
+    notes: tuple[str, ...] = (),
+    *,
+    calibrated: bool = False,
 ) -> dict[str, Any]:
     """Figures, sources and notes of sensor ``row``.
 
@@ -31,6 +37,7 @@ def document(
         row: Which of its sensors.
         values: The figures by another model, by name, with the budget's relative uncertainty; the atlas's else.
         notes: More notes, such as `gas_text`.
+        calibrated: Whether to add to each figure ``at_calibration``, its interval without the ageing since then.
 
     Returns:
         A dict of plain numbers, texts and lists. A figure that the atlas does not have is left out; without any the
@@ -38,16 +45,29 @@ def document(
     """
     known = [i for i in range(len(FIGURES)) if np.isfinite(budget.standard[i, row])]
     given = values or {}
+    figures = {FIGURES[i]: _figure(budget, i, row, given.get(FIGURES[i])) for i in known}
+    if calibrated:
+        for i in known:
+            width = _fresh_width(budget, i, row)
+            value = figures[FIGURES[i]]["value"]
+            ends = {"low": value * float(np.exp(-width)), "high": value * float(np.exp(width))}
+            figures[FIGURES[i]]["at_calibration"] = ends
     return {
         "coverage_factor": COVERAGE,
-        "figures": {FIGURES[i]: _figure(budget, i, row, given.get(FIGURES[i])) for i in known},
-        "sources": [s.document(row) for s in budget.sources if s.counts[:, row].any()],
+        "figures": figures,
+        "sources": [d for s in budget.sources if s.counts[:, row].any() for d in s.documents(row)],
         "elasticities": {
             FIGURES[i]: dict(zip(INPUTS, budget.derivatives.elasticities[:, i, row].tolist(), strict=True))
             for i in known
         },
         "notes": [*_notes(budget, row), *notes],
     }
+
+
+def _fresh_width(budget: Budget, figure: int, row: int) -> float:
+    """Expanded uncertainty of the logarithm of a figure without the ageing ahead."""
+    kept = [source.name not in AGEING for source in budget.sources]
+    return COVERAGE * float(np.sqrt(budget.variances[kept, figure, row].sum()))
 
 
 def _figure(budget: Budget, figure: int, row: int, given: float | None) -> dict[str, Any]:
@@ -98,7 +118,7 @@ def _notes(budget: Budget, row: int) -> list[str]:
     return [*notes, _UNCOUNTED]
 
 
-def text(budget: Budget, row: int = 0) -> str:
+def text(budget: Budget, row: int = 0, *, calibrated: bool = False) -> str:
     """One or two sentences for a datasheet: the expanded uncertainty of the sensitivity, and what to measure first."""
     width = float(budget.expanded[SENSITIVITY, row])
     if not np.isfinite(width):
@@ -108,6 +128,9 @@ def text(budget: Budget, row: int = 0) -> str:
     assumed = [s.name for s in budget.sources if not s.known and s.name in parts and parts[s.name] >= 0.1]
     assumed_text = f" Assumed, not known: {', '.join(assumed)}." if assumed else ""
     interval = f"{np.exp(-width) - 1:+.0%} to {np.exp(width) - 1:+.0%}"
+    if calibrated:
+        fresh = _fresh_width(budget, SENSITIVITY, row)
+        interval += f", at the age of its calibration {np.exp(-fresh) - 1:+.1%} to {np.exp(fresh) - 1:+.1%}"
     return (
         f"Expanded uncertainty of the sensitivity (k = {COVERAGE:g}): {interval}; measure first: {first}.{assumed_text}"
     )

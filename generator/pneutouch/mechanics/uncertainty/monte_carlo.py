@@ -8,7 +8,7 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.uncertainty.neighbours import log_figures, moved
-from pneutouch.mechanics.uncertainty.source import DEAD, FIGURE, FIGURES, INPUTS, UncertaintySource
+from pneutouch.mechanics.uncertainty.source import FIGURE, FIGURES, JOINT, UncertaintySource
 
 _COVERED = 0.9545
 """Share of a normal distribution within two standard deviations."""
@@ -52,6 +52,8 @@ def monte_carlo(
         logs[figures] = _through_model(batch, sources, row, count, seed, figures[0])[figures]
     draw = np.random.default_rng([seed, 1])
     for source in sources:
+        if source.acts_on == JOINT:
+            continue
         factor = source.sample(row, count, draw)
         if source.acts_on == FIGURE:
             logs += np.where(source.counts[:, row, None], np.log(np.maximum(factor, np.finfo(float).tiny)), 0.0)
@@ -67,9 +69,9 @@ def _through_model(
     for source in sources:
         if source.acts_on == FIGURE:
             continue
-        by = source.sample(row, count, draw)
-        if source.counts[figure, row]:
-            many = moved(many, source.acts_on, by if source.acts_on == INPUTS[DEAD] else np.log(by))
+        for name, by in source.deviations(row, count, draw).items():
+            if source.counts[figure, row]:
+                many = moved(many, name, by)
     grain = _GRAIN * float(batch.wall_ratio[row])
     ratio = grain * np.round(many.wall_ratio / grain)
     return log_figures(replace(many, wall_thickness=ratio * many.inner_radius))

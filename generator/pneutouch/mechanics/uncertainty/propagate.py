@@ -7,7 +7,7 @@ import numpy as np
 from pneutouch.arrays import Array, Flags
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.uncertainty.derivatives import Derivatives, derivatives
-from pneutouch.mechanics.uncertainty.source import FIGURE, FIGURES, INPUTS, UncertaintySource
+from pneutouch.mechanics.uncertainty.source import FIGURES, INPUTS, UncertaintySource
 
 COVERAGE = 2.0
 """k: about 95 % where many sources of one size add up."""
@@ -83,7 +83,10 @@ class Budget:
 
 
 def propagate(batch: SensorBatch, sources: list[UncertaintySource]) -> Budget:
-    """Combine the sources of n sensors through the atlas; they are taken as independent of one another."""
+    """Combine the sources of n sensors through the atlas; they are taken as independent of one another.
+
+    Inputs that are correlated belong to one joint source.
+    """
     slopes_of = derivatives(batch, *_by_input(batch, sources))
     variances = _variances(sources, slopes_of.slopes)
     linear = np.sqrt(_variances(sources, slopes_of.local).sum(axis=0))
@@ -96,14 +99,7 @@ def propagate(batch: SensorBatch, sources: list[UncertaintySource]) -> Budget:
 
 def _variances(sources: list[UncertaintySource], slopes: Array) -> Array:
     """Of the logarithms, (sources, figures, n)."""
-    return np.stack(
-        [
-            np.where(
-                s.counts, ((1.0 if s.acts_on == FIGURE else slopes[INPUTS.index(s.acts_on)]) * s.standard) ** 2, 0.0
-            )
-            for s in sources
-        ]
-    )
+    return np.stack([source.variance(slopes) for source in sources])
 
 
 def _by_input(batch: SensorBatch, sources: list[UncertaintySource]) -> tuple[Array, Array]:
@@ -112,10 +108,10 @@ def _by_input(batch: SensorBatch, sources: list[UncertaintySource]) -> tuple[Arr
     second = np.zeros((len(INPUTS), len(FIGURES), size))
     every, fourth = np.zeros((len(INPUTS), size)), np.zeros((len(INPUTS), size))
     for source in sources:
-        if source.acts_on != FIGURE:
-            i = INPUTS.index(source.acts_on)
-            second[i] += np.where(source.counts, source.standard**2, 0.0)
-            every[i] += source.standard**2
-            fourth[i] += (source.kurtosis - _NORMAL) * source.standard**4
+        for name, standard in source.moves.items():
+            i = INPUTS.index(name)
+            second[i] += np.where(source.counts, standard**2, 0.0)
+            every[i] += standard**2
+            fourth[i] += (source.kurtosis - _NORMAL) * standard**4
     root = np.sqrt(second)
     return root, _NORMAL + fourth / np.where(every > 0, every**2, 1.0)

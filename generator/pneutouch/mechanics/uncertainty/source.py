@@ -1,6 +1,7 @@
 """One source of uncertainty: what it acts on, how far it spreads, and where its number comes from."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any, Literal
 
 import numpy as np
@@ -23,6 +24,9 @@ INPUTS = ("shear_modulus", "wall_thickness", "inner_radius", "dead_volume", "amb
 FIGURE = "figure"
 """Acts on the predicted figure itself, as a relative error."""
 
+JOINT = "parameters"
+"""Acts on several inputs together, whose deviations are correlated."""
+
 SENSITIVITY = FIGURES.index("sensitivity_kPa_per_N")
 DEAD = INPUTS.index("dead_volume")
 
@@ -35,13 +39,15 @@ class UncertaintySource:
 
     Attributes:
         name: Short name, the key of its share.
-        acts_on: One of `INPUTS`, or `FIGURE`.
+        acts_on: One of `INPUTS`, `FIGURE`, or `JOINT`.
         standard: Standard uncertainty (n,), relative; of the dead volume absolute, mm3, because it may be zero.
         distribution: Of the relative deviation (normal, rectangular) or of its logarithm (lognormal, log-rectangular).
         counts: Which figures of which sensors it counts for, (figures, n).
         origin: Where the number comes from.
         known: Whether it is a published or measured number; False for an assumption.
         freedom: Degrees of freedom of ``standard``; infinite for a bound or an assumption (JCGM 100, G.4.3).
+        loads: Of a joint source, by input its root of the covariance: how far each of independent deviations of unit
+            variance moves it, in its unit; rows of one length. ``standard`` is not read then.
     """
 
     name: str
@@ -52,6 +58,33 @@ class UncertaintySource:
     origin: str
     known: bool
     freedom: float = np.inf
+    loads: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+
+    @property
+    def moves(self) -> dict[str, Array]:
+        """Standard uncertainties (n,) by the inputs that it acts on; none for one on the figure."""
+        if self.acts_on == JOINT:
+            return {name: np.full(self.standard.shape, np.linalg.norm(row)) for name, row in self.loads.items()}
+        return {} if self.acts_on == FIGURE else {self.acts_on: self.standard}
+
+    def variance(self, slopes: Array) -> Array:
+        """Of the logarithm of the figures, (figures, n), by their slopes (inputs, figures, n)."""
+        if self.acts_on == FIGURE:
+            whole = np.broadcast_to(self.standard**2, self.counts.shape)
+        elif self.acts_on == JOINT:
+            rows = np.array([slopes[INPUTS.index(name)] for name in self.loads])
+            whole = (np.einsum("ifn,ic->cfn", rows, np.array([*self.loads.values()])) ** 2).sum(axis=0)
+        else:
+            whole = (slopes[INPUTS.index(self.acts_on)] * self.standard) ** 2
+        return np.where(self.counts, whole, 0.0)
+
+    def deviations(self, row: int, count: int, draw: np.random.Generator) -> dict[str, Array]:
+        """Sampled moves of the inputs as `moved` takes them, (count,): of the logarithm, of the dead volume mm3."""
+        if self.acts_on == JOINT:
+            rows = np.array([*self.loads.values()])
+            return dict(zip(self.loads, rows @ draw.standard_normal((rows.shape[1], count)), strict=True))
+        by = self.sample(row, count, draw)
+        return {self.acts_on: by if self.acts_on == INPUTS[DEAD] else np.log(by)}
 
     @property
     def kurtosis(self) -> float:
@@ -67,13 +100,18 @@ class UncertaintySource:
             return np.asarray(deviation)
         return np.asarray(np.exp(deviation) if self.distribution.startswith("log") else 1.0 + deviation)
 
-    def document(self, row: int) -> dict[str, Any]:
-        """The source as it leaves the program, for sensor ``row``."""
-        absolute = self.acts_on == INPUTS[DEAD]
+    def documents(self, row: int) -> list[dict[str, Any]]:
+        """The source as it leaves the program, for sensor ``row``; a joint one as an entry an input."""
+        if self.acts_on == FIGURE:
+            return [self._document(row, FIGURE, float(self.standard[row]))]
+        return [self._document(row, name, float(standard[row])) for name, standard in self.moves.items()]
+
+    def _document(self, row: int, acts_on: str, standard: float) -> dict[str, Any]:
+        absolute = acts_on == INPUTS[DEAD]
         return {
             "name": self.name,
-            "acts_on": self.acts_on,
-            "standard_uncertainty": float(self.standard[row]) * (1e-3 if absolute else 1.0),
+            "acts_on": acts_on,
+            "standard_uncertainty": standard * (1e-3 if absolute else 1.0),
             "unit": "mL" if absolute else "relative",
             "distribution": self.distribution,
             "figures": [name for name, counts in zip(FIGURES, self.counts[:, row], strict=True) if counts],

@@ -1,39 +1,53 @@
-"""A calibration as files: its folder, and the resin and design that predict, select and build take."""
+"""A calibration as files: its folder, and the calibration file that a design names."""
 
 import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pneutouch.bench.finding import rounded
-from pneutouch.catalogue import KINDS, Library
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.bench.calibrate.parameters import DEAD, KEYS, NAMES, OFFSET, outside_value
+from pneutouch.bench.calibrate.response import ResponseGap
+from pneutouch.catalogue import KINDS
 from pneutouch.errors import InputError
 from pneutouch.output.files import MANIFEST, check_writable, digest, json_bytes, write_folder
 from pneutouch.report.residuals import residual_chart
-from pneutouch.spec.read import read_toml
+from pneutouch.rounding import rounded
+from pneutouch.spec.calibration import FORMAT
 from pneutouch.spec.toml_text import toml_text
+from pneutouch.units import KPA, ML
 from pneutouch.workflows.calibrate.fit import Calibration
 from pneutouch.workflows.coupons import MeasuredProfile, write_profiles
 
-HEAD = "# Written by pneutouch calibrate"
-"""First words of every file that is ours to overwrite."""
-
 _CHART = (160.0, 110.0)
 """Width and height of the residual chart, mm."""
+
 _TWO_SIDED = 1.96
-_SMALL = 4
+_DIGITS = 8
+"""Significant digits of a calibration file: a covariance of correlated parameters needs more than its values."""
+
+_NAME_LIMIT = 100
+
+
+@dataclass(frozen=True, slots=True)
+class CampaignSource:
+    """Where the runs of a calibration are from: SHA-256 of the files, who measured, and the mean age of the print."""
+
+    digest: str
+    lab: str = ""
+    simulated: bool = False
+    age_days: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class SavedCalibration:
-    """What is saved of a calibration."""
+    """A calibration file before it is written: its name, its path and its text."""
 
-    files: tuple[MeasuredProfile, ...]
-
-    @property
-    def paths(self) -> list[str]:
-        """Paths of the files."""
-        return [str(file.path) for file in self.files]
+    name: str
+    path: Path
+    text: str
 
 
 def write_calibration(calibration: Calibration, out: Path) -> Path:
@@ -50,116 +64,120 @@ def write_calibration(calibration: Calibration, out: Path) -> Path:
     return folder
 
 
-def prepare(
-    calibration: Calibration, name: str, root: Path, library: Library, *, shadow: bool = False
-) -> SavedCalibration:
-    """Check and word the files of ``name`` under ``root``: the resin where its modulus was fitted, and the design.
+def default_name(calibration: Calibration) -> str:
+    """Name of the calibration file where none is given: design and sensor."""
+    name = re.sub(r"[^A-Za-z0-9_-]+", "-", f"{calibration.scene.name}-{calibration.sensor or 'sensor'}")
+    return name.lstrip("-_")[:_NAME_LIMIT] or "sensor"
 
-    Nothing is written. Raises InputError for a bad name, one that would hide another resin or design (unless
-    ``shadow``), a file that the command did not write, and estimates that have no interval.
+
+def prepare(
+    calibration: Calibration, name: str, root: Path, source: CampaignSource, *, replace: bool = False
+) -> SavedCalibration:
+    """Check and word ``root/calibrations/name.toml``; nothing is written.
+
+    Raises InputError for a bad name, a file of that name with another content (unless ``replace``), and a modulus or
+    wall that was fitted and has no interval.
     """
-    if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]*", name):
-        raise InputError("use letters, digits, - and _, starting with a letter or digit", key="save", value=name)
-    by_name = {estimate["parameter"]: estimate for estimate in calibration.estimates}
-    files = []
-    if "modulus" in by_name:
-        place = _place("materials", name, root, library, shadow)
-        files.append(_material(calibration, by_name["modulus"], place, library))
-    files.append(_design(calibration, by_name, name, _place("designs", name, root, library, shadow)))
-    return SavedCalibration(tuple(files))
+    if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]*", name) or name == "none" or len(name) > _NAME_LIMIT:
+        rule = f"use at most {_NAME_LIMIT} letters, digits, - and _, starting with a letter or digit, and not none"
+        raise InputError(rule, key="save", value=name)
+    path = root / KINDS["calibrations"].folder / f"{name}.toml"
+    content = calibration_content(calibration, source)
+    KINDS["calibrations"].validate(content, str(path))
+    head = f"# Calibration of one sensor; pneutouch predict {calibration.scene.name}@{name} uses it.\n"
+    text = head + toml_text(content)
+    if path.is_symlink() or (path.exists() and not path.is_file()):
+        raise InputError("is no file of its own", file=path, remedy="move it away or give another `save`")
+    if path.is_file() and path.read_bytes() != text.encode() and not replace:
+        remedy = "give another `save`, or `replace` to replace it"
+        raise InputError("there is a calibration of this name, of other content", file=path, remedy=remedy)
+    return SavedCalibration(name, path, text)
 
 
 def save(saved: SavedCalibration) -> None:
-    """Write what `prepare` made. Raises InputError where a folder cannot be written."""
-    write_profiles(saved.files)
+    """Write what `prepare` made. Raises InputError where the folder cannot be written."""
+    write_profiles([MeasuredProfile(saved.path, saved.text, [])])
 
 
-def _place(kind: str, name: str, root: Path, library: Library, shadow: bool) -> Path:
-    path = root / KINDS[kind].folder / f"{name}.toml"
-    other = library.paths(kind).get(name)
-    if other is not None and other.resolve() != path.resolve() and not shadow:
-        remedy = "give another name, or `shadow` to hide it"
-        raise InputError(
-            f"{other} is of this name, which the new file would hide", key="save", value=name, remedy=remedy
-        )
-    if path.is_symlink() or path.exists():
-        generated = path.is_file() and not path.is_symlink() and _is_generated(path)
-        if not generated:
-            kept = "was not written by pneutouch calibrate, so it is left as it is"
-            raise InputError(kept, file=path, remedy="move it away or give another `save`")
-    return path
+def calibration_content(calibration: Calibration, source: CampaignSource) -> dict[str, Any]:
+    """The content of the calibration file."""
+    fitted, design = calibration.fit, calibration.scene.design
+    observations, gap = fitted.observations, calibration.gap
+    covered, covariance = _covariance(calibration)
+    membrane = design.model_dump(by_alias=True, exclude_none=True)["membrane"]
+    content = {
+        "format": FORMAT,
+        "title": f"sensor {calibration.sensor or 'unnamed'}, {calibration.title or 'unnamed campaign'}",
+        "covariance": [[float(x) for x in row] for row in covariance],
+        "source": {
+            "sensor": calibration.sensor or "unnamed",
+            "campaign": calibration.title,
+            "lab": source.lab,
+            "digest": source.digest,
+            "simulated": source.simulated,
+            "curves": 0 if gap is None else len(observations.curves),
+            "injections": len(observations.injections),
+            "driving_pressures_kPa": [] if gap is None else [*gap.driving_pressures_kPa],
+            "ambient_pressure_kPa": observations.ambient / KPA,
+            "age_days": float(source.age_days),
+        },
+        "design": {
+            "name": calibration.scene.name,
+            "material": membrane["material"],
+            "inner_radius_mm": float(membrane["inner_radius_mm"]),
+            "wall_thickness_mm": float(membrane["wall_thickness_mm"]),
+            "dead_volume_mL": fitted.sensor.gas.dead_volume / ML,
+        },
+        "parameters": [
+            {
+                "key": KEYS[k],
+                "value": outside_value(k, float(fitted.full[k])),
+                "fitted": k in fitted.parameters.fitted,
+                "covered": k in covered,
+            }
+            for k in range(len(NAMES))
+        ],
+        **({} if gap is None else {"response": _response(gap, calibration)}),
+    }
+    return rounded(content, _DIGITS)  # type: ignore[no-any-return]
 
 
-def _is_generated(path: Path) -> bool:
-    with path.open(encoding="utf-8", errors="replace") as file:
-        return file.read(len(HEAD)) == HEAD
+def _covariance(calibration: Calibration) -> tuple[list[int], Array]:
+    """Parameters with a covariance, and the covariance; of modulus and wall that of the logarithm, in mL and mm.
+
+    A standard deviation is half of the 95 % interval over 1.96, so that k = 2 gives the interval back. What was not
+    fitted but has a prior moves the estimates, and so is correlated with them. A dead volume or an offset on its bound
+    has no interval and is left to the sources of the design.
+    """
+    fit = calibration.fit
+    fitted, others, spread = fit.parameters.fitted, fit.parameters.others, fit.parameters.prior_spread
+    for place, k in enumerate(fitted):
+        if k not in (DEAD, OFFSET) and not np.isfinite(fit.half_width[place]):
+            missing = f"{KEYS[k]} has no interval (on its bound, or not seen): there is no calibration to save"
+            raise InputError(missing, key="save", remedy="leave it out of `fit`")
+    size = len(NAMES)
+    whole, grown = np.zeros((size, size)), np.ones(size)
+    whole[np.ix_(fitted, fitted)] = fit.covariance.matrix
+    for j in others:
+        whole[j, j] = spread[j] ** 2
+        whole[list(fitted), j] = whole[j, list(fitted)] = fit.covariance.considered[:, j] * spread[j]
+    for place, k in enumerate(fitted):
+        if np.isfinite(fit.half_width[place]):
+            grown[k] = fit.half_width[place] / _TWO_SIDED / np.sqrt(whole[k, k])
+    kept = sorted([*others, *(k for place, k in enumerate(fitted) if np.isfinite(fit.half_width[place]))])
+    scale = grown * np.where(np.arange(size) == DEAD, 1.0 / ML, 1.0)
+    whole = (whole * np.outer(scale, scale))[np.ix_(kept, kept)]
+    return kept, 0.5 * (whole + whole.T)
 
 
-def _head(calibration: Calibration, lines: list[str]) -> str:
-    keep = "Edit this line away and the command will no longer overwrite the file."
-    return "".join([f"{HEAD} from {_origin(calibration)}. {keep}\n", *(f"# {line}\n" for line in lines)])
-
-
-def _origin(calibration: Calibration) -> str:
-    runs, pushed = len(calibration.fit.observations.curves), len(calibration.fit.observations.injections)
-    counts = f"{runs} curves" + (f", {pushed} injections" if pushed else "")
-    return f"sensor {calibration.sensor or 'unnamed'}, {calibration.title or 'unnamed campaign'}, {counts}"
-
-
-def _material(calibration: Calibration, estimate: dict[str, Any], path: Path, library: Library) -> MeasuredProfile:
-    interval = estimate["interval_95"]
-    if interval is None:
-        missing = "the shear modulus has no interval (on its bound, or not seen): there is no resin to save"
-        raise InputError(missing, key="save")
-    base = calibration.scene.design.membrane.material
-    if not isinstance(base, str):
-        remedy = "a modulus can be saved of a resin that has a file"
-        raise InputError(f"{base.label} is a mix of two resins", key="save", remedy=remedy)
-    content = read_toml(library.paths("materials")[base])
-    before = content["shear_modulus_MPa"]
-    # A material file holds one standard deviation; read with k = 2 it gives this interval back.
-    spread = 0.5 * (interval[1] - interval[0]) / _TWO_SIDED
-    wording = (
-        f"calibrated on {_origin(calibration)}; 95 % interval {interval[0]:.4g} to {interval[1]:.4g} MPa; "
-        f"{'priors counted' if calibration.fit.parameters.priors else 'no priors'}; before "
-        f"{before.get('value', 'a range')}: {base}.toml"
-    )
-    content["shear_modulus_MPa"] = {"value": rounded(estimate["value"]), "spread": rounded(spread), "source": wording}
-    content["title"] = f"{content['title']}, {path.stem}"
-    # The paper measured another print: its values do not bear on the error of this modulus.
-    content.pop("measured", None)
-    KINDS["materials"].validate(content, str(path))
-    about = f"{base} with the shear modulus of the sensor in hand; the paper's measurements of {base} are not in it."
-    head = _head(calibration, [about])
-    changes = [{"file": str(path), "key": "shear_modulus_MPa", "before": before, "after": content["shear_modulus_MPa"]}]
-    return MeasuredProfile(path, head + toml_text(content), changes)
-
-
-def _design(calibration: Calibration, by_name: dict[str, dict[str, Any]], name: str, path: Path) -> MeasuredProfile:
-    design = calibration.scene.design
-    content = design.model_dump(exclude_none=True)
-    lines, changes = [], []
-    for parameter, table, key, value in (
-        ("wall", "membrane", "wall_thickness_mm", lambda x: rounded(x)),
-        ("dead-volume", "pneumatics", "dead_volume_mL", lambda x: round(x, _SMALL)),
-    ):
-        if parameter in by_name:
-            lines.append(_sentence(by_name[parameter]))
-            before = content[table].get(key)
-            content[table][key] = value(by_name[parameter]["value"])
-            changes.append({"file": str(path), "key": f"{table}.{key}", "before": before, "after": content[table][key]})
-    if "offset" in by_name:
-        lines.append(f"{_sentence(by_name['offset'])}; of the measurement, not of the sensor: not in this file.")
-    if "modulus" in by_name:
-        changes.append(
-            {"file": str(path), "key": "membrane.material", "before": design.membrane.material, "after": name}
-        )
-        content["membrane"]["material"] = name
-    KINDS["designs"].validate(content, str(path))
-    return MeasuredProfile(path, _head(calibration, lines) + toml_text(content), changes)
-
-
-def _sentence(estimate: dict[str, Any]) -> str:
-    interval = estimate["interval_95"]
-    interval_text = "no interval" if interval is None else f"95 % interval {interval[0]:.4g} to {interval[1]:.4g}"
-    return f"{estimate['key']} = {estimate['value']:.4g}, {interval_text}; designed {estimate['designed']:.4g}"
+def _response(gap: ResponseGap, calibration: Calibration) -> dict[str, Any]:
+    held = [(one.driving_pressure_kPa, one.error) for one in calibration.held_out]
+    return {
+        "force_factor": gap.force_factor,
+        "pressure_factor": gap.rise_factor,
+        "sensitivity_error_relative": gap.sensitivity_error([error for _, error in held]),
+        "force_error_relative": gap.force_error,
+        "residual_sensitivity_errors": [float(error) for error in gap.residual_errors],
+        "held_out_pressures_kPa": [pressure_kPa for pressure_kPa, _ in held],
+        "held_out_sensitivity_errors": [error for _, error in held],
+    }

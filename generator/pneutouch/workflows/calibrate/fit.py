@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,7 @@ from pneutouch.bench.calibrate.goodness import RunResiduals, SystematicDeviation
 from pneutouch.bench.calibrate.identify import CorrelatedParameters, Identifiability, identify
 from pneutouch.bench.calibrate.notes import fit_notes
 from pneutouch.bench.calibrate.parameters import DEAD, KEYS, LOGARITHMIC, UNITS, outside_value
+from pneutouch.bench.calibrate.response import ResponseGap, response_gap
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
@@ -53,6 +55,11 @@ class Calibration:
     held_out: tuple[HeldOutPrediction, ...]
     notes: tuple[str, ...] = ()
 
+    @cached_property
+    def gap(self) -> ResponseGap | None:
+        """What the fitted model leaves out of the curves; None without curves."""
+        return response_gap(self.fit)
+
     @property
     def notes_for_reader(self) -> list[str]:
         """Notes for the reader in addition to the numbers."""
@@ -77,6 +84,7 @@ class Calibration:
             "estimates": self.estimates,
             "correlation": _correlation(self.fit),
             "fit": _goodness(self.fit),
+            "response": None if self.gap is None else _response(self.gap, self.held_out),
             "residuals": [_residual(run) for run in self.residuals],
             "misses": [_miss(m) for m in self.misses],
             "strongly_correlated": [_ambiguity(group) for group in self.identified.ambiguities],
@@ -209,6 +217,15 @@ def _goodness(fitted: CalibrationFit) -> dict[str, Any]:
         "considered": [NAMES[k] for k in fitted.parameters.others],
         "variance_of_runs_over_points": fitted.run_factor,
         "interval_from_runs": fitted.covariance.clustered,
+    }
+
+
+def _response(gap: ResponseGap, held_out: Sequence[HeldOutPrediction]) -> dict[str, Any]:
+    return {
+        "force_factor": gap.force_factor,
+        "pressure_factor": gap.rise_factor,
+        "sensitivity_error_relative": gap.sensitivity_error([one.error for one in held_out]),
+        "force_error_relative": gap.force_error,
     }
 
 

@@ -1,15 +1,18 @@
 """The command behind ``pneutouch calibrate``: a campaign's folder in, its calibration and files out."""
 
+import hashlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pneutouch.catalogue import DesignSource, Library, load_scene, user_folder
+from pneutouch.bench.calibrate import Observations
+from pneutouch.catalogue import DesignSource, Library, load_scene, split_calibration, user_folder
 from pneutouch.errors import InputError
+from pneutouch.spec.design import CALIBRATION
 from pneutouch.spec.read import parse_changes
-from pneutouch.workflows.calibrate.files import prepare, save, write_calibration
-from pneutouch.workflows.calibrate.fit import calibrate, observations_of
-from pneutouch.workflows.characterize import Progress, answers, load_curves, sound
+from pneutouch.workflows.calibrate.files import CampaignSource, default_name, prepare, save, write_calibration
+from pneutouch.workflows.calibrate.fit import Calibration, calibrate, observations_of
+from pneutouch.workflows.characterize import CAMPAIGN, CampaignData, Progress, answers, load_curves, sound
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,25 +26,40 @@ class CalibrationOptions:
     hold_out: tuple[float, ...]
     priors: bool
     save: str | None
-    shadow: bool
+    replace: bool
     out: Path
+
+
+@dataclass(frozen=True)
+class CalibrationOutcome:
+    """A calibration that was written.
+
+    Attributes:
+        document: The calibration's document with ``calibration`` (its name), ``written`` and ``failures``.
+        calibration: The calibration itself.
+        source: Where its runs are from.
+        design_given: The design as a command takes it.
+        assignments: What the campaign changes in it.
+    """
+
+    document: dict[str, Any]
+    calibration: Calibration
+    source: CampaignSource
+    design_given: str
+    assignments: list[str]
 
 
 def run_calibration(
     options: CalibrationOptions, library: Library | None = None, progress: Progress = lambda done, total: None
-) -> dict[str, Any]:
-    """Read, fit and write; the calibration's document with ``written`` and ``failures``. Raises InputError.
-
-    Everything is checked before the first file is written.
-    """
+) -> CalibrationOutcome:
+    """Read, fit and write. Raises InputError; everything is checked before the first file is written."""
     library = library or Library.default()
-    if options.shadow and options.save is None:
-        raise InputError("goes with `save` NAME", key="shadow")
     loaded = load_curves(options.data, progress=progress)
     design = options.design or loaded.campaign.design
     if design is None:
         raise InputError("names no design", file=options.data, remedy="give `design`")
-    changes = parse_changes(loaded.campaign.assignments)
+    # A design that is calibrated already is fitted from its drawing again, or the prior would hold the data twice.
+    changes = {**parse_changes(loaded.campaign.assignments), CALIBRATION: None}
     scene = load_scene(design, changes, library)
     pairs = [(curve.run.resin, curve.run.driving_pressure_kPa) for curve in loaded.curves]
     expected = answers(design, changes, pairs, "atlas", library)
@@ -59,15 +77,39 @@ def run_calibration(
         title=loaded.campaign.title,
         notes=notes,
     )
-    saved = (
-        None
-        if options.save is None
-        else prepare(calibration, options.save, user_folder(), library, shadow=options.shadow)
-    )
+    source = _source(options.data, loaded, sensor, observations)
+    name = options.save or default_name(calibration)
+    saved = prepare(calibration, name, user_folder(), source, replace=options.replace)
     folder = write_calibration(calibration, options.out)
-    written = [str(folder)]
-    if saved is not None:
-        save(saved)
-        written += saved.paths
+    save(saved)
     failures = [list(failure) for failure in (*loaded.failures, *refused)]
-    return {**calibration.document, "written": written, "failures": failures}
+    written = {"written": [str(folder), str(saved.path)], "failures": failures}
+    document = {**calibration.document, "calibration": saved.name, **written}
+    return CalibrationOutcome(document, calibration, source, _named(design), loaded.campaign.assignments)
+
+
+def save_calibration(outcome: CalibrationOutcome, name: str, *, replace: bool = False) -> Path:
+    """Write a calibration into the user's folder under a name. Raises InputError as `prepare` and `save` do."""
+    saved = prepare(outcome.calibration, name, user_folder(), outcome.source, replace=replace)
+    save(saved)
+    return saved.path
+
+
+def _named(design: str | DesignSource) -> str:
+    """The design as a command takes it, without a calibration."""
+    return design.name if isinstance(design, DesignSource) else split_calibration(design, Library.default())[0]
+
+
+def _source(data: Path, loaded: CampaignData, sensor: str, observations: Observations) -> CampaignSource:
+    """Where the runs are from; the digest is over the campaign file and the files of the runs that were used."""
+    labels = {injection.label for injection in observations.injections}
+    used = [curve.run for curve in observations.curves]
+    used += [run for run, _, _ in loaded.injections if run.sensor == sensor and run.label in labels]
+    campaign = data / CAMPAIGN if data.is_dir() else data
+    whole = hashlib.sha256()
+    for path in (campaign, *(loaded.folder / name for name in sorted({run.file for run in used}))):
+        with path.open("rb") as file:
+            whole.update(hashlib.file_digest(file, "sha256").digest())
+    ages = [run.age_days for run in used]
+    given = loaded.campaign
+    return CampaignSource(whole.hexdigest(), given.lab, given.simulated, sum(ages) / len(ages))

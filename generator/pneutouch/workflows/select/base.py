@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from pneutouch.catalogue import DEFAULT, DesignSource, Library, ResolvedDesign, load_scene
 from pneutouch.errors import InputError, PneutouchError
-from pneutouch.spec.design import DesignFile
+from pneutouch.spec.design import CALIBRATION, DesignFile
 from pneutouch.spec.part import OnePiece, Sleeve
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import parse_changes
@@ -89,7 +90,11 @@ def with_connector(scene: ResolvedDesign) -> str:
 
 
 def _source(target: Target, library: Library) -> DesignSource:
-    return DesignSource.of(target.setting.base, library) if target.setting.base else DEFAULT
+    """The base without its calibration: that is of its own membrane, which the candidates' replace."""
+    if not target.setting.base:
+        return DEFAULT
+    source = DesignSource.of(target.setting.base, library)
+    return replace(source, content={key: value for key, value in source.content.items() if key != CALIBRATION})
 
 
 def _base(target: Target, changes: dict[str, Any], library: Library) -> DesignFile:

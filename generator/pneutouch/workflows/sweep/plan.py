@@ -8,7 +8,7 @@ from pneutouch.errors import InputError, nearest, shown
 from pneutouch.evaluation.evaluate import CLAMPS
 from pneutouch.mechanics import MODEL_CHOICES
 from pneutouch.mechanics.contact import CLOSURES
-from pneutouch.spec.design import DesignFile
+from pneutouch.spec.design import CALIBRATION, DesignFile
 from pneutouch.spec.fields import table_of
 
 PRESSURES = "pneumatics.driving_pressures_kPa"
@@ -62,7 +62,7 @@ class SweepPlan:
         if bool(self.axes) == bool(self.points):
             raise InputError("give either a grid or a list of points, one of them and not both", file=self.where)
         varied = [axis.key for axis in self.axes] + [key for point in self.points for key in point]
-        for key in (*self.settings, *varied):
+        for key in (*(key for key in self.settings if key != CALIBRATION), *varied):
             _check_key(self.where, key)
         for key in dict.fromkeys(varied):
             if key in self.settings:

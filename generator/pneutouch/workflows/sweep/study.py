@@ -8,7 +8,7 @@ from pneutouch import __version__
 from pneutouch.catalogue import KINDS, DesignSource, Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.output.files import digest, json_bytes
-from pneutouch.spec.design import DesignFile
+from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION, DesignFile
 from pneutouch.spec.fields import declaration, table_of
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.workflows.sweep.cached_library import CachedLibrary
@@ -85,13 +85,15 @@ def _names(plan: SweepPlan, base: DesignFile) -> set[tuple[str, str]]:
     names: set[tuple[str, str]] = set()
     for table_name in DesignFile.model_fields:
         table = table_of(DesignFile, table_name)
-        assert table is not None
+        if table is None:
+            continue
         for field in table.model_fields:
             kind, key = declaration(table, field).registry, f"{table_name}.{field}"
             if kind is not None:
                 given = plan.settings.get(key, getattr(getattr(base, table_name), field))
                 names |= {(kind, name) for name in _chosen(plan, key, given) if name is not None}
-    return names
+    calibration = plan.settings.get(CALIBRATION, base.calibration_name)
+    return names if calibration in (None, NO_CALIBRATION) else names | {("calibrations", str(calibration))}
 
 
 def _chosen(plan: SweepPlan, key: str, default: Any) -> list[Any]:

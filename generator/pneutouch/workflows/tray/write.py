@@ -11,7 +11,7 @@ from pneutouch.export.scene import stl
 from pneutouch.export.threemf_tray import TRAY_RECIPE, TrayItem, threemf_tray
 from pneutouch.output.files import check_writable, write_folder
 from pneutouch.output.manifest import short_digest, with_manifest
-from pneutouch.output.recipe import scene_kinds
+from pneutouch.output.recipe import scene_parts
 from pneutouch.printability import refuse
 from pneutouch.workflows.tray.labels import labels_csv, labels_md, rows
 from pneutouch.workflows.tray.lay import StepReport, TrayJob, TrayLayout, TrayPart, counted, fill
@@ -78,7 +78,7 @@ def inputs(layout: TrayLayout) -> dict[str, Any]:
         return name
 
     scenes = {
-        letter: {key: kept(getattr(value.assembly.scene, key)) for key in scene_kinds()}
+        letter: {key: kept(part) for key, part in scene_parts(value.assembly.scene).items()}
         for letter, value in values.items()
     }
     return {

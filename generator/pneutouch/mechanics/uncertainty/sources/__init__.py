@@ -8,8 +8,10 @@ from pneutouch.arrays import Flags
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.uncertainty.source import UncertaintySource
 from pneutouch.mechanics.uncertainty.sources.build import build_sources
+from pneutouch.mechanics.uncertainty.sources.calibrated import calibrated_sources, replaced
 from pneutouch.mechanics.uncertainty.sources.model import ModelErrors, model_sources, numerical_sources
 from pneutouch.mechanics.uncertainty.sources.modulus import ageing_sources, modulus_sources
+from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 
@@ -23,15 +25,21 @@ def sources(
     errors: ModelErrors,
     numerical: Mapping[str, float],
     aged: bool = True,
+    calibration: SensorCalibration | None = None,
 ) -> list[UncertaintySource]:
     """Sources that count for at least one figure of one sensor; see `budget` for the arguments."""
     size = len(batch)
     near = np.broadcast_to(np.asarray(near_paper, dtype=bool), size)
-    source_list = [
-        *modulus_sources(material, near & bool(errors.resin_errors)),
-        *build_sources(batch, printer),
-        *(ageing_sources(material, size) if aged else []),
-        *model_sources(near, errors),
+    source_list = [*modulus_sources(material, near & bool(errors.resin_errors)), *build_sources(batch, printer)]
+    model_error, remaining = model_sources(near, errors), 1.0
+    if calibration is not None:
+        known, remaining = replaced(calibration), calibration.remaining_year
+        source_list = [source for source in source_list if source.acts_on not in known]
+        source_list += calibrated_sources(batch, calibration)
+        model_error = model_error if calibration.response is None else []
+    source_list += [
+        *(ageing_sources(material, size, remaining) if aged else []),
+        *model_error,
         *numerical_sources(size, numerical),
     ]
     return [source for source in source_list if source.counts.any()]

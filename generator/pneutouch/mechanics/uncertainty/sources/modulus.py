@@ -1,5 +1,7 @@
 """The uncertainty of the shear modulus: between prints, between laboratories, and as the resin ages."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
@@ -142,14 +144,24 @@ def _between_prints(material: Material, size: int) -> UncertaintySource:
     )
 
 
-def ageing_sources(material: Material, size: int) -> list[UncertaintySource]:
+AGEING = ("ageing", "ageing of the modulus")
+"""Names of the sources of `ageing_sources`."""
+
+
+def ageing_sources(material: Material, size: int, remaining: float = 1.0) -> list[UncertaintySource]:
     """What a year in light and air does: to the modulus by the hardness, to the sensitivity as it was measured.
+
+    ``remaining`` is the share of the year that lies ahead; what has passed is in the values already.
 
     The age at use is taken as anything from fresh to a year. A deviation even over 0 to c has the mean square c^2/3
     about the fresh value, that of a rectangle of half-width c: the drift is not corrected for but enters whole (JCGM
     100, F.2.4.5).
     """
-    return [_ageing_by_hardness(material, size), _ageing_of_sensitivity(material, size)]
+    whole = _ageing_by_hardness(material, size), _ageing_of_sensitivity(material, size)
+    if remaining == 1.0:
+        return [*whole]
+    passed = f"; {remaining:.0%} of it lay ahead when the sensor was calibrated"
+    return [replace(one, standard=remaining * one.standard, origin=one.origin + passed) for one in whole]
 
 
 def _ageing_by_hardness(material: Material, size: int) -> UncertaintySource:
@@ -162,7 +174,7 @@ def _ageing_by_hardness(material: Material, size: int) -> UncertaintySource:
         aged.source if aged is not None and known else "change assumed, as the seven resins of the paper's Table 1"
     )
     return UncertaintySource(
-        "ageing of the modulus",
+        AGEING[1],
         "shear_modulus",
         _filled(abs(change) / np.sqrt(3.0), size),
         "log-rectangular",
@@ -181,7 +193,7 @@ def _ageing_of_sensitivity(material: Material, size: int) -> UncertaintySource:
         else given.source
     )
     return UncertaintySource(
-        "ageing",
+        AGEING[0],
         "figure",
         _filled(change / np.sqrt(3.0), size),
         "rectangular",

@@ -1,0 +1,81 @@
+"""What a calibration makes of a design's sensor: its parameters, its correction, its error."""
+
+from pneutouch.catalogue import ResolvedDesign
+from pneutouch.errors import InputError
+from pneutouch.mechanics import Sensor
+from pneutouch.mechanics.prediction import ErrorEstimate
+from pneutouch.mechanics.sensor import ResponseCorrection
+from pneutouch.spec.calibration import SensorCalibration
+from pneutouch.spec.design import CALIBRATION
+from pneutouch.units import ML
+
+
+def calibrated_sensor(sensor: Sensor, scene: ResolvedDesign) -> Sensor:
+    """The sensor with the parameters of its calibration; without one as it is.
+
+    Gas volumes add up: a dead volume that the design has more or less than when it was calibrated, such as by a longer
+    tube, is more or less than the fitted one too.
+    """
+    calibration = scene.calibration
+    if calibration is None:
+        return sensor
+    response = calibration.response
+    added = sensor.gas.dead_volume - calibration.design.dead_volume_mL * ML
+    return sensor.replace(
+        shear_modulus=calibration.value("shear_modulus_MPa"),
+        wall_thickness=calibration.value("wall_thickness_mm"),
+        dead_volume=max(calibration.value("dead_volume_mL") * ML + added, 0.0),
+        correction=ResponseCorrection()
+        if response is None
+        else ResponseCorrection(response.force_factor, response.pressure_factor),
+    )
+
+
+def check_options(scene: ResolvedDesign, model: str, clamp: str) -> None:
+    """Raise InputError for a model or a clamp that the parameters of a calibration were not fitted with."""
+    if scene.calibration is None:
+        return
+    name, remedy = scene.design.calibration, "leave the calibration out with the name none"
+    if model == "membrane":
+        why = "its parameters and its correction are of the models atlas and solid, not of membrane"
+        raise InputError(why, file=scene.where, key=CALIBRATION, value=name, remedy=f"take another model, or {remedy}")
+    if clamp != "base":
+        why = f"it was fitted with the rim clamped at the base plane, not at the {clamp}"
+        raise InputError(why, file=scene.where, key=CALIBRATION, value=name, remedy=f"take clamp base, or {remedy}")
+
+
+def assumption(scene: ResolvedDesign) -> str:
+    """What a prediction by a calibration is of, in one sentence."""
+    calibration = scene.calibration
+    assert calibration is not None
+    source, response = calibration.source, calibration.response
+    made = "simulated " if source.simulated else ""
+    corrected, campaign = "", source.campaign or "unnamed"
+    if response is not None:
+        corrected = f"; force times {response.force_factor:.3f}, pressure rise times {response.pressure_factor:.3f}"
+    return (
+        f"calibration {scene.design.calibration}: sensor {source.sensor}, {made}campaign {campaign}, "
+        f"modulus {calibration.value('shear_modulus_MPa'):.4g} MPa, wall "
+        f"{calibration.value('wall_thickness_mm'):.4g} mm{corrected}; the figures are of this specimen, not of another "
+        "print"
+    )
+
+
+def calibrated_error(calibration: SensorCalibration) -> ErrorEstimate | None:
+    """The part of ``error_estimate`` on sensitivity by the residuals; None where no curve was measured."""
+    response = calibration.response
+    if response is None:
+        return None
+    errors = [*response.residual_sensitivity_errors, *response.held_out_sensitivity_errors]
+    pressures_kPa = calibration.source.driving_pressures_kPa
+    held = len(response.held_out_sensitivity_errors)
+    basis = (
+        f"this model calibrated on sensor {calibration.source.sensor}, against its runs at "
+        f"{', '.join(f'{p:g}' for p in pressures_kPa)} kPa" + (f", {held} of them also held out" if held else "")
+    )
+    greatest = max(response.sensitivity_error_relative, *(abs(error) for error in errors))
+    return {
+        "sensitivity_relative": greatest,
+        "sensitivity_basis": basis,
+        "summary": [f"Sensitivity: up to {greatest:.1%}; {basis}."],
+    }

@@ -1,0 +1,159 @@
+"""The calibration file: one sensor's fitted parameters, its model error, and the design that it was made to."""
+
+import math
+from typing import Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from pneutouch.spec.design import Printable
+from pneutouch.spec.fields import Table, number
+from pneutouch.spec.grade import ResinOrMix
+
+FORMAT = 1
+"""Number of the form that calibration files have; a file of another form is refused."""
+
+ParameterKey = Literal["shear_modulus_MPa", "wall_thickness_mm", "dead_volume_mL", "contact_offset_mm"]
+
+_ROUNDING = 1e-6
+
+
+class CalibrationSource(Table):
+    """[source]: what was measured."""
+
+    sensor: Printable = Field(min_length=1, max_length=60, description="Name of the specimen.")
+    campaign: Printable = Field(default="", max_length=120, description="Title of the campaign.")
+    lab: Printable = Field(default="", max_length=120, description="Who measured.")
+    digest: str = Field(
+        pattern="^[0-9a-f]{64}$",
+        description="SHA-256 of the campaign file and of the files of the runs that were used.",
+    )
+    simulated: bool = Field(description="Whether a program made the runs.")
+    curves: int = Field(ge=0, le=100_000, description="Number of loading curves.")
+    injections: int = Field(ge=0, le=100_000, description="Number of injection runs.")
+    driving_pressures_kPa: list[float] = Field(max_length=1000, description="Driving pressures of the curves.")
+    ambient_pressure_kPa: float = number(101.325, unit="kPa", low=20, high=1000, help="Absolute pressure there.")
+    age_days: float = number(0.0, unit="d", low=0, high=36_500, help="Age of the print, mean over the runs.")
+
+
+class CalibratedDesign(Table):
+    """[design]: the design that the sensor was made to; the calibration holds for its resin and membrane alone."""
+
+    name: Printable = Field(min_length=1, max_length=200, description="Name of the design.")
+    material: ResinOrMix = Field(description="Resin of the membrane.")
+    inner_radius_mm: float = Field(ge=1, le=100, description="Inner radius as designed.")
+    wall_thickness_mm: float = Field(ge=0.05, le=50, description="Wall as designed.")
+    dead_volume_mL: float = Field(ge=0, le=1000, description="Dead volume as designed.")
+
+
+class CalibratedParameter(Table):
+    """One [[parameters]] entry."""
+
+    key: ParameterKey = Field(description="Name with unit.")
+    value: float = Field(description="Fitted, or as designed where it was not fitted.")
+    fitted: bool = Field(description="Whether it was fitted.")
+    covered: bool = Field(description="Whether it has a row of the covariance.")
+
+    @model_validator(mode="after")
+    def _possible(self) -> "CalibratedParameter":
+        least = {"shear_modulus_MPa": 1e-6, "wall_thickness_mm": 1e-3, "dead_volume_mL": 0.0}.get(self.key, -10.0)
+        if not least <= self.value <= 1000.0:
+            raise ValueError(f"{self.key} = {self.value:g}: must be from {least:g} to 1000")
+        return self
+
+
+class CalibratedResponse(Table):
+    """[response]: what the fitted model leaves out: factors that correct it, and the error that remains."""
+
+    force_factor: float = Field(ge=0.2, le=5, description="Measured force over that of the fitted model.")
+    pressure_factor: float = Field(ge=0.2, le=5, description="Measured pressure rise over that of the fitted model.")
+    sensitivity_error_relative: float = Field(ge=0, le=2, description="Standard uncertainty of the corrected model.")
+    force_error_relative: float = Field(ge=0, le=2, description="The same of its force.")
+    residual_sensitivity_errors: list[float] = Field(
+        max_length=1000, description="Corrected model over measurement less one, by driving pressure."
+    )
+    held_out_pressures_kPa: list[float] = Field(max_length=1000, description="Driving pressures left out of a fit.")
+    held_out_sensitivity_errors: list[float] = Field(max_length=1000, description="Prediction by that fit, likewise.")
+
+
+class SensorCalibration(Table):
+    """A calibration file. ``covariance`` is of ln MPa (modulus), ln mm (wall), mL (dead volume) and mm (offset)."""
+
+    format: int = Field(description="Number of the form.")
+    title: Printable = Field(min_length=1, max_length=200, description="What it is of.")
+    covariance: list[list[float]] = Field(max_length=4, description="Of the covered parameters, in their order.")
+    source: CalibrationSource
+    design: CalibratedDesign
+    parameters: list[CalibratedParameter] = Field(min_length=3, max_length=4)
+    response: CalibratedResponse | None = Field(default=None, description="Left out where no curve was measured.")
+
+    @model_validator(mode="after")
+    def _of_this_form(self) -> "SensorCalibration":
+        if self.format != FORMAT:
+            raise ValueError(f"format = {self.format}: this pneutouch reads form {FORMAT}; calibrate again")
+        return self
+
+    @model_validator(mode="after")
+    def _each_parameter_once(self) -> "SensorCalibration":
+        keys = [parameter.key for parameter in self.parameters]
+        missing = {"shear_modulus_MPa", "wall_thickness_mm", "dead_volume_mL"} - set(keys)
+        if missing or len(set(keys)) != len(keys):
+            raise ValueError("parameters: modulus, wall and dead volume must each be there once")
+        return self
+
+    @model_validator(mode="after")
+    def _is_a_covariance(self) -> "SensorCalibration":
+        size = sum(parameter.covered for parameter in self.parameters)
+        if len(self.covariance) != size or any(len(row) != size for row in self.covariance):
+            raise ValueError(f"covariance: must be {size} rows of {size} numbers, one for each covered parameter")
+        if not size:
+            return self
+        matrix = np.array(self.covariance)
+        spread = np.sqrt(np.maximum(np.diag(matrix), 0.0))
+        unit = matrix / np.outer(np.where(spread > 0, spread, 1.0), np.where(spread > 0, spread, 1.0))
+        if not np.allclose(unit, unit.T, atol=_ROUNDING) or float(np.linalg.eigvalsh(unit).min()) < -_ROUNDING:
+            raise ValueError("covariance: must be symmetric, without negative eigenvalues")
+        return self
+
+    @model_validator(mode="after")
+    def _curves_have_a_response(self) -> "SensorCalibration":
+        if (self.response is None) != (self.source.curves == 0):
+            raise ValueError("response: must be there where curves were measured, and only there")
+        if self.response is not None and not self.source.driving_pressures_kPa:
+            raise ValueError("source.driving_pressures_kPa: must name those of the curves")
+        return self
+
+    def value(self, key: ParameterKey) -> float:
+        """A parameter's value, in the unit of its key."""
+        return next(parameter.value for parameter in self.parameters if parameter.key == key)
+
+    @property
+    def covered(self) -> tuple[ParameterKey, ...]:
+        """Parameters with a row of the covariance, in its order."""
+        return tuple(parameter.key for parameter in self.parameters if parameter.covered)
+
+    @property
+    def remaining_year(self) -> float:
+        """Share of the first year that lay before the sensor when it was measured."""
+        return max(0.0, 1.0 - self.source.age_days / 365.0)
+
+    def misfit(self, material: object, inner_radius_mm: float, wall_thickness_mm: float) -> str | None:
+        """Why the calibration does not hold for a membrane, or None where it does.
+
+        Another resin has another modulus. Another radius or wall is another print, whose deviations from its drawing
+        are its own, and the model's error was found at this shape alone.
+        """
+        made = self.design
+        if material != made.material:
+            return f"was made with a membrane of {_named(made.material)}, this one is of {_named(material)}"
+        for name, here, there in (
+            ("inner radius", inner_radius_mm, made.inner_radius_mm),
+            ("wall", wall_thickness_mm, made.wall_thickness_mm),
+        ):
+            if not math.isclose(here, there, rel_tol=_ROUNDING):
+                return f"was made with a membrane of {name} {there:g} mm, this one has {here:g} mm"
+        return None
+
+
+def _named(material: object) -> str:
+    return material if isinstance(material, str) else str(getattr(material, "label", material))
