@@ -8,8 +8,8 @@ from pneutouch.arrays import Array, Index
 from pneutouch.selection.pool import CandidatePool, evaluated, joined, margins
 from pneutouch.selection.problem import CandidateResin, SelectionProblem
 
-_RATIOS, _RADII = 26, 15
-_LEVELS = 56
+_RATIOS, _RADII = 30, 18
+_LEVELS = 64
 _STEPS = (0.8, 0.4, 0.2, 0.1)
 """How far each closer look goes from the best so far, in steps of the scan."""
 _REQUIREMENTS = ("sensitivity", "force range", "stiffness")
@@ -40,6 +40,8 @@ def front(problem: SelectionProblem) -> list[TradeOffFront]:
     for step in _STEPS:
         move = around * np.array([[step / (_RATIOS - 1)], [step / (_RADII - 1)]])
         near = [_near(where[:, _best(problem, pool)], move) for where, pool in zip(places, pools, strict=True)]
+        if not any(where.size for where in near):
+            break
         places = [np.concatenate(both, axis=1) for both in zip(places, near, strict=True)]
         pools = [joined(list(both)) for both in zip(pools, _pools(problem, near), strict=True)]
     return [_hull(problem, number, pool) for number, pool in enumerate(pools)]
