@@ -156,13 +156,16 @@ def reading(folder: Path) -> Pair:
     from tests.bench.test_reading_speed import long_file
 
     from pneutouch.bench.curve import curve_of
-    from pneutouch.bench.reading import read_blocks
+    from pneutouch.bench.reading import PLATE, read_blocks
+    from pneutouch.bench.source import identify
     from pneutouch.spec.campaign import CampaignRun, ColumnMap, Rig
 
     path = long_file(folder / "long.csv", 15.0)
     assert path.stat().st_size > 90e6
     run = CampaignRun(file="x", sensor="A", resin="r", driving_pressure_kPa=12)
-    return lambda: curve_of(run, read_blocks(path, ColumnMap(), Rig()), Rig()), lambda: pd.read_csv(path)
+    return lambda: curve_of(run, read_blocks(identify(path, ColumnMap(), PLATE), Rig()), Rig()), lambda: pd.read_csv(
+        path
+    )
 
 
 def fit_of_curves(folder: Path) -> Pair:

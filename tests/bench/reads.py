@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from pneutouch.bench.reading import read_blocks
+from pneutouch.bench.reading import PLATE, read_blocks
+from pneutouch.bench.source import identify
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import ColumnMap, Rig
 
@@ -12,7 +13,7 @@ COLUMNS, RIG = ColumnMap(), Rig()
 
 
 def read(path, columns=COLUMNS, rig=RIG):
-    return read_blocks(path, columns, rig)
+    return read_blocks(identify(path, columns, PLATE), rig)
 
 
 def refuse(path, *texts, columns=COLUMNS, rig=RIG):

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from pneutouch.bench.blocks import blocks_of
-from pneutouch.bench.injection import dead_volume_of_cap, leak_of, leak_rate, read_injection
+from pneutouch.bench.injection import INJECTION, dead_volume_of_cap, leak_of, leak_rate, read_injection
+from pneutouch.bench.source import identify
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import Column, ColumnMap
 from pneutouch.units import KPA, ML
@@ -26,7 +27,7 @@ def table(tmp_path, volume, pressure, header="volume_mL,pressure_kPa"):
 def test_a_cap_gives_back_its_volume(tmp_path):
     injected = np.linspace(0, 0.5, 11)
     pressure = 101.325 * injected / 2.6 + 0.4  # kPa, with the gauge's zero off
-    volume, read = read_injection(table(tmp_path, injected, pressure), COLUMNS)
+    volume, read = read_injection(identify(table(tmp_path, injected, pressure), COLUMNS, INJECTION))
     assert volume == pytest.approx(injected * ML) and read == pytest.approx(pressure * KPA, rel=1e-5)
     result = dead_volume_of_cap(volume, read, AMBIENT)
     assert result.value == pytest.approx(2.6 * ML, rel=1e-4) and result.error < 1e-3 * ML
@@ -45,7 +46,7 @@ def test_its_error_is_that_of_many_trials():
 def test_units_of_an_injection(tmp_path):
     path = table(tmp_path, [0, 100, 200, 300], [0, 40, 81, 120], "uL,mbar")
     columns = ColumnMap(volume=Column(name="uL", unit="uL"), pressure=Column(name="mbar", unit="mbar"))
-    volume, pressure = read_injection(path, columns)
+    volume, pressure = read_injection(identify(path, columns, INJECTION))
     assert volume.tolist() == [0, 100, 200, 300] and pressure == pytest.approx(np.array([0, 4, 8.1, 12]) * KPA)
 
 
@@ -61,13 +62,13 @@ def test_units_of_an_injection(tmp_path):
 def test_tables_that_cannot_be(tmp_path, volume, pressure, words):
     path = table(tmp_path, volume, pressure)
     with pytest.raises(InputError) as caught:
-        read_injection(path, COLUMNS)
+        read_injection(identify(path, COLUMNS, INJECTION))
     assert str(caught.value).startswith(f"{path}: ") and words in str(caught.value)
 
 
 def test_a_missing_column_is_named(tmp_path):
-    with pytest.raises(InputError, match=r"column volume_mL: missing .*Did you mean Volume_ml"):
-        read_injection(table(tmp_path, [0, 1, 2], [0, 1, 2], "Volume_ml,pressure_kPa"), COLUMNS)
+    with pytest.raises(InputError, match=r"column volume_mL: missing .*no column of volume"):
+        read_injection(identify(table(tmp_path, [0, 1, 2], [0, 1, 2], "Mass_g,pressure_kPa"), COLUMNS, INJECTION))
 
 
 def test_dead_volume_refuses_what_boyle_does():
@@ -123,15 +124,15 @@ def test_a_leak_run_goes_through_blocks():
 def test_the_last_row_of_a_typed_table_counts(tmp_path, end):
     path = tmp_path / "injection.csv"
     path.write_text("volume_mL,pressure_kPa\n0,0\n0.1,4\n0.2,8\n0.5,19.5" + end, newline="")
-    volume, pressure = read_injection(path, COLUMNS)
+    volume, pressure = read_injection(identify(path, COLUMNS, INJECTION))
     assert volume == pytest.approx(np.array([0, 0.1, 0.2, 0.5]) * ML) and pressure[-1] == pytest.approx(19.5 * KPA)
     path.write_text("volume_mL,pressure_kPa\n0,0\n0.1,4\n0.2,8\n0.5,")
     with pytest.raises(InputError, match="row 5: the file ends within this row"):
-        read_injection(path, COLUMNS)
+        read_injection(identify(path, COLUMNS, INJECTION))
 
 
 def test_volumes_that_overflow_are_named(tmp_path):
     path = tmp_path / "injection.csv"
     path.write_text("volume_mL,pressure_kPa\n0,0\n0.1,4\n3e307,8\n")
     with pytest.raises(InputError, match="row 4: column volume_mL: 3e\\+307 mL: no instrument reads that"):
-        read_injection(path, COLUMNS)
+        read_injection(identify(path, COLUMNS, INJECTION))

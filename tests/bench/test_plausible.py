@@ -13,10 +13,12 @@ from hypothesis import strategies as st
 from pneutouch.bench.curve import curve_of
 from pneutouch.bench.outliers import outliers
 from pneutouch.bench.plausible import ExpectedRun, check_leak, check_plausible
-from pneutouch.bench.reading import read_blocks
+from pneutouch.bench.reading import LEAK, PLATE, read_blocks
 from pneutouch.bench.record import MeasuredCurve
+from pneutouch.bench.source import identify
 from pneutouch.errors import InputError
-from pneutouch.spec.campaign import UNITS, ColumnMap, Rig
+from pneutouch.spec.campaign import ColumnMap, Rig
+from pneutouch.tables.unit_words import UNITS
 from pneutouch.units import KPA
 from tests.bench.rig import HEADER, Sensor, run_of, small, write
 
@@ -33,7 +35,7 @@ def samples():
 
 def analyse(tmp_path, samples, columns=COLUMNS, header=HEADER, expected=EXPECTED, sensor=SENSOR):
     path = write(tmp_path / "run.csv", samples, header)
-    curve = curve_of(run_of(sensor=sensor), read_blocks(path, columns, RIG), RIG)
+    curve = curve_of(run_of(sensor=sensor), read_blocks(identify(path, columns, PLATE), RIG), RIG)
     return check_plausible(curve, columns, expected, path)
 
 
@@ -95,14 +97,14 @@ def test_every_wrong_unit_is_identified(tmp_path, samples, key, unit, units):
     path = tmp_path / "run.csv"
     values = wrong * np.array([[1], [1], [1], [1 / KPA]])
     path.write_text(",".join(HEADER) + "\n" + ("%.6f,%.9g,%.9g,%.9g\n" * values.shape[1]) % tuple(values.T.ravel()))
-    curve = curve_of(run_of(), read_blocks(path, COLUMNS, RIG), RIG)
+    curve = curve_of(run_of(), read_blocks(identify(path, COLUMNS, PLATE), RIG), RIG)
     name = getattr(COLUMNS, key).name
     with pytest.raises(InputError) as caught:
         check_plausible(curve, COLUMNS, EXPECTED, path)
     assert str(caught.value).startswith(f"{path}: column {name}: ")
     assert f"is the column in {units}? set columns.{key}.unit" in str(caught.value)
     right = declared(**{key: unit})
-    result = curve_of(run_of(), read_blocks(path, right, RIG), RIG)
+    result = curve_of(run_of(), read_blocks(identify(path, right, PLATE), RIG), RIG)
     assert check_plausible(result, right, EXPECTED, path) == ()
 
 
@@ -219,7 +221,7 @@ def leak(tmp_path, driving=22.0, top=100.0, start=22.0, constant=3600.0):
     path = tmp_path / "leak.csv"
     np.savetxt(path, np.stack([time, pressure], axis=1), "%.5f", ",", header="time_s,pressure_kPa", comments="")
     run = run_of("leak").model_copy(update={"driving_pressure_kPa": driving})
-    return check_leak(read_blocks(path, COLUMNS, RIG, plate=False), run, RIG)
+    return check_leak(read_blocks(identify(path, COLUMNS, LEAK), RIG), run, RIG)
 
 
 def test_a_leak_run_at_its_pressure_is_left_alone(tmp_path):

@@ -9,7 +9,8 @@ import pandas as pd
 import pytest
 
 from pneutouch.bench.blocks import blocks_of
-from pneutouch.bench.reading import read_blocks
+from pneutouch.bench.reading import LEAK, read_blocks
+from pneutouch.bench.source import identify
 from pneutouch.spec.campaign import Column, ColumnMap
 from pneutouch.units import KPA
 from tests.bench.reads import COLUMNS, RIG, read, refuse
@@ -108,6 +109,6 @@ def test_a_leak_run_needs_time_and_pressure_alone(tmp_path, samples):
     path = tmp_path / "leak.csv"
     pd.DataFrame({"time_s": samples[0], "pressure_kPa": samples[3] / KPA}).to_csv(path, index=False)
     refuse(path, "column position_mm: missing")
-    blocks = read_blocks(path, COLUMNS, RIG, plate=False)
+    blocks = read_blocks(identify(path, COLUMNS, LEAK), RIG)
     assert blocks.pressure == pytest.approx(blocks_of(path, *samples).pressure, rel=1e-9, abs=1e-12)
     assert not blocks.position.any() and not blocks.force.any()

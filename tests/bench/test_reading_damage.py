@@ -51,9 +51,9 @@ def test_empty_lines_count_as_rows(tmp_path, file):
 
 def test_headers(tmp_path, file, samples):
     refuse(
-        write(tmp_path / "a.csv", samples, ("time_s", "position_mm", "Force_N", "pressure_kPa")),
-        "column force_N: missing",
-        "Did you mean Force_N?",
+        write(tmp_path / "a.csv", samples, ("time_s", "position_mm", "Moment_Nm", "pressure_kPa")),
+        "column force_N: missing from the header",
+        "no column of force",
     )
     refuse(write(tmp_path / "a.csv", samples, ("time_s", "force_N", "force_N", "pressure_kPa")), "column position_mm")
     refuse(
@@ -72,10 +72,9 @@ def test_files_that_are_none(tmp_path, file):
         (b"\n\n", "no header"),
         (",".join(HEADER).encode() + b"\n", "no rows"),
         (bytes(range(256)) * 50, "binary"),
-        ("ä".encode("latin-1") + file.read_bytes(), "not UTF-8"),
-        (file.read_text().encode("utf-16"), "UTF-16"),
+        (file.read_text().encode("utf-16")[:-1], "not utf-16 text"),
         (file.read_bytes() + b"\0\0\0\n", "binary file"),
-        (file.read_bytes()[:5000] + "é".encode("latin-1") + file.read_bytes()[5000:], "not UTF-8"),
+        (file.read_bytes()[:400_000] + "é".encode("latin-1") + file.read_bytes()[400_000:], "not UTF-8"),
     ):
         path.write_bytes(content)
         refuse(path, words)

@@ -16,10 +16,11 @@ MEASURE = """
 import sys
 from pathlib import Path
 from pneutouch.bench.curve import curve_of
-from pneutouch.bench.reading import read_blocks
+from pneutouch.bench.reading import PLATE, read_blocks
+from pneutouch.bench.source import identify
 from pneutouch.spec.campaign import CampaignRun, ColumnMap, Rig
 run = CampaignRun(file="x", sensor="A", resin="r", driving_pressure_kPa=12)
-points = curve_of(run, read_blocks(Path(sys.argv[1]), ColumnMap(), Rig()), Rig()).indentation.size
+points = curve_of(run, read_blocks(identify(Path(sys.argv[1]), ColumnMap(), PLATE), Rig()), Rig()).indentation.size
 status = Path("/proc/self/status").read_text()
 print(1024 * int(status.split("VmHWM:")[1].split()[0]), points)
 """

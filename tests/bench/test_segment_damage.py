@@ -10,8 +10,9 @@ import pytest
 
 from pneutouch.bench.blocks import blocks_of
 from pneutouch.bench.curve import curve_of
-from pneutouch.bench.reading import read_blocks
+from pneutouch.bench.reading import PLATE, read_blocks
 from pneutouch.bench.record import SuspectInterval
+from pneutouch.bench.source import identify
 from pneutouch.bench.suspect import MOST
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import ColumnMap, Rig
@@ -98,6 +99,6 @@ def test_a_spike_while_read_leaves_the_point_out_and_elsewhere_not(tmp_path):
     for at, size in ((one.read[0] + 0.1, 3), (one.hold[0] + 0.3, 4)):
         spiked = samples.copy()
         spiked[2, np.searchsorted(samples[0], at)] = 60.0
-        blocks = read_blocks(write(tmp_path / "run.csv", spiked), ColumnMap(), Rig())
+        blocks = read_blocks(identify(write(tmp_path / "run.csv", spiked), ColumnMap(), PLATE), Rig())
         result = curve_of(run_of(), blocks, Rig())
         assert result.indentation.size == size and any("force spike: 60 N" in why for why in whys(result))

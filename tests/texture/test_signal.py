@@ -58,7 +58,7 @@ def test_files_that_are_none(tmp_path):
         with pytest.raises(InputError, match=words):
             read_signal(path)
     binary = tmp_path / "x.csv"
-    binary.write_bytes(b"time_s,pressure_kPa\n\xff\xfe")
+    binary.write_bytes(b"time_s,pressure_kPa\n\xff\x81")
     with pytest.raises(InputError, match="not UTF-8"):
         read_signal(binary)
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from pneutouch.api.design import Design, source_of
 from pneutouch.api.fields import named_by_keyword
@@ -109,9 +109,14 @@ def characterize(
     target: str | Path | None = None,
     model: str = "solid",
     evidence: str = "doubtful",
+    columns: Mapping[str, Mapping[str, Any]] | None = None,
+    file_format: Mapping[str, Any] | None = None,
 ) -> Result:
     """Figures of measured runs (a campaign's folder, its file or one run's) compared with the predicted ones.
 
+    ``columns`` and ``file_format`` are the tables [columns] and [format] of a campaign file, such as
+    ``{"force": {"name": "Load", "unit": "N"}}`` and ``{"decimal": ","}``; what they leave out is as the campaign states
+    it, else found from each file.
     ``target`` is a target file to compare with; ``evidence`` states of which runs `Result.save` plots the evidence:
     "doubtful", "all" or "none". Files that cannot be read are listed under ``failures``.
     """
@@ -120,7 +125,8 @@ def characterize(
 
     target_file = None if target is None else Path(target)
     with named_by_keyword():
-        outcome = run(Path(data), None if design is None else source_of(design), target=target_file, model=model)
+        source = None if design is None else source_of(design)
+        outcome = run(Path(data), source, target=target_file, model=model, reading=_reading(columns, file_format))
     return Result(f"Measured {outcome.name}", outcome.document, lambda out: write(outcome, out, evidence))
 
 
@@ -157,12 +163,14 @@ def calibrate(
     save: str | None = None,
     replace: bool = False,
     out: str | Path = "outputs",
+    columns: Mapping[str, Mapping[str, Any]] | None = None,
+    file_format: Mapping[str, Any] | None = None,
 ) -> FittedSensor:
     """Fit the model to the runs of one sensor of a campaign; write the fit into ``out``, the calibration for designs.
 
     ``hold_out_kPa`` are driving pressures to predict from the others. The calibration goes into the user's folder under
     the name ``save`` (None: of design and sensor), never over another unless ``replace``. The design with it is
-    ``design.replace(calibration=result.name)``.
+    ``design.replace(calibration=result.name)``. ``columns`` and ``file_format`` are as for `characterize`.
     """
     from pneutouch.workflows.calibrate.run import CalibrationOptions, run_calibration
 
@@ -170,7 +178,13 @@ def calibrate(
     names, held = tuple(fit), _floats(hold_out_kPa)
     with named_by_keyword():
         options = CalibrationOptions(Path(data), source, sensor, names, held, priors, save, replace, Path(out))
-        return FittedSensor(run_calibration(options))
+        return FittedSensor(run_calibration(options, reading=_reading(columns, file_format)))
+
+
+def _reading(
+    columns: Mapping[str, Mapping[str, Any]] | None, file_format: Mapping[str, Any] | None
+) -> dict[str, Mapping[str, Any]]:
+    return {"columns": columns or {}, "format": file_format or {}}
 
 
 def _floats(values: Iterable[float]) -> tuple[float, ...]:

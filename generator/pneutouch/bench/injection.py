@@ -1,7 +1,6 @@
 """Runs without a plate: air pushed into the closed line, and the line left to itself."""
 
 import math
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -9,12 +8,15 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.bench.reading import scaled
 from pneutouch.bench.record import Blocks
+from pneutouch.bench.source import MeasuredFile
 from pneutouch.bench.statistics import Mean
 from pneutouch.errors import InputError
-from pneutouch.spec.campaign import ColumnMap
 from pneutouch.tables.read import whole
 
 LEAST_POINTS = 3
+
+INJECTION = ("volume", "pressure")
+"""Channels of an injection run."""
 
 _LEAST_BLOCKS = 10
 _BATCHES = 10
@@ -24,14 +26,15 @@ _ABSOLUTE = 0.7
 """Share of the ambient pressure above which a table that begins there is taken for one of absolute pressures."""
 
 
-def read_injection(path: Path, columns: ColumnMap) -> tuple[Array, Array]:
+def read_injection(source: MeasuredFile) -> tuple[Array, Array]:
     """Injected volume (mm3, at ambient pressure) and gauge pressure (MPa), (n,) each, in the file's order.
 
     Raises InputError as `tables.read.chunks`, for fewer than three rows, a volume that does not vary, and a
     pressure that does not rise with it.
     """
-    rows, (volume, pressure) = whole(path, [columns.volume.name, columns.pressure.name])
-    volume, pressure = scaled(path, columns, ("volume", "pressure"), rows, np.stack([volume, pressure]))
+    path, columns = source.path, source.columns
+    rows, values = whole(path, [getattr(columns, key).name for key in INJECTION], source.layout)
+    volume, pressure = scaled(path, columns, INJECTION, rows, values)
     if rows.size < LEAST_POINTS:
         raise InputError(f"{rows.size} rows", file=path, remedy=f"at least {LEAST_POINTS}, for a line and its error")
     if np.ptp(volume) <= 0:

@@ -10,7 +10,8 @@ from pneutouch.arrays import Array
 from pneutouch.bench.protocol import HOLD, RELAXATION
 from pneutouch.bench.record import Blocks, MeasuredCurve
 from pneutouch.errors import InputError
-from pneutouch.spec.campaign import UNITS, CampaignRun, ColumnMap, Rig
+from pneutouch.spec.campaign import CampaignRun, ColumnMap, Rig
+from pneutouch.tables.unit_words import UNITS
 from pneutouch.units import KPA
 
 __all__ = ["ExpectedRun", "check_leak", "check_plausible"]

@@ -9,9 +9,11 @@ import numpy as np
 from pneutouch.arrays import Array, Flags
 from pneutouch.bench.blocks import BlockCollector
 from pneutouch.bench.record import Blocks, SuspectInterval
+from pneutouch.bench.source import MeasuredFile
 from pneutouch.errors import InputError
-from pneutouch.spec.campaign import UNITS, ColumnMap, Rig
+from pneutouch.spec.campaign import ColumnMap, Rig
 from pneutouch.tables.read import chunks
+from pneutouch.tables.unit_words import UNITS
 from pneutouch.units import KPA
 
 CLIPPED = 0.98
@@ -34,32 +36,33 @@ coarse or noiseless channel repeats everywhere. Our choice."""
 _PRESSED = 30.0
 """Noise standard deviations by which the force must change as evidence of movement: our choice."""
 
-_CHANNELS = ("time", "position", "force", "pressure")
+PLATE, LEAK = ("time", "position", "force", "pressure"), ("time", "pressure")
+"""Channels of a run with a plate, and of one without."""
+
 _EXACT = 1e-9
 """Relative difference at which two blocks hold one and the same number, summing aside."""
 
 
-def read_blocks(
-    path: Path, columns: ColumnMap, rig: Rig, progress: Callable[[float], None] = lambda share: None, plate: bool = True
-) -> Blocks:
-    """Blocks of a CSV or parquet file, in s, mm, N, MPa; ``progress`` is called with the share read, 0 to 1.
+def read_blocks(source: MeasuredFile, rig: Rig, progress: Callable[[float], None] = lambda share: None) -> Blocks:
+    """Blocks of a measured file, in s, mm, N, MPa; ``progress`` is called with the share read, 0 to 1.
 
     About `blocks.BLOCK_RATE` blocks a second, or one sample each up to `blocks.SLOW` Hz. The file is read in one pass
     and never is in memory as a whole. Gaps, clipped stretches and a last row that may be cut are among the warnings.
 
-    Of a run without a plate (``plate`` False: a leak run) only time and pressure are read; position and force are zero.
+    Of a run without a plate (the source has the channels of `LEAK`) position and force are zero.
 
     Raises InputError, naming file, column and row, as `tables.read.chunks`, for time that does not increase, more than
     half of the samples missing, and a channel that is dead; a run in which nothing moves, as a leak run, has no dead
     channel."""
-    names = {key: getattr(columns, key).name for key in _CHANNELS}
-    read = [place for place, key in enumerate(_CHANNELS) if plate or key in ("time", "pressure")]
-    keys = [_CHANNELS[place] for place in read]
+    path, columns, keys = source.path, source.columns, source.channels
+    plate = "force" in keys
+    names = {key: getattr(columns, key).name for key in keys}
+    read = [PLATE.index(key) for key in keys]
     collector = BlockCollector(path, names=names)
     cut = False
-    for chunk in chunks(path, [names[key] for key in keys]):
+    for chunk in chunks(path, [names[key] for key in keys], source.layout):
         collector.total = chunk.total
-        samples = np.zeros((len(_CHANNELS), chunk.rows.size))
+        samples = np.zeros((len(PLATE), chunk.rows.size))
         samples[read] = scaled(path, columns, keys, chunk.rows, chunk.values)
         collector.take(chunk.rows, samples)
         cut = cut or chunk.last is not None

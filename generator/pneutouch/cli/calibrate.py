@@ -1,15 +1,19 @@
 """``pneutouch calibrate``: fit the model to the sensor in hand."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from pneutouch.cli.app import JsonOption, OutOption, app, print_json, reporting
+from pneutouch.cli.declared import with_fields
 from pneutouch.cli.next_step import report_next, set_words
+from pneutouch.cli.reading import READING_FIELDS, ColumnsOption, reading_of, reading_text
+from pneutouch.spec.campaign import Campaign
 
 
 @app.command()
+@with_fields(Campaign, READING_FIELDS)
 def calibrate(
     data: Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="Folder of a campaign, or its campaign file.")],
     design: Annotated[
@@ -34,8 +38,10 @@ def calibrate(
         ),
     ] = None,
     replace: Annotated[bool, typer.Option("--force", help="Replace a calibration of that name.")] = False,
+    columns: ColumnsOption = None,
     out: OutOption = Path("outputs"),
     json: JsonOption = False,
+    **fields: Any,
 ) -> None:
     """Fit modulus, wall, dead volume and contact offset to a sensor's runs."""
     with reporting():
@@ -46,8 +52,10 @@ def calibrate(
             data, design, sensor, tuple(fit.split(",")), tuple(hold_out or ()), not no_priors, save, replace, out
         )
         with bar("MB read") as progress:
-            outcome = run_calibration(options, progress=progress)
+            outcome = run_calibration(options, progress=progress, reading=reading_of(columns, fields))
         document = outcome.document
+        if document["read_as"]:
+            typer.echo(reading_text(document["read_as"]), err=True)
         if json:
             print_json(document)
         else:

@@ -1,15 +1,19 @@
 """``pneutouch characterize``: measured data to figures, compared with the predicted ones."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from pneutouch.cli.app import CalibrationOption, JsonOption, OutOption, SetOption, app, changes, print_json, reporting
+from pneutouch.cli.declared import with_fields
 from pneutouch.cli.next_step import report_next
+from pneutouch.cli.reading import READING_FIELDS, ColumnsOption, reading_of, reading_text
+from pneutouch.spec.campaign import Campaign
 
 
 @app.command()
+@with_fields(Campaign, READING_FIELDS)
 def characterize(
     data: Annotated[
         Path, typer.Argument(metavar="DATA", help="Folder of a campaign, its campaign.toml, or one run's file.")
@@ -26,10 +30,12 @@ def characterize(
     evidence: Annotated[
         str, typer.Option("--evidence", help="Runs whose evidence is plotted: doubtful, all or none.")
     ] = "doubtful",
+    columns: ColumnsOption = None,
     set_: SetOption = None,
     calibration: CalibrationOption = None,
     out: OutOption = Path("outputs"),
     json: JsonOption = False,
+    **fields: Any,
 ) -> None:
     """Turn measured runs into figures and compare them with the prediction; exit 3 where files could not be read."""
     with reporting():
@@ -41,7 +47,8 @@ def characterize(
         if evidence not in EVIDENCE:
             raise InputError(f"--evidence {evidence}: unknown.{nearest(evidence, EVIDENCE)}")
         with bar("MB read") as progress:
-            outcome = run(data, design, changes(set_, calibration), target=target, model=model, progress=progress)
+            given, reading = changes(set_, calibration), reading_of(columns, fields)
+            outcome = run(data, design, given, target=target, model=model, progress=progress, reading=reading)
         folder = write(outcome, out, evidence)
         if json:
             print_json({**outcome.document, "folder": str(folder)})
@@ -50,6 +57,8 @@ def characterize(
 
             typer.echo(measured_text(outcome.document))
             typer.echo(f"\n{folder}")
+        if outcome.read_as:
+            typer.echo(reading_text(outcome.read_as), err=True)
         for file, message in outcome.measured.failures:
             typer.echo(f"error: {file}: not read: {message}", err=True)
         if outcome.failed:

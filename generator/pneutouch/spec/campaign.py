@@ -12,6 +12,22 @@ from pydantic import Field, model_validator
 from pneutouch.errors import shown
 from pneutouch.spec.design import Printable
 from pneutouch.spec.fields import Table, number
+from pneutouch.tables.unit_words import UNITS
+
+Encoding = Literal[
+    "utf-8",
+    "utf-16",
+    "utf-16-le",
+    "utf-16-be",
+    "cp1252",
+    "latin-1",
+    "cp1250",
+    "cp1251",
+    "cp932",
+    "gb18030",
+    "mac-roman",
+]
+"""Encodings that can be stated; of these utf-8, the three of UTF-16 and cp1252 are found by themselves."""
 
 RunKind = Literal["steps", "saturation", "loop", "relaxation", "leak", "injection"]
 """What a run is; see `bench.protocol`. Leak and injection need no plate."""
@@ -19,30 +35,12 @@ RunKind = Literal["steps", "saturation", "loop", "relaxation", "leak", "injectio
 AS_DESIGNED = "as-designed"
 """In place of a resin's name: the membrane as the design has it, which may be a mix that no file names."""
 
-UNITS: dict[str, dict[str, float]] = {
-    "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0},
-    "position": {"mm": 1.0, "um": 1e-3, "m": 1e3, "in": 25.4},
-    "force": {"N": 1.0, "mN": 1e-3, "kN": 1e3, "gf": 9.80665e-3, "kgf": 9.80665, "lbf": 4.4482216152605},
-    "pressure": {
-        "kPa": 1e-3,
-        "Pa": 1e-6,
-        "MPa": 1.0,
-        "hPa": 1e-4,
-        "mbar": 1e-4,
-        "bar": 0.1,
-        "psi": 6.894757293168e-3,
-        "mmHg": 1.33322387415e-4,
-    },
-    "volume": {"mL": 1e3, "uL": 1.0, "mm3": 1.0, "L": 1e6},
-}
-"""Units a column may have, with their factor to the inner units: s, mm, N, MPa, mm3."""
-
 
 class Column(Table):
     """A column of the files: its name, its unit, and its sign."""
 
     name: str = Field(min_length=1, description="Name in the header of the file.")
-    unit: str = Field(min_length=1, description="Unit of its numbers.")
+    unit: str = Field(default="", description="Unit of its numbers; left out: as the header states it.")
     sign: Literal[1, -1] = Field(default=1, description="-1 where the rig counts in the opposite direction.")
 
 
@@ -51,7 +49,9 @@ def _column(name: str, unit: str) -> Column:
 
 
 class ColumnMap(Table):
-    """[columns]: the column map. Position counts into the sensor, force and pressure rise as it is pressed."""
+    """[columns]: the column map. Position counts into the sensor, force and pressure rise as it is pressed.
+
+    A channel that is left out is the column of the name below, else the one whose header states channel and unit."""
 
     time: Column = _column("time_s", "s")
     position: Column = _column("position_mm", "mm")
@@ -63,13 +63,28 @@ class ColumnMap(Table):
     def _known_units(self) -> ColumnMap:
         for key, units in UNITS.items():
             unit = getattr(self, key).unit
-            if unit not in units:
+            if unit and unit not in units:
                 raise ValueError(f"{key}.unit = {shown(unit)}: must be one of {', '.join(units)}")
         names = [getattr(self, key).name for key in UNITS]
         for key, name in zip(UNITS, names, strict=True):
             if names.count(name) > 1:
                 raise ValueError(f"{key}.name = {shown(name)}: declared for two channels; must be one column each")
         return self
+
+
+class FileFormat(Table):
+    """[format]: how the files are written. What is left out is found from each file."""
+
+    delimiter: Literal[",", ";", "\t", " "] | None = Field(
+        default=None,
+        description="Between the cells of a text file: comma, semicolon, tab or space (any number of them).",
+    )
+    decimal: Literal[".", ","] | None = Field(default=None, description="Decimal mark of a text file: point or comma.")
+    encoding: Encoding | None = Field(default=None, description="Encoding of a text file, such as utf-8 or cp1252.")
+    skip_rows: int | None = Field(default=None, ge=0, le=100_000, description="Rows before the header.")
+    sheet: str | None = Field(
+        default=None, min_length=1, max_length=200, description="Sheet of a workbook, or group of a TDMS file."
+    )
 
 
 class Rig(Table):
@@ -88,9 +103,7 @@ class Rig(Table):
 class CampaignRun(Table):
     """One [[runs]] entry: a file and what was measured in it."""
 
-    file: Printable = Field(
-        min_length=1, max_length=1000, description="Path of the CSV or parquet file, from the campaign's folder."
-    )
+    file: Printable = Field(min_length=1, max_length=1000, description="Path of the file, from the campaign's folder.")
     kind: RunKind = Field(default="steps", description="Kind of run: " + ", ".join(RunKind.__args__) + ".")  # type: ignore[attr-defined]
     sensor: Printable = Field(min_length=1, max_length=60, description="Name of the specimen.")
     resin: str = Field(min_length=1, description=f"Name of its material, or {shown(AS_DESIGNED)}.")
@@ -120,6 +133,7 @@ class Campaign(Table):
     )
     rig: Rig = Rig()
     columns: ColumnMap = ColumnMap()
+    format: FileFormat = FileFormat()
     runs: list[CampaignRun] = Field(min_length=1, max_length=100_000, description="The runs.")
 
     @model_validator(mode="after")

@@ -6,18 +6,20 @@ from typing import NamedTuple
 
 from pneutouch.arrays import Array
 from pneutouch.errors import InputError, nearest
+from pneutouch.tables.layout import TableLayout
 
 
 class RowChunk(NamedTuple):
     """Some rows of a file.
 
     Attributes:
-        rows: Their numbers in the file, (n,); the header is row 1, comments before it do not count.
+        rows: Their numbers in the file, (n,), counted from 1.
         values: The requested columns, (k, n), in the requested order; all finite.
         share: Share of the file that has been read, 0 to 1.
-        total: Number of rows in the file; of a CSV file as estimated from its bytes.
+        total: Number of rows of numbers in the file; of a text file as estimated from its bytes.
         last: A complete last row without a line end, whose last number may be cut: its values (k, 1), not among
             ``values``; else None.
+        last_row: Its number in the file.
     """
 
     rows: Array
@@ -25,17 +27,23 @@ class RowChunk(NamedTuple):
     share: float
     total: int
     last: Array | None = None
+    last_row: int = 0
 
 
-def places(path: Path, header: Sequence[str], names: Sequence[str]) -> list[int]:
-    """Indices of the columns in a header. Raises InputError for a column that is missing or there twice."""
+def places(path: Path, layout: TableLayout, names: Sequence[str]) -> list[int]:
+    """Indices of the columns in a table; #2 is the second one whatever its name.
+
+    Raises InputError for a column that is missing or there twice."""
+    header, indices = layout.names, []
     for name in names:
         if header.count(name) > 1:
             count = header.count(name)
             raise InputError(f"there {count} times", file=path, key=f"column {name}", remedy="must be there once")
-        if name not in header:
-            separators = " Columns are separated by commas, semicolons or tabs."
-            hint = separators if len(header) < 2 else nearest(name, set(header))
-            problem = f"missing from the header '{', '.join(header)[:80]}' (row 1).{hint}"
+        number = int(name[1:]) if name[:1] == "#" and name[1:].isascii() and name[1:].isdigit() and len(name) < 7 else 0
+        if name not in header and not 1 <= number <= len(header):
+            hint = " Columns are separated by commas, semicolons or tabs." if len(header) < 2 else ""
+            hint = hint or nearest(name, set(header))
+            problem = f"missing from the header '{', '.join(header)[:80]}' (row {layout.header_row}).{hint}"
             raise InputError(problem, file=path, key=f"column {name}")
-    return [header.index(name) for name in names]
+        indices.append(header.index(name) if name in header else number - 1)
+    return indices

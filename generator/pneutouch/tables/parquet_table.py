@@ -1,6 +1,7 @@
 """Parquet files in batches of rows."""
 
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.errors import InputError
 from pneutouch.tables.chunk import RowChunk, places
+from pneutouch.tables.layout import TableFormat, TableLayout
 
 BATCH = 2**17
 """Rows at once: as many as a chunk of a CSV file holds."""
@@ -16,11 +18,39 @@ BATCH = 2**17
 _EXACT = 2.0**53
 
 
-def parquet_chunks(path: Path, names: Sequence[str]) -> Iterator[RowChunk]:
-    """Chunks of a parquet file; see `read.chunks`. Its rows are numbered from 2, as in a CSV file.
+def parquet_layout(path: Path, given: TableFormat, known: Sequence[str]) -> TableLayout:
+    """Layout of a parquet file, whose columns have names and no units of their own. Raises InputError."""
+    with _opened(path) as file:
+        names = tuple(str(name) for name in file.schema_arrow.names)
+    return TableLayout(names, ("",) * len(names), given, least=len(names))
 
-    Raises InputError where pyarrow, an optional library, is not installed.
-    """
+
+def parquet_chunks(path: Path, names: Sequence[str], layout: TableLayout) -> Iterator[RowChunk]:
+    """Chunks of a parquet file; see `read.chunks`. Its rows are numbered from 2, as in a CSV file."""
+    import pyarrow as pa
+
+    with _opened(path) as file:
+        schema = file.schema_arrow
+        columns = [layout.names[place] for place in places(path, layout, names)]
+        for name in columns:
+            kind = schema.field(name).type
+            if not (pa.types.is_integer(kind) or pa.types.is_floating(kind)):
+                raise InputError(f"holds {kind}", file=path, key=f"column {name}", remedy="must be numbers")
+        row, total = 2, file.metadata.num_rows
+        for batch in file.iter_batches(BATCH, columns=columns, use_threads=False):
+            rows = row + np.arange(batch.num_rows, dtype=float)
+            values = np.stack([_floats(path, name, batch.column(name), row) for name in columns])
+            if not np.isfinite(values).all():
+                column, at = np.argwhere(~np.isfinite(values))[0]
+                where = f"row {rows[at]:.0f}: column {columns[column]}"
+                raise InputError("empty or no finite number", file=path, key=where, remedy="must be a number")
+            row += batch.num_rows
+            yield RowChunk(rows, values, (row - 2) / total, total)
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[Any]:
+    """The file, for reading. Raises InputError where it is none, or pyarrow is not installed."""
     try:
         import pyarrow as pa
         import pyarrow.parquet as pq
@@ -28,22 +58,7 @@ def parquet_chunks(path: Path, names: Sequence[str]) -> Iterator[RowChunk]:
         raise InputError('parquet files need pyarrow: pip install "pneutouch[parquet]"', file=path) from None
     try:
         with pq.ParquetFile(path, memory_map=False, pre_buffer=False) as file:
-            schema = file.schema_arrow
-            places(path, list(schema.names), names)
-            for name in names:
-                kind = schema.field(name).type
-                if not (pa.types.is_integer(kind) or pa.types.is_floating(kind)):
-                    raise InputError(f"holds {kind}", file=path, key=f"column {name}", remedy="must be numbers")
-            row, total = 2, file.metadata.num_rows
-            for batch in file.iter_batches(BATCH, columns=list(names), use_threads=False):
-                rows = row + np.arange(batch.num_rows, dtype=float)
-                values = np.stack([_floats(path, name, batch.column(name), row) for name in names])
-                if not np.isfinite(values).all():
-                    column, at = np.argwhere(~np.isfinite(values))[0]
-                    where = f"row {rows[at]:.0f}: column {names[column]}"
-                    raise InputError("empty or no finite number", file=path, key=where, remedy="must be a number")
-                row += batch.num_rows
-                yield RowChunk(rows, values, (row - 2) / total, total)
+            yield file
     except pa.ArrowException as error:
         problem = f"no whole parquet file: {str(error).splitlines()[0][:120]}"
         raise InputError(problem, file=path, remedy="cut off, or another kind of file?") from None

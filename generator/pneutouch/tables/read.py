@@ -1,7 +1,10 @@
-"""Columns of a CSV or parquet file, in chunks: a recording of any length is never in memory as a whole."""
+"""Columns of a measured file, in chunks: a recording of any length is never in memory as a whole."""
 
-from collections.abc import Iterator, Sequence
+import stat
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -9,44 +12,105 @@ from pneutouch.arrays import Array
 from pneutouch.errors import InputError
 from pneutouch.tables.chunk import RowChunk
 from pneutouch.tables.csv_table import csv_chunks
-from pneutouch.tables.parquet_table import parquet_chunks
+from pneutouch.tables.layout import CLOCK, TableFormat, TableLayout
+from pneutouch.tables.parquet_table import parquet_chunks, parquet_layout
+from pneutouch.tables.tdms_table import tdms_chunks, tdms_layout
+from pneutouch.tables.text_layout import text_layout
+from pneutouch.tables.xlsx_table import xlsx_chunks, xlsx_layout
+
+_ANY = TableFormat()
 
 
-def chunks(path: Path, names: Sequence[str]) -> Iterator[RowChunk]:
-    """The columns ``names`` of a CSV or (suffix .parquet) parquet file in chunks, at least one row in all (it may be
-    `RowChunk.last`).
+class _Kind(NamedTuple):
+    """A kind of file: how its layout is found, and how its rows are read."""
 
-    Raises InputError, naming file, column and row, for a file that cannot be read, is cut off or has no rows, for a
-    missing or doubled column, and for a cell that is not a finite number.
+    layout: Callable[[Path, TableFormat, Sequence[str]], TableLayout]
+    chunks: Callable[[Path, Sequence[str], TableLayout], Iterator[RowChunk]]
+
+
+_TEXT = _Kind(text_layout, csv_chunks)
+_KINDS = {
+    ".parquet": _Kind(parquet_layout, parquet_chunks),
+    ".xlsx": _Kind(xlsx_layout, xlsx_chunks),
+    ".xlsm": _Kind(xlsx_layout, xlsx_chunks),
+    ".tdms": _Kind(tdms_layout, tdms_chunks),
+}
+"""Kinds of file by their suffix; a file of any other suffix is text."""
+
+
+def layout_of(path: Path, given: TableFormat = _ANY, known: Sequence[str] = ()) -> TableLayout:
+    """Where a file's table is and how it is written, what ``given`` leaves open found from the file.
+
+    ``known`` are columns that, where a row names them all, make it the header. Raises InputError for a file that cannot
+    be read, and for what its content leaves open."""
+    with _readable(path):
+        return _kind(path).layout(path, given, known)
+
+
+def chunks(path: Path, names: Sequence[str], layout: TableLayout | None = None) -> Iterator[RowChunk]:
+    """The columns ``names`` of a file in chunks, at least one row in all (it may be `RowChunk.last`).
+
+    ``layout`` left out is found, with ``names`` as the known columns. The suffix states the kind: .parquet, .xlsx,
+    .tdms, else text. Raises InputError, naming file, column and row, for a file that cannot be read, is cut off or has
+    no rows, for a missing or doubled column, and for a cell that is not a finite number.
     """
+    layout = layout or layout_of(path, known=names)
     rows = 0
-    source = parquet_chunks if path.suffix.lower() == ".parquet" else csv_chunks
-    try:
-        if path.is_dir():
-            raise InputError("this is a folder", file=path, remedy="give a CSV or parquet file")
-        if path.stat().st_size == 0:
-            raise InputError("empty file", file=path, remedy="must have a header row and rows of numbers")
-        for chunk in source(path, names):
+    with _readable(path):
+        source = _kind(path).chunks
+        clocked = layout.clock is not None and CLOCK in names
+        for chunk in _clocked(path, names, layout) if clocked else source(path, names, layout):
             rows += chunk.rows.size + (chunk.last is not None)
             yield chunk
-    except FileNotFoundError:
-        raise InputError("no such file", file=path) from None
-    except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror or error}", file=path) from None
     if not rows:
         raise InputError("has a header but no rows of numbers", file=path)
 
 
-def whole(path: Path, names: Sequence[str]) -> tuple[Array, Array]:
+def whole(path: Path, names: Sequence[str], layout: TableLayout | None = None) -> tuple[Array, Array]:
     """Row numbers (n,) and columns (k, n) of a small file. Raises InputError as `chunks`.
 
     A complete last row without a line end is kept: a table typed by hand often ends so, and its last row is often the
     greatest."""
     rows, values = [], []
-    for part in chunks(path, names):
+    for part in chunks(path, names, layout):
         rows.append(part.rows)
         values.append(part.values)
         if part.last is not None:
-            rows.append(np.array([part.total + 1.0]))
+            rows.append(np.array([float(part.last_row)]))
             values.append(part.last)
     return np.concatenate(rows), np.concatenate(values, axis=1)
+
+
+def _kind(path: Path) -> _Kind:
+    return _KINDS.get(path.suffix.lower(), _TEXT)
+
+
+def _clocked(path: Path, names: Sequence[str], layout: TableLayout) -> Iterator[RowChunk]:
+    """Chunks with the times of the file's clock in the place of `CLOCK`."""
+    assert layout.clock is not None
+    place, (first, step), done = list(names).index(CLOCK), layout.clock, 0
+    for part in _kind(path).chunks(path, [name for name in names if name != CLOCK], layout):
+        times = first + step * np.arange(done, done + part.rows.size)
+        done += part.rows.size
+        values, last = np.insert(part.values, place, times, axis=0), part.last
+        if last is not None:
+            last = np.insert(last, place, first + step * done, axis=0)
+        yield part._replace(values=values, last=last)
+
+
+@contextmanager
+def _readable(path: Path) -> Iterator[None]:
+    """Errors of the system in words. Raises InputError for a folder, a device, an empty file."""
+    try:
+        if path.is_dir():
+            raise InputError("this is a folder", file=path, remedy="give a file of numbers")
+        status = path.stat()
+        if not stat.S_ISREG(status.st_mode):
+            raise InputError("a device or a pipe", file=path, remedy="must be a file")
+        if status.st_size == 0:
+            raise InputError("empty file", file=path, remedy="must have a header row and rows of numbers")
+        yield
+    except FileNotFoundError:
+        raise InputError("no such file", file=path) from None
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror or error}", file=path) from None

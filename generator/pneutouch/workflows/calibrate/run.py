@@ -12,7 +12,16 @@ from pneutouch.spec.design import CALIBRATION
 from pneutouch.spec.read import parse_changes
 from pneutouch.workflows.calibrate.files import CampaignSource, default_name, prepare, save, write_calibration
 from pneutouch.workflows.calibrate.fit import Calibration, calibrate, observations_of
-from pneutouch.workflows.characterize import CAMPAIGN, CampaignData, Progress, answers, load_curves, sound
+from pneutouch.workflows.characterize import (
+    CAMPAIGN,
+    CampaignData,
+    Progress,
+    Reading,
+    answers,
+    load_curves,
+    read_as,
+    sound,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +44,7 @@ class CalibrationOutcome:
     """A calibration that was written.
 
     Attributes:
-        document: The calibration's document with ``calibration`` (its name), ``written`` and ``failures``.
+        document: The calibration's document with ``calibration`` (its name), ``written``, ``failures`` and ``read_as``.
         calibration: The calibration itself.
         source: Where its runs are from.
         design_given: The design as a command takes it.
@@ -50,11 +59,14 @@ class CalibrationOutcome:
 
 
 def run_calibration(
-    options: CalibrationOptions, library: Library | None = None, progress: Progress = lambda done, total: None
+    options: CalibrationOptions,
+    library: Library | None = None,
+    progress: Progress = lambda done, total: None,
+    reading: Reading | None = None,
 ) -> CalibrationOutcome:
     """Read, fit and write. Raises InputError; everything is checked before the first file is written."""
     library = library or Library.default()
-    loaded = load_curves(options.data, progress=progress)
+    loaded = load_curves(options.data, progress=progress, reading=reading)
     design = options.design or loaded.campaign.design
     if design is None:
         raise InputError("names no design", file=options.data, remedy="give `design`")
@@ -83,7 +95,7 @@ def run_calibration(
     folder = write_calibration(calibration, options.out)
     save(saved)
     failures = [list(failure) for failure in (*loaded.failures, *refused)]
-    written = {"written": [str(folder), str(saved.path)], "failures": failures}
+    written = {"written": [str(folder), str(saved.path)], "failures": failures, "read_as": read_as(loaded.sources)}
     document = {**calibration.document, "calibration": saved.name, **written}
     return CalibrationOutcome(document, calibration, source, _named(design), loaded.campaign.assignments)
 

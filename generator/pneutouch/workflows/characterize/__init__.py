@@ -2,6 +2,7 @@
 
 from pneutouch.workflows.characterize.load import CAMPAIGN, CampaignData, Progress, load_curves
 from pneutouch.workflows.characterize.predicted import answers
+from pneutouch.workflows.characterize.reading import Reading, parse_columns, read_as
 from pneutouch.workflows.characterize.run import CharacterizationResult, characterize, sound
 
 __all__ = [
@@ -9,8 +10,11 @@ __all__ = [
     "CampaignData",
     "CharacterizationResult",
     "Progress",
+    "Reading",
     "answers",
     "characterize",
     "load_curves",
+    "parse_columns",
+    "read_as",
     "sound",
 ]

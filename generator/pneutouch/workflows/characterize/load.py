@@ -6,10 +6,11 @@ from pathlib import Path
 
 from pneutouch.arrays import Array
 from pneutouch.bench.curve import curve_of
-from pneutouch.bench.injection import leak_rate, read_injection
+from pneutouch.bench.injection import INJECTION, leak_rate, read_injection
 from pneutouch.bench.plausible import check_leak
-from pneutouch.bench.reading import read_blocks
+from pneutouch.bench.reading import LEAK, PLATE, read_blocks
 from pneutouch.bench.record import MeasuredCurve
+from pneutouch.bench.source import MeasuredFile, identify
 from pneutouch.bench.trace import Trace, trace
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError, PneutouchError
@@ -19,6 +20,7 @@ from pneutouch.spec.files import inside, is_file
 from pneutouch.spec.names import file_name
 from pneutouch.spec.read import read_toml, validate
 from pneutouch.units import KPA
+from pneutouch.workflows.characterize.reading import Reading, with_reading
 
 CAMPAIGN = "campaign.toml"
 
@@ -45,6 +47,7 @@ class CampaignData:
         leaks: Run, leak rate and its standard error (MPa/s) of the leak runs.
         failures: Files that could not be read, with the message.
         questions: What looks wrong in runs without a plate: file, and the question.
+        sources: The files that could be identified, with their columns as they were read.
     """
 
     campaign: Campaign
@@ -55,6 +58,7 @@ class CampaignData:
     leaks: tuple[tuple[CampaignRun, float, float], ...]
     failures: tuple[tuple[str, str], ...]
     questions: tuple[tuple[str, str], ...] = ()
+    sources: dict[str, MeasuredFile] = field(default_factory=dict)
 
 
 @dataclass
@@ -65,6 +69,7 @@ class _Gathered:
     leaks: list[tuple[CampaignRun, float, float]] = field(default_factory=list)
     failures: list[tuple[str, str]] = field(default_factory=list)
     questions: list[tuple[str, str]] = field(default_factory=list)
+    sources: dict[str, MeasuredFile] = field(default_factory=dict)
 
 
 def campaign_of(data: Path) -> tuple[Campaign, Path]:
@@ -79,9 +84,12 @@ def campaign_of(data: Path) -> tuple[Campaign, Path]:
 
 
 def load_curves(
-    data: Path, scene: ResolvedDesign | None = None, progress: Progress = lambda done, total: None
+    data: Path,
+    scene: ResolvedDesign | None = None,
+    progress: Progress = lambda done, total: None,
+    reading: Reading | None = None,
 ) -> CampaignData:
-    """Read a campaign's folder, its campaign file, or one CSV or parquet file of a steps run.
+    """Read a campaign's folder, its campaign file, or one file of a steps run; ``reading`` is laid over the campaign.
 
     A single file is of the design's resin and of that of its driving pressures that was read before contact; ``scene``
     is the design then. Raises InputError where the campaign itself is wrong, or none of its files can be read.
@@ -90,6 +98,7 @@ def load_curves(
         campaign, folder = campaign_of(data)
     else:
         campaign, folder = _single(data, scene), data.parent
+    campaign = with_reading(campaign, reading)
     gathered = _Gathered()
     meter = _Meter(progress, sum(_size(folder / run.file) for run in campaign.runs))
     for run in campaign.runs:
@@ -116,6 +125,7 @@ def load_curves(
         tuple(gathered.leaks),
         tuple(gathered.failures),
         tuple(gathered.questions),
+        gathered.sources,
     )
 
 
@@ -149,10 +159,12 @@ def _read(
     path = folder / run.file
     if not is_file(path):
         raise InputError("no such file", file=path, remedy=f"the campaign names it as {run.label}")
+    channels = {"injection": INJECTION, "leak": LEAK}.get(run.kind, PLATE)
+    source = gathered.sources[run.file] = identify(path, campaign.columns, channels, campaign.format)
     if run.kind == "injection":
-        gathered.injections.append((run, *read_injection(path, campaign.columns)))
+        gathered.injections.append((run, *read_injection(source)))
         return
-    blocks = read_blocks(path, campaign.columns, campaign.rig, progress, plate=run.kind != "leak")
+    blocks = read_blocks(source, campaign.rig, progress)
     gathered.traces[run.file] = trace(blocks)
     if run.kind == "leak":
         gathered.questions += [(run.file, text) for text in check_leak(blocks, run, campaign.rig)]

@@ -1,7 +1,7 @@
 """A campaign characterized: read, reduced to figures, compared with the prediction, written."""
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -24,6 +24,7 @@ from pneutouch.spec.target import Target
 from pneutouch.workflows.characterize.document import document
 from pneutouch.workflows.characterize.load import CAMPAIGN, CampaignData, Progress, campaign_of, load_curves
 from pneutouch.workflows.characterize.predicted import StatePrediction, answers, compared
+from pneutouch.workflows.characterize.reading import Reading, read_as
 from pneutouch.workflows.characterize.tables import injections, points_csv, segments_csv
 from pneutouch.workflows.characterize.verdict import ageing, verdicts
 
@@ -33,16 +34,18 @@ EVIDENCE = ("doubtful", "all", "none")
 
 @dataclass(frozen=True)
 class CharacterizationResult:
-    """What became of a campaign: the sheet's content, the folder written, and the traces of the runs by file."""
+    """What became of a campaign: the sheet's content, the folder written, the traces of the runs by file, and how the
+    files were read (`reading.read_as`)."""
 
     measured: CampaignReport
     traces: Mapping[str, Trace]
     name: str
+    read_as: Sequence[Mapping[str, Any]] = ()
 
     @property
     def document(self) -> dict[str, Any]:
-        """The figures as data."""
-        return document(self.measured)
+        """The figures as data, and how files were read whose columns were found by their headers."""
+        return {**document(self.measured), "read_as": list(self.read_as)}
 
     @property
     def failed(self) -> bool:
@@ -64,17 +67,19 @@ def characterize(
     model: str = "solid",
     library: Library | None = None,
     progress: Progress = lambda done, total: None,
+    reading: Reading | None = None,
 ) -> CharacterizationResult:
     """Read a campaign's folder or one file, and compare its figures with the prediction of its design.
 
-    ``design`` comes before the one that the campaign names; ``changes`` are laid over either. Raises InputError where
+    ``design`` comes before the one that the campaign names; ``changes`` are laid over either, and ``reading`` (tables
+    ``columns`` and ``format``) over what the campaign states of its files. Raises InputError where
     nothing can be read; files that fail are listed in the outcome.
     """
     library = library or Library.default()
     name, named = (design, {}) if design is not None else _design_of(data)
     request = None if target is None else validate(Target, read_toml(target), str(target))
     given = {**named, **(changes or {})}
-    loaded = load_curves(data, load_scene(name, given, library), progress)
+    loaded = load_curves(data, load_scene(name, given, library), progress, reading)
     if loaded.campaign.ambient_pressure_kPa is not None:
         given.setdefault("pneumatics.ambient_pressure_kPa", loaded.campaign.ambient_pressure_kPa)
     _check_resins(data, loaded, library)
@@ -100,7 +105,7 @@ def characterize(
         model=model,
         input_hash=_hash(loaded, scene.design.model_dump(mode="json")),
     )
-    return CharacterizationResult(measured, loaded.traces, f"{_stem(data)}-measured")
+    return CharacterizationResult(measured, loaded.traces, f"{_stem(data)}-measured", read_as(loaded.sources))
 
 
 def _design_of(data: Path) -> tuple[str, dict[str, Any]]:
@@ -146,7 +151,7 @@ def sound(
         run = curve.run
         expected = _answer(answer_of, run.resin, run.driving_pressure_kPa).expected()
         try:
-            suspect = check_plausible(curve, loaded.campaign.columns, expected, loaded.folder / run.file)
+            suspect = check_plausible(curve, loaded.sources[run.file].columns, expected, loaded.folder / run.file)
             questions += [(run.file, text) for text in suspect]
             kept.append(curve)
         except InputError as error:

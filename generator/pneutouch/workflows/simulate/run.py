@@ -129,7 +129,7 @@ def _parameters(subject: SimulatedResin) -> dict[str, Any]:
 
 def campaign_toml(campaign: Campaign, comment: str) -> bytes:
     """A campaign as a file; raises InputError where it would not be read again."""
-    content = campaign.model_dump(mode="python", exclude_none=True)
+    content = campaign.model_dump(mode="python", exclude_none=True, exclude={"format"})
     validate(Campaign, content, "campaign.toml")
     return f"{comment}\n{toml_text(content)}".encode()
 

@@ -1,0 +1,166 @@
+"""A measured file as it is read: which column is which channel in which unit, and how the file is written."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pneutouch.bench.headers import HeaderMeaning, meaning_of
+from pneutouch.errors import InputError
+from pneutouch.spec.campaign import Column, ColumnMap, FileFormat
+from pneutouch.spec.toml_text import value_text
+from pneutouch.tables.layout import TableFormat, TableLayout
+from pneutouch.tables.read import layout_of
+from pneutouch.tables.unit_words import UNITS
+
+_ANY = FileFormat()
+_PLAIN = {"delimiter": ",", "decimal": ".", "encoding": "utf-8"}
+"""How a text file is written of which nothing need be stated."""
+
+
+@dataclass(frozen=True, slots=True)
+class MeasuredFile:
+    """A file with its columns and its layout; ``guessed`` are the channels and the keys of its format that were not
+    stated."""
+
+    path: Path
+    columns: ColumnMap
+    layout: TableLayout
+    channels: tuple[str, ...]
+    guessed: tuple[str, ...]
+    stated: FileFormat
+
+    @property
+    def toml(self) -> str:
+        """What was found and stated, as the part of a campaign file that states it."""
+        return "\n\n".join(
+            "\n".join([f"[{name}]", *(f"{key} = {value_text(value)}" for key, value in table.items())])
+            for name, table in self.content.items()
+        )
+
+    @property
+    def content(self) -> dict[str, dict[str, Any]]:
+        """What was found and stated, as the tables [format] and [columns] of a campaign file.
+
+        Where the header is need not be stated, because the columns' names state it."""
+        used = {key: getattr(self.layout.format, key) for key in _PLAIN}
+        kept = {key: value for key, value in used.items() if value not in (None, _PLAIN[key])}
+        kept |= self.stated.model_dump(exclude_none=True)
+        columns = {key: _entry(getattr(self.columns, key)) for key in self.channels}
+        return {"format": kept, "columns": columns} if kept else {"columns": columns}
+
+
+def identify(path: Path, columns: ColumnMap, channels: Sequence[str], written: FileFormat = _ANY) -> MeasuredFile:
+    """Find the columns of ``channels`` in a file.
+
+    A channel that ``columns`` states is that column. Another is the column of its default name; else the only one whose
+    name and unit state the channel; else the only one whose name or unit does. Raises InputError, with the lines of a
+    campaign file that would decide, where two columns may be a channel, none is, or its unit is not known."""
+    stated = columns.model_fields_set
+    known = [getattr(columns, key).name for key in channels]
+    layout = layout_of(path, TableFormat(**written.model_dump()), known)
+    meanings = [meaning_of(name, unit) for name, unit in zip(layout.all_names, layout.all_units, strict=True)]
+    taken = {getattr(columns, key).name for key in channels if key in stated}
+    matched: dict[str, Column] = {}
+    open_: dict[str, list[int]] = {}
+    for key in channels:
+        column: Column = getattr(columns, key)
+        if key in stated or column.name in layout.all_names:
+            matched[key] = _with_unit(path, key, column, layout)
+        else:
+            places = [k for k, meaning in enumerate(meanings) if meaning.channel == key]
+            places = [k for k in places if layout.all_names[k] not in taken]
+            places = [k for k in places if meanings[k].certain] or places
+            if (
+                len(places) == 1
+                and meanings[places[0]].unit
+                and layout.all_names.count(layout.all_names[places[0]]) == 1
+            ):
+                matched[key] = Column(name=layout.all_names[places[0]], unit=meanings[places[0]].unit)
+            else:
+                open_[key] = places
+    if open_:
+        raise _undecided(path, channels, columns, layout, matched, open_, meanings)
+    guessed = tuple(key for key in channels if key not in stated and matched[key] != getattr(columns, key))
+    full = ColumnMap.model_validate({key: _entry(column) for key, column in matched.items()} | _rest(columns, matched))
+    return MeasuredFile(path, full, layout, tuple(channels), (*guessed, *layout.guessed), written)
+
+
+def _entry(column: Column) -> dict[str, Any]:
+    return {"name": column.name, "unit": column.unit, **({"sign": -1} if column.sign < 0 else {})}
+
+
+def _rest(columns: ColumnMap, matched: dict[str, Column]) -> dict[str, dict[str, Any]]:
+    """The channels that the file does not need, under names that none of its columns has."""
+    names = {column.name for column in matched.values()}
+    others = {key: getattr(columns, key) for key in UNITS if key not in matched}
+    return {key: _entry(column) for key, column in others.items() if column.name not in names}
+
+
+def _with_unit(path: Path, key: str, column: Column, layout: TableLayout) -> Column:
+    """A stated column with the unit that its header states, where the campaign states none. Raises InputError."""
+    if column.unit:
+        return column
+    if column.name not in layout.all_names:
+        return column.model_copy(update={"unit": next(iter(UNITS[key]))})
+    unit = layout.all_units[layout.all_names.index(column.name)]
+    meaning = meaning_of(column.name, unit)
+    if meaning.kind == key:
+        return column.model_copy(update={"unit": meaning.unit})
+    problem = f"no unit of {key} in the header" if not unit else f"its unit {unit} is none of {key}"
+    remedy = f"state it, one of {', '.join(UNITS[key])}:\n{_lines({key: column}, {})}"
+    raise InputError(problem, file=path, key=f"column {column.name}", remedy=remedy)
+
+
+def _undecided(
+    path: Path,
+    channels: Sequence[str],
+    columns: ColumnMap,
+    layout: TableLayout,
+    matched: dict[str, Column],
+    open_: dict[str, list[int]],
+    meanings: Sequence[HeaderMeaning],
+) -> InputError:
+    """The error of channels without a column, with the lines that state what was found and what is open."""
+    names, first = layout.all_names, next(iter(open_))
+    lines, remarks = {}, {}
+    for key in channels:
+        places = open_.get(key)
+        if places is None:
+            lines[key] = matched[key]
+            continue
+        units = [meanings[k].unit or "?" for k in places]
+        lines[key] = Column.model_construct(
+            name=names[places[0]] if places else "?", unit=units[0] if places else "?", sign=1
+        )
+        remarks[key] = " or ".join(value_text(names[k]) for k in places[1:6]) or _choice(key, places)
+    where = f"the header '{', '.join(names)[:80]}'" + (f" (row {layout.header_row})" if layout.header_row else "")
+    if layout.header_row is None and all(name.startswith("#") for name in layout.names):
+        where = f"a table without header (row {layout.first_row} holds numbers; #1 is its first column)"
+    text = "; ".join(_problem(key, [names[k] for k in places]) for key, places in open_.items())
+    missing = not open_[first]
+    key = f"column {getattr(columns, first).name if missing else names[open_[first][0]]}"
+    problem = f"{'missing from' if missing else 'in'} {where}: {text}"
+    remedy = f"state it in the campaign file, or give `columns`:\n{_lines(lines, remarks)}"
+    return InputError(problem, file=path, key=key, remedy=remedy)
+
+
+def _problem(key: str, names: Sequence[str]) -> str:
+    if not names:
+        return f"no column of {key}"
+    if len(names) > 1:
+        return f"{len(names)} columns may be the {key}"
+    return f"no unit of the {key}"
+
+
+def _choice(key: str, places: Sequence[int]) -> str:
+    return f"unit: {', '.join(UNITS[key])}" if places else f"name of the column; unit: {', '.join(UNITS[key])}"
+
+
+def _lines(columns: dict[str, Column], remarks: dict[str, str]) -> str:
+    """The table [columns] of a campaign file, with remarks on what is open."""
+    lines = ["[columns]"]
+    for key, column in columns.items():
+        entry = value_text({**_entry(column), "unit": column.unit or "?"})
+        lines.append(f"{key} = {entry}" + (f"  # {remarks[key]}" if key in remarks else ""))
+    return "\n".join(lines)

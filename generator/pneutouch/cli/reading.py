@@ -1,0 +1,52 @@
+"""Options of the commands that read measured files, and what they print of how they read them."""
+
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any
+
+import typer
+
+from pneutouch.cli.declared import FieldOption, field_tables
+
+_WORDS = {"comma": ",", "semicolon": ";", "tab": "\t", "\\t": "\t", "space": " ", "point": "."}
+
+
+def _mark(text: str) -> str:
+    return _WORDS.get(text.lower(), text)
+
+
+READING_FIELDS = {
+    "decimal": FieldOption("format", "decimal", _mark, "MARK"),
+    "delimiter": FieldOption("format", "delimiter", _mark, "MARK"),
+    "encoding": FieldOption("format", "encoding", str, "NAME"),
+    "skip_rows": FieldOption("format", "skip_rows"),
+    "sheet": FieldOption("format", "sheet"),
+}
+"""Options of the table [format] of a campaign file."""
+
+ColumnsOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--columns",
+        metavar="CHANNEL=NAME[:UNIT]",
+        help="Columns of time, position, force, pressure, volume, such as force=Load:N; -NAME turns the sign.",
+    ),
+]
+
+
+def reading_of(columns: Sequence[str] | None, fields: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+    """The tables [columns] and [format] that the options state."""
+    from pneutouch.workflows.characterize import parse_columns
+
+    return {"columns": parse_columns(columns or []), **field_tables(READING_FIELDS, fields)}
+
+
+def reading_text(read_as: Sequence[Mapping[str, Any]]) -> str:
+    """How files were read whose columns or format were found by their look, as the lines to keep."""
+    blocks = []
+    for entry in read_as:
+        files = entry["files"]
+        more = f" and {len(files) - 1} more" if len(files) > 1 else ""
+        blocks.append(
+            f"note: {files[0]}{more}: read as follows; to keep it, put it into campaign.toml\n{entry['toml']}"
+        )
+    return "\n".join(blocks).rstrip()

@@ -1,0 +1,143 @@
+"""TDMS files, the binary files of LabVIEW: one group of channels of equal length."""
+
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.errors import InputError, shown
+from pneutouch.tables.chunk import RowChunk, places
+from pneutouch.tables.layout import TableFormat, TableLayout
+
+_UNIT_KEYS = ("unit_string", "NI_UnitDescription", "Unit", "unit")
+"""Properties of a channel that hold its unit: the first is the one of LabVIEW's library."""
+
+_CHANNELS = 1000
+_PIECE = 2**17
+
+
+def tdms_layout(path: Path, given: TableFormat, known: Sequence[str]) -> TableLayout:
+    """Layout of the group that ``given`` names, else of the only one with channels of numbers. Raises InputError.
+
+    Channels without one of times state begin and step of their clock (wf_start_offset, wf_increment)."""
+    with _opened(path) as file:
+        groups = {group.name: channels for group in file.groups() if (channels := _numeric(path, group))}
+        if given.sheet is not None and given.sheet not in groups:
+            has = ", ".join(groups)[:200]
+            raise InputError(
+                f"no group {shown(given.sheet)} of numbers", file=path, key="sheet", remedy=f"it has {has}"
+            )
+        named = [name for name, channels in groups.items() if known and set(known) <= {one.name for one in channels}]
+        chosen = [given.sheet] if given.sheet is not None else named or list(groups)
+        if not chosen:
+            raise InputError("no channels of numbers", file=path)
+        if len(chosen) > 1:
+            problem = f"channels in {len(chosen)} groups: {', '.join(chosen)[:200]}"
+            raise InputError(
+                problem,
+                file=path,
+                key="sheet",
+                remedy=f"state one in the campaign file, or give `sheet`:\n[format]\nsheet = {shown(chosen[0])}",
+            )
+        channels = groups[chosen[0]]
+        names = tuple(channel.name for channel in channels)
+        units = tuple(_unit(channel.properties) for channel in channels)
+        clock = _clock(channels)
+    return TableLayout(names, units, replace(given, sheet=chosen[0]), (), None, 1, len(names), clock)
+
+
+def tdms_chunks(path: Path, names: Sequence[str], layout: TableLayout) -> Iterator[RowChunk]:
+    """Chunks of a group; see `read.chunks`. Its rows are numbered from 1."""
+    with _opened(path) as file:
+        channels = [file[layout.format.sheet].channels()[place] for place in places(path, layout, names)]
+        total = _length(path, channels)
+        sources, row = [_Pieces(channel) for channel in channels], 0
+        while row < total:
+            size = min(_PIECE, total - row)
+            values = np.stack([source.take(size) for source in sources])
+            if values.shape[1] < size:
+                problem = f"ends after {row + values.shape[1]} of {total} values"
+                raise InputError(problem, file=path, remedy="cut off?")
+            if not np.isfinite(values).all():
+                column, at = np.argwhere(~np.isfinite(values))[0]
+                where = f"row {row + at + 1}: column {names[column]}"
+                raise InputError("no finite number", file=path, key=where, remedy="must be a number")
+            rows = np.arange(row + 1, row + size + 1, dtype=float)
+            row += size
+            yield RowChunk(rows, values, row / total, total)
+
+
+class _Pieces:
+    """The values of a channel, however small or large the pieces are in which they were written."""
+
+    def __init__(self, channel: Any) -> None:
+        self._source, self._held = iter(channel.data_chunks()), np.empty(0)
+
+    def take(self, size: int) -> Array:
+        """The next ``size`` values, fewer at the end."""
+        parts, held = [self._held], self._held.size
+        while held < size and (piece := next(self._source, None)) is not None:
+            parts.append(np.asarray(piece[:], float))
+            held += parts[-1].size
+        values = np.concatenate(parts)
+        self._held = values[size:]
+        return values[:size]
+
+
+def _length(path: Path, channels: Sequence[Any]) -> int:
+    lengths = {len(channel) for channel in channels}
+    if len(lengths) > 1:
+        text = ", ".join(f"{channel.name} {len(channel)}" for channel in channels)
+        raise InputError(f"channels of unlike length: {text}", file=path, remedy="must be sampled together")
+    (length,) = lengths or {0}
+    size, least = path.stat().st_size, sum(channel.dtype.itemsize for channel in channels)
+    if length * least > size:
+        problem = f"states {length} values a channel, more than its {size} bytes hold"
+        raise InputError(problem, file=path, remedy="cut off, or another kind of file?")
+    return length
+
+
+def _numeric(path: Path, group: Any) -> list[Any]:
+    channels = group.channels()
+    if len(channels) > _CHANNELS:
+        raise InputError(f"{len(channels)} channels in group {group.name}; at most {_CHANNELS}", file=path)
+    return channels if any(channel.dtype.kind in "iuf" and len(channel) for channel in channels) else []
+
+
+def _unit(properties: Any) -> str:
+    return next((str(properties[key]) for key in _UNIT_KEYS if properties.get(key)), "")
+
+
+def _clock(channels: Sequence[Any]) -> tuple[float, float] | None:
+    """First time and step of the channels, s; None where one has none, or another than the first."""
+    clocks = {
+        (float(one.properties.get("wf_start_offset", 0.0)), float(one.properties.get("wf_increment", 0.0)))
+        for one in channels
+    }
+    (first, step) = next(iter(clocks))
+    return (first, step) if len(clocks) == 1 and step > 0 else None
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[Any]:
+    """The file, for reading. Raises InputError where it is none, or npTDMS is not installed."""
+    try:
+        from nptdms import TdmsFile
+    except ImportError:
+        raise InputError('TDMS files need npTDMS: pip install "pneutouch[tdms]"', file=path) from None
+    try:
+        with warnings.catch_warnings(), path.open("rb") as stream:
+            warnings.simplefilter("ignore")
+            with TdmsFile.open(stream) as file:
+                yield file
+    except (InputError, OSError):
+        raise
+    except Exception as error:
+        # The library raises whatever its parsers do.
+        text = " ".join(str(error).split())[:120] or type(error).__name__
+        raise InputError(f"no whole TDMS file: {text}", file=path, remedy="cut off, or another kind of file?") from None

@@ -1,0 +1,59 @@
+"""How files are read where a command or a function states it, in place of [columns] and [format] of a campaign."""
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from pneutouch.bench.source import MeasuredFile
+from pneutouch.errors import InputError
+from pneutouch.spec.campaign import Campaign, ColumnMap, FileFormat
+from pneutouch.spec.read import validate
+from pneutouch.tables.unit_words import UNITS, unit_of
+
+Reading = Mapping[str, Mapping[str, Any]]
+"""Tables ``columns`` and ``format`` as in a campaign file."""
+
+_CHANNELS = "|".join(UNITS)
+_NEXT = re.compile(rf",(?=\s*(?:{_CHANNELS})\s*=)")
+_FORM = "write channel=NAME or channel=NAME:UNIT, such as force=Load or force=Load:N; -NAME turns the sign"
+
+
+def parse_columns(texts: Sequence[str]) -> dict[str, dict[str, Any]]:
+    """The table [columns] from texts ``channel=NAME:UNIT``, several with commas between. Raises InputError.
+
+    The unit may be left out where the header states it; a minus before the name turns the sign."""
+    columns: dict[str, dict[str, Any]] = {}
+    for text in (part for whole in texts for part in _NEXT.split(whole)):
+        channel, equals, name = (part.strip() for part in text.partition("="))
+        if not equals or not name.strip("-") or channel not in UNITS:
+            remedy = f"{_FORM}; channels: {', '.join(UNITS)}"
+            raise InputError("no column of a channel", key="columns", value=text, remedy=remedy)
+        sign, name = (-1, name[1:]) if name.startswith("-") else (1, name)
+        label, colon, word = name.rpartition(":")
+        known = unit_of(word) if colon and label else None
+        unit = known[1] if known and known[0] == channel else ""
+        columns[channel] = {"name": label.strip() if unit else name, "unit": unit, "sign": sign}
+    return columns
+
+
+def with_reading(campaign: Campaign, reading: Reading | None) -> Campaign:
+    """The campaign with what ``reading`` states in place of its own columns and format. Raises InputError."""
+    if not reading:
+        return campaign
+    stated = {key: getattr(campaign.columns, key).model_dump() for key in campaign.columns.model_fields_set}
+    written = campaign.format.model_dump(exclude_none=True)
+    try:
+        columns = validate(ColumnMap, {**stated, **reading.get("columns", {})}, "")
+    except InputError as error:
+        raise InputError(str(error), key="columns") from None
+    how = validate(FileFormat, {**written, **reading.get("format", {})}, "")
+    return campaign.model_copy(update={"columns": columns, "format": how})
+
+
+def read_as(sources: Mapping[str, MeasuredFile]) -> list[dict[str, Any]]:
+    """What was found by the look of the files: those read alike, and the tables of a campaign file that state it."""
+    alike: dict[str, dict[str, Any]] = {}
+    for file, source in sources.items():
+        if source.guessed:
+            alike.setdefault(source.toml, {"files": [], **source.content, "toml": source.toml})["files"].append(file)
+    return list(alike.values())

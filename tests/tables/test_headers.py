@@ -1,0 +1,131 @@
+"""What names of columns tell, and that what they leave open is asked and not guessed."""
+
+from __future__ import annotations
+
+import pytest
+
+from pneutouch.bench.headers import meaning_of
+from pneutouch.bench.reading import PLATE
+from pneutouch.bench.source import identify
+from pneutouch.errors import InputError
+from pneutouch.spec.campaign import ColumnMap
+from pneutouch.tables.unit_words import UNITS, unit_of
+
+ANY = ColumnMap()
+NUMBERS = "0.0,1.5,0.25,10.5\n0.1,1.6,0.35,10.6\n0.2,1.7,0.45,10.7\n"
+
+
+@pytest.mark.parametrize(
+    ("name", "unit", "channel", "found"),
+    [
+        ("Time (s)", "", "time", "s"),
+        ("Load [N]", "", "force", "N"),
+        ("P_kPa", "", "pressure", "kPa"),
+        ("Position mm", "", "position", "mm"),
+        ("Kraft (N)", "", "force", "N"),
+        ("Standardkraft", "N", "force", "N"),
+        ("Kraft in mN", "", "force", "mN"),
+        ("Druck / mbar", "", "pressure", "mbar"),
+        ("Crosshead, in", "", "position", "in"),
+        ("Digital Position(mm)", "", "position", "mm"),
+        ("Force (Ch 1) [lbf]", "", "force", "lbf"),
+        ("Pressure (kPa(g))", "", "pressure", "kPa"),
+        ("elapsed_ms", "", "time", "ms"),
+        ("weight kg", "", "force", "kgf"),
+        ("Weg", "(µm)", "position", "um"),
+        ("Ch2 [psi]", "", "pressure", "psi"),
+        ("millis", "", "time", "ms"),
+        ("Injected volume (ml)", "", "volume", "mL"),
+        ("Load", "", "force", ""),
+        ("Load cell pressure", "kPa", "pressure", "kPa"),
+        # Another quantity of the channel, or a unit that is none of the channel.
+        ("Load rate (N/s)", "", "", ""),
+        ("Crosshead speed", "mm/s", "", ""),
+        ("Force setpoint (N)", "", "", "N"),
+        ("Pressure (N)", "", "", "N"),
+        ("Pressure (psia)", "", "", ""),
+        ("Pressure (bar abs)", "", "", ""),
+        ("Temperature (°C)", "", "", ""),
+        ("Strain (%)", "", "", ""),
+    ],
+)
+def test_a_header_tells_channel_and_unit(name, unit, channel, found):
+    meaning = meaning_of(name, unit)
+    assert (meaning.channel, meaning.unit) == (channel, found)
+
+
+def test_the_case_of_a_unit_counts_where_it_tells_milli_from_mega():
+    assert unit_of("mPa") is None and unit_of("MPa") == ("pressure", "MPa")
+    assert unit_of("mN") == ("force", "mN") and unit_of("MN") is None
+    assert unit_of("PSI") == ("pressure", "psi") and unit_of("Newton") == ("force", "N")
+    assert all(unit_of(unit) == (key, unit) for key, units in UNITS.items() for unit in units)
+
+
+def asked(tmp_path, header, *texts, body=NUMBERS, columns=ANY):
+    path = tmp_path / "a.csv"
+    path.write_text(header + "\n" + body, encoding="utf-8")
+    with pytest.raises(InputError) as caught:
+        identify(path, columns, PLATE)
+    message = str(caught.value)
+    assert message.startswith(f"{path}: ")
+    for text in texts:
+        assert text in message
+    return message
+
+
+def test_two_columns_of_force_are_asked_for(tmp_path):
+    asked(
+        tmp_path,
+        "Time (s),Position (mm),Load 1 (N),Load 2 (N),P_kPa",
+        "2 columns may be the force",
+        'force = { name = "Load 1 (N)", unit = "N" }  # "Load 2 (N)"',
+        'pressure = { name = "P_kPa", unit = "kPa" }',
+        "`columns`",
+        body=NUMBERS.replace("10.", "5.5,10."),
+    )
+
+
+def test_words_and_unit_come_before_either_alone(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text("Time (s),Position (mm),Load (N),Ch 7 [N],P_kPa\n" + NUMBERS.replace("10.", "5.5,10."))
+    assert identify(path, ColumnMap(), PLATE).columns.force.name == "Load (N)"
+
+
+def test_a_unit_that_is_not_stated_is_asked_for(tmp_path):
+    message = asked(tmp_path, "Time (s),Position (mm),Load,P_kPa", "column Load", "no unit of the force")
+    assert 'force = { name = "Load", unit = "?" }  # unit: N, mN, kN, gf, kgf, lbf' in message
+
+
+def test_a_channel_that_is_missing_is_asked_for(tmp_path):
+    asked(tmp_path, "Time (s),Position (mm),Load (N),T (°C)", "column pressure_kPa: missing", "no column of pressure")
+    asked(tmp_path, "Time (s),Position (mm),Load (N),Pressure (psia)", "no column of pressure")
+
+
+def test_a_stated_column_without_unit_takes_that_of_the_header(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text("Time (s),Position (mm),Load 1 (N),Load 2 [lbf],P_kPa\n" + NUMBERS.replace("10.", "5.5,10."))
+    columns = ColumnMap.model_validate({"force": {"name": "Load 2 [lbf]"}})
+    assert identify(path, columns, PLATE).columns.force.unit == "lbf"
+    asked(
+        tmp_path,
+        "Time (s),Position (mm),Load,P_kPa",
+        "column Load: no unit of force in the header",
+        columns=ColumnMap.model_validate({"force": {"name": "Load"}}),
+    )
+
+
+def test_a_comma_that_may_be_of_thousands_is_asked_for(tmp_path):
+    body = "1;1,234;2,345;10,000\n2;1,235;2,346;10,001\n3;1,236;2,347;10,002\n"
+    head = "Time (s);Position (um);Load (mN);P (Pa)"
+    asked(tmp_path, head, "1,234: a decimal comma, or one of thousands?", '[format]\ndecimal = ","', body=body)
+    path = tmp_path / "a.csv"
+    path.write_text(f"{head}\n{body.replace('2,345', '0,345')}")
+    assert identify(path, ColumnMap(), PLATE).layout.format.decimal == ","
+
+
+def test_commas_between_decimal_commas_are_asked_for(tmp_path):
+    asked(tmp_path, "Time (s),P_kPa", "2 cells, and 4 in the rows of numbers", "decimal = ", body="0,1,2,3\n0,2,2,4\n")
+
+
+def test_a_table_without_header_is_asked_for(tmp_path):
+    asked(tmp_path, "-1.0,1.5,0.25,10.5", "row 1 holds numbers", "#1 is its first column")
