@@ -25,5 +25,5 @@ def test_less_indentation_leaves_it_free(evaluated):
 
 def test_without_predicted_shapes_nothing_is_said(evaluated):
     evaluation = evaluated("soft-pad", "connector.seat=clamped-flange-M2", model="membrane")
-    context = SensorContext(evaluation.prediction, evaluation.sensor)
+    context = SensorContext(evaluation.prediction, evaluation.sensor, evaluation.rating)
     assert [f for f in check(subject_of(evaluation.assembly), context) if f.rule == "freedom"] == []

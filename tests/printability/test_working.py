@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+import pytest
+
 from pneutouch.printability import PrintSubject, check
 from tests.printability.gallery import cup, item
 from tests.printability.working import WORKING, working
@@ -14,7 +16,7 @@ def of(found, rule):
 
 
 def test_driving_well_below_the_limit_is_no_finding():
-    assert of(working([0, 12, 22]), "driving") == []
+    assert of(working([0, 12]), "driving") == []
 
 
 def test_driving_near_a_limit_is_a_warning():
@@ -22,6 +24,21 @@ def test_driving_near_a_limit_is_a_warning():
     assert near.severity == "warning"
     assert near.excess.measured == 39
     assert "limit point" in near.message
+
+
+def test_driving_above_the_rated_pressure_is_a_warning_with_the_nominal_limit_beside_it_and_a_remedy():
+    """By the membrane the limit point is at 41.3 kPa; the modulus of TangoPlus is known to a factor of 1.8."""
+    (above,) = of(working([0, 22]), "driving")
+    assert above.severity == "warning"
+    assert above.excess.limit == pytest.approx(20.4, abs=0.4)
+    assert "41.3 kPa nominal" in above.message and "coupons" in above.fix and "calibrating" in above.fix
+
+
+def test_a_stiff_dome_is_rated_by_the_gauge_alone():
+    (above,) = of(working([0, 95], resin="FLX9985"), "driving")
+    assert above.severity == "warning"
+    assert above.excess.limit == pytest.approx(90.0)
+    assert "gauge range" in above.message and "coupons" not in above.fix
 
 
 def test_driving_beyond_the_gauge_is_an_error():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pneutouch.mechanics import predict
 from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.rating import rating
 from pneutouch.printability import Finding, PrintSubject, SensorContext, check
 from pneutouch.units import KPA
 from tests.printability.gallery import cup, item, material
@@ -19,5 +20,6 @@ def working(
     sensor = material_sensor(material(resin)).replace(wall_thickness=wall, inner_radius=radius)
     prediction = predict("dome", sensor, [p * KPA for p in pressures], model="membrane")
     dome = item(cup(radius + wall, wall), "membrane", resin)
-    found = check(PrintSubject((dome,)), SensorContext(prediction, sensor))
+    judged = rating(prediction.limits, sensor, material(resin), dome.printer)
+    found = check(PrintSubject((dome,)), SensorContext(prediction, sensor, judged))
     return [finding for finding in found if finding.rule in WORKING]

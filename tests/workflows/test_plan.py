@@ -29,6 +29,11 @@ def subject(library):
 
 
 @pytest.fixture(scope="module")
+def rating(subject):
+    return subject.rating
+
+
+@pytest.fixture(scope="module")
 def plan(library):
     return make_plan("long-tube", specimens=2, library=library)
 
@@ -89,16 +94,17 @@ def test_expected_values_are_the_prediction_and_end_with_it(found):
     assert said[-1]["force_N"] is None and said[-1]["cavity_pressure_kPa"] is None
 
 
-def test_warnings_appear_exactly_where_a_range_is_passed(found):
+def test_warnings_appear_exactly_where_a_range_is_passed(found, rating):
     """A range a little above the greatest expected value is silent, one a little below is not; by depth."""
-    # At 22 kPa the whole travel is known.
+    # At 22 kPa the whole travel is known; no other rule speaks of it where the sensor may be driven so far.
+    rating = replace(rating, pressure=23 * KPA)
     curve, tests = found.curves[1], {"saturation": protocol("saturation", R0)}
     said = points(curve, tests["saturation"].depths)
     force, pressure = said[-1]["force_N"], said[-1]["cavity_pressure_kPa"]
     first = said[0]["force_N"]
 
     def rules(**rig: float) -> list[str]:
-        return [w.rule for w in curve_warnings("x", found, curve, tests, Rig(**rig))]
+        return [w.rule for w in curve_warnings("x", rating, curve, tests, Rig(**rig))]
 
     assert rules() == []
     assert rules(force_range_N=force * 1.0001) == [] and rules(force_range_N=force * 0.9999) == ["force range"]
@@ -106,24 +112,25 @@ def test_warnings_appear_exactly_where_a_range_is_passed(found):
     assert rules(pressure_range_kPa=pressure * 0.9999) == ["pressure range"]
     assert rules(force_resolution_N=first / 3 * 0.9999) == []
     assert rules(force_resolution_N=first / 3 * 1.0001) == ["force resolution"]
-    middle = curve_warnings("x", found, curve, tests, Rig(force_range_N=said[9]["force_N"] * 0.999))[0]
+    middle = curve_warnings("x", rating, curve, tests, Rig(force_range_N=said[9]["force_N"] * 0.999))[0]
     assert middle.depth_mm == said[9]["depth_mm"] and f"stop at {said[8]['depth_mm']:g} mm" in middle.message
 
 
-def test_warning_of_the_range_end_names_where_and_why(found):
+def test_warning_of_the_range_end_names_where_and_why(found, rating):
     curve, steps = found.curves[0], protocol("steps", R0)
-    warned = curve_warnings("x", found, curve, {"steps": steps}, Rig())
+    warned = curve_warnings("x", rating, curve, {"steps": steps}, Rig())
     assert [w.rule for w in warned] == ["range end"] and "inward buckling" in warned[0].message
     assert warned[0].depth_mm == min(d for d in steps.depths if d > curve.reach)
     shallow = replace(steps, depths=tuple(d for d in steps.depths if d <= curve.reach))
-    assert curve_warnings("x", found, curve, {"steps": shallow}, Rig()) == []
+    assert curve_warnings("x", rating, curve, {"steps": shallow}, Rig()) == []
 
 
-def test_warning_of_the_rated_pressure_is_at_nine_tenths_of_the_limit(found):
-    rated = 0.9 * found.limits.lowest
+def test_warning_of_the_rated_pressure_is_at_nine_tenths_of_the_lower_end_of_the_limit(found, rating):
+    rated = 0.9 * rating.limit.low
+    assert rated < 0.6 * found.limits.lowest
     for driving, expected in ((rated * 0.9999, []), (rated * 1.0001, ["rated pressure"])):
         curve = PressCurve(driving, *(np.linspace(0, top, 5) for top in (9.0, 20.0, 10 * KPA)))
-        assert [w.rule for w in curve_warnings("x", found, curve, {"steps": protocol("steps", R0)}, Rig())] == expected
+        assert [w.rule for w in curve_warnings("x", rating, curve, {"steps": protocol("steps", R0)}, Rig())] == expected
 
 
 def test_warning_of_the_travel_counts_the_clearance():
@@ -131,8 +138,8 @@ def test_warning_of_the_travel_counts_the_clearance():
     assert [w.rule for w in travel_warnings((0.5, 7.0), Rig(travel_mm=7.99))] == ["travel"]
 
 
-def test_dead_volume_follows_from_the_pressure_expected_of_the_line(found, subject):
-    said = injection(found, Rig())
+def test_dead_volume_follows_from_the_pressure_expected_of_the_line(found, rating, subject):
+    said = injection(found, rating, Rig())
     dead = 101.325 * said["line_volume_mL"] / said["line_pressure_kPa"]
     assert dead == pytest.approx(subject.sensor.gas.dead_volume / ML, rel=1e-9)
     assert said["line_pressure_kPa"] <= 80 < 2.5 * said["line_pressure_kPa"]
@@ -177,7 +184,33 @@ def test_sheet_shows_every_run_warning_and_expected_value(plan):
 
 def test_soft_sensor_is_saturated_at_no_more_than_its_driving_pressures(library):
     soft = resins_of("long-tube", {"pneumatics.driving_pressures_kPa": [0, 4]}, (), library=library)[0]
-    assert plated_tests(soft)["saturation"][1] == (0.0, 4.0) and plated_tests(soft)["relaxation"][1] == (0.0, 4.0)
+    tests = plated_tests(soft, 20.0)
+    assert tests["saturation"][1] == (0.0, 4.0) and tests["relaxation"][1] == (0.0, 4.0)
+
+
+def test_what_the_plan_chooses_stays_below_the_rating_and_the_design_s_own_pressures_are_kept(subject, library):
+    """A wall half as thick halves the rating, to below the 12 kPa of the paper's saturation test."""
+    tests = plated_tests(subject, subject.rating.pressure_kPa)
+    assert subject.rating.pressure_kPa == 19.7 and tests["saturation"][1] == (0.0, 12.0)
+    changes = {"membrane.wall_thickness_mm": 0.8, "pneumatics.driving_pressures_kPa": [0, 20]}
+    thin = make_plan("long-tube", changes, specimens=1, library=library).document
+    (resin,) = thin["resins"]
+    rated = resin["rating"]["rated_pressure_kPa"]
+    assert 9.0 < rated < 12.0
+    saturation = max(thin["tests"]["saturation"]["driving_pressures_kPa"])
+    assert rated - 0.1 < saturation <= rated
+    assert resin["injection"]["sensor"][-1]["without_dead_volume_kPa"] <= 0.5 * rated
+    own = {run["driving_pressure_kPa"] for run in thin["runs"] if run["kind"] == "steps"}
+    assert own == {0.0, 20.0}
+    assert {w["driving_pressure_kPa"] for w in thin["warnings"] if w["rule"] == "rated pressure"} == {20.0}
+
+
+def test_a_driving_pressure_above_the_nominal_limit_is_refused_with_key_and_rating(library):
+    changes = {"membrane.material": "FLX9995", "pneumatics.driving_pressures_kPa": [0, 105]}
+    with pytest.raises(
+        InputError, match=r"driving_pressures_kPa\[1\] = 105.*gauge range, 100\.0 kPa.*at most 90\.0 kPa"
+    ):
+        make_plan("paper-dome", changes, specimens=1, library=library)
 
 
 def test_rig_file_is_read_and_refused_with_its_name(tmp_path):
@@ -193,7 +226,9 @@ def test_rig_file_is_read_and_refused_with_its_name(tmp_path):
 
 
 def test_pressure_beyond_the_limit_point_is_the_inputs_fault(library):
-    with pytest.raises(InputError, match=r"TangoPlus: driving pressure 45 kPa is beyond .* less than 39\.\d+ kPa"):
+    with pytest.raises(
+        InputError, match=r"\[0\] = 45.*TangoPlus: 45 kPa is above the limit point, 39\.6 kPa .* at most 19\.7 kPa"
+    ):
         make_plan("paper-dome", {"pneumatics.driving_pressures_kPa": [45]}, specimens=1, library=library)
     with pytest.raises(InputError, match="no such elastomer"):
         make_plan("paper-dome", resins=("TangoPlu",), library=library)

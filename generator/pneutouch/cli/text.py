@@ -2,6 +2,8 @@
 
 from typing import Any
 
+from pneutouch.rounding import tenths_below
+
 
 def prediction_text(document: dict[str, Any]) -> str:
     """The prediction as a table, with limits, events, the interval of the sensitivity and the model's error."""
@@ -12,6 +14,7 @@ def prediction_text(document: dict[str, Any]) -> str:
     lines = [
         f"{document['design']}: model {document['model']}{closure}, dead volume {document['dead_volume_mL']:.3f} mL",
         f"{_reach(document['limit_point'])}; the {document['limits']['binding']} binds",
+        *_rating(document["rating"]),
         "",
         _state_table(document["states"]),
         "",
@@ -30,6 +33,13 @@ def _reach(point: dict[str, float] | None) -> str:
         return "no limit point"
     inner, outer = point["apex_height_inner_mm"], point["apex_height_outer_mm"]
     return f"limit point {point['driving_pressure_kPa']:.2f} kPa at {inner:.2f} mm inside, {outer:.2f} mm outside"
+
+
+def _rating(rating: dict[str, Any]) -> list[str]:
+    """The rated pressure with its basis, what would raise it, and what is driven above it."""
+    lines = [f"rated pressure {tenths_below(rating['rated_pressure_kPa']):.1f} kPa: {rating['basis']}"]
+    lines += [] if rating["remedy"] is None else [rating["remedy"]]
+    return lines + [f"{finding['severity']}: {finding['message']}" for finding in rating["findings"]]
 
 
 def _state_table(states: list[dict[str, Any]]) -> str:

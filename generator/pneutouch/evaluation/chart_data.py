@@ -36,7 +36,7 @@ class TuningCurve(NamedTuple):
 
 @dataclass(frozen=True)
 class TuningChart:
-    """One design's curve from no pressure to its rated one.
+    """One design's curve from no pressure to its rated one, or to the highest that it states.
 
     Attributes:
         chosen: The curve.

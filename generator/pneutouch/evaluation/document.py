@@ -21,8 +21,13 @@ def viscous(evaluation: Evaluation) -> dict[str, Any]:
     return {"unknown": runs} if isinstance(runs, str) else rounded(runs.document(), _DIGITS)
 
 
+def rating_document(evaluation: Evaluation) -> dict[str, Any]:
+    """The rated pressure, what it follows from and what would raise it; driving pressures above it are findings."""
+    return evaluation.rating.document([state.driving_pressure for state in evaluation.prediction.states])
+
+
 def prediction_document(evaluation: Evaluation, samples: int = 0) -> dict[str, Any]:
-    """The prediction as ``predict`` prints it, every state with its ``uncertainty``."""
+    """The prediction as ``predict`` prints it, with its ``rating``, every state with its ``uncertainty``."""
     content = evaluation.prediction.document()
     uncertainty = evaluation.uncertainty
     if samples:
@@ -31,6 +36,7 @@ def prediction_document(evaluation: Evaluation, samples: int = 0) -> dict[str, A
         )
     return {
         **content,
+        "rating": rating_document(evaluation),
         "states": [
             {**state, "uncertainty": entry} for state, entry in zip(content["states"], uncertainty, strict=True)
         ],

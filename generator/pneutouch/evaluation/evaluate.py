@@ -24,6 +24,7 @@ from pneutouch.spec.read import Changes
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
+    from pneutouch.mechanics.rating import Rating
     from pneutouch.mechanics.viscous.describe import ViscousRuns
     from pneutouch.printability import Finding
     from pneutouch.printability.estimate import JobEstimate
@@ -78,7 +79,7 @@ class Evaluation:
 
         # What is printed is the wall as drawn, whatever wall a calibration gives the model.
         drawn = self.sensor.replace(wall_thickness=self.assembly.layout.wall)
-        return check(subject_of(self.assembly), SensorContext(self.prediction, drawn))
+        return check(subject_of(self.assembly), SensorContext(self.prediction, drawn, self.rating))
 
     @cached_property
     def estimates(self) -> tuple[JobEstimate, ...]:
@@ -103,6 +104,15 @@ class Evaluation:
         from pneutouch.evaluation.uncertainty import documents
 
         return documents(self.prediction, self.sensor, self.scene, lambda: self.resins)
+
+    @cached_property
+    def rating(self) -> Rating:
+        """The rated pressure, by the limits of the prediction's model."""
+        from pneutouch.mechanics.rating import rating
+
+        error = abs(self.prediction.error_estimate["limit_pressure_relative"])
+        scene = self.scene
+        return rating(self.prediction.limits, self.sensor, scene.membrane_material, scene.printer, error)
 
     @cached_property
     def viscous_runs(self) -> ViscousRuns | str:

@@ -2,13 +2,15 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from pneutouch.bench.simulate import SimulationTruth, press_curves
 from pneutouch.bench.simulate.curve import PressCurves
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
 from pneutouch.errors import BeyondLimitError, InputError, nearest
 from pneutouch.evaluation.evaluate import elastomers, sensor_of
-from pneutouch.mechanics import Sensor
+from pneutouch.mechanics import Sensor, predict
+from pneutouch.mechanics.rating import Rating, rating
 from pneutouch.mechanics.uncertainty.hardness import logarithmic_change
 from pneutouch.parts import assemble
 from pneutouch.spec.campaign import AS_DESIGNED
@@ -29,6 +31,12 @@ class SimulatedResin:
     scene: ResolvedDesign
     sensor: Sensor
     truth: SimulationTruth
+
+    @cached_property
+    def rating(self) -> Rating:
+        """The rated pressure, by the limits of the cheapest model that is good enough."""
+        limits = predict("", self.sensor, [0.0], model="auto").limits
+        return rating(limits, self.sensor, self.scene.membrane_material, self.scene.printer)
 
 
 def resins_of(

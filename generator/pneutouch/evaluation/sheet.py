@@ -1,6 +1,5 @@
 """A datasheet's record made from an evaluation."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -11,12 +10,11 @@ from pneutouch.evaluation.chart_data import ComparedMembrane
 from pneutouch.evaluation.charts import air, tradeoff, tuning
 from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.evaluation.relaxation import ageing_data, viscous_data
-from pneutouch.evaluation.sheet_data import Rating, SheetData
+from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.evaluation.table_s1 import published_sensitivities
 from pneutouch.evaluation.uncertainty import unknown
 from pneutouch.evaluation.variants import resin_curves
 from pneutouch.mechanics import Sensor, SensorPrediction, SensorState
-from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.mechanics.models import NUMERICAL
 from pneutouch.mechanics.uncertainty.gas_notes import REFERENCE_TEMPERATURE
 from pneutouch.units import KPA
@@ -30,7 +28,6 @@ def sheet_data(evaluation: Evaluation, input_hash: str) -> SheetData:
     scene, sensor, prediction = evaluation.scene, evaluation.sensor, evaluation.prediction
     material, states = scene.membrane_material, prediction.states
     highest = max(states[-1].driving_pressure, _LEAST_SPAN)
-    rating = Rating(math.floor(10 * RATED_SHARE * prediction.limits.lowest / KPA) / 10, RATED_SHARE)
     published = published_sensitivities(sensor, material)
     sheet = SheetData(
         scene=scene,
@@ -40,7 +37,7 @@ def sheet_data(evaluation: Evaluation, input_hash: str) -> SheetData:
         input_hash=input_hash,
         uncertainty=evaluation.uncertainty,
         estimates=evaluation.estimates,
-        rating=rating,
+        rating=evaluation.rating,
         numerical_error=NUMERICAL[prediction.model],
         zero_drift_kPa_per_K=zero_drift_kPa_per_K(scene, prediction, states[0]),
         resin_curves=resin_curves(sensor, evaluation.resins, highest, prediction.model, prediction.closure),
@@ -51,7 +48,8 @@ def sheet_data(evaluation: Evaluation, input_hash: str) -> SheetData:
     )
     if unknown(sensor, prediction.model) is not None:
         return sheet
-    tuned = tuning(evaluation, rating.driving_pressure_kPa * KPA)
+    # The design's own pressures are shown, above the rated one too.
+    tuned = tuning(evaluation, max(evaluation.rating.pressure, states[-1].driving_pressure))
     if tuned is not None:
         tuned = replace(tuned, published_kPa_per_N=tuple(published.items()))
     return replace(sheet, gas=air(evaluation), tradeoff=tradeoff(evaluation), tuning=tuned)

@@ -11,17 +11,11 @@ if TYPE_CHECKING:
     from pneutouch.catalogue import ResolvedDesign
     from pneutouch.evaluation.chart_data import ComparedMembrane, ResinCurve, TradeOff, TuningChart
     from pneutouch.mechanics.prediction import SensorPrediction
+    from pneutouch.mechanics.rating import Rating
     from pneutouch.mechanics.uncertainty import GasNotes
     from pneutouch.parts import Assembly
     from pneutouch.printability import Finding
     from pneutouch.printability.estimate import JobEstimate
-
-
-class Rating(NamedTuple):
-    """The greatest driving pressure to be used, kPa, rounded down, and its share of the binding limit."""
-
-    driving_pressure_kPa: float
-    share: float
 
 
 class RelaxationCurve(NamedTuple):
@@ -104,7 +98,7 @@ class SheetData:
         input_hash: Hash of all inputs of the sheet.
         uncertainty: One document a state, as `Evaluation.uncertainty`.
         estimates: Resin, support and time of each print job.
-        rating: The rated driving pressure.
+        rating: The rated driving pressure and what it follows from.
         numerical_error: Stated relative error in sensitivity of the model.
         zero_drift_kPa_per_K: Drift of the sealed gas without contact, at the lowest driving pressure.
         resin_curves: The same sensor in every resin, by title.

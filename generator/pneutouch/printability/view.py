@@ -22,17 +22,19 @@ from pneutouch.spec.printer import FeatureSize, Printer
 
 if TYPE_CHECKING:
     from pneutouch.mechanics import Sensor, SensorPrediction
+    from pneutouch.mechanics.rating import Rating
 
 
 @dataclass(frozen=True)
 class SensorContext:
-    """What the rules on the sensor's working need: its prediction, and the mechanics' view of it.
+    """What the rules on the sensor's working need: its prediction, the mechanics' view of it, and its rating.
 
     ``membrane`` is the name of the item whose wall the sensor presses.
     """
 
     prediction: SensorPrediction
     sensor: Sensor
+    rating: Rating
     membrane: str = "membrane"
 
 

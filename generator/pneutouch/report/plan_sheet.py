@@ -3,6 +3,8 @@
 from itertools import groupby
 from typing import Any
 
+from pneutouch.rounding import tenths_below
+
 _WORDS = {
     "leak": "Leak",
     "injection": "Dead volume",
@@ -212,8 +214,10 @@ def _expected(plan: dict[str, Any]) -> list[str]:
         states = resin["states"]
         head = " | ".join(f"{s['driving_pressure_kPa']:g} kPa: force, N | rise, kPa" for s in states)
         lines += [
-            f"### {_escaped(resin['resin'])} (model {resin['model']}; may be driven to {resin['limit_kPa']:.1f} kPa, "
-            f"{resin['limit_by']})",
+            f"### {_escaped(resin['resin'])} (model {resin['model']}; may be driven to "
+            f"{tenths_below(resin['rating']['rated_pressure_kPa']):.1f} kPa)",
+            "",
+            f"{resin['rating']['basis']}.",
             "",
             f"| depth, mm | {head} |",
             "|---" * (1 + 2 * len(states)) + "|",

@@ -28,6 +28,7 @@ def content_of(sheet: SheetData) -> dict[str, Any]:
         "status": "Predicted. No unit has been built or tested.",
         "description": prose.description(sheet.scene),
         "limits_of_use": prose.LIMITS_OF_USE,
+        "warnings": _warnings(sheet),
         "key_figures": _key_figures(sheet),
         "ratings": _ratings(sheet),
         "operating": _operating(sheet),
@@ -54,22 +55,24 @@ def content_of(sheet: SheetData) -> dict[str, Any]:
 def _key_figures(sheet: SheetData) -> list[list[str]]:
     """Tiles of the first page: name, value, unit, condition."""
     first, last = sheet.prediction.states[0], sheet.prediction.states[-1]
-    limits = sheet.prediction.limits
     mass = sum(solid.mass for solid in sheet.assembly.solids)
     wide = 2 * sheet.assembly.layout.plate_radius
     return [
         ["Sensitivity", _sensitivity(first), "kPa/N", _condition(sheet, 0)],
         ["Sensitivity", _sensitivity(last), "kPa/N", _condition(sheet, -1)],
         ["Force range", _range(last), "N", f"at {last.driving_pressure / KPA:g} kPa"],
-        [
-            "Max. driving pressure",
-            f"{sheet.rating.driving_pressure_kPa:.1f}",
-            "kPa",
-            f"{sheet.rating.share:.0%} of the {limits.binding}",
-        ],
+        ["Max. driving pressure", f"{sheet.rating.pressure_kPa:.1f}", "kPa", sheet.rating.basis],
         ["Dead volume", f"{sheet.prediction.dead_volume / ML:.2f}", "mL", "behind the cavity"],
         ["Size", f"Ø{wide:.1f}", "mm", f"{mass:.1f} g without tube"],
     ]
+
+
+def _warnings(sheet: SheetData) -> list[str]:
+    """Driving pressures of the design that the rating does not allow."""
+    states = ((sheet.rating.severity(s.driving_pressure), s.driving_pressure) for s in sheet.prediction.states)
+    remedy = "" if sheet.rating.remedy is None else f" {sheet.rating.remedy[0].upper()}{sheet.rating.remedy[1:]}."
+    lines = [f"{severity.capitalize()}: {sheet.rating.excess(p)}." for severity, p in states if severity is not None]
+    return [*lines[:-1], f"{lines[-1]}{remedy}"] if lines else []
 
 
 def _condition(sheet: SheetData, k: int) -> str:
@@ -95,14 +98,11 @@ def _captions(sheet: SheetData) -> dict[str, str]:
 
 def _ratings(sheet: SheetData) -> list[list[str]]:
     """Absolute maximum ratings: quantity, value, unit, basis."""
-    limits = sheet.prediction.limits
-    basis = (
-        f"{sheet.rating.share:.0%} of the {limits.binding} ({limits.lowest / KPA:.2f} kPa, model "
-        f"{sheet.prediction.model})"
-    )
+    remedy = "" if sheet.rating.remedy is None else f"; {sheet.rating.remedy}"
+    basis = f"{sheet.rating.basis} (model {sheet.prediction.model}){remedy}"
     gauge = f"{NOT_TESTED}; the pressure sensor (SMC PSE543-R06) reads to 100 kPa"
     return [
-        ["Driving pressure", f"{sheet.rating.driving_pressure_kPa:.1f}", "kPa gauge", basis],
+        ["Driving pressure", f"{sheet.rating.pressure_kPa:.1f}", "kPa gauge", basis],
         ["Cavity pressure while pressed", DASH, "kPa gauge", gauge],
         ["Overload force", DASH, "N", NOT_TESTED],
         ["Burst pressure", DASH, "kPa", NOT_TESTED],
@@ -160,7 +160,7 @@ def _model_error(sheet: SheetData) -> list[str]:
 
 
 def _limits(sheet: SheetData) -> list[list[str]]:
-    """The three limits of the driving pressure and which of them binds."""
+    """The three limits of the driving pressure and which of them the rating follows from."""
     limits, point = sheet.prediction.limits, sheet.prediction.limit_point
     broken = DASH if limits.break_strain is None else f"{limits.break_strain / KPA:.1f}"
     where = "the resin's least elongation at break" + ("; not met before the limit point" if broken == DASH else "")
@@ -173,7 +173,12 @@ def _limits(sheet: SheetData) -> list[list[str]]:
         ["break strain", broken, where],
         ["gauge range", f"{limits.gauge / KPA:g}", "pressure sensor of ±100 kPa"],
     ]
-    return [[*row, "binds" if row[0] == limits.binding else ""] for row in rows]
+    spread = {limit.name: limit for limit in sheet.rating.limits if limit.low < limit.nominal}
+    for row in rows:
+        if row[0] in spread:
+            limit = spread[row[0]]
+            row[2] = f"{limit.low / KPA:.1f} to {limit.high / KPA:.1f} kPa at k = 2; {row[2]}"
+    return [[*row, "binds" if row[0] == sheet.rating.limit.name else ""] for row in rows]
 
 
 def _bodies(sheet: SheetData) -> list[list[str]]:

@@ -15,10 +15,8 @@ from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, NAMES, WALL
 from pneutouch.bench.protocol import REPETITIONS, SHARE
 from pneutouch.mechanics.atlas.table import REST_VOLUME, shipped
 from pneutouch.mechanics.limits import RATED_SHARE, limits
+from pneutouch.mechanics.uncertainty.limit import COUPON
 from pneutouch.units import KPA
-
-COUPON = 0.03
-"""Relative standard deviation of a modulus from a tensile coupon of the same print: our choice."""
 
 CALIPER = 0.05 / np.sqrt(3.0)
 """Standard deviation of a soft wall's thickness by caliper, mm: even within 0.05 mm, our choice; the caliper itself is

@@ -88,17 +88,17 @@ def propagate(batch: SensorBatch, sources: list[UncertaintySource]) -> Budget:
     Inputs that are correlated belong to one joint source.
     """
     slopes_of = derivatives(batch, *_by_input(batch, sources))
-    variances = _variances(sources, slopes_of.slopes)
-    linear = np.sqrt(_variances(sources, slopes_of.local).sum(axis=0))
+    by_source = variances(sources, slopes_of.slopes)
+    linear = np.sqrt(variances(sources, slopes_of.local).sum(axis=0))
     freedom = np.array([source.freedom for source in sources])
-    total = variances.sum(axis=0)
+    total = by_source.sum(axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        effective = total**2 / (variances**2 / freedom[:, None, None]).sum(axis=0)
-    return Budget(tuple(sources), slopes_of, variances, linear, np.where(np.isnan(effective), np.inf, effective))
+        effective = total**2 / (by_source**2 / freedom[:, None, None]).sum(axis=0)
+    return Budget(tuple(sources), slopes_of, by_source, linear, np.where(np.isnan(effective), np.inf, effective))
 
 
-def _variances(sources: list[UncertaintySource], slopes: Array) -> Array:
-    """Of the logarithms, (sources, figures, n)."""
+def variances(sources: list[UncertaintySource], slopes: Array) -> Array:
+    """Variances of the logarithms of the figures, (sources, figures, n), by their slopes, (inputs, figures, n)."""
     return np.stack([source.variance(slopes) for source in sources])
 
 

@@ -1,6 +1,5 @@
-"""Driving pressures against the limits of the sensor: limit point, break strain, gauge."""
+"""Driving pressures against the rating of the sensor: limit point, break strain, gauge, and how well they are known."""
 
-from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.printability.finding import Excess, Finding
 from pneutouch.printability.view import PrintView
 from pneutouch.units import KPA
@@ -13,26 +12,26 @@ _SOURCES = {
 
 
 def check(view: PrintView) -> list[Finding]:
-    """Compare the highest driving pressure with the limit that binds."""
+    """Compare the highest driving pressure with the rated pressure and with the nominal limit."""
     if view.sensor is None:
         return []
-    prediction = view.sensor.prediction
-    limits = prediction.limits
-    highest = prediction.states[-1].driving_pressure
-    if highest <= RATED_SHARE * limits.lowest:
+    rating, last = view.sensor.rating, view.sensor.prediction.states[-1]
+    severity = rating.severity(last.driving_pressure)
+    if severity is None:
         return []
-    apex = (0.0, 0.0, prediction.states[-1].apex_outer)
-    rated_kPa = RATED_SHARE * limits.lowest / KPA
-    text = f"{highest / KPA:g} kPa against the {limits.binding} at {limits.lowest / KPA:.1f} kPa"
+    text, limit = rating.excess(last.driving_pressure), rating.nominal
+    if severity == "warning":
+        text, limit = f"{text}: {rating.basis}", rating.limit
+    fix = f"lower pneumatics.driving_pressures_kPa to at most {rating.pressure_kPa:.1f}"
     return [
         Finding(
             "driving",
-            "error" if highest > limits.lowest else "warning",
+            severity,
             view.sensor.membrane,
             text,
-            f"lower pneumatics.driving_pressures_kPa below {rated_kPa:.1f}",
-            _SOURCES[limits.binding],
-            apex,
-            Excess(highest / KPA, rated_kPa, "kPa"),
+            fix if rating.remedy is None else f"{fix}; {rating.remedy}",
+            _SOURCES[limit.name],
+            (0.0, 0.0, last.apex_outer),
+            Excess(last.driving_pressure / KPA, rating.pressure / KPA, "kPa"),
         )
     ]

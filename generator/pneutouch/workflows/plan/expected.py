@@ -9,7 +9,9 @@ import numpy as np
 from pneutouch.bench.protocol import CLEARANCE, RunProtocol
 from pneutouch.bench.simulate.curve import PressCurve, PressCurves
 from pneutouch.bench.simulate.inject import line_pressure, sensor_pressure
-from pneutouch.mechanics.limits import RATED_SHARE
+from pneutouch.catalogue import ResolvedDesign
+from pneutouch.errors import InputError
+from pneutouch.mechanics.rating import Rating
 from pneutouch.spec.campaign import Rig
 from pneutouch.units import KPA, ML
 
@@ -63,7 +65,7 @@ def points(curve: PressCurve, depths: tuple[float, ...]) -> list[dict[str, float
 
 
 def curve_warnings(
-    resin: str, pressed: PressCurves, curve: PressCurve, tests: Mapping[str, RunProtocol], rig: Rig
+    resin: str, rating: Rating, curve: PressCurve, tests: Mapping[str, RunProtocol], rig: Rig
 ) -> list[PlanViolation]:
     """What the kinds of run at one driving pressure would pass; ``tests`` are their protocols by kind."""
     driving_kPa = curve.driving / KPA
@@ -105,14 +107,9 @@ def curve_warnings(
             lost[0],
             f"predicted range ends at {curve.ends[1]:.2f} mm ({curve.ends[0]}); readings beyond belong to no figure",
         )
-    rated = RATED_SHARE * pressed.limits.lowest
-    if curve.driving > rated:
-        report(
-            "rated pressure",
-            None,
-            f"driving pressure is above {rated / KPA:.1f} kPa, {RATED_SHARE:.0%} of the limit "
-            f"({pressed.limits.binding})",
-        )
+    if rating.severity(curve.driving) is not None:
+        remedy = "" if rating.remedy is None else f"; {rating.remedy}"
+        report("rated pressure", None, f"{rating.excess(curve.driving)}, {rating.basis}{remedy}")
     first = expected[0]["force_N"]
     if first is not None and first < RESOLVED * rig.force_resolution_N:
         report(
@@ -133,12 +130,25 @@ def travel_warnings(depths: tuple[float, ...], rig: Rig) -> list[PlanViolation]:
     return [PlanViolation("travel", text, depth_mm=max(depths))]
 
 
-def injection(pressed: PressCurves, rig: Rig) -> dict[str, Any]:
+def refuse_above_limits(resin: str, rating: Rating, scene: ResolvedDesign) -> None:
+    """Raise InputError for a driving pressure of the design at which the sensor as designed meets a limit."""
+    for k, pressure_kPa in enumerate(scene.design.pneumatics.driving_pressures_kPa):
+        if rating.severity(pressure_kPa * KPA) == "error":
+            raise InputError(
+                f"{resin}: {rating.excess(pressure_kPa * KPA)}",
+                file=scene.where,
+                key=f"pneumatics.driving_pressures_kPa[{k}]",
+                value=pressure_kPa,
+                remedy=f"must be at most {rating.pressure_kPa:.1f} kPa, the rated pressure: {rating.basis}",
+            )
+
+
+def injection(pressed: PressCurves, rating: Rating, rig: Rig) -> dict[str, Any]:
     """Pressures after round volumes of room air, into closed line and unpressed sensor; kPa, null where unknown."""
     sensor, ambient = pressed.sensor, pressed.sensor.gas.ambient_pressure
     volumes = np.array(ROUND)
     bare = sensor_pressure(volumes, pressed.inflation, 0.0, ambient)
-    ceiling = min(_OF_RATED * RATED_SHARE * pressed.limits.lowest, _OF_RANGE * rig.pressure_range_kPa * KPA)
+    ceiling = min(_OF_RATED * rating.pressure, _OF_RANGE * rig.pressure_range_kPa * KPA)
     # The sensor with no dead volume reads most: it decides what may be pushed.
     fits = np.flatnonzero(np.nan_to_num(bare, nan=np.inf) <= ceiling)
     into_sensor = None if not fits.size else float(volumes[fits[-1]])

@@ -17,7 +17,14 @@ from pneutouch.report.plan_sheet import plan_sheet
 from pneutouch.spec.campaign import Campaign, CampaignRun, Rig, RunKind
 from pneutouch.spec.read import Changes, assignments, read_toml, validate
 from pneutouch.units import KPA, ML
-from pneutouch.workflows.plan.expected import curve_warnings, injection, leak_limit, points, travel_warnings
+from pneutouch.workflows.plan.expected import (
+    curve_warnings,
+    injection,
+    leak_limit,
+    points,
+    refuse_above_limits,
+    travel_warnings,
+)
 from pneutouch.workflows.simulate import campaign_toml, named_design
 
 PAPER = Rig()
@@ -76,7 +83,9 @@ def make_plan(
     subjects = resins_of(design, changes, resins, library=library)
     named, copied = named_design(design, library)
     scene = subjects[0].scene
-    tests = plated_tests(subjects[0])
+    for subject in subjects:
+        refuse_above_limits(subject.name, subject.rating, scene)
+    tests = plated_tests(subjects[0], min(s.rating.pressure_kPa for s in subjects))
     curves = {s.name: _pressed(s, tests) for s in subjects}
     listed: list[dict[str, Any]] = []
     for subject in subjects:
@@ -149,10 +158,13 @@ def write_plan(plan: CampaignPlan, out: Path) -> Path:
 Tests = Mapping[RunKind, tuple[RunProtocol, tuple[float, ...]]]
 
 
-def plated_tests(subject: SimulatedResin) -> Tests:
-    """Protocol and driving pressures (kPa) of each kind of run with a plate, in the order in which they are run."""
+def plated_tests(subject: SimulatedResin, rated_kPa: float) -> Tests:
+    """Protocol and driving pressures (kPa) of each kind of run with a plate, in the order in which they are run.
+
+    The design's own pressures are kept; one that the plan chooses is at most ``rated_kPa``.
+    """
     driving_kPa = tuple(subject.scene.design.pneumatics.driving_pressures_kPa)
-    top_kPa = min(SATURATION[-1], driving_kPa[-1])
+    top_kPa = min(SATURATION[-1], driving_kPa[-1], rated_kPa)
     pressures_kPa: dict[RunKind, tuple[float, ...]] = {
         "steps": driving_kPa,
         "loop": driving_kPa,
@@ -177,7 +189,7 @@ def _warnings(subject: SimulatedResin, pressed_curves: PressCurves, tests: Tests
         here: dict[str, RunProtocol] = {
             k: t for k, (t, at) in tests.items() if any(abs(p * KPA - curve.driving) < 1e-12 for p in at)
         }
-        yield from curve_warnings(subject.name, pressed_curves, curve, here, rig)
+        yield from curve_warnings(subject.name, subject.rating, curve, here, rig)
 
 
 def _expected(subject: SimulatedResin, pressed_curves: PressCurves, tests: Tests, rig: Rig) -> dict[str, Any]:
@@ -199,9 +211,10 @@ def _expected(subject: SimulatedResin, pressed_curves: PressCurves, tests: Tests
         "resin": subject.name,
         "model": pressed_curves.model,
         "states": states,
-        "injection": injection(pressed_curves, rig),
+        "injection": injection(pressed_curves, subject.rating, rig),
         "limit_kPa": pressed_curves.limits.lowest / KPA,
         "limit_by": pressed_curves.limits.binding,
+        "rating": subject.rating.document([curve.driving for curve in pressed_curves.curves]),
         "leak_limit_kPa_per_min": None if least is None else leak_limit(least, steps),
     }
 
@@ -211,7 +224,7 @@ def _runs(
 ) -> list[dict[str, Any]]:
     """Every run of one specimen in order: leak and dead volume first, relaxation last: it strains the wall longest."""
     top_kPa = max(subject.scene.design.pneumatics.driving_pressures_kPa)
-    volume = injection(pressed_curves, rig)["sensor_volume_mL"]
+    volume = injection(pressed_curves, subject.rating, rig)["sensor_volume_mL"]
     planned: list[tuple[str, float, int, list[dict[str, Any]], list[Any]]] = [
         ("leak", top_kPa, 1, _leak(top_kPa, rig), [])
     ]

@@ -74,6 +74,7 @@ def _apex_at_limit(side: str) -> SweepVariable:
 
 
 _TEAR = "driving pressure at which the resin may tear; not before the limit point: NaN"
+_RATED = "greatest driving pressure to be used: 0.9 of the lower end (k = 2) of the least limit"
 _ERROR = "greatest known error of the sensitivity; unknown: NaN"
 _LIMIT_ERROR = "known error of the limit pressure; unknown: NaN"
 _BASIS = "what the error of the sensitivity rests on"
@@ -83,6 +84,8 @@ POINT: tuple[SweepVariable, ...] = (
     _number("break_strain_kPa", "kPa", _TEAR, "limits", "break_strain_kPa"),
     _number("gauge_range_kPa", "kPa", "range of the pressure sensor", "limits", "gauge_range_kPa"),
     SweepVariable("binding_limit", "", "the limit that is met first", _at("limits", "binding"), True),
+    _number("rated_pressure_kPa", "kPa", _RATED, "rating", "rated_pressure_kPa"),
+    SweepVariable("rated_by", "", "the limit that the rated pressure follows from", _at("rating", "limit"), True),
     _apex_at_limit("inner"),
     _apex_at_limit("outer"),
     _number("dead_volume_mL", "mL", "gas behind the cavity"),

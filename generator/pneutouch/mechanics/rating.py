@@ -1,0 +1,158 @@
+"""The rated pressure: how far a sensor may be driven, the uncertainty of its limits included."""
+
+from dataclasses import dataclass
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.mechanics.atlas.batches import batch_of
+from pneutouch.mechanics.limits import RATED_SHARE, Limits
+from pneutouch.mechanics.models import DISCRETISATION
+from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.uncertainty.limit import COUPON, limit_spread
+from pneutouch.mechanics.uncertainty.propagate import COVERAGE
+from pneutouch.rounding import rounded, tenths_below
+from pneutouch.spec.material import Material
+from pneutouch.spec.printer import Printer
+from pneutouch.units import KPA
+
+LIMIT_ERROR = DISCRETISATION["limit_pressure_relative"]
+"""Greatest relative error of the limit pressure of solid and atlas as a numerical answer."""
+
+_WORTH = 1.05
+"""A measured modulus is advised where it raises the rated pressure by this factor at least: our choice."""
+
+_DIGITS = 6
+
+
+class UncertainLimit(NamedTuple):
+    """A limit of the driving pressure: its name, its nominal value and the ends of its k = 2 interval, MPa."""
+
+    name: str
+    nominal: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, slots=True)
+class Rating:
+    """The rated pressure of a sensor and what it follows from.
+
+    Attributes:
+        pressure: The rated pressure, MPa.
+        limits: The limits that are met, the one with the least lower end first.
+        measured: What the rated pressure would be with the modulus measured on coupons and confirmed, MPa.
+    """
+
+    pressure: float
+    limits: tuple[UncertainLimit, ...]
+    measured: float
+
+    @property
+    def limit(self) -> UncertainLimit:
+        """The limit that the rated pressure follows from."""
+        return self.limits[0]
+
+    @property
+    def nominal(self) -> UncertainLimit:
+        """The limit that is met first as designed; a driving pressure above it is an error."""
+        return min(self.limits, key=lambda limit: limit.nominal)
+
+    @property
+    def pressure_kPa(self) -> float:
+        """The rated pressure as it is shown: rounded down to a tenth, kPa."""
+        return tenths_below(self.pressure / KPA)
+
+    def severity(self, pressure: float) -> Literal["error", "warning"] | None:
+        """What a driving pressure (MPa) is: an error above the nominal limit, a warning above the rated pressure."""
+        if pressure > self.nominal.nominal:
+            return "error"
+        return "warning" if pressure > self.pressure else None
+
+    def excess(self, pressure: float) -> str:
+        """A driving pressure (MPa) set against the rating, in words."""
+        if self.severity(pressure) == "error":
+            least = self.nominal
+            return f"{pressure / KPA:g} kPa is above the {least.name}, {least.nominal / KPA:.1f} kPa as designed"
+        return f"{pressure / KPA:g} kPa is above the rated pressure of {self.pressure_kPa:.1f} kPa"
+
+    @property
+    def basis(self) -> str:
+        """What the rated pressure follows from, in words."""
+        limit, share = self.limit, f"{RATED_SHARE:.0%} of {self.limit.low / KPA:.1f} kPa"
+        if limit.low == limit.nominal:
+            return f"{share}, the {limit.name}"
+        return (
+            f"{share}, the lower end of the {limit.name}: {limit.nominal / KPA:.1f} kPa nominal, "
+            f"{limit.low / KPA:.1f} to {limit.high / KPA:.1f} kPa at k = {COVERAGE:g}"
+        )
+
+    @property
+    def remedy(self) -> str | None:
+        """What would raise the rated pressure, in words; None where the modulus is not what lowers it."""
+        if self.measured < _WORTH * self.pressure:
+            return None
+        return (
+            f"the modulus is what lowers it: measured on coupons to {COUPON:.0%} and confirmed, the rated pressure "
+            f"is {tenths_below(self.measured / KPA):.1f} kPa; calibrating a built sensor raises it likewise"
+        )
+
+    def document(self, driving_pressures: list[float]) -> dict[str, Any]:
+        """The rating in boundary units, with its findings on driving pressures (MPa)."""
+        limit, remedy = self.limit, self.remedy
+        judged = [(p, self.severity(p)) for p in driving_pressures]
+        content = {
+            "rated_pressure_kPa": self.pressure / KPA,
+            "share": RATED_SHARE,
+            "coverage_factor": COVERAGE,
+            "limit": limit.name,
+            "limit_kPa": limit.nominal / KPA,
+            "limit_low_kPa": limit.low / KPA,
+            "limit_high_kPa": limit.high / KPA,
+            "basis": self.basis,
+            "rated_pressure_with_measured_modulus_kPa": None if remedy is None else self.measured / KPA,
+            "remedy": remedy,
+            "findings": [
+                {"severity": severity, "driving_pressure_kPa": p / KPA, "message": self.excess(p)}
+                for p, severity in judged
+                if severity is not None
+            ],
+        }
+        return rounded(content, _DIGITS)  # type: ignore[no-any-return]
+
+
+def rated_pressure(limit: Array, spread: Array, gauge: Array | float) -> Array:
+    """The rated pressure of n sensors, MPa: `RATED_SHARE` of the lower end of the least limit.
+
+    Args:
+        limit: The limit point, or the break strain where that is met before, MPa (n,).
+        spread: Relative standard uncertainty of it (n,), see `limit_spread`.
+        gauge: Range of the pressure gauge, MPa. The driving pressure is set by its reading: it is taken as exact.
+    """
+    return np.asarray(RATED_SHARE * np.fmin(limit * np.exp(-COVERAGE * spread), gauge))
+
+
+def rating(
+    limits: Limits, sensor: Sensor, material: Material, printer: Printer, numerical: float = LIMIT_ERROR
+) -> Rating:
+    """The rating of a sensor of a resin from a printer, by its limits as a model has them.
+
+    Limit point and break strain are met at pressures in proportion to the modulus: both have the uncertainty of the
+    limit pressure. The scatter of the break strain is not in it: the least elongation at break stands for it.
+    ``numerical`` is the model's greatest relative error of the limit pressure.
+    """
+    spread = limit_spread(batch_of(sensor, [0.0]), material, printer, numerical)
+    factor = float(np.exp(COVERAGE * spread.standard[0]))
+    intervals = [
+        UncertainLimit(name, value, value, value)
+        if name == "gauge range"
+        else UncertainLimit(name, value, value / factor, value * factor)
+        for name, value in limits.named()
+    ]
+    least = min((value for name, value in limits.named() if name != "gauge range"), default=np.inf)
+    rated, measured = (
+        float(rated_pressure(np.array([least]), relative, limits.gauge)[0])
+        for relative in (spread.standard, spread.measured)
+    )
+    return Rating(rated, tuple(sorted(intervals, key=lambda limit: limit.low)), measured)

@@ -1,0 +1,96 @@
+"""The rating: nine tenths of the lower end of the least limit, what would raise it, and what it makes of a pressure."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from pneutouch.mechanics import predict
+from pneutouch.mechanics.limits import Limits
+from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.rating import Rating, rated_pressure, rating
+from pneutouch.units import KPA
+from tests.mechanics.uncertainty.designs import materials
+
+
+def rated(
+    library, resin: str = "TangoPlus", limits: Limits | None = None, spread: float | None = None, **size
+) -> Rating:
+    """The rating of the paper's dome in a resin, its modulus known to ``spread`` (relative) where that is given."""
+    material = materials(library)[resin]
+    sensor = material_sensor(material).replace(**size)
+    if spread is not None:
+        modulus = material.shear_modulus_MPa
+        modulus = modulus.model_copy(update={"spread": spread * modulus.nominal})
+        material = material.model_copy(update={"shear_modulus_MPa": modulus})
+    limits = limits or predict("", sensor, [0.0], model="atlas").limits
+    return rating(limits, sensor, material, library.load("printers", "objet260-connex"))
+
+
+def test_the_paper_s_sensor_is_rated_below_the_lower_end_of_its_limit_pressure(library):
+    found = rated(library)
+    assert [found.limit.nominal / KPA, found.limit.low / KPA, found.limit.high / KPA] == pytest.approx(
+        [39.6, 21.9, 71.5], abs=0.05
+    )
+    assert found.pressure == pytest.approx(0.9 * found.limit.low)
+    assert found.pressure_kPa == 19.7
+    assert "39.6 kPa nominal" in found.basis and "21.9 to 71.5 kPa" in found.basis
+
+
+def test_a_modulus_measured_on_coupons_raises_it_to_what_was_said(library):
+    before = rated(library)
+    after = rated(library, spread=0.03)
+    assert "31.2 kPa" in before.remedy
+    assert after.pressure == pytest.approx(before.measured) and after.pressure_kPa == 31.2
+    assert after.remedy is None, "the modulus no longer lowers it"
+
+
+def test_the_narrower_the_modulus_is_known_the_higher_the_rating(library):
+    pressures = [rated(library, spread=spread).pressure for spread in (0.3, 0.2, 0.1, 0.05, 0.01)]
+    assert np.all(np.diff(pressures) > 0)
+    assert pressures[-1] < 0.9 * 39.6 * KPA
+
+
+def test_the_least_lower_end_decides_and_not_the_least_limit(library):
+    """A limit point a little above the gauge's range, of a modulus known to a factor, lies below it at its lower end."""
+    limits = Limits(limit_point=110 * KPA, break_strain=None, gauge=100 * KPA)
+    found = rated(library, limits=limits)
+    assert found.limit.name == "limit point" and found.nominal.name == "gauge range"
+    assert found.pressure == pytest.approx(0.9 * found.limit.low)
+    assert found.severity(99 * KPA) == "warning" and found.severity(101 * KPA) == "error"
+
+
+def test_a_gauge_that_ends_first_is_taken_as_exact_and_has_no_remedy(library):
+    found = rated(library, limits=Limits(limit_point=400 * KPA, break_strain=300 * KPA, gauge=100 * KPA))
+    assert found.limit.name == "gauge range" and found.pressure == pytest.approx(90 * KPA)
+    assert found.remedy is None
+
+
+def test_the_break_strain_is_as_uncertain_as_the_modulus(library):
+    found = rated(library, limits=Limits(limit_point=39.6 * KPA, break_strain=30 * KPA, gauge=100 * KPA))
+    assert found.limit.name == "break strain"
+    assert found.limit.low / found.limit.nominal == pytest.approx(rated(library).limit.low / 39.592 / KPA, rel=1e-4)
+
+
+def test_a_wall_without_a_limit_point_is_rated_by_the_gauge(library):
+    found = rated(library, limits=Limits(limit_point=None, break_strain=None, gauge=100 * KPA))
+    assert found.pressure == pytest.approx(90 * KPA) and found.remedy is None
+
+
+def test_pressures_are_judged_at_the_rating_and_at_the_nominal_limit(library):
+    found = rated(library)
+    limit = found.nominal.nominal
+    pressures = [found.pressure, 1.001 * found.pressure, limit, 1.001 * limit]
+    assert [found.severity(p) for p in pressures] == [None, "warning", "warning", "error"]
+    document = found.document([0.0, 22 * KPA, 45 * KPA])
+    assert [(f["severity"], f["driving_pressure_kPa"]) for f in document["findings"]] == [
+        ("warning", 22),
+        ("error", 45),
+    ]
+    assert document["rated_pressure_kPa"] == pytest.approx(0.9 * document["limit_low_kPa"], rel=1e-4)
+
+
+def test_many_sensors_are_rated_as_one_is(library):
+    one = rated(library)
+    many = rated_pressure(np.full(3, one.limit.nominal), np.array([0.0, 0.1, 0.3]), np.array([1.0, 1.0, 0.01]))
+    assert many == pytest.approx([0.9 * one.limit.nominal, 0.9 * one.limit.nominal * np.exp(-0.2), 0.009])
