@@ -38,7 +38,7 @@ def _reach(point: dict[str, float] | None) -> str:
 def _rating(rating: dict[str, Any]) -> list[str]:
     """The rated pressure with its basis, what would raise it, and what is driven above it."""
     lines = [f"rated pressure {tenths_below(rating['rated_pressure_kPa']):.1f} kPa: {rating['basis']}"]
-    lines += [] if rating["remedy"] is None else [rating["remedy"]]
+    lines += [] if rating["remedy"] is None else [f"to raise it: {rating['remedy']}"]
     return lines + [f"{finding['severity']}: {finding['message']}" for finding in rating["findings"]]
 
 

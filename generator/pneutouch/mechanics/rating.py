@@ -80,13 +80,20 @@ class Rating:
     @property
     def basis(self) -> str:
         """What the rated pressure follows from, in words."""
-        limit, share = self.limit, f"{RATED_SHARE:.0%} of {self.limit.low / KPA:.1f} kPa"
+        limit = self.limit
         if limit.low == limit.nominal:
-            return f"{share}, the {limit.name}"
+            return f"{RATED_SHARE:.0%} of the {limit.name}, {limit.nominal / KPA:.1f} kPa"
         return (
-            f"{share}, the lower end of the {limit.name}: {limit.nominal / KPA:.1f} kPa nominal, "
-            f"{limit.low / KPA:.1f} to {limit.high / KPA:.1f} kPa at k = {COVERAGE:g}"
+            f"{RATED_SHARE:.0%} of the lower end of the {limit.name}, {limit.nominal / KPA:.1f} kPa nominal, "
+            f"{limit.low / KPA:.1f} to {limit.high / KPA:.1f} at k = {COVERAGE:g}"
         )
+
+    @property
+    def summary(self) -> str:
+        """The basis in few words."""
+        limit = self.limit
+        least = "" if limit.low == limit.nominal else f"the lower end (k = {COVERAGE:g}) of "
+        return f"{RATED_SHARE:.0%} of {least}the {limit.name}, {limit.nominal / KPA:.1f} kPa nominal"
 
     @property
     def remedy(self) -> str | None:
@@ -94,8 +101,8 @@ class Rating:
         if self.measured < _WORTH * self.pressure:
             return None
         return (
-            f"the modulus is what lowers it: measured on coupons to {COUPON:.0%} and confirmed, the rated pressure "
-            f"is {tenths_below(self.measured / KPA):.1f} kPa; calibrating a built sensor raises it likewise"
+            f"measure the modulus on coupons (to {COUPON:.0%}), which makes it {tenths_below(self.measured / KPA):.1f} kPa "
+            "if they confirm the nominal modulus, or calibrate a built sensor"
         )
 
     def document(self, driving_pressures: list[float]) -> dict[str, Any]:

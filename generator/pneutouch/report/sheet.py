@@ -31,6 +31,7 @@ def content_of(sheet: SheetData) -> dict[str, Any]:
         "warnings": _warnings(sheet),
         "key_figures": _key_figures(sheet),
         "ratings": _ratings(sheet),
+        "rating_note": _rating_note(sheet),
         "operating": _operating(sheet),
         "performance": _performance(sheet),
         "model_error": _model_error(sheet),
@@ -61,7 +62,7 @@ def _key_figures(sheet: SheetData) -> list[list[str]]:
         ["Sensitivity", _sensitivity(first), "kPa/N", _condition(sheet, 0)],
         ["Sensitivity", _sensitivity(last), "kPa/N", _condition(sheet, -1)],
         ["Force range", _range(last), "N", f"at {last.driving_pressure / KPA:g} kPa"],
-        ["Max. driving pressure", f"{sheet.rating.pressure_kPa:.1f}", "kPa", sheet.rating.basis],
+        ["Max. driving pressure", f"{sheet.rating.pressure_kPa:.1f}", "kPa", sheet.rating.summary],
         ["Dead volume", f"{sheet.prediction.dead_volume / ML:.2f}", "mL", "behind the cavity"],
         ["Size", f"Ø{wide:.1f}", "mm", f"{mass:.1f} g without tube"],
     ]
@@ -69,10 +70,8 @@ def _key_figures(sheet: SheetData) -> list[list[str]]:
 
 def _warnings(sheet: SheetData) -> list[str]:
     """Driving pressures of the design that the rating does not allow."""
-    states = ((sheet.rating.severity(s.driving_pressure), s.driving_pressure) for s in sheet.prediction.states)
-    remedy = "" if sheet.rating.remedy is None else f" {sheet.rating.remedy[0].upper()}{sheet.rating.remedy[1:]}."
-    lines = [f"{severity.capitalize()}: {sheet.rating.excess(p)}." for severity, p in states if severity is not None]
-    return [*lines[:-1], f"{lines[-1]}{remedy}"] if lines else []
+    judged = ((sheet.rating.severity(s.driving_pressure), s.driving_pressure) for s in sheet.prediction.states)
+    return [f"{severity.capitalize()}: {sheet.rating.excess(p)}." for severity, p in judged if severity is not None]
 
 
 def _condition(sheet: SheetData, k: int) -> str:
@@ -98,8 +97,7 @@ def _captions(sheet: SheetData) -> dict[str, str]:
 
 def _ratings(sheet: SheetData) -> list[list[str]]:
     """Absolute maximum ratings: quantity, value, unit, basis."""
-    remedy = "" if sheet.rating.remedy is None else f"; {sheet.rating.remedy}"
-    basis = f"{sheet.rating.basis} (model {sheet.prediction.model}){remedy}"
+    basis = f"{sheet.rating.summary} (model {sheet.prediction.model})"
     gauge = f"{NOT_TESTED}; the pressure sensor (SMC PSE543-R06) reads to 100 kPa"
     return [
         ["Driving pressure", f"{sheet.rating.pressure_kPa:.1f}", "kPa gauge", basis],
@@ -108,6 +106,16 @@ def _ratings(sheet: SheetData) -> list[list[str]]:
         ["Burst pressure", DASH, "kPa", NOT_TESTED],
         ["Temperature", DASH, "°C", NOT_TESTED + "; the paper's tests ran at 18 to 26 °C"],
     ]
+
+
+def _rating_note(sheet: SheetData) -> str:
+    """What would raise the rated pressure; empty where it does not follow from the modulus."""
+    rating = sheet.rating
+    return (
+        ""
+        if rating.remedy is None
+        else f"To raise the rated pressure of {rating.pressure_kPa:.1f} kPa: {rating.remedy}."
+    )
 
 
 def _operating(sheet: SheetData) -> list[list[str]]:

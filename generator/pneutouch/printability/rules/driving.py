@@ -29,7 +29,7 @@ def check(view: PrintView) -> list[Finding]:
             severity,
             view.sensor.membrane,
             text,
-            fix if rating.remedy is None else f"{fix}; {rating.remedy}",
+            fix if rating.remedy is None else f"{fix}, or {rating.remedy}",
             _SOURCES[limit.name],
             (0.0, 0.0, last.apex_outer),
             Excess(last.driving_pressure / KPA, rating.pressure / KPA, "kPa"),

@@ -108,7 +108,7 @@ def curve_warnings(
             f"predicted range ends at {curve.ends[1]:.2f} mm ({curve.ends[0]}); readings beyond belong to no figure",
         )
     if rating.severity(curve.driving) is not None:
-        remedy = "" if rating.remedy is None else f"; {rating.remedy}"
+        remedy = "" if rating.remedy is None else f"; to raise it, {rating.remedy}"
         report("rated pressure", None, f"{rating.excess(curve.driving)}, {rating.basis}{remedy}")
     first = expected[0]["force_N"]
     if first is not None and first < RESOLVED * rig.force_resolution_N:
