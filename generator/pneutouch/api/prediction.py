@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
     from pneutouch.evaluation.evaluate import Evaluation
+    from pneutouch.mechanics.rating import Rating
     from pneutouch.parts import Assembly
 
 _UNIT = re.compile(r"(.+?)_((?:mm|N|kPa|mL)(?:_per_(?:mm|N))?)$")
@@ -119,6 +120,11 @@ class Prediction(show.Shown):
     def states(self) -> tuple[PredictedState, ...]:
         """The states in order of driving pressure."""
         return tuple(PredictedState(state) for state in prediction_document(self.evaluation)["states"])
+
+    @property
+    def rating(self) -> Rating:
+        """The rated pressure, what it follows from and what would raise it."""
+        return self.evaluation.rating
 
     def at(self, pressure_kPa: float) -> PredictedState:
         """The state at a driving pressure. Raises InputError for one that was not predicted."""

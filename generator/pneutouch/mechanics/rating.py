@@ -100,9 +100,10 @@ class Rating:
         """What would raise the rated pressure, in words; None where the modulus is not what lowers it."""
         if self.measured < _WORTH * self.pressure:
             return None
+        measured_kPa = tenths_below(self.measured / KPA)
         return (
-            f"measure the modulus on coupons (to {COUPON:.0%}), which makes it {tenths_below(self.measured / KPA):.1f} kPa "
-            "if they confirm the nominal modulus, or calibrate a built sensor"
+            f"measure the modulus on coupons (to {COUPON:.0%}), which makes it {measured_kPa:.1f} kPa if they confirm "
+            "the nominal modulus, or calibrate a built sensor"
         )
 
     def document(self, driving_pressures: list[float]) -> dict[str, Any]:

@@ -49,8 +49,8 @@ DEFINITIONS = (
 )
 
 TUNING = (
-    "Tuning: sensitivity of this design from no driving pressure to its rated one (its highest stated one where that is "
-    "above), by the atlas, with its k = 2 interval (grey); circles: the predicted states."
+    "Tuning: sensitivity of this design from no driving pressure to its rated one (its highest stated one where that "
+    "is above), by the atlas, with its k = 2 interval (grey); circles: the predicted states."
 )
 SHAPES = "Half sections of the deformed wall, shaded by the greatest principal stretch; thin outlines at rest."
 NO_SHAPES = "Half sections of the deformed wall are drawn by the solid alone: build with model solid."

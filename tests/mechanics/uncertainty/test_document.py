@@ -63,8 +63,9 @@ def test_the_page_says_what_the_code_gives(library, root):
 
 def test_the_pages_example_runs_and_says_what_it_says(root, capsys):
     page = (root / "docs/uncertainty.md").read_text(encoding="utf-8")
-    code = re.search(r"```python\n(.*?)```", page, re.DOTALL)
-    said = re.search(r"```text\n(.*?)```", page, re.DOTALL)
-    exec(code.group(1), {})
-    words = capsys.readouterr().out.split()
-    assert [w for w in words if w.isalpha()] == [w for w in said.group(1).split() if w.isalpha()]
+    examples = re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", page, re.DOTALL)
+    assert len(examples) == 2
+    for code, said in examples:
+        exec(code, {})
+        words = capsys.readouterr().out.split()
+        assert [w for w in words if w.isalpha()] == [w for w in said.split() if w.isalpha()]

@@ -70,7 +70,7 @@ def _standard(batch: SensorBatch, source_list: list[UncertaintySource]) -> Array
 
 
 def wall_slope(wall_ratio: Array) -> Array:
-    """Slope of the logarithm of the limit pressure by that of the wall ratio, (n,); outside the atlas that of its edge."""
+    """Slope of the logarithm of the limit pressure by that of the wall ratio, (n,); beyond the atlas its edge's."""
     at, slope = _slopes()
     return np.asarray(np.interp(np.log(wall_ratio), at, slope))
 
