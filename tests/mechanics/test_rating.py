@@ -9,8 +9,11 @@ from pneutouch.mechanics import predict
 from pneutouch.mechanics.limits import Limits
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.rating import Rating, rated_pressure, rating
+from pneutouch.mechanics.uncertainty import ModelErrors, batch_of, budget
+from pneutouch.mechanics.uncertainty.limit import LIMIT
+from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.units import KPA
-from tests.mechanics.uncertainty.designs import materials
+from tests.mechanics.uncertainty.designs import NUMERICAL, materials
 
 
 def rated(
@@ -94,3 +97,52 @@ def test_many_sensors_are_rated_as_one_is(library):
     one = rated(library)
     many = rated_pressure(np.full(3, one.limit.nominal), np.array([0.0, 0.1, 0.3]), np.array([1.0, 1.0, 0.01]))
     assert many == pytest.approx([0.9 * one.limit.nominal, 0.9 * one.limit.nominal * np.exp(-0.2), 0.009])
+
+
+def calibrated(modulus: float, wall: float, correlation: float) -> SensorCalibration:
+    """The paper's sensor with standard deviations (relative) of a fitted modulus and wall and their correlation."""
+    both = correlation * modulus * wall
+    return SensorCalibration.model_validate(
+        {
+            "format": 1,
+            "title": "made up",
+            "covariance": [[modulus**2, both], [both, wall**2]],
+            "source": {
+                **{"sensor": "A1", "digest": "ab" * 32, "simulated": True, "curves": 0, "injections": 1},
+                **{"driving_pressures_kPa": [], "age_days": 365.0},
+            },
+            "design": {
+                **{"name": "paper-dome", "material": "TangoPlus", "inner_radius_mm": 9.25},
+                **{"wall_thickness_mm": 1.5, "dead_volume_mL": 0.0},
+            },
+            "parameters": [
+                {"key": "shear_modulus_MPa", "value": 0.17, "fitted": True, "covered": True},
+                {"key": "wall_thickness_mm", "value": 1.5, "fitted": True, "covered": True},
+                {"key": "dead_volume_mL", "value": 0.0, "fitted": False, "covered": False},
+            ],
+        }
+    )
+
+
+@pytest.mark.parametrize("correlation", [-0.95, 0.0, 0.95])
+def test_a_calibration_raises_it_by_its_own_covariance(library, correlation):
+    """Modulus and wall that a fit can exchange for one another: their product, the limit pressure, is known better."""
+    material, printer = materials(library)["TangoPlus"], library.load("printers", "objet260-connex")
+    sensor, known = material_sensor(material), calibrated(0.08, 0.06, correlation)
+    limits = predict("", sensor, [0.0], model="atlas").limits
+    found = rating(limits, sensor, material, printer, known)
+    assert found.pressure > 1.2 * rating(limits, sensor, material, printer).pressure
+    spread = np.sqrt(0.08**2 + 0.06**2 + 2 * correlation * 0.08 * 0.06)
+    # The wall's slope is 1.04 and the radius adds 0.3 %.
+    assert np.log(found.limit.nominal / found.limit.low) == pytest.approx(2 * spread, rel=0.06, abs=0.01)
+    assert found.remedy is None, "a coupon says nothing of a modulus that was fitted"
+    whole = budget(
+        batch_of(sensor, [0.0]),
+        material,
+        printer,
+        near_paper=True,
+        errors=ModelErrors(),
+        numerical=NUMERICAL,
+        calibration=known,
+    )
+    assert np.log(found.limit.nominal / found.limit.low) == pytest.approx(whole.expanded[LIMIT, 0], rel=5e-3)

@@ -112,7 +112,8 @@ class Evaluation:
 
         error = abs(self.prediction.error_estimate["limit_pressure_relative"])
         scene = self.scene
-        return rating(self.prediction.limits, self.sensor, scene.membrane_material, scene.printer, error)
+        known = (scene.membrane_material, scene.printer, scene.calibration)
+        return rating(self.prediction.limits, self.sensor, *known, numerical=error)
 
     @cached_property
     def viscous_runs(self) -> ViscousRuns | str:

@@ -36,7 +36,7 @@ class SimulatedResin:
     def rating(self) -> Rating:
         """The rated pressure, by the limits of the cheapest model that is good enough."""
         limits = predict("", self.sensor, [0.0], model="auto").limits
-        return rating(limits, self.sensor, self.scene.membrane_material, self.scene.printer)
+        return rating(limits, self.sensor, self.scene.membrane_material, self.scene.printer, self.scene.calibration)
 
 
 def resins_of(

@@ -13,6 +13,7 @@ from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.uncertainty.limit import COUPON, limit_spread
 from pneutouch.mechanics.uncertainty.propagate import COVERAGE
 from pneutouch.rounding import rounded, tenths_below
+from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 from pneutouch.units import KPA
@@ -142,15 +143,21 @@ def rated_pressure(limit: Array, spread: Array, gauge: Array | float) -> Array:
 
 
 def rating(
-    limits: Limits, sensor: Sensor, material: Material, printer: Printer, numerical: float = LIMIT_ERROR
+    limits: Limits,
+    sensor: Sensor,
+    material: Material,
+    printer: Printer,
+    calibration: SensorCalibration | None = None,
+    numerical: float = LIMIT_ERROR,
 ) -> Rating:
     """The rating of a sensor of a resin from a printer, by its limits as a model has them.
 
     Limit point and break strain are met at pressures in proportion to the modulus: both have the uncertainty of the
     limit pressure. The scatter of the break strain is not in it: the least elongation at break stands for it.
-    ``numerical`` is the model's greatest relative error of the limit pressure.
+    ``calibration`` is that of the sensor in hand, where there is one. ``numerical`` is the model's greatest relative
+    error of the limit pressure.
     """
-    spread = limit_spread(batch_of(sensor, [0.0]), material, printer, numerical)
+    spread = limit_spread(batch_of(sensor, [0.0]), material, printer, numerical, calibration)
     factor = float(np.exp(COVERAGE * spread.standard[0]))
     intervals = [
         UncertainLimit(name, value, value, value)

@@ -12,6 +12,7 @@ from pneutouch.mechanics.uncertainty.propagate import variances
 from pneutouch.mechanics.uncertainty.source import FIGURES, INPUTS, UncertaintySource
 from pneutouch.mechanics.uncertainty.sources import sources
 from pneutouch.mechanics.uncertainty.sources.model import ModelErrors
+from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 
@@ -35,7 +36,11 @@ class LimitSpread(NamedTuple):
 
 
 def limit_spread(
-    batch: SensorBatch, material: Material, printer: Printer, numerical: float, aged: bool = True
+    batch: SensorBatch,
+    material: Material,
+    printer: Printer,
+    numerical: float,
+    calibration: SensorCalibration | None = None,
 ) -> LimitSpread:
     """The uncertainty that `budget` states for the limit pressure, of n sensors of one resin and printer.
 
@@ -44,16 +49,17 @@ def limit_spread(
     modulus = material.shear_modulus_MPa
     assert modulus is not None
     coupon = modulus.model_copy(update={"spread": COUPON * modulus.nominal})
-    both = (material, material.model_copy(update={"shear_modulus_MPa": coupon}))
     error = {FIGURES[LIMIT]: numerical}
-    return LimitSpread(
-        *(
-            _standard(
-                batch, sources(batch, m, printer, near_paper=False, errors=ModelErrors(), numerical=error, aged=aged)
-            )
-            for m in both
+
+    def standard(known: Material) -> Array:
+        none = ModelErrors()
+        return _standard(
+            batch,
+            sources(batch, known, printer, near_paper=False, errors=none, numerical=error, calibration=calibration),
         )
-    )
+
+    measured = material.model_copy(update={"shear_modulus_MPa": coupon})
+    return LimitSpread(standard(material), standard(measured))
 
 
 def _standard(batch: SensorBatch, source_list: list[UncertaintySource]) -> Array:
