@@ -30,21 +30,18 @@ def captured() -> Iterator[tuple[io.BytesIO, io.BytesIO]]:
 
 def in_process(words: Sequence[str], folder: Path) -> subprocess.CompletedProcess[str]:
     """Run ``pneutouch WORDS`` in ``folder`` in this process: the same entry point, without the imports of a new one."""
-    from pneutouch.cli import run
+    from pneutouch.cli import command_line
+    from pneutouch.cli.stop import stop_signals
 
-    code: int | str | None = 0
     with (
         contextlib.chdir(folder),
         mock.patch.object(sys, "argv", ["pneutouch", *words]),
         mock.patch.dict(os.environ, {"COLUMNS": "200"}),
         captured() as (out, err),
+        stop_signals() as stop,
     ):
-        try:
-            run()
-        except SystemExit as exit_:
-            code = exit_.code
-    assert isinstance(code, int | None), code
-    return subprocess.CompletedProcess(words, code or 0, out.getvalue().decode(), err.getvalue().decode())
+        code = command_line(stop)
+    return subprocess.CompletedProcess(words, code, out.getvalue().decode(), err.getvalue().decode())
 
 
 def in_new_process(

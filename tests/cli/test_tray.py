@@ -68,7 +68,7 @@ def test_what_is_left_out_is_said(command, bench):
         (["paper-dome", "--copies", "0"], "--copies 0: must be from 1 to 200"),
         (["paper-dome", "--over", "membrane.wall_thickness_mm=nan"], "wall_thickness_mm: nan: must be a finite number"),
         (["paper-dome", "--over", "membrane.wall_thickness_mm=[1,2]"], "wall_thickness_mm = [1, 2]: must be a number"),
-        (["paper-dome", "--marks", "etched"], "must be 'engraved', 'raised' or 'none'"),
+        (["paper-dome", "--marks", "etched"], 'must be "engraved", "raised" or "none"'),
         ([EXAMPLE, "--copies", "2"], "a tray file and --copies"),
         ([EXAMPLE, "--set", "membrane.inner_radius_mm=900"], "membrane.inner_radius_mm"),
     ],

@@ -1,5 +1,43 @@
 """The command line: one module a command, loaded where the command is used."""
 
-from pneutouch.cli.app import run
+import gc
+import os
+import signal
+import sys
 
-__all__ = ["run"]
+from pneutouch.cli.stop import StopSignals, stop_signals
+
+__all__ = ["command_line", "run"]
+
+_OBJECTS_BEFORE_COLLECTION = 100_000
+"""A command ends within seconds and keeps most of what it makes: collecting garbage at Python's 700 objects is a sixth of
+the time that CadQuery and matplotlib take to load."""
+
+
+def run() -> None:
+    """Entry point of the ``pneutouch`` command."""
+    gc.set_threshold(_OBJECTS_BEFORE_COLLECTION, 50, 50)
+    # The models have no plugins: to look for some, pydantic reads the metadata of every installed package.
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
+    with stop_signals(after=signal.SIG_IGN) as stop:
+        code = command_line(stop)
+    sys.exit(code)
+
+
+def command_line(stop: StopSignals) -> int:
+    """Run the command line ``sys.argv`` and return the exit code: 130 or 143 where ``stop`` received a signal."""
+    code = 0
+    try:
+        # Inside, so that a stop while the first modules load ends the same way.
+        from pneutouch.cli.entry import invoked
+
+        code = invoked(sys.argv[1:])
+    except (Exception, KeyboardInterrupt):
+        if stop.received is None:
+            raise
+    if stop.received is None:
+        return code
+    from pneutouch.cli.terminal import notify
+
+    notify(stop.line)
+    return stop.exit_code

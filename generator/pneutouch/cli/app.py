@@ -1,99 +1,41 @@
 """The command line. Heavy packages load inside the commands that use them: ``--help`` never pays."""
 
-import gc
 import os
-import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from functools import partial
-from importlib import import_module
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from typer.core import TyperGroup
-from typer.main import get_command_from_info
 
 from pneutouch import __version__
+from pneutouch.cli.commands import CHANGES, Commands
 from pneutouch.cli.next_step import report_next
+from pneutouch.cli.stop import refuse_stopped
 from pneutouch.errors import ComputationError, InputError, PneutouchError
-
-_MODULES = {"build": "build", "check": "build"} | {
-    name: name
-    for name in [
-        "calibrate",
-        "characterize",
-        "compare",
-        "coupons",
-        "simulate",
-        "plan",
-        "scan",
-        "select",
-        "show",
-        "sweep",
-        "tray",
-    ]
-}
-"""Modules by the commands that they register when they are imported."""
-
-_OBJECTS_BEFORE_COLLECTION = 100_000
-"""A command ends within seconds and keeps most of what it makes: collecting garbage at Python's 700 is a sixth of
-the time that CadQuery and matplotlib take to load."""
-
-
-class Commands(TyperGroup):
-    """The commands. An error of the library ends one with a message in its own words, and the error's exit code."""
-
-    def list_commands(self, ctx: Any) -> list[str]:
-        """Names in the order of the help."""
-        return [*self.commands, *(name for name in _MODULES if name not in self.commands)]
-
-    def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        """A command, whose module is imported; an unknown name imports all, for the suggestion."""
-        for name in [cmd_name] if cmd_name in self.list_commands(ctx) else _MODULES:
-            if name not in self.commands:
-                import_module(f"pneutouch.cli.{_MODULES[name]}")
-                (info,) = (one for one in app.registered_commands if one.callback and one.callback.__name__ == name)
-                self.add_command(get_command_from_info(info, pretty_exceptions_short=True, rich_markup_mode=None))
-        return super().get_command(ctx, cmd_name)
-
-    def invoke(self, ctx: Any) -> Any:
-        """Run the requested command."""
-        try:
-            return super().invoke(ctx)
-        except PneutouchError as error:
-            command = self.get_command(ctx, ctx.invoked_subcommand or "")
-            typer.echo(f"error: {error.message(partial(option, command))}", err=True)
-            raise typer.Exit(error.exit_code) from None
-
-
-def option(command: Any, parameter: str) -> str | None:
-    """What ``command`` calls a parameter of the library, such as --noise for noise_kPa; None where it has none."""
-    known = {str(one.name).strip("_"): one for one in (command.params if command else ())}
-    if "." in parameter:
-        return f"--set {parameter}" if "set" in known else None
-    names = sorted((name for name in known if f"_{name}_" in f"_{parameter}_"), key=len)
-    # An option may be named by what it takes: --write NAME.
-    named = [one for one in known.values() if one.metavar == parameter.upper()]
-    if not names and not named:
-        return None
-    one = known[names[-1]] if names else named[0]
-    return str(one.metavar or one.name).upper() if one.param_type_name == "argument" else max(one.opts, key=len)
-
 
 app = typer.Typer(
     cls=Commands,
-    add_completion=False,
-    no_args_is_help=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
     help="Pneumatic touch sensors: from a design file to print files, a prediction and a datasheet.",
 )
 
 DesignArgument = Annotated[str, typer.Argument(metavar="DESIGN", help="Name of a design, or path of a TOML file.")]
+
+
+def _keep_keys(context: typer.Context, assignments: list[str] | None) -> list[str] | None:
+    """Keep which fields are given here, so that an error on one does not blame the file."""
+    context.meta[CHANGES] = [text.partition("=")[0].strip() for text in assignments or []]
+    return assignments
+
+
 SetOption = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="TABLE.KEY=VALUE", help="Override a field of the design; may be repeated."),
+    typer.Option(
+        "--set", metavar="TABLE.KEY=VALUE", help="Override a field of the design; may be repeated.", callback=_keep_keys
+    ),
 ]
 CalibrationOption = Annotated[
     str | None,
@@ -137,26 +79,21 @@ def reporting() -> Iterator[None]:
     """Turn a fault of ours into one message on stderr and exit code 3; errors of the library go on to `Commands`."""
     try:
         yield
-    except BrokenPipeError:
-        sys.stderr.close()
-        raise typer.Exit(0) from None
     except (typer.Exit, PneutouchError):
         raise
     except OSError as error:
+        refuse_stopped()
         # A name that no file can have, a folder that may not be read, a full disk: the system's own words.
         raise InputError(error.strerror or str(error), file=error.filename) from None
     except MemoryError:
         raise ComputationError("not enough memory", remedy="request less at once, or close other programs") from None
     except Exception as error:
-        if isinstance(error.__cause__ or error.__context__, KeyboardInterrupt):
-            # A library that is interrupted while it loads reports that it cannot be loaded.
-            raise typer.Abort from None
+        refuse_stopped()
         if os.environ.get("PNEUTOUCH_DEBUG"):
             raise
-        typer.echo(
+        notify(
             f"error: internal fault ({type(error).__name__}: {error}); please report it with the design file. "
-            "PNEUTOUCH_DEBUG=1 shows where",
-            err=True,
+            "PNEUTOUCH_DEBUG=1 shows where"
         )
         raise typer.Exit(3) from None
 
@@ -291,12 +228,4 @@ def print_json(document: Any) -> None:
     """Print a document as JSON on stdout."""
     from pneutouch.output.files import json_bytes
 
-    typer.echo(json_bytes(document).decode(), nl=False)
-
-
-def run() -> None:
-    """Entry point of the ``pneutouch`` command."""
-    gc.set_threshold(_OBJECTS_BEFORE_COLLECTION, 50, 50)
-    # The models have no plugins: to look for some, pydantic reads the metadata of every installed package.
-    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
-    app()
+    put(json_bytes(document).decode())

@@ -9,6 +9,7 @@ from pneutouch.cli.app import JsonOption, OutOption, app, print_json, reporting
 from pneutouch.cli.declared import with_fields
 from pneutouch.cli.next_step import report_next, set_words
 from pneutouch.cli.reading import READING_FIELDS, ColumnsOption, reading_of, reading_text
+from pneutouch.cli.terminal import echo, notify
 from pneutouch.spec.campaign import Campaign
 
 
@@ -55,13 +56,13 @@ def calibrate(
             outcome = run_calibration(options, progress=progress, reading=reading_of(columns, fields))
         document = outcome.document
         if document["read_as"]:
-            typer.echo(reading_text(document["read_as"]), err=True)
+            notify(reading_text(document["read_as"]))
         if json:
             print_json(document)
         else:
             from pneutouch.cli.calibrate_text import calibration_text
 
-            typer.echo(calibration_text(document))
+            echo(calibration_text(document))
             plain, name = outcome.design_given, document["calibration"]
             report_next("compare", plain, f"{plain}@{name}", *set_words(outcome.assignments))
         if document["failures"]:

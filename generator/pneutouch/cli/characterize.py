@@ -9,6 +9,7 @@ from pneutouch.cli.app import CalibrationOption, JsonOption, OutOption, SetOptio
 from pneutouch.cli.declared import with_fields
 from pneutouch.cli.next_step import report_next
 from pneutouch.cli.reading import READING_FIELDS, ColumnsOption, reading_of, reading_text
+from pneutouch.cli.terminal import echo, notify
 from pneutouch.spec.campaign import Campaign
 
 
@@ -55,12 +56,12 @@ def characterize(
         else:
             from pneutouch.cli.characterize_text import measured_text
 
-            typer.echo(measured_text(outcome.document))
-            typer.echo(f"\n{folder}")
+            echo(measured_text(outcome.document))
+            echo(f"\n{folder}")
         if outcome.read_as:
-            typer.echo(reading_text(outcome.read_as), err=True)
+            notify(reading_text(outcome.read_as))
         for file, message in outcome.measured.failures:
-            typer.echo(f"error: {file}: not read: {message}", err=True)
+            notify(f"error: {file}: not read: {message}")
         if outcome.failed:
             raise typer.Exit(3)
         if outcome.missed:

@@ -18,6 +18,7 @@ from pneutouch.cli.app import (
     print_json,
     reporting,
 )
+from pneutouch.cli.terminal import echo
 
 
 @app.command()
@@ -55,5 +56,5 @@ def compare(
         else:
             from pneutouch.cli.compare_text import comparison_text
 
-            typer.echo(comparison_text(result.document))
-            typer.echo(f"\n{folder}")
+            echo(comparison_text(result.document))
+            echo(f"\n{folder}")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from pneutouch.cli.app import JsonOption, app, print_json, reporting
+from pneutouch.cli.terminal import echo
 
 if TYPE_CHECKING:
     from pneutouch.workflows.coupons.order import CouponOptions
@@ -60,7 +61,7 @@ def coupons(
         if json:
             print_json({"folder": str(folder), **document})
         else:
-            typer.echo(str(folder))
+            echo(str(folder))
 
 
 def _enter(path: Path, out: Path | None, given: dict[str, Any], json: bool) -> None:
@@ -78,7 +79,7 @@ def _enter(path: Path, out: Path | None, given: dict[str, Any], json: bool) -> N
     else:
         from pneutouch.cli.coupons_text import results_text
 
-        typer.echo(results_text(document))
+        echo(results_text(document))
 
 
 def _options(given: dict[str, Any]) -> CouponOptions:

@@ -18,6 +18,7 @@ from pneutouch.cli.app import (
 )
 from pneutouch.cli.next_step import report_next, set_words
 from pneutouch.cli.simulate import SPECIMENS, ResinsOption, SpecimensOption, words
+from pneutouch.cli.terminal import echo, notify
 
 
 @app.command()
@@ -48,14 +49,14 @@ def plan(
         )
         folder = write_plan(result, out)
         for warning in result.document["warnings"]:
-            typer.echo(f"warning: {warning['rule']}: {warning['message']}", err=True)
+            notify(f"warning: {warning['rule']}: {warning['message']}")
         if json:
             print_json({**result.document, "folder": str(folder)})
         else:
             from pneutouch.cli.plan_text import plan_text
 
-            typer.echo(plan_text(result.document))
-            typer.echo(f"\n{folder}")
+            echo(plan_text(result.document))
+            echo(f"\n{folder}")
             some = [] if specimens == SPECIMENS else ["--specimens", specimens]
             which = ["--resins", resins] if resins else []
             report_next("simulate", design, *which, *some, *set_words(set_, calibration))

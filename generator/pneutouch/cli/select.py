@@ -11,6 +11,7 @@ from pneutouch.cli.app import DesignFolderOption, ForceOption, JsonOption, app, 
 from pneutouch.cli.declared import FieldOption, field_tables, named_by_flag, with_fields
 from pneutouch.cli.next_step import DesignPlace, report_written
 from pneutouch.cli.progress import bar
+from pneutouch.cli.terminal import echo
 from pneutouch.errors import InputError
 from pneutouch.spec.target import Target
 
@@ -130,7 +131,7 @@ def _report(selection: SelectionRun, pick: int, place: DesignPlace | None, chart
     else:
         from pneutouch.cli.select_text import selection_text
 
-        typer.echo(selection_text(selection))
+        echo(selection_text(selection))
         if path is not None:
             report_written(path)
     if not designs:

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from pneutouch.cli.app import JsonOption, app, print_json, refuse_flags, reporting
+from pneutouch.cli.terminal import echo
 
 
 @app.command()
@@ -35,4 +36,4 @@ def show(
         if json:
             print_json(document)
         else:
-            typer.echo(text(document))
+            echo(text(document))

@@ -20,6 +20,7 @@ from pneutouch.cli.app import (
 )
 from pneutouch.cli.next_step import report_next
 from pneutouch.cli.progress import bar
+from pneutouch.cli.terminal import echo, notify
 
 if TYPE_CHECKING:
     from pneutouch.workflows.simulate.options import SimulationOptions
@@ -107,11 +108,11 @@ def _report(folder: Path, options: SimulationOptions, *, json: bool) -> None:
     truth = loads((folder / "truth.json").read_text(encoding="utf-8"))
     files = [name for name in loads((folder / "manifest.json").read_text(encoding="utf-8"))["files"] if "/" in name]
     for note in truth["notes"]:
-        typer.echo(f"note: {note}", err=True)
+        notify(f"note: {note}")
     if json:
         content = {"folder": str(folder), "simulated": True, "runs": len(files), "specimens": len(truth["specimens"])}
         print_json(content | {"seed": options.seed, "populations": truth["populations"], "notes": truth["notes"]})
         return
-    typer.echo(f"{len(files)} simulated runs of {len(truth['specimens'])} specimens", err=True)
-    typer.echo(str(folder))
+    notify(f"{len(files)} simulated runs of {len(truth['specimens'])} specimens")
+    echo(str(folder))
     report_next("characterize", folder)

@@ -10,6 +10,7 @@ import typer
 
 from pneutouch.cli.app import CalibrationOption, JsonOption, SetOption, app, changes, print_json, reporting
 from pneutouch.cli.progress import bar
+from pneutouch.cli.terminal import echo, notify
 from pneutouch.errors import InputError
 
 if TYPE_CHECKING:
@@ -90,5 +91,5 @@ def _report(done: SweepResult, *, json: bool) -> None:
         return
     counts = ", ".join(f"{count} {status}" for status, count in done.states.items())
     there = "; was there already, --fresh computes it again" if done.computed == 0 else ""
-    typer.echo(f"{done.points} points, states: {counts}{there}", err=True)
-    typer.echo(str(done.path))
+    notify(f"{done.points} points, states: {counts}{there}")
+    echo(str(done.path))

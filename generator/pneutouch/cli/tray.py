@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from pneutouch.cli.app import JsonOption, OutOption, SetOption, app, changes, print_json, reporting
+from pneutouch.cli.terminal import echo, notify
 from pneutouch.errors import InputError
 
 if TYPE_CHECKING:
@@ -47,12 +48,12 @@ def tray(
         layout = lay(order, progress=_report)
         write_tray(layout, folder, _report)
         for note in layout.expanded.left_out:
-            typer.echo(f"not on this tray: {note}", err=True)
+            notify(f"not on this tray: {note}")
         if json:
             print_json(document(layout, folder))
         else:
-            typer.echo(_text(layout))
-            typer.echo(str(folder))
+            echo(_text(layout))
+            echo(str(folder))
 
 
 def _order(
@@ -69,7 +70,7 @@ def _order(
 
 
 def _report(step: str) -> None:
-    typer.echo(f"{step} ...", err=True)
+    notify(f"{step} ...")
 
 
 def _text(layout: TrayLayout) -> str:

@@ -1,0 +1,121 @@
+"""The commands by groups, and how one is found, run and ended."""
+
+from collections.abc import Sequence
+from functools import partial
+from importlib import import_module
+from typing import Any, NamedTuple
+
+import typer
+from typer.core import TyperGroup
+from typer.main import get_command_from_info
+
+from pneutouch.cli.stop import refuse_stopped, stopped
+from pneutouch.cli.terminal import notify
+from pneutouch.errors import InputError, PneutouchError, nearest
+
+
+class CommandEntry(NamedTuple):
+    """The module of ``cli`` that registers a command, and what the command does on one line of the list."""
+
+    module: str
+    summary: str
+
+
+COMMANDS: dict[str, dict[str, CommandEntry]] = {
+    "Design": {
+        "new": CommandEntry("app", "Write a commented design file, or a copy of an example."),
+        "list": CommandEntry("app", "List designs, materials, printers, parts and the like."),
+        "select": CommandEntry("select", "Find designs for a target."),
+        "predict": CommandEntry("app", "Predict the figures and their uncertainty."),
+        "check": CommandEntry("build", "Check printability and mechanical limits."),
+        "compare": CommandEntry("compare", "Show designs next to one another, with what differs."),
+        "sweep": CommandEntry("sweep", "Predict a grid or a list of designs into one dataset."),
+    },
+    "Make": {
+        "build": CommandEntry("build", "Build everything: print files, prediction, datasheet."),
+        "tray": CommandEntry("tray", "Lay many sensors out on one tray of a printer."),
+        "coupons": CommandEntry("coupons", "Make test prints, or enter what was measured on them."),
+        "show": CommandEntry("show", "Show what a 3MF or a voxel stack holds."),
+    },
+    "Measure": {
+        "plan": CommandEntry("plan", "Plan a measurement campaign: every run and step."),
+        "simulate": CommandEntry("simulate", "Simulate a campaign: records with known truth."),
+        "characterize": CommandEntry("characterize", "Turn measured runs into figures; compare with prediction."),
+        "calibrate": CommandEntry("calibrate", "Fit the model to the runs of one sensor."),
+        "scan": CommandEntry("scan", "Scan a texture with a sensor: signals and their spectrum."),
+    },
+}
+"""The commands in the order of the help; a command's module loads when it is used."""
+
+CHANGES = "pneutouch.changes"
+"""Where the context of a command keeps which fields --set changes."""
+
+_ENTRIES = {name: entry for group in COMMANDS.values() for name, entry in group.items()}
+
+
+class Commands(TyperGroup):
+    """The commands. An error of the library ends one with a message in its own words, and the error's exit code."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """Names in the order of the help."""
+        return list(_ENTRIES)
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """A command, whose module is imported."""
+        if cmd_name in _ENTRIES and cmd_name not in self.commands:
+            module = import_module(f"pneutouch.cli.{_ENTRIES[cmd_name].module}")
+            infos = module.app.registered_commands
+            (info,) = (one for one in infos if (one.name or one.callback.__name__) == cmd_name)
+            self.add_command(get_command_from_info(info, pretty_exceptions_short=True, rich_markup_mode=None))
+        return super().get_command(ctx, cmd_name)
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """The command of the first word. An unknown word is an error that names the nearest command."""
+        if args[0] not in _ENTRIES and not args[0].startswith("-") and not ctx.resilient_parsing:
+            raise InputError(f"{args[0]}: no such command.{nearest(args[0], _ENTRIES)}")
+        return super().resolve_command(ctx, args)
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """One line a command, by groups, without loading any."""
+        widest = max(map(len, _ENTRIES))
+        for group, entries in COMMANDS.items():
+            with formatter.section(group):
+                formatter.write_dl([(name.ljust(widest), entry.summary) for name, entry in entries.items()])
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the requested command."""
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt as error:
+            # Typer makes an exit code of it, and drops what the library adds to it.
+            if stop := stopped():
+                stop.notes = getattr(error, "__notes__", [])
+            raise
+        except PneutouchError as error:
+            refuse_stopped()
+            command = self.get_command(ctx, ctx.invoked_subcommand or "")
+            _leave_out_file(error, ctx.meta.get(CHANGES, ()))
+            notify(f"error: {error.message(partial(option, command))}")
+            raise typer.Exit(error.exit_code) from None
+
+
+def _leave_out_file(error: PneutouchError, changed: Sequence[str]) -> None:
+    """Take the file out of errors on fields that --set gave: their values are not in the file."""
+    for one in (error, *error.others):
+        key = (one.key or "").split("[")[0]
+        if any(key == name or key.startswith(f"{name}.") for name in changed):
+            one.file = None
+
+
+def option(command: Any, parameter: str) -> str | None:
+    """What ``command`` calls a parameter of the library, such as --noise for noise_kPa; None where it has none."""
+    known = {str(one.name).strip("_"): one for one in (command.params if command else ())}
+    if "." in parameter:
+        return f"--set {parameter}" if "set" in known else None
+    names = sorted((name for name in known if f"_{name}_" in f"_{parameter}_"), key=len)
+    # An option may be named by what it takes: --write NAME.
+    named = [one for one in known.values() if one.metavar == parameter.upper()]
+    if not names and not named:
+        return None
+    one = known[names[-1]] if names else named[0]
+    return str(one.metavar or one.name).upper() if one.param_type_name == "argument" else max(one.opts, key=len)

@@ -1,0 +1,75 @@
+"""Ctrl-C and SIGTERM: the command unwinds, which removes what is half written, and ends with one line."""
+
+import signal
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+from typing import Any
+
+from pneutouch.holding import STOPS
+
+_AGAIN = 0.05
+"""Seconds after which a stop is raised again that a callback of a library has swallowed."""
+
+
+class StopSignals:
+    """The handler of the stop signals, which keeps the one ``received`` first: a library may swallow what it raises."""
+
+    def __init__(self) -> None:
+        self.received: int | None = None
+        self.notes: list[str] = []
+
+    def __call__(self, number: int, frame: FrameType | None) -> None:
+        """Raise KeyboardInterrupt where the program stands."""
+        if self.received is None and number in STOPS:
+            self.received = number
+        raise KeyboardInterrupt
+
+    def again(self, fault: Any) -> None:
+        """In place of ``sys.unraisablehook``: a stop that could not be raised where it came is raised a moment later."""
+        if isinstance(fault.exc_value, KeyboardInterrupt):
+            signal.setitimer(signal.ITIMER_REAL, _AGAIN)
+        elif self.received is None:
+            sys.__unraisablehook__(fault)
+
+    @property
+    def exit_code(self) -> int:
+        """130 after Ctrl-C, 143 after SIGTERM."""
+        return 128 + (self.received or 0)
+
+    @property
+    def line(self) -> str:
+        """What stopped the command, and what the library adds to it."""
+        by = "stopped by Ctrl-C" if self.received == signal.SIGINT else "stopped by SIGTERM"
+        return "; ".join([by, *self.notes])
+
+
+@contextmanager
+def stop_signals(after: Any = None) -> Iterator[StopSignals]:
+    """Handle the stop signals until the block ends; one that is ignored, as under nohup, stays ignored.
+
+    after: what handles them then, in place of what did before.
+    """
+    stop = StopSignals()
+    numbers = [number for number in (*STOPS, signal.SIGALRM) if signal.getsignal(number) is not signal.SIG_IGN]
+    before = {number: signal.signal(number, stop) for number in numbers}
+    hook, sys.unraisablehook = sys.unraisablehook, stop.again
+    try:
+        yield stop
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, after or handler)
+        sys.unraisablehook = hook
+
+
+def stopped() -> StopSignals | None:
+    """The handler where a stop signal was received."""
+    handler = signal.getsignal(signal.SIGTERM)
+    return handler if isinstance(handler, StopSignals) and handler.received is not None else None
+
+
+def refuse_stopped() -> None:
+    """Raise KeyboardInterrupt where a stop signal was received: a library that it meets while loading raises its own."""
+    if stopped():
+        raise KeyboardInterrupt
