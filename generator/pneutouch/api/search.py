@@ -95,7 +95,7 @@ def sweep(
     """Predict every combination of values of a design's fields, given as lists or as ``{"from", "to", "count"}``.
 
     A field with a single value has it in all designs. ``out`` (a netCDF file) keeps the dataset, and the progress of a
-    sweep that is interrupted. Raises InputError, and ComputationError where it stopped.
+    sweep that is interrupted. Raises InputError, and ComputationError where it stopped; Ctrl-C interrupts it.
     """
     import xarray
 

@@ -27,7 +27,7 @@ class StopSignals:
         raise KeyboardInterrupt
 
     def again(self, fault: Any) -> None:
-        """In place of ``sys.unraisablehook``: a stop that could not be raised where it came is raised a moment later."""
+        """In place of ``sys.unraisablehook``: a stop that could not be raised where it came is raised later."""
         if isinstance(fault.exc_value, KeyboardInterrupt):
             signal.setitimer(signal.ITIMER_REAL, _AGAIN)
         elif self.received is None:

@@ -71,7 +71,7 @@ def test_what_is_no_scheduler_is_an_input_error(library, tmp_path, monkeypatch):
     monkeypatch.setattr(module, "_PATIENCE", 1)
     with listening() as silent:
         for address in ("nonsense", "http://localhost:1", f"127.0.0.1:{silent.getsockname()[1]}"):
-            with pytest.raises(InputError, match=f"scheduler = '{address}': no Dask scheduler answers there"):
+            with pytest.raises(InputError, match=f'scheduler = "{address}": no Dask scheduler answers there'):
                 sweep(small(), tmp_path / "x.nc", ComputeResources(scheduler=address), library=library)
     assert list(tmp_path.iterdir()) == []
 

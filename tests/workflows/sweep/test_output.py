@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from pneutouch.errors import ComputationError, InputError
+from pneutouch.errors import InputError
 from pneutouch.workflows.sweep import sweep
 from tests.workflows.sweep.conftest import ALONE, ended, held, names, resumed, six, small
 
@@ -45,7 +45,7 @@ def test_a_stopped_replacement_goes_on_and_the_old_dataset_stays_until_then(sing
         if done == 2:
             raise KeyboardInterrupt
 
-    with pytest.raises(ComputationError, match="2 of 6"):
+    with pytest.raises(KeyboardInterrupt):
         sweep(six(), out, ALONE, library=library, fresh=True, progress=stop)
     assert out.read_bytes() == content
     assert sweep(six(), out, ALONE, library=library).computed == 4

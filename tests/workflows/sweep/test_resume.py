@@ -58,8 +58,8 @@ def test_ctrl_c_says_how_to_go_on(undisturbed, tmp_path):
     process = held(out, "--workers", "1", group=True)
     os.killpg(process.pid, signal.SIGINT)
     code, stdout, stderr = ended(process)
-    assert (code, stdout) == (3, "")
-    assert stderr.startswith("error: interrupted\n")
+    assert (code, stdout) == (130, "")
+    assert stderr.splitlines()[-1].startswith("stopped by Ctrl-C; ")
     assert f"of {POINTS} points are done and kept in {out}.parts; the same command" in stderr
     assert "Traceback" not in stderr
     assert resumed(out).returncode == 0

@@ -31,10 +31,10 @@ def in_process(chunks: list[SweepChunk], folder: Path) -> Iterator[list[Record]]
 def in_pool(chunks: list[SweepChunk], folder: Path, workers: int) -> Iterator[list[Record]]:
     """Compute chunks in ``workers`` processes; records come in the order in which chunks are done.
 
-    Raises ComputationError where a worker dies.
+    Raises ComputationError where a worker dies. What ends it half way ends the processes as well.
     """
     context = multiprocessing.get_context("spawn")
-    waiting = iter(chunks)
+    waiting, others = iter(chunks), set(multiprocessing.active_children())
     with _single_threaded(), futures.ProcessPoolExecutor(workers, context, _prepare_worker) as pool:
         running: set[futures.Future[list[Record]]] = set()
         try:
@@ -43,6 +43,7 @@ def in_pool(chunks: list[SweepChunk], folder: Path, workers: int) -> Iterator[li
                     with _deaf():
                         running.add(pool.submit(compute, chunk, folder))
                 if not running:
+                    others.update(multiprocessing.active_children())
                     return
                 done, running = futures.wait(running, return_when=futures.FIRST_COMPLETED)
                 for future in done:
@@ -53,6 +54,9 @@ def in_pool(chunks: list[SweepChunk], folder: Path, workers: int) -> Iterator[li
             ) from None
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
+            # They would end what they compute first.
+            for process in set(multiprocessing.active_children()) - others:
+                process.terminate()
 
 
 @contextlib.contextmanager
@@ -71,15 +75,15 @@ def _single_threaded() -> Iterator[None]:
 
 @contextlib.contextmanager
 def _deaf() -> Iterator[None]:
-    """Processes started here never receive Ctrl-C, not even while they start: it is the parent's to handle."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    """Processes started here never receive Ctrl-C, not even while they start: it is the parent's to handle.
+
+    Blocked and not ignored, for the parent receives it afterwards.
+    """
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _prepare_worker() -> None:

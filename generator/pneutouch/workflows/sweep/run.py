@@ -8,6 +8,7 @@ from pathlib import Path
 
 from pneutouch.catalogue import Library
 from pneutouch.errors import ComputationError, InputError, joined
+from pneutouch.holding import uninterrupted
 from pneutouch.workflows.sweep.cluster import on_cluster
 from pneutouch.workflows.sweep.dataset import dataset, netcdf, stored_fingerprint, stored_states
 from pneutouch.workflows.sweep.journal import Journal
@@ -55,7 +56,8 @@ def sweep(
     Progress is kept in ``out`` with ``.parts`` added. A stopped sweep, however it was stopped, goes on there and
     ends with the same bytes. ``fresh`` forgets progress and replaces another sweep's dataset.
 
-    Raises InputError before any work starts, ComputationError where it stopped half way, its progress kept.
+    Raises InputError before any work starts, ComputationError where it stopped half way, its progress kept. A
+    KeyboardInterrupt passes with a note of the progress that is kept.
     """
     if machines.workers is not None and machines.workers < 1:
         raise InputError("must be at least 1", key="workers", value=machines.workers)
@@ -114,24 +116,31 @@ def _compute(
     progress(len(records), total)
     with contextlib.closing(_batches(study, machines, folder, records)) as batches:
         for batch in batches:
-            journal.append(batch)
-            records.update((record["point"], record) for record in batch)
+            with uninterrupted():
+                journal.append(batch)
+                records.update((record["point"], record) for record in batch)
             progress(len(records), total)
 
 
 @contextlib.contextmanager
 def _keeping(folder: WorkFolder, records: dict[int, Record], total: int) -> Iterator[None]:
     """Report how far the work came where anything stops it, and that it goes on from there."""
+
+    def kept() -> str:
+        return f"{len(records)} of {total} points are done and kept in {folder.path}"
+
+    remedy = "the same command (without `fresh`) goes on from there"
     try:
         yield
-    except (KeyboardInterrupt, ComputationError, OSError) as error:
-        if isinstance(error, OSError):
-            first = ComputationError(f"{error.filename or folder.path}: cannot be written: {error.strerror or error}")
-        else:
-            first = error if isinstance(error, ComputationError) else ComputationError("interrupted")
-        kept = f"{len(records)} of {total} points are done and kept in {folder.path}"
-        remedy = "the same command (without `fresh`) goes on from there"
-        raise joined((first, ComputationError(kept, remedy=remedy))) from None
+    except KeyboardInterrupt as error:
+        if records:
+            error.add_note(f"{kept()}; {remedy.replace('`', '')}")
+        raise
+    except ComputationError as error:
+        raise joined((error, ComputationError(kept(), remedy=remedy))) from None
+    except OSError as error:
+        first = ComputationError(f"{error.filename or folder.path}: cannot be written: {error.strerror or error}")
+        raise joined((first, ComputationError(kept(), remedy=remedy))) from None
 
 
 def _batches(
