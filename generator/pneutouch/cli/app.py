@@ -12,6 +12,7 @@ from pneutouch import __version__
 from pneutouch.cli.commands import CHANGES, Commands
 from pneutouch.cli.next_step import report_next
 from pneutouch.cli.stop import refuse_stopped
+from pneutouch.cli.terminal import echo, notify, put
 from pneutouch.errors import ComputationError, InputError, PneutouchError
 
 app = typer.Typer(
@@ -100,7 +101,7 @@ def reporting() -> Iterator[None]:
 
 def _version(requested: bool) -> None:
     if requested:
-        typer.echo(f"pneutouch {__version__}")
+        echo(f"pneutouch {__version__}")
         raise typer.Exit
 
 
@@ -154,7 +155,7 @@ def predict(
         else:
             from pneutouch.cli.text import prediction_text
 
-            typer.echo(prediction_text(document))
+            echo(prediction_text(document))
 
 
 @app.command("list")
@@ -173,7 +174,7 @@ def list_(
         if json:
             print_json(content)
         else:
-            typer.echo(listing_text(content))
+            echo(listing_text(content))
 
 
 @app.command()
@@ -196,7 +197,7 @@ def new(
             made = NewFile(path, ("check", name if out is None else str(path)))
         else:
             raise InputError("no name for the new design", remedy="give a name, or an example with `from`")
-        typer.echo(str(made.path))
+        echo(str(made.path))
         report_next(*made.command)
 
 

@@ -27,6 +27,7 @@ from pneutouch.cli.app import (
 )
 from pneutouch.cli.next_step import report_next, set_words
 from pneutouch.cli.progress import bar
+from pneutouch.cli.terminal import echo, notify
 
 if TYPE_CHECKING:
     from pneutouch.evaluation.evaluate import Evaluation
@@ -84,14 +85,14 @@ def build(
             name, folder, findings = _build_sensor(evaluation, out)
             stack = None if plan is None else _write_voxels(plan, evaluation, out)
         for finding in findings:
-            typer.echo(f"{finding.severity}: {finding.rule}: {finding.message}; {finding.fix}", err=True)
+            notify(f"{finding.severity}: {finding.rule}: {finding.message}; {finding.fix}")
         _report_left_out(folder)
         if json:
             print_json({"design": name, "folder": str(folder), **({"voxels": str(stack)} if stack else {})})
         else:
-            typer.echo(str(folder))
+            echo(str(folder))
             if stack is not None:
-                typer.echo(str(stack))
+                echo(str(stack))
             if not _is_specimen(design) and not _is_3mf(design):
                 report_next("plan", design, *set_words(set_, calibration))
 
@@ -126,7 +127,7 @@ def check(
         else:
             from pneutouch.cli.text import findings_text
 
-            typer.echo(findings_text([finding.document() for finding in findings]))
+            echo(findings_text([finding.document() for finding in findings]))
             if not broken:
                 report_next("build", design, *set_words(set_, calibration), *(["--voxels"] if voxels else []))
         if broken:
@@ -180,7 +181,7 @@ def _report_left_out(folder: Path) -> None:
     path = folder / MANIFEST
     manifest = loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
     for name, why in manifest.get("left_out", {}).items():
-        typer.echo(f"note: {name} is not written: {why}", err=True)
+        notify(f"note: {name} is not written: {why}")
 
 
 def _planned(evaluation: Evaluation, out: Path, mode: str | None) -> VoxelPlan:
@@ -200,7 +201,7 @@ def _write_voxels(plan: VoxelPlan, evaluation: Evaluation, out: Path) -> Path:
     with bar("voxels") as report:
         folder, notes = write_voxels(plan, out, input_hash(evaluation), report)
     for note in notes:
-        typer.echo(f"warning: voxels: {note}", err=True)
+        notify(f"warning: voxels: {note}")
     return folder
 
 
@@ -216,7 +217,7 @@ def _from_3mf(file: str, context: typer.Context) -> Evaluation:
     recipe = read_recipe(package)
     other = other_versions(package, recipe)
     if other:
-        typer.echo(f"note: {file} was made with {', '.join(other)}: what is built may differ from it", err=True)
+        notify(f"note: {file} was made with {', '.join(other)}: what is built may differ from it")
     return evaluate_recipe(recipe)
 
 

@@ -11,6 +11,7 @@ import typer
 from pneutouch.cli.app import print_json
 from pneutouch.cli.next_step import DesignPlace, report_written
 from pneutouch.cli.progress import bar
+from pneutouch.cli.terminal import echo, notify
 from pneutouch.cli.text import columns
 from pneutouch.errors import InputError, RuleBrokenError
 from pneutouch.spec.target import Target
@@ -31,12 +32,12 @@ def select_graded(target: Target, where: str, place: DesignPlace | None, *, json
     begun = time.perf_counter()
     with bar("grades of at most") as report:
         selection = run(target, where, progress=lambda trial, done, most: report(done, most))
-    typer.echo(f"{selection.solves} solid solves in {time.perf_counter() - begun:.0f} s", err=True)
+    notify(f"{selection.solves} solid solves in {time.perf_counter() - begun:.0f} s")
     path = None if place is None or not selection.search.met else _saved(selection, place)
     if json:
         print_json({**shown.graded_document(selection), "written": None if path is None else str(path)})
     else:
-        typer.echo(graded_text(selection))
+        echo(graded_text(selection))
         if path is not None:
             report_written(path)
     if not selection.search.met:

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
-import typer
+from pneutouch.cli.terminal import echo, notify
 
 
 class DesignPlace(NamedTuple):
@@ -18,7 +18,7 @@ class DesignPlace(NamedTuple):
 
 def report_next(*words: object) -> None:
     """Print ``next: pneutouch WORDS`` on stderr, quoted so that it works as it stands."""
-    typer.echo(f"next: {shlex.join(['pneutouch', *map(str, words)])}", err=True)
+    notify(f"next: {shlex.join(['pneutouch', *map(str, words)])}")
 
 
 def set_words(assignments: Iterable[str] | None, calibration: str | None = None) -> list[str]:
@@ -31,6 +31,6 @@ def report_written(path: Path) -> None:
     """Report a design file that was written, and that it is to be checked: by its name where that is found."""
     from pneutouch.catalogue import Library
 
-    typer.echo(f"\nwritten: {path}")
+    echo(f"\nwritten: {path}")
     known = Library.default().paths("designs").get(path.stem)
     report_next("check", path.stem if known is not None and known.resolve() == path.resolve() else path)

@@ -18,6 +18,7 @@ from pneutouch.cli.app import (
     refuse_flags,
     reporting,
 )
+from pneutouch.cli.terminal import echo
 
 if TYPE_CHECKING:
     from pneutouch.workflows.scan.run import ScanOptions
@@ -78,8 +79,8 @@ def scan(
         else:
             from pneutouch.cli.scan_text import scan_text
 
-            typer.echo(scan_text(document(run)))
-            typer.echo(f"\n{folder}")
+            echo(scan_text(document(run)))
+            echo(f"\n{folder}")
 
 
 def _options(
@@ -108,6 +109,6 @@ def _separate(
     else:
         from pneutouch.cli.scan_text import separation_text
 
-        typer.echo(separation_text(separation))
+        echo(separation_text(separation))
     if not separation["domes"]:
         raise typer.Exit(1)

@@ -70,6 +70,6 @@ def stopped() -> StopSignals | None:
 
 
 def refuse_stopped() -> None:
-    """Raise KeyboardInterrupt where a stop signal was received: a library that it meets while loading raises its own."""
+    """Raise KeyboardInterrupt where a stop signal was received: what it meets may raise an error of its own."""
     if stopped():
         raise KeyboardInterrupt
