@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -131,3 +133,25 @@ def test_every_example_that_the_docs_name_is_reached_from_the_installed_package(
 def test_no_page_names_an_example_by_its_place_in_the_checkout():
     for page in (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))):
         assert "docs/examples" not in page.read_text(encoding="utf-8"), page
+
+
+PATH = ["select", "select", "check", "build", "plan", "simulate", "characterize", "calibrate", "compare"]
+"""From a target to a sensor that is measured and calibrated; the second `select` saves the design."""
+
+
+@pytest.mark.slow
+def test_a_target_leads_to_a_calibrated_sensor_by_typing_what_each_command_prints(unpacked, tmp_path):
+    words, typed = shlex.split("pneutouch select --sensitivity 3 --at 10 --fits finger:20"), []
+    while words:
+        assert words[0] == "pneutouch", words
+        result = run(unpacked, tmp_path, f"from pneutouch.cli import run; sys.argv = {words!r}; run()")
+        assert result.returncode == 0, (words, result.stderr)
+        typed.append(words[1])
+        said = result.stderr.splitlines()
+        words = shlex.split(said[-1].removeprefix("next: ")) if said and said[-1].startswith("next: ") else []
+    assert typed == PATH
+    (calibration,) = (tmp_path / "calibrations").glob("*.toml")
+    compared = json.loads(next((tmp_path / "outputs").glob("compare-*/comparison.json")).read_text())
+    designed, calibrated = compared["compared"]
+    assert calibrated["label"].endswith(f"@{calibration.stem}")
+    assert designed["label"] == calibrated["label"].split("@")[0]

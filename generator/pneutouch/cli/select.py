@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+from itertools import chain, count
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -9,7 +11,7 @@ import typer
 
 from pneutouch.cli.app import DesignFolderOption, ForceOption, JsonOption, app, design_folder, print_json, reporting
 from pneutouch.cli.declared import FieldOption, field_tables, named_by_flag, with_fields
-from pneutouch.cli.next_step import DesignPlace, report_written
+from pneutouch.cli.next_step import DesignPlace, report_next, report_written
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo
 from pneutouch.errors import InputError
@@ -134,8 +136,18 @@ def _report(selection: SelectionRun, pick: int, place: DesignPlace | None, chart
         echo(selection_text(selection))
         if path is not None:
             report_written(path)
+        elif designs:
+            report_next(*sys.argv[1:], "--write", _free_name())
     if not designs:
         raise typer.Exit(1)
+
+
+def _free_name() -> str:
+    """A name that no design has, of the user's or shipped."""
+    from pneutouch.catalogue import Library
+
+    known = Library.default().paths("designs")
+    return next(name for name in chain(["my-sensor"], (f"my-sensor-{k}" for k in count(2))) if name not in known)
 
 
 def _graded(target: Target, where: str, place: DesignPlace | None, *, json: bool, **others: bool) -> None:
