@@ -52,7 +52,7 @@ def _apart(group: list[MeasuredCurve]) -> list[tuple[MeasuredCurve, str]]:
     which = "the other run" if len(group) == 2 else f"the other {len(group) - 1} runs"
     question = "is one of them" if len(group) == 2 else "is it"
     return [
-        (group[k], f"{group[k].run.file}: {why} {which} of sensor {group[k].run.sensor}; {question} of another sensor?")
+        (group[k], f"{why} {which} of sensor {group[k].run.sensor}; {question} of another sensor?")
         for k, why in sorted(reasons.items())
     ]
 

@@ -76,7 +76,7 @@ def check_plausible(
         _check_swap(curve, columns, expected, file)
     time = _check_time(curve, columns, file)
     magnitudes = [] if expected is None else _magnitudes(curve, columns, expected, file)
-    return tuple(text for text in (*magnitudes, time, _driving(curve, file, columns)) if text is not None)
+    return tuple(text for text in (*magnitudes, time, _driving(curve, columns)) if text is not None)
 
 
 def check_leak(blocks: Blocks, run: CampaignRun, rig: Rig) -> tuple[str, ...]:
@@ -96,17 +96,17 @@ def check_leak(blocks: Blocks, run: CampaignRun, rig: Rig) -> tuple[str, ...]:
             file=blocks.file,
         )
     if lost:
-        questions.append(
-            f"{blocks.file}: {at:.2g} s of {length:.3g} s are clipped ({lost[0].why}); is the leak greater?"
-        )
+        questions.append(f"{at:.2g} s of {length:.3g} s are clipped ({lost[0].why}); is the leak greater?")
     count = int(np.searchsorted(blocks.time, blocks.time[0] + _START))
     read_kPa, stated_kPa = float(np.median(blocks.pressure[: max(count, 1)])) / KPA, run.driving_pressure_kPa
     if abs(read_kPa - stated_kPa) <= max(RESET_KPA, RESET_SHARE * stated_kPa):
         return tuple(questions)
     stated = f"the campaign states driving_pressure_kPa = {stated_kPa:g}"
-    problem = f"{blocks.file}: a leak run that begins at {read_kPa:.3g} kPa; {stated}"
+    problem = f"a leak run that begins at {read_kPa:.3g} kPa; {stated}"
     if stated_kPa > 0 and not stated_kPa / FAR <= read_kPa <= stated_kPa * FAR:
-        raise InputError(f"{problem}; the unit of the pressure (columns.pressure.unit), or another run's file?")
+        raise InputError(
+            f"{problem}; the unit of the pressure (columns.pressure.unit), or another run's file?", file=blocks.file
+        )
     return (*questions, f"{problem}; was it left out, is the gauge not zeroed, or does the line lose it at once?")
 
 
@@ -140,13 +140,13 @@ def _magnitude(file: Path, columns: ColumnMap, key: str, ratio: float, reads: st
         return None
     column = getattr(columns, key)
     times = f"{ratio:.2g} times it" if ratio < 100 else f"{ratio:.0f} times it"
-    problem = f"{file}: column {column.name}: {reads} where {predicted}, {times}"
+    problem = f"column {column.name}: {reads} where {predicted}, {times}"
     declared = UNITS[key][column.unit]
     off = {unit: abs(math.log(max(ratio, 1e-12) * factor / declared)) for unit, factor in UNITS[key].items()}
     nearest = min(off, key=lambda unit: off[unit])
     if nearest != column.unit and off[nearest] < math.log(UNIT_NEAR):
         same = " or ".join(unit for unit in off if math.isclose(UNITS[key][unit], UNITS[key][nearest]))
-        raise InputError(f"{problem}; is the column in {same}? set columns.{key}.unit")
+        raise InputError(f"{problem}; is the column in {same}? set columns.{key}.unit", file=file)
     why = _WHY_TIME if key == "time" else "another resin or design, a smaller plate, or a wrong calibration?"
     return f"{problem}; no unit explains that: {why}"
 
@@ -215,11 +215,11 @@ def _check_time(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> str | N
     return _magnitude(file, columns, "time", length / usual, reads, f"the protocol has {usual:g} s")
 
 
-def _driving(curve: MeasuredCurve, file: Path, columns: ColumnMap) -> str | None:
+def _driving(curve: MeasuredCurve, columns: ColumnMap) -> str | None:
     stated_kPa, read_kPa = curve.run.driving_pressure_kPa, curve.driving / KPA
     if abs(read_kPa - stated_kPa) <= max(RESET_KPA, RESET_SHARE * stated_kPa):
         return None
     return (
-        f"{file}: column {columns.pressure.name}: {read_kPa:.3g} kPa before contact; the campaign states "
+        f"column {columns.pressure.name}: {read_kPa:.3g} kPa before contact; the campaign states "
         f"driving_pressure_kPa = {stated_kPa:g}; another run's file, a gauge not zeroed, or absolute pressure?"
     )
