@@ -1,4 +1,4 @@
-"""GLB and binary STL through trimesh, and the cut-open scene of the datasheet's 3D view."""
+"""GLB and binary STL through trimesh, and bodies cut open for pictures."""
 
 from __future__ import annotations
 
@@ -24,26 +24,6 @@ def stl(body: Body) -> bytes:
 def glb(bodies: tuple[Body, ...]) -> bytes:
     """GLB with one named, coloured mesh a body; vertex data in mm, placed by a node matrix in metres."""
     return bytes(_scene(bodies).export(file_type="glb"))
-
-
-def viewer_html(bodies: tuple[Body, ...]) -> str:
-    """A self-contained page that shows the bodies cut open; drag to turn, and it turns by itself until then."""
-    from trimesh.scene.cameras import Camera
-    from trimesh.viewer.notebook import scene_to_html
-
-    scene = _scene(tuple(cut_open(body) for body in bodies))
-    # A camera without a name gets a random one.
-    scene.camera = Camera(name="camera", fov=(30, 30))
-    scene.set_camera(angles=(np.radians(-28), np.radians(25), 0), fov=(30, 30), distance=1.7 * float(scene.scale))
-    page: str = scene_to_html(scene)
-    still = "function animate(){requestAnimationFrame(animate);controls.update();}"
-    turning = (
-        "var held=false;addEventListener('pointerdown',function(){held=true});"
-        "function animate(){requestAnimationFrame(animate);controls.update();if(!held){var t=controls.target,"
-        "p=camera.position.clone().sub(t);p.applyAxisAngle(new THREE.Vector3(0,1,0),0.004);"
-        "camera.position.copy(p.add(t));camera.lookAt(t);render();}}"
-    )
-    return page.replace(still, turning)
 
 
 def _mesh(body: Body) -> trimesh.Trimesh:

@@ -9,8 +9,21 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.evaluation.chart_data import ResinCurve
-from pneutouch.mechanics.prediction import SensorPrediction, SensorState
-from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MARKERS, MUTED, figure, label_ends, note, svg
+from pneutouch.mechanics.prediction import DeformedShape, SensorPrediction, SensorState
+from pneutouch.report.style import (
+    ACCENT,
+    BOLD,
+    FAINT,
+    INK,
+    LINES,
+    MARKERS,
+    MUTED,
+    figure,
+    label_ends,
+    legend_above,
+    note,
+    svg,
+)
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
@@ -36,11 +49,10 @@ def inflation(prediction: SensorPrediction) -> str:
         if point is not None:
             at = (point.apex_inner, point.driving_pressure / KPA)
             ax.plot(*at, "D", color=INK, ms=4.5, zorder=4)
-            text = f"limit point\n{at[1]:.1f} kPa, {at[0]:.2f} mm"
-            ax.annotate(text, at, xytext=(0, 7), textcoords="offset points", ha="center")
+            note(ax, f"limit point\n{at[1]:.1f} kPa, {at[0]:.2f} mm", at, fontsize=7)
         _mark_limits(ax, prediction)
         ax.set(xlabel="inner apex height  (mm)", ylabel="driving pressure  (kPa)", ylim=(0, 1.28 * p.max()))
-        ax.legend(loc="lower right", handletextpad=0.2)
+        legend_above(ax)
         return svg(drawn)
 
 
@@ -49,42 +61,46 @@ def _mark_limits(ax: Axes, prediction: SensorPrediction) -> None:
     p, gauge_kPa = curve.pressure / KPA, prediction.limits.gauge / KPA
     if gauge_kPa < 1.2 * p.max():
         ax.axhline(gauge_kPa, color=MUTED, lw=0.8, ls=LINES[4])
-        at, text = (curve.apex_inner[-1], gauge_kPa), f"gauge range {gauge_kPa:g} kPa"
-        ax.text(*at, text, ha="right", va="bottom", color=MUTED, fontsize=6.5)
+        middle = float(np.median(curve.apex_inner))
+        note(ax, f"gauge range {gauge_kPa:g} kPa", (middle, gauge_kPa), color=MUTED)
     ruptured = prediction.limits.break_strain
     if ruptured is not None:
         rising = slice(0, int(np.argmax(p)) + 1)
         height = float(np.interp(ruptured / KPA, p[rising], curve.apex_inner[rising]))
         ax.plot(height, ruptured / KPA, "X", color=INK, ms=5)
-        note(ax, "break strain", (height, ruptured / KPA), (0, -7), ha="center", va="top")
+        note(ax, "break strain", (height, ruptured / KPA), (0, -1))
 
 
-def shapes(prediction: SensorPrediction) -> str:
+def shapes(prediction: SensorPrediction) -> list[str]:
     """Half sections of the deformed wall at the lowest and the highest driving pressure, shaded by stretch."""
-    from matplotlib.collections import PolyCollection
-
     states = prediction.states[:1] + prediction.states[1:][-1:]
     drawn_shapes = [(state, shape) for state in states for shape in state.shapes[1:]]
     top = max(float(shape.stretch.max()) for _, shape in drawn_shapes)
     every = np.concatenate([shape.cells.reshape(-1, 2) for _, shape in drawn_shapes])
     (right, high), low = 1.06 * every.max(axis=0), min(0.0, float(every[:, 1].min())) - 0.05 * float(every[:, 1].max())
-    with figure(180, 56) as drawn:
-        axes = np.atleast_1d(drawn.subplots(1, len(drawn_shapes), sharey=True))
-        for ax, (state, shape) in zip(axes, drawn_shapes, strict=True):
-            look: dict[str, Any] = {"cmap": "cividis_r", "clim": (1.0, top), "edgecolors": "face", "lw": 0.2}
-            wall = PolyCollection(list(shape.cells), array=shape.stretch, **look)
-            rest = PolyCollection(list(state.shapes[0].cells), facecolors="none", edgecolors=FAINT, lw=0.3, zorder=0)
-            ax.add_collection(rest)
-            ax.add_collection(wall)
-            ax.axhline(0, color=INK, lw=0.8)
-            if shape.indentation:
-                ax.axhline(float(shape.cells[..., 1].max()), xmax=0.97, color=INK, lw=1.6)
-            pressed = f", pressed {shape.indentation:.2f} mm" if shape.indentation else ""
-            ax.set_title(f"{state.driving_pressure / KPA:g} kPa{pressed}", fontsize=7)
-            ax.set(aspect="equal", xlabel="radius  (mm)", xlim=(0, right), ylim=(low, high))
-            ax.grid(False)
-        axes[0].set_ylabel("height  (mm)")
-        drawn.colorbar(wall, ax=list(axes), label="greatest stretch  (-)", shrink=0.9)
+    limits = {"xlim": (0, right), "ylim": (low, high)}
+    return [_shape(state, shape, top, limits) for state, shape in drawn_shapes]
+
+
+def _shape(state: SensorState, shape: DeformedShape, top: float, limits: dict[str, tuple[float, float]]) -> str:
+    """One deformed half section; ``top`` is the stretch at the dark end of the colours."""
+    from matplotlib.collections import PolyCollection
+
+    with figure(*SIZE) as drawn:
+        ax = drawn.add_subplot()
+        look: dict[str, Any] = {"cmap": "cividis_r", "clim": (1.0, top), "edgecolors": "face", "lw": 0.2}
+        wall = PolyCollection(list(shape.cells), array=shape.stretch, **look)
+        rest = PolyCollection(list(state.shapes[0].cells), facecolors="none", edgecolors=FAINT, lw=0.3, zorder=0)
+        ax.add_collection(rest)
+        ax.add_collection(wall)
+        ax.axhline(0, color=INK, lw=0.8)
+        if shape.indentation:
+            ax.axhline(float(shape.cells[..., 1].max()), xmax=0.97, color=INK, lw=1.6)
+        pressed = f", pressed {shape.indentation:.2f} mm" if shape.indentation else ""
+        ax.set_title(f"{state.driving_pressure / KPA:g} kPa{pressed}", fontsize=7)
+        ax.set(aspect="equal", xlabel="radius  (mm)", ylabel="height  (mm)", **limits)
+        ax.grid(False)
+        drawn.colorbar(wall, ax=ax, label="greatest stretch  (-)", shrink=0.9)
         return svg(drawn)
 
 
@@ -119,19 +135,29 @@ def _plot_states(ax: Axes, prediction: SensorPrediction, curve: Callable[[Sensor
         look: dict[str, Any] = {"marker": MARKERS[k % len(MARKERS)], "mfc": "white", "mew": 0.8}
         look |= {"color": INK if k % 2 == 0 else ACCENT, "ls": LINES[k % len(LINES)]}
         ax.plot(x[kept], y[kept], label=f"{state.driving_pressure / KPA:g} kPa", **look)
-    ax.legend(title="driving pressure", title_fontsize=7, loc="upper left", handlelength=3)
+    legend_above(ax)
 
 
-def sensitivities(curves: dict[str, ResinCurve], chosen: str, published_kPa_per_N: Mapping[float, float]) -> str:
-    """Sensitivity over driving pressure for every resin, the chosen one picked out.
+def sensitivities(
+    curves: dict[str, ResinCurve], prediction: SensorPrediction, chosen: str, published_kPa_per_N: Mapping[float, float]
+) -> str:
+    """Sensitivity over driving pressure for every resin, with the predicted states of the design on its own curve.
 
-    ``curves`` are by label; ``published_kPa_per_N`` maps driving pressures (kPa) to measured sensitivities (kPa/N) of
-    this very sensor, where there are any.
+    ``curves`` are by label; where that of the design's resin, ``chosen``, is missing or is not the design's own (a
+    graded or a calibrated membrane), a curve through its states is drawn as well.
+    ``published_kPa_per_N`` maps driving pressures (kPa) to measured sensitivities (kPa/N) of this very sensor, where
+    there are any.
     """
+    states = [(s.driving_pressure / KPA, s.figures.sensitivity_kPa_per_N) for s in prediction.states if s.figures]
+    own_kPa, own = np.array(states).reshape(-1, 2).T
+    every = dict(curves)
+    if len(own) and not (chosen in every and _holds(every[chosen], own_kPa, own)):
+        every["this design"] = ResinCurve(own_kPa, own, prediction.model)
+        chosen = "this design"
     with figure(*SIZE) as drawn:
         ax = drawn.add_subplot()
         ends = []
-        for k, (label, (pressures, values, _)) in enumerate(curves.items()):
+        for k, (label, (pressures, values, _)) in enumerate(every.items()):
             picked = label == chosen
             look: dict[str, Any] = {"color": MUTED, "lw": 0.8, "ls": LINES[k % 4], "zorder": 2}
             if picked:
@@ -139,16 +165,32 @@ def sensitivities(curves: dict[str, ResinCurve], chosen: str, published_kPa_per_
             ax.plot(pressures, values, **look)
             style = {"fontsize": 6.5, "color": INK, **BOLD} if picked else {"fontsize": 6.5, "color": MUTED}
             ends.append((float(pressures[-1]), float(values[-1]), label, style))
+        ax.plot(
+            own_kPa, own, "o", color=ACCENT, mfc="white", mew=1.2, ms=4, zorder=4, clip_on=False, label="this design"
+        )
         if published_kPa_per_N:
             points = list(published_kPa_per_N), list(published_kPa_per_N.values())
-            ax.plot(*points, "D", color=INK, mfc="white", ms=4.5, zorder=5, label="published measurement")
-            ax.legend(loc="lower left")
-        right = max(float(pressures[-1]) for pressures, *_ in curves.values())
-        highest = max([float(np.max(values)) for _, values, _ in curves.values()] + list(published_kPa_per_N.values()))
+            ax.plot(
+                *points, "D", color=INK, mfc="white", ms=4.5, zorder=5, clip_on=False, label="published measurement"
+            )
+        legend_above(ax)
+        right = max([float(pressures[-1]) for pressures, *_ in every.values()] + own_kPa.tolist(), default=1.0)
+        highest = max([float(np.max(values)) for _, values, _ in every.values()] + own.tolist(), default=1.0)
+        highest = max([highest, *published_kPa_per_N.values()])
         ax.set(xlabel="driving pressure  (kPa)", ylabel="sensitivity  (kPa/N)")
         ax.set(xlim=(0, 1.02 * right), ylim=(0, 1.1 * highest))
         label_ends(ax, ends)
         return svg(drawn)
+
+
+_OWN = 0.03
+"""Share that a resin's curve may be off the design's states, for its model's error, and still be the design's own."""
+
+
+def _holds(curve: ResinCurve, pressures_kPa: Array, sensitivities_kPa_per_N: Array) -> bool:
+    """Whether a curve runs through points."""
+    at = np.interp(pressures_kPa, curve.driving_pressure_kPa, curve.sensitivity_kPa_per_N)
+    return bool((np.abs(at - sensitivities_kPa_per_N) <= _OWN * sensitivities_kPa_per_N).all())
 
 
 def drawn_by(curves: dict[str, ResinCurve]) -> str:

@@ -1,7 +1,9 @@
 """The datasheet: one HTML page and one PDF from the same content and the same figures."""
 
+import base64
+
 from pneutouch.evaluation.sheet_data import SheetData
-from pneutouch.export.scene import cut_open
+from pneutouch.export.view import view_data
 from pneutouch.report import curves, pages, relaxation
 from pneutouch.report.certainty import ends, shares
 from pneutouch.report.drawing import section_drawing
@@ -9,12 +11,16 @@ from pneutouch.report.graded_sheet import CAPTIONS, graded_figures
 from pneutouch.report.picture import picture
 from pneutouch.report.shares import share_bars
 from pneutouch.report.sheet import content_of
+from pneutouch.report.shown import shown
 from pneutouch.report.tradeoff import tradeoff_chart
 from pneutouch.report.tuning import tuning_chart
 
+_PIXELS = (900, 640)
+"""Width and height of the picture."""
 
-def datasheet(sheet: SheetData, viewer: str) -> dict[str, bytes]:
-    """``datasheet.html`` and ``datasheet.pdf``; ``viewer`` is the page of the 3D view."""
+
+def datasheet(sheet: SheetData) -> dict[str, bytes]:
+    """``datasheet.html``, with the 3D view and, where that cannot be drawn, a picture; and ``datasheet.pdf``."""
     figures = _figures(sheet)
     viscous = relaxation.section(sheet.viscous, relaxation.ageing_line(sheet))
     content = {**content_of(sheet), "viscous": viscous, "figures": sorted(figures)}
@@ -23,11 +29,14 @@ def datasheet(sheet: SheetData, viewer: str) -> dict[str, bytes]:
         "Sensitivity over driving pressure for each resin in this geometry, this design picked out; "
         f"{curves.drawn_by(sheet.resin_curves)}."
     )
-    bodies = tuple(cut_open(solid.mesh(sheet.scene.mesh_tolerance / 6)) for solid in sheet.assembly.solids)
-    date, images = sheet.scene.design.document.date, {"picture.png": picture(bodies)}
+    bodies = shown(sheet.assembly, _PIXELS[0])
+    image = picture(bodies, *_PIXELS)
+    more = {"view": view_data(bodies), "picture": base64.b64encode(image).decode()}
     return {
-        "datasheet.html": pages.html("datasheet.html.j2", content, figures, viewer=viewer).encode(),
-        "datasheet.pdf": pages.pdf("datasheet.typ", content, figures, date, images),
+        "datasheet.html": pages.html("datasheet.html.j2", content, figures, **more).encode(),
+        "datasheet.pdf": pages.pdf(
+            "datasheet.typ", content, figures, sheet.scene.design.document.date, {"picture.png": image}
+        ),
     }
 
 
@@ -35,9 +44,9 @@ def _figures(sheet: SheetData) -> dict[str, str]:
     """The figures as SVG by name; those without data are left out."""
     prediction, chosen = sheet.prediction, sheet.scene.membrane_material.title
     figures = {
-        "drawing": section_drawing(sheet.assembly),
+        **section_drawing(sheet.assembly),
         "inflation": curves.inflation(prediction),
-        "sensitivity": curves.sensitivities(sheet.resin_curves, chosen, sheet.published_kPa_per_N),
+        "sensitivity": curves.sensitivities(sheet.resin_curves, prediction, chosen, sheet.published_kPa_per_N),
         "response": curves.response(prediction),
         "indentation": curves.indentation(prediction),
     }
@@ -49,7 +58,7 @@ def _figures(sheet: SheetData) -> dict[str, str]:
     if sheet.tuning is not None:
         figures["tuning"] = tuning_chart(sheet.tuning, curves.SIZE)
     if prediction.states[0].shapes:
-        figures["shapes"] = curves.shapes(prediction)
+        figures |= {f"shape-{k + 1}": text for k, text in enumerate(curves.shapes(prediction))}
     if not isinstance(sheet.viscous, str):
         figures["held"] = relaxation.held_chart(sheet.viscous, curves.SIZE)
         figures["loop"] = relaxation.loop_chart(sheet.viscous, curves.SIZE)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pneutouch.report.style import INK, note
+from pneutouch.report.style import INK
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -65,7 +65,8 @@ def vertical(ax: Axes, x: float, y0: float, y1: float, feature: float, text: str
         ax.plot([feature, reach], [y, y], color=INK, lw=0.25)
     _arrow(ax, (x, y0), (x, y1))
     side = "left" if x > 0 else "right"
-    note(ax, text, (x, 0.5 * (y0 + y1)), (3 if x > 0 else -3, 0), ha=side, va="center", fontsize=_SIZE)
+    place: dict[str, Any] = {"xytext": (3 if x > 0 else -3, 0), "textcoords": "offset points"}
+    ax.annotate(text, (x, 0.5 * (y0 + y1)), ha=side, va="center", fontsize=_SIZE, **place)
 
 
 def leader(ax: Axes, at: tuple[float, float], to: tuple[float, float], text: str, ha: str) -> None:

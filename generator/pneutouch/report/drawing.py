@@ -5,24 +5,35 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from pneutouch.parts import Assembly
 from pneutouch.report.dimension import CENTRE, THIN, circle, horizontal, leader, polar, vertical
 from pneutouch.report.port_note import port_note
 from pneutouch.report.section import draw_bores, draw_section
-from pneutouch.report.style import BOLD, MUTED, figure, svg
+from pneutouch.report.style import BOLD, MM, MUTED, figure, svg
 from pneutouch.spec.part import BoltCircle, ClampedFlange, OnePiece, RobotFlange, Sleeve
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-def section_drawing(assembly: Assembly) -> str:
-    """Section through the axis, and the plan from above, as SVG."""
-    with figure(180, 76) as drawn:
-        left, right = drawn.subplots(1, 2, width_ratios=(1.65, 1.0))
-        _Section(left, assembly).draw()
-        _plan(right, assembly)
-        return svg(drawn)
+def section_drawing(assembly: Assembly) -> dict[str, str]:
+    """Section through the axis, and the plan from above, as SVG: ``drawing`` and ``plan``."""
+    with figure(_WIDE, 76) as drawn:
+        ax = drawn.add_subplot()
+        _Section(ax, assembly).draw()
+        # As high as the section needs in this width, and its title.
+        low, high = ax.get_ylim()
+        drawn.set_figheight((6 + min(_WIDE * (high - low) / np.ptp(ax.get_xlim()), 84)) * MM)
+        section = svg(drawn)
+    with figure(_NARROW, _NARROW + 6) as drawn:
+        _plan(drawn.add_subplot(), assembly)
+        return {"drawing": section, "plan": svg(drawn)}
+
+
+_WIDE, _NARROW = 112.0, 68.0
+"""Widths of section and plan in mm: together the width of a page."""
 
 
 class _Section:

@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.evaluation.chart_data import ComparedMembrane
-from pneutouch.report.style import ACCENT, BOLD, INK, LINES, MUTED, Label, figure, label_ends, svg
+from pneutouch.report.shown import GRADE_COLOURS, greatest_share
+from pneutouch.report.style import ACCENT, BOLD, INK, LINES, MUTED, Label, figure, label_ends, note, svg
 from pneutouch.spec.material import ArcGrading, Material
 from pneutouch.units import KPA
 
@@ -18,38 +20,40 @@ if TYPE_CHECKING:
 
 _CELLS = 90
 """Cells along the arc of the shaded section; one more would not be seen."""
-_SHADES = ("#F4F1EA", ACCENT)
+_SIZE = (86.0, 62.0)
+"""Width and height of a picture in mm: two in a row on A4."""
 
 
-def grade_section(material: Material, scene: ResolvedDesign, size: tuple[float, float] = (180.0, 62.0)) -> str:
-    """Half section of the dome shaded by the stiff resin's fraction, next to fraction and modulus along the arc, as
-    SVG.
+def grade_figures(material: Material, scene: ResolvedDesign) -> dict[str, str]:
+    """Half section of the dome shaded by the stiff resin's fraction, and fraction and modulus along the arc, as SVG.
 
-    ``material`` must be graded; ``size`` is width and height in mm.
+    ``material`` must be graded.
     """
     assert material.along is not None
-    membrane, stiff = scene.design.membrane, material.base_resins[-1]
-    with figure(*size) as drawn:
-        left, middle, right = drawn.subplots(1, 3, width_ratios=(1.3, 1.0, 1.0))
-        _section(left, material.along, membrane.inner_radius_mm, membrane.wall_thickness_mm, stiff)
-        arc, along = np.array(material.along.arc), material.along
-        middle.plot(arc, 100 * np.array(along.stiff_fraction), color=ACCENT, lw=1.8)
-        middle.set(ylabel=f"{stiff}  (% of the volume)", ylim=(0, None))
-        right.plot(arc, along.shear_modulus_MPa, color=ACCENT, lw=1.8)
-        mean = material.shear_modulus_MPa
+    membrane, stiff, along = scene.design.membrane, material.base_resins[-1], material.along
+    with figure(*_SIZE) as drawn:
+        _section(drawn.add_subplot(), along, membrane.inner_radius_mm, membrane.wall_thickness_mm, stiff)
+        section = svg(drawn)
+    mean = material.shear_modulus_MPa
+    return {
+        "grade-section": section,
+        "grade-share": _along(along, 100 * np.array(along.stiff_fraction), f"{stiff}  (% of the volume)"),
+        "grade-modulus": _along(
+            along, np.array(along.shear_modulus_MPa), "shear modulus  (MPa)", None if mean is None else mean.nominal
+        ),
+    }
+
+
+def _along(along: ArcGrading, values: Array, label: str, mean: float | None = None) -> str:
+    """A value along the arc from the pole to the rim."""
+    with figure(_SIZE[0], 0.75 * _SIZE[1]) as drawn:
+        ax = drawn.add_subplot()
+        ax.plot(along.arc, values, color=ACCENT, lw=1.8)
         if mean is not None:
-            right.axhline(mean.nominal, color=INK, lw=0.8, ls=LINES[1])
-            right.annotate(
-                f"mean {mean.nominal:.2f} MPa",
-                (0.5, mean.nominal),
-                xytext=(0, 3),
-                textcoords="offset points",
-                fontsize=6.5,
-                ha="center",
-            )
-        right.set(ylabel="shear modulus  (MPa)", ylim=(0, None))
-        for ax in (middle, right):
-            ax.set(xlim=(0, 1), xticks=[0, 0.5, 1], xticklabels=["pole", "arc", "rim"])
+            ax.axhline(mean, color=INK, lw=0.8, ls=LINES[1])
+            note(ax, f"mean {mean:.2f} MPa", (0.5, mean))
+        ax.set(ylabel=label, ylim=(0, 1.08 * float(values.max()) or 1.0))
+        ax.set(xlim=(0, 1), xticks=[0, 0.5, 1], xticklabels=["pole", "arc", "rim"])
         return svg(drawn)
 
 
@@ -62,12 +66,12 @@ def _section(ax: Axes, along: ArcGrading, inner: float, wall: float, stiff: str)
     low, high = (r * np.stack([np.sin(angle), np.cos(angle)], axis=1) for r in (inner, inner + wall))
     cells = np.stack([low[:-1], low[1:], high[1:], high[:-1]], axis=1)
     share = 100 * np.interp(0.5 * (edges[1:] + edges[:-1]), along.arc, along.stiff_fraction)
-    shades = LinearSegmentedColormap.from_list("stiff", _SHADES)
+    shades = LinearSegmentedColormap.from_list("stiff", GRADE_COLOURS)
     for side in (1.0, -1.0):
         wall_cells = PolyCollection(
             list(cells * np.array([side, 1.0])), array=share, cmap=shades, edgecolors="face", linewidths=0.2
         )
-        wall_cells.set_clim(0.0, max(float(share.max()), 1.0))
+        wall_cells.set_clim(0.0, 100 * greatest_share(along))
         ax.add_collection(wall_cells)
         for line in (low, high):
             ax.plot(side * line[:, 0], line[:, 1], color=INK, lw=0.8)
@@ -82,15 +86,14 @@ def _section(ax: Axes, along: ArcGrading, inner: float, wall: float, stiff: str)
     scale.outline.set_linewidth(0.5)
 
 
-def graded_against_constant(
-    graded: ComparedMembrane, constants: Sequence[ComparedMembrane], size: tuple[float, float] = (180.0, 72.0)
-) -> str:
+def graded_against_constant(graded: ComparedMembrane, constants: Sequence[ComparedMembrane]) -> dict[str, str]:
     """Sensitivity over driving pressure, and pressure rise over force at the highest, graded and constant, as SVG."""
-    with figure(*size) as drawn:
-        left, right = drawn.subplots(1, 2)
-        _sensitivities(left, graded, constants)
-        _rises(right, graded, constants)
-        return svg(drawn)
+    charts = {}
+    for name, draw in (("graded-sensitivity", _sensitivities), ("graded-response", _rises)):
+        with figure(*_SIZE) as drawn:
+            draw(drawn.add_subplot(), graded, constants)
+            charts[name] = svg(drawn)
+    return charts
 
 
 def _looks(

@@ -3,6 +3,7 @@
 import base64
 import datetime
 import json
+import re
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -32,8 +33,24 @@ def html(template: str, content: Mapping[str, Any], figures: Mapping[str, str], 
     fonts = {
         name: base64.b64encode((FONTS / f"Inter-{name}.otf").read_bytes()).decode() for name in ("Regular", "SemiBold")
     }
-    safe = {name: Markup(text) for name, text in figures.items()}  # our own SVG
+    safe = {name: Markup(text) for name, text in _without_repeats(figures).items()}  # our own SVG
     return environment.get_template(template).render(sheet=content, figures=safe, fonts=fonts, **more)
+
+
+def _without_repeats(figures: Mapping[str, str]) -> dict[str, str]:
+    """Figures for one page: what is defined alike in several, letters above all, is defined in the first alone."""
+    seen: set[str] = set()
+
+    def once(found: re.Match[str]) -> str:
+        if found[0] in seen:
+            return ""
+        seen.add(found[0])
+        return found[0]
+
+    return {name: _DEFINITION.sub(once, text) for name, text in figures.items()}
+
+
+_DEFINITION = re.compile(r'<path id="[^"]+" d="[^"]*"[^>]*/>')
 
 
 def pdf(

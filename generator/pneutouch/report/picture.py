@@ -5,11 +5,12 @@ Used for the PDF and the README, where a page cannot turn.
 
 import io
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
 from pneutouch.arrays import Array, Index
-from pneutouch.body import Body
+from pneutouch.export.view import ShadedBody
 
 _LIGHT = np.array([-0.35, -0.55, 0.76])
 _OVERSAMPLING = 2
@@ -19,18 +20,17 @@ _LEVEL_EDGE = 1e-6
 """Height in pixels below which an edge lies along a line of pixels."""
 
 
-def picture(bodies: tuple[Body, ...], width: int = 900, height: int = 640) -> bytes:
-    """PNG of the bodies (mm, z up) from above and in front, on white."""
+def picture(bodies: Sequence[ShadedBody], width: int = 900, height: int = 640) -> bytes:
+    """PNG of the bodies (z up) from above and in front, on white."""
     from matplotlib.image import imsave
 
     view = _view(math.radians(-62), math.radians(26))
     size = (height * _OVERSAMPLING, width * _OVERSAMPLING)
     image, depth = np.ones((*size, 3)), np.full(size, -np.inf)
-    points = np.concatenate([body.vertices for body in bodies]) @ view.T
-    low, high = points.min(axis=0), points.max(axis=0)
+    corners = np.concatenate([body.corners for body in bodies]) @ view.T
+    low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
     scale = 0.94 * min(size[1] / (high[0] - low[0]), size[0] / (high[1] - low[1]))
     shift = 0.5 * np.array([size[1], size[0]]) - 0.5 * scale * (low + high)[:2]
-    corners = np.concatenate([body.corners for body in bodies]) @ view.T
     corners[..., :2] = corners[..., :2] * scale + shift
     _paint(image, depth, corners, np.concatenate([_shades(body) for body in bodies]))
     small = image.reshape(height, _OVERSAMPLING, width, _OVERSAMPLING, 3).mean(axis=(1, 3))
@@ -46,20 +46,19 @@ def _view(turn: float, tilt: float) -> Array:
     return np.array([right, np.cross(towards, right), towards])
 
 
-def _shades(body: Body) -> Array:
-    """One colour a triangle: ambient, diffuse from the upper left, a little from below."""
-    a, b, c = np.moveaxis(body.corners, 1, 0)
-    normal = np.cross(b - a, c - a)
-    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-30)
-    diffuse = np.clip(normal @ (_LIGHT / np.linalg.norm(_LIGHT)), 0, 1)
-    base = np.array(list(bytes.fromhex(body.material.colour[1:]))) / 255
-    shade = 0.42 + 0.62 * diffuse + 0.05 * normal[:, 2]
-    lit: Array = np.clip(shade[:, None] * base, 0, 1)
+def _shades(body: ShadedBody) -> Array:
+    """Colours at the corners, (n, 3, 3): ambient, diffuse from the upper left, a little from below."""
+    diffuse = np.clip(body.normals @ (_LIGHT / np.linalg.norm(_LIGHT)), 0, 1)
+    shade = 0.42 + 0.62 * diffuse + 0.05 * body.normals[..., 2]
+    lit: Array = np.clip(shade[..., None] * body.colours, 0, 1)
     return lit
 
 
 def _paint(image: Array, depth: Array, corners: Array, colours: Array) -> None:
-    """Paint triangles (n, 3, 3), in pixels and depth, where they lie in front; of two equally near the first shows."""
+    """Paint triangles (n, 3, 3), in pixels and depth, where they lie in front; of two equally near the first shows.
+
+    Their ``colours`` (n, 3, 3) at the corners are mixed between them.
+    """
     a, b, c = np.moveaxis(corners, 1, 0)
     whole = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (c[:, 0] - a[:, 0]) * (b[:, 1] - a[:, 1])
     corners, colours, whole = corners[whole > 0], colours[whole > 0], whole[whole > 0]
@@ -111,4 +110,5 @@ def _nearest(image: Array, depth: Array, x: Index, y: Index, corners: Array, who
     seen = seen[np.lexsort((seen, -level[seen], place[seen]))]
     seen = seen[np.diff(place[seen], prepend=-1) != 0]
     depth.reshape(-1)[place[seen]] = level[seen]
-    image.reshape(-1, 3)[place[seen]] = colours[seen]
+    mixed = np.stack([u, v, w], axis=-1)[seen]
+    image.reshape(-1, 3)[place[seen]] = np.einsum("nk,nkc->nc", mixed, colours[seen])

@@ -48,6 +48,19 @@ DEFINITIONS = (
     ["Limit point", "greatest driving pressure of the inflation curve; beyond it the dome snaps"],
 )
 
+CAPTIONS = {
+    "performance": "Predicted by one model; k = 2: the interval that holds the sensitivity of a printed sensor, see "
+    "Uncertainty. Published: measurement of the paper on a sensor of these dimensions and this resin, where there is one.",
+    "inflation": "Inflation: driving pressure over apex height; dashed beyond the limit point.",
+    "response": "Response: pressure rise over contact force at each driving pressure, with the fitted lines.",
+    "indentation": "Contact force over indentation at each driving pressure.",
+    "shares": "What makes the sensitivity uncertain: shares of its variance. The longest bar is what to measure first.",
+    "drawing": "Lengths in mm; tolerances are the stated accuracies of the printers; bracketed sizes are for reference.",
+}
+"""Captions that are the same on every sheet."""
+
+GRADE = "The darker the membrane, the more of the stiff resin."
+
 TUNING = (
     "Tuning: sensitivity of this design from no driving pressure to its rated one (its highest stated one where that "
     "is above), by the atlas, with its k = 2 interval (grey); circles: the predicted states."

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from pneutouch.evaluation.sheet_data import AgeingData, SheetData, ViscousData, ViscousRow
-from pneutouch.report.style import ACCENT, INK, LINES, MUTED, figure, plain_ticks, svg
+from pneutouch.report.style import ACCENT, INK, LINES, MUTED, figure, legend_above, plain_ticks, svg
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
@@ -95,14 +95,14 @@ def held_chart(viscous: ViscousData, size: tuple[float, float]) -> str:
         ax = drawn.add_subplot()
         for j, curve in enumerate(viscous.held):
             if curve is not None:
-                ax.plot(curve.time, curve.force, color=_COLOURS[j % 3], ls=LINES[0], label=_letter(j))
+                ax.plot(curve.time, curve.force, color=_COLOURS[j % 3], ls=LINES[0], label=f"data {_letter(j)}")
                 ax.plot(curve.time, curve.rise, color=_COLOURS[j % 3], ls=LINES[1])
         ax.set(
             xlabel="time since the press  (s)", ylabel="share of the value at 1 s  (%)", xscale="log", ylim=(0, None)
         )
         ax.set_xlim(0.01, 600.0)
         plain_ticks(ax.xaxis)
-        _label(ax, "lower left")
+        _label(ax)
         return svg(drawn)
 
 
@@ -112,17 +112,17 @@ def loop_chart(viscous: ViscousData, size: tuple[float, float]) -> str:
         ax = drawn.add_subplot()
         for j, loop in enumerate(viscous.loops):
             if loop is not None:
-                ax.plot(loop.force_in, loop.rise_in / KPA, color=_COLOURS[j % 3], label=_letter(j))
+                ax.plot(loop.force_in, loop.rise_in / KPA, color=_COLOURS[j % 3], label=f"data {_letter(j)}")
                 ax.plot(loop.force_out, loop.rise_out / KPA, color=_COLOURS[j % 3], ls=LINES[1])
         ax.set(xlabel="contact force  (N)", ylabel="pressure rise  (kPa)", xlim=(0, None), ylim=(0, None))
-        _label(ax, "lower right")
+        _label(ax)
         return svg(drawn)
 
 
-def _label(ax: Axes, where: Literal["lower left", "lower right"]) -> None:
+def _label(ax: Axes) -> None:
     """A legend of the sources, or the note that no run could be followed."""
     if ax.lines:
-        ax.legend(title="data", title_fontsize=7, loc=where, handlelength=3)
+        legend_above(ax)
     else:
         ax.text(0.5, 0.5, "not followed: see the notes", transform=ax.transAxes, ha="center", color=MUTED)
 

@@ -61,7 +61,7 @@ def scalogram_chart(
         right = axes[1, -1]
         end = float(right.get_xlim()[1])
         look = {"fontsize": 6.5, "color": INK}
-        label_ends(right, [(end, f, f"{text}\n{f:.3g} Hz", look) for text, f in expected.items()], gap=0.13)
+        label_ends(right, [(end, f, f"{text}\n{f:.3g} Hz", look) for text, f in expected.items()])
         drawn.colorbar(mesh, ax=list(axes[1]), label="amplitude  (kPa)", fraction=0.05, pad=0.02, aspect=22)
         return svg(drawn)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,30 +12,59 @@ from pneutouch.arrays import Array
 from pneutouch.body import Body, Bore, Solid
 from pneutouch.parts import Assembly
 from pneutouch.report.dimension import THIN, circle
+from pneutouch.report.shown import grade_colours
 from pneutouch.report.style import INK, MUTED, figure, svg
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.patches import PathPatch
+
+    from pneutouch.spec.material import ArcGrading
 
 _THICK = 0.9
 _TOLERANCE = 5e-3
+_WEDGES = 60
+"""Wedges of one colour on each side of a graded wall."""
 _HATCHES = {"membrane": "////////", "connector": "\\\\\\\\", "ring": "----", "plug": "||||"}
 
 
 def draw_section(ax: Axes, assembly: Assembly) -> None:
-    """Hatched sections of all bodies in the plane y = 0, the holes of patterns turned into it."""
+    """Hatched sections of all bodies in the plane y = 0, the holes of patterns turned into it; a graded membrane in the
+    colours of its grade in place of the hatch."""
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
 
+    grading = assembly.scene.membrane_material.along
     for solid in assembly.solids:
         paths = [Path(np.vstack([loop, loop[:1]]), closed=True) for loop in section(solid.mesh(_TOLERANCE))]
         if not paths:
             continue
         shape = Path.make_compound_path(*paths)
-        ax.add_patch(PathPatch(shape, facecolor="white", edgecolor=MUTED, hatch=_HATCHES.get(solid.role, "xx"), lw=0))
+        if grading is not None and solid.role == "membrane":
+            _graded(ax, PathPatch(shape, transform=ax.transData), grading, assembly.layout.outer_radius)
+        else:
+            hatch = _HATCHES.get(solid.role, "xx")
+            ax.add_patch(PathPatch(shape, facecolor="white", edgecolor=MUTED, hatch=hatch, lw=0))
         ax.add_patch(PathPatch(shape, facecolor="none", edgecolor=INK, lw=_THICK, joinstyle="miter"))
         for bore in solid.bores:
             _turned_in(ax, bore, both_sides=assembly.layout.port_axis is None)
+
+
+def _graded(ax: Axes, wall: PathPatch, grading: ArcGrading, radius: float) -> None:
+    """Wedges from the axis outwards in the colours of the grade, cut to the wall; below the base that of the rim."""
+    from matplotlib.collections import PolyCollection
+
+    edges = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 2 * _WEDGES + 1)
+    rim = 2 * radius * np.stack([np.sin(edges), np.cos(edges)], axis=1)
+    wedges = [np.array([(0.0, 0.0), a, b]) for a, b in pairwise(rim)]
+    below = 2 * radius * np.array([(-1.0, 0.0), (1.0, 0.0), (1.0, -1.0), (-1.0, -1.0)])
+    middles = 0.5 * (edges[1:] + edges[:-1])
+    points = np.stack([np.sin(middles), 0 * middles, np.cos(middles)], axis=1)
+    colours = grade_colours(grading, np.vstack([points, (1.0, 0.0, 0.0)]))
+    cells = PolyCollection([*wedges, below], facecolors=colours, edgecolors="face", lw=0.2)
+    # The axes are scaled by the outlines alone.
+    ax.add_collection(cells, autolim=False)
+    cells.set_clip_path(wall)
 
 
 def section_picture(assembly: Assembly) -> str:

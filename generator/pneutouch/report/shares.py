@@ -5,6 +5,9 @@ from pneutouch.report.style import ACCENT, BOLD, INK, MUTED, figure, svg
 _MOST = 5
 """Sources drawn; the rest is added up in one bar."""
 
+_WIDTH = 105.0
+"""Width of the chart in mm: readable on a narrow screen."""
+
 _THICK = 0.4
 OTHERS = "all others"
 
@@ -23,7 +26,7 @@ def share_bars(shares: dict[str, dict[str, float]]) -> str:
     """Bars of the variance shares (source to share) at one or two driving pressures, by label, as SVG."""
     rows = ranked(list(shares.values()))
     fills = (ACCENT, "white")
-    with figure(180, 11 + 3.9 * len(rows) * max(1.4, len(shares))) as drawn:
+    with figure(_WIDTH, 11 + 3.9 * len(rows) * max(1.4, len(shares))) as drawn:
         ax = drawn.add_subplot()
         for row, values in enumerate(rows.values()):
             for k, (value, label) in enumerate(zip(values, shares, strict=True)):

@@ -12,6 +12,21 @@ from pneutouch.units import KPA, ML
 
 DASH = "–"
 
+PERFORMANCE = (
+    "Driving\nkPa",
+    "Apex inside\nmm",
+    "Apex outside\nmm",
+    "Sensitivity\nkPa/N",
+    "k = 2\nkPa/N",
+    "Published\nkPa/N",
+    "R²",
+    "Non-linearity\n% FS",
+    "Stiffness\nN/mm",
+    "Force range\nN",
+    "Range ends at",
+)
+"""Columns of the table of performance."""
+
 
 def content_of(sheet: SheetData) -> dict[str, Any]:
     """The sections of the sheet; every leaf is text, ready to be printed."""
@@ -33,6 +48,7 @@ def content_of(sheet: SheetData) -> dict[str, Any]:
         "ratings": _ratings(sheet),
         "rating_note": _rating_note(sheet),
         "operating": _operating(sheet),
+        "performance_head": PERFORMANCE,
         "performance": _performance(sheet),
         "model_error": _model_error(sheet),
         "uncertainty": uncertainty_section(sheet),
@@ -83,7 +99,9 @@ def _condition(sheet: SheetData, k: int) -> str:
 
 def _captions(sheet: SheetData) -> dict[str, str]:
     """Captions of the figures that depend on the prediction, and words in the place of those left out."""
-    why = next((document["unknown"] for document in sheet.uncertainty if "unknown" in document), "no figures there")
+    graded = "the atlas has no graded membranes" if sheet.scene.membrane_material.along is not None else ""
+    unknown = (document["unknown"] for document in sheet.uncertainty if "unknown" in document)
+    why = graded or next(unknown, "the prediction has no figures at the highest driving pressure")
     absent = f"Trade-off and tuning charts are not drawn: {why}."
     chart = sheet.tradeoff
     return {
@@ -92,6 +110,8 @@ def _captions(sheet: SheetData) -> dict[str, str]:
         else prose.tradeoff(chart.driving_pressure_kPa, sheet.prediction.dead_volume / ML),
         "tuning": "" if sheet.tuning is None else prose.TUNING,
         "shapes": prose.SHAPES if sheet.prediction.states[0].shapes else prose.NO_SHAPES,
+        "view": "" if sheet.scene.membrane_material.along is None else prose.GRADE,
+        **prose.CAPTIONS,
     }
 
 

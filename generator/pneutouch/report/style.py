@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pneutouch.parts.lettering.glyphs import FONTS
+from pneutouch.report.placing import BESIDE, NEAR, settle
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -47,7 +48,7 @@ def figure(width_mm: float, height_mm: float) -> Iterator[Figure]:
 
 
 def svg(drawn: Figure) -> str:
-    """The figure as SVG without date, ready to stand inside HTML."""
+    """The figure as SVG without date on white ground, its labels in free places, ready to stand inside HTML."""
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
     buffer, dpi, layout = io.StringIO(), drawn.dpi, drawn.get_layout_engine()
@@ -56,11 +57,24 @@ def svg(drawn: Figure) -> str:
         FigureCanvasSVG(drawn)
         drawn.dpi = _SVG_DPI
         layout.execute(drawn)
+        settle(drawn)
         drawn.dpi = dpi
         drawn.set_layout_engine(None)
-    drawn.savefig(buffer, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
+    drawn.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})
     text = buffer.getvalue()
-    return _named_by_content(text[text.index("<svg") :])
+    return _short(_named_by_content(text[text.index("<svg") :]))
+
+
+def _short(text: str) -> str:
+    """The same picture in fewer bytes: paths to a hundredth of a point, each on one line."""
+    return re.sub(r'(?<= d=")[^"]+', lambda path: _NUMBER.sub(_hundredths, " ".join(path[0].split())), text)
+
+
+_NUMBER = re.compile(r"-?\d+\.\d+")
+
+
+def _hundredths(number: re.Match[str]) -> str:
+    return f"{round(float(number[0]), 2) + 0.0:g}"
 
 
 def _named_by_content(text: str) -> str:
@@ -77,50 +91,42 @@ Label = tuple[float, float, str, dict[str, Any]]
 """x, y (data), text and look of a label."""
 
 
-def label_ends(ax: Axes, ends: list[Label], gap: float = 0.062) -> None:
-    """Write labels right of the axes, as near to their curves' ends as ``gap`` (share of the height) allows.
-
-    Call it once the limits and scales of the axes stand.
-    """
-    for (x, y, text, look), (_, height) in zip(ends, _spread(ax, ends, gap), strict=True):
-        _labelled(ax, (x, y), text, (1.04, height), "left", look)
-
-
-def label_points(ax: Axes, points: list[Label], shift: tuple[float, float], gap: float = 0.055) -> None:
-    """Write labels next to points, ``shift`` away (shares of width and height), at least ``gap`` apart in height.
-
-    Call it once the limits and scales of the axes stand.
-    """
-    for (x, y, text, look), (across, height) in zip(points, _spread(ax, points, gap), strict=True):
-        side = "left" if shift[0] > 0 else "right"
-        _labelled(ax, (x, y), text, (across + shift[0], height + shift[1]), side, look)
+def label_ends(ax: Axes, ends: list[Label]) -> None:
+    """Write labels right of the axes, each with a thin line to its curve's end; `svg` moves them apart."""
+    for x, y, text, look in ends:
+        height = float((ax.transData + ax.transAxes.inverted()).transform((x, y))[1])
+        arrow: dict[str, Any] = {"arrowstyle": "-", "lw": 0.4, "color": MUTED, "shrinkA": 2, "shrinkB": 1}
+        style: dict[str, Any] = {"va": "center", "annotation_clip": False, "zorder": 5, **look}
+        arrow["relpos"] = (0, 0.5)
+        place: dict[str, Any] = {"xytext": (1.04, height), "textcoords": "axes fraction", "ha": "left"}
+        ax.annotate(text, (x, y), arrowprops=arrow, **place, **style).set_label(BESIDE)
 
 
-def _spread(ax: Axes, labels: list[Label], gap: float) -> list[tuple[float, float]]:
-    """Places in shares of the axes: heights moved apart to ``gap``, in the middle where the points' own are."""
-    to_axes = ax.transData + ax.transAxes.inverted()
-    native = [tuple(map(float, to_axes.transform((x, y)))) for x, y, *_ in labels]
-    order = sorted(range(len(native)), key=lambda k: (native[k][1], k))
-    placed: dict[int, float] = {}
-    for before, k in zip([None, *order], order, strict=False):
-        placed[k] = native[k][1] if before is None else max(native[k][1], placed[before] + gap)
-    shift = sum(placed[k] - native[k][1] for k in order) / max(len(order), 1)
-    return [(native[k][0], placed[k] - shift) for k in range(len(native))]
+def note(ax: Axes, text: str, at: tuple[float, float], side: tuple[float, float] = (0.0, 1.0), **look: Any) -> None:
+    """A small text near a point of the data, on the side (right, up) of it where `svg` finds a free place; where that
+    is away from the point, a thin line leads to it."""
+    arrow = {"arrowstyle": "-", "lw": 0.4, "color": MUTED, "shrinkA": 1, "shrinkB": 2}
+    style: dict[str, Any] = {"fontsize": 6.5, "zorder": 6, "annotation_clip": False, **look}
+    place: dict[str, Any] = {"xytext": (8 * side[0], 8 * side[1]), "textcoords": "offset points"}
+    label = ax.annotate(text, at, arrowprops=arrow, **place, **style)
+    label.set_label(NEAR)
+    # Its place is found in the layout that stands without it.
+    label.set_in_layout(False)
 
 
-def _labelled(
-    ax: Axes, at: tuple[float, float], text: str, place: tuple[float, float], side: str, look: dict[str, Any]
-) -> None:
-    """One label with a thin line to its point."""
-    arrow: dict[str, Any] = {"arrowstyle": "-", "lw": 0.4, "color": MUTED, "shrinkA": 2, "shrinkB": 1}
-    arrow["relpos"] = (0 if side == "left" else 1, 0.5)
-    style: dict[str, Any] = {"va": "center", "annotation_clip": False, "zorder": 5, "path_effects": halo(), **look}
-    ax.annotate(text, at, xytext=place, textcoords="axes fraction", ha=side, arrowprops=arrow, **style)
-
-
-def note(ax: Axes, text: str, at: tuple[float, float], offset: tuple[float, float], **look: Any) -> None:
-    """A small text ``offset`` points from a point of the data."""
-    ax.annotate(text, at, xytext=offset, textcoords="offset points", **{"fontsize": 6.5, **look})
+def legend_above(ax: Axes, columns: int = 4) -> None:
+    """The legend of the axes above them, where no curve runs, in rows of ``columns`` entries."""
+    handles, labels = ax.get_legend_handles_labels()
+    if not handles:
+        return
+    columns = min(columns, len(handles))
+    # matplotlib fills columns: taken in this order the entries read row by row.
+    order = [k for column in range(columns) for k in range(column, len(handles), columns)]
+    look: dict[str, Any] = {"handlelength": 2.6, "handletextpad": 0.4, "columnspacing": 1.4, "borderpad": 0.1}
+    entries = [handles[k] for k in order], [labels[k] for k in order]
+    drawn = ax.get_figure(root=True)
+    assert drawn is not None
+    drawn.legend(*entries, loc="outside upper left", ncols=columns, **look)
 
 
 def halo() -> list[AbstractPathEffect]:

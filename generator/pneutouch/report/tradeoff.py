@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from pneutouch.evaluation.chart_data import ChartPoint, TradeOff
-from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MUTED, Label, figure, label_points, plain_ticks, svg
+from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MUTED, figure, note, plain_ticks, svg
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,29 +20,25 @@ def tradeoff_chart(tradeoff: TradeOff, size: tuple[float, float]) -> str:
         ax.set(xscale="log", yscale="log", xlabel=sensitivity, ylabel="greatest force range  (N)", **_limits(tradeoff))
         _window(ax, tradeoff)
         _gauge(ax, tradeoff)
-        starts: list[Label] = []
+        _spots(ax, tradeoff.spots)
         for k, front in enumerate(tradeoff.known):
             s, force, title = front.sensitivity_kPa_per_N, front.force, front.resin.material.title
             picked = title == chosen
             colour, line = ACCENT if picked else INK, LINES[0] if picked else LINES[k % len(LINES)]
             ax.plot(s, force, color=colour, lw=2.0 if picked else 0.8, zorder=4 if picked else 3, ls=line)
             ax.plot(s[0], force[0], "o", color=colour, ms=2.2, zorder=4)
-            look = {"fontsize": 6.5, "color": INK, **BOLD} if picked else {"fontsize": 6.5, "color": INK}
-            starts.append((float(s[0]), float(force[0]), f"{title}  {s[0]:.2g} to {s[-1]:.2g}", look))
-        label_points(ax, starts, (0.06, 0.05))
-        _spots(ax, tradeoff.spots)
+            look: dict[str, Any] = {"color": INK, **(BOLD if picked else {})}
+            note(ax, f"{title}  {s[0]:.2g} to {s[-1]:.2g}", (float(s[0]), float(force[0])), (1.0, 0.6), **look)
+        _name_gauge(ax, tradeoff.gauge_kPa)
         for axis in (ax.xaxis, ax.yaxis):
             plain_ticks(axis)
         return svg(drawn)
 
 
 def _spots(ax: Axes, spots: tuple[ChartPoint, ...]) -> None:
-    labels: list[Label] = []
     for k, (_, label, sensitivity, force) in enumerate(spots):
         ax.plot(sensitivity, force, "o", color=INK, mfc=INK if k == 0 else "white", ms=4.5, zorder=6 + (k == 0))
-        look = {"fontsize": 6.5, "color": INK, **(BOLD if k == 0 else {})}
-        labels.append((sensitivity, force, label, look))
-    label_points(ax, labels, (-0.08, -0.1))
+        note(ax, label, (sensitivity, force), (-1.0, -1.0), color=INK, **(BOLD if k == 0 else {}))
 
 
 def _limits(tradeoff: TradeOff) -> dict[str, tuple[float, float]]:
@@ -53,7 +49,7 @@ def _limits(tradeoff: TradeOff) -> dict[str, tuple[float, float]]:
     y += [spot.force for spot in tradeoff.spots] + ([] if tradeoff.force is None else [tradeoff.force])
     return {
         "xlim": (min(x, default=0.1) / 1.3, max(x, default=10.0) * 1.3),
-        "ylim": (min(y, default=0.1) / 1.4, max(y, default=10.0) * 2.0),
+        "ylim": (min(y, default=0.1) / 1.4, max(y, default=10.0) * 3.0),
     }
 
 
@@ -68,12 +64,18 @@ def _window(ax: Axes, tradeoff: TradeOff) -> None:
     look: dict[str, Any] = {"fc": FAINT, "alpha": 0.6, "ec": INK, "lw": 0.6, "zorder": 1}
     ax.add_patch(Rectangle((low, least), high - low, top - least, gid="target-window", **look))
     middle = (low * high) ** 0.5
-    ax.annotate("target", (middle, top), xytext=(0, 2), textcoords="offset points", ha="center", fontsize=6.5, **BOLD)
+    note(ax, "target", (middle, top), (0.0, -1.0), **BOLD)
 
 
 def _gauge(ax: Axes, tradeoff: TradeOff) -> None:
     """Where the cavity pressure reaches the end of the pressure sensor's range: no design is beyond."""
     low, high = ax.get_xlim()
     ax.plot([low, high], [tradeoff.gauge_kPa / low, tradeoff.gauge_kPa / high], color=FAINT, lw=5, zorder=2)
-    text = f"grey band: end of the gauge's range,\nforce × sensitivity = {tradeoff.gauge_kPa:g} kPa"
-    ax.text(0.02, 0.03, text, transform=ax.transAxes, fontsize=6.5, color=MUTED, va="bottom")
+
+
+def _name_gauge(ax: Axes, gauge_kPa: float) -> None:
+    """What the grey band is, in the place that the other labels leave."""
+    low, high = ax.get_xlim()
+    middle = (low * high) ** 0.5
+    text = f"end of the gauge's range:\nforce × sensitivity = {gauge_kPa:g} kPa"
+    note(ax, text, (middle, gauge_kPa / middle), (-1.0, -1.0), color=MUTED)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pneutouch.evaluation.chart_data import TuningChart
-from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MUTED, Label, figure, halo, label_ends, note, svg
+from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MUTED, Label, figure, label_ends, note, svg
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -50,10 +50,9 @@ def _mark(ax: Axes, tuning: TuningChart) -> None:
         ax.plot([pressure, pressure], [0, value], color=INK, lw=0.6, ls=LINES[4], zorder=2)
         ax.plot(pressure, value, "o", color=INK, mfc="white", ms=4.5, zorder=5, clip_on=False)
     last, value = list(tuning.working_kPa_per_N.items())[-1]
-    side = -1 if last > 0.5 * ax.get_xlim()[1] else 1
-    text, ha = f"{value:.2f} kPa/N\nat {last:g} kPa", "right" if side < 0 else "left"
-    note(ax, text, (last, 0.0), (4 * side, 5), va="bottom", ha=ha)
-    end = (tuning.chosen.driving_pressure_kPa[-1], tuning.high_kPa_per_N[-1])
-    note(ax, "k = 2", end, (-4, -3), va="top", ha="right", color=INK)
+    side = -1.0 if last > 0.5 * ax.get_xlim()[1] else 1.0
+    note(ax, f"{value:.2f} kPa/N\nat {last:g} kPa", (last, 0.3 * value), (side, 0.0))
+    middle = len(tuning.high_kPa_per_N) // 2
+    note(ax, "k = 2", (tuning.chosen.driving_pressure_kPa[middle], tuning.high_kPa_per_N[middle]), (1.0, 1.0))
     if tuning.published_kPa_per_N:
-        note(ax, "published measurement", tuning.published_kPa_per_N[0], (7, 2), va="bottom", path_effects=halo())
+        note(ax, "published measurement", tuning.published_kPa_per_N[0], (1.0, 0.5))

@@ -10,7 +10,7 @@ from pneutouch.errors import InputError
 from pneutouch.evaluation.document import full_document
 from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.evaluation.sheet import sheet_data
-from pneutouch.export.scene import cut_open, glb, stl, viewer_html
+from pneutouch.export.scene import glb, stl
 from pneutouch.export.step import step_files
 from pneutouch.export.threemf import threemf
 from pneutouch.export.threemf_read import RECIPE
@@ -22,6 +22,7 @@ from pneutouch.printability import refuse
 from pneutouch.report.datasheet import datasheet
 from pneutouch.report.picture import picture
 from pneutouch.report.print_sheet import print_sheet
+from pneutouch.report.shown import shown
 from pneutouch.units import ML
 
 StepReport = Callable[[str], None]
@@ -59,7 +60,7 @@ def build(evaluation: Evaluation, out: Path, progress: StepReport = lambda step:
     files |= exact
     progress("datasheet")
     sheet = sheet_data(evaluation, input_hash(evaluation))
-    files |= datasheet(sheet, viewer_html(bodies))
+    files |= datasheet(sheet)
     files["print-sheet.md"] = print_sheet(sheet, left_out).encode()
     progress("files")
     about = {**_measured(evaluation, bodies), **({"left_out": left_out} if left_out else {})}
@@ -96,13 +97,8 @@ def _and(bodies: tuple[Body, ...]) -> str:
 
 
 def _thumbnail(evaluation: Evaluation) -> bytes:
-    """PNG of the bodies cut open; meshes within an eighth of a pixel do."""
-    assembly = evaluation.assembly
-    extent = max(float((body.bounds[1] - body.bounds[0]).max()) for body in assembly.bodies)
-    tolerance = max(evaluation.scene.mesh_tolerance, extent / _THUMBNAIL_PIXELS / 8)
-    return picture(
-        tuple(cut_open(solid.mesh(tolerance)) for solid in assembly.solids), _THUMBNAIL_PIXELS, _THUMBNAIL_PIXELS
-    )
+    """PNG of the bodies cut open."""
+    return picture(shown(evaluation.assembly, _THUMBNAIL_PIXELS), _THUMBNAIL_PIXELS, _THUMBNAIL_PIXELS)
 
 
 def _measured(evaluation: Evaluation, bodies: tuple[Body, ...]) -> dict[str, Any]:

@@ -1,0 +1,79 @@
+"""What the 3D view of a page shows: meshes with a normal and a colour at every corner, as a short text."""
+
+import base64
+import json
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneutouch.arrays import Array
+from pneutouch.body import Body
+from pneutouch.body.normals import corner_normals
+
+_STEPS = 32767
+"""Steps from the middle of the view to its end in each direction: whole numbers of two bytes."""
+
+
+class ShadedBody(NamedTuple):
+    """Triangles as a picture needs them: corners in mm, unit normals and colours (0 to 1), (m, 3, 3) each."""
+
+    name: str
+    corners: Array
+    normals: Array
+    colours: Array
+
+
+def shaded(body: Body, colours: Array | None = None) -> ShadedBody:
+    """A body with smooth normals; ``colours`` (n, 3) are of its vertices, left out: that of its material."""
+    if colours is None:
+        colours = np.tile(np.array(list(bytes.fromhex(body.material.colour[1:]))) / 255, (len(body.vertices), 1))
+    return ShadedBody(body.name, body.corners, corner_normals(body), colours[body.triangles])
+
+
+def view_data(bodies: Sequence[ShadedBody]) -> str:
+    """The bodies as JSON, z up.
+
+    ``middle`` and ``reach`` in mm place the positions: position = middle + reach * value / 32767. Each of ``bodies``
+    has, in base64 and little-endian, ``positions`` (int16), ``normals`` (int8, 127 is one), ``colours`` (uint8), three
+    a vertex, and ``triangles`` (uint16). A body of more than 65,535 vertices is split.
+    """
+    corners = np.concatenate([body.corners.reshape(-1, 3) for body in bodies])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    middle, reach = 0.5 * (low + high), 0.5 * float((high - low).max())
+    parts = [part for body in bodies for part in _parts(body, middle, reach)]
+    content = {"middle": [round(float(x), 4) for x in middle], "reach": round(reach, 4), "bodies": parts}
+    return json.dumps(content, separators=(",", ":"))
+
+
+def _parts(body: ShadedBody, middle: Array, reach: float) -> list[dict[str, str]]:
+    """The body in pieces of as many triangles as two-byte indices hold."""
+    rows = np.concatenate(
+        [
+            np.rint((body.corners - middle) / reach * _STEPS),
+            np.rint(body.normals * 127),
+            np.rint(np.clip(body.colours, 0, 1) * 255),
+        ],
+        axis=2,
+    ).astype(np.int16)
+    most = 65535 // 3
+    return [_packed(body.name, rows[start : start + most]) for start in range(0, len(rows), most)]
+
+
+def _packed(name: str, rows: NDArray[np.int16]) -> dict[str, str]:
+    vertices, triangles = np.unique(rows.reshape(-1, 9), axis=0, return_inverse=True)
+    index = triangles.reshape(-1, 3)
+    # Triangles that have no area in these steps would only cost bytes.
+    index = index[(index[:, 0] != index[:, 1]) & (index[:, 1] != index[:, 2]) & (index[:, 0] != index[:, 2])]
+    return {
+        "name": name,
+        "positions": _base64(vertices[:, :3].astype("<i2")),
+        "normals": _base64(vertices[:, 3:6].astype("i1")),
+        "colours": _base64(vertices[:, 6:].astype("u1")),
+        "triangles": _base64(index.astype("<u2")),
+    }
+
+
+def _base64(values: NDArray[Any]) -> str:
+    return base64.b64encode(values.tobytes()).decode()
