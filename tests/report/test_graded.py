@@ -10,7 +10,7 @@ import pytest
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.evaluation.sheet import constant_membranes, sheet_data
 from pneutouch.evaluation.variants import in_resin
-from pneutouch.report.graded_sheet import graded_figures
+from pneutouch.report.graded_sheet import CAPTIONS, graded_figures
 from pneutouch.spec.read import parse_changes
 
 SHALLOW = ["indentation.depth_mm=3", "indentation.steps=6", "pneumatics.driving_pressures_kPa=[0, 12]"]
@@ -21,12 +21,12 @@ def graded():
     return evaluate("graded-dome", parse_changes(SHALLOW))
 
 
-def test_a_graded_membrane_has_two_figures_in_the_same_bytes(graded):
+def test_a_graded_membrane_has_its_figures_in_the_same_bytes(graded):
     once, again = (graded_figures(sheet_data(graded, "")) for _ in range(2))
-    assert set(once) == {"grade", "graded"}
+    assert set(once) == set(CAPTIONS)
     assert once == again
     # The wall's cells are there one by one, on both sides of the axis.
-    assert once["grade"].count("<path") > 2 * 90
+    assert once["grade-section"].count("<path") > 2 * 90
 
 
 def test_a_constant_membrane_has_none():
@@ -40,7 +40,7 @@ def test_constants_beyond_their_own_limit_are_drawn_as_far_as_they_go(graded):
     constants = constant_membranes(graded.sensor, replace(graded.prediction, states=states))
     assert [len(membrane.states) for membrane in constants] == [1, 2, 2]
     sheet = replace(sheet_data(graded, ""), constants=constants)
-    assert set(graded_figures(sheet)) == {"grade", "graded"}
+    assert set(graded_figures(sheet)) == set(CAPTIONS)
 
 
 def test_other_resins_in_the_same_geometry_are_not_graded(graded, library):

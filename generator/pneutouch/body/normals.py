@@ -15,7 +15,7 @@ within the mesh tolerance meet at a few degrees, the edges of parts at 45 degree
 def corner_normals(body: Body) -> Array:
     """Unit normals at the corners of every triangle, (m, 3, 3).
 
-    A corner's normal is the mean of the triangles that share its vertex and lie within the edge angle of its own
+    A corner's normal is the mean of the triangles that share its vertex and lie within the edge angle of the corner's
     triangle, weighted by their angles there (Thürmer and Wüthrich 1998, DOI 10.1080/10867651.1998.10487487).
     """
     face, angle = _faces(body.corners)
@@ -23,11 +23,11 @@ def corner_normals(body: Body) -> Array:
     order = np.argsort(vertex, kind="stable")
     at = vertex[order]
     start, stop = np.searchsorted(at, vertex, "left"), np.searchsorted(at, vertex, "right")
-    own, other = _pairs(start, stop)
+    owner, other = _pairs(start, stop)
     other = order[other]
-    smooth = np.einsum("ij,ij->i", face[own // 3], face[other // 3]) >= _EDGE_COSINE
+    smooth = np.einsum("ij,ij->i", face[owner // 3], face[other // 3]) >= _EDGE_COSINE
     weighted = face[other // 3] * (angle.reshape(-1)[other] * smooth)[:, None]
-    total = np.stack([np.bincount(own, weighted[:, k], minlength=count) for k in range(3)], axis=1)
+    total = np.stack([np.bincount(owner, weighted[:, k], minlength=count) for k in range(3)], axis=1)
     length = np.linalg.norm(total, axis=1, keepdims=True)
     flat = np.repeat(face, 3, axis=0)
     return np.where(length > 1e-9, total / np.maximum(length, 1e-30), flat).reshape(-1, 3, 3)
@@ -47,5 +47,5 @@ def _faces(corners: Array) -> tuple[Array, Array]:
 def _pairs(start: Index, stop: Index) -> tuple[Index, Index]:
     """Every index from start to stop, (n,) each, and whose it is."""
     count = stop - start
-    own = np.repeat(np.arange(count.size), count)
-    return own, np.arange(own.size) - np.repeat(np.cumsum(count) - count - start, count)
+    owner = np.repeat(np.arange(count.size), count)
+    return owner, np.arange(owner.size) - np.repeat(np.cumsum(count) - count - start, count)

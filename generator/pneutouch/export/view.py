@@ -16,6 +16,10 @@ _STEPS = 32767
 """Steps from the middle of the view to its end in each direction: whole numbers of two bytes."""
 
 
+_MOST = 65535 // 3
+"""Triangles of one part: their vertices are counted in two bytes."""
+
+
 class ShadedBody(NamedTuple):
     """Triangles as a picture needs them: corners in mm, unit normals and colours (0 to 1), (m, 3, 3) each."""
 
@@ -57,8 +61,7 @@ def _parts(body: ShadedBody, middle: Array, reach: float) -> list[dict[str, str]
         ],
         axis=2,
     ).astype(np.int16)
-    most = 65535 // 3
-    return [_packed(body.name, rows[start : start + most]) for start in range(0, len(rows), most)]
+    return [_packed(body.name, rows[start : start + _MOST]) for start in range(0, len(rows), _MOST)]
 
 
 def _packed(name: str, rows: NDArray[np.int16]) -> dict[str, str]:

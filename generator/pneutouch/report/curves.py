@@ -86,7 +86,7 @@ def _shape(state: SensorState, shape: DeformedShape, top: float, limits: dict[st
     """One deformed half section; ``top`` is the stretch at the dark end of the colours."""
     from matplotlib.collections import PolyCollection
 
-    with figure(*SIZE) as drawn:
+    with figure(SIZE[0], 0.75 * SIZE[1]) as drawn:
         ax = drawn.add_subplot()
         look: dict[str, Any] = {"cmap": "cividis_r", "clim": (1.0, top), "edgecolors": "face", "lw": 0.2}
         wall = PolyCollection(list(shape.cells), array=shape.stretch, **look)
@@ -141,18 +141,18 @@ def _plot_states(ax: Axes, prediction: SensorPrediction, curve: Callable[[Sensor
 def sensitivities(
     curves: dict[str, ResinCurve], prediction: SensorPrediction, chosen: str, published_kPa_per_N: Mapping[float, float]
 ) -> str:
-    """Sensitivity over driving pressure for every resin, with the predicted states of the design on its own curve.
+    """Sensitivity over driving pressure for every resin, with the predicted states of the design on its curve.
 
-    ``curves`` are by label; where that of the design's resin, ``chosen``, is missing or is not the design's own (a
+    ``curves`` are by label; where that of the design's resin, ``chosen``, is missing or does not hold its states (a
     graded or a calibrated membrane), a curve through its states is drawn as well.
     ``published_kPa_per_N`` maps driving pressures (kPa) to measured sensitivities (kPa/N) of this very sensor, where
     there are any.
     """
     states = [(s.driving_pressure / KPA, s.figures.sensitivity_kPa_per_N) for s in prediction.states if s.figures]
-    own_kPa, own = np.array(states).reshape(-1, 2).T
+    states_kPa, predicted = np.array(states).reshape(-1, 2).T
     every = dict(curves)
-    if len(own) and not (chosen in every and _holds(every[chosen], own_kPa, own)):
-        every["this design"] = ResinCurve(own_kPa, own, prediction.model)
+    if len(predicted) and not (chosen in every and _holds(every[chosen], states_kPa, predicted)):
+        every["this design"] = ResinCurve(states_kPa, predicted, prediction.model)
         chosen = "this design"
     with figure(*SIZE) as drawn:
         ax = drawn.add_subplot()
@@ -166,7 +166,16 @@ def sensitivities(
             style = {"fontsize": 6.5, "color": INK, **BOLD} if picked else {"fontsize": 6.5, "color": MUTED}
             ends.append((float(pressures[-1]), float(values[-1]), label, style))
         ax.plot(
-            own_kPa, own, "o", color=ACCENT, mfc="white", mew=1.2, ms=4, zorder=4, clip_on=False, label="this design"
+            states_kPa,
+            predicted,
+            "o",
+            color=ACCENT,
+            mfc="white",
+            mew=1.2,
+            ms=4,
+            zorder=4,
+            clip_on=False,
+            label="this design",
         )
         if published_kPa_per_N:
             points = list(published_kPa_per_N), list(published_kPa_per_N.values())
@@ -174,8 +183,8 @@ def sensitivities(
                 *points, "D", color=INK, mfc="white", ms=4.5, zorder=5, clip_on=False, label="published measurement"
             )
         legend_above(ax)
-        right = max([float(pressures[-1]) for pressures, *_ in every.values()] + own_kPa.tolist(), default=1.0)
-        highest = max([float(np.max(values)) for _, values, _ in every.values()] + own.tolist(), default=1.0)
+        right = max([float(pressures[-1]) for pressures, *_ in every.values()] + states_kPa.tolist(), default=1.0)
+        highest = max([float(np.max(values)) for _, values, _ in every.values()] + predicted.tolist(), default=1.0)
         highest = max([highest, *published_kPa_per_N.values()])
         ax.set(xlabel="driving pressure  (kPa)", ylabel="sensitivity  (kPa/N)")
         ax.set(xlim=(0, 1.02 * right), ylim=(0, 1.1 * highest))
@@ -183,14 +192,14 @@ def sensitivities(
         return svg(drawn)
 
 
-_OWN = 0.03
-"""Share that a resin's curve may be off the design's states, for its model's error, and still be the design's own."""
+_OFF = 0.03
+"""Share that a resin's curve may be off the design's states, for its model's error, and still be that of the design."""
 
 
 def _holds(curve: ResinCurve, pressures_kPa: Array, sensitivities_kPa_per_N: Array) -> bool:
     """Whether a curve runs through points."""
     at = np.interp(pressures_kPa, curve.driving_pressure_kPa, curve.sensitivity_kPa_per_N)
-    return bool((np.abs(at - sensitivities_kPa_per_N) <= _OWN * sensitivities_kPa_per_N).all())
+    return bool((np.abs(at - sensitivities_kPa_per_N) <= _OFF * sensitivities_kPa_per_N).all())
 
 
 def drawn_by(curves: dict[str, ResinCurve]) -> str:

@@ -87,7 +87,7 @@ class _Section:
         outside, middle = layout.outer_radius + 4.5 * unit, layout.inner_radius + 0.5 * layout.wall
         note = f"R{layout.inner_radius:g} {self.soft}"
         leader(ax, polar(layout.inner_radius, 140), polar(outside, 140), note, "right")
-        leader(ax, polar(middle, 40), polar(outside, 40), f"wall {layout.wall:g} {self.soft}", "left")
+        leader(ax, polar(middle, 55), polar(outside, 55), f"wall {layout.wall:g} {self.soft}", "left")
         text, port = port_note(self.assembly.scene), layout.port
         if layout.port_axis is None:
             tip = (0.9 * port.outside[0][0][0], layout.under - 0.7 * port.length)

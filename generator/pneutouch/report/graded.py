@@ -31,7 +31,7 @@ def grade_figures(material: Material, scene: ResolvedDesign) -> dict[str, str]:
     """
     assert material.along is not None
     membrane, stiff, along = scene.design.membrane, material.base_resins[-1], material.along
-    with figure(*_SIZE) as drawn:
+    with figure(_SIZE[0], 1.15 * _SIZE[1]) as drawn:
         _section(drawn.add_subplot(), along, membrane.inner_radius_mm, membrane.wall_thickness_mm, stiff)
         section = svg(drawn)
     mean = material.shear_modulus_MPa

@@ -41,16 +41,18 @@ def _without_repeats(figures: Mapping[str, str]) -> dict[str, str]:
     """Figures for one page: what is defined alike in several, letters above all, is defined in the first alone."""
     seen: set[str] = set()
 
-    def once(found: re.Match[str]) -> str:
-        if found[0] in seen:
+    def once(match: re.Match[str]) -> str:
+        if match[0] in seen:
             return ""
-        seen.add(found[0])
-        return found[0]
+        seen.add(match[0])
+        return match[0]
 
-    return {name: _DEFINITION.sub(once, text) for name, text in figures.items()}
+    return {name: _DEFINITION.sub(once, _GROUP.sub("<g>", text)) for name, text in figures.items()}
 
 
-_DEFINITION = re.compile(r'<path id="[^"]+" d="[^"]*"[^>]*/>')
+_DEFINITION = re.compile(r'<(path|clipPath|pattern) id="[^"]+"(?:[^>]*/>|.*?</\1>)', re.DOTALL)
+_GROUP = re.compile(r'<g id="[^"]+">')
+"""Groups are named alike in every figure, and nothing refers to them."""
 
 
 def pdf(

@@ -1,4 +1,4 @@
-"""Where the labels of a chart stand: beside the axes as near to their curves as their height allows, and inside where no
+"""Where the labels of a chart stand: right of the axes as near to their curves as their height allows, and inside where no
 curve, marker or other label is."""
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.text import Annotation
 
-BESIDE, NEAR = "_beside", "_near"
+AT_SIDE, CORNER, NEAR = "_at_side", "_corner", "_near"
 """What an annotation is marked as, by its `set_label`, for `settle` to move it."""
 
 _STEP = 1.2
@@ -28,14 +28,16 @@ _LEADER = 9.0
 _SPARE = 1.0
 """Free rim around a label, points."""
 
-Box = tuple[float, float, float, float]
+LabelBox = tuple[float, float, float, float]
 """Left, low, right and high edge in points."""
 
 
 def settle(drawn: Figure) -> None:
-    """Move the labels marked `BESIDE` and `NEAR`, once the layout stands; to be called at 72 dots per inch."""
+    """Move the labels that are marked, once the layout stands; to be called at 72 dots per inch."""
     for ax in drawn.axes:
-        _beside(ax)
+        _stack(ax, _marked(ax, AT_SIDE), 1.0, float(drawn.bbox.height) - 1.0)
+        frame = ax.get_window_extent()
+        _stack(ax, _marked(ax, CORNER), frame.y0, frame.y1, at_top=True)
     taken = [_box(text) for text in _fixed(drawn)]
     for ax in drawn.axes:
         curves = _curves(ax)
@@ -50,14 +52,12 @@ def _marked(ax: Axes, mark: str) -> list[Annotation]:
 
 
 def _fixed(drawn: Figure) -> list[Any]:
-    """Every text that stands where it is; the numbers of the axes stand outside them, where no label is moved to."""
-    found = [text for ax in drawn.axes for text in (*ax.texts, ax.title)]
-    legends = [ax.get_legend() for ax in drawn.axes]
-    found += [text for legend in (*legends, *drawn.legends) if legend is not None for text in legend.get_texts()]
-    return [text for text in found if text.get_label() != NEAR and text.get_visible() and text.get_text().strip()]
+    """Every text in the axes that stays where it is; legends and the numbers of the axes stand outside."""
+    texts = [text for ax in drawn.axes for text in ax.texts]
+    return [text for text in texts if text.get_label() != NEAR and text.get_visible() and text.get_text().strip()]
 
 
-def _box(text: Any) -> Box:
+def _box(text: Any) -> LabelBox:
     """The box of the letters alone: that of an annotation would hold its line as well."""
     from matplotlib.text import Text
 
@@ -65,28 +65,27 @@ def _box(text: Any) -> Box:
     return box.x0, box.y0, box.x1, box.y1
 
 
-def _beside(ax: Axes) -> None:
-    """Labels right of the axes: in the order of their points, as near to them as they fit above one another."""
-    labels = _marked(ax, BESIDE)
+def _stack(ax: Axes, labels: list[Annotation], low: float, high: float, at_top: bool = False) -> None:
+    """Labels above one another between two heights, in the order of their points and as near to them as they fit, or
+    all at the top."""
     if not labels:
         return
-    sizes = [_box(label) for label in labels]
-    heights = [top - low + 0.6 for _, low, _, top in sizes]
-    wanted = [float(ax.transData.transform(label.xy)[1]) for label in labels]
-    order = sorted(range(len(labels)), key=lambda k: (wanted[k], k))
-    # A long column may start below the axes, beside the numbers, but not outside the picture.
-    low, high = 1.0, float(ax.figure.bbox.height) - 1.0
+    boxes = [_box(label) for label in labels]
+    heights = [box[3] - box[1] + 0.6 for box in boxes]
+    points = [float(ax.transData.transform(label.xy)[1]) for label in labels]
+    order = sorted(range(len(labels)), key=lambda k: (points[k], k))
     frame = ax.get_window_extent()
-    for k, y in zip(order, _column([wanted[k] for k in order], [heights[k] for k in order], low, high), strict=True):
+    targets = [high if at_top else points[k] for k in order]
+    for k, y in zip(order, _column(targets, [heights[k] for k in order], low, high), strict=True):
         labels[k].set_verticalalignment("center")
         labels[k].set_position((labels[k].get_position()[0], (y - frame.y0) / frame.height))
 
 
-def _column(wanted: list[float], heights: list[float], low: float, high: float) -> list[float]:
-    """Middles of boxes, ascending, that do not overlap and deviate least from the wanted ones (pooled neighbours)."""
+def _column(targets: list[float], heights: list[float], low: float, high: float) -> list[float]:
+    """Middles of boxes, ascending, that do not overlap and deviate least from the target ones (pooled neighbours)."""
     groups: list[tuple[float, list[int]]] = []
     offset = np.concatenate([[0.0], np.cumsum([0.5 * (a + b) for a, b in pairwise(heights)])])
-    for k, y in enumerate(wanted):
+    for k, y in enumerate(targets):
         start, members = y - float(offset[k]), [k]
         while groups and groups[-1][0] > start:
             before, others = groups.pop()
@@ -102,7 +101,7 @@ def _column(wanted: list[float], heights: list[float], low: float, high: float) 
 def _curves(ax: Axes) -> Array:
     """Points on everything that is drawn as a line or a marker inside the axes, (n, 2), points."""
     frame = ax.get_window_extent().padded(2.0)
-    found = [np.empty((0, 2))]
+    points = [np.empty((0, 2))]
     for line in ax.lines:
         if not line.get_visible():
             continue
@@ -110,12 +109,12 @@ def _curves(ax: Axes) -> Array:
         xy = xy[np.isfinite(xy).all(axis=1)]
         if line.get_linestyle() not in ("None", "", " "):
             half = 0.5 * line.get_linewidth() if line.get_linewidth() > 2.5 else 0.0
-            found += [_dense(xy + np.array((0.0, side))) for side in sorted({-half, half})]
+            points += [_dense(xy + np.array((0.0, side))) for side in sorted({-half, half})]
         if line.get_marker() not in ("None", "", " ", None):
-            found += [xy + 0.5 * line.get_markersize() * np.array(side) for side in _RIM]
+            points += [xy + 0.5 * line.get_markersize() * np.array(side) for side in _RIM]
     for patch in ax.patches:
-        found.append(_dense(np.asarray(patch.get_transform().transform_path(patch.get_path()).vertices, float)))
-    every = np.concatenate(found)
+        points.append(_dense(np.asarray(patch.get_transform().transform_path(patch.get_path()).vertices, float)))
+    every = np.concatenate(points)
     inside = (every >= frame.min).all(axis=1) & (every <= frame.max).all(axis=1)
     kept: Array = every[inside]
     return kept
@@ -146,8 +145,8 @@ def _dense(xy: Array) -> Array:
     return np.concatenate(parts)
 
 
-def _near(ax: Axes, label: Annotation, curves: Array, taken: list[Box]) -> tuple[Box, Array]:
-    """Move a label to the first free place around its point; where there is none, to the one with least in its way.
+def _near(ax: Axes, label: Annotation, curves: Array, taken: list[LabelBox]) -> tuple[LabelBox, Array]:
+    """Move a label to the first free place around its point; where there is none, to the one with least over it.
 
     Returns its box, and points (n, 2) on the line that leads to it.
     """
@@ -155,9 +154,9 @@ def _near(ax: Axes, label: Annotation, curves: Array, taken: list[Box]) -> tuple
     wide, tall = right - left, high - low
     x, y = (float(value) for value in ax.transData.transform(label.xy))
     frame = ax.get_window_extent()
-    wished = np.asarray(label.get_position(), float)
-    first = float(np.arctan2(wished[1], wished[0]))
-    best: tuple[float, Box, float] | None = None
+    preferred = np.asarray(label.get_position(), float)
+    first = float(np.arctan2(preferred[1], preferred[0]))
+    best: tuple[float, LabelBox, float] | None = None
     for away in _AWAY:
         for k in range(_TURNS):
             angle = first + (-1) ** k * ((k + 1) // 2) * 2 * np.pi / _TURNS
@@ -184,7 +183,7 @@ def _near(ax: Axes, label: Annotation, curves: Array, taken: list[Box]) -> tuple
     return box, _leader((x, y), box, away)
 
 
-def _leader(point: tuple[float, float], box: Box, away: float) -> Array:
+def _leader(point: tuple[float, float], box: LabelBox, away: float) -> Array:
     """Points on the line from a point to a label's box; none where the label is so near that it has no line."""
     if away < _LEADER:
         return np.empty((0, 2))
@@ -194,14 +193,14 @@ def _leader(point: tuple[float, float], box: Box, away: float) -> Array:
     return line[outside]
 
 
-def _crossed(point: tuple[float, float], box: Box, away: float, taken: list[Box]) -> int:
+def _crossed(point: tuple[float, float], box: LabelBox, away: float, taken: list[LabelBox]) -> int:
     """How many labels the line from a point to a label's box would run over."""
     line = _leader(point, box, away)
     return sum(bool(((line > b[:2]) & (line < b[2:])).all(axis=1).any()) for b in taken)
 
 
-def _blocked(box: Box, curves: Array, taken: list[Box]) -> float:
-    """How much is in the way of a box: points of curves, and more for each label."""
+def _blocked(box: LabelBox, curves: Array, taken: list[LabelBox]) -> float:
+    """How much lies under a box: points of curves, and more for each label."""
     left, low, right, high = box[0] - _SPARE, box[1] - _SPARE, box[2] + _SPARE, box[3] + _SPARE
     hit = (curves[:, 0] > left) & (curves[:, 0] < right) & (curves[:, 1] > low) & (curves[:, 1] < high)
     others = sum(left < b[2] and b[0] < right and low < b[3] and b[1] < high for b in taken)

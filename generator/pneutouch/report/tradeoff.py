@@ -5,7 +5,20 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from pneutouch.evaluation.chart_data import ChartPoint, TradeOff
-from pneutouch.report.style import ACCENT, BOLD, FAINT, INK, LINES, MUTED, figure, note, plain_ticks, svg
+from pneutouch.report.style import (
+    ACCENT,
+    BOLD,
+    FAINT,
+    INK,
+    LINES,
+    Label,
+    figure,
+    label_corner,
+    legend_above,
+    note,
+    plain_ticks,
+    svg,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,6 +34,7 @@ def tradeoff_chart(tradeoff: TradeOff, size: tuple[float, float]) -> str:
         _window(ax, tradeoff)
         _gauge(ax, tradeoff)
         _spots(ax, tradeoff.spots)
+        starts: list[Label] = []
         for k, front in enumerate(tradeoff.known):
             s, force, title = front.sensitivity_kPa_per_N, front.force, front.resin.material.title
             picked = title == chosen
@@ -28,8 +42,9 @@ def tradeoff_chart(tradeoff: TradeOff, size: tuple[float, float]) -> str:
             ax.plot(s, force, color=colour, lw=2.0 if picked else 0.8, zorder=4 if picked else 3, ls=line)
             ax.plot(s[0], force[0], "o", color=colour, ms=2.2, zorder=4)
             look: dict[str, Any] = {"color": INK, **(BOLD if picked else {})}
-            note(ax, f"{title}  {s[0]:.2g} to {s[-1]:.2g}", (float(s[0]), float(force[0])), (1.0, 0.6), **look)
-        _name_gauge(ax, tradeoff.gauge_kPa)
+            starts.append((float(s[0]), float(force[0]), f"{title}  {s[0]:.2g} to {s[-1]:.2g}", look))
+        label_corner(ax, starts)
+        legend_above(ax)
         for axis in (ax.xaxis, ax.yaxis):
             plain_ticks(axis)
         return svg(drawn)
@@ -42,15 +57,16 @@ def _spots(ax: Axes, spots: tuple[ChartPoint, ...]) -> None:
 
 
 def _limits(tradeoff: TradeOff) -> dict[str, tuple[float, float]]:
-    """Limits that hold the fronts, the designs and the window, with a margin; the labels need it at the top."""
+    """Limits that hold the fronts, the designs and the window, with a margin and with space for the labels."""
     x = [float(value) for front in tradeoff.known for value in front.sensitivity_kPa_per_N]
     y = [float(value) for front in tradeoff.known for value in front.force]
     x += [spot.sensitivity_kPa_per_N for spot in tradeoff.spots] + list(tradeoff.window_kPa_per_N or ())
     y += [spot.force for spot in tradeoff.spots] + ([] if tradeoff.force is None else [tradeoff.force])
-    return {
-        "xlim": (min(x, default=0.1) / 1.3, max(x, default=10.0) * 1.3),
-        "ylim": (min(y, default=0.1) / 1.4, max(y, default=10.0) * 3.0),
-    }
+    left, right = min(x, default=0.1) / 1.3, max(x, default=10.0) * 1.3
+    low, high = min(y, default=0.1) / 1.4, max(y, default=10.0) * 1.4
+    # The labels stand in the upper right corner, above the gauge's limit: it has to leave them the half of the height.
+    limit = tradeoff.gauge_kPa / (left * right) ** 0.5
+    return {"xlim": (left, right), "ylim": (low, max(high, low * (limit / low) ** 2))}
 
 
 def _window(ax: Axes, tradeoff: TradeOff) -> None:
@@ -70,12 +86,7 @@ def _window(ax: Axes, tradeoff: TradeOff) -> None:
 def _gauge(ax: Axes, tradeoff: TradeOff) -> None:
     """Where the cavity pressure reaches the end of the pressure sensor's range: no design is beyond."""
     low, high = ax.get_xlim()
-    ax.plot([low, high], [tradeoff.gauge_kPa / low, tradeoff.gauge_kPa / high], color=FAINT, lw=5, zorder=2)
-
-
-def _name_gauge(ax: Axes, gauge_kPa: float) -> None:
-    """What the grey band is, in the place that the other labels leave."""
-    low, high = ax.get_xlim()
-    middle = (low * high) ** 0.5
-    text = f"end of the gauge's range:\nforce × sensitivity = {gauge_kPa:g} kPa"
-    note(ax, text, (middle, gauge_kPa / middle), (-1.0, -1.0), color=MUTED)
+    label = f"end of the gauge's range: force × sensitivity = {tradeoff.gauge_kPa:g} kPa"
+    ax.plot(
+        [low, high], [tradeoff.gauge_kPa / low, tradeoff.gauge_kPa / high], color=FAINT, lw=5, zorder=2, label=label
+    )

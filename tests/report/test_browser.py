@@ -1,0 +1,125 @@
+"""The page as a browser shows and prints it; left out, and said so, where there is no browser."""
+
+from __future__ import annotations
+
+import pypdfium2
+import pytest
+
+from tests.report.browser import FOUND, WHY_NOT, WITH_WEBGL, WITHOUT_WEBGL, browser
+from tests.report.test_datasheet import SECTIONS
+
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(FOUND is None, reason=WHY_NOT)]
+
+_TOO_WIDE = """[...document.querySelectorAll('main *')].filter(e => !e.closest('svg') && !e.closest('script') &&
+e.getBoundingClientRect().right > innerWidth + 0.5).map(e => e.tagName + ': ' + e.textContent.slice(0, 40))"""
+_CUT = """[...document.querySelectorAll('td, th, h1, dd, figcaption, p, li')].filter(e =>
+e.scrollWidth > e.clientWidth + 1 && getComputedStyle(e).display != 'contents' &&
+getComputedStyle(e).display != 'inline').map(e => e.textContent)"""
+
+
+@pytest.fixture(scope="module", params=["paper-dome", "graded-dome", "agilus-dome"])
+def page(request, built):
+    return built(request.param) / "datasheet.html"
+
+
+@pytest.fixture(scope="module")
+def screen(tmp_path_factory):
+    with browser(tmp_path_factory.mktemp("browser"), *WITH_WEBGL) as opened:
+        yield opened
+
+
+@pytest.mark.parametrize("width", [360, 400, 800, 1400])
+def test_the_page_needs_no_scrolling_sideways(width, page, screen):
+    screen.show(page, width)
+    assert screen.evaluate("innerWidth") == width
+    assert screen.evaluate("document.documentElement.scrollWidth") <= width
+    assert screen.evaluate(_TOO_WIDE) == []
+    assert screen.evaluate(_CUT) == []
+    assert screen.errors == []
+
+
+def test_letters_of_figures_can_be_read_on_a_narrow_screen(page, screen):
+    """The smallest of a figure are 6.5 points at its own width: at least 7 pixels on the screen."""
+    screen.show(page, 400)
+    sizes = screen.evaluate(
+        "[...document.querySelectorAll('figure svg')].map(e => 6.5 * e.clientWidth / e.viewBox.baseVal.width)"
+    )
+    assert len(sizes) >= 13
+    assert min(sizes) >= 7
+
+
+def test_with_webgl_the_dome_is_drawn_as_in_the_picture(page, screen):
+    screen.show(page, 1400)
+    assert screen.evaluate("document.getElementById('view').className") == "view live"
+    assert screen.evaluate("getComputedStyle(document.querySelector('#view img')).visibility") == "hidden"
+    # Both are drawn small and in gray: what a person sees first is the same.
+    apart = screen.evaluate(
+        """(async () => {
+        const gray = source => { const c = document.createElement('canvas'); c.width = 45; c.height = 32;
+            const d = c.getContext('2d'); d.fillStyle = '#fff'; d.fillRect(0, 0, 45, 32);
+            const w = source.naturalWidth || source.width, h = source.naturalHeight || source.height;
+            const s = Math.min(45 / w, 32 / h); d.drawImage(source, (45 - w * s) / 2, (32 - h * s) / 2, w * s, h * s);
+            const p = d.getImageData(0, 0, 45, 32).data; const out = [];
+            for (let k = 0; k < p.length; k += 4) out.push((p[k] + p[k + 1] + p[k + 2]) / 3); return out; };
+        const canvas = document.querySelector('#view canvas');
+        canvas.dispatchEvent(new KeyboardEvent('keydown', {key: '+'}));
+        canvas.dispatchEvent(new KeyboardEvent('keydown', {key: '-'}));
+        const drawn = await new Promise(done => requestAnimationFrame(() => done(gray(canvas))));
+        const picture = gray(document.querySelector('#view img'));
+        return drawn.reduce((sum, value, k) => sum + Math.abs(value - picture[k]), 0) / drawn.length; })()"""
+    )
+    assert apart < 25
+
+
+def test_a_key_turns_the_dome(page, screen):
+    screen.show(page, 800)
+    first = screen.picture(0, 900)
+    screen.evaluate(
+        "document.querySelector('#view canvas').dispatchEvent(new KeyboardEvent('keydown', "
+        "{key: 'ArrowLeft'})); new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
+    )
+    assert screen.picture(0, 900) != first
+
+
+def test_without_webgl_the_picture_is_shown_and_nothing_fails(page, tmp_path):
+    with browser(tmp_path, *WITHOUT_WEBGL) as plain:
+        plain.show(page, 800)
+        assert plain.evaluate("document.createElement('canvas').getContext('webgl')") is None
+        assert plain.errors == []
+        assert plain.evaluate("document.querySelectorAll('#view canvas').length") == 0
+        seen = "(i => [i.naturalWidth, i.clientWidth > 200, getComputedStyle(i).visibility])"
+        assert plain.evaluate(f"{seen}(document.querySelector('#view img'))") == [900, True, "visible"]
+
+
+def test_the_page_prints_every_section_on_light_ground_within_the_paper(page, screen):
+    screen.show(page, 1400)
+    document = pypdfium2.PdfDocument(screen.printed())
+    text = "\n".join(sheet.get_textpage().get_text_range() for sheet in document)
+    for section in SECTIONS:
+        assert section in text
+    assert len(document) <= 10
+    for number, sheet in enumerate(document):
+        image = sheet.render(scale=1).to_numpy()[..., :3]
+        # The ground is the paper, and nothing reaches into the margins.
+        assert (image.min(axis=2) > 200).mean() > 0.6, number
+        assert (image[:, :25] > 245).all(), number
+        assert (image[:, -25:] > 245).all(), number
+    # The picture of the sensor is on the first sheet, in colour.
+    first = document[0].render(scale=1).to_numpy()[..., :3].astype(int)
+    assert (abs(first[..., 0] - first[..., 2]) > 60).sum() > 2000
+
+
+def test_no_figure_and_no_row_is_cut_by_the_end_of_a_sheet(page, screen):
+    """Printed on endless paper and on sheets there are as many letters, and no figure is higher than a sheet."""
+    screen.show(page, 1400)
+    screen.call("Emulation.setEmulatedMedia", media="print")
+    try:
+        high = screen.evaluate("[...document.querySelectorAll('figure, tr, .tiles')].map(e => e.offsetHeight)")
+        assert max(high) < 900
+        kept = screen.evaluate(
+            "[...document.querySelectorAll('figure, tr, .tiles, .view')].every("
+            "e => getComputedStyle(e).breakInside == 'avoid')"
+        )
+        assert kept
+    finally:
+        screen.call("Emulation.setEmulatedMedia", media="")
