@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
@@ -22,9 +24,14 @@ def test_every_shipped_design_is_looked_at(root):
     assert sorted(path.stem for path in (root / "designs").glob("*.toml")) == list(SHIPPED)
 
 
+@pytest.fixture(scope="module")
+def sheet_of(evaluated):
+    return cache(lambda name: sheet_data(evaluated(name), "0"))
+
+
 @pytest.mark.parametrize("name", DESIGNS)
-def test_no_label_lies_over_a_curve_or_another_label(name, evaluated):
-    sheet = sheet_data(evaluated(name), "0")
+def test_no_label_lies_over_a_curve_or_another_label(name, sheet_of):
+    sheet = sheet_of(name)
     with overlaps() as (found, labels):
         _figures(sheet)
     assert found == []
@@ -73,10 +80,9 @@ def picked(monkeypatch):
 
 
 @pytest.mark.parametrize("name", DESIGNS)
-def test_the_design_is_picked_out_on_its_own_curve(name, evaluated, picked):
+def test_the_design_is_picked_out_on_its_own_curve(name, sheet_of, picked):
     """A graded design too, whose resin is none of the chart's."""
-    evaluation = evaluated(name)
-    sheet = sheet_data(evaluation, "0")
+    sheet = sheet_of(name)
     curves.sensitivities(sheet.resin_curves, sheet.prediction, sheet.scene.membrane_material.title, {})
     ((points, curve),) = picked
     own = [(1e3 * s.driving_pressure, s.figures.sensitivity_kPa_per_N) for s in sheet.prediction.states if s.figures]

@@ -9,8 +9,8 @@ CAPTIONS = {
     "grade-share": "Share of the stiff resin along the arc from the pole to the rim. The mixing curve behind it is "
     "assumed, see the sources.",
     "grade-modulus": "Modulus along the arc, and its mean.",
-    "graded-sensitivity": "The graded membrane against constant ones of its size, all by the solid: as stiff throughout "
-    "as at its softest, on average and at its stiffest. Sensitivity over driving pressure.",
+    "graded-sensitivity": "The graded membrane against constant ones of its size, all by the solid: as stiff "
+    "throughout as at its softest, on average and at its stiffest. Sensitivity over driving pressure.",
     "graded-response": "The same membranes: response at the highest driving pressure.",
 }
 

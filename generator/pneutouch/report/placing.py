@@ -1,5 +1,5 @@
-"""Where the labels of a chart stand: right of the axes as near to their curves as their height allows, and inside where no
-curve, marker or other label is."""
+"""Where the labels of a chart stand: right of the axes as near to their curves as their height allows, and inside where
+no curve, marker or other label is."""
 
 from __future__ import annotations
 

@@ -50,12 +50,14 @@ DEFINITIONS = (
 
 CAPTIONS = {
     "performance": "Predicted by one model; k = 2: the interval that holds the sensitivity of a printed sensor, see "
-    "Uncertainty. Published: measurement of the paper on a sensor of these dimensions and this resin, where there is one.",
+    "Uncertainty. Published: measurement of the paper on a sensor of these dimensions and this resin, where there is "
+    "one.",
     "inflation": "Inflation: driving pressure over apex height; dashed beyond the limit point.",
     "response": "Response: pressure rise over contact force at each driving pressure, with the fitted lines.",
     "indentation": "Contact force over indentation at each driving pressure.",
     "shares": "What makes the sensitivity uncertain: shares of its variance. The longest bar is what to measure first.",
-    "drawing": "Lengths in mm; tolerances are the stated accuracies of the printers; bracketed sizes are for reference.",
+    "drawing": "Lengths in mm; tolerances are the stated accuracies of the printers; bracketed sizes are for "
+    "reference.",
 }
 """Captions that are the same on every sheet."""
 

@@ -27,7 +27,7 @@ def shown(assembly: Assembly, pixels: int) -> tuple[ShadedBody, ...]:
 
 
 def greatest_share(grading: ArcGrading) -> float:
-    """Share of the stiff resin at the dark end of the colours; at least one percent, so that a grade of none is light."""
+    """Share of the stiff resin at the dark end of the colours; at least one percent, so that none of it is light."""
     return max(*grading.stiff_fraction, 0.01)
 
 
