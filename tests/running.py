@@ -21,7 +21,11 @@ import pytest
 def captured() -> Iterator[tuple[io.BytesIO, io.BytesIO]]:
     """The bytes that ``sys.stdout`` and ``sys.stderr`` take, neither of them a terminal."""
     out, err = io.BytesIO(), io.BytesIO()
-    texts = [io.TextIOWrapper(stream, encoding="utf-8", write_through=True) for stream in (out, err)]
+    # As Python sets its own: what stderr cannot encode is written with a backslash.
+    texts = [
+        io.TextIOWrapper(stream, encoding="utf-8", errors=errors, write_through=True)
+        for stream, errors in ((out, "strict"), (err, "backslashreplace"))
+    ]
     with contextlib.redirect_stdout(texts[0]), contextlib.redirect_stderr(texts[1]):
         yield out, err
     for text in texts:

@@ -20,6 +20,7 @@ from pneutouch.errors import (
     PneutouchError,
     RuleBrokenError,
     joined,
+    one_line,
     shown,
 )
 from pneutouch.mechanics.solid.errors import NoConvergenceError
@@ -172,3 +173,12 @@ def test_a_user_of_the_command_line_reads_its_own_words(command, tmp_path, words
     result = command(*words)
     assert result.returncode == 2
     assert result.stderr.startswith(message), result.stderr
+
+
+def test_words_and_lines_without_end_are_cut_and_control_characters_escaped():
+    message = InputError(
+        f"{'x' * 5000}: no such thing, {'a b ' * 5000}", key="k", value="\x1b[31m\n" + "y" * 5000
+    ).message()
+    assert len(message) < 4100 and "x" * 401 not in message and "y" * 201 not in message
+    assert "\\u001b[31m\\n" in message and "\x1b" not in message and "\n" not in message
+    assert one_line("a\x1b\n\u202e" + "z" * 500) == "a\\u001B\\u000A\\u202E" + "z" * 181 + "..."

@@ -25,6 +25,9 @@ from typing import Any
 _LONGEST = 200
 """Characters of a value that a message shows: enough to find it again."""
 
+_LINE = 4000
+"""Characters of a line of a message: none that is the project's own is as long."""
+
 
 class PneutouchError(Exception):
     """Base of the three errors that a user may see.
@@ -62,6 +65,9 @@ class PneutouchError(Exception):
         first = ": ".join(
             part for part in (_escaped(self.file or ""), _escaped(place), _escaped(text, keep="\n")) if part
         )
+        # A word without end comes from what was given, as does a line without end.
+        first = re.sub(rf"\S{{{2 * _LONGEST},}}", lambda word: _cut(word[0]), first)
+        first = "\n".join(line if len(line) < _LINE else f"{line[:_LINE]}..." for line in first.split("\n"))
         return "\n".join((first, *(error.message(option) for error in self.others)))
 
     def __str__(self) -> str:
@@ -121,6 +127,11 @@ def shown(value: Any) -> str:
     Text stands in double quotes with control characters escaped; what TOML has no form for is named by its type.
     """
     return _cut(_toml(value))
+
+
+def one_line(text: str) -> str:
+    """A text of others on one line: control characters escaped, and cut where it is long."""
+    return _cut(_escaped(text))
 
 
 def _restored(kind: type[PneutouchError], args: tuple[Any, ...]) -> PneutouchError:

@@ -54,7 +54,16 @@ def test_check_exits_1_where_a_rule_is_broken_and_0_otherwise(command, root):
 
 def test_list_shows_designs_materials_printers_and_parts(command, root):
     document = json.loads(command("list", "--json", cwd=root).stdout)
-    assert set(document) == {"designs", "specimens", "examples", "materials", "mixing", "printers", "parts"}
+    assert set(document) == {
+        "designs",
+        "specimens",
+        "examples",
+        "calibrations",
+        "materials",
+        "mixing",
+        "printers",
+        "parts",
+    }
     assert "paper-dome" in [entry["name"] for entry in document["designs"]]
     assert len(document["designs"]) >= 5
     assert {entry["kind"] for entry in document["parts"]} == {"ports", "seats", "mounts", "tubes"}

@@ -10,6 +10,7 @@ from pneutouch.errors import InputError
 from pneutouch.spec.files import design_inside, inside, read_bytes
 from pneutouch.spec.names import file_name, name_of, plain_name
 from pneutouch.spec.read import read_toml
+from pneutouch.spec.toml_text import toml_value
 
 
 @pytest.mark.parametrize("name", ["a.csv", "runs/a.csv", "runs/../a.csv", "not-there.csv"])
@@ -75,6 +76,13 @@ def test_toml_that_python_cannot_hold_is_bad_input(tmp_path):
     path.write_text(f"a = {'9' * 5000}")
     with pytest.raises(InputError, match="holds a value that cannot be read: Exceeds the limit"):
         read_toml(path)
+    for number in ("9" * 400, "9_" * 20 + "9", "0x" + "f" * 17, "-9223372036854775809"):
+        path.write_text(f"[x]\na = [1, {{b = {number}}}]")
+        with pytest.raises(InputError, match="holds a value that cannot be read: a whole number of more than 64 bits"):
+            read_toml(path)
+        assert toml_value(number) == number
+    path.write_text("a = 9223372036854775807")
+    assert read_toml(path) == {"a": 2**63 - 1}
     path.write_text(f"a = {'[' * 5000}")
     with pytest.raises(InputError, match="nested too deep"):
         read_toml(path)

@@ -13,7 +13,7 @@ from typing import Any, TypeVar, cast
 from pydantic import BaseModel
 
 from pneutouch.catalogue.places import PACKAGE, shipped_root, user_folder
-from pneutouch.errors import InputError, nearest
+from pneutouch.errors import InputError, nearest, one_line
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.files import is_file
 from pneutouch.spec.material import Material
@@ -107,7 +107,9 @@ class Library:
         paths = self.paths(kind)
         if name not in paths:
             problem = f"no such name among the {kind}.{nearest(name, paths)}"
-            raise InputError(problem if key else f"{name}: {problem}", file=file, key=key, value=name if key else None)
+            raise InputError(
+                problem if key else f"{one_line(name)}: {problem}", file=file, key=key, value=name if key else None
+            )
         path = paths[name]
         return KINDS[kind].validate(read_toml(path), str(path))
 

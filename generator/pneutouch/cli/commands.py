@@ -1,6 +1,7 @@
 """The commands by groups, and how one is found, run and ended."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from functools import partial
 from importlib import import_module
 from typing import Any, NamedTuple
@@ -9,9 +10,10 @@ import typer
 from typer.core import TyperGroup
 from typer.main import get_command_from_info
 
+from pneutouch.cli.plain_numbers import with_plain_numbers
 from pneutouch.cli.stop import refuse_stopped, stopped
 from pneutouch.cli.terminal import notify
-from pneutouch.errors import InputError, PneutouchError, nearest
+from pneutouch.errors import InputError, PneutouchError, nearest, one_line
 
 
 class CommandEntry(NamedTuple):
@@ -50,6 +52,9 @@ COMMANDS: dict[str, dict[str, CommandEntry]] = {
 CHANGES = "pneutouch.changes"
 """Where the context of a command keeps which fields --set changes."""
 
+_USAGE_ERROR: Any = typer.BadParameter.__bases__[0]
+"""Base of Typer's errors on words: it comes with Typer or from Click, by Typer's version."""
+
 _ENTRIES = {name: entry for group in COMMANDS.values() for name, entry in group.items()}
 
 
@@ -67,7 +72,8 @@ class Commands(TyperGroup):
             infos = module.app.registered_commands
             (info,) = (one for one in infos if (one.name or one.callback.__name__) == cmd_name)
             self.add_command(get_command_from_info(info, pretty_exceptions_short=True, rich_markup_mode=None))
-        return super().get_command(ctx, cmd_name)
+        command = super().get_command(ctx, cmd_name)
+        return None if command is None else with_plain_numbers(command)
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """The command of the first word. An unknown word is an error that names the nearest command."""
@@ -82,10 +88,16 @@ class Commands(TyperGroup):
             with formatter.section(group):
                 formatter.write_dl([(name.ljust(widest), entry.summary) for name, entry in entries.items()])
 
+    def make_context(self, *given: Any, **more: Any) -> Any:
+        """The context of the words given."""
+        with _plain_words():
+            return super().make_context(*given, **more)
+
     def invoke(self, ctx: Any) -> Any:
         """Run the requested command."""
         try:
-            return super().invoke(ctx)
+            with _plain_words():
+                return super().invoke(ctx)
         except KeyboardInterrupt as error:
             # Typer makes an exit code of it, and drops what the library adds to it.
             if stop := stopped():
@@ -97,6 +109,16 @@ class Commands(TyperGroup):
             _leave_out_file(error, ctx.meta.get(CHANGES, ()))
             notify(f"error: {error.message(partial(option, command))}")
             raise typer.Exit(error.exit_code) from None
+
+
+@contextmanager
+def _plain_words() -> Iterator[None]:
+    """Take control characters and words without end out of the messages of Typer on a command line."""
+    try:
+        yield
+    except _USAGE_ERROR as error:
+        error.message = one_line(str(error.message))
+        raise
 
 
 def _leave_out_file(error: PneutouchError, changed: Sequence[str]) -> None:

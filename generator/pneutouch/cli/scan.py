@@ -87,12 +87,13 @@ def _options(
     pressures: str, preload: float, speed: float | None, control: str, noise: float | None, seed: int, data: list[Path]
 ) -> ScanOptions:
     from pneutouch.errors import InputError
+    from pneutouch.spec.number import plain_number
     from pneutouch.texture.scan import NOISE
     from pneutouch.units import KPA
     from pneutouch.workflows.scan.run import ScanOptions
 
     try:
-        listed = tuple(float(part) * KPA for part in pressures.split(",") if part.strip())
+        listed = tuple(plain_number(part) * KPA for part in pressures.split(",") if part.strip())
     except ValueError:
         raise InputError(f"--pressures {pressures}: must be numbers in kPa with commas between, such as 0,22") from None
     return ScanOptions(listed, preload, speed, control, NOISE if noise is None else noise * KPA, seed, tuple(data))

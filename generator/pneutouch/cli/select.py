@@ -15,6 +15,7 @@ from pneutouch.cli.next_step import DesignPlace, report_next, report_written
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo
 from pneutouch.errors import InputError
+from pneutouch.spec.number import plain_numbers
 from pneutouch.spec.target import Target
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ def _percent(text: str) -> float:
 
 def _pressures(text: str) -> list[float]:
     try:
-        return [float(part) for part in text.split(",")]
+        return plain_numbers(text)
     except ValueError:
         raise InputError("write two driving pressures in kPa, such as 0,22", key="same_at", value=text) from None
 

@@ -94,9 +94,10 @@ def words(text: str) -> tuple[str, ...]:
 def numbers(flag: str, text: str) -> tuple[float, ...]:
     """Numbers with commas between. Raises InputError."""
     from pneutouch.errors import InputError
+    from pneutouch.spec.number import plain_number
 
     try:
-        return tuple(float(part) for part in words(text))
+        return tuple(map(plain_number, words(text)))
     except ValueError:
         raise InputError(f"{flag} {text}: must be numbers with commas between, such as 0,22") from None
 

@@ -6,6 +6,7 @@ from typing import Any
 from pneutouch.errors import InputError
 from pneutouch.mechanics.prediction import ErrorEstimate
 from pneutouch.mechanics.sensor import Sensor
+from pneutouch.spec.number import plain_number
 
 MODELS = ("membrane", "atlas", "solid")
 """The models, cheapest first."""
@@ -90,7 +91,7 @@ def parse_tolerance(text: str) -> float:
     """A tolerance as a fraction from text: ``2%`` or ``0.02``. Raises InputError."""
     number = text.strip().removesuffix("%")
     try:
-        value = float(number) / (100.0 if text.strip().endswith("%") else 1.0)
+        value = plain_number(number) / (100.0 if text.strip().endswith("%") else 1.0)
     except ValueError:
         value = float("nan")
     if not 0.0 < value < 100.0:

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ValidationError
 from pneutouch.errors import InputError, joined, nearest
 from pneutouch.spec.fields import declaration, table_of
 from pneutouch.spec.files import read_bytes
-from pneutouch.spec.toml_text import toml_value, value_text
+from pneutouch.spec.toml_text import toml_content, toml_value, value_text
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -18,7 +18,7 @@ Model = TypeVar("Model", bound=BaseModel)
 def read_toml(path: Path) -> dict[str, Any]:
     """Return the content of a TOML file; raises InputError for a folder, a bad file or broken TOML."""
     try:
-        return tomllib.loads(read_bytes(path).decode("utf-8-sig"))
+        return toml_content(read_bytes(path).decode("utf-8-sig"))
     except UnicodeDecodeError as error:
         raise InputError(f"not UTF-8 text (byte {error.start})", file=path, remedy="a TOML file is UTF-8") from None
     except tomllib.TOMLDecodeError as error:
@@ -26,7 +26,6 @@ def read_toml(path: Path) -> dict[str, Any]:
     except RecursionError:
         raise InputError("nested too deep", file=path, remedy="a TOML file of this kind has tables of values") from None
     except ValueError as error:
-        # Python reads no integer of more than 4300 digits.
         raise InputError(f"holds a value that cannot be read: {error}", file=path) from None
 
 

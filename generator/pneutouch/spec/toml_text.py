@@ -8,6 +8,8 @@ from collections.abc import Mapping
 from typing import Any
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
+_LONG = re.compile(r"[0-9a-fA-F_]{16}|[01_]{60}")
+"""Digits of which a whole number may be too long: TOML has 64 bits, Python has no bound, and a float overflows."""
 
 
 def toml_text(content: Mapping[str, Any]) -> str:
@@ -15,10 +17,18 @@ def toml_text(content: Mapping[str, Any]) -> str:
     return "\n\n".join(_blocks(content, ())) + "\n"
 
 
+def toml_content(text: str) -> dict[str, Any]:
+    """What TOML reads from a text. Raises ValueError, of which TOMLDecodeError is one, and RecursionError."""
+    content = tomllib.loads(text)
+    if _LONG.search(text) and not _is_64_bit(content):
+        raise ValueError("a whole number of more than 64 bits")
+    return content
+
+
 def toml_value(text: str) -> Any:
     """The value that TOML reads from a text; the very same text where it is a bare word."""
     try:
-        content = tomllib.loads(f"value = {text}")
+        content = toml_content(f"value = {text}")
     except (ValueError, RecursionError):
         return text
     return content["value"] if set(content) == {"value"} else text
@@ -63,6 +73,14 @@ def _blocks(content: Mapping[str, Any], path: tuple[str, ...], head: str = "") -
         for row in rows:
             blocks += _blocks(row, (*path, key), f"[[{_dotted((*path, key))}]]")
     return blocks
+
+
+def _is_64_bit(value: Any) -> bool:
+    if isinstance(value, Mapping):
+        return all(map(_is_64_bit, value.values()))
+    if isinstance(value, list):
+        return all(map(_is_64_bit, value))
+    return not isinstance(value, int) or -(2**63) <= value < 2**63
 
 
 def _is_tables(value: Any) -> bool:

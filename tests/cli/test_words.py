@@ -1,0 +1,37 @@
+"""Words of a command line: numbers are plain digits, and what is echoed moves no cursor and has an end."""
+
+from __future__ import annotations
+
+import pytest
+
+
+@pytest.mark.parametrize(
+    ("words", "flag"),
+    [
+        (["select", "--sensitivity", "1_0"], "--sensitivity 1_0"),
+        (["select", "--sensitivity", "2", "--pick", "1_0"], "--pick 1_0"),
+        (["select", "--sensitivity", "nan"], "--sensitivity nan"),
+        (["plan", "paper-dome", "--specimens", "1_0"], "--specimens 1_0"),
+        (["predict", "paper-dome", "--monte-carlo", "1_000"], "--monte-carlo 1_000"),
+        (["predict", "paper-dome", "--model", "auto", "--tolerance", "1_0%"], "--tolerance 1_0%"),
+        (["simulate", "paper-dome", "--pressures", "0,1_0"], "--pressures 0,1_0"),
+        (["scan", "texture-specimen", "--design", "paper-dome", "--pressures", "0,1_0"], "--pressures 0,1_0"),
+        (["select", "--sensitivity", "2", "--same-at", "0,1_0"], "--same-at 0,1_0"),
+    ],
+)
+def test_a_number_with_an_underscore_is_none(words, flag, command, tmp_path):
+    done = command(*words)
+    assert done.returncode == 2, done.stderr
+    assert flag in done.stderr, done.stderr
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    "words", [["{}"], ["--{}"], ["list", "{}"], ["list", "--{}"], ["list", "a", "{}"], ["predict", "{}"], ["new", "{}"]]
+)
+@pytest.mark.parametrize("word", ["\x1b[31mred", "a\rb", "\u202etxt", "\x9b31m", "y" * 5000, "\udc80"])
+def test_what_is_echoed_is_escaped_and_cut(words, word, command):
+    done = command(*[one.format(word) for one in words])
+    assert done.returncode == 2
+    assert all(c.isprintable() or c == "\n" for c in done.stderr), ascii(done.stderr)
+    assert len(done.stderr) < 1500 and "y" * 401 not in done.stderr
