@@ -168,9 +168,7 @@ def test_the_odd_one_of_three_is_named():
     other = ideal(lambda d: 1.5 * SENSOR.force(d), number=3)
     runs = [ideal(number=1), ideal(lambda d: 1.02 * SENSOR.force(d), number=2), other]
     ((result, why),) = outliers(runs)
-    assert result is other and why.startswith(
-        "A1-3.csv: force at 6.9 mm is 1.49 times that of the other 2 runs of sensor A1"
-    )
+    assert result is other and why.startswith("force at 6.9 mm is 1.49 times that of the other 2 runs of sensor A1")
     ((result, why),) = outliers([*runs[:2], ideal(slope=0.7 * SENSOR.slope, number=3)])
     assert result.run.run == 3 and "slope of pressure over force is 0.70 times" in why
 
@@ -232,7 +230,7 @@ def test_a_leak_run_at_its_pressure_is_left_alone(tmp_path):
 def test_a_leak_run_at_another_pressure(tmp_path):
     for driving in (12.0, 0.0):
         (words,) = leak(tmp_path, driving)
-        assert "leak.csv" in words and "begins at 22 kPa" in words and f"driving_pressure_kPa = {driving:g}" in words
+        assert "begins at 22 kPa" in words and f"driving_pressure_kPa = {driving:g}" in words
     for start in (2.0, 90.0):
         with pytest.raises(InputError, match=r"leak\.csv: a leak run that begins at .*driving_pressure_kPa = 22"):
             leak(tmp_path, start=start)
