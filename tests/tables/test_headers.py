@@ -9,6 +9,7 @@ from pneutouch.bench.reading import PLATE
 from pneutouch.bench.source import identify
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import ColumnMap
+from pneutouch.tables.read import whole
 from pneutouch.tables.unit_words import UNITS, unit_of
 
 ANY = ColumnMap()
@@ -78,7 +79,7 @@ def test_two_columns_of_force_are_asked_for(tmp_path):
         tmp_path,
         "Time (s),Position (mm),Load 1 (N),Load 2 (N),P_kPa",
         "2 columns may be the force",
-        'force = { name = "Load 1 (N)", unit = "N" }  # "Load 2 (N)"',
+        'force = { name = "Load 1 (N)", unit = "N" }  # or "Load 2 (N)"',
         'pressure = { name = "P_kPa", unit = "kPa" }',
         "`columns`",
         body=NUMBERS.replace("10.", "5.5,10."),
@@ -128,4 +129,42 @@ def test_commas_between_decimal_commas_are_asked_for(tmp_path):
 
 
 def test_a_table_without_header_is_asked_for(tmp_path):
-    asked(tmp_path, "-1.0,1.5,0.25,10.5", "row 1 holds numbers", "#1 is its first column")
+    asked(tmp_path, "-1.0,1.5,0.25,10.5", "row 1 holds numbers", "#1 is its first column", "# #1 to #4; unit: N")
+
+
+def test_columns_of_one_name_are_named_by_their_numbers(tmp_path):
+    head, body = "Time (s),Position (mm),Load (N),Load (N),P_kPa", NUMBERS.replace("10.", "5.5,10.")
+    asked(tmp_path, head, 'force = { name = "#3", unit = "N" }  # or "#4"', body=body)
+    path = tmp_path / "a.csv"
+    path.write_text(f"{head}\n{body}")
+    columns = identify(path, ColumnMap.model_validate({"force": {"name": "#4"}}), PLATE).columns
+    assert (columns.force.name, columns.force.unit) == ("#4", "N")
+
+
+def test_a_row_of_units_may_hold_others_units(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text("Time,Position,Load,Pressure,T\ns,mm,N,kPa,degC\n" + NUMBERS.replace("\n", ",22\n"))
+    source = identify(path, ColumnMap(), PLATE)
+    assert [getattr(source.columns, key).name for key in PLATE] == ["Time", "Position", "Load", "Pressure"]
+
+
+@pytest.mark.parametrize(
+    ("text", "row", "first"),
+    [
+        ("sep=;\r\nZeit [s];Weg [mm];Kraft [N];Druck [kPa]\r\n0,0;1,5;0,25;10,5\r\n0,1;1,6;0,35;10,6\r\n", 3, 1.5),
+        ("Zeit [s];Weg [mm];Kraft [N];Druck [kPa]\n0,0;1,5;0,25;10,5;\n0,1;1,6;0,35;10,6;\n", 2, 1.5),
+        (
+            "At,Time (s),Pos (mm),F (N),P (kPa)\n2026-01-01 12:00:00,0,1.5,0.2,10\n2026-01-01 12:00:01,1,1.6,0.3,11\n",
+            2,
+            1.5,
+        ),
+        ("t (s)\tz (mm)\tF (N)\tp (kPa)\n\n0,0E+00\t1,5E+00\t2,5E-01\t1E+01\n1E-01\t1,6E+00\t2E-01\t1E+01\n", 3, 1.5),
+        (",Time (s),Pos (mm),F (N),P (kPa)\n0,0.0,1.5,0.25,10.5\n1,0.1,1.6,0.35,10.6\n", 2, 1.5),
+    ],
+)
+def test_habits_of_spreadsheets_and_programs(tmp_path, text, row, first):
+    path = tmp_path / "a.csv"
+    path.write_text(text, newline="")
+    source = identify(path, ColumnMap(), PLATE)
+    lines, values = whole(path, [source.columns.position.name], source.layout)
+    assert lines.tolist() == [row, row + 1] and values[0, 0] == first

@@ -10,7 +10,7 @@ import pytest
 
 from pneutouch.bench.curve import curve_of
 from pneutouch.bench.reading import PLATE, read_blocks, scaled
-from pneutouch.bench.source import identify
+from pneutouch.bench.source import campaign_lines, identify
 from pneutouch.spec.campaign import Campaign, ColumnMap, FileFormat, Rig
 from pneutouch.tables.read import whole
 from pneutouch.units import KPA
@@ -68,11 +68,11 @@ def test_what_was_found_can_be_kept(tmp_path, samples, make):
     path = make(tmp_path, *samples)
     found = identify(path, ColumnMap(), PLATE)
     head = '[[runs]]\nfile = "a"\nsensor = "A"\nresin = "FLX9950"\n'
-    campaign = Campaign.model_validate(tomllib.loads(f"{found.toml}\n{head}"))
+    campaign = Campaign.model_validate(tomllib.loads(f"{campaign_lines(found.content)}\n{head}"))
     again = identify(path, campaign.columns, PLATE, campaign.format)
     assert again.guessed == ()
     assert again.columns == found.columns and again.layout.first_row == found.layout.first_row
-    assert json.loads(json.dumps(found.content)) == tomllib.loads(found.toml)
+    assert json.loads(json.dumps(found.content)) == tomllib.loads(campaign_lines(found.content))
 
 
 def test_a_sign_and_a_column_without_header_can_be_stated(tmp_path, samples):

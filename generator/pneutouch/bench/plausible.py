@@ -32,6 +32,8 @@ SWAP_MARGIN = math.log(2.0)
 _RESTS = 0.05
 """Share of the greatest force or rise by which points may be negative: noise about the origin."""
 
+_OR_MINUS = " (in `columns` a minus before the name turns the sign)"
+
 _HOLD_FAR = 50.0
 _WHY_TIME = "holds of another protocol, another kind of run, or another column?"
 
@@ -159,13 +161,13 @@ def _check_signs(curve: MeasuredCurve, columns: ColumnMap, file: Path) -> None:
             raise InputError(
                 f"column {column.name}: falls by {_number(-deep / unit)} {name} as the sensor is pressed",
                 file=file,
-                remedy=f"it must rise: set columns.{key}.sign = {-column.sign}",
+                remedy=f"it must rise: set columns.{key}.sign = {-column.sign}{_OR_MINUS}",
             )
     if curve.indentation[-1] <= 0:
         raise InputError(
             f"column {columns.position.name}: falls as the force rises",
             file=file,
-            remedy=f"it must count into the sensor: set columns.position.sign = {-columns.position.sign}",
+            remedy=f"it must count into the sensor: set columns.position.sign = {-columns.position.sign}{_OR_MINUS}",
         )
 
 

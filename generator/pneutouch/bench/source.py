@@ -1,6 +1,6 @@
 """A measured file as it is read: which column is which channel in which unit, and how the file is written."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -31,14 +31,6 @@ class MeasuredFile:
     stated: FileFormat
 
     @property
-    def toml(self) -> str:
-        """What was found and stated, as the part of a campaign file that states it."""
-        return "\n\n".join(
-            "\n".join([f"[{name}]", *(f"{key} = {value_text(value)}" for key, value in table.items())])
-            for name, table in self.content.items()
-        )
-
-    @property
     def content(self) -> dict[str, dict[str, Any]]:
         """What was found and stated, as the tables [format] and [columns] of a campaign file.
 
@@ -48,6 +40,15 @@ class MeasuredFile:
         kept |= self.stated.model_dump(exclude_none=True)
         columns = {key: _entry(getattr(self.columns, key)) for key in self.channels}
         return {"format": kept, "columns": columns} if kept else {"columns": columns}
+
+
+def campaign_lines(content: Mapping[str, Any]) -> str:
+    """The tables [format] and [columns] of `MeasuredFile.content` as lines of a campaign file."""
+    return "\n\n".join(
+        "\n".join([f"[{name}]", *(f"{key} = {value_text(value)}" for key, value in content[name].items())])
+        for name in ("format", "columns")
+        if name in content
+    )
 
 
 def identify(path: Path, columns: ColumnMap, channels: Sequence[str], written: FileFormat = _ANY) -> MeasuredFile:
@@ -101,15 +102,23 @@ def _with_unit(path: Path, key: str, column: Column, layout: TableLayout) -> Col
     """A stated column with the unit that its header states, where the campaign states none. Raises InputError."""
     if column.unit:
         return column
-    if column.name not in layout.all_names:
+    if column.name not in layout.all_names and layout.place(column.name) is None:
         return column.model_copy(update={"unit": next(iter(UNITS[key]))})
-    unit = layout.all_units[layout.all_names.index(column.name)]
-    meaning = meaning_of(column.name, unit)
+    name, unit = _header(layout, column.name)
+    meaning = meaning_of(name, unit)
     if meaning.kind == key:
         return column.model_copy(update={"unit": meaning.unit})
     problem = f"no unit of {key} in the header" if not unit else f"its unit {unit} is none of {key}"
     remedy = f"state it, one of {', '.join(UNITS[key])}:\n{_lines({key: column}, {})}"
     raise InputError(problem, file=path, key=f"column {column.name}", remedy=remedy)
+
+
+def _header(layout: TableLayout, name: str) -> tuple[str, str]:
+    """Name and unit in the header of a column that is named there, or by its number."""
+    place = layout.place(name)
+    if place is None:
+        return name, layout.all_units[layout.all_names.index(name)]
+    return layout.names[place], layout.units[place]
 
 
 def _undecided(
@@ -129,11 +138,11 @@ def _undecided(
         if places is None:
             lines[key] = matched[key]
             continue
-        units = [meanings[k].unit or "?" for k in places]
-        lines[key] = Column.model_construct(
-            name=names[places[0]] if places else "?", unit=units[0] if places else "?", sign=1
-        )
-        remarks[key] = " or ".join(value_text(names[k]) for k in places[1:6]) or _choice(key, places)
+        called = [_called(layout, k) for k in places]
+        unit = meanings[places[0]].unit if places else ""
+        lines[key] = Column.model_construct(name=called[0] if called else "?", unit=unit or "?", sign=1)
+        others = " or ".join(map(value_text, called[1:6]))
+        remarks[key] = f"or {others}" if others else _choice(key, layout, places)
     where = f"the header '{', '.join(names)[:80]}'" + (f" (row {layout.header_row})" if layout.header_row else "")
     if layout.header_row is None and all(name.startswith("#") for name in layout.names):
         where = f"a table without header (row {layout.first_row} holds numbers; #1 is its first column)"
@@ -153,8 +162,17 @@ def _problem(key: str, names: Sequence[str]) -> str:
     return f"no unit of the {key}"
 
 
-def _choice(key: str, places: Sequence[int]) -> str:
-    return f"unit: {', '.join(UNITS[key])}" if places else f"name of the column; unit: {', '.join(UNITS[key])}"
+def _called(layout: TableLayout, place: int) -> str:
+    """How a campaign file names a column: by its name, by its number where several have that name."""
+    name = layout.all_names[place]
+    return name if layout.all_names.count(name) == 1 else f"#{place + 1 - (layout.clock is not None)}"
+
+
+def _choice(key: str, layout: TableLayout, places: Sequence[int]) -> str:
+    unit = f"unit: {', '.join(UNITS[key])}"
+    if places:
+        return unit
+    return f"name of the column; {unit}" if layout.header_row else f"#1 to #{len(layout.names)}; {unit}"
 
 
 def _lines(columns: dict[str, Column], remarks: dict[str, str]) -> str:

@@ -1,14 +1,25 @@
 """``pneutouch characterize``: measured data to figures, compared with the predicted ones."""
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from pneutouch.cli.app import CalibrationOption, JsonOption, OutOption, SetOption, app, changes, print_json, reporting
+from pneutouch.cli.app import (
+    CalibrationOption,
+    JsonOption,
+    OutOption,
+    SetOption,
+    app,
+    changes,
+    option,
+    print_json,
+    reporting,
+)
 from pneutouch.cli.declared import with_fields
 from pneutouch.cli.next_step import report_next
-from pneutouch.cli.reading import READING_FIELDS, ColumnsOption, reading_of, reading_text
+from pneutouch.cli.reading import READING_FIELDS, ColumnsOption, reading_of, reading_text, reading_words
 from pneutouch.cli.terminal import echo, notify
 from pneutouch.spec.campaign import Campaign
 
@@ -16,6 +27,7 @@ from pneutouch.spec.campaign import Campaign
 @app.command()
 @with_fields(Campaign, READING_FIELDS)
 def characterize(
+    context: typer.Context,
     data: Annotated[
         Path, typer.Argument(metavar="DATA", help="Folder of a campaign, its campaign.toml, or one run's file.")
     ],
@@ -61,7 +73,8 @@ def characterize(
         if outcome.read_as:
             notify(reading_text(outcome.read_as))
         for file, message in outcome.measured.failures:
-            notify(f"error: {file}: not read: {message}")
+            words = InputError(message).message(partial(option, context.command))
+            notify(f"error: {file}: not read: {words}")
         if outcome.failed:
             raise typer.Exit(3)
         if outcome.missed:
@@ -70,4 +83,5 @@ def characterize(
         fitted = sorted({run.sensor for run in runs if run.kind in ("steps", "injection")})
         if not json and fitted and (data.is_dir() or data.suffix == ".toml"):
             named = ["--sensor", fitted[0]] if len({run.sensor for run in runs}) > 1 else []
-            report_next("calibrate", data, *named, *(["--design", design] if design else []))
+            given_words = [*(["--design", design] if design else []), *reading_words(columns, fields)]
+            report_next("calibrate", data, *named, *given_words)

@@ -40,13 +40,23 @@ def reading_of(columns: Sequence[str] | None, fields: Mapping[str, Any]) -> dict
     return {"columns": parse_columns(columns or []), **field_tables(READING_FIELDS, fields)}
 
 
+def reading_words(columns: Sequence[str] | None, fields: Mapping[str, Any]) -> list[str]:
+    """The options as they were given, for the next command."""
+    words = [word for text in columns or () for word in ("--columns", text)]
+    for name in READING_FIELDS:
+        if fields.get(name) is not None:
+            words += [f"--{name.replace('_', '-')}", str(fields[name])]
+    return words
+
+
 def reading_text(read_as: Sequence[Mapping[str, Any]]) -> str:
     """How files were read whose columns or format were found by their look, as the lines to keep."""
+    from pneutouch.bench.source import campaign_lines
+
     blocks = []
     for entry in read_as:
         files = entry["files"]
         more = f" and {len(files) - 1} more" if len(files) > 1 else ""
-        blocks.append(
-            f"note: {files[0]}{more}: read as follows; to keep it, put it into campaign.toml\n{entry['toml']}"
-        )
+        lines = campaign_lines(entry)
+        blocks.append(f"note: {files[0]}{more}: read as follows; to keep it, put it into campaign.toml\n{lines}")
     return "\n".join(blocks).rstrip()

@@ -15,6 +15,7 @@ from pneutouch.errors import ComputationError
 
 _SEVERITIES = {"error": "1;31", "warning": "33", "note": "36", "next": "32"}
 _SEVERITY = re.compile(rf"^({'|'.join(_SEVERITIES)})(?=: )", re.MULTILINE)
+_COPIED = re.compile(r"next: |\w+ = \{")
 _NARROWEST = 40
 
 
@@ -79,8 +80,8 @@ def _fitted(text: str, stream: TextIO) -> str:
 
 
 def _wrapped(line: str, columns: int) -> str:
-    """A line over as many as it takes, the further ones indented. A command to be copied stays on one."""
-    if len(line) <= columns or line.startswith("next: "):
+    """A line over as many as it takes, the further ones indented. What is to be copied stays on one: commands, TOML."""
+    if len(line) <= columns or _COPIED.match(line):
         return line
     indent = line[: len(line) - len(line.lstrip())] + "  "
     return "\n".join(

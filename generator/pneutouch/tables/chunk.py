@@ -39,11 +39,11 @@ def places(path: Path, layout: TableLayout, names: Sequence[str]) -> list[int]:
         if header.count(name) > 1:
             count = header.count(name)
             raise InputError(f"there {count} times", file=path, key=f"column {name}", remedy="must be there once")
-        number = int(name[1:]) if name[:1] == "#" and name[1:].isascii() and name[1:].isdigit() and len(name) < 7 else 0
-        if name not in header and not 1 <= number <= len(header):
+        place = layout.place(name)
+        if place is None:
             hint = " Columns are separated by commas, semicolons or tabs." if len(header) < 2 else ""
             hint = hint or nearest(name, set(header))
             problem = f"missing from the header '{', '.join(header)[:80]}' (row {layout.header_row}).{hint}"
             raise InputError(problem, file=path, key=f"column {name}")
-        indices.append(header.index(name) if name in header else number - 1)
+        indices.append(place)
     return indices

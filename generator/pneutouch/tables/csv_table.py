@@ -164,7 +164,9 @@ def _check_width(in_row: Sequence[str], row: int, reader: _Reader) -> None:
     first = next((cell for cell in in_row if cell), "")
     if reader.number(first) is None:
         raise reader.fault(
-            row, f"'{first[:40]}' where numbers were read before", "a second recording? must be one to a file"
+            row,
+            f"'{first[:40]}' where numbers were read before",
+            "a footer, or a second recording? must be one recording, and end with its numbers",
         )
     comma = len(in_row) > reader.most and reader.delimiter == ","
     point = " Decimals must have a point between commas." if comma else ""

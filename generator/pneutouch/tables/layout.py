@@ -8,6 +8,8 @@ CLOCK = "X_Value"
 NAMES = {",": "commas", ";": "semicolons", "\t": "tabs", " ": "spaces"}
 """Delimiters; a space stands for any number of spaces and tabs."""
 
+_DIGITS = 7
+
 DECIMALS = {".": "points", ",": "commas"}
 
 
@@ -59,6 +61,15 @@ class TableLayout:
     def all_names(self) -> tuple[str, ...]:
         """Names of the columns, and of the times that the file states in place of a column."""
         return self.names if self.clock is None else (CLOCK, *self.names)
+
+    def place(self, name: str) -> int | None:
+        """Index of a column in `names`, by its name or its number (#2 is the second); None where there is none."""
+        if name in self.names:
+            return self.names.index(name)
+        number = name[1:] if name.startswith("#") else ""
+        # The length bounds what is read as a number.
+        known = number.isascii() and number.isdigit() and len(number) < _DIGITS
+        return int(number) - 1 if known and 1 <= int(number) <= len(self.names) else None
 
     @property
     def all_units(self) -> tuple[str, ...]:

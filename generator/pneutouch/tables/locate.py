@@ -8,6 +8,9 @@ from pneutouch.tables.unit_words import unit_of
 
 _COMMENT = ("#", "%", "!")
 _NO_UNIT = frozenset({"", "-", "%", "°C", "°F", "°", "V", "mV", "V/V", "1", "1/min", "Hz", "mm/min", "mm/s", "MPa/s"})
+_SHORT = 8
+"""Characters of the longest unit."""
+
 _REMARK = "comment"
 """Last column of a LabVIEW file, which holds text in the first row at most."""
 
@@ -112,4 +115,6 @@ def _are_units(row: Sequence[str]) -> bool:
     filled = [cell for cell in row if cell]
     known = [cell for cell in filled if unit_of(cell)]
     others = [cell.strip("()[]") for cell in filled if not unit_of(cell)]
-    return bool(known) and all(cell in _NO_UNIT for cell in others)
+    # Beside units of other quantities, which are not known here, there are at least as many of ours.
+    alike = len(known) > 1 and len(known) >= len(others) and all(len(cell) <= _SHORT for cell in others)
+    return alike or (bool(known) and all(cell in _NO_UNIT for cell in others))

@@ -4,7 +4,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from pneutouch.bench.source import MeasuredFile
+from pneutouch.bench.source import MeasuredFile, campaign_lines
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import Campaign, ColumnMap, FileFormat
 from pneutouch.spec.read import validate
@@ -55,5 +55,5 @@ def read_as(sources: Mapping[str, MeasuredFile]) -> list[dict[str, Any]]:
     alike: dict[str, dict[str, Any]] = {}
     for file, source in sources.items():
         if source.guessed:
-            alike.setdefault(source.toml, {"files": [], **source.content, "toml": source.toml})["files"].append(file)
+            alike.setdefault(campaign_lines(source.content), {"files": [], **source.content})["files"].append(file)
     return list(alike.values())

@@ -1,0 +1,195 @@
+"""``pneutouch characterize`` and ``calibrate`` on files of other programs, as a user meets them."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import tomllib
+
+import pandas as pd
+import pytest
+from typer.testing import CliRunner
+
+from pneutouch.bench.reading import PLATE
+from pneutouch.bench.simulate import SimulationTruth
+from pneutouch.bench.source import identify
+from pneutouch.cli import calibrate, characterize
+from pneutouch.cli.app import app
+from pneutouch.errors import InputError
+from pneutouch.spec.campaign import Campaign, ColumnMap
+from pneutouch.tables.unit_words import UNITS
+from pneutouch.workflows.characterize import parse_columns
+from pneutouch.workflows.characterize.reading import with_reading
+from pneutouch.workflows.simulate.options import SimulationOptions
+from pneutouch.workflows.simulate.run import simulate
+from tests.conftest import ROOT
+from tests.tables.instruments import INSTRUMENTS, logger, zwick
+
+assert calibrate and characterize
+
+PAGE = (ROOT / "docs" / "measuring.md").read_text(encoding="utf-8")
+ASKED = SimulationOptions(
+    specimens=1, driving_pressures_kPa=(0.0,), runs=1, kinds=("steps",), model="atlas", truth=SimulationTruth(rest=5.0)
+)
+
+
+def run(*arguments):
+    return CliRunner().invoke(app, [str(word) for word in arguments])
+
+
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory, library):
+    """The columns of one simulated run: s, mm, N, kPa."""
+    folder = simulate("paper-dome", tmp_path_factory.mktemp("made"), None, ASKED, library)
+    (file,) = (folder / "runs").iterdir()
+    frame = pd.read_csv(file, comment="#")
+    return [frame[name].to_numpy() for name in ("time_s", "position_mm", "force_N", "pressure_kPa")]
+
+
+def figures(document):
+    """What is printed of each run, by its file."""
+    return {
+        entry["file"]: {key: f"{value:.4g}" for key, value in entry["figures"].items()} for entry in document["runs"]
+    }
+
+
+@pytest.mark.slow
+def test_ten_instruments_give_the_printed_figures_of_the_plain_file(tmp_path, recording):
+    """One campaign of the same run in every manner; the plain file first."""
+    pd.DataFrame(dict(zip(("time_s", "position_mm", "force_N", "pressure_kPa"), recording, strict=True))).to_csv(
+        tmp_path / "plain.csv", index=False
+    )
+    files = ["plain.csv", *(make(tmp_path, *recording).name for make in INSTRUMENTS)]
+    runs = "".join(
+        f'[[runs]]\nfile = "{name}"\nsensor = "S{k}"\nresin = "TangoPlus"\n\n' for k, name in enumerate(files)
+    )
+    (tmp_path / "campaign.toml").write_text(f'design = "paper-dome"\n\n{runs}')
+    result = run(
+        "characterize", tmp_path, "--model", "atlas", "--evidence", "none", "--json", "--out", tmp_path / "out"
+    )
+    assert result.exit_code == 0, result.output
+    document = json.loads(result.stdout)
+    values = figures(document)
+    assert len(files) == 12 and set(values) == set(files)
+    assert all(values[name] == values["plain.csv"] for name in files)
+    assert sorted(name for entry in document["read_as"] for name in entry["files"]) == sorted(files[1:])
+    assert result.stderr.count("note: ") == len(document["read_as"])
+
+
+def test_what_is_printed_is_what_the_page_shows(tmp_path, recording):
+    path = zwick(tmp_path, *recording)
+    result = run(
+        "characterize", path, "--design", "paper-dome", "--model", "atlas", "--evidence", "none", "--out", tmp_path
+    )
+    assert result.exit_code == 0, result.output
+    (shown,) = re.findall(r"```text\n(note: zwick.*?)```", PAGE, re.DOTALL)
+    assert shown.strip() in result.stderr
+    lines = result.stderr[
+        result.stderr.index("[format]") : result.stderr.index("next:") if "next:" in result.stderr else None
+    ]
+    (tmp_path / "campaign.toml").write_text(
+        f'design = "paper-dome"\n{lines}\n[[runs]]\nfile = "zwick.txt"\nsensor = "A"\nresin = "TangoPlus"\n'
+    )
+    again = run("characterize", tmp_path, "--model", "atlas", "--evidence", "none", "--out", tmp_path)
+    assert again.exit_code == 0 and "note: " not in again.stderr
+    assert "next: pneutouch calibrate" in again.stderr
+
+
+def test_an_error_names_the_option_and_the_lines_to_paste(tmp_path, recording):
+    path = logger(tmp_path, *recording)
+    path.write_text(path.read_text().replace("load_g", "load"))
+    result = run("characterize", path, "--design", "paper-dome")
+    assert result.exit_code == 2
+    assert "give --columns" in result.stderr and 'force = { name = "load", unit = "?" }  # unit: N' in result.stderr
+    options = ["--model", "atlas", "--evidence", "none", "--out", tmp_path, "--json"]
+    given = run("characterize", path, "--design", "paper-dome", "--columns", "force=load:g", *options)
+    assert given.exit_code == 0, given.output
+    (entry,) = json.loads(given.stdout)["read_as"]
+    assert entry["columns"]["force"] == {"name": "load", "unit": "gf"}
+
+
+def test_a_minus_turns_the_sign(tmp_path, recording):
+    time, position, force, pressure = recording
+    path = logger(tmp_path, time, position, -force, pressure)
+    words = [
+        "characterize",
+        path,
+        "--design",
+        "paper-dome",
+        "--model",
+        "atlas",
+        "--evidence",
+        "none",
+        "--out",
+        tmp_path,
+    ]
+    refused = run(*words)
+    assert refused.exit_code == 3 and "in --columns a minus before the name turns the sign" in refused.stderr
+    assert run(*words, "--columns", "force=-load_g").exit_code == 0
+
+
+def test_the_options_of_calibrate_are_those_of_characterize(tmp_path, recording):
+    path = logger(tmp_path, *recording)
+    path.write_text(path.read_text().replace("load_g", "load"))
+    (tmp_path / "campaign.toml").write_text(
+        'design = "paper-dome"\n[[runs]]\nfile = "logger.log"\nsensor = "A"\nresin = "TangoPlus"\n'
+    )
+    refused = run("calibrate", tmp_path)
+    assert refused.exit_code == 2 and "no unit of the force" in refused.stderr
+    done = run(
+        "characterize",
+        tmp_path,
+        "--columns",
+        "force=load:g",
+        "--model",
+        "atlas",
+        "--evidence",
+        "none",
+        "--out",
+        tmp_path,
+    )
+    assert "next: pneutouch calibrate" in done.stderr and "--columns force=load:g" in done.stderr
+
+
+def test_columns_as_texts():
+    columns = parse_columns(["time=Time, s,force=-Load (N):N", "pressure=p:mbar,position=Position(Crosshead:Position)"])
+    assert columns == {
+        "time": {"name": "Time, s", "unit": "", "sign": 1},
+        "force": {"name": "Load (N)", "unit": "N", "sign": -1},
+        "pressure": {"name": "p", "unit": "mbar", "sign": 1},
+        "position": {"name": "Position(Crosshead:Position)", "unit": "", "sign": 1},
+    }
+    for text in ("Load", "force=", "force=-", "strain=e"):
+        with pytest.raises(InputError, match="no column of a channel"):
+            parse_columns([text])
+
+
+def test_options_come_before_the_campaign(tmp_path):
+    campaign = Campaign.model_validate(
+        tomllib.loads(
+            '[format]\ndecimal = ","\nsheet = "A"\n[columns]\ntime = { name = "t", unit = "ms" }\n'
+            'force = { name = "F", unit = "N" }\n[[runs]]\nfile = "a"\nsensor = "A"\nresin = "FLX9950"\n'
+        )
+    )
+    laid = with_reading(campaign, {"columns": {"force": {"name": "G", "unit": "lbf"}}, "format": {"decimal": "."}})
+    assert (laid.columns.time.name, laid.columns.force.unit) == ("t", "lbf")
+    assert laid.columns.model_fields_set == {"time", "force"}
+    assert (laid.format.decimal, laid.format.sheet) == (".", "A")
+    with pytest.raises(InputError, match=r"force\.unit"):
+        with_reading(campaign, {"columns": {"force": {"name": "G", "unit": "kPa"}}})
+    with pytest.raises(InputError, match="decimal"):
+        with_reading(campaign, {"format": {"decimal": ":"}})
+
+
+def test_the_page_lists_every_unit():
+    for channel, units in UNITS.items():
+        (row,) = re.findall(rf"^\| {channel} \| ([^;|]*)", PAGE, re.MULTILINE)
+        assert [unit.strip() for unit in row.split(",")] == list(units)
+
+
+def test_a_shell_s_copy_of_a_file_is_read_the_same(tmp_path, recording):
+    """The suffix of a text file does not matter."""
+    path = zwick(tmp_path, *recording)
+    other = shutil.copy(path, tmp_path / "run.TRA")
+    assert identify(path, ColumnMap(), PLATE).columns == identify(tmp_path / other, ColumnMap(), PLATE).columns
