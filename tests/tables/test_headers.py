@@ -141,6 +141,12 @@ def test_columns_of_one_name_are_named_by_their_numbers(tmp_path):
     assert (columns.force.name, columns.force.unit) == ("#4", "N")
 
 
+def test_a_column_without_a_name_has_its_number(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text("Time,,Load,Pressure\ns,mm,N,kPa\n" + NUMBERS)
+    assert identify(path, ColumnMap(), PLATE).columns.position.name == "#2"
+
+
 def test_a_row_of_units_may_hold_others_units(tmp_path):
     path = tmp_path / "a.csv"
     path.write_text("Time,Position,Load,Pressure,T\ns,mm,N,kPa,degC\n" + NUMBERS.replace("\n", ",22\n"))

@@ -61,7 +61,7 @@ def identify(path: Path, columns: ColumnMap, channels: Sequence[str], written: F
     known = [getattr(columns, key).name for key in channels]
     layout = layout_of(path, TableFormat(**written.model_dump()), known)
     meanings = [meaning_of(name, unit) for name, unit in zip(layout.all_names, layout.all_units, strict=True)]
-    taken = {getattr(columns, key).name for key in channels if key in stated}
+    taken = {_index(layout, getattr(columns, key).name) for key in channels if key in stated}
     matched: dict[str, Column] = {}
     open_: dict[str, list[int]] = {}
     for key in channels:
@@ -70,14 +70,10 @@ def identify(path: Path, columns: ColumnMap, channels: Sequence[str], written: F
             matched[key] = _with_unit(path, key, column, layout)
         else:
             places = [k for k, meaning in enumerate(meanings) if meaning.channel == key]
-            places = [k for k in places if layout.all_names[k] not in taken]
+            places = [k for k in places if k not in taken]
             places = [k for k in places if meanings[k].certain] or places
-            if (
-                len(places) == 1
-                and meanings[places[0]].unit
-                and layout.all_names.count(layout.all_names[places[0]]) == 1
-            ):
-                matched[key] = Column(name=layout.all_names[places[0]], unit=meanings[places[0]].unit)
+            if len(places) == 1 and meanings[places[0]].unit:
+                matched[key] = Column(name=_called(layout, places[0]), unit=meanings[places[0]].unit)
             else:
                 open_[key] = places
     if open_:
@@ -102,10 +98,11 @@ def _with_unit(path: Path, key: str, column: Column, layout: TableLayout) -> Col
     """A stated column with the unit that its header states, where the campaign states none. Raises InputError."""
     if column.unit:
         return column
-    if column.name not in layout.all_names and layout.place(column.name) is None:
+    place = _index(layout, column.name)
+    if place is None:
         return column.model_copy(update={"unit": next(iter(UNITS[key]))})
-    name, unit = _header(layout, column.name)
-    meaning = meaning_of(name, unit)
+    unit = layout.all_units[place]
+    meaning = meaning_of(layout.all_names[place], unit)
     if meaning.kind == key:
         return column.model_copy(update={"unit": meaning.unit})
     problem = f"no unit of {key} in the header" if not unit else f"its unit {unit} is none of {key}"
@@ -113,12 +110,12 @@ def _with_unit(path: Path, key: str, column: Column, layout: TableLayout) -> Col
     raise InputError(problem, file=path, key=f"column {column.name}", remedy=remedy)
 
 
-def _header(layout: TableLayout, name: str) -> tuple[str, str]:
-    """Name and unit in the header of a column that is named there, or by its number."""
+def _index(layout: TableLayout, name: str) -> int | None:
+    """Index in `TableLayout.all_names` of a column that is named there, or by its number; None where it is not."""
+    if name in layout.all_names:
+        return layout.all_names.index(name)
     place = layout.place(name)
-    if place is None:
-        return name, layout.all_units[layout.all_names.index(name)]
-    return layout.names[place], layout.units[place]
+    return None if place is None else place + (layout.clock is not None)
 
 
 def _undecided(
@@ -163,9 +160,9 @@ def _problem(key: str, names: Sequence[str]) -> str:
 
 
 def _called(layout: TableLayout, place: int) -> str:
-    """How a campaign file names a column: by its name, by its number where several have that name."""
+    """How a campaign file names a column: by its name, by its number where it has none or several have that name."""
     name = layout.all_names[place]
-    return name if layout.all_names.count(name) == 1 else f"#{place + 1 - (layout.clock is not None)}"
+    return name if name and layout.all_names.count(name) == 1 else f"#{place + 1 - (layout.clock is not None)}"
 
 
 def _choice(key: str, layout: TableLayout, places: Sequence[int]) -> str:

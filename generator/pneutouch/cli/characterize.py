@@ -6,17 +6,8 @@ from typing import Annotated, Any
 
 import typer
 
-from pneutouch.cli.app import (
-    CalibrationOption,
-    JsonOption,
-    OutOption,
-    SetOption,
-    app,
-    changes,
-    option,
-    print_json,
-    reporting,
-)
+from pneutouch.cli.app import CalibrationOption, JsonOption, OutOption, SetOption, app, changes, print_json, reporting
+from pneutouch.cli.commands import option
 from pneutouch.cli.declared import with_fields
 from pneutouch.cli.next_step import report_next
 from pneutouch.cli.reading import READING_FIELDS, ColumnsOption, reading_of, reading_text, reading_words

@@ -30,7 +30,7 @@ def with_fields(model: type[BaseModel], options: Mapping[str, FieldOption]) -> C
         hints = typing.get_type_hints(command, include_extras=True)
         written = [p.replace(annotation=hints[p.name]) for p in inspect.signature(command).parameters.values()]
         made = [_parameter(model, name, option) for name, option in options.items()]
-        arguments = [p for p in written if "ArgumentInfo" in str(p.annotation)]
+        arguments = [p for p in written if "ArgumentInfo" in str(p.annotation) or p.annotation is typer.Context]
         others = [p for p in written if p not in arguments and p.kind is not inspect.Parameter.VAR_KEYWORD]
         command.__signature__ = inspect.Signature([*arguments, *made, *others])  # type: ignore[attr-defined]
         return command

@@ -115,6 +115,6 @@ def _are_units(row: Sequence[str]) -> bool:
     filled = [cell for cell in row if cell]
     known = [cell for cell in filled if unit_of(cell)]
     others = [cell.strip("()[]") for cell in filled if not unit_of(cell)]
-    # Beside units of other quantities, which are not known here, there are at least as many of ours.
+    # Units of other quantities, which are not known here, may stand among as many of ours.
     alike = len(known) > 1 and len(known) >= len(others) and all(len(cell) <= _SHORT for cell in others)
     return alike or (bool(known) and all(cell in _NO_UNIT for cell in others))
