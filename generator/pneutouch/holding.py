@@ -1,9 +1,12 @@
 """Stop signals held back while files are moved or removed, so that a stop finds them whole or not at all."""
 
 import contextlib
+import shutil
 import signal
+import tempfile
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from pathlib import Path
 from types import FrameType
 
 STOPS = (signal.SIGINT, signal.SIGTERM)
@@ -35,3 +38,51 @@ def uninterrupted() -> Iterator[None]:
             signal.signal(number, handler)
         if held:
             signal.raise_signal(held[0])
+
+
+def cleaned(clean: Callable[[], object]) -> None:
+    """Run a clean-up, which may run twice, so that a stop signal neither skips it nor cuts it short."""
+    try:
+        with uninterrupted():
+            clean()
+    except KeyboardInterrupt:
+        clean()
+        raise
+
+
+@contextlib.contextmanager
+def temporary_folder(*, prefix: str = "pneutouch-", within: Path | None = None) -> Iterator[Path]:
+    """A new folder, in ``within`` or where the system keeps temporary files, removed with what is in it at the end.
+
+    The standard library's own loses the folder where a stop comes between its making and its noting.
+    """
+    folder: Path | None = None
+
+    def remove() -> None:
+        if folder is not None:
+            shutil.rmtree(folder, ignore_errors=True)
+
+    try:
+        with uninterrupted():
+            folder = Path(tempfile.mkdtemp(prefix=prefix, dir=within))
+        yield folder
+    finally:
+        cleaned(remove)
+
+
+@contextlib.contextmanager
+def parent_folders(path: Path) -> Iterator[None]:
+    """Make the folders that ``path`` lies in; those made here go again where the block ends by an error."""
+    made = [folder for folder in path.absolute().parents if not folder.exists()]
+
+    def remove() -> None:
+        for folder in made:
+            with contextlib.suppress(OSError):
+                folder.rmdir()
+
+    try:
+        path.absolute().parent.mkdir(parents=True, exist_ok=True)
+        yield
+    except BaseException:
+        cleaned(remove)
+        raise

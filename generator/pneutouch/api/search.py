@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,6 +11,7 @@ from pneutouch.api.design import Design, source_of
 from pneutouch.api.fields import WHERE, changes, named_by_keyword
 from pneutouch.catalogue import DesignSource
 from pneutouch.errors import InputError
+from pneutouch.holding import temporary_folder
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import override, read_toml, validate
 from pneutouch.spec.target import Target
@@ -103,14 +103,14 @@ def sweep(
     from pneutouch.workflows.sweep import sweep as run
     from pneutouch.workflows.sweep.run import ComputeResources
 
-    with named_by_keyword(), tempfile.TemporaryDirectory() as folder:
+    with named_by_keyword(), temporary_folder() as folder:
         values = changes(DesignFile, fields)
         grid = {key: value for key, value in values.items() if isinstance(value, list) or _is_range(value)}
         fixed = {key: value for key, value in values.items() if key not in grid}
         if not grid:
             raise InputError("no field has several values", remedy="give a list, such as wall_thickness_mm=[1, 1.2]")
         plan = plan_of_grid(source_of(design), grid, fixed, WHERE, model=model, closure=closure, clamp=clamp)
-        path = Path(folder) / "sweep.nc" if out is None else Path(out)
+        path = folder / "sweep.nc" if out is None else Path(out)
         run(plan, path, ComputeResources(workers), fresh=fresh)
         return xarray.load_dataset(path, engine="scipy")
 

@@ -5,14 +5,13 @@ CadQuery is an extra; `step_obstacle` states why there is no STEP file without i
 
 from __future__ import annotations
 
-import tempfile
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pneutouch.arrays import Array
 from pneutouch.body import Bore, Frame, Prism, Solid, Turned
 from pneutouch.body.shapes import Shape
 from pneutouch.export.step_text import canonical
+from pneutouch.holding import temporary_folder
 from pneutouch.meridian import Arc, Meridian, Segment
 
 if TYPE_CHECKING:
@@ -57,8 +56,8 @@ def step(name: str, solids: tuple[Solid, ...], offset: Array) -> bytes:
     for solid in solids:
         red, green, blue = (channel / 255 for channel in bytes.fromhex(solid.material.colour[1:]))
         assembly.add(exact_solid(solid), name=solid.name, loc=place, color=cq.Color(red, green, blue, 1.0))
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / f"{name}.step"
+    with temporary_folder() as folder:
+        path = folder / f"{name}.step"
         assembly.export(str(path))
         text = path.read_text(encoding="utf-8")
     return canonical(text).encode()

@@ -5,11 +5,11 @@ import hashlib
 import json
 import os
 import shutil
-import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
 from pneutouch.errors import InputError
+from pneutouch.holding import parent_folders, temporary_folder, uninterrupted
 from pneutouch.spec.files import read_bytes
 
 MANIFEST = "manifest.json"
@@ -64,19 +64,13 @@ def replacing(folder: Path) -> Iterator[Path]:
     """
     check_writable(folder)
     try:
-        folder.parent.mkdir(parents=True, exist_ok=True)
-        fresh = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
+        with parent_folders(folder), temporary_folder(prefix=f".{folder.name}.", within=folder.parent) as fresh:
+            yield fresh
+            with uninterrupted():
+                _swap(folder, fresh)
     except OSError as error:
-        raise InputError(
-            f"{folder.parent}: {error.strerror}", key="out", remedy="give a folder you may write to"
-        ) from None
-    try:
-        yield fresh
-        _swap(folder, fresh)
-    except OSError as error:
-        raise InputError(f"{folder}: {error.strerror}", key="out", remedy="the previous output is unchanged") from None
-    finally:
-        shutil.rmtree(fresh, ignore_errors=True)
+        problem = f"{folder}: {error.strerror}"
+        raise InputError(problem, key="out", remedy="give a folder you may write to; no output was changed") from None
 
 
 def _swap(folder: Path, fresh: Path) -> None:

@@ -9,6 +9,7 @@ from pneutouch.catalogue import KINDS, Library, user_folder
 from pneutouch.catalogue.examples import COMMANDS, examples
 from pneutouch.catalogue.library import is_specimen
 from pneutouch.errors import InputError, nearest
+from pneutouch.holding import uninterrupted
 from pneutouch.spec.files import is_file, read_bytes
 from pneutouch.spec.names import plain_name
 from pneutouch.spec.read import read_toml
@@ -100,6 +101,7 @@ def write_design(name: str, folder: Path, text: str, kind: str = "designs", *, o
     return _replace(path, text) if overwrite else _create(path, text)
 
 
+@uninterrupted()
 def _replace(path: Path, text: str) -> Path:
     """Write a file, in place of one that is there; that one stays until the new one is whole."""
     try:
@@ -117,6 +119,7 @@ def _replace(path: Path, text: str) -> Path:
     return path
 
 
+@uninterrupted()
 def _create(path: Path, text: str) -> Path:
     """Write a file that is not there yet."""
     try:

@@ -4,11 +4,11 @@ import base64
 import datetime
 import json
 import re
-import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from pneutouch.holding import temporary_folder
 from pneutouch.parts.lettering.glyphs import FONTS
 
 TEMPLATES = Path(__file__).parent / "templates"
@@ -69,8 +69,7 @@ def pdf(
     import typst
 
     created = datetime.datetime(date.year, date.month, date.day, tzinfo=datetime.UTC) if date else _UNDATED
-    with tempfile.TemporaryDirectory() as folder:
-        root = Path(folder)
+    with temporary_folder() as root:
         (root / template).write_bytes((TEMPLATES / template).read_bytes())
         (root / "sheet.json").write_text(json.dumps(content), encoding="utf-8")
         for name, image in (images or {}).items():

@@ -1,8 +1,6 @@
 """A voxel stack of a design: the bodies printed with the membrane, one PNG a layer, in a folder of its own."""
 
 import re
-import shutil
-import tempfile
 import zlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -18,6 +16,7 @@ from pneutouch.export.voxels.manifest import MANIFEST, manifest, shortfalls, sli
 from pneutouch.export.voxels.png import encode, table
 from pneutouch.export.voxels.raster import raster
 from pneutouch.export.voxels.slices import VoxelSlicer
+from pneutouch.holding import parent_folders, temporary_folder, uninterrupted
 from pneutouch.output.files import check_writable, digest, exchange, json_bytes
 from pneutouch.parts import Assembly
 from pneutouch.printability import Finding, refuse
@@ -116,34 +115,30 @@ def write_stack(
     in it; nothing is left behind then, and an earlier stack stays.
     """
     check_stack_folder(folder)
-    fresh: Path | None = None
     try:
-        folder.parent.mkdir(parents=True, exist_ok=True)
-        fresh = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
-        slicer = VoxelSlicer(job)
-        hashes = []
-        colours = table([BACKGROUND, *job.colours.values()])
-        for number, labels in enumerate(slicer):
-            content = encode(labels, colours, job.raster.dpi)
-            (fresh / slice_name(prefix, number)).write_bytes(content)
-            hashes.append(digest(content))
-            progress(number + 1, len(job.raster.z))
-        (fresh / MANIFEST).write_bytes(json_bytes(manifest(job, slicer, hashes, about, prefix)))
-        fresh.chmod(0o755)
-        if folder.exists():
-            exchange(folder, fresh)
-        else:
-            fresh.rename(folder)
-        return slicer
+        with parent_folders(folder), temporary_folder(prefix=f".{folder.name}.", within=folder.parent) as fresh:
+            slicer = VoxelSlicer(job)
+            hashes = []
+            colours = table([BACKGROUND, *job.colours.values()])
+            for number, labels in enumerate(slicer):
+                content = encode(labels, colours, job.raster.dpi)
+                (fresh / slice_name(prefix, number)).write_bytes(content)
+                hashes.append(digest(content))
+                progress(number + 1, len(job.raster.z))
+            (fresh / MANIFEST).write_bytes(json_bytes(manifest(job, slicer, hashes, about, prefix)))
+            with uninterrupted():
+                fresh.chmod(0o755)
+                if folder.exists():
+                    exchange(folder, fresh)
+                else:
+                    fresh.rename(folder)
+            return slicer
     except OSError as error:
         raise InputError(
             f"{folder}: {error.strerror or error}",
             key="out",
             remedy="no stack was written, and an earlier one is unchanged",
         ) from None
-    finally:
-        if fresh is not None:
-            shutil.rmtree(fresh, ignore_errors=True)
 
 
 def check_stack_folder(folder: Path) -> None:

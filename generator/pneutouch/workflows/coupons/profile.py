@@ -10,6 +10,7 @@ from typing import Any
 from pneutouch.bench.finding import MARK, ProfileChange, ReadingSource
 from pneutouch.catalogue import KINDS, Library
 from pneutouch.errors import InputError
+from pneutouch.holding import uninterrupted
 from pneutouch.spec.read import read_toml
 from pneutouch.spec.toml_text import toml_text
 
@@ -65,6 +66,7 @@ def head(source: ReadingSource, what: str) -> str:
     )
 
 
+@uninterrupted()
 def write_profiles(profiles: Sequence[MeasuredProfile]) -> None:
     """Write every profile to a temporary file and rename it. Raises InputError where a folder cannot be written."""
     fresh: list[tuple[Path, Path]] = []

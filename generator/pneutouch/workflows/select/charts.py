@@ -9,6 +9,7 @@ from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
 from pneutouch.evaluation.chart_data import ChartPoint, TradeOff, TuningChart
 from pneutouch.evaluation.tuning import curve, interval
+from pneutouch.holding import uninterrupted
 from pneutouch.report.tradeoff import tradeoff_chart
 from pneutouch.report.tuning import tuning_chart
 from pneutouch.selection import Candidate
@@ -104,6 +105,7 @@ def _spot(rank: int, choice: Candidate) -> ChartPoint:
     )
 
 
+@uninterrupted()
 def _write(path: Path, text: str) -> Path:
     """Write a temporary file in the same folder and rename it."""
     try:

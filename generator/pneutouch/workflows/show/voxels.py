@@ -9,6 +9,7 @@ from pneutouch.arrays import Labels
 from pneutouch.errors import InputError
 from pneutouch.export.voxels.png import encode
 from pneutouch.export.voxels.read import VoxelStack, read_stack
+from pneutouch.holding import uninterrupted
 
 _BACKGROUND = np.uint32(0xFFFFFFFF)
 """White in the picture, where the stack has black."""
@@ -57,7 +58,9 @@ def draw(stack: VoxelStack, path: Path) -> None:
     colours = stack.colours.copy()
     colours[0] = _BACKGROUND
     across = stack.manifest["dpi"][0]
-    path.write_bytes(encode(np.concatenate([upper, gap, lower]), colours, (across, across)))
+    picture = encode(np.concatenate([upper, gap, lower]), colours, (across, across))
+    with uninterrupted():
+        path.write_bytes(picture)
 
 
 def _stretched(labels: Labels, ratio: float) -> Labels:

@@ -5,14 +5,13 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
-import tempfile
 from asyncio import CancelledError
 from collections.abc import Iterator
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pneutouch import __version__
 from pneutouch.errors import ComputationError, InputError, PneutouchError
+from pneutouch.holding import temporary_folder
 from pneutouch.output.files import digest
 from pneutouch.workflows.sweep.study import SweepStudy
 from pneutouch.workflows.sweep.work import Record, SweepChunk, compute, unpack
@@ -68,9 +67,9 @@ def compute_there(chunk: SweepChunk, files: dict[str, str], version: str) -> lis
     """Compute a chunk on a machine that may have nothing of the user's: the files come with it."""
     if version != __version__:
         raise InputError(f"a worker has pneutouch {__version__}, this is {version}; they must be the same")
-    with tempfile.TemporaryDirectory(prefix="pneutouch-") as folder:
-        unpack(files, Path(folder))
-        return compute(chunk, Path(folder))
+    with temporary_folder() as folder:
+        unpack(files, folder)
+        return compute(chunk, folder)
 
 
 def _result(future: Any, address: str) -> list[Record]:

@@ -11,6 +11,7 @@ from pathlib import Path
 from types import TracebackType
 
 from pneutouch.errors import InputError
+from pneutouch.holding import cleaned, uninterrupted
 from pneutouch.workflows.sweep.journal import replace_whole
 
 _LOCK, _JOURNAL, _FILES, _DATASET = "lock", "journal", "inputs", "dataset"
@@ -29,29 +30,42 @@ class WorkFolder:
         self.out, self.path = out, out.with_name(f"{out.name}.parts")
         self.journal, self.files = self.path / _JOURNAL, self.path / _FILES
         self._lock: FileIO | None = None
+        self._made: list[Path] = []
 
     def __enter__(self) -> WorkFolder:
         """Make and lock the folder. Raises InputError where it cannot be, or is held, or holds foreign files."""
         try:
-            while self._lock is None:
-                self.path.mkdir(parents=True, exist_ok=True)
-                foreign = sorted(path.name for path in self.path.iterdir() if path.name not in _WRITTEN)
-                if foreign:
-                    raise InputError(
-                        f"{self.path} holds {foreign[0]}, which no sweep wrote", key="out", remedy="give another `out`"
-                    )
-                self._lock = self._take()
+            with uninterrupted():
+                self._enter()
         except OSError as error:
             raise InputError(
                 f"{self.path}: {error.strerror}", key="out", remedy="give a file where you may write"
             ) from None
+        except KeyboardInterrupt:
+            cleaned(self._leave)
+            raise
         return self
+
+    def _enter(self) -> None:
+        while self._lock is None:
+            self._made = self._made or [folder for folder in self.path.absolute().parents if not folder.exists()]
+            self.path.mkdir(parents=True, exist_ok=True)
+            foreign = sorted(path.name for path in self.path.iterdir() if path.name not in _WRITTEN)
+            if foreign:
+                raise InputError(
+                    f"{self.path} holds {foreign[0]}, which no sweep wrote", key="out", remedy="give another `out`"
+                )
+            self._lock = self._take()
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         """Let go of the lock; a folder without progress in it is removed."""
-        assert self._lock is not None
+        cleaned(self._leave)
+
+    def _leave(self) -> None:
+        if self._lock is None:
+            return
         if not self.journal.exists() or self.journal.stat().st_size == 0:
             self._clear()
         self._lock.close()
@@ -62,6 +76,10 @@ class WorkFolder:
 
     def finish(self, content: bytes | None) -> None:
         """Put the dataset in its place, whole, then remove the folder; None leaves the dataset that is there."""
+        with uninterrupted():
+            self._put(content)
+
+    def _put(self, content: bytes | None) -> None:
         if content is not None:
             replace_whole(self.path / _DATASET, self.out, content)
             _sync_folder(self.out.parent)
@@ -71,8 +89,9 @@ class WorkFolder:
         shutil.rmtree(self.files, ignore_errors=True)
         for name in (_JOURNAL, f"{_JOURNAL}.new", _DATASET, _LOCK):
             (self.path / name).unlink(missing_ok=True)
-        with contextlib.suppress(OSError):
-            self.path.rmdir()
+        for folder in (self.path, *self._made):
+            with contextlib.suppress(OSError):
+                folder.rmdir()
 
     def _take(self) -> FileIO | None:
         """The lock, or None where its file was removed by a sweep that ended between opening and locking it."""
