@@ -93,6 +93,7 @@ def test_the_dataset_is_named_on_stdout_and_the_states_on_stderr(command, tmp_pa
         (["missing.toml"], "missing.toml: no such file"),
         (["wall-and-resin.toml", "--design", "paper-dome"], "one or the other"),
         (["wall-and-resin.toml", "--over", "membrane.material=FLX9940"], "one or the other"),
+        (["paper-dome", "--over", "membrane.material=FLX9940"], "a design to vary is given by --design paper-dome"),
         (["wall-and-resin.toml", "--set", "membrane.material=FLX9940"], "varied too"),
         (["wall-and-resin.toml", "--set", "membrane.material"], "--set membrane.material"),
         (["wall-and-resin.toml", "--workers", "0"], "--workers 0"),

@@ -38,20 +38,18 @@ def said(prediction):
     return prediction.error_estimate["model_choice"]
 
 
-@pytest.mark.parametrize(
-    ("text", "value"), [("2%", 0.02), ("0.02", 0.02), (" 1.6 % ", 0.016), ("150%", 1.5), ("5", 5.0)]
-)
+@pytest.mark.parametrize(("text", "value"), [("2%", 0.02), ("0.02", 0.02), (" 1.6 % ", 0.016), ("100%", 1.0)])
 def test_tolerances_are_read_as_shares(text, value):
     assert parse_tolerance(text) == pytest.approx(value, rel=1e-12)
 
 
-@pytest.mark.parametrize("text", ["", "%", "two", "0", "-1%", "nan", "inf", "2%%", "0%", "1e9"])
+@pytest.mark.parametrize("text", ["", "%", "two", "0", "-1%", "nan", "inf", "2%%", "0%", "1e9", "5", "150%"])
 def test_what_is_no_tolerance_is_refused_in_words(text):
     with pytest.raises(InputError, match="tolerance = "):
         parse_tolerance(text)
 
 
-@given(st.floats(1e-6, 99.0))
+@given(st.floats(1e-6, 0.99))
 def test_a_percentage_and_its_share_are_the_same(value):
     assert parse_tolerance(f"{100 * value!r}%") == pytest.approx(parse_tolerance(repr(value)), rel=1e-12)
 

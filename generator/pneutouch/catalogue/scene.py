@@ -203,7 +203,7 @@ def _mount(design: DesignFile, where: str, library: Library) -> AnyMount:
     if not isinstance(mount, Sleeve):
         sleeves = [name for name in library.paths("mounts") if isinstance(library.load("mounts", name), Sleeve)]
         raise InputError(
-            f"connector.mount = {chosen!r} goes over no finger",
+            f"connector.mount = {shown(chosen)} goes over no finger",
             file=where,
             key="connector.finger_diameter_mm",
             value=finger,
@@ -220,7 +220,8 @@ def _mode(printer: Printer, *materials: Material) -> Mode:
 
 def _check_kind(scene: ResolvedDesign, key: str, material: Material, kind: MaterialKind) -> None:
     if material.kind != kind:
-        raise InputError(f"{key}: {material.label} is {material.kind}", file=scene.where, remedy=f"it must be {kind}")
+        problem = f"{material.label} is {material.kind}"
+        raise InputError(problem, file=scene.where, key=key, remedy=f"it must be {kind}")
 
 
 def _check_runs(scene: ResolvedDesign, key: str, printer: Printer, material: Material) -> None:
@@ -228,8 +229,10 @@ def _check_runs(scene: ResolvedDesign, key: str, printer: Printer, material: Mat
         table, name = key.split(".")
         value = getattr(getattr(scene.design, table), name)
         raise InputError(
-            f"{key} = {shown(value)}: the {printer.title} cannot run {material.label}",
+            f"the {printer.title} cannot run {material.label}",
             file=scene.where,
+            key=key,
+            value=value,
             remedy=f"it runs {', '.join(printer.resins)}, {printer.resins_at_once} at once",
         )
 
@@ -238,18 +241,20 @@ def _check_one_piece(scene: ResolvedDesign) -> None:
     """A membrane grown onto its connector needs one machine that holds both."""
     if not isinstance(scene.seat, OnePiece):
         return
-    chosen, head = scene.design.print, f"{scene.where}: connector.seat = {shown(scene.design.connector.seat)}: "
+    chosen, problem = scene.design.print, None
     if chosen.profile != chosen.connector_profile:
-        raise InputError(
-            f"{head}both bodies grow in one print, so print.connector_profile = {shown(chosen.connector_profile)} must "
-            f"be {shown(chosen.profile)}, as print.profile"
+        problem = (
+            f"both bodies grow in one print, so print.connector_profile = {shown(chosen.connector_profile)} must be "
+            f"{shown(chosen.profile)}, as print.profile"
         )
-    if scene.printer.mode_for(scene.membrane_material, scene.connector_material) is None:
-        raise InputError(
-            f"{head}the {scene.printer.title} cannot print {scene.membrane_material.label} and "
+    elif scene.printer.mode_for(scene.membrane_material, scene.connector_material) is None:
+        problem = (
+            f"the {scene.printer.title} cannot print {scene.membrane_material.label} and "
             f"{scene.connector_material.label} together; it holds {scene.printer.resins_at_once} of "
             f"{', '.join(scene.printer.resins)}"
         )
+    if problem is not None:
+        raise InputError(problem, file=scene.where, key="connector.seat", value=scene.design.connector.seat)
 
 
 def _check_calibration(scene: ResolvedDesign) -> None:

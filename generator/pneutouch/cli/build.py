@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -62,6 +63,9 @@ def build(
     tolerance: ToleranceOption = None,
     closure: ClosureOption = "variational",
     clamp: ClampOption = "base",
+    name: Annotated[
+        str | None, typer.Option(help="Name of the output folder and its files.", show_default="the design's")
+    ] = None,
     out: OutOption = Path("outputs"),
     voxels: VoxelsOption = False,
     voxel_mode: VoxelModeOption = None,
@@ -74,21 +78,23 @@ def build(
             flags = {key: flag for key, flag in _FLAGS.items() if key != "set_"}
             refuse_flags(context, flags, "a specimen, which has no prediction", design)
             refuse_flags(context, _VOXEL_FLAGS, "a specimen, which has no membrane", design)
-            name, folder, findings = _build_specimen(design, out, changes(set_, calibration))
+            folder, findings = _build_specimen(design, out, changes(set_, calibration), name)
         else:
             evaluation = (
-                _from_3mf(design, context)
+                _from_3mf(design, context, name)
                 if _is_3mf(design)
-                else _evaluated(design, changes(set_, calibration), model, tolerance, closure=closure, clamp=clamp)
+                else _evaluated(
+                    design, changes(set_, calibration), model, tolerance, name=name, closure=closure, clamp=clamp
+                )
             )
             plan = _planned(evaluation, out, voxel_mode) if voxels or voxel_mode else None
-            name, folder, findings = _build_sensor(evaluation, out)
+            folder, findings = _build_sensor(evaluation, out)
             stack = None if plan is None else _write_voxels(plan, evaluation, out)
         for finding in findings:
             notify(f"{finding.severity}: {finding.rule}: {finding.message}; {finding.fix}")
         _report_left_out(folder)
         if json:
-            print_json({"design": name, "folder": str(folder), **({"voxels": str(stack)} if stack else {})})
+            print_json({"design": folder.name, "folder": str(folder), **({"voxels": str(stack)} if stack else {})})
         else:
             echo(str(folder))
             if stack is not None:
@@ -135,12 +141,22 @@ def check(
 
 
 def _evaluated(
-    design: str, changed: dict[str, Any], model: str | None = None, tolerance: str | None = None, **options: Any
+    design: str,
+    changed: dict[str, Any],
+    model: str | None = None,
+    tolerance: str | None = None,
+    *,
+    name: str | None = None,
+    **options: Any,
 ) -> Evaluation:
+    from pneutouch.catalogue import DesignSource, Library
     from pneutouch.evaluation.evaluate import evaluate
     from pneutouch.mechanics.models import model_options
+    from pneutouch.spec.names import plain_name
 
-    return evaluate(design, changed, **model_options(model, tolerance), **options)
+    source = DesignSource.of(design, Library.default())
+    source = source if name is None else replace(source, name=plain_name(name))
+    return evaluate(source, changed, **model_options(model, tolerance), **options)
 
 
 def _is_specimen(design: str) -> bool:
@@ -153,15 +169,14 @@ def _is_3mf(design: str) -> bool:
     return design.lower().endswith(".3mf")
 
 
-def _build_specimen(design: str, out: Path, changed: dict[str, Any]) -> tuple[str, Path, list[Finding]]:
+def _build_specimen(design: str, out: Path, changed: dict[str, Any], name: str | None) -> tuple[Path, list[Finding]]:
     from pneutouch.workflows.specimen.build import STEPS, build_specimen
 
     with _progress(STEPS) as report:
-        folder, findings = build_specimen(design, out, changed, progress=report)
-    return folder.name, folder, findings
+        return build_specimen(design, out, changed, progress=report, called=name)
 
 
-def _build_sensor(evaluation: Evaluation, out: Path) -> tuple[str, Path, list[Finding]]:
+def _build_sensor(evaluation: Evaluation, out: Path) -> tuple[Path, list[Finding]]:
     from pneutouch.output.files import check_writable
     from pneutouch.workflows.build.run import STEPS
     from pneutouch.workflows.build.run import build as run
@@ -169,7 +184,7 @@ def _build_sensor(evaluation: Evaluation, out: Path) -> tuple[str, Path, list[Fi
     check_writable(out / evaluation.scene.name)
     with _progress(STEPS) as report:
         folder = run(evaluation, out, report)
-    return evaluation.scene.name, folder, evaluation.findings
+    return folder, evaluation.findings
 
 
 def _report_left_out(folder: Path) -> None:
@@ -205,11 +220,12 @@ def _write_voxels(plan: VoxelPlan, evaluation: Evaluation, out: Path) -> Path:
     return folder
 
 
-def _from_3mf(file: str, context: typer.Context) -> Evaluation:
+def _from_3mf(file: str, context: typer.Context, name: str | None) -> Evaluation:
     """Evaluate the recipe of a 3MF; reports on stderr what was of another version when it was made."""
     from pneutouch.export.threemf_read import read_threemf
     from pneutouch.output.recipe import evaluate_recipe
     from pneutouch.output.recipe_read import other_versions, read_recipe
+    from pneutouch.spec.names import plain_name
 
     why = "a 3MF: its recipe fixes the design and the model; build from a design file to change them"
     refuse_flags(context, _FLAGS, why, file)
@@ -218,6 +234,8 @@ def _from_3mf(file: str, context: typer.Context) -> Evaluation:
     other = other_versions(package, recipe)
     if other:
         notify(f"note: {file} was made with {', '.join(other)}: what is built may differ from it")
+    if name is not None:
+        recipe = replace(recipe, scene=replace(recipe.scene, name=plain_name(name)))
     return evaluate_recipe(recipe)
 
 

@@ -122,9 +122,16 @@ def _plain_words() -> Iterator[None]:
 
 
 def _leave_out_file(error: PneutouchError, changed: Sequence[str]) -> None:
-    """Take the file out of errors on fields that --set gave: their values are not in the file."""
+    """Take the file out of errors on fields that --set gave: their values are not in the file.
+
+    An error on several fields of a table, or of the whole file, becomes one on the field that was changed.
+    """
     for one in (error, *error.others):
         key = (one.key or "").split("[")[0]
+        if one.file is not None and "." not in key:
+            named = [name for name in changed if name.startswith(key) and name.rpartition(".")[2] in one.problem]
+            if named:
+                key = one.key = named[0]
         if any(key == name or key.startswith(f"{name}.") for name in changed):
             one.file = None
 

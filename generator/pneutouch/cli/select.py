@@ -9,7 +9,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from pneutouch.cli.app import DesignFolderOption, ForceOption, JsonOption, app, design_folder, print_json, reporting
+from pneutouch.cli.app import (
+    DesignFolderOption,
+    ForceOption,
+    JsonOption,
+    SetOption,
+    app,
+    design_folder,
+    print_json,
+    reporting,
+)
 from pneutouch.cli.declared import FieldOption, field_tables, named_by_flag, with_fields
 from pneutouch.cli.next_step import DesignPlace, report_next, report_written
 from pneutouch.cli.progress import bar
@@ -71,10 +80,7 @@ def select(
     target: Annotated[
         Path | None, typer.Argument(metavar="TARGET", help="Target file (TOML); options override it.")
     ] = None,
-    set_: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="TABLE.KEY=VALUE", help="Override a field of the base; may be repeated."),
-    ] = None,
+    set_: SetOption = None,
     write: Annotated[
         str | None, typer.Option(metavar="NAME", help="Save the design picked as designs/NAME.toml.")
     ] = None,

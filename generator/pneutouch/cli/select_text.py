@@ -5,16 +5,18 @@ from pneutouch.mechanics.atlas.respond import DEPTH, ENDS
 from pneutouch.selection import Candidate
 from pneutouch.units import KPA
 from pneutouch.workflows.select.document import would_need
+from pneutouch.workflows.select.passing import RejectedDesign
 from pneutouch.workflows.select.run import SelectionRun
 
-_HEAD = ["", "resin", "R0 mm", "t0 mm", "kPa", "S kPa/N", "U (k=2)", "range N", "ends with"]
+_HEAD = ["", "resin", "R0 mm", "t0 mm", "wide mm", "kPa", "S kPa/N", "U (k=2)", "range N", "ends with"]
 _HEAD += ["S 0 kPa..rated", "rated kPa", "binds", "solid S"]
 
 
 def selection_text(selection: SelectionRun) -> str:
     """Ranked designs, or why there are none."""
     answer = selection.answer
-    left = [f"left out: {name}: {why}" for name, why in selection.left_out.items()]
+    left = [_rejected(one) for one in selection.rejected]
+    left += [f"left out: {name}: {why}" for name, why in selection.left_out.items()]
     if answer.designs:
         seen: set[str] = set()
         rows = []
@@ -22,9 +24,11 @@ def selection_text(selection: SelectionRun) -> str:
             solid = f"{selection.confirmed[rank].sensitivity_kPa_per_N:.3f}" if rank < len(selection.confirmed) else "-"
             label = f"{rank + 1}" + (" runner-up" if choice.resin.name in seen else "")
             seen.add(choice.resin.name)
-            rows.append([label, *_row(choice), solid])
+            rows.append([label, *_row(selection, choice), solid])
         first = f"{len(answer.designs)} designs of {answer.candidates} candidates, on {selection.base.where}"
         return "\n".join([first, "", columns(_HEAD, rows), "", *left]).rstrip()
+    if selection.rejected:
+        return "\n".join(["no design that meets the target passes the check", "", *left])
     lines = ["no design meets the target"]
     if answer.nearest is not None:
         margins = answer.nearest.margins.items()
@@ -32,7 +36,7 @@ def selection_text(selection: SelectionRun) -> str:
         lines += [
             "",
             "nearest:",
-            columns(_HEAD[:-1], [["", *_row(answer.nearest)]]),
+            columns(_HEAD[:-1], [["", *_row(selection, answer.nearest)]]),
             f"it misses: {broken or 'nothing once rounded'}",
         ]
     lines += [
@@ -48,13 +52,21 @@ def selection_text(selection: SelectionRun) -> str:
     return "\n".join([*lines, *left]).rstrip()
 
 
-def _row(choice: Candidate) -> list[str]:
+def _rejected(one: RejectedDesign) -> str:
+    """A design that the check rejects, and why."""
+    pool = one.choice.pool
+    size = f"{one.choice.resin.name}, R0 {pool.radius[0]:.2f} mm, t0 {pool.wall[0]:.2f} mm"
+    return f"rejected: {size}: {one.rule + ': ' if one.rule else ''}{one.reason}"
+
+
+def _row(selection: SelectionRun, choice: Candidate) -> list[str]:
     pool = choice.pool
     end = int(pool.response.ends[0])
     return [
         choice.resin.name,
         f"{pool.radius[0]:.2f}",
         f"{pool.wall[0]:.2f}",
+        f"{selection.footprint(choice):.1f}",
         f"{pool.pressure[0] / KPA:.2f}",
         f"{pool.response.lines.sensitivity_kPa_per_N[0]:.3f}",
         f"{100 * choice.expanded:.0f} %",

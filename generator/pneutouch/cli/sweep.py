@@ -68,7 +68,9 @@ def _plan(
     from pneutouch.workflows.sweep import plan_of_file, plan_of_flags
 
     if file is not None and (design is not None or over):
-        raise InputError(f"a sweep file and {'--over' if over else '--design'}: give one or the other", file=file)
+        problem = f"a sweep file and {'--over' if over else '--design'}: give one or the other"
+        remedy = f"a design to vary is given by --design {file}" if design is None else None
+        raise InputError(problem, file=file, remedy=remedy)
     if file is not None:
         return plan_of_file(file, changed, **options)
     if design is None or not over:

@@ -94,6 +94,7 @@ def parse_tolerance(text: str) -> float:
         value = plain_number(number) / (100.0 if text.strip().endswith("%") else 1.0)
     except ValueError:
         value = float("nan")
-    if not 0.0 < value < 100.0:
-        raise InputError("it must be a positive share, such as 2% or 0.02", key="tolerance", value=text)
+    if not 0.0 < value <= 1.0:
+        problem = "it must be a positive share of at most 1, such as 2% or 0.02"
+        raise InputError(problem, key="tolerance", value=text)
     return value

@@ -81,7 +81,10 @@ def choose(
 ) -> SelectionResult:
     """Search, keep what meets every limit, and rank it; weights on robustness and on tunability."""
     pool = search(problem) if problem.resins else None
-    if pool is None or pool.resin.size == 0:
+    if pool is None and problem.resins:
+        # No size keeps the size limits: the search without them finds what is nearest, and what to drop.
+        pool = search(replace(problem, max_diameter=None, max_footprint=None))
+    if pool is None:
         return SelectionResult([], None, [], 0)
     margin_of = margins(problem, pool)
     wide = (

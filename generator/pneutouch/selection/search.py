@@ -26,9 +26,14 @@ class CandidateGrid:
     pressure: Array
 
 
-def search(problem: SelectionProblem) -> CandidatePool:
-    """Every candidate evaluated: the scan, and the points on it where the sensitivity is the target."""
+def search(problem: SelectionProblem) -> CandidatePool | None:
+    """Every candidate evaluated: the scan, and the points on it where the sensitivity is the target.
+
+    None where no size is inside the bounds.
+    """
     grid = scan(problem)
+    if grid.radius.size == 0:
+        return None
     coarse = evaluated(problem, *(part.ravel() for part in (grid.resin, grid.radius, grid.wall, grid.pressure)))
     if problem.sensitivity_kPa_per_N is None or grid.radius.shape[-1] < 2:
         return coarse

@@ -8,17 +8,17 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from pneutouch.errors import shown
-from pneutouch.spec.fields import Table, name, number, numbers
+from pneutouch.spec.fields import EntryError, Table, name, number, numbers
 from pneutouch.spec.grade import ResinOrMix
 
 
 def _within(low: float, high: float, unit: str) -> AfterValidator:
     def check(values: list[float]) -> list[float]:
-        for value in values:
+        for index, value in enumerate(values):
             if not low <= value <= high:
-                raise ValueError(f"every entry must be from {low:g} to {high:g} {unit}")
-        if len(set(values)) != len(values):
-            raise ValueError("every entry may appear once only")
+                raise EntryError(f"must be from {low:g} to {high:g} {unit}", index, value)
+            if value in values[:index]:
+                raise EntryError("every entry may appear once only", index, value)
         return sorted(values)
 
     return AfterValidator(check)

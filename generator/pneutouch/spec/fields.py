@@ -39,6 +39,14 @@ class Declaration:
         return f"one of the {self.registry}" if self.registry else self.help
 
 
+class EntryError(ValueError):
+    """What is wrong with one entry of a list: its ``index`` and ``value``."""
+
+    def __init__(self, problem: str, index: int, value: Any) -> None:
+        super().__init__(problem)
+        self.index, self.value = index, value
+
+
 def number(default: float | None, *, unit: str, low: float, high: float, help: str) -> Any:
     """Declare a number, in ``unit``, from ``low`` to ``high`` inclusive."""
     extra: dict[str, JsonValue] = {"unit": unit, "low": low, "high": high}

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from pneutouch.errors import InputError, joined, nearest
-from pneutouch.spec.fields import declaration, table_of
+from pneutouch.spec.fields import EntryError, declaration, table_of
 from pneutouch.spec.files import read_bytes
 from pneutouch.spec.toml_text import toml_content, toml_value, value_text
 
@@ -104,7 +104,10 @@ def _explain(model: type[BaseModel], detail: Any, where: str) -> InputError:
     if detail["type"] == "missing":
         return InputError("missing", file=where, key=key, remedy=f"give {_right(owner, path)}")
     if detail["type"] == "value_error":
-        return InputError(str(detail["ctx"]["error"]), file=where, key=key)
+        error = detail["ctx"]["error"]
+        if isinstance(error, EntryError):
+            return InputError(str(error), file=where, key=f"{key}[{error.index}]", value=error.value)
+        return InputError(str(error), file=where, key=key)
     if not path:
         return InputError(str(detail["msg"]), file=where)
     if detail["type"] == "literal_error":

@@ -43,7 +43,7 @@ def setting_changes(target: Target, library: Library) -> dict[str, Any]:
     }
     changes |= {key: value for key, value in values.items() if value is not None}
     finger_mm = target.target.finger_diameter_mm
-    return changes if finger_mm is None else changes | _on_finger(finger_mm, _base(target, changes, library), library)
+    return changes if finger_mm is None else changes | _on_finger(finger_mm, target, changes, library)
 
 
 def base_scene(target: Target, where: str, library: Library) -> ResolvedDesign:
@@ -91,9 +91,13 @@ def with_connector(scene: ResolvedDesign) -> str:
 
 def _source(target: Target, library: Library) -> DesignSource:
     """The base without its calibration: that is of its own membrane, which the candidates' replace."""
-    if not target.setting.base:
+    if target.setting.base is None:
         return DEFAULT
-    source = DesignSource.of(target.setting.base, library)
+    try:
+        source = DesignSource.of(target.setting.base, library)
+    except PneutouchError as error:
+        error.key = "setting.base" if error.key == "design" else error.key
+        raise
     return replace(source, content={key: value for key, value in source.content.items() if key != CALIBRATION})
 
 
@@ -101,15 +105,18 @@ def _base(target: Target, changes: dict[str, Any], library: Library) -> DesignFi
     return _source(target, library).changed(changes)
 
 
-def _on_finger(finger_mm: float, base: DesignFile, library: Library) -> dict[str, Any]:
+def _on_finger(finger_mm: float, target: Target, changes: dict[str, Any], library: Library) -> dict[str, Any]:
     """The mount for a finger: the base's where it is a sleeve, else the sleeve made for the nearest finger."""
     sleeves = {
         name: mount for name in library.paths("mounts") if isinstance(mount := library.load("mounts", name), Sleeve)
     }
-    chosen = base.connector.mount
+    chosen = _base(target, changes, library).connector.mount
     if chosen not in sleeves:
+        if "connector.mount" in changes:
+            problem = f"it goes over no finger; {', '.join(sleeves)} does"
+            raise InputError(problem, key="connector.mount", value=chosen, remedy="take that, or leave `fits` out")
         if not sleeves:
-            raise InputError("no mount goes over a finger", key="fits", value=f"finger:{finger_mm:g}")
+            raise InputError("no mount goes over a finger", key="target.fits", value=f"finger:{finger_mm:g}")
         chosen = min(sleeves, key=lambda name: (abs(sleeves[name].finger_diameter - finger_mm), name))
     return {"connector.mount": chosen, "connector.finger_diameter_mm": finger_mm}
 

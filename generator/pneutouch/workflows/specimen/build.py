@@ -1,6 +1,7 @@
 """Build a specimen: 3MF, STL, GLB, STEP of exact shapes, drawing, print sheet, true patterns and manifest."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from pneutouch.output.files import check_writable, json_bytes, write_folder
 from pneutouch.output.manifest import input_hash, versions, with_manifest
 from pneutouch.parts.specimen.plate import holes, outline
 from pneutouch.printability import Finding, refuse
+from pneutouch.spec.names import plain_name
 from pneutouch.spec.read import Changes
 from pneutouch.workflows.specimen.draw import SpecimenBodies, draw
 from pneutouch.workflows.specimen.drawing import drawing_svg
@@ -35,13 +37,18 @@ def build_specimen(
     changes: Changes | None = None,
     library: Library | None = None,
     progress: StepReport = lambda step: None,
+    *,
+    called: str | None = None,
 ) -> tuple[Path, list[Finding]]:
     """Write everything a specimen, by name or path, gives into ``out/<name>/``; that folder and the findings.
+
+    ``called`` is the name of the folder and its files where it is not the specimen's own.
 
     Raises InputError for what cannot be, RuleBrokenError, with nothing written, where a rule is broken. The same input
     gives the same bytes.
     """
     scene = load_specimen(name, changes, library)
+    scene = scene if called is None else replace(scene, name=plain_name(called))
     folder = out / scene.name
     check_writable(folder)
     progress("bodies")

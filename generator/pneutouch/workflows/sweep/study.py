@@ -124,9 +124,10 @@ def _check(plan: SweepPlan, library: Library) -> None:
                 indices = (i for i in range(plan.count) if i // strides[k] % plan.shape[k] == position)
                 fault = _common_fault(plan, indices, library)
                 if fault:
-                    reason = fault.problem if fault.key == axis.key else str(fault)
-                    problem = f"no point of the sweep can have it: {reason}"
-                    raise InputError(problem, file=plan.where, key=axis.key, value=value)
+                    same = fault.key == axis.key
+                    problem = f"no point of the sweep can have it: {fault.problem if same else fault}"
+                    remedy = fault.remedy if same else None
+                    raise InputError(problem, file=plan.where, key=axis.key, value=value, remedy=remedy)
 
 
 def _stride(shape: tuple[int, ...], k: int) -> int:
