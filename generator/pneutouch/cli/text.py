@@ -11,8 +11,10 @@ def prediction_text(document: dict[str, Any]) -> str:
     error = document["error_estimate"]
     sensitivity = error["sensitivity_relative"]
     far = "unknown" if sensitivity is None else f"up to {sensitivity:.0%}"
+    idealised = f" ({document['dead_volume_note']})" if "dead_volume_note" in document else ""
     lines = [
-        f"{document['design']}: model {document['model']}{closure}, dead volume {document['dead_volume_mL']:.3f} mL",
+        f"{document['design']}: model {document['model']}{closure}, dead volume {document['dead_volume_mL']:.3f} mL"
+        f"{idealised}",
         f"{_reach(document['limit_point'])}; the {document['limits']['binding']} binds",
         *_rating(document["rating"]),
         "",

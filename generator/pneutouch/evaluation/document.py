@@ -27,7 +27,10 @@ def rating_document(evaluation: Evaluation) -> dict[str, Any]:
 
 
 def prediction_document(evaluation: Evaluation, samples: int = 0) -> dict[str, Any]:
-    """The prediction as ``predict`` prints it, with its ``rating``, every state with its ``uncertainty``."""
+    """The prediction as ``predict`` prints it, with its ``rating``, every state with its ``uncertainty``.
+
+    ``dead_volume_note`` stands there where the stated dead volume is an idealisation.
+    """
     content = evaluation.prediction.document()
     uncertainty = evaluation.uncertainty
     if samples:
@@ -36,6 +39,7 @@ def prediction_document(evaluation: Evaluation, samples: int = 0) -> dict[str, A
         )
     return {
         **content,
+        **({"dead_volume_note": evaluation.assembly.dead_volume_note} if evaluation.assembly.dead_volume_note else {}),
         "rating": rating_document(evaluation),
         "states": [
             {**state, "uncertainty": entry} for state, entry in zip(content["states"], uncertainty, strict=True)

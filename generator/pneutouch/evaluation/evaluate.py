@@ -172,6 +172,8 @@ def evaluate_scene(scene: ResolvedDesign, find_resins: Callable[[], Resins], opt
         raise _beyond_limit(scene, error) from None
     _check_plate(scene, prediction)
     more = ([assumption(scene)] if scene.calibration else []) + ([shift] if options.aged else [])
+    if assembly.dead_volume_note:
+        more.append(f"dead volume of 0 mL is {assembly.dead_volume_note}")
     if more:
         prediction = replace(prediction, assumptions=(*prediction.assumptions, *more))
     return Evaluation(scene, assembly, sensor, prediction, options, find_resins)

@@ -105,6 +105,15 @@ class Assembly:
         stated_mL = self.scene.design.pneumatics.dead_volume_mL
         return self.internal_volume + self.tube_volume if stated_mL is None else stated_mL * ML
 
+    @property
+    def dead_volume_note(self) -> str:
+        """What belongs next to a stated dead volume of none behind a tube, as in the paper's theory; else empty."""
+        pneumatics = self.scene.design.pneumatics
+        if pneumatics.dead_volume_mL != 0 or pneumatics.tube_length_mm == 0:
+            return ""
+        drawn = (self.internal_volume + self.tube_volume) / ML
+        return f"the paper's idealisation: connector and tube as drawn hold {drawn:.2f} mL"
+
 
 def assemble(scene: ResolvedDesign) -> Assembly:
     """Draw the membrane and the rigid bodies of a scene. Raises InputError where a part has no space."""

@@ -69,10 +69,11 @@ def plan_sheet(plan: dict[str, Any]) -> str:
 def _head(plan: dict[str, Any]) -> list[str]:
     names = [one["sensor"] for one in plan["sensors"]]
     pressures = _list(plan["driving_pressures_kPa"])
+    idealised = f" ({plan['dead_volume_note']})" if "dead_volume_note" in plan else ""
     return [
         f"Design {_escaped(plan['design'])}: R0 {plan['inner_radius_mm']:g} mm, wall {plan['wall_thickness_mm']:g} mm, "
-        "dead volume "
-        f"{plan['dead_volume_mL']:.3g} mL, driving pressures {pressures} kPa, plate {plan['plate_diameter_mm']:g} mm.",
+        f"dead volume {plan['dead_volume_mL']:.3g} mL{idealised}, "
+        f"driving pressures {pressures} kPa, plate {plan['plate_diameter_mm']:g} mm.",
         f"{len(plan['runs'])} runs on {len(names)} specimen{'s' if len(names) > 1 else ''} "
         f"({', '.join(map(_escaped, names))}): **{_time(plan['total_s'])}** on the rig, mounting and looking aside.",
         "Laboratory: ______________________  Operator: ______________________  Date: ______________",

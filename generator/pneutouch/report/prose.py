@@ -71,12 +71,13 @@ SHAPES = "Half sections of the deformed wall, shaded by the greatest principal s
 NO_SHAPES = "Half sections of the deformed wall are drawn by the solid alone: build with model solid."
 
 
-def tradeoff(driving_pressure_kPa: float, dead_volume_mL: float) -> str:
-    """Caption of the trade-off chart; kPa and mL."""
+def tradeoff(driving_pressure_kPa: float, dead_volume_mL: float, note: str = "") -> str:
+    """Caption of the trade-off chart; kPa and mL; ``note`` belongs next to the dead volume."""
+    idealised = f" ({note})" if note else ""
     return (
         f"Trade-off at {driving_pressure_kPa:g} kPa: the greatest force range that goes with each sensitivity, one "
         "line a resin of this printer with the sensitivities it reaches, wall and radius free to 60 mm, "
-        f"{dead_volume_mL:.3g} mL dead volume, by the atlas; no line crosses a limit."
+        f"{dead_volume_mL:.3g} mL dead volume{idealised}, by the atlas; no line crosses a limit."
     )
 
 

@@ -79,7 +79,12 @@ def _key_figures(sheet: SheetData) -> list[list[str]]:
         ["Sensitivity", _sensitivity(last), "kPa/N", _condition(sheet, -1)],
         ["Force range", _range(last), "N", f"at {last.driving_pressure / KPA:g} kPa"],
         ["Max. driving pressure", f"{sheet.rating.pressure_kPa:.1f}", "kPa", sheet.rating.summary],
-        ["Dead volume", f"{sheet.prediction.dead_volume / ML:.2f}", "mL", "behind the cavity"],
+        [
+            "Dead volume",
+            f"{sheet.prediction.dead_volume / ML:.2f}",
+            "mL",
+            sheet.assembly.dead_volume_note or "behind the cavity",
+        ],
         ["Size", f"Ø{wide:.1f}", "mm", f"{mass:.1f} g without tube"],
     ]
 
@@ -107,7 +112,9 @@ def _captions(sheet: SheetData) -> dict[str, str]:
     return {
         "tradeoff": absent
         if chart is None
-        else prose.tradeoff(chart.driving_pressure_kPa, sheet.prediction.dead_volume / ML),
+        else prose.tradeoff(
+            chart.driving_pressure_kPa, sheet.prediction.dead_volume / ML, sheet.assembly.dead_volume_note
+        ),
         "tuning": "" if sheet.tuning is None else prose.TUNING,
         "shapes": prose.SHAPES if sheet.prediction.states[0].shapes else prose.NO_SHAPES,
         "view": "" if sheet.scene.membrane_material.along is None else prose.GRADE,
@@ -142,7 +149,8 @@ def _operating(sheet: SheetData) -> list[list[str]]:
     """Operating conditions that the figures hold for."""
     design = sheet.scene.design
     pressures = ", ".join(f"{p:g}" for p in design.pneumatics.driving_pressures_kPa)
-    stated = "stated in the design"
+    note = sheet.assembly.dead_volume_note
+    stated = f"stated in the design, {note}" if note else "stated in the design"
     if design.pneumatics.dead_volume_mL is None:
         tube = f"{sheet.scene.tube.outer_diameter:g} x {sheet.scene.tube.inner_diameter:g} mm tube"
         length = f"{design.pneumatics.tube_length_mm:g} mm of {tube}"

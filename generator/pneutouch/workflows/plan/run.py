@@ -13,6 +13,7 @@ from pneutouch.errors import InputError
 from pneutouch.evaluation.resins import SimulatedResin, pressed, resins_of
 from pneutouch.output.files import check_writable, json_bytes, write_folder
 from pneutouch.output.manifest import with_manifest
+from pneutouch.parts import assemble
 from pneutouch.report.plan_sheet import plan_sheet
 from pneutouch.spec.campaign import Campaign, CampaignRun, Rig, RunKind
 from pneutouch.spec.read import Changes, assignments, read_toml, validate
@@ -94,6 +95,7 @@ def make_plan(
     warnings = [w.document() for s in subjects for w in _warnings(s, curves[s.name], tests, rig)]
     depths = tuple(depth for test, _ in tests.values() for depth in test.depths)
     pneumatics, membrane = scene.design.pneumatics, scene.design.membrane
+    idealised = assemble(scene).dead_volume_note
     document = {
         "name": f"{scene.name}-plan",
         "design": scene.name,
@@ -103,6 +105,7 @@ def make_plan(
         "ambient_pressure_kPa": pneumatics.ambient_pressure_kPa,
         "driving_pressures_kPa": pneumatics.driving_pressures_kPa,
         "dead_volume_mL": subjects[0].sensor.gas.dead_volume / ML,
+        **({"dead_volume_note": idealised} if idealised else {}),
         "clearance_mm": CLEARANCE,
         "plate_diameter_mm": scene.design.indentation.plate_diameter_mm,
         "rig": {**rig.model_dump(mode="json"), "file": rig_name or None},

@@ -7,6 +7,7 @@ import numpy as np
 
 from pneutouch.errors import InputError
 from pneutouch.mechanics.atlas.respond import ENDS
+from pneutouch.parts import assemble
 from pneutouch.selection import Candidate, DroppedRequirement
 from pneutouch.units import KPA, ML
 from pneutouch.workflows.select.passing import RejectedDesign, write_assigned
@@ -16,10 +17,12 @@ from pneutouch.workflows.select.run import Confirmation, SelectionRun
 def document(selection: SelectionRun) -> dict[str, Any]:
     """The selection as ``select`` prints it."""
     answer = selection.answer
+    idealised = assemble(selection.base).dead_volume_note
     confirmed = [*selection.confirmed, *[None] * (len(answer.designs) - len(selection.confirmed))]
     return {
         "target": selection.target.model_dump(mode="json"),
         "base": selection.base.where,
+        **({"dead_volume_note": idealised} if idealised else {}),
         "met": bool(answer.designs),
         "candidates": answer.candidates,
         "designs": [

@@ -1,0 +1,61 @@
+"""A dead volume of zero behind a tube is marked as the paper's idealisation wherever the figure stands."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from pneutouch.evaluation.document import prediction_document
+from pneutouch.units import ML
+
+NOTE = "the paper's idealisation: connector and tube as drawn hold"
+
+
+def test_prediction_states_what_the_drawing_holds(evaluated):
+    evaluation = evaluated("paper-dome", model="atlas")
+    drawn = (evaluation.assembly.internal_volume + evaluation.assembly.tube_volume) / ML
+    # 300 mm of tube with a 2.5 mm bore, and a connector of some hundred cubic millimetres.
+    assert drawn == pytest.approx(0.3 * 3.14159 * 1.25**2 + 0.1, abs=0.1)
+    document = prediction_document(evaluation)
+    assert document["dead_volume_mL"] == 0
+    assert document["dead_volume_note"] == f"{NOTE} {drawn:.2f} mL"
+    assert f"dead volume of 0 mL is {NOTE} {drawn:.2f} mL" in document["assumptions"]
+
+
+@pytest.mark.parametrize(
+    "changes", [("pneumatics.tube_length_mm=0",), ("pneumatics.dead_volume_mL=0.4",)], ids=["no tube", "a volume"]
+)
+def test_a_dead_volume_that_can_be_has_no_note(evaluated, changes):
+    evaluation = evaluated("paper-dome", *changes, model="atlas")
+    assert evaluation.assembly.dead_volume_note == ""
+    assert "dead_volume_note" not in prediction_document(evaluation)
+    assert not any(NOTE in line for line in evaluation.prediction.assumptions)
+
+
+def test_a_volume_computed_from_the_parts_has_no_note(evaluated):
+    assert evaluated("fingertip-dome", model="atlas").assembly.dead_volume_note == ""
+
+
+def test_the_text_of_predict_has_the_note(command):
+    done = command("predict", "paper-dome", "--model", "atlas")
+    assert done.returncode == 0, done.stderr
+    assert f"dead volume 0.000 mL ({NOTE}" in " ".join(done.stdout.split())
+
+
+@pytest.mark.slow
+def test_the_plan_has_the_note(command):
+    done = command("plan", "paper-dome", "--specimens", "1", "--out", "plans", "--json")
+    assert done.returncode == 0, done.stderr
+    assert NOTE in json.loads(done.stdout)["dead_volume_note"]
+
+
+def test_the_sheet_has_the_note_at_every_place_of_the_figure(evaluated):
+    from pneutouch.evaluation.sheet import sheet_data
+    from pneutouch.report.sheet import content_of
+
+    content = content_of(sheet_data(evaluated("paper-dome", model="atlas"), "0"))
+    (tile,) = [row for row in content["key_figures"] if row[0] == "Dead volume"]
+    (operating,) = [row for row in content["operating"] if row[0] == "Dead volume"]
+    for text in (tile[3], operating[3], content["captions"]["tradeoff"], *content["assumptions"][-1:]):
+        assert NOTE in text
