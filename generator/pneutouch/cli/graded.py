@@ -56,7 +56,7 @@ def _saved(selection: GradedSelectionRun, place: DesignPlace) -> Path:
 
 def graded_text(selection: GradedSelectionRun) -> str:
     """The grade and the constant membranes of its size, or what is missed."""
-    from pneutouch.workflows.select.graded_document import missed
+    from pneutouch.workflows.select.graded_document import missed, rated_warning
 
     best, sensor, grade_target = selection.search.best, selection.sensor, selection.grade_target
     pressures = [f"{p / KPA:g} kPa" for p in grade_target.pressures]
@@ -69,6 +69,8 @@ def graded_text(selection: GradedSelectionRun) -> str:
     lines = [f"{met}: {size}", "", columns(head, rows), ""]
     if not selection.search.met:
         lines += [f"it misses {line}" if k == 0 else line for k, line in enumerate(missed(selection))]
+    warning = rated_warning(selection)
+    lines += [] if warning is None else [f"warning: {warning}"]
     constant = [c.name for c in selection.constants if selection.meets(c.trial)]
     too = f"a constant membrane does too: {', '.join(constant)}"
     lines.append(too if constant else "no constant one listed meets it")

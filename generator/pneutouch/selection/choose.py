@@ -8,9 +8,9 @@ import numpy as np
 from pneutouch.arrays import Array, Flags, Index
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.respond import respond
-from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.selection.pool import REQUIREMENTS, CandidatePool, evaluated, margins
 from pneutouch.selection.problem import CandidateResin, SelectionProblem
+from pneutouch.selection.rated import rated
 from pneutouch.selection.search import search
 
 _EACH = 3
@@ -148,7 +148,7 @@ def _judged(
 ) -> list[Candidate]:
     margin_of = margins(problem, pool)
     least = _least_margin(margin_of)
-    rated, span = _span(problem, pool)
+    highest, span = _span(problem, pool)
     expanded = np.full(pool.radius.size, np.nan)
     for number in np.unique(pool.resin):
         rows = pool.resin == number
@@ -165,7 +165,7 @@ def _judged(
             {name: float(m[i]) for name, m in margin_of.items()},
             float(expanded[i]),
             (float(span[0][i]), float(span[1][i])),
-            float(rated[i]),
+            float(highest[i]),
             float(cost[i]),
         )
         for i in range(pool.radius.size)
@@ -174,12 +174,12 @@ def _judged(
 
 def _span(problem: SelectionProblem, pool: CandidatePool) -> tuple[Array, tuple[Array, Array]]:
     """The rated driving pressure, and the sensitivities at none and at that one."""
-    rated = RATED_SHARE * np.fmin(pool.response.limit_pressure, problem.gauge_limit)
+    highest = rated(problem, pool.resin, pool.radius, pool.wall)
     both = [
         respond(problem.batch(pool.resin, pool.radius, pool.wall, pressure), problem.steps)
-        for pressure in (np.zeros_like(rated), rated)
+        for pressure in (np.zeros_like(highest), highest)
     ]
-    return rated, (both[0].lines.sensitivity_kPa_per_N, both[1].lines.sensitivity_kPa_per_N)
+    return highest, (both[0].lines.sensitivity_kPa_per_N, both[1].lines.sensitivity_kPa_per_N)
 
 
 def _ranked(choices: list[Candidate]) -> list[Candidate]:

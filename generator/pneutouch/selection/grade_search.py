@@ -22,7 +22,7 @@ _SURFACES = ("linear", "thin_plate_spline")
 the second follows a smooth course better."""
 _DIGITS = 4
 """A fraction is given to a hundredth of a percent, below what a droplet pattern resolves."""
-_LIMITS = ("rated pressure", "force range")
+_LIMITS = ("limit pressure", "force range")
 _MISSED = 1.0e3
 """Violation of a trial without figures."""
 
@@ -45,15 +45,17 @@ class GradeTarget:
 @dataclass(frozen=True)
 class GradeTrial:
     """One membrane and the solid's figures: fractions at pole and rim; by pressure, sensitivity and force range's end
-    (NaN without figures), the rated driving pressure (MPa), what ends the ranges, and why there are no figures."""
+    (NaN without figures), the highest pressure of the search (MPa, a share of the least limit as designed), what ends
+    the ranges, why there are no figures, and the rated pressure (MPa)."""
 
     pole: float
     rim: float
     sensitivity_kPa_per_N: tuple[float, ...]
     force: tuple[float, ...]
-    rated: float
+    highest: float
     ends: tuple[str, ...] = ()
     note: str = ""
+    rated: float = np.nan
 
     @property
     def difference(self) -> float:
@@ -87,7 +89,7 @@ def shares(target: GradeTarget, trial: GradeTrial) -> dict[str, float]:
     used_share = {"sensitivity": float(np.abs(values / target.sensitivity_kPa_per_N - 1.0).max()) / target.tolerance}
     if target.same_within is not None:
         used_share["same sensitivity"] = abs(trial.difference) / target.same_within
-    used_share["rated pressure"] = max(target.pressures) / trial.rated
+    used_share["limit pressure"] = max(target.pressures) / trial.highest
     if target.force is not None:
         used_share["force range"] = target.force / max(trial.reach, 1e-9)
     return used_share
@@ -102,7 +104,7 @@ def cost(target: GradeTarget, trial: GradeTrial, spare: float = 1.0) -> float:
     if target.widest:
         worst = max(used.values()) / spare
         return 100.0 + 10.0 * (worst - 1.0) if worst > 1.0 else -float(np.log(max(trial.reach, 1e-9)))
-    # The rated pressure and a force range are limits, not aims: nothing is gained far inside them.
+    # The limit pressure and a force range are limits, not aims: nothing is gained far inside them.
     return max(value for name, value in used.items() if name not in _LIMITS or value > 1.0)
 
 
@@ -156,7 +158,7 @@ def _promising(target: GradeTarget, top: float, trials: list[GradeTrial], surfac
 
 
 def _expected(target: GradeTarget, top: float, trials: list[GradeTrial], places: Array, surface: str) -> Array:
-    """Cost at places (n, 2) by a surface through the logarithms of sensitivities, forces and rated pressures, (n,).
+    """Cost at places (n, 2) by a surface through the logarithms of sensitivities, forces and limit pressures, (n,).
 
     Infinite next to a trial and where the nearest one has no figures.
     """
@@ -164,7 +166,7 @@ def _expected(target: GradeTarget, top: float, trials: list[GradeTrial], places:
 
     known = [trial for trial in trials if np.isfinite(trial.sensitivity_kPa_per_N).all()]
     at = np.array([(t.pole, t.rim) for t in known]) / top
-    table = np.log([[*t.sensitivity_kPa_per_N, *np.maximum(t.force, 1e-9), t.rated] for t in known])
+    table = np.log([[*t.sensitivity_kPa_per_N, *np.maximum(t.force, 1e-9), t.highest] for t in known])
     values = np.exp(RBFInterpolator(at, table, kernel=surface, degree=1)(places / top))
     n = len(target.pressures)
     costs = np.array(

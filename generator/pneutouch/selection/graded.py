@@ -1,5 +1,6 @@
 """Graded membranes against constant ones: the solid's figures of each, and the constant mix nearest to a target."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -8,7 +9,7 @@ from pneutouch.arrays import Array
 from pneutouch.catalogue.mixture import ResolvedMixingCurve
 from pneutouch.errors import ComputationError
 from pneutouch.mechanics.atlas.respond import respond
-from pneutouch.mechanics.limits import RATED_SHARE
+from pneutouch.mechanics.limits import RATED_SHARE, Limits
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.selection.grade_search import GradeTarget, GradeTrial, cost
 from pneutouch.selection.problem import CandidateResin, SelectionProblem
@@ -27,8 +28,14 @@ class UniformMembrane:
     trial: GradeTrial
 
 
-def trial_of(sensor: Sensor, pressures: tuple[float, ...], pole: float = np.nan, rim: float = np.nan) -> GradeTrial:
-    """A sensor's figures by the solid; NaN with the reason where it has none."""
+def trial_of(
+    sensor: Sensor,
+    pressures: tuple[float, ...],
+    rate: Callable[[Limits], float],
+    pole: float = np.nan,
+    rim: float = np.nan,
+) -> GradeTrial:
+    """Figures of a sensor by the solid; NaN with the reason where it has none. ``rate``: limits to a rated pressure."""
     from pneutouch.mechanics.solid_states import solid_result
 
     unknown = (np.nan,) * len(pressures)
@@ -45,7 +52,13 @@ def trial_of(sensor: Sensor, pressures: tuple[float, ...], pole: float = np.nan,
         forces.append(reach if saturated is None else min(reach, saturated))
         ends.append(next((event.kind for event in state.events if event.ends_range), "depth"))
     return GradeTrial(
-        pole, rim, tuple(sensitivities_kPa_per_N), tuple(forces), RATED_SHARE * result.limits.lowest, tuple(ends)
+        pole,
+        rim,
+        tuple(sensitivities_kPa_per_N),
+        tuple(forces),
+        RATED_SHARE * result.limits.lowest,
+        tuple(ends),
+        rated=rate(result.limits),
     )
 
 

@@ -10,9 +10,10 @@ from pneutouch.arrays import Array, Flags, Index
 from pneutouch.mechanics.atlas.respond import BREAK, EDGE, OUTSIDE, AtlasResponse, respond
 from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.selection.problem import SelectionProblem
+from pneutouch.selection.rated import rated
 
-REQUIREMENTS = ("sensitivity", "force range", "stiffness", "outer diameter", "footprint")
-"""What a user requires and may drop."""
+REQUIREMENTS = ("sensitivity", "force range", "stiffness", "outer diameter", "footprint", "rated pressure")
+"""What a user requires and may drop; the rated pressure stands for the driving pressure that must not be above it."""
 
 
 class CandidatePool(NamedTuple):
@@ -55,8 +56,8 @@ def margins(problem: SelectionProblem, pool: CandidatePool) -> dict[str, Array]:
     """Relative margin to each limit, (n,) each: negative where it is broken, -inf where it is unknown.
 
     Requirements: sensitivity (1 on the spot, 0 at the tolerance), force range, stiffness, outer diameter, footprint.
-    Limits: limit point (to RATED_SHARE of it), break strain, gauge range (at the required force), printable wall, plate
-    (the contact stays off its edge), connector (space for its parts).
+    Limits: limit point (to RATED_SHARE of it), rated pressure, break strain, gauge range (at the required force),
+    printable wall, plate (the contact stays off its edge), connector (space for its parts).
     """
     lines, margin_of = pool.response.lines, {}
     if problem.sensitivity_kPa_per_N is not None:
@@ -75,6 +76,9 @@ def margins(problem: SelectionProblem, pool: CandidatePool) -> dict[str, Array]:
     if problem.max_diameter is not None:
         margin_of["outer diameter"] = problem.max_diameter / (2.0 * (pool.radius + pool.wall)) - 1.0
     margin_of |= _limits(problem, pool)
+    if problem.limit_spread is not None:
+        with np.errstate(divide="ignore"):
+            margin_of["rated pressure"] = rated(problem, pool.resin, pool.radius, pool.wall) / pool.pressure - 1.0
     margin_of |= _connector(problem, pool)
     known = np.isfinite(lines.sensitivity_kPa_per_N) & (pool.response.ends != OUTSIDE)
     return {

@@ -38,12 +38,17 @@ class ConnectorFit(NamedTuple):
     diameter: Array
 
 
+LimitUncertainty = Callable[[CandidateResin, SensorBatch], Array]
+"""Relative standard uncertainty of the limit pressure of sensors of one resin, (n,)."""
+
+
 @dataclass(frozen=True)
 class SelectionProblem:
     """What is required of a sensor and what is settled; None where free. depth_share: plate travel over R0.
 
     plate_share: the plate's radius over R0 where it is larger than ``plate_radius``, for a plate that goes with the
-    dome. connector: of domes of inner radius and wall (n,), mm; None where no connector matters.
+    dome. connector: of domes of inner radius and wall (n,), mm; None where no connector matters. limit_spread: where
+    it is None, designs may be driven above their rated pressure.
     """
 
     resins: tuple[CandidateResin, ...]
@@ -66,6 +71,7 @@ class SelectionProblem:
     plate_share: float = 0.0
     max_footprint: float | None = None
     connector: Callable[[Array, Array], ConnectorFit] | None = None
+    limit_spread: LimitUncertainty | None = None
 
     def plate(self, radius: Array) -> Array:
         """Radius of the plate for domes of inner radius (n,), mm."""

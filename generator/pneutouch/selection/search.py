@@ -5,10 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.atlas.table import shipped
-from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.selection.pool import CandidatePool, evaluated, joined
 from pneutouch.selection.problem import SelectionProblem
+from pneutouch.selection.rated import rated
 
 _RADII, _RATIOS, _PRESSURES = 8, 14, 6
 """Points of the scan in each free direction; the last free one, along which the sensitivity is met, gets `_LINE`."""
@@ -59,7 +58,7 @@ def scan(problem: SelectionProblem) -> CandidateGrid:
     radius, ratio = radius[keep], ratio[keep]
     if problem.wall_thickness is not None and problem.inner_radius is None:
         radius, ratio = radius.T, ratio.T
-    pressures = _pressures(problem, resins, ratio)
+    pressures = _pressures(problem, resins, ratio, radius)
     shape = (resins.size, pressures.shape[1], *ratio.shape)
     resin = np.broadcast_to(resins[:, None, None, None], shape)
     radius, ratio = np.broadcast_to(radius, shape), np.broadcast_to(ratio, shape)
@@ -85,15 +84,14 @@ def _ratios(problem: SelectionProblem, count: int) -> Array:
     return np.geomspace(low, high, count) if low < high else np.zeros(0)
 
 
-def _pressures(problem: SelectionProblem, resins: Array, ratio: Array) -> Array:
-    """Driving pressures over (resin, pressure, wall, radius): the one given, or shares of what each allows."""
+def _pressures(problem: SelectionProblem, resins: Array, ratio: Array, radius: Array) -> Array:
+    """Driving pressures over (resin, pressure, wall, radius): the one given, or shares of each rated pressure."""
     if problem.driving_pressure is not None:
         return np.full((resins.size, 1, *ratio.shape), problem.driving_pressure)
     alone = problem.inner_radius is not None and problem.wall_thickness is not None
     shares = np.linspace(0.0, 1.0, _LINE if alone else _PRESSURES)
-    limit = shipped().slices(ratio.ravel(), ()).limit_pressure.reshape(ratio.shape)
-    moduli = np.array([resin.shear_modulus for resin in problem.resins])
-    top = np.minimum(RATED_SHARE * limit * moduli[:, None, None], problem.gauge_limit)
+    flat, wall = radius.ravel(), (ratio * radius).ravel()
+    top = np.array([rated(problem, np.full(flat.size, number), flat, wall).reshape(ratio.shape) for number in resins])
     return np.asarray(shares[:, None, None] * top[:, None])
 
 

@@ -79,6 +79,7 @@ def _choice(selection: SelectionRun, choice: Candidate, solid: Confirmation | No
         "stiffness_N_per_mm": float(lines.stiffness[0]),
         "limit_point_kPa": float(pool.response.limit_pressure[0]) / KPA,
         "rated_pressure_kPa": choice.rated / KPA,
+        "above_rated_pressure": choice.margins["rated pressure"] < 0,
         "sensitivity_at_0kPa_and_rated_kPa_per_N": list(choice.span),
         "margins": {name: margin if np.isfinite(margin) else None for name, margin in choice.margins.items()},
         "binding": choice.binding,
@@ -103,6 +104,8 @@ def would_need(selection: SelectionRun, dropped: DroppedRequirement) -> str:
         return f"{float(lines.stiffness[0]):.3g} N/mm"
     if dropped.requirement == "footprint":
         return f"{selection.footprint(dropped.best):.4g} mm instead of {selection.problem.max_footprint:g}"
+    if dropped.requirement == "rated pressure":
+        return f"rated {dropped.best.rated / KPA:.1f} kPa, driven at {float(pool.pressure[0]) / KPA:g} kPa"
     return f"{2 * float(pool.radius[0] + pool.wall[0]):.4g} mm instead of {selection.problem.max_diameter:g}"
 
 

@@ -10,7 +10,9 @@ from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.evaluation.variants import in_resin
 from pneutouch.mechanics.atlas.table import shipped
+from pneutouch.mechanics.limits import Limits
 from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.rating import rating
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.parts import assemble
 from pneutouch.selection.grade_search import GradeSearch, GradeTarget, GradeTrial, TrialReport, grade_search, shares
@@ -19,6 +21,7 @@ from pneutouch.selection.mixes import levels
 from pneutouch.selection.problem import SelectionProblem
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
+from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import assignments
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA
@@ -109,11 +112,11 @@ def select_graded(
     changes = setting_changes(target, library)
 
     def solve(pole: float, rim: float) -> GradeTrial:
-        return trial_of(in_resin(sensor, pair.material(pair.grade(pole, rim))), grade_target.pressures, pole, rim)
+        return _trial(sensor, pair.material(pair.grade(pole, rim)), scene.printer, grade_target, pole, rim)
 
     search = grade_search(grade_target, levels(pair.law, _LEVELS), solve, progress, trials or _TRIALS)
     constants, left_out = _catalogue(scene, sensor, grade_target, library)
-    nearest = _nearest(grade_target, problem, pair, sensor, search)
+    nearest = _nearest(grade_target, problem, pair, sensor, scene.printer, search)
     return GradedSelectionRun(
         target, scene, changes, sensor, pair, grade_target, search, (*constants, nearest), left_out
     )
@@ -170,6 +173,23 @@ def _check_footprint(target: Target, where: str, problem: SelectionProblem, sens
         )
 
 
+def _trial(
+    sensor: Sensor,
+    material: Material,
+    printer: Printer,
+    grade_target: GradeTarget,
+    pole: float = np.nan,
+    rim: float = np.nan,
+) -> GradeTrial:
+    """The sensor in a material, with its rated pressure."""
+    built = in_resin(sensor, material)
+
+    def rate(limits: Limits) -> float:
+        return rating(limits, built, material, printer).pressure
+
+    return trial_of(built, grade_target.pressures, rate, pole, rim)
+
+
 def _catalogue(
     scene: ResolvedDesign, sensor: Sensor, grade_target: GradeTarget, library: Library
 ) -> tuple[list[UniformMembrane], dict[str, str]]:
@@ -183,13 +203,16 @@ def _catalogue(
         else:
             resins.append((material_sensor(material).wall.shear_modulus, name, material))
     order = sorted(resins, key=lambda entry: entry[:2])
-    return [
-        UniformMembrane(name, None, trial_of(in_resin(sensor, m), grade_target.pressures)) for _, name, m in order
-    ], out
+    return [UniformMembrane(name, None, _trial(sensor, m, scene.printer, grade_target)) for _, name, m in order], out
 
 
 def _nearest(
-    grade_target: GradeTarget, problem: SelectionProblem, pair: ResinPair, sensor: Sensor, search: GradeSearch
+    grade_target: GradeTarget,
+    problem: SelectionProblem,
+    pair: ResinPair,
+    sensor: Sensor,
+    printer: Printer,
+    search: GradeSearch,
 ) -> UniformMembrane:
     """The constant mix nearest to the target: by the atlas, else the nearest of those tried; solved by the solid."""
     middle, recipe = problem.resins[0].material, shipped().recipe
@@ -206,6 +229,5 @@ def _nearest(
         even = [trial for trial in search.trials if trial.pole == trial.rim]
         fraction = min(even, key=lambda trial: max(shares(grade_target, trial).values())).pole
     grade = pair.grade(round(fraction, 4))
-    return UniformMembrane(
-        grade.label, grade.fractions[0], trial_of(in_resin(sensor, pair.material(grade)), grade_target.pressures)
-    )
+    trial = _trial(sensor, pair.material(grade), printer, grade_target)
+    return UniformMembrane(grade.label, grade.fractions[0], trial)

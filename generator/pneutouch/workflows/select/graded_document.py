@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from pneutouch.rounding import tenths_below
 from pneutouch.selection.grade_search import GradeTrial, shares
 from pneutouch.units import KPA, ML
 from pneutouch.workflows.select.graded import GradedSelectionRun
@@ -46,6 +47,7 @@ def _figures(selection: GradedSelectionRun, trial: GradeTrial) -> dict[str, Any]
         "force_range_end_N": _known(trial.force),
         "range_ends_with": list(trial.ends),
         "rated_pressure_kPa": None if trial.note else trial.rated / KPA,
+        "above_rated_pressure": max(selection.grade_target.pressures) > trial.rated,
         "meets": selection.meets(trial),
         "reason": trial.note or None,
     }
@@ -64,7 +66,8 @@ def missed(selection: GradedSelectionRun) -> list[str]:
         f"{100 * grade_target.tolerance:g} %",
         "same sensitivity": f"{100 * best.difference:+.1f} % apart instead of "
         f"{100 * (grade_target.same_within or 0):g} %",
-        "rated pressure": f"{best.rated / KPA:.1f} kPa, less than {max(grade_target.pressures) / KPA:g} kPa",
+        "limit pressure": f"0.9 of it is {best.highest / KPA:.1f} kPa, less than "
+        f"{max(grade_target.pressures) / KPA:g} kPa",
         "force range": f"{best.reach:.3g} N instead of {grade_target.force or 0:g}",
         "no figures": best.note or "no straight part to fit",
     }
@@ -83,6 +86,17 @@ def missed(selection: GradedSelectionRun) -> list[str]:
             f"{grade_target.pressures[0] / KPA:g} kPa"
         )
     return lines
+
+
+def rated_warning(selection: GradedSelectionRun) -> str | None:
+    """What is driven above the rated pressure, in words; None where nothing is."""
+    best, highest = selection.search.best, max(selection.grade_target.pressures)
+    if best.note or highest <= best.rated:
+        return None
+    return (
+        f"{highest / KPA:g} kPa is above the grade's rated pressure of {tenths_below(best.rated / KPA):.1f} kPa: its "
+        "modulus follows from an assumed mixing curve; measure it on coupons before driving it so far"
+    )
 
 
 def write_graded(selection: GradedSelectionRun, name: str, folder: Path, *, overwrite: bool = False) -> Path:

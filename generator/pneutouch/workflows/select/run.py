@@ -16,8 +16,10 @@ from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.atlas_states import resin_outside_atlas
 from pneutouch.mechanics.models import NUMERICAL
 from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.rating import LIMIT_ERROR
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.uncertainty import ModelErrors, budget, measured_errors
+from pneutouch.mechanics.uncertainty.limit import limit_spread
 from pneutouch.mechanics.uncertainty.source import FIGURES, SENSITIVITY
 from pneutouch.selection import Candidate, CandidateResin, SelectionProblem, SelectionResult, choose
 from pneutouch.selection.mixes import met_by_fraction
@@ -221,6 +223,7 @@ def problem_of(
         plate_share=0.0 if "plate_diameter_mm" in scene.design.indentation.model_fields_set else _PLATE_SHARE,
         max_footprint=required.max_footprint_mm,
         connector=connector_fit(scene),
+        limit_spread=lambda resin, batch: limit_spread(batch, resin.material, scene.printer, LIMIT_ERROR).standard,
     )
 
 
