@@ -44,7 +44,7 @@ def test_json_is_the_document_that_is_written(command, tmp_path):
         (("paper-dome", "paper-dome"), "error: paper-dome is given twice; name another design or folder"),
         (("paper-dome",), "error: one thing alone cannot be compared; name another design or folder"),
         (("paper-dome", "empty"), "error: empty: holds no manifest.json: neither a build nor a characterization; "),
-        (("paper-dome", "nothing"), "error: nothing: no such design or file."),
+        (("paper-dome", "nothing"), 'error: design = "nothing": no such design or file; '),
     ],
 )
 def test_what_cannot_be_compared_is_one_clear_error(command, tmp_path, words, message):

@@ -40,7 +40,7 @@ def bench(tmp_path):
 def test_the_page_s_commands_run(line, command, bench):
     result = command(*shlex.split(line)[1:])
     assert result.returncode == 0, result.stderr
-    path = json.loads(result.stdout)["dataset"] if "--json" in line else result.stdout.strip()
+    path = json.loads(result.stdout)["dataset"] if "--json" in line else result.stdout.splitlines()[-1]
     data = xarray.load_dataset(bench / path, engine="scipy")
     assert set(data.data_vars) == {variable.name for variable in (*STATE, *POINT)}
     assert (data.status == "ok").sum() > 20
@@ -78,11 +78,32 @@ def test_the_page_names_every_variable():
 def test_the_dataset_is_named_on_stdout_and_the_states_on_stderr(command, tmp_path):
     words = ["--design", "paper-dome", "--over", "membrane.wall_thickness_mm=0.5,1.5", "--model", "membrane"]
     result = command("sweep", *words)
-    assert (result.returncode, result.stdout) == (0, "outputs/paper-dome-sweep.nc\n")
-    assert result.stderr == "2 points, states: 7 ok, 1 refused, 0 failed\n"
-    assert [path.name for path in (tmp_path / "outputs").iterdir()] == ["paper-dome-sweep.nc"]
+    head, *rows, blank, path = result.stdout.splitlines()
+    assert (result.returncode, blank, path) == (0, "", "outputs/paper-dome-sweep.nc")
+    assert head.split()[:2] == ["membrane_wall_thickness_mm", "kPa"]
+    assert [line.split()[0] for line in rows] == ["0.5"] * 4 + ["1.5"] * 4
+    assert [line.split()[-1] for line in rows] == ["ok"] * 3 + ["refused"] + ["ok"] * 4
+    first, *written = result.stderr.splitlines()
+    assert first == "2 points, states: 7 ok, 1 refused, 0 failed"
+    over = ["driving_pressure_kPa", "membrane_wall_thickness_mm"]
+    pictures = [f"paper-dome-sweep-over-{name}.{kind}" for name in over for kind in ("png", "svg")]
+    names = sorted(path.name for path in (tmp_path / "outputs").iterdir())
+    assert names == [*pictures, "paper-dome-sweep.csv", "paper-dome-sweep.nc"]
+    assert sorted(line.partition(": outputs/")[2] for line in written) == [*pictures, "paper-dome-sweep.csv"]
+    before = {name: (tmp_path / "outputs" / name).read_bytes() for name in names}
+    (tmp_path / "outputs/paper-dome-sweep.csv").unlink()
     again = command("sweep", *words)
     assert "was there already" in again.stderr
+    assert {path.name: path.read_bytes() for path in (tmp_path / "outputs").iterdir()} == before
+
+
+def test_a_table_of_another_s_is_not_replaced(command, tmp_path):
+    (tmp_path / "x.csv").write_text("mine")
+    words = ["--design", "paper-dome", "--over", "membrane.wall_thickness_mm=1,1.5", "--model", "membrane"]
+    result = command("sweep", *words, "--out", "x.nc")
+    assert result.returncode == 2 and result.stderr.startswith("error: --out: x.csv is in the place of the table")
+    assert [path.name for path in tmp_path.iterdir()] == ["x.csv"]
+    assert (tmp_path / "x.csv").read_text() == "mine"
 
 
 @pytest.mark.parametrize(

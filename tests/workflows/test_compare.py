@@ -9,13 +9,15 @@ import pypdfium2
 import pytest
 
 from pneutouch.bench.simulate import SimulationTruth
-from pneutouch.catalogue import DesignSource
+from pneutouch.catalogue import DesignSource, Library
 from pneutouch.errors import InputError
+from pneutouch.spec.toml_text import toml_text
 from pneutouch.workflows.characterize.run import characterize
 from pneutouch.workflows.characterize.run import write as write_measured
 from pneutouch.workflows.compare import compare, write
 from pneutouch.workflows.simulate.options import SimulationOptions
 from pneutouch.workflows.simulate.run import simulate
+from tests.mechanics.test_rating import calibrated
 
 RIG = SimulationOptions(
     specimens=2,
@@ -64,6 +66,27 @@ def test_a_build_is_the_design_that_it_was_built_from(built, library):
     )
     assert "membrane.inner_radius_mm" not in again.document["inputs"]
     assert any("predicted again" in note for note in again.document["notes"])
+
+
+def test_a_design_is_compared_with_its_calibrated_self(library, tmp_path):
+    """One specimen of known modulus: narrower than any print; what two sensors with it share cancels."""
+    (tmp_path / "calibrations").mkdir()
+    calibration = calibrated(0.03, 0.02, 0.0).model_dump(mode="json", exclude_none=True)
+    (tmp_path / "calibrations/A1.toml").write_text(toml_text(calibration))
+    place = Library((tmp_path, *library.folders))
+    other = DesignSource("other", {"calibration": "A1", "pneumatics": {"dead_volume_mL": 0.5}}, "other")
+    result = compare(["paper-dome", "paper-dome@A1", other], library=place, model="atlas")
+    labels = [one["label"] for one in result.document["compared"]]
+    assert labels == ["paper-dome", "paper-dome@A1", "other@A1"]
+    assert result.document["inputs"]["calibration"] == [None, "A1", "A1"]
+    limit = rows(result, "limit_pressure_kPa")[None]
+    drawn, specimen, same = limit["values"]
+    assert specimen["low"] > drawn["low"] and specimen["high"] < drawn["high"] and same == specimen
+    together, apart = compare(["paper-dome@A1", other], library=place, model="atlas"), limit["differences"][0]
+    (alike,) = rows(together, "limit_pressure_kPa")[None]["differences"]
+    assert alike["exceeds"] is False
+    assert alike["high_percent"] < 0.1 * apart["high_percent"]
+    assert alike["high_percent"] < 0.3 * 100 * (specimen["high"] / specimen["value"] - 1)
 
 
 def test_results_alone_are_their_measurement_and_their_prediction(results, library):

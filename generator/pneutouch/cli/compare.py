@@ -24,7 +24,8 @@ from pneutouch.cli.terminal import echo
 @app.command()
 def compare(
     things: Annotated[
-        list[str], typer.Argument(metavar="A B...", help="Designs, folders that build or characterize wrote.")
+        list[str],
+        typer.Argument(metavar="A B...", help="Designs, DESIGN@CALIBRATION, folders of build or characterize."),
     ],
     set_: SetOption = None,
     model: ModelOption = None,

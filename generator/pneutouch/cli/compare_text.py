@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from pneutouch.cli.table import paragraph, table_text
+from pneutouch.cli.table import table_text
 from pneutouch.report.compared import words
 
 
@@ -17,8 +17,8 @@ def comparison_text(document: dict[str, Any]) -> str:
         rows = [_row(row) for row in document["figures"] if row["driving_pressure_kPa"] == pressure_kPa]
         head = [words.heading(pressure_kPa), *labels, *_difference_heads(labels)]
         lines += ["", table_text(head, rows)]
-    lines += ["", *(paragraph(sentence) for sentence in words.summary(document)), ""]
-    return "\n".join([*lines, *(paragraph(note) for note in (document["criterion"], *document["notes"]))])
+    lines += ["", *words.summary(document), ""]
+    return "\n".join([*lines, document["criterion"], *document["notes"]])
 
 
 def _difference_heads(labels: list[str]) -> list[str]:

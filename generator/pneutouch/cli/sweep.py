@@ -51,15 +51,19 @@ def sweep(
         # Before numpy loads: the processes take the cores, and results must not depend on how many there are.
         os.environ["OMP_NUM_THREADS"] = "1"
         from pneutouch.workflows.sweep import sweep as run
+        from pneutouch.workflows.sweep.companions import check_companions, write_companions
         from pneutouch.workflows.sweep.run import ComputeResources
 
         plan = _plan(
             file, design, over or [], changes(set_, calibration), {"model": model, "closure": closure, "clamp": clamp}
         )
         target = Path("outputs") / f"{plan.name}.nc" if out is None else out
+        if not fresh:
+            check_companions(target)
         with bar("points") as progress:
             done = run(plan, target, ComputeResources(workers, scheduler), fresh=fresh, progress=progress)
-        _report(done, json=json)
+        rows, written = write_companions(done.path)
+        _report(done, rows, written, json=json)
 
 
 def _plan(
@@ -78,8 +82,8 @@ def _plan(
     return plan_of_flags(design, over, changed, **options)
 
 
-def _report(done: SweepResult, *, json: bool) -> None:
-    """The dataset on stdout; on stderr what became of the states."""
+def _report(done: SweepResult, rows: list[dict[str, Any]], written: list[Path], *, json: bool) -> None:
+    """The table, and last the dataset, on stdout; on stderr what became of the states and the other files."""
     if json:
         print_json(
             {
@@ -88,10 +92,17 @@ def _report(done: SweepResult, *, json: bool) -> None:
                 "computed": done.computed,
                 "states": done.states,
                 "input_hash": done.input_hash,
+                "table": str(written[0]),
+                "pictures": [str(path) for path in written[1:]],
             }
         )
         return
     counts = ", ".join(f"{count} {status}" for status, count in done.states.items())
     there = "; was there already, --fresh computes it again" if done.computed == 0 else ""
+    from pneutouch.cli.sweep_text import sweep_text
+
+    echo(sweep_text(rows, written[0]))
     notify(f"{done.points} points, states: {counts}{there}")
-    echo(str(done.path))
+    for path in written:
+        notify(f"written: {path}")
+    echo(f"\n{done.path}")

@@ -1,22 +1,13 @@
-"""Tables and paragraphs wrapped to the width of the terminal; whole lines where stdout is none."""
+"""Tables wrapped to the width of the terminal; whole lines where stdout is none."""
 
 import io
-import shutil
 import sys
-import textwrap
 from collections.abc import Sequence
 
-_LEAST, _WHOLE = 40, 100_000
+from pneutouch.cli.terminal import width
 
-
-def width() -> int:
-    """Columns of the terminal; where stdout is none, more than any line has."""
-    return max(_LEAST, shutil.get_terminal_size().columns) if sys.stdout.isatty() else _WHOLE
-
-
-def paragraph(text: str, columns: int | None = None) -> str:
-    """A text in lines of at most ``columns`` letters (None: the terminal's)."""
-    return textwrap.fill(text, columns or width(), break_long_words=False, break_on_hyphens=False)
+_WHOLE = 100_000
+"""Columns where stdout is no terminal: more than any line has."""
 
 
 def table_text(head: Sequence[str], rows: Sequence[Sequence[str]], columns: int | None = None) -> str:
@@ -32,5 +23,6 @@ def table_text(head: Sequence[str], rows: Sequence[Sequence[str]], columns: int 
     for row in rows:
         table.add_row(*(Text(cell) for cell in row))
     stream = io.StringIO()
-    Console(file=stream, width=columns or width(), no_color=True, highlight=False, legacy_windows=False).print(table)
+    fit = columns or width(sys.stdout) or _WHOLE
+    Console(file=stream, width=fit, no_color=True, highlight=False, legacy_windows=False).print(table)
     return "\n".join(line.rstrip() for line in stream.getvalue().splitlines())

@@ -35,6 +35,7 @@ class FigureColumn(NamedTuple):
 
 
 FIGURES = (
+    FigureColumn("rated_pressure_kPa", "rated pressure", "kPa", of_state=False),
     FigureColumn("limit_pressure_kPa", "limit pressure", "kPa", of_state=False),
     FigureColumn("sensitivity_kPa_per_N", "sensitivity", "kPa/N"),
     FigureColumn("stiffness_N_per_mm", "stiffness", "N/mm"),
@@ -131,7 +132,8 @@ def different_inputs(sensors: Sequence[ComparedSensor]) -> dict[str, list[Any]]:
     """The inputs that differ, a value a sensor; None where it is not known."""
     keys = dict.fromkeys(key for sensor in sensors for key in sensor.inputs)
     rows = {key: [sensor.inputs.get(key) for sensor in sensors] for key in keys}
-    known = {key: [s.inputs[key] for s in sensors if key in s.inputs] for key in keys}
+    # What a prediction does not name it has not; of a measurement no input is known.
+    known = {key: [s.inputs.get(key) for s in sensors if s.inputs] for key in keys}
     return {key: values for key, values in rows.items() if any(value != known[key][0] for value in known[key])}
 
 
@@ -228,6 +230,8 @@ def _notes(sensors: Sequence[ComparedSensor], pressures_kPa: Sequence[float], in
             "different resins, which do not correlate in Table S1."
         )
     if any(s.kind != "measured" for s in sensors):
+        if any("calibration" in s.inputs for s in predicted):
+            notes.append("A calibrated prediction is of one specimen, that of a design of any print of it.")
         notes.append("The model's own error is known for the sensitivity alone: in other figures it is not counted.")
     if any(s.kind == "measured" for s in sensors):
         notes.append("A measured interval (95 %) holds the scatter that was seen; it is taken as independent.")

@@ -13,6 +13,9 @@ Table S1 that the model's error is pooled from gives 0.749. Between resins it is
 _OF_RESIN = ("published modulus", "mixing fraction", "ageing of the modulus", "ageing")
 """Sources that are one unknown number for all sensors in one resin, of one age."""
 
+_OF_SPECIMEN = ("calibrated parameters",)
+"""Sources that are one unknown number for all sensors that stand for one calibrated specimen."""
+
 _MODEL = "model"
 
 
@@ -28,22 +31,20 @@ class SourceEffect:
 def effects_of(uncertainty: Mapping[str, Any], figure: str) -> tuple[SourceEffect, ...]:
     """Effects of every source on a figure, from a state's uncertainty document; their squares sum to its variance."""
     entry = uncertainty["figures"][figure]
-    sources = {source["name"]: source for source in uncertainty["sources"] if figure in source["figures"]}
-    slopes = uncertainty["elasticities"][figure]
-    return tuple(
-        SourceEffect(
-            name,
-            sources[name]["origin"] if name in sources else "",
-            math.copysign(
-                entry["standard_uncertainty_relative"] * math.sqrt(share), slopes.get(_input(sources, name), 1.0)
-            ),
-        )
-        for name, share in entry["shares"].items()
-    )
-
-
-def _input(sources: Mapping[str, Any], name: str) -> str:
-    return str(sources[name]["acts_on"]) if name in sources else ""
+    total, slopes = entry["standard_uncertainty_relative"], uncertainty["elasticities"][figure]
+    origins: dict[str, str] = {}
+    inputs: dict[str, set[str]] = {}
+    for source in uncertainty["sources"]:
+        if figure in source["figures"]:
+            origins[source["name"]] = source["origin"]
+            inputs.setdefault(source["name"], set()).add(source["acts_on"])
+    effects = []
+    for name, share in entry["shares"].items():
+        # What acts on several inputs at once has no sign that holds for it alone.
+        acts_on = inputs.get(name, set())
+        slope = slopes.get(next(iter(acts_on)), 1.0) if len(acts_on) == 1 else 1.0
+        effects.append(SourceEffect(name, origins.get(name, ""), math.copysign(total * math.sqrt(share), slope)))
+    return tuple(effects)
 
 
 def variance_of_ratio(first: Sequence[SourceEffect], second: Sequence[SourceEffect], *, same_resin: bool) -> float:
@@ -64,6 +65,6 @@ def variance_of_ratio(first: Sequence[SourceEffect], second: Sequence[SourceEffe
 
 
 def _coefficient(one: SourceEffect, other: SourceEffect) -> float:
-    if one.name in _OF_RESIN:
+    if one.name in _OF_RESIN or (one.name in _OF_SPECIMEN and one.origin == other.origin):
         return 1.0
     return MODEL_CORRELATION if one.name == _MODEL and one.origin == other.origin else 0.0

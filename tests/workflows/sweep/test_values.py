@@ -10,6 +10,7 @@ import pytest
 
 from pneutouch import __version__
 from pneutouch.errors import ComputationError
+from pneutouch.evaluation.document import prediction_document
 from pneutouch.workflows.sweep import plan_of_file, sweep, work
 from pneutouch.workflows.sweep.run import ComputeResources
 from tests.workflows.sweep.conftest import load, small
@@ -41,6 +42,9 @@ def agrees(point, document):
         assert (str(here.status.values), str(here.message.values)) == ("ok", "")
         for name in FIGURES:
             assert same(here[name], state[name]), name
+        interval = state["uncertainty"].get("figures", {}).get("sensitivity_kPa_per_N", {})
+        assert same(here.sensitivity_low_kPa_per_N, interval.get("low"))
+        assert same(here.sensitivity_high_kPa_per_N, interval.get("high"))
         low, high = state["force_range_N"] or (None, None)
         assert same(here.force_range_low_N, low)
         assert same(here.force_range_high_N, high)
@@ -78,7 +82,7 @@ def test_every_figure_is_that_of_predict(model, resins, walls, evaluated, librar
     }
     for resin, wall in itertools.product(resins, walls):
         words = [f"membrane.material={resin}", f"membrane.wall_thickness_mm={wall}", "pneumatics.dead_volume_mL=0.3"]
-        document = evaluated("paper-dome", *words, model=model).prediction.document()
+        document = prediction_document(evaluated("paper-dome", *words, model=model))
         agrees(data.sel(membrane_material=resin, membrane_wall_thickness_mm=wall), document)
 
 
@@ -94,9 +98,9 @@ def test_a_list_has_its_own_pressures_and_values(evaluated, library, tmp_path):
     assert data.membrane_wall_thickness_mm.values.tolist() == [1.5, 1.0]
     assert data.status.values.tolist() == [["ok"] * 4 + [""], ["", "", "ok", "", "refused"]]
     asked = evaluated("paper-dome", "indentation.steps=10", "membrane.material=FLX9940", model="membrane")
-    agrees(data.sel(point=0), asked.prediction.document())
+    agrees(data.sel(point=0), prediction_document(asked))
     words = ["indentation.steps=10", "membrane.wall_thickness_mm=1", "pneumatics.driving_pressures_kPa=[12]"]
-    agrees(data.sel(point=1), evaluated("paper-dome", *words, model="membrane").prediction.document())
+    agrees(data.sel(point=1), prediction_document(evaluated("paper-dome", *words, model="membrane")))
     assert np.isnan(data.sensitivity_kPa_per_N.values[data.status.values != "ok"]).all()
 
 
@@ -121,7 +125,7 @@ def test_pressures_beyond_the_limit_are_refused_and_the_others_predicted(model, 
     outcome = sweep(plan, tmp_path / "x.nc", ALONE, library=library)
     point = load(tmp_path / "x.nc").isel(point=0)
     assert outcome.states == {"ok": 1, "refused": 2, "failed": 0}
-    document = evaluated("paper-dome", "pneumatics.driving_pressures_kPa=[5]", model=model).prediction.document()
+    document = prediction_document(evaluated("paper-dome", "pneumatics.driving_pressures_kPa=[5]", model=model))
     agrees(point, document)
     limit = document["limits"]["limit_point_kPa"]
     assert point.status.values.tolist() == ["ok", "refused", "refused"]

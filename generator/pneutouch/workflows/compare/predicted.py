@@ -51,7 +51,7 @@ class PredictedColumn:
         """The column; where there is a measurement, figures of the curve are read at its depths."""
         states = [_state(state, self.document, depths) for state in self.document["states"]]
         return ComparedSensor(
-            name=self.scene.name,
+            name=self._name(),
             kind=self.kind,
             source=self.source,
             inputs=self._inputs(),
@@ -70,9 +70,20 @@ class PredictedColumn:
             for key, value in content.items()
         }
         top = {key: value for key, value in tables.items() if not isinstance(value, dict)}
-        modulus = self.scene.membrane_material.shear_modulus_MPa
-        more = {"shear_modulus_MPa": modulus.nominal} if modulus is not None else {}
-        return {**top, **fields, "model": self.model, "clamp": self.clamp, **more}
+        more = {"model": self.model, "clamp": self.clamp, "dead_volume_mL": self.document["dead_volume_mL"]}
+        more |= self._parameters()
+        return {**top, **fields, **{f"prediction.{key}": value for key, value in more.items()}}
+
+    def _name(self) -> str:
+        calibration = self.scene.design.calibration_name
+        return self.scene.name if calibration is None else f"{self.scene.name}@{calibration}"
+
+    def _parameters(self) -> dict[str, float]:
+        """Parameters that the figures follow from: those of a calibration, where there is one."""
+        calibration, modulus = self.scene.calibration, self.scene.membrane_material.shear_modulus_MPa
+        if calibration is not None:
+            return {key: calibration.value(key) for key in ("shear_modulus_MPa", "wall_thickness_mm")}
+        return {} if modulus is None else {"shear_modulus_MPa": modulus.nominal}
 
     def _assembly(self) -> Assembly:
         return assemble(self.scene) if self.evaluation is None else self.evaluation.assembly
@@ -108,6 +119,7 @@ def _state(state: Mapping[str, Any], document: Mapping[str, Any], depths: Depths
     pressure_kPa = float(state["driving_pressure_kPa"])
     plain = {
         "limit_pressure_kPa": document["limits"]["limit_point_kPa"],
+        "rated_pressure_kPa": document.get("rating", {}).get("rated_pressure_kPa"),
         "force_at_range_end_N": None if state["force_range_N"] is None else state["force_range_N"][1],
         **{figure.key: state.get(figure.key) for figure in FIGURES if figure.key in state},
     }

@@ -7,6 +7,7 @@ from typing import Any
 from pneutouch import __version__
 from pneutouch.catalogue import KINDS, DesignSource, Library, load_scene
 from pneutouch.errors import InputError
+from pneutouch.evaluation.evaluate import elastomers
 from pneutouch.output.files import digest, json_bytes
 from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION, DesignFile
 from pneutouch.spec.fields import declaration, table_of
@@ -61,6 +62,9 @@ def study(plan: SweepPlan, library: Library) -> SweepStudy:
     names = _names(plan, base)
     # A design that names no tube takes one of its port's.
     names |= {("tubes", tube) for kind, name in names if kind == "ports" for tube in library.load(kind, name).tubes}
+    if plan.model != "membrane":
+        # The uncertainty takes the model's error from every resin that was measured.
+        names |= {("materials", name) for name in elastomers(library)}
     for kind, name in sorted(names):
         path = library.paths(kind)[name]
         files[f"{KINDS[kind].folder}/{name}.toml"] = path.read_text(encoding="utf-8-sig")

@@ -42,6 +42,9 @@ def _range_event(state: Document) -> str:
     return next((event["kind"] for event in state["events"] if event["ends_range"]), "depth")
 
 
+_INTERVAL = ("uncertainty", "figures", "sensitivity_kPa_per_N")
+_END = "end of the interval of the sensitivity, k = 2; unknown: NaN"
+
 STATE: tuple[SweepVariable, ...] = (
     SweepVariable(
         "status",
@@ -52,6 +55,8 @@ STATE: tuple[SweepVariable, ...] = (
     ),
     SweepVariable("message", "", "why a state is refused or failed", lambda _: "", True),
     _number("sensitivity_kPa_per_N", "kPa/N", "slope of pressure rise over contact force, first contact to range end"),
+    _number("sensitivity_low_kPa_per_N", "kPa/N", f"lower {_END}", *_INTERVAL, "low"),
+    _number("sensitivity_high_kPa_per_N", "kPa/N", f"upper {_END}", *_INTERVAL, "high"),
     _number("sensitivity_through_origin_kPa_per_N", "kPa/N", "the same slope of a line through the origin"),
     _number("r_squared", "1", "coefficient of determination of the straight line"),
     _number("nonlinearity_percent", "percent", "greatest distance from the straight line over the full-scale rise"),
@@ -97,7 +102,7 @@ POINT: tuple[SweepVariable, ...] = (
 
 
 def state_values(state: Document) -> Document:
-    """What a dataset keeps of a state of a prediction."""
+    """What a dataset keeps of a state of a prediction, its uncertainty included."""
     return {variable.name: variable.read(state) for variable in STATE}
 
 

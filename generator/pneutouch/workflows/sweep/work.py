@@ -9,7 +9,7 @@ from typing import Any
 
 from pneutouch.catalogue import Library
 from pneutouch.errors import BeyondLimitError, InputError, PneutouchError
-from pneutouch.evaluation.document import rating_document
+from pneutouch.evaluation.document import prediction_document
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.units import KPA
 from pneutouch.workflows.sweep.cached_library import CachedLibrary
@@ -102,10 +102,9 @@ def _record(chunk: SweepChunk, point: SweepPoint, library: Library) -> Record:
 
 def _predicted(chunk: SweepChunk, point: SweepPoint, library: Library) -> tuple[list[dict[str, Any]], dict[str, Any]]:
     changes = {**point.settings, PRESSURES: list(point.driving_pressures_kPa)}
-    evaluation = evaluate(
-        chunk.design, changes, model=chunk.model, closure=chunk.closure, clamp=chunk.clamp, library=library
+    prediction = prediction_document(
+        evaluate(chunk.design, changes, model=chunk.model, closure=chunk.closure, clamp=chunk.clamp, library=library)
     )
-    prediction = {**evaluation.prediction.document(), "rating": rating_document(evaluation)}
     return [state_values(state) for state in prediction["states"]], point_values(prediction)
 
 

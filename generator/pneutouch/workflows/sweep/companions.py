@@ -1,0 +1,123 @@
+"""What stands next to a dataset: its table as CSV, and its pictures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pneutouch.errors import InputError
+from pneutouch.tables.csv_write import csv_bytes
+from pneutouch.workflows.sweep.dataset import PRESSURE
+from pneutouch.workflows.sweep.journal import replace_whole
+from pneutouch.workflows.sweep.variables import POINT, STATE
+
+if TYPE_CHECKING:
+    import xarray
+
+    from pneutouch.report.swept import SweptFigure
+
+FIGURE = "sensitivity_kPa_per_N"
+"""The figure that is drawn."""
+
+_ENDS = "sensitivity_low_kPa_per_N", "sensitivity_high_kPa_per_N"
+
+
+def table_rows(content: xarray.Dataset) -> list[dict[str, Any]]:
+    """A row a state that was requested, in the order of the dataset: swept fields, driving pressure, then figures.
+
+    Numbers that are not there are None.
+    """
+    dims = list(content["status"].dims)
+    names = [v.name for v in (*STATE, *POINT)]
+    fields = [str(name) for name in content.coords if name not in (*dims, PRESSURE)]
+    swept = [*(str(dim) for dim in dims if dim != PRESSURE), *fields]
+    arrays = {name: content[name].values for name in (*swept, PRESSURE, *names)}
+    of_dims = {name: [dims.index(dim) for dim in content[name].dims] for name in arrays}
+    rows = []
+    for place in np.ndindex(*(content.sizes[dim] for dim in dims)):
+        row = {name: _plain(values[tuple(place[k] for k in of_dims[name])]) for name, values in arrays.items()}
+        if row["status"]:
+            rows.append(row)
+    return rows
+
+
+def _plain(value: Any) -> Any:
+    """A number or text of Python; None for NaN."""
+    value = value.item() if hasattr(value, "item") else value
+    return None if isinstance(value, float) and np.isnan(value) else value
+
+
+def table_csv(rows: list[dict[str, Any]]) -> bytes:
+    """The rows as a CSV file; numbers with twelve digits, as the dataset holds them."""
+    head = list(rows[0]) if rows else []
+    return csv_bytes(head, [[_cell(value) for value in row.values()] for row in rows])
+
+
+def _cell(value: Any) -> Any:
+    return "" if value is None else f"{value:.12g}" if isinstance(value, float) else value
+
+
+def check_companions(out: Path) -> None:
+    """Raise InputError where the table would take the place of a file that no sweep wrote."""
+    table = out.with_suffix(".csv")
+    if table.exists() and not out.exists():
+        raise InputError(f"{table} is in the place of the table", key="out", remedy="give another `out`, or move it")
+
+
+def write_companions(out: Path) -> tuple[list[dict[str, Any]], list[Path]]:
+    """Write table and pictures of a finished dataset next to it; returns the rows and the files written."""
+    import xarray
+
+    from pneutouch.report.swept import pictures
+
+    with xarray.open_dataset(out, engine="scipy") as opened:
+        content = opened.load()
+    rows = table_rows(content)
+    files = {out.with_suffix(".csv"): table_csv(rows)}
+    swept = swept_figure(content)
+    if swept is not None:
+        for name, (text, image) in pictures(swept).items():
+            stem = f"{out.stem}-{name}"
+            files |= {out.with_name(f"{stem}.svg"): text.encode(), out.with_name(f"{stem}.png"): image}
+    for path, data in files.items():
+        replace_whole(path.with_name(f".{path.name}.new"), path, data)
+    return rows, list(files)
+
+
+def swept_figure(content: xarray.Dataset) -> SweptFigure | None:
+    """The drawn figure over the swept fields; None where no state has one. A list is drawn over its first field."""
+    from pneutouch.report.swept import SweptFigure
+
+    if not np.isfinite(content[FIGURE].values).any():
+        return None
+    dims = [str(dim) for dim in content[FIGURE].dims]
+    if dims[0] == "point":
+        content = _gridded(content)
+        dims = [str(dim) for dim in content[FIGURE].dims]
+    axes = tuple(_axis(content, name) for name in dims)
+    arrays = (content[name].values for name in (FIGURE, *_ENDS))
+    return SweptFigure("sensitivity  (kPa/N)", axes, *arrays)
+
+
+def _gridded(content: xarray.Dataset) -> xarray.Dataset:
+    """A list of points as a grid over its fields, where it is one; else over the number of the point."""
+    fields = [str(name) for name, values in content.coords.items() if name != "point" and values.dims == ("point",)]
+    kept = content[[FIGURE, *_ENDS]]
+    places = list(zip(*(content[name].values.tolist() for name in fields), strict=True))
+    if len(fields) == 1 and len(set(places)) == len(places):
+        return kept.swap_dims(point=fields[0]).sortby(fields[0])
+    return kept
+
+
+def _axis(content: xarray.Dataset, name: str) -> Any:
+    from pneutouch.report.swept import SweptAxis
+
+    values = content[name]
+    unit = str(values.attrs.get("units", ""))
+    plain = tuple(_plain(value) for value in values.values)
+    if name == PRESSURE:
+        return SweptAxis(name, "driving pressure", unit, plain)
+    words = str(values.attrs.get("key", name)).replace(".", " ").replace("_", " ")
+    return SweptAxis(name, words.removesuffix(f" {unit.replace('/', ' per ')}"), unit, plain)

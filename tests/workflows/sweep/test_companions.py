@@ -1,0 +1,103 @@
+"""The table and the pictures next to a dataset: what they hold is what the dataset holds."""
+
+from __future__ import annotations
+
+import csv
+import io
+
+import numpy as np
+import pytest
+
+from pneutouch.report.swept import SweptAxis, SweptFigure, pictures
+from pneutouch.workflows.sweep import plan_of_file, sweep
+from pneutouch.workflows.sweep.companions import swept_figure, table_csv, table_rows, write_companions
+from pneutouch.workflows.sweep.run import ComputeResources
+from tests.workflows.sweep.conftest import load, small
+
+ALONE = ComputeResources(workers=1)
+
+
+@pytest.fixture(scope="module")
+def swept(tmp_path_factory, library):
+    """Two resins, three walls, two pressures; the highest is beyond the limit of the thinnest soft wall."""
+    out = tmp_path_factory.mktemp("swept") / "x.nc"
+    over = [
+        "membrane.material=TangoPlus,FLX9960",
+        "membrane.wall_thickness_mm=0.7,1.1,1.5",
+        "pneumatics.driving_pressures_kPa=0,22",
+    ]
+    sweep(small(over, model="atlas"), out, ALONE, library=library)
+    return out
+
+
+def test_the_table_is_the_dataset_row_by_row(swept):
+    data = load(swept)
+    rows = list(csv.DictReader(io.StringIO(table_csv(table_rows(data)).decode(), newline="")))
+    assert len(rows) == data.status.size == 12
+    assert list(rows[0])[:3] == ["membrane_material", "membrane_wall_thickness_mm", "driving_pressure_kPa"]
+    for row in rows:
+        place = {
+            "membrane_material": row["membrane_material"],
+            "membrane_wall_thickness_mm": float(row["membrane_wall_thickness_mm"]),
+            "driving_pressure_kPa": float(row["driving_pressure_kPa"]),
+        }
+        point = data.sel(place)
+        assert row["status"] == str(point.status.values)
+        assert row["message"] == str(point.message.values)
+        for name in ("sensitivity_kPa_per_N", "sensitivity_low_kPa_per_N", "limit_point_kPa"):
+            value = float(point[name])
+            assert row[name] == ("" if np.isnan(value) else f"{value:.12g}")
+    assert [row["status"] for row in rows].count("refused") == 1
+
+
+def test_bands_hold_the_figure_and_resins_are_categories(swept):
+    figure = swept_figure(load(swept))
+    words = [(axis.label, axis.numeric) for axis in figure.axes]
+    assert words == [
+        ("membrane material", False),
+        ("membrane wall thickness  (mm)", True),
+        ("driving pressure  (kPa)", True),
+    ]
+    known = np.isfinite(figure.value)
+    assert known.sum() == 11
+    assert (figure.low[known] < figure.value[known]).all() and (figure.value[known] < figure.high[known]).all()
+
+
+def test_pictures_are_written_for_each_field_the_same_twice(swept, tmp_path):
+    again = tmp_path / "x.nc"
+    again.write_bytes(swept.read_bytes())
+    _, files = write_companions(swept)
+    _, others = write_companions(again)
+    fields = ("membrane_material", "membrane_wall_thickness_mm", "driving_pressure_kPa")
+    assert [path.name for path in files] == [
+        "x.csv",
+        *(f"x-over-{name}.{kind}" for name in fields for kind in ("svg", "png")),
+    ]
+    assert [path.read_bytes() for path in files] == [path.read_bytes() for path in others]
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(["x.nc", *(path.name for path in others)])
+
+
+def test_two_numbers_give_a_map_and_one_value_gives_no_picture():
+    axes = SweptAxis("a_mm", "a", "mm", (1.0, 2.0, 3.0)), SweptAxis("b_mm", "b", "mm", (4.0, 5.0))
+    value = np.array([[1.0, 2.0], [3.0, np.nan], [5.0, 6.0]])
+    drawn = pictures(
+        SweptFigure("S", (*axes, SweptAxis("driving_pressure_kPa", "p", "kPa", (0.0,))), *[value[..., None]] * 3)
+    )
+    assert list(drawn) == ["over-a_mm", "over-b_mm", "map"]
+    for text, image in drawn.values():
+        assert '<rect width="100%" height="100%" fill="#ffffff"/>' in text
+        assert image.startswith(b"\x89PNG")
+    alone = SweptFigure("S", (SweptAxis("a_mm", "a", "mm", (1.0,)),), *[np.array([1.0])] * 3)
+    assert pictures(alone) == {}
+
+
+def test_a_list_is_drawn_over_its_only_field(library, tmp_path):
+    points = "".join(f"[[point]]\nmembrane.wall_thickness_mm = {wall}\n" for wall in (1.5, 1.0, 1.2))
+    (tmp_path / "list.toml").write_text(f'design = "paper-dome"\nmodel = "membrane"\n{points}')
+    sweep(plan_of_file(tmp_path / "list.toml"), tmp_path / "y.nc", ALONE, library=library)
+    figure = swept_figure(load(tmp_path / "y.nc"))
+    assert figure.axes[0].key == "membrane_wall_thickness_mm" and figure.axes[0].values == (1.0, 1.2, 1.5)
+    rows = table_rows(load(tmp_path / "y.nc"))
+    assert [row["membrane_wall_thickness_mm"] for row in rows[::4]] == [1.5, 1.0, 1.2]
+    value = {row["membrane_wall_thickness_mm"]: row["sensitivity_kPa_per_N"] for row in rows[::4]}
+    assert figure.value[:, 0].tolist() == [value[wall] for wall in (1.0, 1.2, 1.5)]
