@@ -74,6 +74,16 @@ def test_what_was_not_tested_says_so(html, pdf_text):
     assert "Predicted. No unit has been built or tested." in pdf_text[0]
 
 
+def test_a_pressure_above_the_rating_is_warned_of_first_and_the_rating_shows_its_limit(built, html, pdf_text):
+    first, every = " ".join(pdf_text[0].split()), " ".join(" ".join(pdf_text).split())
+    warning = "Warning: 22 kPa is above the rated pressure of 19.7 kPa."
+    assert html.count(warning) == 1 and html.index(warning) < html.index("Performance") and warning in first
+    for words in ("39.6 kPa nominal", "21.9 to 71.5 kPa at k = 2", "measure the modulus on coupons"):
+        assert words in html and words in every
+    other = (built("fingertip-dome") / "datasheet.html").read_text(encoding="utf-8")
+    assert "Warning:" not in other and "To raise the rated pressure of 31.2 kPa" in other
+
+
 def test_published_measurements_stand_beside_the_prediction_only_for_the_papers_sensor(built, html):
     assert "2.547" in html
     assert "1.923" in html
