@@ -28,15 +28,21 @@ def calibration_text(document: dict[str, Any]) -> str:
     return "\n\n".join(part for part in parts if part)
 
 
-def _response(response: dict[str, float] | None) -> str:
-    if response is None:
+def _response(response: list[dict[str, float]]) -> str:
+    if not response:
         return "no curves: the model's error in sensitivity stays that of the resin"
-    force, pressure = response["force_factor"], response["pressure_factor"]
-    return (
-        f"correction of the fitted model: force times {force:.4g}, pressure rise times {pressure:.4g}, so sensitivity "
-        f"{pressure / force - 1:+.1%}; its error in sensitivity then: {response['sensitivity_error_relative']:.1%} "
-        "(standard uncertainty)"
-    )
+    head = ["kPa", "force times", "pressure rise times", "sensitivity", "error left in it"]
+    rows = [
+        [
+            f"{row['driving_pressure_kPa']:g}",
+            f"{row['force_factor']:.4f}",
+            f"{row['pressure_factor']:.4f}",
+            f"{row['pressure_factor'] / row['force_factor'] - 1:+.1%}",
+            f"{row['sensitivity_error_relative']:.1%}",
+        ]
+        for row in response
+    ]
+    return f"correction of the fitted model (errors are standard uncertainties):\n{columns(head, rows)}"
 
 
 def _interval(estimate: dict[str, Any]) -> str:

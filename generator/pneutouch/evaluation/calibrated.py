@@ -5,9 +5,9 @@ from pneutouch.errors import InputError
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.prediction import ErrorEstimate
 from pneutouch.mechanics.sensor import ResponseCorrection
-from pneutouch.spec.calibration import SensorCalibration
+from pneutouch.spec.calibration import CalibratedResponse, SensorCalibration
 from pneutouch.spec.design import CALIBRATION
-from pneutouch.units import ML
+from pneutouch.units import KPA, ML
 
 
 def calibrated_sensor(sensor: Sensor, scene: ResolvedDesign) -> Sensor:
@@ -25,10 +25,14 @@ def calibrated_sensor(sensor: Sensor, scene: ResolvedDesign) -> Sensor:
         shear_modulus=calibration.value("shear_modulus_MPa"),
         wall_thickness=calibration.value("wall_thickness_mm"),
         dead_volume=max(calibration.value("dead_volume_mL") * ML + added, 0.0),
-        correction=ResponseCorrection()
-        if response is None
-        else ResponseCorrection(response.force_factor, response.pressure_factor),
+        correction=ResponseCorrection() if response is None else correction_of(calibration, response),
     )
+
+
+def correction_of(calibration: SensorCalibration, response: CalibratedResponse) -> ResponseCorrection:
+    """The factors of a calibration by driving pressure."""
+    pressures = tuple(pressure_kPa * KPA for pressure_kPa in calibration.source.driving_pressures_kPa)
+    return ResponseCorrection(pressures, tuple(response.force_factors), tuple(response.pressure_factors))
 
 
 def check_options(scene: ResolvedDesign, model: str, clamp: str) -> None:
@@ -52,7 +56,8 @@ def assumption(scene: ResolvedDesign) -> str:
     made = "simulated " if source.simulated else ""
     corrected, campaign = "", source.campaign or "unnamed"
     if response is not None:
-        corrected = f"; force times {response.force_factor:.3f}, pressure rise times {response.pressure_factor:.3f}"
+        force, rise = (_span(factors) for factors in (response.force_factors, response.pressure_factors))
+        corrected = f"; force times {force}, pressure rise times {rise}"
     return (
         f"calibration {scene.design.calibration}: sensor {source.sensor}, {made}campaign {campaign}, "
         f"modulus {calibration.value('shear_modulus_MPa'):.4g} MPa, wall "
@@ -61,19 +66,24 @@ def assumption(scene: ResolvedDesign) -> str:
     )
 
 
+def _span(factors: list[float]) -> str:
+    low, high = f"{min(factors):.3f}", f"{max(factors):.3f}"
+    return low if low == high else f"{low} to {high}"
+
+
 def calibrated_error(calibration: SensorCalibration) -> ErrorEstimate | None:
     """The part of ``error_estimate`` on sensitivity by the residuals; None where no curve was measured."""
     response = calibration.response
     if response is None:
         return None
-    errors = [*response.residual_sensitivity_errors, *response.held_out_sensitivity_errors]
     pressures_kPa = calibration.source.driving_pressures_kPa
     held = len(response.held_out_sensitivity_errors)
     basis = (
         f"this model calibrated on sensor {calibration.source.sensor}, against its runs at "
         f"{', '.join(f'{p:g}' for p in pressures_kPa)} kPa" + (f", {held} of them also held out" if held else "")
     )
-    greatest = max(response.sensitivity_error_relative, *(abs(error) for error in errors))
+    held_errors = [abs(error) for error in response.held_out_sensitivity_errors]
+    greatest = max([*response.sensitivity_errors_relative, *held_errors])
     return {
         "sensitivity_relative": greatest,
         "sensitivity_basis": basis,

@@ -37,7 +37,7 @@ def curve(sensor: Sensor, highest: float, label: str) -> TuningCurve | None:
     kept = np.isfinite(response.lines.sensitivity_kPa_per_N) & (response.ends != OUTSIDE)
     if kept.sum() < 2:
         return None
-    factor = sensor.correction.sensitivity_factor
+    factor = np.array([sensor.correction.sensitivity_factor(pressure) for pressure in pressures[kept].tolist()])
     return TuningCurve(label, pressures[kept] / KPA, factor * response.lines.sensitivity_kPa_per_N[kept])
 
 

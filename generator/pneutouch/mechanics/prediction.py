@@ -72,9 +72,9 @@ class SensorState:
 
     def corrected(self, correction: ResponseCorrection) -> SensorState:
         """The state with factors on force and pressure rise; its events and the end of its range stay."""
-        if correction == ResponseCorrection():
+        by_force, by_rise = correction.at(self.driving_pressure)
+        if by_force == by_rise == 1.0:
             return self
-        by_force, by_rise = correction.force_factor, correction.rise_factor
         return replace(
             self,
             force=by_force * self.force,

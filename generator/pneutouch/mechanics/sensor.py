@@ -6,6 +6,8 @@ import dataclasses
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from pneutouch.mechanics.laws import Hyperelastic, hyperelastic, neo_hookean
 
 
@@ -62,15 +64,29 @@ class IndentationProtocol:
 
 @dataclass(frozen=True, slots=True)
 class ResponseCorrection:
-    """Factors on the contact force and the pressure rise of atlas and solid, as a calibration found them."""
+    """Factors on the contact force and the pressure rise of atlas and solid, as a calibration found them.
 
-    force_factor: float = 1.0
-    rise_factor: float = 1.0
+    Attributes:
+        driving_pressures: Where they were found, MPa, ascending; none: nothing is corrected.
+        force_factors, rise_factors: The factors there; their logarithms are straight between, constant beyond.
+    """
 
-    @property
-    def sensitivity_factor(self) -> float:
-        """What both make of the slope of pressure over force."""
-        return self.rise_factor / self.force_factor
+    driving_pressures: tuple[float, ...] = ()
+    force_factors: tuple[float, ...] = ()
+    rise_factors: tuple[float, ...] = ()
+
+    def at(self, driving_pressure: float) -> tuple[float, float]:
+        """Factors on force and rise at a driving pressure, MPa."""
+        if not self.driving_pressures:
+            return 1.0, 1.0
+        logs = (np.log(factors) for factors in (self.force_factors, self.rise_factors))
+        force, rise = (float(np.exp(np.interp(driving_pressure, self.driving_pressures, log))) for log in logs)
+        return force, rise
+
+    def sensitivity_factor(self, driving_pressure: float) -> float:
+        """What both make of the slope of pressure over force at a driving pressure, MPa."""
+        force, rise = self.at(driving_pressure)
+        return rise / force
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,7 @@
 """The calibration file: one sensor's fitted parameters, its model error, and the design that it was made to."""
 
 import math
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -14,6 +14,11 @@ FORMAT = 1
 """Number of the form that calibration files have; a file of another form is refused."""
 
 ParameterKey = Literal["shear_modulus_MPa", "wall_thickness_mm", "dead_volume_mL", "contact_offset_mm"]
+
+Factor = Annotated[float, Field(ge=0.2, le=5)]
+Share = Annotated[float, Field(ge=0, le=2)]
+
+_BY_PRESSURE = ("force_factors", "pressure_factors", "sensitivity_errors_relative", "force_errors_relative")
 
 _ROUNDING = 1e-6
 
@@ -63,15 +68,14 @@ class CalibratedParameter(Table):
 
 
 class CalibratedResponse(Table):
-    """[response]: what the fitted model leaves out: factors that correct it, and the error that remains."""
+    """[response]: what the fitted model leaves out: factors that correct it, by driving pressure, and errors."""
 
-    force_factor: float = Field(ge=0.2, le=5, description="Measured force over that of the fitted model.")
-    pressure_factor: float = Field(ge=0.2, le=5, description="Measured pressure rise over that of the fitted model.")
-    sensitivity_error_relative: float = Field(ge=0, le=2, description="Standard uncertainty of the corrected model.")
-    force_error_relative: float = Field(ge=0, le=2, description="The same of its force.")
-    residual_sensitivity_errors: list[float] = Field(
-        max_length=1000, description="Corrected model over measurement less one, by driving pressure."
+    force_factors: list[Factor] = Field(description="Measured force over that of the fitted model, by pressure.")
+    pressure_factors: list[Factor] = Field(description="Measured pressure rise over that of the fitted model.")
+    sensitivity_errors_relative: list[Share] = Field(
+        description="Standard uncertainty of the corrected model's sensitivity there."
     )
+    force_errors_relative: list[Share] = Field(description="The same of its force.")
     held_out_pressures_kPa: list[float] = Field(max_length=1000, description="Driving pressures left out of a fit.")
     held_out_sensitivity_errors: list[float] = Field(max_length=1000, description="Prediction by that fit, likewise.")
 
@@ -119,8 +123,14 @@ class SensorCalibration(Table):
     def _curves_have_a_response(self) -> "SensorCalibration":
         if (self.response is None) != (self.source.curves == 0):
             raise ValueError("response: must be there where curves were measured, and only there")
-        if self.response is not None and not self.source.driving_pressures_kPa:
-            raise ValueError("source.driving_pressures_kPa: must name those of the curves")
+        pressures_kPa = self.source.driving_pressures_kPa
+        if self.response is None:
+            return self
+        if not pressures_kPa or sorted(set(pressures_kPa)) != pressures_kPa:
+            raise ValueError("source.driving_pressures_kPa: must name those of the curves, ascending")
+        lists = [getattr(self.response, key) for key in _BY_PRESSURE]
+        if any(len(values) != len(pressures_kPa) for values in lists):
+            raise ValueError(f"response: {', '.join(_BY_PRESSURE)} must have a number for each driving pressure")
         return self
 
     def value(self, key: ParameterKey) -> float:

@@ -54,7 +54,7 @@ def shared_of(points: ObservationPoints) -> SharedUnknowns:
     travel; of each curve one error of its travel, which moves force and rise together."""
     m, values, channels = points.travel.shape[1], points.values, points.channels
     travel = points.travel / points.travel.max(axis=1, initial=1e-9)[:, None]
-    shape = smooth_share(
+    shape = _shape(
         np.concatenate([np.tile(travel.ravel(), 2), (points.volume / points.volume.max(initial=1e-9)).ravel()])
     )
     groups = np.concatenate([np.tile(np.repeat(points.group, m), 2), np.zeros(points.volume.size)])
@@ -115,7 +115,7 @@ def _unlikely(gram: Array, weight: Array) -> float:
     return float(np.linalg.slogdet(normal)[1] + gram[-1, -1] - right @ np.linalg.solve(normal, right))
 
 
-def smooth_share(depth: Array) -> Array:
+def _shape(depth: Array) -> Array:
     """A smooth share along a unit length with unit variance, as weights (N, nodes) of independent unknowns."""
     nodes = np.linspace(0.0, 1.0, _NODES)
 

@@ -72,7 +72,8 @@ def predict_held_out(
         )
         raise InputError(problem, key="hold_out_kPa", value=driving_pressure_kPa, remedy="hold out another")
     gap = response_gap(fitted)
-    factors = (1.0, 1.0) if gap is None else (gap.force_factor, gap.rise_factor)
+    # Every run of a held-out pressure has that pressure; its reading differs by a reset's scatter.
+    factors = (1.0, 1.0) if gap is None else gap.correction.at(driving_pressure_kPa * KPA)
     parts = values[0][: use.size], values[0][use.size : 2 * use.size]
     force, rise = (factor * part.reshape(shape) for factor, part in zip(factors, parts, strict=True))
     rows = [

@@ -8,6 +8,7 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.bench.protocol import RunProtocol, protocol
 from pneutouch.bench.simulate.curve import PressCurve, PressCurves
+from pneutouch.bench.simulate.deviation import ModelDeviation
 from pneutouch.bench.simulate.rig import MINUTE, RigModel
 from pneutouch.bench.simulate.run import simulate_run, within
 from pneutouch.bench.simulate.scatter import ScatterModel, SimulatedSpecimens, ageing_factor, stiffened
@@ -46,7 +47,8 @@ _KEYS = (
 
 @dataclass(frozen=True, slots=True)
 class SimulationTruth:
-    """All assumptions of the simulator: scatter of specimens and runs, the rig, the memory of the wall.
+    """All assumptions of the simulator: scatter of specimens and runs, the rig, the memory of the wall, and how
+    specimens deviate from the model that presses them.
 
     ``rest`` is the longest rest in s (None: the protocol's), ``specimens`` how many are drawn for a population.
     """
@@ -54,6 +56,7 @@ class SimulationTruth:
     scatter: ScatterModel = field(default_factory=ScatterModel)
     rig: RigModel = field(default_factory=RigModel)
     wall: WallMemory = field(default_factory=WallMemory)
+    deviation: ModelDeviation = field(default_factory=ModelDeviation)
     rest: float | None = None
     specimens: int = SPECIMENS
 

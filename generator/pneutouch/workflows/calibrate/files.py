@@ -171,13 +171,12 @@ def _covariance(calibration: Calibration) -> tuple[list[int], Array]:
 
 
 def _response(gap: ResponseGap, calibration: Calibration) -> dict[str, Any]:
-    held = [(one.driving_pressure_kPa, one.error) for one in calibration.held_out]
+    correction = gap.correction
     return {
-        "force_factor": gap.force_factor,
-        "pressure_factor": gap.rise_factor,
-        "sensitivity_error_relative": gap.sensitivity_error([error for _, error in held]),
-        "force_error_relative": gap.force_error,
-        "residual_sensitivity_errors": [float(error) for error in gap.residual_errors],
-        "held_out_pressures_kPa": [pressure_kPa for pressure_kPa, _ in held],
-        "held_out_sensitivity_errors": [error for _, error in held],
+        "force_factors": [*correction.force_factors],
+        "pressure_factors": [*correction.rise_factors],
+        "sensitivity_errors_relative": gap.sensitivity_errors.tolist(),
+        "force_errors_relative": gap.force_errors.tolist(),
+        "held_out_pressures_kPa": [one.driving_pressure_kPa for one in calibration.held_out],
+        "held_out_sensitivity_errors": [one.error for one in calibration.held_out],
     }

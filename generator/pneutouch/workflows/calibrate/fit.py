@@ -84,7 +84,7 @@ class Calibration:
             "estimates": self.estimates,
             "correlation": _correlation(self.fit),
             "fit": _goodness(self.fit),
-            "response": None if self.gap is None else _response(self.gap, self.held_out),
+            "response": [] if self.gap is None else _response(self.gap),
             "residuals": [_residual(run) for run in self.residuals],
             "misses": [_miss(m) for m in self.misses],
             "strongly_correlated": [_ambiguity(group) for group in self.identified.ambiguities],
@@ -220,13 +220,18 @@ def _goodness(fitted: CalibrationFit) -> dict[str, Any]:
     }
 
 
-def _response(gap: ResponseGap, held_out: Sequence[HeldOutPrediction]) -> dict[str, Any]:
-    return {
-        "force_factor": gap.force_factor,
-        "pressure_factor": gap.rise_factor,
-        "sensitivity_error_relative": gap.sensitivity_error([one.error for one in held_out]),
-        "force_error_relative": gap.force_error,
-    }
+def _response(gap: ResponseGap) -> list[dict[str, float]]:
+    correction = gap.correction
+    return [
+        {
+            "driving_pressure_kPa": pressure_kPa,
+            "force_factor": correction.force_factors[k],
+            "pressure_factor": correction.rise_factors[k],
+            "sensitivity_error_relative": float(gap.sensitivity_errors[k]),
+            "force_error_relative": float(gap.force_errors[k]),
+        }
+        for k, pressure_kPa in enumerate(gap.driving_pressures_kPa)
+    ]
 
 
 def _miss(miss: SystematicDeviation) -> dict[str, Any]:

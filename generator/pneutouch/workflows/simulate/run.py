@@ -9,6 +9,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.bench.simulate import (
+    ModelDeviation,
     Population,
     RecordSamples,
     SimulatedSpecimens,
@@ -39,6 +40,9 @@ PUSHED = np.linspace(0.0, 0.5, 11) * ML
 
 _OPTIONS = ("specimens", "driving_pressures_kPa", "runs", "kinds", "rate", "seed", "model", "ages_days", "parquet")
 """Options that a campaign depends on, in addition to its resins."""
+
+_DEVIATION = 1
+"""Number of the random stream of a specimen's deviation, apart from that of its parameters."""
 
 Progress = Callable[[int, int], None]
 
@@ -124,7 +128,9 @@ def _write_all(
 
 
 def _parameters(subject: SimulatedResin) -> dict[str, Any]:
-    return {part: parameters(getattr(subject.truth, part)) for part in ("scatter", "rig", "wall")}
+    deviates = subject.truth.deviation != ModelDeviation()
+    parts = ("scatter", "rig", "wall", *(["deviation"] if deviates else []))
+    return {part: parameters(getattr(subject.truth, part)) for part in parts}
 
 
 def campaign_toml(campaign: Campaign, comment: str) -> bytes:
@@ -169,7 +175,8 @@ def _specimen(
     rng = np.random.default_rng([options.seed, _number(subject.name), k])
     drawn = SimulatedSpecimens.draw(subject.truth.scatter, 1, rng)
     sensor = aged(drawn.sensor(subject.sensor, 0), subject.truth, age)
-    pressed_curves = _pressed(subject, sensor, options, name)
+    own = np.random.default_rng([options.seed, _number(subject.name), k, _DEVIATION])
+    pressed_curves = subject.truth.deviation.deviated(_pressed(subject, sensor, options, name), own)
     known: dict[str, Any] = {
         "resin": subject.name,
         "age_days": age,

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from pneutouch.arrays import Array
+from pneutouch.arrays import Array, Flags
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.uncertainty.source import (
     FIGURE,
@@ -63,25 +63,37 @@ def _parameters(batch: SensorBatch, calibration: SensorCalibration) -> Uncertain
         f"covariance of the fit to sensor {source.sensor}, {source.curves} curves and {source.injections} injections; "
         "it holds for this specimen, not for another print"
     )
-    return UncertaintySource(NAME, JOINT, np.zeros(size), "normal", counting(size), origin, True, loads=loads)
+    counts = counting(size)
+    if calibration.response is not None:
+        # Where curves were measured the correction makes up for whatever the parameters are: it moves against them.
+        counts[[SENSITIVITY, *_FORCES]] = _outside(batch, calibration)
+        origin += "; sensitivity and force within the driving pressures measured do not follow from it"
+    return UncertaintySource(NAME, JOINT, np.zeros(size), "normal", counts, origin, True, loads=loads)
+
+
+def _outside(batch: SensorBatch, calibration: SensorCalibration) -> Flags:
+    """Which of n sensors are at driving pressures beyond those of the calibration's curves."""
+    pressures_kPa, at_kPa = calibration.source.driving_pressures_kPa, batch.driving_pressure / KPA
+    return np.asarray((at_kPa < min(pressures_kPa) / _BEYOND) | (at_kPa > max(pressures_kPa) * _BEYOND))
 
 
 def _response(
     batch: SensorBatch, calibration: SensorCalibration, response: CalibratedResponse
 ) -> list[UncertaintySource]:
     size, pressures_kPa = len(batch), calibration.source.driving_pressures_kPa
-    low, high = min(pressures_kPa) * KPA / _BEYOND, max(pressures_kPa) * KPA * _BEYOND
-    outside = (batch.driving_pressure < low) | (batch.driving_pressure > high)
     span = f"{min(pressures_kPa):g} to {max(pressures_kPa):g} kPa"
-    held = f", {len(response.held_out_pressures_kPa)} of them held out" if response.held_out_pressures_kPa else ""
+    held = response.held_out_sensitivity_errors
     origin = (
-        f"residuals of the fitted and corrected model at {len(pressures_kPa)} driving pressures{held}; outside {span} "
-        "the correction counts as an error too"
+        f"scatter of the runs at {len(pressures_kPa)} driving pressures; between them how far the correction changes"
+        f"{f', at least the errors of the {len(held)} held out' if held else ''}; beyond {span} the correction itself"
     )
-    force, rise = float(np.log(response.force_factor)), float(np.log(response.pressure_factor))
-
-    def relative(error: float, correction: float) -> Array:
-        return np.where(outside, np.hypot(error, correction), error)
+    force = np.log(response.force_factors)
+    sensitivity = np.log(response.pressure_factors) - force
+    at = batch.driving_pressure / KPA
+    outside = float(np.sqrt(np.mean(np.log1p(held) ** 2))) if held else 0.0
+    beyond = _outside(batch, calibration)
+    error = _error(at, pressures_kPa, response.sensitivity_errors_relative, sensitivity, outside, beyond)
+    force_error = _error(at, pressures_kPa, response.force_errors_relative, force, 0.0, beyond)
 
     def source(
         name: str, standard: Array | float, figures: tuple[int, ...], origin: str, known: bool
@@ -90,11 +102,10 @@ def _response(
         filled = np.broadcast_to(np.asarray(standard, float), size)
         return UncertaintySource(name, FIGURE, filled, shape, counting(size, only=figures), origin, known)
 
-    error = relative(response.sensitivity_error_relative, rise - force)
     root = np.sqrt(3.0)
     return [
         source("model as calibrated", error, (SENSITIVITY,), origin, True),
-        source("model as calibrated", relative(response.force_error_relative, force), _FORCES, origin, True),
+        source("model as calibrated", force_error, _FORCES, origin, True),
         source(
             "pressure gauge of the rig",
             GAUGE / root,
@@ -110,3 +121,24 @@ def _response(
             False,
         ),
     ]
+
+
+def _error(
+    at_kPa: Array, known_kPa: list[float], errors: list[float], logs: Array, outside: float, beyond: Flags
+) -> Array:
+    """Standard uncertainty of a correction, (n,), at driving pressures ``at_kPa``.
+
+    ``errors`` and ``logs`` are those of the pressures ``known_kPa``. Between two of them it grows as that of a random
+    walk known at both ends: in the middle it is half of the change between them, at least ``outside``.
+    """
+    known = np.array(known_kPa)
+    measured = np.interp(at_kPa, known, errors)
+    if known.size > 1:
+        k = np.clip(np.searchsorted(known, at_kPa, side="right") - 1, 0, known.size - 2)
+        t = np.clip((at_kPa - known[k]) / np.diff(known)[k], 0.0, 1.0)
+        change = np.maximum(0.5 * np.abs(np.diff(logs))[k], outside)
+        between = 2.0 * np.sqrt(t * (1.0 - t)) * change
+    else:
+        between = np.zeros(at_kPa.size)
+    end = np.abs(np.interp(at_kPa, known, logs))
+    return np.asarray(np.hypot(measured, np.where(beyond, np.maximum(end, outside), between)))
