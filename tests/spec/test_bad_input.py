@@ -57,7 +57,7 @@ CASES = [
     ("[indentation]\nsteps = 1.5", ["steps = 1.5", "whole number"]),
     ("[indentation]\ndepth_mm = 9.2", ["depth_mm = 9.2", "0.95"]),
     ("[membrane]\ninner_radius_mm = 1.2\nwall_thickness_mm = 0.5", ["inner_radius_mm = 1.2", "too small for"]),
-    ("[membrane\n", ["not valid TOML"]),
+    ("[membrane\n", ["line 1"]),
     ("[indentation]\nplate_diameter_mm = 4", ["plate_diameter_mm = 4", "plate's edge", "wider", "18.5 mm"]),
     ("[indentation]\ndepth_mm = 20", ["depth_mm = 20", "0.95"]),
     ('[document]\ntitle = "a\\u0007b"', ["document.title", "cannot be printed"]),

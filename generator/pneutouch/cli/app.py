@@ -11,6 +11,7 @@ import typer
 from pneutouch import __version__
 from pneutouch.cli.commands import CHANGES, Commands
 from pneutouch.cli.next_step import report_next
+from pneutouch.cli.progress import bar
 from pneutouch.cli.stop import refuse_stopped
 from pneutouch.cli.terminal import echo, notify, put
 from pneutouch.errors import ComputationError, InputError, PneutouchError
@@ -149,7 +150,8 @@ def predict(
             aged=aged,
             **model_options(model, tolerance),
         )
-        document = full_document(evaluation, monte_carlo)
+        with bar("predicting"):
+            document = full_document(evaluation, monte_carlo)
         if json:
             print_json(document)
         else:

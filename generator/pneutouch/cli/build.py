@@ -119,14 +119,16 @@ def check(
             from pneutouch.workflows.specimen.build import check_specimen
 
             refuse_flags(context, _VOXEL_FLAGS, "a specimen, which has no membrane", design)
-            findings = check_specimen(design, changes(set_, calibration), deep=deep)
+            with bar("checking the specimen"):
+                findings = check_specimen(design, changes(set_, calibration), deep=deep)
         else:
             evaluation = _evaluated(design, changes(set_, calibration))
-            findings = [*evaluation.findings, *(evaluation.deep_findings() if deep else [])]
-            if voxels:
-                from pneutouch.workflows.build.voxels import plan_voxels
+            with bar("checking printability and limits"):
+                findings = [*evaluation.findings, *(evaluation.deep_findings() if deep else [])]
+                if voxels:
+                    from pneutouch.workflows.build.voxels import plan_voxels
 
-                findings += plan_voxels(evaluation.assembly).findings
+                    findings += plan_voxels(evaluation.assembly).findings
         broken = any(finding.severity == "error" for finding in findings)
         if json:
             print_json({"design": design, "passed": not broken, "findings": [f.document() for f in findings]})
@@ -213,7 +215,7 @@ def _write_voxels(plan: VoxelPlan, evaluation: Evaluation, out: Path) -> Path:
     from pneutouch.workflows.build.run import input_hash
     from pneutouch.workflows.build.voxels import write_voxels
 
-    with bar("voxels") as report:
+    with bar("slicing voxels") as report:
         folder, notes = write_voxels(plan, out, input_hash(evaluation), report)
     for note in notes:
         notify(f"warning: voxels: {note}")

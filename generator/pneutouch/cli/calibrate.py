@@ -52,7 +52,7 @@ def calibrate(
         options = CalibrationOptions(
             data, design, sensor, tuple(fit.split(",")), tuple(hold_out or ()), not no_priors, save, replace, out
         )
-        with bar("MB read") as progress:
+        with bar("reading runs, MB") as progress:
             outcome = run_calibration(options, progress=progress, reading=reading_of(columns, fields))
         document = outcome.document
         if document["read_as"]:

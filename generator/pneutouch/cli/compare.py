@@ -42,7 +42,7 @@ def compare(
         from pneutouch.workflows.compare import compare as run
         from pneutouch.workflows.compare import write
 
-        with bar("compared") as progress:
+        with bar("comparing") as progress:
             result = run(
                 things,
                 changes(set_),

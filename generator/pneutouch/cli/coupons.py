@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from pneutouch.cli.app import JsonOption, app, print_json, reporting
+from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo
 
 if TYPE_CHECKING:
@@ -57,7 +58,9 @@ def coupons(
             return
         from pneutouch.workflows.coupons.build import build_coupons
 
-        folder, document = build_coupons(_options(given), out or Path("outputs"))
+        order = _options(given)
+        with bar("making coupons"):
+            folder, document = build_coupons(order, out or Path("outputs"))
         if json:
             print_json({"folder": str(folder), **document})
         else:

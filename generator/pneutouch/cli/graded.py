@@ -30,7 +30,7 @@ def select_graded(target: Target, where: str, place: DesignPlace | None, *, json
     if refused:
         raise InputError(f"{', '.join(f'--{flag}' for flag in refused)} cannot be given with --graded")
     begun = time.perf_counter()
-    with bar("grades of at most") as report:
+    with bar("searching grades") as report:
         selection = run(target, where, progress=lambda trial, done, most: report(done, most))
     notify(f"{selection.solves} solid solves in {time.perf_counter() - begun:.0f} s")
     path = None if place is None or not selection.search.met else _saved(selection, place)

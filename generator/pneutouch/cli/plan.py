@@ -17,6 +17,7 @@ from pneutouch.cli.app import (
     reporting,
 )
 from pneutouch.cli.next_step import report_next, set_words
+from pneutouch.cli.progress import bar
 from pneutouch.cli.simulate import SPECIMENS, ResinsOption, SpecimensOption, words
 from pneutouch.cli.terminal import echo, notify
 
@@ -39,15 +40,16 @@ def plan(
     with reporting():
         from pneutouch.workflows.plan.run import make_plan, rig_of, write_plan
 
-        result = make_plan(
-            design,
-            changes(set_, calibration),
-            resins=words(resins),
-            specimens=specimens,
-            rig=rig_of(rig),
-            rig_name="" if rig is None else rig.name,
-        )
-        folder = write_plan(result, out)
+        with bar("planning the runs"):
+            result = make_plan(
+                design,
+                changes(set_, calibration),
+                resins=words(resins),
+                specimens=specimens,
+                rig=rig_of(rig),
+                rig_name="" if rig is None else rig.name,
+            )
+            folder = write_plan(result, out)
         for warning in result.document["warnings"]:
             notify(f"warning: {warning['rule']}: {warning['message']}")
         if json:

@@ -1,9 +1,11 @@
-"""A progress bar."""
+"""What a command is doing: a bar on a terminal, one line a stage elsewhere, on stderr both."""
 
 import contextlib
 import sys
 from collections.abc import Iterator
 from typing import Protocol
+
+from pneutouch.cli.terminal import notify
 
 
 class ProgressCallback(Protocol):
@@ -15,24 +17,14 @@ class ProgressCallback(Protocol):
 
 @contextlib.contextmanager
 def bar(what: str) -> Iterator[ProgressCallback]:
-    """A progress bar over ``what`` on stderr where that is a terminal; silence elsewhere."""
-
-    def silent(done: int, total: int, what: str | None = None) -> None:
-        return None
-
+    """A stage, such as "reading runs", or "" where the callback names its stages; a bar that moves by the callback."""
     if not sys.stderr.isatty():
-        yield silent
+        yield _lines(what)
         return
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.completed}/{task.total}"),
-        TimeElapsedColumn(),
-        TimeRemainingColumn(),
-    )
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as shown:
         task = shown.add_task(what, total=None)
 
@@ -40,3 +32,18 @@ def bar(what: str) -> Iterator[ProgressCallback]:
             shown.update(task, description=what, completed=done, total=total)
 
         yield report
+
+
+def _lines(what: str) -> ProgressCallback:
+    """One line a stage, the first at once."""
+    last = what
+    if what:
+        notify(f"{what} ...")
+
+    def report(done: int, total: int, what: str | None = None) -> None:
+        nonlocal last
+        if what is not None and what != last:
+            last = what
+            notify(f"{what} ...")
+
+    return report

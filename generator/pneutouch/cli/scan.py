@@ -18,6 +18,7 @@ from pneutouch.cli.app import (
     refuse_flags,
     reporting,
 )
+from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo
 
 if TYPE_CHECKING:
@@ -72,8 +73,9 @@ def scan(
         from pneutouch.workflows.scan.run import run_scan
         from pneutouch.workflows.scan.write import write_scan
 
-        run = run_scan(specimen, design, options, changes(set_, calibration))
-        folder = write_scan(run, out)
+        with bar("scanning"):
+            run = run_scan(specimen, design, options, changes(set_, calibration))
+            folder = write_scan(run, out)
         if json:
             print_json({**document(run), "folder": str(folder)})
         else:
@@ -104,7 +106,8 @@ def _separate(
 ) -> None:
     from pneutouch.workflows.scan.separate import separating
 
-    separation = separating(specimen, design, text, options, changed)
+    with bar("ranking domes"):
+        separation = separating(specimen, design, text, options, changed)
     if json:
         print_json(separation)
     else:

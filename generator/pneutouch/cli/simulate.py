@@ -81,7 +81,7 @@ def simulate(
             parquet=parquet,
             truth=SimulationTruth(rest=rest),
         )
-        with bar("specimens") as progress:
+        with bar("simulating specimens") as progress:
             folder = simulate(design, out, changes(set_, calibration), options, progress=progress)
         _report(folder, options, json=json)
 

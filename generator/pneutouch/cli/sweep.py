@@ -60,7 +60,7 @@ def sweep(
         target = Path("outputs") / f"{plan.name}.nc" if out is None else out
         if not fresh:
             check_companions(target)
-        with bar("points") as progress:
+        with bar("computing points") as progress:
             done = run(plan, target, ComputeResources(workers, scheduler), fresh=fresh, progress=progress)
         rows, written = write_companions(done.path)
         _report(done, rows, written, json=json)

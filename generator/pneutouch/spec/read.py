@@ -10,6 +10,7 @@ from pydantic import BaseModel, ValidationError
 from pneutouch.errors import InputError, joined, nearest
 from pneutouch.spec.fields import EntryError, declaration, table_of
 from pneutouch.spec.files import read_bytes
+from pneutouch.spec.toml_errors import toml_problem
 from pneutouch.spec.toml_text import toml_content, toml_value, value_text
 
 Model = TypeVar("Model", bound=BaseModel)
@@ -17,12 +18,14 @@ Model = TypeVar("Model", bound=BaseModel)
 
 def read_toml(path: Path) -> dict[str, Any]:
     """Return the content of a TOML file; raises InputError for a folder, a bad file or broken TOML."""
+    text = ""
     try:
-        return toml_content(read_bytes(path).decode("utf-8-sig"))
+        text = read_bytes(path).decode("utf-8-sig")
+        return toml_content(text)
     except UnicodeDecodeError as error:
         raise InputError(f"not UTF-8 text (byte {error.start})", file=path, remedy="a TOML file is UTF-8") from None
     except tomllib.TOMLDecodeError as error:
-        raise InputError(f"not valid TOML: {error}", file=path) from None
+        raise InputError(toml_problem(text, error), file=path) from None
     except RecursionError:
         raise InputError("nested too deep", file=path, remedy="a TOML file of this kind has tables of values") from None
     except ValueError as error:

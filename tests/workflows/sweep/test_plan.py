@@ -98,7 +98,7 @@ BAD = {
     "unknown word": (f"{BASE}grit = 1", ["grit: unknown key", "Did you mean grid?"]),
     "grid a number": (f"{BASE}grid = 1", ["grid = 1: must be a table"]),
     "points a table": (f"{BASE}[point]\n{WALL} = 1", ["point: must be a list of tables"]),
-    "no TOML": ("design = ", ["not valid TOML"]),
+    "no TOML": ("design = ", ["line 1, column 10"]),
 }
 
 
