@@ -164,6 +164,12 @@ def test_the_library_never_speaks_of_options():
         (("predict", "paper-dome", "--model", "exact"), "error: --model exact: unknown model."),
         (("predict", "paper-dome", "--tolerance", "never"), "error: --tolerance never: it must be a positive share"),
         (("predict", "paper-dome", "--set", "wall=2"), "error: --set wall=2: write table.key=value"),
+        (
+            ("predict", "paper-dome", "--set", "membrane.wall_thickness_mm=9.5"),
+            "error: --set membrane.wall_thickness_mm: wall_thickness_mm = 9.5 must be less than",
+        ),
+        (("select", "--sensitivity", "2", "--at", "1200"), "error: --at 1200: must be from 0 to 1000 kPa"),
+        (("select", "--sensitivity", "2", "--tolerance", "5"), "error: --tolerance 5: it must be a positive share of"),
         (("build", "paper-dome", "--out", "a-file"), "error: --out"),
         (("new", "a b"), "error: NAME"),
     ],

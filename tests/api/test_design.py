@@ -97,8 +97,10 @@ def test_errors_of_a_file_name_the_file(tmp_path):
     with pytest.raises(pt.InputError) as caught:
         pt.load(tmp_path / "bad.toml")
     assert (caught.value.file, caught.value.key) == (str(tmp_path / "bad.toml"), "membrane.material")
-    with pytest.raises(pt.InputError, match="Did you mean paper-dome"):
+    with pytest.raises(pt.InputError, match="Did you mean paper-dome") as caught:
         pt.load("paper-doom")
+    assert (caught.value.key, caught.value.value) == ("design", "paper-doom")
+    assert "Did you mean paper-dome?" in caught.value.remedy
 
 
 @pytest.mark.parametrize(
