@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import tomllib
 from dataclasses import dataclass
@@ -10,7 +11,9 @@ import numpy as np
 
 from pneutouch.bench.simulate import ModelDeviation, ScatterModel, SimulationTruth
 from pneutouch.catalogue import Library
+from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import evaluate
+from pneutouch.mechanics.models import NUMERICAL
 from pneutouch.mechanics.uncertainty.sources.build import GAUGE
 from pneutouch.mechanics.uncertainty.sources.calibrated import FORCE_GAUGE
 from pneutouch.spec.toml_text import toml_text
@@ -60,7 +63,18 @@ class Outcome:
     after_year: Interval
 
 
-def campaign(seed: int, folder, model: str = "solid") -> dict[float, Outcome]:
+def campaigns(count: int, folder) -> list[dict[float, Outcome]]:
+    """The first ``count`` campaigns whose resin is as stiff as the published range and the atlas begin, 0.10 MPa."""
+    outcomes, seed = [], 0
+    while len(outcomes) < count:
+        with contextlib.suppress(InputError):
+            outcomes.append(campaign(seed, folder))
+        seed += 1
+        assert seed < 1.2 * count
+    return outcomes
+
+
+def campaign(seed: int, folder) -> dict[float, Outcome]:
     """Simulate, calibrate without the runs at `UNSEEN`, and compare with the truth; ``folder`` is the user's."""
     options = SimulationOptions(
         specimens=1,
@@ -69,7 +83,7 @@ def campaign(seed: int, folder, model: str = "solid") -> dict[float, Outcome]:
         kinds=("steps",),
         rate=50.0,
         seed=seed,
-        model=model,
+        model="atlas",
         truth=TRUTH,
     )
     place = simulate(DESIGN, folder / str(seed), DEAD, options)
@@ -89,13 +103,15 @@ def _outcomes(name, truth, rng) -> dict[float, Outcome]:
     # What the rig reads is off by its gauges; the year changes the sensor, either way.
     read = (1 + GAUGE * rng.uniform(-1, 1)) / (1 + FORCE_GAUGE * rng.uniform(-1, 1))
     year = 1 + AGEING * rng.uniform(-1, 1)
+    # What the simulator has right and the budget counts: discretisation, inner radius (d ln S/d ln R0 is -1.4).
+    other = 1 + NUMERICAL["atlas"] * rng.uniform(-1, 1) + 1.4 * 0.05 / 9.25 * rng.uniform(-1, 1)
     library, outcomes = Library.default(), {}
     plain, calibrated = (
         evaluate(design, changes, model="atlas", library=library).uncertainty for design in (DESIGN, f"{DESIGN}@{name}")
     )
     for pressure, old, new in zip(changes["pneumatics.driving_pressures_kPa"], plain, calibrated, strict=True):
         one, two = (entry["figures"]["sensitivity_kPa_per_N"] for entry in (old, new))
-        true = truth[f"{pressure:g}"]["sensitivity_kPa_per_N"] / read
+        true = truth[f"{pressure:g}"]["sensitivity_kPa_per_N"] * other / read
         fresh = np.exp(2 * one["standard_uncertainty_relative"] * np.sqrt(1 - one["shares"]["ageing"]))
         outcomes[pressure] = Outcome(
             Interval(one["value"] / fresh, one["value"] * fresh, true),

@@ -175,8 +175,8 @@ def _specimen(
     rng = np.random.default_rng([options.seed, _number(subject.name), k])
     drawn = SimulatedSpecimens.draw(subject.truth.scatter, 1, rng)
     sensor = aged(drawn.sensor(subject.sensor, 0), subject.truth, age)
-    own = np.random.default_rng([options.seed, _number(subject.name), k, _DEVIATION])
-    pressed_curves = subject.truth.deviation.deviated(_pressed(subject, sensor, options, name), own)
+    stream = np.random.default_rng([options.seed, _number(subject.name), k, _DEVIATION])
+    pressed_curves = subject.truth.deviation.deviated(_pressed(subject, sensor, options, name), stream)
     known: dict[str, Any] = {
         "resin": subject.name,
         "age_days": age,
