@@ -13,8 +13,8 @@ from typer.testing import CliRunner
 
 from pneutouch.bench.reading import PLATE
 from pneutouch.bench.simulate import SimulationTruth
-from pneutouch.bench.source import identify
-from pneutouch.cli import calibrate, characterize
+from pneutouch.bench.source import campaign_lines, identify
+from pneutouch.cli import calibrate, characterize, plan
 from pneutouch.cli.app import app
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import Campaign, ColumnMap
@@ -26,7 +26,7 @@ from pneutouch.workflows.simulate.run import simulate
 from tests.conftest import ROOT
 from tests.tables.instruments import INSTRUMENTS, logger, zwick
 
-assert calibrate and characterize
+assert calibrate and characterize and plan
 
 PAGE = (ROOT / "docs" / "measuring.md").read_text(encoding="utf-8")
 ASKED = SimulationOptions(
@@ -186,6 +186,18 @@ def test_the_page_lists_every_unit():
     for channel, units in UNITS.items():
         (row,) = re.findall(rf"^\| {channel} \| ([^;|]*)", PAGE, re.MULTILINE)
         assert [unit.strip() for unit in row.split(",")] == list(units)
+
+
+def test_a_planned_campaign_takes_files_of_other_programs(tmp_path, recording):
+    """Its file leaves the columns open, and takes the lines that were printed."""
+    assert run("plan", "paper-dome", "--specimens", "1", "--out", tmp_path).exit_code == 0
+    (folder,) = (path for path in tmp_path.iterdir() if path.is_dir())
+    text = (folder / "campaign.toml").read_text()
+    campaign = Campaign.model_validate(tomllib.loads(text))
+    assert campaign.columns.model_fields_set == set() and campaign.format.model_fields_set == set()
+    found = identify(zwick(tmp_path, *recording), campaign.columns, PLATE, campaign.format)
+    pasted = Campaign.model_validate(tomllib.loads(f"{text}\n{campaign_lines(found.content)}\n"))
+    assert pasted.columns.force.name == "Standardkraft" and pasted.format.decimal == ","
 
 
 def test_a_shell_s_copy_of_a_file_is_read_the_same(tmp_path, recording):

@@ -135,7 +135,7 @@ def test_a_wrong_sign_is_seen_where_nothing_is_predicted(folder, library):
     """Beyond the limit point there is no prediction, but a force still rises as the sensor is pressed."""
 
     def change(content):
-        content["columns"]["pressure"]["sign"] = -1
+        content["columns"] = {"pressure": {"name": "pressure_kPa", "unit": "kPa", "sign": -1}}
         for entry in content["runs"]:
             if entry["driving_pressure_kPa"] == 22.0:
                 entry["driving_pressure_kPa"] = 60.0
@@ -187,7 +187,7 @@ def test_aged_runs_are_not_set_beside_a_fresh_prediction(folder, library):
     ("change", "said"),
     [
         (lambda c: [entry.update(resin="TangPlus") for entry in c["runs"]], "Did you mean TangoPlus"),
-        (lambda c: c["columns"]["force"].update(unit="lb"), "must be one of N"),
+        (lambda c: c.update(columns={"force": {"name": "force_N", "unit": "lb"}}), "must be one of N"),
         (lambda c: c["runs"][1].update(file=c["runs"][0]["file"]), "is that of runs"),
         (
             lambda c: c["runs"][1].update(sensor="TangoPlus-1", kind="steps", driving_pressure_kPa=0.0),

@@ -134,8 +134,11 @@ def _parameters(subject: SimulatedResin) -> dict[str, Any]:
 
 
 def campaign_toml(campaign: Campaign, comment: str) -> bytes:
-    """A campaign as a file; raises InputError where it would not be read again."""
-    content = campaign.model_dump(mode="python", exclude_none=True, exclude={"format"})
+    """A campaign as a file; raises InputError where it would not be read again.
+
+    Columns and format are left out where nothing is stated of them, so that they are found from the files."""
+    open_ = {key for key in ("columns", "format") if getattr(campaign, key) == Campaign.model_fields[key].default}
+    content = campaign.model_dump(mode="python", exclude_none=True, exclude=open_)
     validate(Campaign, content, "campaign.toml")
     return f"{comment}\n{toml_text(content)}".encode()
 
