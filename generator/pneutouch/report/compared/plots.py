@@ -24,6 +24,9 @@ WIDTH = 86.0
 MOST = 6
 """Sensors that are drawn: more cover one another."""
 
+_SHORT = 16
+"""Letters of a name that fits into half the width of a legend."""
+
 _TONES = (INK, "#3F8FBF", "#B4631D", MUTED, ACCENT, "#8C8C8C")
 _PANELS, _RUNS, _TOLERANCE, _TALLEST = 4, 30, 5e-3, 1.6
 
@@ -58,7 +61,7 @@ def _curves(document: Mapping[str, Any], keys: tuple[str, str], words: tuple[str
     if not all(ends):
         return {}
     for pressure_kPa in _spread([float(p) for p in document["driving_pressures_kPa"]]):
-        with figure(WIDTH, 56 + 4 * math.ceil(len(names) / 2)) as drawn:
+        with figure(WIDTH, 56 + 4 * _key_lines(names)) as drawn:
             ax = drawn.subplots()
             for k, name in enumerate(names):
                 _draw(ax, k, _of(document, name, pressure_kPa), keys, _ends(document, band, k, pressure_kPa))
@@ -119,10 +122,20 @@ def _legend(drawn: Figure, document: Mapping[str, Any], names: Sequence[str]) ->
 
     measured = [one["kind"] == "measured" for one in document["compared"]]
     handles = [Line2D([], [], **(_spots(k) if measured[k] else _look(k))) for k in range(len(names))]
-    drawn.legend(handles, [_cut(n) for n in names], loc="outside upper left", ncols=2, handlelength=2.6)
+    texts = [_cut(name) for name in names]
+    drawn.legend(handles, texts, loc="outside upper left", ncols=_key_columns(names), handlelength=2.6)
 
 
-def _cut(text: str, most: int = 26) -> str:
+def _key_columns(names: Sequence[str]) -> int:
+    """Columns of a legend: one where a name would not fit into half the width."""
+    return 2 if max(map(len, names), default=0) <= _SHORT else 1
+
+
+def _key_lines(names: Sequence[str]) -> int:
+    return math.ceil(len(names) / _key_columns(names))
+
+
+def _cut(text: str, most: int = 44) -> str:
     plain = text.replace("$", r"\$")
     return plain if len(text) <= most else f"{plain[: most - 1]}…"
 
@@ -139,7 +152,7 @@ def differences(document: Mapping[str, Any]) -> str | None:
         return None
     names = list(dict.fromkeys(name for name, _, _ in rows))
     others = labels(document)[1:MOST]
-    with figure(WIDTH, 14 + 4.2 * len(names) + 4 * math.ceil(len(others) / 2) * (len(others) > 1)) as drawn:
+    with figure(WIDTH, 14 + 4.2 * len(names) + 4 * _key_lines(others) * (len(others) > 1)) as drawn:
         ax = drawn.subplots()
         for name, one, k in rows:
             place = names.index(name) + 0.22 * (k - 0.5 * (len(others) - 1))
@@ -167,7 +180,7 @@ def _key(drawn: Figure, others: Sequence[str]) -> None:
     handles = [
         Line2D([], [], color=_TONES[k + 1], marker=MARKERS[k % len(MARKERS)], ms=4, lw=1.0) for k in range(len(others))
     ]
-    drawn.legend(handles, [_cut(name) for name in others], loc="outside upper left", ncols=2)
+    drawn.legend(handles, [_cut(name) for name in others], loc="outside upper left", ncols=_key_columns(others))
 
 
 def sections(document: Mapping[str, Any], parts: Mapping[str, Assembly]) -> str | None:
@@ -177,7 +190,7 @@ def sections(document: Mapping[str, Any], parts: Mapping[str, Assembly]) -> str 
         return None
     from matplotlib.lines import Line2D
 
-    with figure(WIDTH, 62 + 4 * math.ceil(len(names) / 2)) as drawn:
+    with figure(WIDTH, 62 + 4 * _key_lines(names)) as drawn:
         ax = drawn.subplots()
         for name in names:
             look = _look(labels(document).index(name))
@@ -187,5 +200,6 @@ def sections(document: Mapping[str, Any], parts: Mapping[str, Assembly]) -> str 
                     ax.plot(closed[:, 0], closed[:, 1], **{**look, "lw": 0.9})
         ax.set(aspect="equal", xlabel="x  (mm)", ylabel="z  (mm)")
         handles = [Line2D([], [], **_look(labels(document).index(name))) for name in names]
-        drawn.legend(handles, [_cut(name) for name in names], loc="outside upper left", ncols=2, handlelength=2.6)
+        texts = [_cut(name) for name in names]
+        drawn.legend(handles, texts, loc="outside upper left", ncols=_key_columns(names), handlelength=2.6)
         return svg(drawn)
