@@ -12,6 +12,9 @@ pytestmark = [pytest.mark.slow, pytest.mark.skipif(FOUND is None, reason=WHY_NOT
 
 _TOO_WIDE = """[...document.querySelectorAll('main *')].filter(e => !e.closest('svg') && !e.closest('script') &&
 e.getBoundingClientRect().right > innerWidth + 0.5).map(e => e.tagName + ': ' + e.textContent.slice(0, 40))"""
+_WIDER_THAN_THE_PAGE = """(m => [...document.querySelectorAll('table, figure, .tiles')].filter(e =>
+e.getBoundingClientRect().right > m.getBoundingClientRect().right - parseFloat(getComputedStyle(m).paddingRight) + 0.5)
+.map(e => e.textContent.slice(0, 60)))(document.querySelector('main'))"""
 _CUT = """[...document.querySelectorAll('td, th, h1, dd, figcaption, p, li')].filter(e =>
 e.scrollWidth > e.clientWidth + 1 && getComputedStyle(e).display != 'contents' &&
 getComputedStyle(e).display != 'inline').map(e => e.textContent)"""
@@ -34,6 +37,7 @@ def test_the_page_needs_no_scrolling_sideways(width, page, screen):
     assert screen.evaluate("innerWidth") == width
     assert screen.evaluate("document.documentElement.scrollWidth") <= width
     assert screen.evaluate(_TOO_WIDE) == []
+    assert screen.evaluate(_WIDER_THAN_THE_PAGE) == []
     assert screen.evaluate(_CUT) == []
     assert screen.errors == []
 
