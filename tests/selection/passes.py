@@ -14,6 +14,7 @@ from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
 from pneutouch.spec.target import Target
+from pneutouch.workflows.build import build
 from pneutouch.workflows.select.document import write_choice
 from pneutouch.workflows.select.run import SelectionRun, select
 from tests.catalogue.store import combinations
@@ -74,8 +75,11 @@ def saved(selection: SelectionRun, folder: Path) -> Evaluation:
     return evaluate(str(path), library=LIBRARY)
 
 
-def fate(seed: int, folder: Path) -> tuple[str, SelectionRun | None]:
-    """``passes``, or why nothing was saved; AssertionError where the saved design breaks a rule or is refused."""
+def fate(seed: int, folder: Path, *, built: bool = False) -> tuple[str, SelectionRun | None]:
+    """``passes``, or why nothing was saved; AssertionError where the saved design breaks a rule or is refused.
+
+    ``built``: whether a design that passes is built whole as well.
+    """
     asked = random_target(np.random.default_rng(40_000 + seed))
     try:
         selection = select(asked, "target", LIBRARY, written=1)
@@ -84,20 +88,24 @@ def fate(seed: int, folder: Path) -> tuple[str, SelectionRun | None]:
     if not selection.answer.designs:
         return ("all rejected" if selection.rejected else "not met"), selection
     try:
-        broken = [f for f in saved(selection, folder).findings if f.severity == "error"]
+        evaluation = saved(selection, folder)
     except InputError as error:
         raise AssertionError(f"seed {seed}: {asked!r}: {error}") from error
+    broken = [f for f in evaluation.findings if f.severity == "error"]
     assert not broken, f"seed {seed}: {asked!r}: {broken}"
+    if built:
+        written = build(evaluation, folder / "outputs")
+        assert (written / f"{evaluation.scene.name}.3mf").stat().st_size > 0
     return "passes", selection
 
 
-def tally(seeds: range) -> tuple[Counter[str], Counter[str]]:
-    """Fates, and the reasons for which candidates were rejected on the way."""
+def tally(seeds: range, builds: int = 0) -> tuple[Counter[str], Counter[str]]:
+    """Fates, and the reasons for which candidates were rejected before; the first ``builds`` saved are built whole."""
     fates: Counter[str] = Counter()
     reasons: Counter[str] = Counter()
     with tempfile.TemporaryDirectory() as folder:
         for seed in seeds:
-            what, selection = fate(seed, Path(folder))
+            what, selection = fate(seed, Path(folder), built=fates["passes"] < builds)
             fates[what] += 1
             reasons.update(f"{one.rule}: {one.reason[:60]}" for one in (selection.rejected if selection else ()))
     return fates, reasons

@@ -22,7 +22,7 @@ TARGETS = 24
 
 @pytest.mark.slow
 def test_every_design_saved_for_a_random_target_passes_the_check(capsys):
-    fates, reasons = tally(range(TARGETS))
+    fates, reasons = tally(range(TARGETS), builds=2)
     with capsys.disabled():
         print(f"\n{TARGETS} random targets: {dict(fates)}; rejected: {dict(reasons)}")  # noqa: T201
     assert fates["passes"] >= TARGETS // 4
@@ -107,3 +107,18 @@ def test_names_are_tested_before_anything_is_computed(command, tmp_path):
     assert json.loads(done.stdout)["designs"][0]["passes_check"] is True
     assert load_scene(str(tmp_path / "designs" / "mine.toml"), None, Library((ROOT,))).design.document.title == "mine"
     assert sorted(path.name for path in (tmp_path / "designs").iterdir()) == ["mine.toml"]
+
+
+@pytest.mark.slow
+def test_a_build_has_the_name_that_is_given(command, tmp_path):
+    done = command("build", "stiff-dome", "--name", "left-hand")
+    assert done.returncode == 0, done.stderr
+    folder = tmp_path / "outputs" / "left-hand"
+    assert (folder / "left-hand.3mf").is_file() and not (tmp_path / "outputs" / "stiff-dome").exists()
+    again = command("build", str(folder / "left-hand.3mf"), "--name", "right-hand")
+    assert again.returncode == 0, again.stderr
+    names = [path.relative_to(folder).as_posix() for path in folder.rglob("*")]
+    other = tmp_path / "outputs" / "right-hand"
+    assert sorted(name.replace("left-hand", "right-hand") for name in names) == sorted(
+        path.relative_to(other).as_posix() for path in other.rglob("*")
+    )
