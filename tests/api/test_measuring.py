@@ -51,13 +51,26 @@ def test_figures_of_measured_runs_are_the_command_lines(campaign, printed, tmp_p
     assert own.to_dict() != found.to_dict()
 
 
-def test_a_calibration_is_the_command_lines(campaign, printed, tmp_path):
+def test_a_calibration_is_the_command_lines_and_can_be_used_at_once(campaign, printed, tmp_path, monkeypatch):
+    monkeypatch.setenv("PNEUTOUCH_HOME", str(tmp_path))
     found = pt.calibrate(campaign, fit=["modulus"], out=tmp_path / "ours")
     said = printed("calibrate", campaign, "--fit", "modulus", "--out", tmp_path / "theirs")
     drop = {"written"}
     assert {k: v for k, v in found.to_dict().items() if k not in drop} == {
         k: v for k, v in said.items() if k not in drop
     }
+    design = pt.load("paper-dome").replace(calibration=found.name)
+    modulus = found["estimates"][0]["value"]
+    assert design.predict([0, 12], model="atlas").evaluation.sensor.wall.shear_modulus == pytest.approx(modulus)
+    assert design.replace(calibration=None).predict([0], model="atlas").evaluation.scene.calibration is None
+    assert found.save("other") == tmp_path / "calibrations" / "other.toml"
+    assert dict(pt.calibrations()) == dict.fromkeys((found.name, "other"), "sensor TangoPlus-1, " + found["campaign"])
+    pt.calibrate(campaign, fit=["modulus", "wall"], out=tmp_path / "ours", save="third")
+    with pytest.raises(pt.InputError, match="there is a calibration of this name"):
+        found.save("third")
+    assert found.save("third", replace=True).read_bytes() == found.save().read_bytes().replace(
+        f"@{found.name}".encode(), b"@third"
+    )
     with pytest.raises(pt.InputError, match="no such parameter") as caught:
         pt.calibrate(campaign, fit=["moduls"])
     assert (caught.value.key, caught.value.value) == ("fit", "moduls")

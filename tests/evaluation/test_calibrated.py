@@ -234,3 +234,20 @@ def test_a_recipe_carries_it_and_is_the_same_again(place, tmp_path):
     assert json.dumps(again.prediction.document()) == json.dumps(predicted(place).prediction.document())
     plain = BuildRecipe.of(evaluate("paper-dome", AT, model="atlas", library=place))
     assert "calibration" not in plain.inputs() and "calibration" not in plain.inputs()["design"]
+
+
+@pytest.mark.slow
+def test_a_built_3mf_is_built_again_without_the_calibration_file(place, tmp_path):
+    from pneutouch.export.threemf_read import read_threemf
+    from pneutouch.workflows.build import build
+
+    folder = build(predicted(place), tmp_path / "first")
+    assert (
+        "Calibration `mine`: the figures of the datasheet are those of sensor A"
+        in (folder / "print-sheet.md").read_text()
+    )
+    assert json.loads((folder / "manifest.json").read_text())["inputs"]["calibration"]["source"]["sensor"] == "A"
+    (place.folders[0] / "calibrations" / "mine.toml").unlink()
+    again = build(evaluate_recipe(read_recipe(read_threemf(folder / "paper-dome.3mf"))), tmp_path / "second")
+    for path in folder.rglob("*"):
+        assert path.is_dir() or path.read_bytes() == (again / path.relative_to(folder)).read_bytes(), path
