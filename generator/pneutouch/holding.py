@@ -28,7 +28,7 @@ def uninterrupted() -> Iterator[None]:
         held.append(number)
 
     # What was not set from Python can neither be restored nor raises anything.
-    before = {number: handler for number in STOPS if callable(handler := signal.getsignal(number))}
+    before = {number: handler for number in (*STOPS, signal.SIGALRM) if callable(handler := signal.getsignal(number))}
     try:
         for number in before:
             signal.signal(number, hold)
@@ -38,6 +38,12 @@ def uninterrupted() -> Iterator[None]:
             signal.signal(number, handler)
         if held:
             signal.raise_signal(held[0])
+
+
+def refuse_stopped() -> None:
+    """Raise KeyboardInterrupt where a stop came that a library has swallowed: what it made since may be wrong."""
+    if any(getattr(signal.getsignal(number), "received", None) is not None for number in STOPS):
+        raise KeyboardInterrupt
 
 
 def cleaned(clean: Callable[[], object]) -> None:

@@ -1,8 +1,27 @@
-"""Finds designs, printers, materials and parts by name: the one registry."""
+"""Finds designs, printers, materials and parts by name: the one registry.
 
-from pneutouch.catalogue.library import KINDS, Library
-from pneutouch.catalogue.places import user_folder
-from pneutouch.catalogue.scene import DEFAULT, DesignSource, ResolvedDesign, check_scene, load_scene, split_calibration
+The names are loaded when they are first used: to list names needs none of what resolves a design.
+"""
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pneutouch.catalogue.library import KINDS, Library
+    from pneutouch.catalogue.places import user_folder
+    from pneutouch.catalogue.scene import (
+        DEFAULT,
+        DesignSource,
+        ResolvedDesign,
+        check_scene,
+        load_scene,
+        split_calibration,
+    )
+
+_HOMES = {
+    "library": ("KINDS", "Library"),
+    "places": ("user_folder",),
+    "scene": ("DEFAULT", "DesignSource", "ResolvedDesign", "check_scene", "load_scene", "split_calibration"),
+}
 
 __all__ = [
     "DEFAULT",
@@ -15,3 +34,12 @@ __all__ = [
     "split_calibration",
     "user_folder",
 ]
+
+
+def __getattr__(name: str) -> object:
+    from importlib import import_module
+
+    for home, names in _HOMES.items():
+        if name in names:
+            return getattr(import_module(f"pneutouch.catalogue.{home}"), name)
+    raise AttributeError(f"module 'pneutouch.catalogue' has no attribute {name!r}")

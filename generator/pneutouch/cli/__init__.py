@@ -21,6 +21,9 @@ def run() -> None:
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     with stop_signals(after=signal.SIG_IGN) as stop:
         code = command_line(stop)
+    # Python notes an interrupt that passes through code given as text, such as that of a dataclass, and would end by
+    # SIGINT for it; the next code given as text clears the note.
+    exec("")
     sys.exit(code)
 
 
@@ -33,8 +36,10 @@ def command_line(stop: StopSignals) -> int:
 
         code = invoked(sys.argv[1:])
     except (Exception, KeyboardInterrupt):
+        stop.end()
         if stop.received is None:
             raise
+    stop.end()
     if stop.received is None:
         return code
     from pneutouch.cli.terminal import notify

@@ -10,11 +10,12 @@ import typer
 
 from pneutouch import __version__
 from pneutouch.cli.commands import CHANGES, Commands
+from pneutouch.cli.complete import assignment, names
 from pneutouch.cli.next_step import report_next
 from pneutouch.cli.progress import bar
-from pneutouch.cli.stop import refuse_stopped
 from pneutouch.cli.terminal import echo, notify, put
 from pneutouch.errors import ComputationError, InputError, PneutouchError
+from pneutouch.holding import refuse_stopped
 
 app = typer.Typer(
     cls=Commands,
@@ -24,7 +25,10 @@ app = typer.Typer(
     help="Pneumatic touch sensors: from a design file to print files, a prediction and a datasheet.",
 )
 
-DesignArgument = Annotated[str, typer.Argument(metavar="DESIGN", help="Name of a design, or path of a TOML file.")]
+DesignArgument = Annotated[
+    str,
+    typer.Argument(metavar="DESIGN", help="Name of a design, or path of a TOML file.", autocompletion=names("designs")),
+]
 
 
 def _keep_keys(context: typer.Context, assignments: list[str] | None) -> list[str] | None:
@@ -36,7 +40,11 @@ def _keep_keys(context: typer.Context, assignments: list[str] | None) -> list[st
 SetOption = Annotated[
     list[str] | None,
     typer.Option(
-        "--set", metavar="TABLE.KEY=VALUE", help="Override a field of the design; may be repeated.", callback=_keep_keys
+        "--set",
+        metavar="TABLE.KEY=VALUE",
+        help="Override a field of the design; may be repeated.",
+        callback=_keep_keys,
+        autocompletion=assignment,
     ),
 ]
 CalibrationOption = Annotated[
@@ -45,6 +53,7 @@ CalibrationOption = Annotated[
         "--calibration",
         metavar="NAME",
         help="Calibration of the sensor in hand, as DESIGN@NAME; none: without the design's.",
+        autocompletion=names("calibrations"),
     ),
 ]
 ModelOption = Annotated[

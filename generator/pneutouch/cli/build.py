@@ -26,6 +26,7 @@ from pneutouch.cli.app import (
     refuse_flags,
     reporting,
 )
+from pneutouch.cli.complete import names
 from pneutouch.cli.next_step import report_next, set_words
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo, notify
@@ -54,7 +55,9 @@ def build(
     design: Annotated[
         str,
         typer.Argument(
-            metavar="DESIGN", help="Name of a design or specimen, path of a TOML file, or a 3MF that was built."
+            metavar="DESIGN",
+            help="Name of a design or specimen, path of a TOML file, or a 3MF that was built.",
+            autocompletion=names("designs", "specimens"),
         ),
     ],
     set_: SetOption = None,

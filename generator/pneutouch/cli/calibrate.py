@@ -6,9 +6,11 @@ from typing import Annotated, Any
 import typer
 
 from pneutouch.cli.app import JsonOption, OutOption, app, print_json, reporting
+from pneutouch.cli.complete import names
 from pneutouch.cli.declared import with_fields
 from pneutouch.cli.next_step import report_next, set_words
 from pneutouch.cli.reading import READING_FIELDS, ColumnsOption, reading_of, reading_text
+from pneutouch.cli.simulate import numbers
 from pneutouch.cli.terminal import echo, notify
 from pneutouch.spec.campaign import Campaign
 
@@ -19,7 +21,12 @@ def calibrate(
     data: Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="Folder of a campaign, or its campaign file.")],
     design: Annotated[
         str | None,
-        typer.Option(metavar="DESIGN", help="Design that the sensor was made to.", show_default="the campaign's"),
+        typer.Option(
+            metavar="DESIGN",
+            help="Design that the sensor was made to.",
+            show_default="the campaign's",
+            autocompletion=names("designs"),
+        ),
     ] = None,
     sensor: Annotated[
         str | None, typer.Option(metavar="NAME", help="Sensor of the campaign.", show_default="its only one")
@@ -28,8 +35,7 @@ def calibrate(
         str, typer.Option(metavar="NAMES", help="What to fit: modulus, wall, dead-volume, offset.")
     ] = "modulus,dead-volume,wall,offset",
     hold_out: Annotated[
-        list[float] | None,
-        typer.Option(metavar="KPA", help="Driving pressure to predict by the others; may be repeated."),
+        list[str] | None, typer.Option(metavar="KPA,KPA", help="Driving pressures to predict by the others.")
     ] = None,
     no_priors: Annotated[bool, typer.Option("--no-priors", help="Leave aside what is known before measuring.")] = False,
     save: Annotated[
@@ -49,8 +55,9 @@ def calibrate(
         from pneutouch.cli.progress import bar
         from pneutouch.workflows.calibrate.run import CalibrationOptions, run_calibration
 
+        held = numbers("--hold-out", ",".join(hold_out or ()))
         options = CalibrationOptions(
-            data, design, sensor, tuple(fit.split(",")), tuple(hold_out or ()), not no_priors, save, replace, out
+            data, design, sensor, tuple(fit.split(",")), held, not no_priors, save, replace, out
         )
         with bar("reading runs, MB") as progress:
             outcome = run_calibration(options, progress=progress, reading=reading_of(columns, fields))

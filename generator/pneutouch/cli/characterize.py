@@ -8,6 +8,7 @@ import typer
 
 from pneutouch.cli.app import CalibrationOption, JsonOption, OutOption, SetOption, app, changes, print_json, reporting
 from pneutouch.cli.commands import option
+from pneutouch.cli.complete import names
 from pneutouch.cli.declared import with_fields
 from pneutouch.cli.next_step import report_next
 from pneutouch.cli.reading import READING_FIELDS, ColumnsOption, reading_of, reading_text, reading_words
@@ -23,7 +24,10 @@ def characterize(
         Path, typer.Argument(metavar="DATA", help="Folder of a campaign, its campaign.toml, or one run's file.")
     ],
     design: Annotated[
-        str | None, typer.Option("--design", help="Design of the sensors; left out: the campaign's.")
+        str | None,
+        typer.Option(
+            "--design", help="Design of the sensors; left out: the campaign's.", autocompletion=names("designs")
+        ),
     ] = None,
     target: Annotated[
         Path | None, typer.Option("--target", metavar="FILE", help="Target file (TOML) to pass or fail against.")

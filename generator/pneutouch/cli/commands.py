@@ -11,9 +11,10 @@ from typer.core import TyperGroup
 from typer.main import get_command_from_info
 
 from pneutouch.cli.plain_numbers import with_plain_numbers
-from pneutouch.cli.stop import refuse_stopped, stopped
+from pneutouch.cli.stop import stopped
 from pneutouch.cli.terminal import notify
 from pneutouch.errors import InputError, PneutouchError, nearest, one_line
+from pneutouch.holding import refuse_stopped
 
 
 class CommandEntry(NamedTuple):

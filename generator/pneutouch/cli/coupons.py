@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from pneutouch.cli.app import JsonOption, app, print_json, reporting
+from pneutouch.cli.complete import names
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo
 
@@ -27,7 +28,12 @@ _FLAGS = {
 @app.command()
 def coupons(
     profile: Annotated[
-        str | None, typer.Option(help="Printer to make coupons for.", show_default="the design's, else objet260-connex")
+        str | None,
+        typer.Option(
+            autocompletion=names("printers"),
+            help="Printer to make coupons for.",
+            show_default="the design's, else objet260-connex",
+        ),
     ] = None,
     material: Annotated[
         list[str] | None,
@@ -36,7 +42,10 @@ def coupons(
     mixing: Annotated[
         list[str] | None, typer.Option(metavar="SOFT+STIFF", help="Two resins: coupons of eight mixes of them.")
     ] = None,
-    design: Annotated[str | None, typer.Option(metavar="DESIGN", help="Design that cap and plug belong to.")] = None,
+    design: Annotated[
+        str | None,
+        typer.Option(metavar="DESIGN", help="Design that cap and plug belong to.", autocompletion=names("designs")),
+    ] = None,
     only: Annotated[list[str] | None, typer.Option(help="Coupons, such as puck,dumbbell; left out: all.")] = None,
     copies: Annotated[
         list[str] | None, typer.Option(metavar="COUPON=N", help="Copies, such as puck=4; may be repeated.")

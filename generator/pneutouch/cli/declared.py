@@ -10,6 +10,7 @@ from typing import Annotated, Any, NamedTuple
 import typer
 from pydantic import BaseModel
 
+from pneutouch.cli.complete import names
 from pneutouch.errors import PneutouchError
 from pneutouch.spec.fields import Declaration, declaration, table_of
 
@@ -44,6 +45,9 @@ def field_tables(options: Mapping[str, FieldOption], values: Mapping[str, Any]) 
     for name, value in values.items():
         if value is not None:
             table, key, parse, _ = options[name]
+            if isinstance(value, list):
+                # Names with commas between, as everywhere; the option may be repeated as well.
+                value = [word.strip() for text in value for word in str(text).split(",") if word.strip()]
             tables.setdefault(table, {})[key] = parse(value) if parse else value
     return tables
 
@@ -72,7 +76,8 @@ def _parameter(model: type[BaseModel], name: str, option: FieldOption) -> inspec
     field = declaration(table, option.key)
     kind: Any = str if option.parse else _kind(table, option.key)
     flags = [f"--{name.replace('_', '-')}"] if kind is bool else []
-    info = typer.Option(*flags, metavar=option.metavar, help=_help(field))
+    known = names(field.registry) if field.registry else None
+    info = typer.Option(*flags, metavar=option.metavar, help=_help(field), autocompletion=known)
     annotation: Any = Annotated[kind | None, info]
     return inspect.Parameter(name, inspect.Parameter.POSITIONAL_OR_KEYWORD, default=None, annotation=annotation)
 

@@ -18,6 +18,7 @@ from pneutouch.cli.app import (
     refuse_flags,
     reporting,
 )
+from pneutouch.cli.complete import names
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo
 
@@ -32,7 +33,10 @@ _NOT_SEPARATING = {key: f"--{key}" for key in ("pressures", "control", "seed", "
 def scan(
     context: typer.Context,
     specimen: Annotated[str, typer.Argument(metavar="SPECIMEN", help="Name of a specimen, or path of its TOML file.")],
-    design: Annotated[str, typer.Option("--design", help="Sensor that scans: name of a design, or path.")],
+    design: Annotated[
+        str,
+        typer.Option("--design", help="Sensor that scans: name of a design, or path.", autocompletion=names("designs")),
+    ],
     pressures: Annotated[
         str, typer.Option(metavar="KPA,KPA", help="Driving pressures, kPa; empty: measured data alone.")
     ] = "0,22",

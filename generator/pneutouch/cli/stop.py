@@ -9,8 +9,8 @@ from typing import Any
 
 from pneutouch.holding import STOPS
 
-_AGAIN = 0.05
-"""Seconds after which a stop is raised again that a callback of a library has swallowed."""
+_AGAIN = 0.25
+"""Seconds after which a stop is raised again: libraries swallow it in callbacks and by catching every exception."""
 
 
 class StopSignals:
@@ -24,13 +24,16 @@ class StopSignals:
         """Raise KeyboardInterrupt where the program stands."""
         if self.received is None and number in STOPS:
             self.received = number
+            signal.setitimer(signal.ITIMER_REAL, _AGAIN, _AGAIN)
         raise KeyboardInterrupt
 
-    def again(self, fault: Any) -> None:
-        """In place of ``sys.unraisablehook``: a stop that could not be raised where it came is raised later."""
-        if isinstance(fault.exc_value, KeyboardInterrupt):
-            signal.setitimer(signal.ITIMER_REAL, _AGAIN)
-        elif self.received is None:
+    def end(self) -> None:
+        """Raise nothing again: the command has unwound."""
+        signal.setitimer(signal.ITIMER_REAL, 0)
+
+    def unraisable(self, fault: Any) -> None:
+        """In place of ``sys.unraisablehook``: a stop that cannot be raised where it came is raised again later."""
+        if self.received is None:
             sys.__unraisablehook__(fault)
 
     @property
@@ -54,10 +57,11 @@ def stop_signals(after: Any = None) -> Iterator[StopSignals]:
     stop = StopSignals()
     numbers = [number for number in (*STOPS, signal.SIGALRM) if signal.getsignal(number) is not signal.SIG_IGN]
     before = {number: signal.signal(number, stop) for number in numbers}
-    hook, sys.unraisablehook = sys.unraisablehook, stop.again
+    hook, sys.unraisablehook = sys.unraisablehook, stop.unraisable
     try:
         yield stop
     finally:
+        stop.end()
         for number, handler in before.items():
             signal.signal(number, after or handler)
         sys.unraisablehook = hook
@@ -67,9 +71,3 @@ def stopped() -> StopSignals | None:
     """The handler where a stop signal was received."""
     handler = signal.getsignal(signal.SIGTERM)
     return handler if isinstance(handler, StopSignals) and handler.received is not None else None
-
-
-def refuse_stopped() -> None:
-    """Raise KeyboardInterrupt where a stop signal was received: what it meets may raise an error of its own."""
-    if stopped():
-        raise KeyboardInterrupt

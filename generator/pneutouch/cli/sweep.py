@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from pneutouch.cli.app import CalibrationOption, JsonOption, SetOption, app, changes, print_json, reporting
+from pneutouch.cli.complete import names
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo, notify
 from pneutouch.errors import InputError
@@ -22,7 +23,10 @@ _MODEL_HELP = "Model; solid where neither this nor the file gives one."
 @app.command()
 def sweep(
     file: Annotated[Path | None, typer.Argument(metavar="SWEEP.toml", help="Sweep file: a grid or a list.")] = None,
-    design: Annotated[str | None, typer.Option("--design", help="Base design, where there is no sweep file.")] = None,
+    design: Annotated[
+        str | None,
+        typer.Option("--design", help="Base design, where there is no sweep file.", autocompletion=names("designs")),
+    ] = None,
     over: Annotated[
         list[str] | None,
         typer.Option(

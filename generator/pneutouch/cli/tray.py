@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from pneutouch.cli.app import JsonOption, OutOption, SetOption, app, changes, print_json, reporting
+from pneutouch.cli.complete import names
 from pneutouch.cli.terminal import echo, notify
 from pneutouch.errors import InputError
 
@@ -29,7 +30,10 @@ def tray(
     ] = None,
     copies: Annotated[int | None, typer.Option("--copies", help="Copies of each. Not with a tray file.")] = None,
     profile: Annotated[
-        str | None, typer.Option("--profile", help="Printer; left out: the file's, or the membrane's.")
+        str | None,
+        typer.Option(
+            "--profile", help="Printer; left out: the file's, or the membrane's.", autocompletion=names("printers")
+        ),
     ] = None,
     marks: Annotated[str | None, typer.Option("--marks", help="engraved, raised or none.")] = None,
     set_: SetOption = None,

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from pneutouch.errors import InputError
-from pneutouch.holding import parent_folders, temporary_folder, uninterrupted
+from pneutouch.holding import parent_folders, refuse_stopped, temporary_folder, uninterrupted
 from pneutouch.spec.files import read_bytes
 
 MANIFEST = "manifest.json"
@@ -66,6 +66,7 @@ def replacing(folder: Path) -> Iterator[Path]:
     try:
         with parent_folders(folder), temporary_folder(prefix=f".{folder.name}.", within=folder.parent) as fresh:
             yield fresh
+            refuse_stopped()
             with uninterrupted():
                 _swap(folder, fresh)
     except OSError as error:

@@ -80,8 +80,18 @@ def parse_changes(assignments: Iterable[str], keys: Collection[str] = ("calibrat
         key, equals, value = (part.strip() for part in text.partition("="))
         if not equals or (key.count(".") != 1 and key not in keys):
             raise InputError("write table.key=value, such as membrane.material=FLX9960", key="set", value=text)
-        changes[key] = toml_value(value)
+        changes[key] = _bare_list(value)
     return changes
+
+
+def _bare_list(text: str) -> Any:
+    """A value of TOML or a bare word; numbers with commas between are a list without its brackets."""
+    value = toml_value(text)
+    if not isinstance(value, str) or "," not in value:
+        return value
+    listed = toml_value(f"[{value}]")
+    is_numbers = isinstance(listed, list) and all(type(item) in (int, float) for item in listed)
+    return listed if is_numbers else value
 
 
 def assignments(changes: Changes) -> list[str]:

@@ -1,0 +1,33 @@
+"""What completes names and keys after a tab: files of the library are listed and none is read, so it takes no time."""
+
+from collections.abc import Callable
+
+
+def names(*kinds: str) -> Callable[[str], list[str]]:
+    """Completes the names of these kinds, such as materials."""
+
+    def complete(incomplete: str) -> list[str]:
+        from pneutouch.catalogue.library import Library
+
+        library = Library.default()
+        return [name for kind in kinds for name in library.paths(kind) if name.startswith(incomplete)]
+
+    return complete
+
+
+def assignment(incomplete: str) -> list[str]:
+    """Completes ``table.key=``, and after it a name where the key takes one."""
+    from pneutouch.spec.design import DesignFile
+    from pneutouch.spec.fields import declarations, table_of
+
+    fields = {
+        f"{table}.{field.key}": field
+        for table in DesignFile.model_fields
+        if (model := table_of(DesignFile, table)) is not None
+        for field in declarations(model)
+    }
+    key, equals, word = incomplete.partition("=")
+    if not equals:
+        return [f"{name}=" for name in fields if name.startswith(incomplete)]
+    registry = fields[key].registry if key in fields else None
+    return [f"{key}={name}" for name in names(registry)(word)] if registry else []
