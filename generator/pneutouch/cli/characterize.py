@@ -16,6 +16,12 @@ from pneutouch.cli.terminal import echo, notify
 from pneutouch.spec.campaign import Campaign
 
 
+DesignOption = Annotated[
+    str | None,
+    typer.Option("--design", help="Design of the sensors; left out: the campaign's.", autocompletion=names("designs")),
+]
+
+
 @app.command()
 @with_fields(Campaign, READING_FIELDS)
 def characterize(
@@ -23,12 +29,7 @@ def characterize(
     data: Annotated[
         Path, typer.Argument(metavar="DATA", help="Folder of a campaign, its campaign.toml, or one run's file.")
     ],
-    design: Annotated[
-        str | None,
-        typer.Option(
-            "--design", help="Design of the sensors; left out: the campaign's.", autocompletion=names("designs")
-        ),
-    ] = None,
+    design: DesignOption = None,
     target: Annotated[
         Path | None, typer.Option("--target", metavar="FILE", help="Target file (TOML) to pass or fail against.")
     ] = None,
