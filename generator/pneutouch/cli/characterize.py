@@ -15,7 +15,6 @@ from pneutouch.cli.reading import READING_FIELDS, ColumnsOption, reading_of, rea
 from pneutouch.cli.terminal import echo, notify
 from pneutouch.spec.campaign import Campaign
 
-
 DesignOption = Annotated[
     str | None,
     typer.Option("--design", help="Design of the sensors; left out: the campaign's.", autocompletion=names("designs")),
