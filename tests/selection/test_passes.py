@@ -85,6 +85,7 @@ def test_a_footprint_that_nothing_keeps_is_named_as_what_to_drop():
     assert "instead of 12" in dropped["footprint"]
 
 
+@pytest.mark.slow
 def test_a_plate_wider_than_the_contact_goes_with_a_large_dome():
     """The default plate is 30 mm wide: on a dome of 20 mm radius its edge would dig in."""
     wanted = {"sensitivity_kPa_per_N": 0.5, "driving_pressure_kPa": 10.0}
