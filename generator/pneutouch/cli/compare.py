@@ -42,7 +42,7 @@ def compare(
         from pneutouch.workflows.compare import compare as run
         from pneutouch.workflows.compare import write
 
-        with bar("comparing") as progress:
+        with bar("") as progress:
             result = run(
                 things,
                 changes(set_),
@@ -51,7 +51,8 @@ def compare(
                 progress=progress,
                 **model_options(model, tolerance),
             )
-        folder = write(result, out)
+            progress(len(things), len(things), "drawing curves and sections")
+            folder = write(result, out)
         if json:
             print_json({**result.document, "folder": str(folder)})
         else:

@@ -66,7 +66,8 @@ def sweep(
             check_companions(target)
         with bar("computing points") as progress:
             done = run(plan, target, ComputeResources(workers, scheduler), fresh=fresh, progress=progress)
-        rows, written = write_companions(done.path)
+        with bar("drawing the sensitivity"):
+            rows, written = write_companions(done.path)
         _report(done, rows, written, json=json)
 
 

@@ -25,8 +25,8 @@ def test_a_lost_worker_changes_no_byte(undisturbed, cluster, tmp_path):
     code, stdout, stderr = ended(process)
     assert code == 0, stderr
     assert stdout.splitlines()[-1] == str(out)
-    assert stderr.startswith("320 points, states: ")
-    assert len(stderr.splitlines()) == 1
+    (states,) = [line for line in stderr.splitlines() if not line.startswith("written: ") and not line.endswith(" ...")]
+    assert states.startswith("320 points, states: ")
     assert out.read_bytes() == undisturbed
     assert not out.with_name("sweep.nc.parts").exists()
 
@@ -61,9 +61,9 @@ def test_no_scheduler_is_an_input_error(command, tmp_path):
         words = ["--design", "paper-dome", "--over", "membrane.wall_thickness_mm=1,2", "--scheduler", address]
         result = command("sweep", *words)
     assert (result.returncode, result.stdout) == (2, "")
-    assert result.stderr.startswith(f"error: --scheduler {address}: no Dask scheduler answers there (")
-    assert len(result.stderr.splitlines()) == 1
-    assert list((tmp_path / "outputs").iterdir()) == []
+    (error,) = [line for line in result.stderr.splitlines() if not line.endswith(" ...")]
+    assert error.startswith(f"error: --scheduler {address}: no Dask scheduler answers there (")
+    assert list(tmp_path.iterdir()) == []
     assert module._PATIENCE < 10
 
 

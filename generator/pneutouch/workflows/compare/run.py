@@ -63,9 +63,8 @@ def compare(
     _check_given(given)
     columns: list[_Column] = []
     for k, one in enumerate(given):
-        progress(k, len(given), one if isinstance(one, str) else one.name)
+        progress(k, len(given), f"evaluating {one if isinstance(one, str) else one.name}")
         columns += _columns(one, changes or {}, library, options, alone=len(given) == 1)
-    progress(len(given), len(given), "")
     if len(columns) < 2:
         raise InputError("one thing alone cannot be compared", remedy="name another design or folder")
     depths: Depths = next((c.depths() for c in columns if isinstance(c, MeasuredColumn)), {})
