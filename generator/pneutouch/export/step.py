@@ -11,13 +11,14 @@ from pneutouch.arrays import Array
 from pneutouch.body import Bore, Frame, Prism, Solid, Turned
 from pneutouch.body.shapes import Shape
 from pneutouch.export.step_text import canonical
-from pneutouch.holding import temporary_folder
+from pneutouch.holding import temporary_folder, uninterrupted
 from pneutouch.meridian import Arc, Meridian, Segment
 
 if TYPE_CHECKING:
     import cadquery as cq
 
 
+@uninterrupted()
 def step_obstacle() -> str | None:
     """Why no STEP file can be written, in words; None where CadQuery is there."""
     try:
@@ -47,6 +48,8 @@ def step_files(name: str, solids: tuple[Solid, ...], offset: Array) -> tuple[dic
     return ({file: step(name, solids, offset)}, {}) if obstacle is None else ({}, {file: obstacle})
 
 
+# CadQuery's kernel crashes the process where an interrupt cuts it short.
+@uninterrupted()
 def step(name: str, solids: tuple[Solid, ...], offset: Array) -> bytes:
     """Write the solids, shifted by ``offset`` (3,) into the print frame, as one assembly called ``name``."""
     import cadquery as cq

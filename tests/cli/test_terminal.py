@@ -1,0 +1,103 @@
+"""The command line fits the hand: help, completion, lists, colour, width, and streams that are closed."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+from pneutouch.cli.commands import COMMANDS
+from pneutouch.cli.terminal import _wrapped
+from pneutouch.spec.read import parse_changes
+
+NAMES = [name for group in COMMANDS.values() for name in group]
+
+
+def test_the_list_of_commands_is_in_groups_and_whole(command):
+    lines = command("-h").stdout.splitlines()
+    assert max(map(len, lines)) <= 80
+    for group, entries in COMMANDS.items():
+        start = lines.index(f"{group}:")
+        assert [line.split()[0] for line in lines[start + 1 : start + 1 + len(entries)]] == list(entries)
+    assert not [line for line in lines[1:] if line.endswith("...")]
+    assert command("-h").stdout == command("--help").stdout
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_command_has_short_help(command, name):
+    result = command(name, "-h")
+    assert result.returncode == 0
+    assert result.stdout.startswith(f"Usage: pneutouch {name} ")
+
+
+def completed(line):
+    """What bash is offered for the last word of a line, and the modules loaded for it."""
+    code = "import sys\nfrom pneutouch.cli import run\ntry: run()\nfinally: print(*sys.modules, file=sys.stderr)"
+    words = {"COMP_WORDS": line, "COMP_CWORD": str(len(line.split()) - 1), "_PNEUTOUCH_COMPLETE": "complete_bash"}
+    result = subprocess.run(
+        [sys.executable, "-c", code], env={**os.environ, **words}, capture_output=True, text=True, check=False
+    )
+    return result.stdout.split(), result.stderr.split()
+
+
+@pytest.mark.parametrize(
+    ("line", "offered"),
+    [
+        ("pneutouch predict paper-d", ["paper-dome"]),
+        ("pneutouch charac", ["characterize"]),
+        ("pneutouch coupons --profile objet260-c", ["objet260-connex"]),
+        ("pneutouch check x --set membrane.mat", ["membrane.material="]),
+    ],
+)
+def test_names_and_keys_are_completed_without_numpy(line, offered):
+    words, modules = completed(line)
+    assert words == offered
+    assert "numpy" not in modules
+
+
+def test_numbers_with_commas_are_a_list():
+    given = ["pneumatics.driving_pressures_kPa=0,10", "document.title=a,b", "membrane.inner_radius_mm=6"]
+    assert list(parse_changes(given).values()) == [[0, 10], "a,b", 6]
+
+
+def test_errors_on_set_name_the_option(command):
+    result = command("predict", "paper-dome", "--set", "membrane.material=Tanga")
+    assert result.stderr == (
+        "error: --set membrane.material=Tanga: no such name among the materials. Did you mean TangoPlus?\n"
+    )
+
+
+def test_lines_are_wrapped_with_the_indent_and_commands_stay_whole():
+    text = "  warning: " + "word " * 30
+    lines = _wrapped(text.rstrip(), 60).splitlines()
+    assert max(map(len, lines)) <= 60 and all(line.startswith("    ") for line in lines[1:])
+    command = "next: pneutouch " + "word " * 30
+    assert _wrapped(command, 60) == command
+
+
+@pytest.mark.parametrize(
+    ("shell", "code"),
+    [
+        ("{python} -m pneutouch list 2>&-", 0),
+        ("{python} -m pneutouch list >&-", 0),
+        ("{python} -m pneutouch list 2>&- >&-", 0),
+        ("{python} -m pneutouch list | head -1; exit ${{PIPESTATUS[0]}}", 0),
+        ("{python} -m pneutouch list >/dev/full", 3),
+    ],
+)
+def test_closed_streams_change_no_exit_code_and_bring_no_traceback(shell, code, tmp_path):
+    line = shell.format(python=sys.executable)
+    result = subprocess.run(["bash", "-c", line], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert result.returncode == code, result.stderr
+    assert "Traceback" not in result.stderr and "Exception ignored" not in result.stderr
+
+
+@pytest.mark.parametrize(("names", "coloured"), [({}, False), ({"FORCE_COLOR": "1"}, True), ({"NO_COLOR": "1"}, False)])
+def test_no_colour_in_a_pipe_unless_it_is_required(names, coloured, tmp_path):
+    environment = {key: value for key, value in os.environ.items() if "COLOR" not in key}
+    words = [sys.executable, "-m", "pneutouch", "predict", "none"]
+    result = subprocess.run(words, env=environment | names, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert ("\x1b[1;31merror\x1b[0m: " in result.stderr) == coloured
+    assert coloured or result.stderr.startswith("error: ")
