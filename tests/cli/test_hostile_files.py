@@ -60,6 +60,11 @@ def test_a_sweeps_and_a_trays_design_stay_in_their_folder(outside, tmp_path, com
     refused(command("tray", "inner/tray.toml"), "entry.design", "leads out of the folder")
 
 
+def test_a_targets_base_stays_in_its_folder(outside, command):
+    (outside / "target.toml").write_text('[target]\nsensitivity_kPa_per_N = 2\n[setting]\nbase = "../secret.toml"')
+    refused(command("select", "inner/target.toml"), "setting.base", "leads out of the folder")
+
+
 @pytest.mark.slow
 def test_a_campaign_planned_for_a_file_holds_that_file(tmp_path, command):
     (tmp_path / "mine").mkdir()

@@ -166,9 +166,13 @@ def _graded(target: Target, where: str, place: DesignPlace | None, *, json: bool
 
 def _target(path: Path | None, fields: dict[str, Any], set_: list[str]) -> Target:
     """The target of a file, options in place of its fields; or of options alone."""
+    from pneutouch.spec.files import design_inside
     from pneutouch.spec.read import read_toml, validate
 
     content = {} if path is None else read_toml(path)
+    setting = content.get("setting")
+    if path is not None and isinstance(setting, dict) and isinstance(setting.get("base"), str):
+        setting["base"] = design_inside(path.parent, setting["base"], file=path, key="setting.base")
     tables = field_tables(_FIELDS, fields)
     for table, values in tables.items():
         section = content.setdefault(table, {})
@@ -181,5 +185,5 @@ def _target(path: Path | None, fields: dict[str, Any], set_: list[str]) -> Targe
     if not set_:
         return target
     # What is set last holds: the options come after the file's own changes.
-    setting = target.setting.model_copy(update={"assignments": [*target.setting.assignments, *set_]})
-    return target.model_copy(update={"setting": setting})
+    changed = target.setting.model_copy(update={"assignments": [*target.setting.assignments, *set_]})
+    return target.model_copy(update={"setting": changed})

@@ -99,6 +99,14 @@ class Relaxation(Table):
         return self
 
 
+_POSITIVE = {
+    **dict.fromkeys(("density_g_per_cm3", "shear_modulus_MPa", "young_modulus_MPa", "tensile_strength_MPa"), 1e6),
+    "elongation_at_break_percent": 1e6,
+    **dict.fromkeys(("shore_a", "shore_a_one_year", "shore_d"), 99.9),
+}
+"""Quantities that are more than 0, and the most that each may be: at a hardness of 100 there is no modulus."""
+
+
 class Material(Table):
     """One cured material. A digital material is identified by its code together with its base resins."""
 
@@ -138,6 +146,16 @@ class Material(Table):
                 f"mix.fractions names {', '.join(sorted(self.mix.fractions)) or 'nothing'}; it must name exactly the "
                 f"base_resins: {', '.join(self.base_resins)}"
             )
+        return self
+
+    @model_validator(mode="after")
+    def _of_matter(self) -> Material:
+        for key, most in _POSITIVE.items():
+            quantity: Quantity | None = getattr(self, key)
+            numbers = () if quantity is None else (quantity.value, quantity.low, quantity.high)
+            for number in numbers:
+                if number is not None and not 0 < number <= most:
+                    raise ValueError(f"{key}: {number:g} must be more than 0 and at most {most:g}")
         return self
 
     @model_validator(mode="after")
