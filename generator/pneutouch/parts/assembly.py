@@ -111,8 +111,8 @@ class Assembly:
         pneumatics = self.scene.design.pneumatics
         if pneumatics.dead_volume_mL != 0 or pneumatics.tube_length_mm == 0:
             return ""
-        drawn = (self.internal_volume + self.tube_volume) / ML
-        return f"the paper's idealisation: connector and tube as drawn hold {drawn:.2f} mL"
+        drawn_mL = (self.internal_volume + self.tube_volume) / ML
+        return f"the paper's idealisation: connector and tube as drawn hold {drawn_mL:.2f} mL"
 
 
 def assemble(scene: ResolvedDesign) -> Assembly:

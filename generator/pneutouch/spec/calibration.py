@@ -16,7 +16,7 @@ FORMAT = 1
 ParameterKey = Literal["shear_modulus_MPa", "wall_thickness_mm", "dead_volume_mL", "contact_offset_mm"]
 
 Factor = Annotated[float, Field(ge=0.2, le=5)]
-Share = Annotated[float, Field(ge=0, le=2)]
+RelativeError = Annotated[float, Field(ge=0, le=2)]
 
 _BY_PRESSURE = ("force_factors", "pressure_factors", "sensitivity_errors_relative", "force_errors_relative")
 
@@ -72,10 +72,10 @@ class CalibratedResponse(Table):
 
     force_factors: list[Factor] = Field(description="Measured force over that of the fitted model, by pressure.")
     pressure_factors: list[Factor] = Field(description="Measured pressure rise over that of the fitted model.")
-    sensitivity_errors_relative: list[Share] = Field(
+    sensitivity_errors_relative: list[RelativeError] = Field(
         description="Standard uncertainty of the corrected model's sensitivity there."
     )
-    force_errors_relative: list[Share] = Field(description="The same of its force.")
+    force_errors_relative: list[RelativeError] = Field(description="The same of its force.")
     held_out_pressures_kPa: list[float] = Field(max_length=1000, description="Driving pressures left out of a fit.")
     held_out_sensitivity_errors: list[float] = Field(max_length=1000, description="Prediction by that fit, likewise.")
 

@@ -284,7 +284,7 @@ def test_a_part_is_a_subject_for_the_print_rules(seats):
         ('[[entry]]\ndesign = "paper-dome"\ncopies = 0\n', "copies.* must be from 1 to 200"),
         (
             '[tray]\nmarks = "etched"\n[[entry]]\ndesign = "x"\n',
-            "tray.marks = 'etched': must be 'engraved', 'raised' or 'none'",
+            'tray.marks = "etched": must be "engraved", "raised" or "none"',
         ),
         ('[tray]\nspacing_mm = 0\n[[entry]]\ndesign = "x"\n', "tray.spacing_mm = 0: must be from 0.5 to 50 mm"),
         ('[tray]\nmargins = 1\n[[entry]]\ndesign = "x"\n', "Did you mean margin_mm"),

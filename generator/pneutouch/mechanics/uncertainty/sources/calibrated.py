@@ -131,14 +131,14 @@ def _error(
     ``errors`` and ``logs`` are those of the pressures ``known_kPa``. Between two of them it grows as that of a random
     walk known at both ends: in the middle it is half of the change between them, at least ``outside``.
     """
-    known = np.array(known_kPa)
-    measured = np.interp(at_kPa, known, errors)
-    if known.size > 1:
-        k = np.clip(np.searchsorted(known, at_kPa, side="right") - 1, 0, known.size - 2)
-        t = np.clip((at_kPa - known[k]) / np.diff(known)[k], 0.0, 1.0)
+    places_kPa = np.array(known_kPa)
+    measured = np.interp(at_kPa, places_kPa, errors)
+    if places_kPa.size > 1:
+        k = np.clip(np.searchsorted(places_kPa, at_kPa, side="right") - 1, 0, places_kPa.size - 2)
+        t = np.clip((at_kPa - places_kPa[k]) / np.diff(places_kPa)[k], 0.0, 1.0)
         change = np.maximum(0.5 * np.abs(np.diff(logs))[k], outside)
         between = 2.0 * np.sqrt(t * (1.0 - t)) * change
     else:
         between = np.zeros(at_kPa.size)
-    end = np.abs(np.interp(at_kPa, known, logs))
+    end = np.abs(np.interp(at_kPa, places_kPa, logs))
     return np.asarray(np.hypot(measured, np.where(beyond, np.maximum(end, outside), between)))
