@@ -175,11 +175,11 @@ def test_wrong_input_is_said_so(arguments, said, tmp_path):
     [
         (["--separate", "0@0,6@2"], "a pitch must be more than 0"),
         (["--separate", "3@0,6@2", "--speed", "-4"], "--speed -4: must be from 0.01 to 1000 mm/s"),
-        (["--separate", "3@0,6@2", "--preload", "nan"], "--preload nan: must be a force above 0 N"),
+        (["--separate", "3@0,6@2", "--preload", "nan"], "--preload nan: must be a number, such as 12.5"),
         (["--separate", "3@0,6@2", "--pressures", "0"], "--pressures cannot be given with --separate"),
         (["--speed", "1e-4"], "must be from 0.01 to 1000 mm/s"),
         (["--noise", "-1"], "--noise -1: must be from 0 to 100 kPa"),
-        (["--pressures", "nan"], "must be a finite number, 0 or more"),
+        (["--pressures", "nan"], "--pressures nan: must be numbers in kPa with commas between, such as 0,22"),
     ],
 )
 def test_options_that_no_scan_can_have_are_refused(command, words, said):

@@ -151,7 +151,7 @@ def test_an_unreachable_target_exits_1_with_the_nearest_and_why(monkeypatch):
             ["--graded", "--sensitivity", "1.9", "--same-at", "0,22", "--profile", "abs-filament"],
             "the ABS filament printer, 0.4 mm nozzle cannot mix TangoPlus with VeroClear; it runs ABS",
         ),
-        (["--sensitivity", "1.9", "--mix", "TangoPlus"], 'given.mix = "TangoPlus"'),
+        (["--sensitivity", "1.9", "--mix", "TangoPlus"], "--mix TangoPlus: must be SOFT+STIFF"),
         (["--sensitivity", "1.9", "--mix", "TangoPlus+Vero"], "TangoPlus+Vero"),
         (
             ["--graded", "--sensitivity", "1.9", "--same-at", "0,22", "--wall", "0.2"],

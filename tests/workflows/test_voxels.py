@@ -199,9 +199,7 @@ def test_show_prints_and_draws_a_stack(written, tmp_path):
 
 def test_build_puts_the_stack_beside_its_own_folder(tmp_path, monkeypatch):
     """The rest of the build stands in for itself: it has its own tests."""
-    monkeypatch.setattr(
-        "pneutouch.cli.build._build_sensor", lambda evaluation, out: ("graded-dome", out / "graded-dome", [])
-    )
+    monkeypatch.setattr("pneutouch.cli.build._build_sensor", lambda evaluation, out: (out / "graded-dome", []))
     words = ["--set", "membrane.material=TangoPlus", "--model", "membrane", "--out", str(tmp_path)]
     sets = [word for pair in SETS for word in ("--set", pair)]
     result = CliRunner().invoke(app, ["build", "graded-dome", *sets, *words, "--voxel-mode", "high mix", "--json"])

@@ -277,7 +277,7 @@ def test_many_random_grades_are_solved():
 @pytest.mark.parametrize("model", ["membrane", "atlas"])
 def test_models_that_know_no_grade_refuse_it_by_name(model):
     with pytest.raises(
-        InputError, match=rf"model = '{model}': the wall is graded along its arc; take `model` auto or solid"
+        InputError, match=rf'model = "{model}": the wall is graded along its arc; take `model` auto or solid'
     ):
         predict("test", sensor(0.0, 0.2), [0.0], model=model)
 

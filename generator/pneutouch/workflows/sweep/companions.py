@@ -12,6 +12,7 @@ from pneutouch.tables.csv_write import csv_bytes
 from pneutouch.workflows.sweep.dataset import PRESSURE
 from pneutouch.workflows.sweep.journal import replace_whole
 from pneutouch.workflows.sweep.variables import POINT, STATE
+from pneutouch.workflows.sweep.workfolder import check_output
 
 if TYPE_CHECKING:
     import xarray
@@ -60,7 +61,8 @@ def _cell(value: Any) -> Any:
 
 
 def check_companions(out: Path) -> None:
-    """Raise InputError where the table would take the place of a file that no sweep wrote."""
+    """Raise InputError where ``out`` can be no dataset, or the table would replace a file that no sweep wrote."""
+    check_output(out)
     table = out.with_suffix(".csv")
     if table.exists() and not out.exists():
         raise InputError(f"{table} is in the place of the table", key="out", remedy="give another `out`, or move it")
