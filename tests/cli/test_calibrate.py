@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import tomllib
+from dataclasses import replace
 
 import pytest
 from typer.testing import CliRunner
@@ -13,6 +14,8 @@ from pneutouch.cli.app import app
 from pneutouch.cli.calibrate_text import calibration_text
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.spec.toml_text import toml_text
+from pneutouch.workflows.calibrate.fit import observations_of
+from tests.evaluation.test_calibrated import CONTENT
 
 assert calibrate and simulate
 
@@ -131,8 +134,9 @@ def test_the_file_is_named_by_design_and_sensor_and_kept(campaign, place):
         (("--sensor", "B"), "--sensor B: no such sensor in the campaign; there are TangoPlus-1"),
         (("--fit", "moduls"), "--fit moduls: no such parameter. Did you mean modulus"),
         (("--hold-out", "5"), "--hold-out 5: no run at this driving pressure; measured: 0, 22 kPa"),
-        (("--save", "a b"), "--save a b: use at most 100 letters, digits, - and _"),
-        (("--save", "none"), "--save none: use at most 100 letters"),
+        (("--save", "a b"), "--save a b: cannot be a name; use letters, digits"),
+        (("--save", "../x"), "--save ../x: cannot be a name; use letters, digits"),
+        (("--save", "none"), "--save none: cannot be the name of a calibration; use letters"),
     ],
 )
 def test_wrong_words_end_with_two_and_nothing_written(words, message, campaign, place):
@@ -140,3 +144,70 @@ def test_wrong_words_end_with_two_and_nothing_written(words, message, campaign, 
     result = run("calibrate", str(campaign), "--design", "mine", "--out", "out", *words)
     assert result.exit_code == 2 and message in result.stderr.replace("\n", " "), result.stderr
     assert files(place) == before
+
+
+@pytest.fixture
+def unfitted(monkeypatch):
+    """No fit is made: what is refused is refused before it."""
+
+    def fail(*given, **more):
+        raise AssertionError("the fit began")
+
+    monkeypatch.setattr("pneutouch.workflows.calibrate.run.calibrate", fail)
+
+
+def test_a_second_campaign_of_the_sensor_is_refused_before_the_fit(campaign, place, unfitted):
+    (place / "calibrations").mkdir()
+    (place / "calibrations" / "mine-TangoPlus-1.toml").write_text(toml_text(CONTENT))
+    before = files(place)
+    result = run("calibrate", str(campaign), "--design", "mine", "--out", "out")
+    assert result.exit_code == 2
+    assert "there is a calibration of this name, of other content; give another --save, or --force" in result.stderr
+    assert files(place) == before
+
+
+@pytest.mark.parametrize("words", [(), ("--save", "dome-1")])
+def test_a_folder_that_cannot_be_written_is_refused_before_the_fit(words, campaign, place, unfitted):
+    (place / "calibrations").write_text("")
+    result = run("calibrate", str(campaign), "--design", "mine", "--out", "out", *words)
+    assert result.exit_code == 2
+    assert "calibrations is not a folder" in result.stderr.replace("\n", " ")
+    assert not (place / "out").exists()
+
+
+@pytest.fixture
+def soft(monkeypatch):
+    """Curves that are too soft for any modulus of the atlas, so that the modulus ends on its bound."""
+
+    def scaled(*given):
+        sensor, seen, notes = observations_of(*given)
+        curves = tuple(replace(curve, force=0.3 * curve.force, rise=0.3 * curve.rise) for curve in seen.curves)
+        return sensor, replace(seen, curves=curves, injections=()), notes
+
+    monkeypatch.setattr("pneutouch.workflows.calibrate.run.observations_of", scaled)
+
+
+def test_a_fit_that_is_no_calibration_is_reported(campaign, place, soft):
+    words = ("calibrate", str(campaign), "--design", "mine", "--out", "out", "--no-priors", "--fit", "modulus")
+    result = run(*words, "--json")
+    assert result.exit_code == 1, result.stderr
+    said = json.loads(result.stdout)
+    reason = "no calibration was saved: shear_modulus_MPa has no interval (on its bound, or not seen)"
+    assert said["calibration"] is None and said["notes"][-1].startswith(reason)
+    assert said["written"] == ["out/mine-TangoPlus-1-calibration"]
+    kept = json.loads((place / "out/mine-TangoPlus-1-calibration/calibration.json").read_text())
+    assert (kept["notes"], kept["estimates"]) == (said["notes"], said["estimates"])
+    assert kept["estimates"][0]["on_bound"]
+    assert not (place / "calibrations").exists()
+    plain = run(*words)
+    assert plain.exit_code == 1 and reason in plain.stdout
+    assert plain.stderr.splitlines()[-1] == "next: pneutouch predict mine --set pneumatics.dead_volume_mL=0.3"
+
+
+def test_one_that_was_to_be_saved_is_an_error_with_its_report(campaign, place, soft):
+    words = ("--no-priors", "--fit", "modulus", "--save", "dome-1")
+    result = run("calibrate", str(campaign), "--design", "mine", "--out", "out", *words)
+    assert result.exit_code == 2
+    assert "--fit: shear_modulus_MPa has no interval" in result.stderr and "leave out modulus" in result.stderr
+    assert (place / "out/mine-TangoPlus-1-calibration/calibration.json").is_file()
+    assert not (place / "calibrations").exists()

@@ -71,6 +71,11 @@ def changed(**tables):
     return {**CONTENT, **{name: {**CONTENT[name], **keys} for name, keys in tables.items()}}
 
 
+def held(error):
+    """The keys of a response of one pressure held out, with its error."""
+    return {"held_out_pressures_kPa": [12.0], "held_out_sensitivity_errors": [error]}
+
+
 def library_of(folder, shipped, content=CONTENT):
     path = folder / "calibrations" / "mine.toml"
     path.parent.mkdir(exist_ok=True)
@@ -213,11 +218,45 @@ def test_it_is_no_resin(place):
         (changed(source={"driving_pressures_kPa": [12.0, 0.0]}), "ascending"),
         (changed(response={"force_factors": [1.0]}), "must have a number for each driving pressure"),
         (changed(source={"digest": "x"}), "source.digest"),
+        (changed(source={"driving_pressures_kPa": [-1.0, 12.0]}), "driving_pressures_kPa"),
+        (changed(response=held(-1.0)), "held_out_sensitivity_errors"),
+        (changed(response=held(-2.0)), "held_out_sensitivity_errors"),
+        (changed(response=held(11.0)), "held_out_sensitivity_errors"),
+        (changed(response={**held(0.1), "held_out_pressures_kPa": [-12.0]}), "held_out_pressures_kPa"),
+        (changed(response={"held_out_sensitivity_errors": [0.1]}), "a number for each of held_out_pressures_kPa"),
+        ({**CONTENT, "covariance": np.diag([4.1, 1.0, 1.0]).tolist()}, "shear_modulus_MPa must be at most 4"),
+        ({**CONTENT, "covariance": np.diag([1.0, 1e9, 1.0]).tolist()}, "wall_thickness_mm must be at most 4"),
+        ({**CONTENT, "covariance": np.diag([1.0, 1.0, 1e9]).tolist()}, "dead_volume_mL must be at most 100"),
     ],
 )
 def test_a_damaged_file_is_refused(content, why, library, tmp_path):
     with pytest.raises(InputError, match=why):
         library_of(tmp_path, library, content).load("calibrations", "mine")
+
+
+@pytest.mark.parametrize("error", [-0.9, 10.0])
+def test_the_widest_file_that_is_taken_gives_finite_figures(error, library, tmp_path):
+    content = changed(response={**held(error), "sensitivity_errors_relative": [2.0, 2.0]})
+    place = library_of(tmp_path, library, {**content, "covariance": np.diag([4.0, 4.0, 100.0]).tolist()})
+    for entry in predicted(place).uncertainty:
+        for figure in entry["figures"].values():
+            assert figure is None or all(np.isfinite(figure[key]) for key in ("low", "high") if figure.get(key))
+        json.dumps(entry, allow_nan=False)
+
+
+def test_a_prediction_says_where_it_leaves_what_was_measured(library, tmp_path):
+    def notes(source, **indentation):
+        place = library_of(tmp_path, library, changed(source=source))
+        changes = {**DEAD, **{f"indentation.{key}": value for key, value in indentation.items()}}
+        lines = predicted(place, changes).prediction.assumptions
+        return [line for line in lines if "measured to" in line or "measured with" in line]
+
+    known = {"depth_mm": 3.0, "plate_diameter_mm": 30.0}
+    assert notes(known, depth_mm=3.1) == notes({}, depth_mm=3.2, plate_diameter_mm=31.0) == []
+    (deep,) = notes(known, depth_mm=3.2)
+    assert "measured to a travel of 3 mm; this prediction goes to 3.2 mm" in deep
+    (plate,) = notes(known, depth_mm=3.0, plate_diameter_mm=31.0)
+    assert "measured with a plate of 30 mm; this prediction is of one of 31 mm" in plate
 
 
 def test_a_recipe_carries_it_and_is_the_same_again(place, tmp_path):

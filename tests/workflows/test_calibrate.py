@@ -15,12 +15,14 @@ from pneutouch.bench.record import MeasuredCurve
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import evaluate, sensor_of
-from pneutouch.output.files import json_bytes
+from pneutouch.output.files import digest, json_bytes
 from pneutouch.parts import assemble
 from pneutouch.spec.campaign import Campaign, CampaignRun
 from pneutouch.units import KPA
 from pneutouch.workflows.calibrate.files import CampaignSource, calibration_content, prepare, save, write_calibration
 from pneutouch.workflows.calibrate.fit import calibrate, observations_of
+from pneutouch.workflows.calibrate.place import check_place, check_unlike
+from pneutouch.workflows.compare.run import compare
 from tests.bench.calibrate.sensors import curves, injections
 
 SOURCE = CampaignSource("ab" * 32)
@@ -152,7 +154,7 @@ def test_a_file_of_the_name_is_left_alone(found, place):
         prepare(found, "dome-A1", root, other)
     save(prepare(found, "dome-A1", root, other, replace=True))
     assert place.load("calibrations", "dome-A1").source.digest == "cd" * 32
-    for bad in ("../up", "none", "a b", "x" * 101):
+    for bad in ("../up", "none", "a b", "x" * 101, "mine.toml", "-a"):
         with pytest.raises(InputError, match="letters, digits"):
             prepare(found, bad, root, SOURCE)
 
@@ -167,12 +169,13 @@ def test_an_estimate_without_interval_is_no_calibration(scene, tmp_path):
     found = calibrate(Observations(soft), scene, ("modulus",), priors=False)
     assert found.estimates[0]["on_bound"]
     assert found.estimates[0]["interval_95"] is None
-    with pytest.raises(InputError, match="has no interval"):
+    with pytest.raises(InputError, match="has no interval") as refused:
         prepare(found, "soft", tmp_path, SOURCE)
+    assert (refused.value.key, refused.value.remedy) == ("fit", "leave out modulus")
 
 
 def test_the_folder_holds_document_and_chart(found, tmp_path):
-    folder = write_calibration(found, tmp_path)
+    folder = write_calibration(found, tmp_path, SOURCE)
     assert sorted(path.name for path in folder.iterdir()) == ["calibration.json", "manifest.json", "residuals.svg"]
     chart = (folder / "residuals.svg").read_text()
     root = ET.fromstring(chart)
@@ -181,6 +184,50 @@ def test_the_folder_holds_document_and_chart(found, tmp_path):
     assert len(points) >= 2 * 9 * 14 + 10
     colours = set(re.findall(r"stroke: (#[0-9a-f]{6})", chart))
     assert {"#16212b", "#0b5c8a", "#6c7a86"} <= colours
+
+
+def test_the_folder_is_known_as_one_of_pneutouchs_own(found, tmp_path):
+    folder = write_calibration(found, tmp_path, SOURCE)
+    manifest = json.loads((folder / "manifest.json").read_text())
+    assert set(manifest["files"]) == {"calibration.json", "residuals.svg"}
+    for name, entry in manifest["files"].items():
+        assert entry == {"sha256": digest((folder / name).read_bytes()), "bytes": (folder / name).stat().st_size}
+    assert manifest["inputs"]["campaign"]["digest"] == SOURCE.digest
+    with pytest.raises(InputError, match="neither a build nor a characterization"):
+        compare([str(folder), "paper-dome"])
+
+
+def test_it_knows_how_deep_and_with_which_plate_it_was_measured(found, observations, place):
+    kept = place.load("calibrations", "dome-A1").source
+    ends = {}
+    for curve in observations.curves:
+        ends.setdefault(curve.run.driving_pressure_kPa, []).append(curve.indentation.max())
+    assert kept.depth_mm == pytest.approx(max(min(group) for group in ends.values()), rel=1e-6)
+    assert kept.plate_diameter_mm == found.scene.design.indentation.plate_diameter_mm
+
+
+@pytest.mark.parametrize("spoil", ["link", "folder", "kind"])
+def test_a_place_that_cannot_be_written_is_refused_before_the_fit(spoil, tmp_path):
+    if spoil == "kind":
+        (tmp_path / "calibrations").write_text("")
+    else:
+        (tmp_path / "calibrations").mkdir()
+        path = tmp_path / "calibrations" / "mine.toml"
+        path.mkdir() if spoil == "folder" else path.symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(InputError, match="is not a folder" if spoil == "kind" else "is no file of its own"):
+        check_place("mine", tmp_path)
+
+
+def test_a_file_that_the_fit_cannot_equal_is_known_before_it(found, place):
+    path, names = place.folders[0] / "calibrations" / "dome-A1.toml", ("modulus", "wall", "dead-volume", "offset")
+    check_unlike(path, SOURCE.digest, names, (22.0,))
+    check_unlike(path.with_name("free.toml"), "cd" * 32, names, ())
+    for other in (("cd" * 32, names, (22.0,)), (SOURCE.digest, names[:1], (22.0,)), (SOURCE.digest, names, ())):
+        with pytest.raises(InputError, match="there is a calibration of this name"):
+            check_unlike(path, *other)
+    path.write_text("of somebody else")
+    with pytest.raises(InputError, match="there is a calibration of this name"):
+        check_unlike(path, SOURCE.digest, names, (22.0,))
 
 
 def test_runs_of_other_sensors_and_kinds_are_not_taken(observations, scene):

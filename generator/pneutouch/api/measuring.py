@@ -131,12 +131,15 @@ def characterize(
 
 
 class FittedSensor(Result):
-    """A sensor that was calibrated; `name` is what a design names to be predicted as this sensor."""
+    """A sensor that was calibrated; `name` is what a design names to be predicted as this sensor.
+
+    It is None where the fit cannot be a calibration, such as with a modulus on its bound; the last of its notes tells.
+    """
 
     def __init__(self, outcome: CalibrationOutcome) -> None:
         super().__init__("Calibration", outcome.document)
         self._outcome = outcome
-        self.name: str = outcome.document["calibration"]
+        self.name: str | None = outcome.document["calibration"]
 
     def save(self, name: str | Path | None = None, *, replace: bool = False) -> Path:
         """Write the calibration into the user's folder under a name (None: its own); returns its file.
@@ -146,10 +149,10 @@ class FittedSensor(Result):
         from pneutouch.workflows.calibrate.run import save_calibration
 
         with named_by_keyword():
-            return save_calibration(self._outcome, self.name if name is None else str(name), replace=replace)
+            return save_calibration(self._outcome, None if name is None else str(name), replace=replace)
 
     def _head(self) -> str:
-        return f"Calibration {self.name!r}"
+        return f"Calibration {self.name!r}" if self.name else "Fit without a calibration"
 
 
 def calibrate(

@@ -71,6 +71,9 @@ def calibrate(
 
             echo(calibration_text(document))
             plain, name = outcome.design_given, document["calibration"]
-            report_next("compare", plain, f"{plain}@{name}", *set_words(outcome.assignments))
+            words = ("compare", plain, f"{plain}@{name}") if name else ("predict", plain)
+            report_next(*words, *set_words(outcome.assignments))
         if document["failures"]:
             raise typer.Exit(3)
+        if document["calibration"] is None:
+            raise typer.Exit(1)

@@ -1,5 +1,7 @@
 """What a calibration makes of a design's sensor: its parameters, its correction, its error."""
 
+import math
+
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.mechanics import Sensor
@@ -8,6 +10,9 @@ from pneutouch.mechanics.sensor import ResponseCorrection
 from pneutouch.spec.calibration import CalibratedResponse, SensorCalibration
 from pneutouch.spec.design import CALIBRATION
 from pneutouch.units import KPA, ML
+
+BEYOND = 1.05
+"""A depth up to this share above the greatest measured one counts as measured, like a driving pressure: our choice."""
 
 
 def calibrated_sensor(sensor: Sensor, scene: ResolvedDesign) -> Sensor:
@@ -64,6 +69,24 @@ def assumption(scene: ResolvedDesign) -> str:
         f"{calibration.value('wall_thickness_mm'):.4g} mm{corrected}; the figures are of this specimen, not of another "
         "print"
     )
+
+
+def unmeasured(scene: ResolvedDesign, depth: float) -> list[str]:
+    """What of a prediction to ``depth`` (mm) its calibration did not measure, one sentence each."""
+    calibration, notes = scene.calibration, []
+    assert calibration is not None
+    source, plate_mm = calibration.source, scene.design.indentation.plate_diameter_mm
+    if source.depth_mm is not None and depth > BEYOND * source.depth_mm:
+        notes.append(
+            f"calibration {scene.design.calibration}: measured to a travel of {source.depth_mm:.3g} mm; this "
+            f"prediction goes to {depth:.3g} mm, where its correction and its error are not tested"
+        )
+    if source.plate_diameter_mm is not None and not math.isclose(plate_mm, source.plate_diameter_mm, rel_tol=1e-6):
+        notes.append(
+            f"calibration {scene.design.calibration}: measured with a plate of {source.plate_diameter_mm:g} mm; this "
+            f"prediction is of one of {plate_mm:g} mm"
+        )
+    return notes
 
 
 def _span(factors: list[float]) -> str:

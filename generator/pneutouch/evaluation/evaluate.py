@@ -11,7 +11,7 @@ import numpy as np
 
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
 from pneutouch.errors import BeyondLimitError, InputError, nearest
-from pneutouch.evaluation.calibrated import assumption, calibrated_error, calibrated_sensor, check_options
+from pneutouch.evaluation.calibrated import assumption, calibrated_error, calibrated_sensor, check_options, unmeasured
 from pneutouch.evaluation.table_s1 import sensitivity_error
 from pneutouch.mechanics import Sensor, SensorPrediction, predict
 from pneutouch.mechanics.models import DEFAULT_TOLERANCE
@@ -171,7 +171,10 @@ def evaluate_scene(scene: ResolvedDesign, find_resins: Callable[[], Resins], opt
     except BeyondLimitError as error:
         raise _beyond_limit(scene, error) from None
     _check_plate(scene, prediction)
-    more = ([assumption(scene)] if scene.calibration else []) + ([shift] if options.aged else [])
+    more = [shift] if options.aged else []
+    if scene.calibration:
+        deepest = max(state.range_end for state in prediction.states)
+        more = [assumption(scene), *unmeasured(scene, deepest), *more]
     if assembly.dead_volume_note:
         more.append(f"dead volume of 0 mL is {assembly.dead_volume_note}")
     if more:

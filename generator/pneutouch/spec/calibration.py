@@ -17,6 +17,17 @@ ParameterKey = Literal["shear_modulus_MPa", "wall_thickness_mm", "dead_volume_mL
 
 Factor = Annotated[float, Field(ge=0.2, le=5)]
 RelativeError = Annotated[float, Field(ge=0, le=2)]
+HeldOutError = Annotated[float, Field(ge=-0.9, le=10)]
+DrivingPressure = Annotated[float, Field(ge=0, le=1000)]
+
+_MOST_VARIANCE = {
+    "shear_modulus_MPa": 4.0,
+    "wall_thickness_mm": 4.0,
+    "dead_volume_mL": 100.0,
+    "contact_offset_mm": 100.0,
+}
+"""Of a covariance's diagonal, in the units of `SensorCalibration`: a factor of 7, 10 mL, 10 mm. A fit that has more has
+not seen the parameter, and figures by it would not be finite."""
 
 _BY_PRESSURE = ("force_factors", "pressure_factors", "sensitivity_errors_relative", "force_errors_relative")
 
@@ -36,9 +47,15 @@ class CalibrationSource(Table):
     simulated: bool = Field(description="Whether a program made the runs.")
     curves: int = Field(ge=0, le=100_000, description="Number of loading curves.")
     injections: int = Field(ge=0, le=100_000, description="Number of injection runs.")
-    driving_pressures_kPa: list[float] = Field(max_length=1000, description="Driving pressures of the curves.")
+    driving_pressures_kPa: list[DrivingPressure] = Field(
+        max_length=1000, description="Driving pressures of the curves."
+    )
     ambient_pressure_kPa: float = number(101.325, unit="kPa", low=20, high=1000, help="Absolute pressure there.")
     age_days: float = number(0.0, unit="d", low=0, high=36_500, help="Age of the print, mean over the runs.")
+    depth_mm: float | None = Field(
+        default=None, gt=0, le=1000, description="Greatest travel that was measured and used."
+    )
+    plate_diameter_mm: float | None = Field(default=None, gt=0, le=500, description="Plate that it was measured with.")
 
 
 class CalibratedDesign(Table):
@@ -76,8 +93,12 @@ class CalibratedResponse(Table):
         description="Standard uncertainty of the corrected model's sensitivity there."
     )
     force_errors_relative: list[RelativeError] = Field(description="The same of its force.")
-    held_out_pressures_kPa: list[float] = Field(max_length=1000, description="Driving pressures left out of a fit.")
-    held_out_sensitivity_errors: list[float] = Field(max_length=1000, description="Prediction by that fit, likewise.")
+    held_out_pressures_kPa: list[DrivingPressure] = Field(
+        max_length=1000, description="Driving pressures left out of a fit."
+    )
+    held_out_sensitivity_errors: list[HeldOutError] = Field(
+        max_length=1000, description="Prediction by that fit, likewise."
+    )
 
 
 class SensorCalibration(Table):
@@ -112,6 +133,9 @@ class SensorCalibration(Table):
             raise ValueError(f"covariance: must be {size} rows of {size} numbers, one for each covered parameter")
         if not size:
             return self
+        for k, key in enumerate(self.covered):
+            if abs(self.covariance[k][k]) > _MOST_VARIANCE[key]:
+                raise ValueError(f"covariance: that of {key} must be at most {_MOST_VARIANCE[key]:g}")
         matrix = np.array(self.covariance)
         spread = np.sqrt(np.maximum(np.diag(matrix), 0.0))
         unit = matrix / np.outer(np.where(spread > 0, spread, 1.0), np.where(spread > 0, spread, 1.0))
@@ -131,6 +155,10 @@ class SensorCalibration(Table):
         lists = [getattr(self.response, key) for key in _BY_PRESSURE]
         if any(len(values) != len(pressures_kPa) for values in lists):
             raise ValueError(f"response: {', '.join(_BY_PRESSURE)} must have a number for each driving pressure")
+        if len(self.response.held_out_pressures_kPa) != len(self.response.held_out_sensitivity_errors):
+            raise ValueError(
+                "response: held_out_sensitivity_errors must have a number for each of held_out_pressures_kPa"
+            )
         return self
 
     def value(self, key: ParameterKey) -> float:

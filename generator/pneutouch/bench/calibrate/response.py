@@ -26,6 +26,7 @@ class ResponseGap:
         force, sensitivity: Of the contact force and of the sensitivity.
         force_errors, sensitivity_errors: Their standard uncertainties: scatter of the runs, pooled over the pressures,
             and the least share that no residual shows (`FLOOR`).
+        depth: Travel, mm, to which every run went of the driving pressure whose runs went deepest.
     """
 
     driving_pressures_kPa: tuple[float, ...]
@@ -33,6 +34,7 @@ class ResponseGap:
     sensitivity: Array
     force_errors: Array
     sensitivity_errors: Array
+    depth: float
 
     @property
     def correction(self) -> ResponseCorrection:
@@ -49,10 +51,13 @@ def response_gap(fit: CalibrationFit) -> ResponseGap | None:
     use = fit.solution.use[:size].reshape(shape)
     force, rise = (fit.solution.model[k * size : (k + 1) * size].reshape(shape) for k in (0, 1))
     rows: dict[float, list[tuple[float, float]]] = {}
+    depths: dict[float, float] = {}
     for i, curve in enumerate(fit.observations.curves):
         if use[i].sum() >= _LEAST_POINTS:
             row = _gap(p.travel[i], (p.force[i], p.rise[i]), (force[i], rise[i]), use[i])
-            rows.setdefault(curve.run.driving_pressure_kPa, []).append(row)
+            pressure_kPa, end = curve.run.driving_pressure_kPa, float(p.travel[i][use[i]].max())
+            rows.setdefault(pressure_kPa, []).append(row)
+            depths[pressure_kPa] = min(end, depths.get(pressure_kPa, end))
     if not rows:
         return None
     pressures_kPa = tuple(sorted(rows))
@@ -63,7 +68,7 @@ def response_gap(fit: CalibrationFit) -> ResponseGap | None:
     variance = squares / max(int((counts - 1).sum()), 1)
     least = np.array([FLOOR[0], FLOOR[1]])
     errors = np.sqrt(variance / counts[:, None] + least**2)
-    return ResponseGap(pressures_kPa, means[:, 0], means[:, 1], errors[:, 0], errors[:, 1])
+    return ResponseGap(pressures_kPa, means[:, 0], means[:, 1], errors[:, 0], errors[:, 1], max(depths.values()))
 
 
 def _gap(travel: Array, measured: tuple[Array, Array], model: tuple[Array, Array], use: Flags) -> tuple[float, float]:

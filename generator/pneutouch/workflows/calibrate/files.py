@@ -1,6 +1,7 @@
 """A calibration as files: its folder, and the calibration file that a design names."""
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,13 +13,15 @@ from pneutouch.bench.calibrate.parameters import DEAD, KEYS, NAMES, OFFSET, outs
 from pneutouch.bench.calibrate.response import ResponseGap
 from pneutouch.catalogue import KINDS
 from pneutouch.errors import InputError
-from pneutouch.output.files import MANIFEST, check_writable, digest, json_bytes, write_folder
+from pneutouch.output.files import check_writable, json_bytes, write_folder
+from pneutouch.output.manifest import with_manifest
 from pneutouch.report.residuals import residual_chart
 from pneutouch.rounding import rounded
 from pneutouch.spec.calibration import FORMAT
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.units import KPA, ML
 from pneutouch.workflows.calibrate.fit import Calibration
+from pneutouch.workflows.calibrate.place import check_place, taken
 from pneutouch.workflows.coupons import MeasuredProfile, write_profiles
 
 _CHART = (160.0, 110.0)
@@ -50,24 +53,40 @@ class SavedCalibration:
     text: str
 
 
-def write_calibration(calibration: Calibration, out: Path) -> Path:
-    """Write calibration.json and residuals.svg into ``out/<design>-<sensor>-calibration``. Raises InputError."""
-    name = re.sub(r"[^A-Za-z0-9_-]+", "-", f"{calibration.scene.name}-{calibration.sensor or 'sensor'}-calibration")
-    folder = out / name
+def folder_of(design: str, sensor: str, out: Path) -> Path:
+    """The output folder of a calibration: ``out/<design>-<sensor>-calibration``."""
+    return out / f"{_plain(design, sensor)}-calibration"
+
+
+def write_calibration(calibration: Calibration, out: Path, source: CampaignSource, unsaved: Sequence[str] = ()) -> Path:
+    """Write calibration.json and residuals.svg into `folder_of`; ``unsaved`` are further notes. Raises InputError."""
+    folder = folder_of(calibration.scene.name, calibration.sensor, out)
     check_writable(folder)
+    document = calibration.document
     files = {
-        "calibration.json": json_bytes(calibration.document),
+        "calibration.json": json_bytes({**document, "notes": [*document["notes"], *unsaved]}),
         "residuals.svg": residual_chart(calibration.residuals, _CHART).encode(),
     }
-    listed = {path: digest(content) for path, content in sorted(files.items())}
-    write_folder(folder, {**files, MANIFEST: json_bytes({"files": listed})})
+    fitted = calibration.fit.parameters
+    inputs = {
+        "design": calibration.scene.name,
+        "sensor": calibration.sensor,
+        "campaign": {"title": calibration.title, "digest": source.digest},
+        "fit": list(fitted.names),
+        "priors": fitted.priors,
+        "hold_out_kPa": [one.driving_pressure_kPa for one in calibration.held_out],
+    }
+    write_folder(folder, with_manifest(files, folder.name, inputs))
     return folder
 
 
-def default_name(calibration: Calibration) -> str:
+def default_name(design: str, sensor: str) -> str:
     """Name of the calibration file where none is given: design and sensor."""
-    name = re.sub(r"[^A-Za-z0-9_-]+", "-", f"{calibration.scene.name}-{calibration.sensor or 'sensor'}")
-    return name.lstrip("-_")[:_NAME_LIMIT] or "sensor"
+    return _plain(design, sensor).lstrip("-_")[:_NAME_LIMIT] or "sensor"
+
+
+def _plain(design: str, sensor: str) -> str:
+    return re.sub(r"[^A-Za-z0-9_-]+", "-", f"{design}-{sensor or 'sensor'}")
 
 
 def prepare(
@@ -75,28 +94,39 @@ def prepare(
 ) -> SavedCalibration:
     """Check and word ``root/calibrations/name.toml``; nothing is written.
 
-    Raises InputError for a bad name, a file of that name with another content (unless ``replace``), and a modulus or
-    wall that was fitted and has no interval.
+    Raises InputError as `check_place` and `savable` do, and for a file of that name with another content, unless
+    ``replace``.
     """
-    if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]*", name) or name == "none" or len(name) > _NAME_LIMIT:
-        rule = f"use at most {_NAME_LIMIT} letters, digits, - and _, starting with a letter or digit, and not none"
-        raise InputError(rule, key="save", value=name)
-    path = root / KINDS["calibrations"].folder / f"{name}.toml"
-    content = calibration_content(calibration, source)
-    KINDS["calibrations"].validate(content, str(path))
+    path = check_place(name, root)
     head = f"# Calibration of one sensor; pneutouch predict {calibration.scene.name}@{name} uses it.\n"
-    text = head + toml_text(content)
-    if path.is_symlink() or (path.exists() and not path.is_file()):
-        raise InputError("is no file of its own", file=path, remedy="move it away or give another `save`")
+    text = head + toml_text(savable(calibration, source))
     if path.is_file() and path.read_bytes() != text.encode() and not replace:
-        remedy = "give another `save`, or `replace` to replace it"
-        raise InputError("there is a calibration of this name, of other content", file=path, remedy=remedy)
+        raise taken(path)
     return SavedCalibration(name, path, text)
+
+
+def savable(calibration: Calibration, source: CampaignSource) -> dict[str, Any]:
+    """`calibration_content`, checked. Raises InputError with the key ``fit`` where it cannot be a calibration.
+
+    That is: a modulus or wall that was fitted has no interval, or a value or its uncertainty is beyond the bounds.
+    """
+    content = calibration_content(calibration, source)
+    try:
+        KINDS["calibrations"].validate(content, "calibration")
+    except InputError as error:
+        where = f"{error.key}: " if error.key else ""
+        raise InputError(f"{where}{error.problem}", key="fit", remedy="fit fewer parameters") from None
+    return content
 
 
 def save(saved: SavedCalibration) -> None:
     """Write what `prepare` made. Raises InputError where the folder cannot be written."""
-    write_profiles([MeasuredProfile(saved.path, saved.text, [])])
+    try:
+        write_profiles([MeasuredProfile(saved.path, saved.text, [])])
+    except InputError as error:
+        # The remedy there is of an output folder.
+        remedy = "take a user's folder you may write to"
+        raise InputError(error.problem, file=saved.path, remedy=remedy) from None
 
 
 def calibration_content(calibration: Calibration, source: CampaignSource) -> dict[str, Any]:
@@ -120,6 +150,11 @@ def calibration_content(calibration: Calibration, source: CampaignSource) -> dic
             "driving_pressures_kPa": [] if gap is None else [*gap.driving_pressures_kPa],
             "ambient_pressure_kPa": observations.ambient / KPA,
             "age_days": float(source.age_days),
+            **(
+                {}
+                if gap is None
+                else {"depth_mm": gap.depth, "plate_diameter_mm": float(design.indentation.plate_diameter_mm)}
+            ),
         },
         "design": {
             "name": calibration.scene.name,
@@ -154,7 +189,7 @@ def _covariance(calibration: Calibration) -> tuple[list[int], Array]:
     for place, k in enumerate(fitted):
         if k not in (DEAD, OFFSET) and not np.isfinite(fit.half_width[place]):
             missing = f"{KEYS[k]} has no interval (on its bound, or not seen): there is no calibration to save"
-            raise InputError(missing, key="save", remedy="leave it out of `fit`")
+            raise InputError(missing, key="fit", remedy=f"leave out {NAMES[k]}")
     size = len(NAMES)
     whole, grown = np.zeros((size, size)), np.ones(size)
     whole[np.ix_(fitted, fitted)] = fit.covariance.matrix

@@ -5,13 +5,23 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pneutouch.bench.calibrate import Observations
+from pneutouch.bench.calibrate import NAMES, Observations
 from pneutouch.catalogue import DesignSource, Library, load_scene, split_calibration, user_folder
 from pneutouch.errors import InputError
+from pneutouch.output.files import check_writable
 from pneutouch.spec.design import CALIBRATION
 from pneutouch.spec.read import parse_changes
-from pneutouch.workflows.calibrate.files import CampaignSource, default_name, prepare, save, write_calibration
+from pneutouch.workflows.calibrate.files import (
+    CampaignSource,
+    default_name,
+    folder_of,
+    prepare,
+    savable,
+    save,
+    write_calibration,
+)
 from pneutouch.workflows.calibrate.fit import Calibration, calibrate, observations_of
+from pneutouch.workflows.calibrate.place import check_place, check_unlike
 from pneutouch.workflows.characterize import (
     CAMPAIGN,
     CampaignData,
@@ -44,7 +54,8 @@ class CalibrationOutcome:
     """A calibration that was written.
 
     Attributes:
-        document: The calibration's document with ``calibration`` (its name), ``written``, ``failures`` and ``read_as``.
+        document: The calibration's document with ``calibration`` (its name, or None), ``written``, ``failures`` and
+            ``read_as``.
         calibration: The calibration itself.
         source: Where its runs are from.
         design_given: The design as a command takes it.
@@ -64,8 +75,14 @@ def run_calibration(
     progress: Progress = lambda done, total: None,
     reading: Reading | None = None,
 ) -> CalibrationOutcome:
-    """Read, fit and write. Raises InputError; everything is checked before the first file is written."""
+    """Read, fit and write.
+
+    The places of all files are checked before the fit. A fit that cannot be a calibration is reported: without ``save``
+    the document's ``calibration`` is None and its last note states why. Raises InputError.
+    """
     library = library or Library.default()
+    if options.save is not None:
+        check_place(options.save, user_folder())
     loaded = load_curves(options.data, progress=progress, reading=reading)
     design = options.design or loaded.campaign.design
     if design is None:
@@ -79,6 +96,9 @@ def run_calibration(
     sensor, observations, notes = observations_of(loaded.campaign, curves, loaded.injections, scene, options.sensor)
     used_files = {curve.run.file for curve in observations.curves}
     notes = [*notes, *(f"{file}: {text}" for file, text in questions if file in used_files)]
+    source = _source(options.data, loaded, sensor, observations)
+    name = options.save or default_name(scene.name, sensor)
+    _check_places(options, name, folder_of(scene.name, sensor, options.out), source)
     calibration = calibrate(
         observations,
         scene,
@@ -89,22 +109,50 @@ def run_calibration(
         title=loaded.campaign.title,
         notes=notes,
     )
-    source = _source(options.data, loaded, sensor, observations)
-    name = options.save or default_name(calibration)
-    saved = prepare(calibration, name, user_folder(), source, replace=options.replace)
-    folder = write_calibration(calibration, options.out)
-    save(saved)
+    unsaved: list[str] = []
+    try:
+        savable(calibration, source)
+    except InputError as error:
+        unsaved.append(f"no calibration was saved: {error.problem}; {error.remedy}")
+    written = [write_calibration(calibration, options.out, source, unsaved)]
+    # A fit that was asked to be saved, and cannot be, is an error; its report stays.
+    if not unsaved or options.save is not None:
+        written.append(_saved(calibration, name, source, replace=options.replace))
     failures = [list(failure) for failure in (*loaded.failures, *refused)]
-    written = {"written": [str(folder), str(saved.path)], "failures": failures, "read_as": read_as(loaded.sources)}
-    document = {**calibration.document, "calibration": saved.name, **written}
+    document = {
+        **calibration.document,
+        "notes": [*calibration.notes_for_reader, *unsaved],
+        "calibration": None if unsaved else name,
+        "written": [str(path) for path in written],
+        "failures": failures,
+        "read_as": read_as(loaded.sources),
+    }
     return CalibrationOutcome(document, calibration, source, _named(design), loaded.campaign.assignments)
 
 
-def save_calibration(outcome: CalibrationOutcome, name: str, *, replace: bool = False) -> Path:
-    """Write a calibration into the user's folder under a name. Raises InputError as `prepare` and `save` do."""
-    saved = prepare(outcome.calibration, name, user_folder(), outcome.source, replace=replace)
+def _check_places(options: CalibrationOptions, name: str, folder: Path, source: CampaignSource) -> None:
+    """Raise InputError, before the fit, where its output or its calibration could not be written."""
+    check_writable(folder)
+    path = check_place(name, user_folder())
+    # An unknown parameter is refused by the fit, before it computes.
+    if not options.replace and set(options.names) <= set(NAMES):
+        check_unlike(path, source.digest, options.names, options.hold_out)
+
+
+def _saved(calibration: Calibration, name: str, source: CampaignSource, *, replace: bool) -> Path:
+    saved = prepare(calibration, name, user_folder(), source, replace=replace)
     save(saved)
     return saved.path
+
+
+def save_calibration(outcome: CalibrationOutcome, name: str | None = None, *, replace: bool = False) -> Path:
+    """Write a calibration into the user's folder under a name (None: of design and sensor).
+
+    Raises InputError as `prepare` and `save` do.
+    """
+    calibration = outcome.calibration
+    name = name or outcome.document["calibration"] or default_name(calibration.scene.name, calibration.sensor)
+    return _saved(calibration, name, outcome.source, replace=replace)
 
 
 def _named(design: str | DesignSource) -> str:
