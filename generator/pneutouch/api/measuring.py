@@ -133,7 +133,7 @@ def characterize(
 class FittedSensor(Result):
     """A sensor that was calibrated; `name` is what a design names to be predicted as this sensor.
 
-    It is None where the fit cannot be a calibration, such as with a modulus on its bound; the last of its notes tells.
+    It is None where the fit cannot be a calibration, such as with a modulus on its bound; its last note states why.
     """
 
     def __init__(self, outcome: CalibrationOutcome) -> None:

@@ -50,8 +50,8 @@ def check_unlike(path: Path, digest: str, names: Sequence[str], hold_out_kPa: Se
     assert isinstance(there, SensorCalibration)
     held_kPa = [] if there.response is None else there.response.held_out_pressures_kPa
     fitted = {parameter.key for parameter in there.parameters if parameter.fitted}
-    asked = {KEYS[NAMES.index(name)] for name in names}
-    if there.source.digest != digest or fitted != asked or held_kPa != list(hold_out_kPa):
+    requested = {KEYS[NAMES.index(name)] for name in names}
+    if there.source.digest != digest or fitted != requested or held_kPa != list(hold_out_kPa):
         raise taken(path)
 
 

@@ -114,9 +114,12 @@ def run_calibration(
         savable(calibration, source)
     except InputError as error:
         unsaved.append(f"no calibration was saved: {error.problem}; {error.remedy}")
+        if options.save is not None:
+            folder = write_calibration(calibration, options.out, source, unsaved)
+            problem = f"{error.problem} (the fit is in {folder})"
+            raise InputError(problem, key=error.key, remedy=error.remedy) from None
     written = [write_calibration(calibration, options.out, source, unsaved)]
-    # A fit that was asked to be saved, and cannot be, is an error; its report stays.
-    if not unsaved or options.save is not None:
+    if not unsaved:
         written.append(_saved(calibration, name, source, replace=options.replace))
     failures = [list(failure) for failure in (*loaded.failures, *refused)]
     document = {
