@@ -109,6 +109,26 @@ def run_calibration(
         title=loaded.campaign.title,
         notes=notes,
     )
+    written, unsaved = _write(options, calibration, name, source)
+    failures = [list(failure) for failure in (*loaded.failures, *refused)]
+    document = {
+        **calibration.document,
+        "notes": [*calibration.notes_for_reader, *unsaved],
+        "calibration": None if unsaved else name,
+        "written": [str(path) for path in written],
+        "failures": failures,
+        "read_as": read_as(loaded.sources),
+    }
+    return CalibrationOutcome(document, calibration, source, _named(design), loaded.campaign.assignments)
+
+
+def _write(
+    options: CalibrationOptions, calibration: Calibration, name: str, source: CampaignSource
+) -> tuple[list[Path], list[str]]:
+    """Write the fit's report and the calibration: what was written, and a note where there is no calibration.
+
+    Raises InputError where ``save`` requires one; the report is written nevertheless.
+    """
     unsaved: list[str] = []
     try:
         savable(calibration, source)
@@ -121,16 +141,7 @@ def run_calibration(
     written = [write_calibration(calibration, options.out, source, unsaved)]
     if not unsaved:
         written.append(_saved(calibration, name, source, replace=options.replace))
-    failures = [list(failure) for failure in (*loaded.failures, *refused)]
-    document = {
-        **calibration.document,
-        "notes": [*calibration.notes_for_reader, *unsaved],
-        "calibration": None if unsaved else name,
-        "written": [str(path) for path in written],
-        "failures": failures,
-        "read_as": read_as(loaded.sources),
-    }
-    return CalibrationOutcome(document, calibration, source, _named(design), loaded.campaign.assignments)
+    return written, unsaved
 
 
 def _check_places(options: CalibrationOptions, name: str, folder: Path, source: CampaignSource) -> None:
