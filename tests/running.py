@@ -6,6 +6,7 @@ import contextlib
 import fcntl
 import io
 import os
+import resource
 import shutil
 import subprocess
 import sys
@@ -84,3 +85,14 @@ class Shared:
                     raise
                 fresh.rename(target)
         return target
+
+
+@contextlib.contextmanager
+def files_of_at_most(size):
+    """No file can grow beyond ``size`` bytes within the block, as on a disk that is full."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)

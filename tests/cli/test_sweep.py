@@ -97,13 +97,32 @@ def test_the_dataset_is_named_on_stdout_and_the_states_on_stderr(command, tmp_pa
     assert {path.name: path.read_bytes() for path in (tmp_path / "outputs").iterdir()} == before
 
 
-def test_a_table_of_another_s_is_not_replaced(command, tmp_path):
-    (tmp_path / "x.csv").write_text("mine")
+TAKEN = {
+    "x.csv": "the table",
+    "x-over-membrane_wall_thickness_mm.svg": "a picture",
+    "x-over-membrane_wall_thickness_mm.png": "a picture",
+    "x-over-driving_pressure_kPa.png": "a picture",
+}
+
+
+@pytest.mark.parametrize("fresh", [[], ["--fresh"]], ids=["", "fresh"])
+@pytest.mark.parametrize("name", TAKEN)
+def test_files_of_others_are_not_replaced(name, fresh, command, tmp_path):
+    (tmp_path / name).write_text("mine")
     words = ["--design", "paper-dome", "--over", "membrane.wall_thickness_mm=1,1.5", "--model", "membrane"]
-    result = command("sweep", *words, "--out", "x.nc")
-    assert result.returncode == 2 and result.stderr.startswith("error: --out: x.csv is in the place of the table")
-    assert [path.name for path in tmp_path.iterdir()] == ["x.csv"]
-    assert (tmp_path / "x.csv").read_text() == "mine"
+    result = command("sweep", *words, "--out", "x.nc", *fresh)
+    assert result.returncode == 2
+    assert result.stderr.startswith(f"error: --out: {name} is in the place of {TAKEN[name]}; give another --out")
+    assert [path.name for path in tmp_path.iterdir()] == [name]
+    assert (tmp_path / name).read_text() == "mine"
+
+
+def test_pictures_of_a_longer_name_are_in_no_place_of_this_one_s(command, tmp_path):
+    (tmp_path / "x-over-all-over-membrane_wall_thickness_mm.svg").write_text("mine")
+    words = ["--design", "paper-dome", "--over", "membrane.wall_thickness_mm=1,1.5", "--model", "membrane"]
+    assert command("sweep", *words, "--out", "x.nc").returncode == 0
+    again = command("sweep", *words, "--out", "x.nc", "--fresh")
+    assert again.returncode == 0, again.stderr
 
 
 @pytest.mark.parametrize(

@@ -44,6 +44,23 @@ NUMBERS = "0.0,1.5,0.25,10.5\n0.1,1.6,0.35,10.6\n0.2,1.7,0.45,10.7\n"
         ("Crosshead speed", "mm/s", "", ""),
         ("Force setpoint (N)", "", "", "N"),
         ("Pressure (N)", "", "", "N"),
+        ("Ambient pressure (kPa)", "", "", "kPa"),
+        ("Pressure absolute (kPa)", "", "", "kPa"),
+        ("P_abs (kPa)", "", "", "kPa"),
+        ("Atmospheric pressure (mbar)", "", "", "mbar"),
+        ("Barometric pressure", "kPa", "", "kPa"),
+        ("Baro (kPa)", "", "", "kPa"),
+        ("Stress (MPa)", "", "", "MPa"),
+        ("Spannung (MPa)", "", "", "MPa"),
+        ("Modulus (MPa)", "", "", "MPa"),
+        ("F target [N]", "", "", "N"),
+        ("Force command (N)", "", "", "N"),
+        ("Demand (N)", "", "", "N"),
+        ("Kraft Sollwert (N)", "", "", "N"),
+        ("Force limit (N)", "", "", "N"),
+        ("Pressure SP (kPa)", "", "", "kPa"),
+        ("Cycle (N)", "", "", "N"),
+        ("Cycles", "N", "", "N"),
         ("Pressure (psia)", "", "", ""),
         ("Pressure (bar abs)", "", "", ""),
         ("Temperature (°C)", "", "", ""),
@@ -100,6 +117,17 @@ def test_a_unit_that_is_not_stated_is_asked_for(tmp_path):
 def test_a_channel_that_is_missing_is_asked_for(tmp_path):
     asked(tmp_path, "Time (s),Position (mm),Load (N),T (°C)", "column pressure_kPa: missing", "no column of pressure")
     asked(tmp_path, "Time (s),Position (mm),Load (N),Pressure (psia)", "no column of pressure")
+
+
+def test_only_the_gauge_pressure_and_the_measured_force_are_taken(tmp_path):
+    path = tmp_path / "a.csv"
+    head = "Time (s),Position (mm),F target [N],Force (N),Force limit (N),Ambient pressure (kPa),Pressure (kPa)"
+    path.write_text(f"{head}\n0,1.5,9,0.25,20,101,10.5\n1,1.6,9,0.35,20,101,10.6\n2,1.7,9,0.45,20,101,10.7\n")
+    columns = identify(path, ColumnMap(), PLATE).columns
+    assert (columns.force.name, columns.pressure.name) == ("Force (N)", "Pressure (kPa)")
+    asked(tmp_path, "Time (s),Position (mm),Load (N),Ambient pressure (kPa)", "no column of pressure")
+    asked(tmp_path, "Time (s),Position (mm),Load (N),Stress (MPa)", "no column of pressure")
+    asked(tmp_path, "Time (s),Position (mm),Cycle (N),P_kPa", "no column of force")
 
 
 def test_a_stated_column_without_unit_takes_that_of_the_header(tmp_path):

@@ -20,7 +20,9 @@ from pneutouch.output.files import digest
 from pneutouch.parts import assemble
 from pneutouch.spec.read import parse_changes
 from pneutouch.workflows.build.voxels import plan_voxels, write_voxels
+from pneutouch.workflows.show.voxels import show_stack
 from tests.export.voxels.small import SETS, small_assembly
+from tests.running import files_of_at_most
 
 
 def test_slices_are_what_the_utility_asks_for(written):
@@ -277,3 +279,14 @@ def test_through_the_wall_the_fraction_is_the_one_asked_for(written):
     off = np.abs(got - asked)[full] / held[full]
     assert off.max() < 0.005
     assert off.mean() < 0.0015
+
+
+def test_a_picture_that_cannot_be_written_leaves_the_one_that_is_there(written, tmp_path):
+    _, folder = written
+    picture = tmp_path / "sections.png"
+    picture.write_bytes(b"before")
+    with files_of_at_most(100), pytest.raises(InputError, match="File too large"):
+        show_stack(folder, picture)
+    assert [(path.name, path.read_bytes()) for path in tmp_path.iterdir()] == [("sections.png", b"before")]
+    show_stack(folder, picture)
+    assert picture.read_bytes().startswith(b"\x89PNG")

@@ -18,8 +18,33 @@ _WORDS = {
 _ENDINGS = {"kraft": "force", "weg": "position", "zeit": "time", "druck": "pressure"}
 """Last parts of German compounds, such as Standardkraft."""
 
-_RATES = frozenset({"rate", "speed", "velocity", "setpoint", "geschwindigkeit"})
-"""Words that make another quantity of a channel, whatever its unit."""
+_OTHER_QUANTITIES = frozenset(
+    {
+        "rate",
+        "speed",
+        "velocity",
+        "geschwindigkeit",
+        "setpoint",
+        "sp",
+        "sollwert",
+        "target",
+        "command",
+        "demand",
+        "limit",
+        "absolute",
+        "abs",
+        "ambient",
+        "atmospheric",
+        "barometric",
+        "baro",
+        "stress",
+        "spannung",
+        "modulus",
+        "cycle",
+        "cycles",
+    }
+)
+"""Words of a column that is none of the channels, whatever its unit: no measured force, no gauge pressure."""
 
 _SPLIT = re.compile(r"[^\W_]+")
 _LAST = re.compile(r"(.*?)(?:[\s_,:;/.-]+|\bin\s+)([^\s_,:;/]+)")
@@ -28,7 +53,7 @@ _LAST = re.compile(r"(.*?)(?:[\s_,:;/.-]+|\bin\s+)([^\s_,:;/]+)")
 class HeaderMeaning(NamedTuple):
     """What a header states: the channel that its words name, and the channel and the unit of its unit; "" each unknown.
 
-    ``odd``: it states a unit, or states that it is a rate, which no channel has."""
+    ``odd``: it states a unit, or another quantity, which no channel has."""
 
     word: str
     kind: str
@@ -55,7 +80,7 @@ def meaning_of(name: str, unit: str = "") -> HeaderMeaning:
     if known is None and not unit.strip() and unit_of(name.strip()):
         return HeaderMeaning("", *_both(name))
     words = [word.lower() for word in _SPLIT.findall(label)]
-    odd = (bool(stated.strip("()[] -")) and known is None) or any(word in _RATES for word in words)
+    odd = (bool(stated.strip("()[] -")) and known is None) or any(word in _OTHER_QUANTITIES for word in words)
     return HeaderMeaning(_channel(label, words), *(known or ("", "")), odd)
 
 

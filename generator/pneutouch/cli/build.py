@@ -246,6 +246,6 @@ def _from_3mf(file: str, context: typer.Context, name: str | None) -> Evaluation
 
 @contextmanager
 def _progress(steps: Sequence[str]) -> Iterator[Callable[[str], None]]:
-    """A bar over named steps on a terminal; silence elsewhere."""
+    """A bar over named steps on a terminal; one line a step elsewhere."""
     with bar("") as report:
         yield lambda step: report(steps.index(step), len(steps), step)

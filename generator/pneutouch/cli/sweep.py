@@ -62,8 +62,7 @@ def sweep(
             file, design, over or [], changes(set_, calibration), {"model": model, "closure": closure, "clamp": clamp}
         )
         target = Path("outputs") / f"{plan.name}.nc" if out is None else out
-        if not fresh:
-            check_companions(target)
+        check_companions(target, plan)
         with bar("computing points") as progress:
             done = run(plan, target, ComputeResources(workers, scheduler), fresh=fresh, progress=progress)
         with bar("drawing the sensitivity"):

@@ -1,11 +1,13 @@
-"""Write an output folder whole or not at all: written next to its place, then renamed into it."""
+"""Write a file or an output folder whole or not at all: written next to its place, then renamed into it."""
 
 import contextlib
+import errno
 import hashlib
 import json
 import os
 import shutil
-from collections.abc import Iterator
+import tempfile
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from pneutouch.errors import InputError
@@ -26,6 +28,88 @@ def digest(content: bytes) -> str:
 def json_bytes(document: object) -> bytes:
     """A JSON document as bytes: sorted keys, two spaces, one newline at the end."""
     return (json.dumps(document, indent=2, sort_keys=True, ensure_ascii=False, allow_nan=False) + "\n").encode()
+
+
+def replace_file(path: Path, content: bytes, *, key: str = "out") -> None:
+    """Write a file, in place of one that is there, which stays until the new one is whole. As `replace_files`."""
+    replace_files({path: content}, key=key)
+
+
+@uninterrupted()
+def replace_files(files: Mapping[Path, bytes], *, key: str = "out") -> None:
+    """Write files, in place of those that are there, which stay until all the new ones are whole and on the disk.
+
+    Raises InputError where one cannot be written; ``key`` is the parameter that gives the folder.
+    """
+    path = Path()
+    try:
+        for path in files:
+            if path.exists() and not path.is_file():
+                raise InputError(f"{path} is not a file", key=key, remedy="give another place, or move it away")
+        with contextlib.ExitStack() as stack:
+            fresh: list[tuple[Path, Path]] = []
+            for path, content in files.items():
+                fresh.append((stack.enter_context(_hidden(path, content)), path))
+            for temporary, path in fresh:
+                temporary.replace(path)
+    except OSError as error:
+        raise _refused(path, error, key) from None
+
+
+@uninterrupted()
+def create_file(path: Path, content: bytes, *, key: str = "out") -> None:
+    """Write a file that is not there yet. Raises InputError where it is there, or cannot be written, as above."""
+    try:
+        with _hidden(path, content) as fresh:
+            _link(fresh, path)
+    except FileExistsError as error:
+        if not os.path.lexists(path):
+            raise _refused(path, error, key) from None
+        raise InputError("there is such a file already; give another name", file=path) from None
+    except OSError as error:
+        raise _refused(path, error, key) from None
+
+
+def write_synced(path: Path, content: bytes) -> None:
+    """Write a file that is on the disk when this returns. Raises OSError."""
+    with path.open("wb") as file:
+        file.write(content)
+        file.flush()
+        os.fsync(file.fileno())
+
+
+@contextlib.contextmanager
+def _hidden(path: Path, content: bytes) -> Iterator[Path]:
+    """A hidden file next to ``path`` with its content, removed at the end unless renamed. Raises OSError."""
+    with parent_folders(path):
+        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+        os.close(handle)
+        fresh = Path(name)
+        try:
+            write_synced(fresh, content)
+            fresh.chmod(0o644)
+            yield fresh
+        finally:
+            fresh.unlink(missing_ok=True)
+
+
+def _link(fresh: Path, path: Path) -> None:
+    """Give a whole file its name, never over another. Raises OSError."""
+    try:
+        os.link(fresh, path)
+    except OSError as error:
+        # Memory sticks and some network folders have no second names for a file.
+        if error.errno not in (errno.EPERM, errno.EOPNOTSUPP, errno.ENOSYS):
+            raise
+        if os.path.lexists(path):
+            raise FileExistsError from None
+        fresh.rename(path)
+
+
+def _refused(path: Path, error: OSError, key: str) -> InputError:
+    if os.path.lexists(path.parent) and not path.parent.is_dir():
+        return InputError(f"{path}: {path.parent} is not a folder", key=key, remedy="give a folder you may write to")
+    return InputError(f"{path}: {error.strerror or error}", key=key, remedy="give a folder you may write to")
 
 
 def check_writable(folder: Path, key: str = "out") -> None:

@@ -1,7 +1,6 @@
 """Write a new file to start from: a commented design, or a copy of a design, a specimen or an example."""
 
 import os
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,7 +8,7 @@ from pneutouch.catalogue import KINDS, Library, user_folder
 from pneutouch.catalogue.examples import COMMANDS, examples
 from pneutouch.catalogue.library import is_specimen
 from pneutouch.errors import InputError, nearest
-from pneutouch.holding import uninterrupted
+from pneutouch.output.files import create_file, replace_file
 from pneutouch.spec.files import is_file, read_bytes
 from pneutouch.spec.names import plain_name
 from pneutouch.spec.read import read_toml
@@ -44,9 +43,11 @@ def new_from(source: str, name: str | None = None, out: Path | None = None) -> N
         called, text = plain_name(name or source, key="name"), example.path.read_text(encoding="utf-8")
         if example.kind == "campaign":
             # The runs of a campaign lie in the folder of its file.
-            path = _create((out or Path()) / called / "campaign.toml", text)
+            path = (out or Path()) / called / "campaign.toml"
+            create_file(path, text.encode())
             return NewFile(path, (COMMANDS[example.kind], str(path.parent)))
-        path = _create((out or Path()) / f"{called}.toml", text)
+        path = (out or Path()) / f"{called}.toml"
+        create_file(path, text.encode())
         return NewFile(path, (COMMANDS[example.kind], str(path)))
     path = Path(source)
     if path.suffix == ".toml" or is_file(path):
@@ -98,38 +99,5 @@ def check_free(name: str, folder: Path, *, overwrite: bool = False) -> Path:
 def write_design(name: str, folder: Path, text: str, kind: str = "designs", *, overwrite: bool = False) -> Path:
     """Write the text of a design as ``folder/name.toml``; over a file with ``overwrite`` alone."""
     path = check_name(name, folder, kind)
-    return _replace(path, text) if overwrite else _create(path, text)
-
-
-@uninterrupted()
-def _replace(path: Path, text: str) -> Path:
-    """Write a file, in place of one that is there; that one stays until the new one is whole."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, fresh = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-        try:
-            with os.fdopen(handle, "w", encoding="utf-8") as file:
-                file.write(text)
-            Path(fresh).chmod(0o644)
-            Path(fresh).replace(path)
-        finally:
-            Path(fresh).unlink(missing_ok=True)
-    except OSError as error:
-        raise InputError(str(error.strerror), file=path, remedy="give a folder you may write to with `out`") from None
-    return path
-
-
-@uninterrupted()
-def _create(path: Path, text: str) -> Path:
-    """Write a file that is not there yet."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)
-    except FileExistsError:
-        what = "there is such a file already; give another name" if path.exists() else f"{path.parent} is not a folder"
-        raise InputError(what, file=path) from None
-    except OSError as error:
-        raise InputError(str(error.strerror), file=path, remedy="give a folder you may write to with `out`") from None
-    with os.fdopen(handle, "w", encoding="utf-8") as file:
-        file.write(text)
+    (replace_file if overwrite else create_file)(path, text.encode())
     return path

@@ -1,7 +1,5 @@
 """A lab's own profile: the shipped one with what was measured in place of what was quoted."""
 
-import os
-import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,7 +8,7 @@ from typing import Any
 from pneutouch.bench.finding import MARK, ProfileChange, ReadingSource
 from pneutouch.catalogue import KINDS, Library
 from pneutouch.errors import InputError
-from pneutouch.holding import uninterrupted
+from pneutouch.output.files import replace_files
 from pneutouch.spec.read import read_toml
 from pneutouch.spec.toml_text import toml_text
 
@@ -66,28 +64,9 @@ def head(source: ReadingSource, what: str) -> str:
     )
 
 
-@uninterrupted()
 def write_profiles(profiles: Sequence[MeasuredProfile]) -> None:
-    """Write every profile to a temporary file and rename it. Raises InputError where a folder cannot be written."""
-    fresh: list[tuple[Path, Path]] = []
-    try:
-        for profile in profiles:
-            profile.path.parent.mkdir(parents=True, exist_ok=True)
-            handle, name = tempfile.mkstemp(prefix=f".{profile.path.stem}.", dir=profile.path.parent)
-            temporary = Path(name)
-            fresh.append((temporary, profile.path))
-            with os.fdopen(handle, "w", encoding="utf-8") as file:
-                file.write(profile.text)
-            temporary.chmod(0o644)
-        for temporary, path in fresh:
-            temporary.replace(path)
-    except OSError as error:
-        raise InputError(
-            str(error.strerror), file=error.filename, remedy="give a folder you may write to with `out`"
-        ) from None
-    finally:
-        for temporary, _ in fresh:
-            temporary.unlink(missing_ok=True)
+    """Write every profile, or none. Raises InputError where a folder cannot be written."""
+    replace_files({profile.path: profile.text.encode() for profile in profiles})
 
 
 def _is_ours(path: Path) -> bool:

@@ -1,15 +1,12 @@
 """The charts of a selection: what its target costs, and how far the chosen design can be tuned."""
 
-import os
-import tempfile
 from dataclasses import replace
 from pathlib import Path
 
 from pneutouch.catalogue import Library
-from pneutouch.errors import InputError
 from pneutouch.evaluation.chart_data import ChartPoint, TradeOff, TuningChart
 from pneutouch.evaluation.tuning import curve, interval
-from pneutouch.holding import uninterrupted
+from pneutouch.output.files import replace_files
 from pneutouch.report.tradeoff import tradeoff_chart
 from pneutouch.report.tuning import tuning_chart
 from pneutouch.selection import Candidate
@@ -38,7 +35,9 @@ def write_charts(
     chart = tuning(selection, library or Library.default(), chosen)
     if chart is not None:
         charts["tuning.svg"] = tuning_chart(chart, _SIZE)
-    return [_write(folder / name, text) for name, text in charts.items()]
+    files = {folder / name: text.encode() for name, text in charts.items()}
+    replace_files(files, key="charts")
+    return list(files)
 
 
 def tradeoff(selection: SelectionRun) -> TradeOff:
@@ -103,21 +102,3 @@ def _spot(rank: int, choice: Candidate) -> ChartPoint:
     return ChartPoint(
         title, f"{rank}  {title}, {force:.3g} N", float(choice.pool.response.lines.sensitivity_kPa_per_N[0]), force
     )
-
-
-@uninterrupted()
-def _write(path: Path, text: str) -> Path:
-    """Write a temporary file in the same folder and rename it."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-        try:
-            with os.fdopen(handle, "w", encoding="utf-8") as file:
-                file.write(text)
-            Path(temporary).chmod(0o644)
-            Path(temporary).replace(path)
-        finally:
-            Path(temporary).unlink(missing_ok=True)
-    except OSError as error:
-        raise InputError(f"{path}: {error.strerror}", key="charts", remedy="give a folder you may write to") from None
-    return path

@@ -6,10 +6,9 @@ from typing import Any
 import numpy as np
 
 from pneutouch.arrays import Labels
-from pneutouch.errors import InputError
 from pneutouch.export.voxels.png import encode
 from pneutouch.export.voxels.read import VoxelStack, read_stack
-from pneutouch.holding import uninterrupted
+from pneutouch.output.files import replace_file
 
 _BACKGROUND = np.uint32(0xFFFFFFFF)
 """White in the picture, where the stack has black."""
@@ -22,10 +21,7 @@ def show_stack(folder: Path, picture: Path | None = None) -> dict[str, Any]:
     """
     stack = read_stack(folder)
     if picture is not None:
-        try:
-            draw(stack, picture)
-        except OSError as error:
-            raise InputError(f"{picture}: {error.strerror or error}", key="out") from None
+        draw(stack, picture)
     return document(stack)
 
 
@@ -58,9 +54,7 @@ def draw(stack: VoxelStack, path: Path) -> None:
     colours = stack.colours.copy()
     colours[0] = _BACKGROUND
     across = stack.manifest["dpi"][0]
-    picture = encode(np.concatenate([upper, gap, lower]), colours, (across, across))
-    with uninterrupted():
-        path.write_bytes(picture)
+    replace_file(path, encode(np.concatenate([upper, gap, lower]), colours, (across, across)))
 
 
 def _stretched(labels: Labels, ratio: float) -> Labels:

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pneutouch.errors import InputError
+from pneutouch.output.files import replace_files
 from pneutouch.tables.csv_write import csv_bytes
 from pneutouch.workflows.sweep.dataset import PRESSURE
-from pneutouch.workflows.sweep.journal import replace_whole
+from pneutouch.workflows.sweep.plan import SweepPlan
 from pneutouch.workflows.sweep.variables import POINT, STATE
 from pneutouch.workflows.sweep.workfolder import check_output
 
@@ -60,12 +62,20 @@ def _cell(value: Any) -> Any:
     return "" if value is None else f"{value:.12g}" if isinstance(value, float) else value
 
 
-def check_companions(out: Path) -> None:
-    """Raise InputError where ``out`` can be no dataset, or the table would replace a file that no sweep wrote."""
+def check_companions(out: Path, plan: SweepPlan) -> None:
+    """Raise InputError where ``out`` can be no dataset, or the table or a picture would replace another's file.
+
+    Where there is no dataset, what stands in their places was written by no sweep.
+    """
     check_output(out)
-    table = out.with_suffix(".csv")
-    if table.exists() and not out.exists():
-        raise InputError(f"{table} is in the place of the table", key="out", remedy="give another `out`, or move it")
+    if out.exists():
+        return
+    names = [f"over-{key.replace('.', '_')}" for key in plan.varied] + ["over-point", f"over-{PRESSURE}", "map"]
+    places = {out.with_suffix(".csv"): "the table"}
+    places |= {path: "a picture" for name in names for path in _picture_files(out, name)}
+    for path, what in places.items():
+        if os.path.lexists(path):
+            raise InputError(f"{path} is in the place of {what}", key="out", remedy="give another `out`, or move it")
 
 
 def write_companions(out: Path) -> tuple[list[dict[str, Any]], list[Path]]:
@@ -81,11 +91,13 @@ def write_companions(out: Path) -> tuple[list[dict[str, Any]], list[Path]]:
     swept = swept_figure(content)
     if swept is not None:
         for name, (text, image) in pictures(swept).items():
-            stem = f"{out.stem}-{name}"
-            files |= {out.with_name(f"{stem}.svg"): text.encode(), out.with_name(f"{stem}.png"): image}
-    for path, data in files.items():
-        replace_whole(path.with_name(f".{path.name}.new"), path, data)
+            files |= dict(zip(_picture_files(out, name), (text.encode(), image), strict=True))
+    replace_files(files)
     return rows, list(files)
+
+
+def _picture_files(out: Path, name: str) -> tuple[Path, Path]:
+    return out.with_name(f"{out.stem}-{name}.svg"), out.with_name(f"{out.stem}-{name}.png")
 
 
 def swept_figure(content: xarray.Dataset) -> SweptFigure | None:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from pneutouch.errors import InputError
-from pneutouch.output.files import digest
+from pneutouch.output.files import digest, write_synced
 from pneutouch.workflows.sweep.work import Record
 
 _CHECKSUM_DIGITS = 16
@@ -63,11 +63,12 @@ class Journal:
 
 
 def replace_whole(fresh: Path, target: Path, content: bytes) -> None:
-    """Write ``content`` to ``fresh``, on the disk, then rename it to ``target``: never half a file under that name."""
-    with fresh.open("wb") as file:
-        file.write(content)
-        file.flush()
-        os.fsync(file.fileno())
+    """Write ``content`` to ``fresh``, on the disk, then rename it to ``target``: never half a file under that name.
+
+    For files of the locked work folder, where a kill leaves ``fresh`` under a name that the next sweep clears. Raises
+    OSError, so that a sweep can report which points are kept.
+    """
+    write_synced(fresh, content)
     fresh.replace(target)
 
 
