@@ -21,7 +21,7 @@ from pneutouch.spec.design import CALIBRATION
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.units import KPA, ML
 
-MODULUS, WALL, VOLUME = 0.2, 1.55, 0.35
+MODULUS, WALL, VOLUME = 0.2, 1.55, 0.31
 LOW, HIGH = (1.05, 1.01), (0.97, 1.03)
 """Factors on force and pressure at 0 and 12 kPa."""
 
@@ -58,6 +58,7 @@ CONTENT = {
         "pressure_factors": [LOW[1], HIGH[1]],
         "sensitivity_errors_relative": [0.01, 0.01],
         "force_errors_relative": [0.015, 0.015],
+        "errors_freedom": 60.0,
         "held_out_pressures_kPa": [],
         "held_out_sensitivity_errors": [],
     },
@@ -123,16 +124,57 @@ def test_the_uncertainty_is_the_calibrations(place):
     new = predicted(place).uncertainty
     for k, (before, after) in enumerate(zip(old, new, strict=True)):
         names = {source["name"] for source in after["sources"]}
-        assert not names & {"published modulus", "modulus between prints", "wall thickness", "tube bore", "model"}
+        assert not names & {"published modulus", "modulus between prints", "wall thickness", "tube bore"}
         assert {"calibrated parameters", "model as calibrated", "ageing", "driving pressure"} <= names
         figure, was = after["figures"][SENSITIVITY], before["figures"][SENSITIVITY]
         inner = figure["at_calibration"]
         assert figure["low"] < inner["low"] < figure["value"] < inner["high"] < figure["high"]
-        # At 22 kPa, beyond what was measured, the correction and the parameters count as well.
         assert np.log(figure["high"] / figure["low"]) < np.log(was["high"] / was["low"])
-        assert ("calibrated parameters" in figure["shares"]) == (k == 3)
+        # At 22 kPa, beyond what was measured, model, radius, correction and parameters count as well.
+        for name in ("calibrated parameters", "model", "inner radius"):
+            assert (name in figure["shares"]) == (k == 3), name
+        assert "inner radius" in after["figures"]["limit_pressure_kPa"]["shares"]
     limits = [entry[0]["figures"]["limit_pressure_kPa"] for entry in (old, new)]
     assert np.log(limits[1]["high"] / limits[1]["low"]) < 0.3 * np.log(limits[0]["high"] / limits[0]["low"])
+
+
+def test_far_from_what_was_measured_the_models_error_stays_even_where_the_correction_is_one(library, tmp_path):
+    """Runs at 0 kPa that the fitted model meets say little of 18 kPa: of the model's error 0.71 stays there."""
+    values = {"force_factors": 1.0, "pressure_factors": 1.0}
+    values |= {"sensitivity_errors_relative": 0.01, "force_errors_relative": 0.01}
+    response = {key: [value] for key, value in values.items()}
+    content = changed(source={"driving_pressures_kPa": [0.0]}, response=response)
+    at = {**DEAD, "pneumatics.driving_pressures_kPa": [0.0, 18.0]}
+    there, far = predicted(library_of(tmp_path, library, content), at).uncertainty
+    plain = evaluate("paper-dome", at, model="atlas", library=library).uncertainty[1]
+
+    def standard(entry):
+        return {source["name"]: source["standard_uncertainty"] for source in entry["sources"]}.get("model", 0.0)
+
+    assert standard(there) == 0.0
+    assert standard(far) == pytest.approx(np.sqrt(0.5) * standard(plain), rel=1e-5)
+    inner, near = (entry["figures"][SENSITIVITY]["at_calibration"] for entry in (far, there))
+    assert np.log(inner["high"] / inner["low"]) > 2 * np.log(near["high"] / near["low"])
+    assert np.log(inner["high"] / inner["low"]) >= 4 * standard(far)
+
+
+@pytest.mark.parametrize("freedom", [2.0, 0.0])
+def test_few_degrees_of_freedom_of_the_runs_are_those_of_the_figure(freedom, library, tmp_path):
+    """0 stands for an assumed scatter, which has none (JCGM 100, G.4.3) and is not known."""
+    content = changed(response={"errors_freedom": freedom}, source={"age_days": 400.0})
+    place = library_of(tmp_path, library, content)
+    (entry,) = predicted(place, {**DEAD, "pneumatics.driving_pressures_kPa": [12.0]}).uncertainty
+    figure = entry["figures"]["force_at_range_end_N"]
+    (source,) = (
+        s for s in entry["sources"] if s["name"] == "model as calibrated" and "force_at_range_end_N" in s["figures"]
+    )
+    assert source["known"] == bool(freedom) and ("assumed" in source["origin"]) == (not freedom)
+    if freedom:
+        share = figure["shares"]["model as calibrated"]
+        assert figure["degrees_of_freedom"] == pytest.approx(freedom / share**2, rel=1e-3)
+        assert any("few degrees of freedom: " in note and "force_at_range_end_N" in note for note in entry["notes"])
+    else:
+        assert figure["degrees_of_freedom"] is None
 
 
 def test_what_is_left_of_the_year_ages(library, tmp_path):

@@ -10,11 +10,11 @@ import pytest
 
 from pneutouch.errors import InputError
 from pneutouch.evaluation.comparison import ComparedFigure, ComparedSensor, ComparedState, comparison_document, labelled
-from pneutouch.evaluation.correlation import MODEL_CORRELATION, SourceEffect, effects_of, variance_of_ratio
+from pneutouch.evaluation.correlation import SourceEffect, effects_of, variance_of_ratio
 from pneutouch.evaluation.uncertainty import known
 from pneutouch.mechanics.uncertainty.neighbours import log_figures, moved
 from pneutouch.mechanics.uncertainty.source import DEAD, FIGURE, FIGURES, INPUTS
-from pneutouch.mechanics.uncertainty.sources.model import table_s1_errors
+from pneutouch.mechanics.uncertainty.sources.model import MODEL_CORRELATION, table_s1_errors
 from pneutouch.spec.material import Material
 
 WALLS = "membrane.wall_thickness_mm=1.5", "membrane.wall_thickness_mm=1.9"
@@ -94,6 +94,17 @@ def test_what_is_shared_cancels_and_what_is_not_adds_up():
     assert variance_of_ratio(shared[:1], against, same_resin=True) == pytest.approx(0.6**2)
     other_pool = SourceEffect("model", "seven cells", 0.1), SourceEffect("model", "two cells", 0.1)
     assert variance_of_ratio(other_pool[:1], other_pool[1:], same_resin=True) == pytest.approx(0.02)
+
+
+def test_states_of_one_calibration_are_never_surer_of_their_difference_than_its_covariance_is():
+    """Two unknowns that two states weigh differently: as one unknown they would cancel, and the difference be exact."""
+    loads = np.array([[0.03, 0.0], [0.0, 0.03]])
+    first, second = (SourceEffect("calibrated parameters", "sensor A", float(np.linalg.norm(row))) for row in loads)
+    true = float(((loads[1] - loads[0]) ** 2).sum())
+    assert variance_of_ratio((first,), (second,), same_resin=True) == pytest.approx(true)
+    alike = float(((loads[0] - 0.5 * loads[0]) ** 2).sum())
+    half = (SourceEffect("calibrated parameters", "sensor A", 0.015),)
+    assert variance_of_ratio((first,), half, same_resin=True) > alike
 
 
 def _sensor(name, value, low, high, pressures=(0.0,), source=""):

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pneutouch.errors import InputError
-from pneutouch.evaluation.correlation import MODEL_CORRELATION, SourceEffect, variance_of_ratio
+from pneutouch.evaluation.correlation import SourceEffect, variance_of_ratio
+from pneutouch.mechanics.uncertainty.sources.model import MODEL_CORRELATION
 from pneutouch.rounding import rounded
 
 if TYPE_CHECKING:

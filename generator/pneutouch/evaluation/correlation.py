@@ -5,18 +5,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-MODEL_CORRELATION = 0.75
-"""Correlation between the model's errors of two sensors in one resin, each error the logarithm of model over
-measurement: 1 - mean((e22 - e0)^2) / (2 mean(e^2)) over the errors at 0 and 22 kPa of the six resins of the paper's
-Table S1 that the model's error is pooled from gives 0.749. Between resins it is 0.04, taken as none."""
+from pneutouch.mechanics.uncertainty.sources.model import MODEL, MODEL_CORRELATION
 
 _OF_RESIN = ("published modulus", "mixing fraction", "ageing of the modulus", "ageing")
 """Sources that are one unknown number for all sensors in one resin, of one age."""
-
-_OF_SPECIMEN = ("calibrated parameters",)
-"""Sources that are one unknown number for all sensors that stand for one calibrated specimen."""
-
-_MODEL = "model"
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +57,8 @@ def variance_of_ratio(first: Sequence[SourceEffect], second: Sequence[SourceEffe
 
 
 def _coefficient(one: SourceEffect, other: SourceEffect) -> float:
-    if one.name in _OF_RESIN or (one.name in _OF_SPECIMEN and one.origin == other.origin):
+    if one.name in _OF_RESIN:
         return 1.0
-    return MODEL_CORRELATION if one.name == _MODEL and one.origin == other.origin else 0.0
+    # The calibrated parameters are several unknowns, whose effects two states weigh differently: as one unknown they
+    # would cancel where they do not. Taken as independent they do not cancel at all, which errs on the wide side.
+    return MODEL_CORRELATION if one.name == MODEL and one.origin == other.origin else 0.0

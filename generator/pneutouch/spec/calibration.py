@@ -93,6 +93,12 @@ class CalibratedResponse(Table):
         description="Standard uncertainty of the corrected model's sensitivity there."
     )
     force_errors_relative: list[RelativeError] = Field(description="The same of its force.")
+    errors_freedom: float = Field(
+        default=0.0,
+        ge=0,
+        le=1e6,
+        description="Degrees of freedom of these errors, the fewest there; 0 where the scatter of the runs is assumed.",
+    )
     held_out_pressures_kPa: list[DrivingPressure] = Field(
         max_length=1000, description="Driving pressures left out of a fit."
     )

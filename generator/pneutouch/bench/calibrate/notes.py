@@ -13,6 +13,7 @@ from pneutouch.bench.calibrate.identify import UNSEEN, CorrelatedParameters, Ide
 from pneutouch.bench.calibrate.intervals import LEAST_RUNS
 from pneutouch.bench.calibrate.observations import clipped
 from pneutouch.bench.calibrate.parameters import DEAD, LOGARITHMIC
+from pneutouch.bench.calibrate.response import ASSUMED_SCATTER, response_gap
 from pneutouch.units import ML
 
 CHANNELS = ("force", "pressure rise", "injection's pressure")
@@ -114,6 +115,12 @@ def _basis(fit: CalibrationFit) -> list[str]:
         notes.append(
             f"they rest on the scatter of the points and the instruments alone ({why}): the differences between runs "
             "are not in them; measure more runs"
+        )
+    gap = response_gap(fit)
+    if gap is not None and not gap.freedom:
+        notes.append(
+            f"no run was repeated: {ASSUMED_SCATTER:.1%} between runs is assumed in the corrected force and "
+            "sensitivity, as in the paper's Table S1"
         )
     labels = [curve.run.label for curve in fit.observations.curves]
     labels += [injection.label for injection in fit.observations.injections]

@@ -14,7 +14,15 @@ from pneutouch.mechanics.response import lines
 from pneutouch.mechanics.sensor import ResponseCorrection
 from pneutouch.units import KPA
 
+ASSUMED_SCATTER = 0.018
+"""Relative standard deviation between runs of one specimen where none was repeated: root mean square of the seven
+resins of the paper's Table S1, repeatability over the sensitivity at 0 kPa. Of the force nothing is published; the same
+is taken."""
+
 _LEAST_POINTS = 3
+
+_MOST_FREEDOM = 1e6
+"""As good as infinite: what the errors have where the scatter is no part of them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +35,8 @@ class ResponseGap:
         force_errors, sensitivity_errors: Their standard uncertainties: scatter of the runs, pooled over the pressures,
             and the least share that no residual shows (`FLOOR`).
         depth: Travel, mm, to which every run went of the driving pressure whose runs went deepest.
+        freedom: Degrees of freedom of these errors, the fewest there; 0 where no run was repeated and the scatter is
+            `ASSUMED_SCATTER`.
     """
 
     driving_pressures_kPa: tuple[float, ...]
@@ -35,6 +45,7 @@ class ResponseGap:
     force_errors: Array
     sensitivity_errors: Array
     depth: float
+    freedom: float
 
     @property
     def correction(self) -> ResponseCorrection:
@@ -63,12 +74,26 @@ def response_gap(fit: CalibrationFit) -> ResponseGap | None:
     pressures_kPa = tuple(sorted(rows))
     groups = [np.array(rows[pressure_kPa]) for pressure_kPa in pressures_kPa]
     means = np.array([group.mean(axis=0) for group in groups])
+    errors, freedom = scatter_errors(groups)
+    columns = means[:, 0], means[:, 1], errors[:, 0], errors[:, 1]
+    return ResponseGap(pressures_kPa, *columns, depth=max(depths.values()), freedom=freedom)
+
+
+def scatter_errors(groups: list[Array]) -> tuple[Array, float]:
+    """Standard uncertainties (n, 2) of the means of n groups of runs, and their degrees of freedom.
+
+    Rows of a group are its runs; columns are logarithms of a force and of a sensitivity, the rise over the force. The
+    scatter is pooled over the groups; the freedom of scatter and `FLOOR` together follows Welch and Satterthwaite (JCGM
+    100, G.4.1), the floor's being infinite."""
     counts = np.array([len(group) for group in groups])
+    spare = int((counts - 1).sum())
     squares = sum(((group - group.mean(axis=0)) ** 2).sum(axis=0) for group in groups)
-    variance = squares / max(int((counts - 1).sum()), 1)
-    least = np.array([FLOOR[0], FLOOR[1]])
-    errors = np.sqrt(variance / counts[:, None] + least**2)
-    return ResponseGap(pressures_kPa, means[:, 0], means[:, 1], errors[:, 0], errors[:, 1], max(depths.values()))
+    variance = squares / spare if spare else np.full(2, ASSUMED_SCATTER**2)
+    scatter = variance / counts[:, None]
+    # A sensitivity divides one reading by the other, so the least shares of both are in it.
+    whole = scatter + np.array([FLOOR[0] ** 2, FLOOR[0] ** 2 + FLOOR[1] ** 2])
+    share = float((scatter / whole).max())
+    return np.sqrt(whole), min(spare / max(share**2, 1e-30), _MOST_FREEDOM)
 
 
 def _gap(travel: Array, measured: tuple[Array, Array], model: tuple[Array, Array], use: Flags) -> tuple[float, float]:

@@ -212,6 +212,7 @@ def _response(gap: ResponseGap, calibration: Calibration) -> dict[str, Any]:
         "pressure_factors": [*correction.rise_factors],
         "sensitivity_errors_relative": gap.sensitivity_errors.tolist(),
         "force_errors_relative": gap.force_errors.tolist(),
+        "errors_freedom": float(gap.freedom),
         "held_out_pressures_kPa": [one.driving_pressure_kPa for one in calibration.held_out],
         "held_out_sensitivity_errors": [one.error for one in calibration.held_out],
     }

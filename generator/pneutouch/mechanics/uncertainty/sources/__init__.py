@@ -8,7 +8,7 @@ from pneutouch.arrays import Flags
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.uncertainty.source import UncertaintySource
 from pneutouch.mechanics.uncertainty.sources.build import build_sources
-from pneutouch.mechanics.uncertainty.sources.calibrated import calibrated_sources, replaced
+from pneutouch.mechanics.uncertainty.sources.calibrated import calibrated_sources, kept_of_design, kept_of_model
 from pneutouch.mechanics.uncertainty.sources.model import ModelErrors, model_sources, numerical_sources
 from pneutouch.mechanics.uncertainty.sources.modulus import ageing_sources, modulus_sources
 from pneutouch.spec.calibration import SensorCalibration
@@ -33,10 +33,9 @@ def sources(
     source_list = [*modulus_sources(material, near & bool(errors.resin_errors)), *build_sources(batch, printer)]
     model_error, remaining = model_sources(near, errors), 1.0
     if calibration is not None:
-        known, remaining = replaced(calibration), calibration.remaining_year
-        source_list = [source for source in source_list if source.acts_on not in known]
-        source_list += calibrated_sources(batch, calibration)
-        model_error = model_error if calibration.response is None else []
+        remaining = calibration.remaining_year
+        source_list = [*kept_of_design(batch, calibration, source_list), *calibrated_sources(batch, calibration)]
+        model_error = kept_of_model(batch, calibration, model_error)
     source_list += [
         *(ageing_sources(material, size, remaining) if aged else []),
         *model_error,

@@ -1,5 +1,8 @@
 """The uncertainty of a calibrated sensor: its fitted parameters together, and what the corrected model leaves."""
 
+import math
+from dataclasses import replace
+
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
@@ -14,6 +17,7 @@ from pneutouch.mechanics.uncertainty.source import (
     counting,
 )
 from pneutouch.mechanics.uncertainty.sources.build import GAUGE
+from pneutouch.mechanics.uncertainty.sources.model import MODEL_CORRELATION
 from pneutouch.spec.calibration import CalibratedResponse, SensorCalibration
 from pneutouch.units import KPA, ML
 
@@ -31,6 +35,10 @@ _INPUT_OF = {
 
 _FORCES = (FIGURES.index("stiffness_N_per_mm"), FIGURES.index("force_at_range_end_N"))
 
+LEFT = math.sqrt(2.0 * (1.0 - MODEL_CORRELATION))
+"""Standard deviation of the difference of two errors of the model, over that of one: what a correction found at one
+driving pressure leaves of the model's error far from it, as far as Table S1 shows at 0 and 22 kPa."""
+
 _BEYOND = 1.05
 """A driving pressure up to this share above the greatest measured one counts as measured: our choice."""
 
@@ -45,6 +53,38 @@ def calibrated_sources(batch: SensorBatch, calibration: SensorCalibration) -> li
     parameters = [_parameters(batch, calibration)] if replaced(calibration) else []
     response = calibration.response
     return parameters + ([] if response is None else _response(batch, calibration, response))
+
+
+def kept_of_design(
+    batch: SensorBatch, calibration: SensorCalibration, design: list[UncertaintySource]
+) -> list[UncertaintySource]:
+    """Sources of design and resin that the calibration leaves, for n sensors that are the calibrated one.
+
+    The inner radius is never fitted, but it is the specimen's own in the runs too: where curves were measured, the
+    correction holds what it does to sensitivity and force.
+    """
+    known = replaced(calibration)
+    kept = [source for source in design if source.acts_on not in known]
+    if calibration.response is None:
+        return kept
+    counts = counting(len(batch))
+    counts[[SENSITIVITY, *_FORCES]] = _outside(batch, calibration)
+    return [replace(one, counts=one.counts & counts) if one.acts_on == "inner_radius" else one for one in kept]
+
+
+def kept_of_model(
+    batch: SensorBatch, calibration: SensorCalibration, model: list[UncertaintySource]
+) -> list[UncertaintySource]:
+    """The model's error that the calibration leaves, for n sensors at n driving pressures: all of it without curves,
+    `LEFT` of it beyond the driving pressures of the curves, none within them.
+    """
+    if calibration.response is None:
+        return model
+    beyond = _outside(batch, calibration)
+    how = f"; {LEFT:.2f} of it, beyond the driving pressures of the calibration"
+    return [
+        replace(one, standard=LEFT * one.standard, counts=one.counts & beyond, origin=one.origin + how) for one in model
+    ]
 
 
 def _parameters(batch: SensorBatch, calibration: SensorCalibration) -> UncertaintySource:
@@ -82,9 +122,10 @@ def _response(
 ) -> list[UncertaintySource]:
     size, pressures_kPa = len(batch), calibration.source.driving_pressures_kPa
     span = f"{min(pressures_kPa):g} to {max(pressures_kPa):g} kPa"
-    held = response.held_out_sensitivity_errors
+    held, seen = response.held_out_sensitivity_errors, response.errors_freedom > 0
+    scatter = "scatter of the runs" if seen else "scatter assumed, because no runs were repeated,"
     origin = (
-        f"scatter of the runs at {len(pressures_kPa)} driving pressures; between them how far the correction changes"
+        f"{scatter} at {len(pressures_kPa)} driving pressures; between them how far the correction changes"
         f"{f', at least the errors of the {len(held)} held out' if held else ''}; beyond {span} the correction itself"
     )
     force = np.log(response.force_factors)
@@ -95,30 +136,30 @@ def _response(
     error = _error(at, pressures_kPa, response.sensitivity_errors_relative, sensitivity, outside, beyond)
     force_error = _error(at, pressures_kPa, response.force_errors_relative, force, 0.0, beyond)
 
-    def source(
-        name: str, standard: Array | float, figures: tuple[int, ...], origin: str, known: bool
-    ) -> UncertaintySource:
-        shape: Distribution = "lognormal" if known else "rectangular"
-        filled = np.broadcast_to(np.asarray(standard, float), size)
-        return UncertaintySource(name, FIGURE, filled, shape, counting(size, only=figures), origin, known)
+    freedom = response.errors_freedom if seen else np.inf
 
-    root = np.sqrt(3.0)
+    def source(
+        name: str, standard: Array, figures: tuple[int, ...], origin: str, shape: Distribution, freedom: float = np.inf
+    ) -> UncertaintySource:
+        known = shape == "lognormal" and seen
+        return UncertaintySource(name, FIGURE, standard, shape, counting(size, only=figures), origin, known, freedom)
+
     return [
-        source("model as calibrated", error, (SENSITIVITY,), origin, True),
-        source("model as calibrated", force_error, _FORCES, origin, True),
+        source("model as calibrated", error, (SENSITIVITY,), origin, "lognormal", freedom),
+        source("model as calibrated", force_error, _FORCES, origin, "lognormal", freedom),
         source(
             "pressure gauge of the rig",
-            GAUGE / root,
+            np.full(size, GAUGE / math.sqrt(3.0)),
             (SENSITIVITY,),
             f"assumed: +-{GAUGE:.0%} of the reading, as of the driving pressure; the calibration can be no better",
-            False,
+            "rectangular",
         ),
         source(
             "force sensor of the rig",
-            FORCE_GAUGE / root,
+            np.full(size, FORCE_GAUGE / math.sqrt(3.0)),
             (SENSITIVITY, *_FORCES),
             f"assumed: +-{FORCE_GAUGE:.0%} of the reading; the calibration can be no better",
-            False,
+            "rectangular",
         ),
     ]
 
