@@ -11,6 +11,7 @@ import pytest
 from pneutouch.errors import InputError
 from pneutouch.output.files import create_file, replace_file, replace_files
 from pneutouch.output.new import new_design, new_from, write_design
+from pneutouch.workflows.calibrate.files import SavedCalibration, save
 from pneutouch.workflows.coupons import MeasuredProfile, write_profiles
 from tests.running import files_of_at_most
 
@@ -94,3 +95,11 @@ def test_a_folder_is_not_replaced_and_the_parameter_is_named(tmp_path):
         replace_files({tmp_path / "b.svg": b"x", tmp_path / "a.svg": b"x"}, key="charts")
     assert caught.value.key == "charts"
     assert everything(tmp_path) == {"a.svg": None}
+
+
+def test_a_calibration_that_cannot_be_saved_is_named_once(tmp_path):
+    path = tmp_path / "mine.toml"
+    with files_of_at_most(100), pytest.raises(InputError) as caught:
+        save(SavedCalibration("mine", path, "x" * 200))
+    assert str(caught.value) == f"{path}: File too large; take a user's folder you may write to"
+    assert everything(tmp_path) == {}

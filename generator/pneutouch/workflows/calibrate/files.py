@@ -124,9 +124,8 @@ def save(saved: SavedCalibration) -> None:
     try:
         write_profiles([MeasuredProfile(saved.path, saved.text, [])])
     except InputError as error:
-        # The remedy there is of an output folder.
-        remedy = "take a user's folder you may write to"
-        raise InputError(error.problem, file=saved.path, remedy=remedy) from None
+        # The remedy there is of an output folder; the problem names the file.
+        raise InputError(error.problem, remedy="take a user's folder you may write to") from None
 
 
 def calibration_content(calibration: Calibration, source: CampaignSource) -> dict[str, Any]:
