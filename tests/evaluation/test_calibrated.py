@@ -332,3 +332,27 @@ def test_a_built_3mf_is_built_again_without_the_calibration_file(place, tmp_path
     again = build(evaluate_recipe(read_recipe(read_threemf(folder / "paper-dome.3mf"))), tmp_path / "second")
     for path in folder.rglob("*"):
         assert path.is_dir() or path.read_bytes() == (again / path.relative_to(folder)).read_bytes(), path
+
+
+def test_a_campaign_names_it_and_a_build_of_it_has_a_name_of_its_own(place, tmp_path, monkeypatch):
+    from pneutouch.cli.build import _calibrated_name
+    from pneutouch.workflows.simulate import named_design
+
+    (tmp_path / "dome.toml").write_text("[membrane]\n")
+    assert named_design("paper-dome@mine", place) == ("paper-dome@mine", {})
+    name, copied = named_design(f"{tmp_path / 'dome.toml'}@mine", place)
+    assert name == "dome.toml@mine" and list(copied) == ["dome.toml"]
+    monkeypatch.setattr("pneutouch.catalogue.library.Library.default", lambda: place)
+    assert _calibrated_name("paper-dome@mine", {}) == "paper-dome-mine"
+    assert _calibrated_name("paper-dome", {"calibration": "mine"}) == "paper-dome-mine"
+    assert _calibrated_name("paper-dome", {}) is _calibrated_name("paper-dome@mine", {"calibration": "none"}) is None
+
+
+def test_the_recipe_of_a_calibrated_build_is_shown(place):
+    from pneutouch.cli.show_text import _recipe
+
+    inputs = {"design": {"calibration": "mine", "membrane": {"material": "TangoPlus", "wall_thickness_mm": None}}}
+    inputs |= {"model": None, "closure": None, "clamp": None, "tolerance": None, "compared_resins": []}
+    recipe = {"inputs": inputs, "name": "x", "version": "1", "versions": {}, "other_versions": [], "input_hash": "a"}
+    text = "\n".join(_recipe(recipe))
+    assert "calibration" in text and "mine" in text and "membrane.material" in text and "wall_thickness" not in text

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from pneutouch.catalogue.library import Library
 from pneutouch.catalogue.mixture import mixed_material
 from pneutouch.errors import InputError, shown
-from pneutouch.spec.design import CALIBRATION, DesignFile
+from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION, DesignFile
 from pneutouch.spec.fields import MaterialKind
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
@@ -96,6 +96,9 @@ class DesignSource:
         plain, calibration = split_calibration(design, library)
         path = library.design_file(plain)
         named = {} if calibration is None else {CALIBRATION: calibration}
+        if calibration is not None and calibration != NO_CALIBRATION:
+            # The design's file does not hold this name: the error is on what was given.
+            library.load("calibrations", calibration)
         return DesignSource(name_of(path), {**read_toml(path), **named}, str(path))
 
     def changed(self, changes: Changes) -> DesignFile:

@@ -33,8 +33,14 @@ DesignArgument = Annotated[
 
 def _keep_keys(context: typer.Context, assignments: list[str] | None) -> list[str] | None:
     """Keep which fields are given here, so that an error on one does not blame the file."""
-    context.meta[CHANGES] = [text.partition("=")[0].strip() for text in assignments or []]
+    context.meta.setdefault(CHANGES, []).extend(text.partition("=")[0].strip() for text in assignments or [])
     return assignments
+
+
+def _keep_calibration(context: typer.Context, name: str | None) -> str | None:
+    if name is not None:
+        context.meta.setdefault(CHANGES, []).append("calibration")
+    return name
 
 
 SetOption = Annotated[
@@ -53,6 +59,7 @@ CalibrationOption = Annotated[
         "--calibration",
         metavar="NAME",
         help="Calibration of the sensor in hand, as DESIGN@NAME; none: without the design's.",
+        callback=_keep_calibration,
         autocompletion=names("calibrations"),
     ),
 ]

@@ -87,7 +87,13 @@ def build(
                 _from_3mf(design, context, name)
                 if _is_3mf(design)
                 else _evaluated(
-                    design, changes(set_, calibration), model, tolerance, name=name, closure=closure, clamp=clamp
+                    design,
+                    changes(set_, calibration),
+                    model,
+                    tolerance,
+                    name=name or _calibrated_name(design, changes(set_, calibration)),
+                    closure=closure,
+                    clamp=clamp,
                 )
             )
             plan = _planned(evaluation, out, voxel_mode) if voxels or voxel_mode else None
@@ -162,6 +168,18 @@ def _evaluated(
     source = DesignSource.of(design, Library.default())
     source = source if name is None else replace(source, name=plain_name(name))
     return evaluate(source, changed, **model_options(model, tolerance), **options)
+
+
+def _calibrated_name(design: str, changed: dict[str, Any]) -> str | None:
+    """Name of the build of a calibrated sensor, so that it does not replace the design's; None without calibration."""
+    from pneutouch.catalogue import DesignSource, Library
+    from pneutouch.spec.design import NO_CALIBRATION
+
+    source = DesignSource.of(design, Library.default())
+    calibration = changed.get("calibration", source.content.get("calibration", NO_CALIBRATION))
+    if calibration == NO_CALIBRATION or not isinstance(calibration, str):
+        return None
+    return calibration if calibration.startswith(source.name) else f"{source.name}-{calibration}"
 
 
 def _is_specimen(design: str) -> bool:

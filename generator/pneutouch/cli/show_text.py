@@ -87,12 +87,13 @@ def _recipe(recipe: dict[str, Any] | None) -> list[str]:
     if recipe is None:
         return [NO_RECIPE]
     inputs = recipe["inputs"]
-    design = {
+    design = {key: value for key, value in inputs["design"].items() if not isinstance(value, dict)} | {
         f"{table}.{key}": value
         for table, content in inputs["design"].items()
+        if isinstance(content, dict)
         for key, value in content.items()
-        if value is not None
     }
+    design = {key: value for key, value in design.items() if value is not None}
     settings = {key: inputs[key] for key in ("model", "closure", "clamp", "tolerance") if inputs[key] is not None}
     other = recipe["other_versions"]
     libraries = [f"{name} {version}" for name, version in recipe["versions"].items() if name != "pneutouch"]
