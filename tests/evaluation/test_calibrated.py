@@ -236,7 +236,7 @@ def test_it_is_named_in_three_forms_and_left_out_by_one(place):
     for without in ({CALIBRATION: "none"}, {CALIBRATION: None}):
         scene = load_scene("in-hand", without, place)
         assert scene.calibration is None
-    with pytest.raises(InputError, match='other: no such name among the calibrations'):
+    with pytest.raises(InputError, match="other: no such name among the calibrations"):
         load_scene("paper-dome@other", None, place)
 
 
