@@ -48,6 +48,14 @@ def test_a_modulus_measured_on_coupons_raises_it_to_what_was_said(library):
     assert after.remedy is None, "the modulus no longer lowers it"
 
 
+def test_a_measured_modulus_is_a_remedy_only_for_what_it_reaches(library):
+    """31.2 kPa with the modulus measured: less than 35 kPa, and than 45 kPa, above the limit pressure itself."""
+    found = rated(library)
+    for pressure_kPa, said in ((25, True), (31.2, True), (31.3, False), (35, False), (45, False)):
+        assert (found.remedy_for(pressure_kPa * KPA) is not None) == said, pressure_kPa
+    assert found.remedy_for(25 * KPA) == found.remedy
+
+
 def test_the_narrower_the_modulus_is_known_the_higher_the_rating(library):
     pressures = [rated(library, spread=spread).pressure for spread in (0.3, 0.2, 0.1, 0.05, 0.01)]
     assert np.all(np.diff(pressures) > 0)

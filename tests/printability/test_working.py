@@ -34,6 +34,13 @@ def test_driving_above_the_rated_pressure_is_a_warning_with_the_nominal_limit_be
     assert "41.3 kPa nominal" in above.message and "coupons" in above.fix and "calibrate" in above.fix
 
 
+def test_a_measured_modulus_is_no_fix_for_a_pressure_that_it_does_not_reach():
+    """With the modulus measured the dome is rated at 32.5 kPa by the membrane."""
+    (above,) = of(working([0, 36]), "driving")
+    assert above.severity == "warning"
+    assert "coupons" not in above.fix and "lower pneumatics.driving_pressures_kPa to at most 20" in above.fix
+
+
 def test_a_stiff_dome_is_rated_by_the_gauge_alone():
     (above,) = of(working([0, 95], resin="FLX9985"), "driving")
     assert above.severity == "warning"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import pytest
 
@@ -11,7 +12,7 @@ from pneutouch.parts import assemble
 from pneutouch.spec.read import parse_changes
 from pneutouch.workflows.select import run as workflow
 from pneutouch.workflows.select.document import document
-from pneutouch.workflows.select.passing import rejection, source_of
+from pneutouch.workflows.select.passing import Judgement, judge, source_of
 from tests.conftest import ROOT
 from tests.selection.passes import LIBRARY, tally
 from tests.selection.targets import FINGERTIP, answer
@@ -33,16 +34,19 @@ def fingertip():
     return answer(FINGERTIP)
 
 
-def test_rejected_designs_leave_the_answer_and_are_named(fingertip, monkeypatch):
+@pytest.mark.parametrize("written", [None, 1])
+def test_rejected_designs_leave_the_answer_and_are_named(fingertip, monkeypatch, written):
     """Those ranked first are rejected here; the first that passes takes their place, and the rest is not looked at."""
     looked = []
 
     def reject(source, library, *, predicted):
         looked.append(predicted)
-        return ("walls", "connector: too thin") if len(looked) < 3 else None
+        return (
+            Judgement(("walls", "connector: too thin")) if len(looked) < 3 else judge(source, library, predicted=True)
+        )
 
-    monkeypatch.setattr(workflow, "rejection", reject)
-    found = workflow._passing(fingertip, 1, LIBRARY)
+    monkeypatch.setattr(workflow, "judge", reject)
+    found = workflow._passing(fingertip, written, LIBRARY)
     assert looked == [True, True, True]
     assert found.answer.designs == fingertip.answer.designs[2:]
     assert [one.choice for one in found.rejected] == fingertip.answer.designs[:2]
@@ -51,11 +55,48 @@ def test_rejected_designs_leave_the_answer_and_are_named(fingertip, monkeypatch)
     assert [one["passes_check"] for one in listed["designs"]][:2] == [True, None]
 
 
+def test_the_first_design_and_the_one_to_be_saved_are_judged_as_check_does(fingertip, monkeypatch):
+    """What the print rules alone looked at is not said to pass; without a name the first one is judged all the same."""
+    asked = []
+
+    def looked(source, library, *, predicted: bool):
+        asked.append(predicted)
+        return Judgement(None, fingertip.judged[1] if predicted else None)
+
+    monkeypatch.setattr(workflow, "judge", looked)
+    for written, expected in ((None, [True]), (2, [True, True]), (3, [True, False, True])):
+        asked.clear()
+        said = document(workflow._passing(fingertip, written, LIBRARY))["designs"]
+        assert asked == expected
+        assert [one["passes_check"] for one in said] == [
+            *(True if each else None for each in expected),
+            *[None] * (len(said) - len(expected)),
+        ]
+
+
+def test_a_plate_that_digs_in_rejects_the_first_design_before_it_is_saved(fingertip, monkeypatch):
+    """The print rules see no plate: only the solid's prediction does."""
+    changed = replace(fingertip, changes={**fingertip.changes, "indentation.plate_diameter_mm": 4})
+    first = fingertip.answer.designs[:1]
+    found = workflow._passing(replace(changed, answer=replace(fingertip.answer, designs=first)), None, LIBRARY)
+    assert found.answer.designs == [] and "reaches the plate's edge" in found.rejected[0].reason
+    assert judge(source_of(changed.base, changed.assignments(first[0])), LIBRARY, predicted=False).reason is None
+
+
+def test_the_solid_solves_a_judged_design_once(fingertip, monkeypatch):
+    solved = fingertip.confirmed[0].sensitivity_kPa_per_N
+    afresh = workflow._confirm(fingertip, fingertip.answer.designs[0], None)
+    assert solved == pytest.approx(afresh.sensitivity_kPa_per_N, rel=1e-4)
+    monkeypatch.setattr("pneutouch.mechanics.solid_states.solid_states", None)
+    again = workflow._confirm(fingertip, fingertip.answer.designs[0], fingertip.judged[1])
+    assert again == fingertip.confirmed[0]
+
+
 def test_a_design_that_the_print_rules_break_is_rejected_with_the_rule():
     scene = load_scene("paper-dome", None, LIBRARY)
-    assert rejection(source_of(scene, ["connector.port=barb-4x2.5"]), LIBRARY, predicted=False) is None
-    assert rejection(source_of(scene, ["connector.port=barb-3x2"]), LIBRARY, predicted=False)[0] == "walls"
-    rule, reason = rejection(source_of(scene, ["membrane.inner_radius_mm=2.2"]), LIBRARY, predicted=False)
+    assert judge(source_of(scene, ["connector.port=barb-4x2.5"]), LIBRARY, predicted=False).reason is None
+    assert judge(source_of(scene, ["connector.port=barb-3x2"]), LIBRARY, predicted=False).reason[0] == "walls"
+    rule, reason = judge(source_of(scene, ["membrane.inner_radius_mm=2.2"]), LIBRARY, predicted=False).reason
     assert rule is None and "too small for" in reason
 
 

@@ -133,6 +133,14 @@ def test_warning_of_the_rated_pressure_is_at_nine_tenths_of_the_lower_end_of_the
         assert [w.rule for w in curve_warnings("x", rating, curve, {"steps": protocol("steps", R0)}, Rig())] == expected
 
 
+@pytest.mark.parametrize(("driving_kPa", "raised"), [(30.0, True), (35.0, False), (45.0, False)])
+def test_a_measured_modulus_is_advised_only_where_it_lets_the_pressure_be_driven(rating, driving_kPa, raised):
+    assert 30 * KPA < rating.measured < 35 * KPA
+    curve = PressCurve(driving_kPa * KPA, *(np.linspace(0, top, 5) for top in (9.0, 20.0, 10 * KPA)))
+    (warning,) = curve_warnings("x", rating, curve, {"steps": protocol("steps", R0)}, Rig())
+    assert warning.rule == "rated pressure" and ("coupons" in warning.message) == raised
+
+
 def test_warning_of_the_travel_counts_the_clearance():
     assert travel_warnings((0.5, 7.0), Rig(travel_mm=8.0)) == []
     assert [w.rule for w in travel_warnings((0.5, 7.0), Rig(travel_mm=7.99))] == ["travel"]

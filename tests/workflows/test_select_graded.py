@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import json
 import tomllib
+from dataclasses import replace
 
 import pytest
 from typer.testing import CliRunner
 
+import pneutouch as pt
 from pneutouch.cli.app import app
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.selection.grade_search import cost
 from pneutouch.spec.target import Target
 from pneutouch.workflows.select.graded import select_graded
+from pneutouch.workflows.select.graded_document import graded_document
 from tests.conftest import ROOT
 
 FLAT = [
@@ -155,7 +158,7 @@ def test_an_unreachable_target_exits_1_with_the_nearest_and_why(monkeypatch):
         (["--sensitivity", "1.9", "--mix", "TangoPlus+Vero"], "TangoPlus+Vero"),
         (
             ["--graded", "--sensitivity", "1.9", "--same-at", "0,22", "--wall", "0.2"],
-            "the printer's least wall is 0.6 mm",
+            "error: --wall 0.2: the printer's least wall is 0.6 mm",
         ),
         (
             [
@@ -171,7 +174,8 @@ def test_an_unreachable_target_exits_1_with_the_nearest_and_why(monkeypatch):
                 "--max-diameter",
                 "20",
             ],
-            "is 21.5 mm wide",
+            "error: --max-diameter 20: a dome of inner radius 9.25 mm and wall 1.5 mm is 21.5 mm wide; give a smaller "
+            "given.inner_radius_mm (--inner-radius)",
         ),
     ],
 )
@@ -180,6 +184,53 @@ def test_bad_input_is_named(flags, said):
     assert result.exit_code == 2, result.output
     assert said in result.stderr
     assert "Traceback" not in result.output
+
+
+def test_a_wall_that_nobody_gave_is_not_blamed_on_the_target(monkeypatch, tmp_path):
+    """The atlas finds no wall here, and that of the base is thinner than the printer's least."""
+    monkeypatch.setattr("pneutouch.workflows.select.graded.middle_wall", lambda *_: None)
+    base = tmp_path / "thin.toml"
+    base.write_text("[membrane]\nwall_thickness_mm = 0.5\n", encoding="utf-8")
+    result = run("select", "--graded", "--sensitivity", "1.9", "--same-at", "0,22", "--base", str(base))
+    assert result.exit_code == 2, result.output
+    assert (
+        "the base's own wall is 0.5 mm; the printer's least wall is 0.6 mm; give given.wall_thickness_mm (--wall)"
+        in (result.stderr)
+    )
+    assert "given.wall_thickness_mm = " not in result.stderr
+
+
+def _rejected(short, monkeypatch):
+    """The search of ``short``, whose grade `check` rejects."""
+    found = replace(short, search=replace(short.search, met=True), rejected="plate: too small")
+    for place in ("pneutouch.workflows.select.graded.select_graded", "pneutouch.api.search.select_graded"):
+        monkeypatch.setattr(place, lambda *_, **__: found)
+
+
+@pytest.mark.parametrize(("plate_mm", "passes", "said"), [(30, True, None), (4, None, "reaches the plate's edge")])
+def test_a_grade_that_meets_the_target_is_judged_as_check_does(short, monkeypatch, plate_mm, passes, said):
+    """A search that has met its target: its grade passes with the base's plate and not with one that digs in."""
+    found = replace(short.search, met=True)
+    for name, answer in (("grade_search", found), ("_catalogue", ([], {})), ("_nearest", short.nearest)):
+        monkeypatch.setattr(f"pneutouch.workflows.select.graded.{name}", lambda *_, answer=answer: answer)
+    plate = {"assignments": [f"indentation.plate_diameter_mm={plate_mm}"]}
+    setting = short.target.setting.model_copy(update=plate)
+    judged = graded_document(select_graded(short.target.model_copy(update={"setting": setting}), "test"))
+    assert judged["met"] and judged["design"]["passes_check"] is passes
+    assert judged["rejected"] is None if said is None else said in judged["rejected"]
+
+
+def test_a_rejected_grade_is_shown_and_neither_saved_nor_returned(short, monkeypatch, tmp_path):
+    _rejected(short, monkeypatch)
+    for more in ((), ("--write", "flat", "--out", str(tmp_path))):
+        result = run(*FLAT, "--json", *more)
+        assert result.exit_code == 1
+        assert "the grade meets the target and is rejected by `check`: plate: too small" in result.stderr
+        said = json.loads(result.stdout)
+        assert (said["design"]["passes_check"], said["rejected"], said["written"]) == (None, "plate: too small", None)
+    assert list(tmp_path.iterdir()) == []
+    found = pt.select(sensitivity_kPa_per_N=1.9, same_sensitivity_at_kPa=[0, 22], graded=True)
+    assert not found.met and found.designs == () and found.to_dict()["rejected"] == "plate: too small"
 
 
 def test_a_mix_chosen_is_written_as_one(tmp_path):

@@ -15,6 +15,7 @@ from pneutouch.api.prediction import Prediction
 from pneutouch.api.results import CheckResult
 from pneutouch.body import Body
 from pneutouch.catalogue import DesignSource, Library, load_scene, user_folder
+from pneutouch.errors import shown
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
 from pneutouch.mechanics.models import model_options
 from pneutouch.output.new import write_design
@@ -155,7 +156,7 @@ class Design(show.Shown):
         return self.file.model_dump(mode="json", by_alias=True)
 
     def _head(self) -> str:
-        return f"Design {self.name!r}"
+        return f"Design {shown(self.name)}"
 
     def _rows(self) -> list[Any]:
         return show.table_rows(self.file)

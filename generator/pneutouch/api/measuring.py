@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from pneutouch.api.design import Design, source_of
 from pneutouch.api.fields import named_by_keyword
 from pneutouch.api.results import Result
+from pneutouch.errors import shown
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
@@ -152,7 +153,7 @@ class FittedSensor(Result):
             return save_calibration(self._outcome, None if name is None else str(name), replace=replace)
 
     def _head(self) -> str:
-        return f"Calibration {self.name!r}" if self.name else "Fit without a calibration"
+        return f"Calibration {shown(self.name)}" if self.name else "Fit without a calibration"
 
 
 def calibrate(

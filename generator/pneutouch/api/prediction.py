@@ -11,7 +11,7 @@ import numpy as np
 
 from pneutouch.api import show
 from pneutouch.arrays import Array
-from pneutouch.errors import InputError
+from pneutouch.errors import InputError, shown
 from pneutouch.evaluation.document import full_document, prediction_document
 
 if TYPE_CHECKING:
@@ -167,7 +167,7 @@ class Prediction(show.Shown):
     _columns = ("driving pressure", "sensitivity", "stiffness", "range end")
 
     def _head(self) -> str:
-        return f"Prediction of {self.name!r} by model {self.model}: sensitivity, stiffness, range"
+        return f"Prediction of {shown(self.name)} by model {self.model}: sensitivity, stiffness, range"
 
     def _rows(self) -> list[Any]:
         return [

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from pneutouch.api import show
-from pneutouch.errors import InputError
+from pneutouch.errors import InputError, shown
 from pneutouch.printability import Finding
 
 
@@ -27,7 +27,8 @@ class CheckResult(show.Shown):
         return {"design": self.name, "passed": self.passed, "findings": [f.document() for f in self.findings]}
 
     def _head(self) -> str:
-        return f"Check of {self.name!r}: {'passed' if self.passed else 'not passed'}, {len(self.findings)} findings"
+        verdict = "passed" if self.passed else "not passed"
+        return f"Check of {shown(self.name)}: {verdict}, {len(self.findings)} findings"
 
     def _rows(self) -> list[Any]:
         return [(f.severity, f.rule, f.body, f.message, f.fix) for f in self.findings]

@@ -67,7 +67,7 @@ def select(target: str | Path | None = None, **fields: Any) -> Selection:
         where = "select" if target is None else where
         if goal.given.graded:
             graded = select_graded(goal, where)
-            sets, content = [graded.assignments()] if graded.search.met else [], graded_document(graded)
+            sets, content = [graded.assignments()] if graded.passes else [], graded_document(graded)
             base = graded.base
         else:
             selection = run_select(goal, where)

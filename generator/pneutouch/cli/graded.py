@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import typer
@@ -23,7 +22,10 @@ if TYPE_CHECKING:
 
 
 def select_graded(target: Target, where: str, place: DesignPlace | None, *, json: bool, refused: list[str]) -> None:
-    """Search, show and save a grade. Exits 1 where none meets the target; ``refused`` are flags that exclude it."""
+    """Search, show and save a grade. Exits 1 where none meets the target; ``refused`` are flags that exclude it.
+
+    Raises RuleBrokenError where ``check`` rejects the grade that meets it; nothing is saved then.
+    """
     from pneutouch.workflows.select import graded_document as shown
     from pneutouch.workflows.select.graded import select_graded as run
 
@@ -33,25 +35,19 @@ def select_graded(target: Target, where: str, place: DesignPlace | None, *, json
     with bar("searching grades") as report:
         selection = run(target, where, progress=lambda trial, done, most: report(done, most))
     notify(f"{selection.solves} solid solves in {time.perf_counter() - begun:.0f} s")
-    path = None if place is None or not selection.search.met else _saved(selection, place)
+    path = None
+    if place is not None and selection.passes:
+        path = shown.write_graded(selection, *place[:2], overwrite=place.overwrite)
     if json:
         print_json({**shown.graded_document(selection), "written": None if path is None else str(path)})
     else:
         echo(graded_text(selection))
         if path is not None:
             report_written(path)
+    if selection.rejected is not None:
+        raise RuleBrokenError(f"the grade meets the target and is rejected by `check`: {selection.rejected}")
     if not selection.search.met:
         raise typer.Exit(1)
-
-
-def _saved(selection: GradedSelectionRun, place: DesignPlace) -> Path:
-    """Save the grade. Raises RuleBrokenError where it would not pass ``check``."""
-    from pneutouch.workflows.select import graded_document as shown
-
-    why = selection.rejection()
-    if why is not None:
-        raise RuleBrokenError(f"the grade meets the target and is rejected by the print rules: {why}")
-    return shown.write_graded(selection, *place[:2], overwrite=place.overwrite)
 
 
 def graded_text(selection: GradedSelectionRun) -> str:

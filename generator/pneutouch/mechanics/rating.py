@@ -107,6 +107,10 @@ class Rating:
             "the nominal modulus, or calibrate a built sensor"
         )
 
+    def remedy_for(self, pressure: float) -> str | None:
+        """The remedy where it lets the sensor be driven at a pressure (MPa); None where only less pressure does."""
+        return self.remedy if self.measured >= pressure else None
+
     def document(self, driving_pressures: list[float]) -> dict[str, Any]:
         """The rating in boundary units, with its findings on driving pressures (MPa)."""
         limit, remedy = self.limit, self.remedy

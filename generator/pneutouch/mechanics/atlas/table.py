@@ -153,13 +153,18 @@ class Atlas:
         """The tables at wall ratios inside the box, (k,), with the named fields."""
         grid = self._grid.wall
         cell, weight = grid.basis(np.log(wall_ratio))
-        four = cell[:, None] + np.arange(grid.degree + 1)
+        starts = np.flatnonzero(np.diff(cell, prepend=-1))
+        together = list(zip(starts, [*starts[1:], cell.size], strict=True)) if cell.size else []
 
         def cut(name: str) -> Array:
+            # Neighbours of one cell at once: a spline takes few walls of the table, and products with zeros take time.
             table = self._tables[name]
-            rows = np.zeros((cell.size, table.shape[0]))
-            np.put_along_axis(rows, four, weight[:, 0], axis=1)
-            return (rows @ table.reshape(table.shape[0], -1)).reshape(-1, *table.shape[1:])
+            flat = table.reshape(table.shape[0], -1)
+            values = np.empty((cell.size, flat.shape[1]))
+            for first, end in together:
+                four = flat[cell[first] : cell[first] + grid.degree + 1]
+                np.matmul(weight[first:end, 0], four, out=values[first:end])
+            return values.reshape(-1, *table.shape[1:])
 
         nodes = np.log(self.recipe.wall_ratios)
         below = np.clip(np.searchsorted(nodes, np.log(wall_ratio), side="right") - 1, 0, nodes.size - 2)

@@ -22,6 +22,7 @@ def check(view: PrintView) -> list[Finding]:
     text, limit = rating.excess(last.driving_pressure), rating.nominal
     if severity == "warning":
         text, limit = f"{text}: {rating.basis}", rating.limit
+    remedy = rating.remedy_for(last.driving_pressure)
     fix = f"lower pneumatics.driving_pressures_kPa to at most {rating.pressure_kPa:.1f}"
     return [
         Finding(
@@ -29,7 +30,7 @@ def check(view: PrintView) -> list[Finding]:
             severity,
             view.sensor.membrane,
             text,
-            fix if rating.remedy is None else f"{fix}, or {rating.remedy}",
+            fix if remedy is None else f"{fix}, or {remedy}",
             _SOURCES[limit.name],
             (0.0, 0.0, last.apex_outer),
             Excess(last.driving_pressure / KPA, rating.pressure / KPA, "kPa"),

@@ -108,8 +108,9 @@ def curve_warnings(
             f"predicted range ends at {curve.ends[1]:.2f} mm ({curve.ends[0]}); readings beyond belong to no figure",
         )
     if rating.severity(curve.driving) is not None:
-        remedy = "" if rating.remedy is None else f"; to raise it, {rating.remedy}"
-        report("rated pressure", None, f"{rating.excess(curve.driving)}, {rating.basis}{remedy}")
+        remedy = rating.remedy_for(curve.driving)
+        raised = "" if remedy is None else f"; to raise it, {remedy}"
+        report("rated pressure", None, f"{rating.excess(curve.driving)}, {rating.basis}{raised}")
     first = expected[0]["force_N"]
     if first is not None and first < RESOLVED * rig.force_resolution_N:
         report(

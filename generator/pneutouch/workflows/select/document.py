@@ -29,7 +29,7 @@ def document(selection: SelectionRun) -> dict[str, Any]:
             {
                 "rank": rank,
                 "runner_up": _is_runner_up(answer.designs, rank - 1),
-                "passes_check": True if rank <= selection.passed else None,
+                "passes_check": True if rank in selection.judged else None,
                 **_choice(selection, choice, solid),
             }
             for rank, (choice, solid) in enumerate(zip(answer.designs, confirmed, strict=True), start=1)

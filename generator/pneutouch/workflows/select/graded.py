@@ -1,6 +1,6 @@
 """A graded selection: a grade for a target that no constant mix meets, and the constant mixes of its size."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -27,12 +27,13 @@ from pneutouch.spec.target import Target
 from pneutouch.units import KPA
 from pneutouch.workflows.select.base import base_scene, requested_pair, setting_changes
 from pneutouch.workflows.select.mix import ResinPair
-from pneutouch.workflows.select.passing import rejection, source_of
+from pneutouch.workflows.select.passing import judge, source_of
 from pneutouch.workflows.select.run import grade_text, problem_of
 
 _LEVELS = 4
 """Fractions of the scan at pole and rim: moduli 3 times apart for TangoPlus and VeroClear, 16 trials."""
 _TRIALS = 48
+_SMALLER = "give a smaller given.inner_radius_mm (`inner_radius`)"
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,8 @@ class GradedSelectionRun:
     """A search for a grade with everything needed to show and write it.
 
     changes: what the target changes in its base, by ``table.key``. sensor: the base's, with the radius and wall
-    searched at. constants: catalogue resins, then the nearest mix. solves: solid solves in all.
+    searched at. constants: catalogue resins, then the nearest mix. solves: solid solves in all. rejected: why
+    ``check`` rejects a grade that meets the target, None where it passes or none meets it.
     """
 
     target: Target
@@ -52,6 +54,12 @@ class GradedSelectionRun:
     search: GradeSearch
     constants: tuple[UniformMembrane, ...]
     left_out: dict[str, str]
+    rejected: str | None = None
+
+    @property
+    def passes(self) -> bool:
+        """Whether a grade meets the target and passes ``check``."""
+        return self.search.met and self.rejected is None
 
     @property
     def solves(self) -> int:
@@ -83,10 +91,9 @@ class GradedSelectionRun:
         }
         return [f"{key}={value}" for key, value in values.items()] + assignments(self.changes)
 
-    def rejection(self, library: Library | None = None) -> str | None:
+    def rejection(self, library: Library) -> str | None:
         """Why ``check`` rejects the best grade, None where it passes."""
-        source = source_of(self.base, self.assignments())
-        why = rejection(source, library or Library.default(), predicted=True)
+        why = judge(source_of(self.base, self.assignments()), library, predicted=True).reason
         return None if why is None else ": ".join(part for part in why if part)
 
 
@@ -99,7 +106,8 @@ def select_graded(
 ) -> GradedSelectionRun:
     """Answer a target that requires a grade. Raises InputError where it names what there is not.
 
-    ``where`` names the file in messages; ``trials`` bounds the solid solves of the search.
+    ``where`` names the file in messages; ``trials`` bounds the solid solves of the search. A grade that meets the
+    target is judged as ``check`` does.
     """
     library = library or Library.default()
     scene = base_scene(target, where, library)
@@ -117,9 +125,10 @@ def select_graded(
     search = grade_search(grade_target, levels(pair.law, _LEVELS), solve, progress, trials or _TRIALS)
     constants, left_out = _catalogue(scene, sensor, grade_target, library)
     nearest = _nearest(grade_target, problem, pair, sensor, scene.printer, search)
-    return GradedSelectionRun(
+    run = GradedSelectionRun(
         target, scene, changes, sensor, pair, grade_target, search, (*constants, nearest), left_out
     )
+    return replace(run, rejected=run.rejection(library)) if search.met else run
 
 
 def _grade_target(target: Target) -> GradeTarget:
@@ -146,14 +155,21 @@ def _wall(target: Target, where: str, grade_target: GradeTarget, problem: Select
         wall = middle_wall(grade_target, problem, radius, thickest) or base.dome.wall_thickness
     if wall > thickest + 1e-9:
         raise InputError(
-            f"target.max_diameter_mm = {most:g}: a dome of inner radius {radius:g} mm and wall {wall:g} mm is "
-            f"{2 * (radius + wall):g} mm wide",
+            f"a dome of inner radius {radius:g} mm and wall {wall:g} mm is {2 * (radius + wall):g} mm wide",
             file=where,
-            remedy="give a smaller given.inner_radius_mm",
+            key="target.max_diameter_mm",
+            value=most,
+            remedy=_SMALLER,
         )
+    least = f"the printer's least wall is {problem.least_wall:g} mm"
+    if wall < problem.least_wall and target.given.wall_thickness_mm is not None:
+        raise InputError(least, file=where, key="given.wall_thickness_mm", value=wall)
     if wall < problem.least_wall:
         raise InputError(
-            f"given.wall_thickness_mm = {wall:g}: the printer's least wall is {problem.least_wall:g} mm", file=where
+            f"for inner radius {radius:g} mm the atlas has no wall with the sensitivity, and the base's own wall is "
+            f"{wall:g} mm; {least}",
+            file=where,
+            remedy="give given.wall_thickness_mm (`wall`) or another given.inner_radius_mm (`inner_radius`)",
         )
     return wall
 
@@ -169,7 +185,7 @@ def _check_footprint(target: Target, where: str, problem: SelectionProblem, sens
             file=where,
             key="target.max_footprint_mm",
             value=most,
-            remedy="give a smaller given.inner_radius_mm or another connector",
+            remedy=f"{_SMALLER} or another connector",
         )
 
 

@@ -26,8 +26,10 @@ def graded_document(selection: GradedSelectionRun) -> dict[str, Any]:
             "dead_volume_mL": sensor.gas.dead_volume / ML,
             **_figures(selection, search.best),
             "share_used": shares(selection.grade_target, search.best),
+            "passes_check": True if selection.passes else None,
             "set": selection.assignments(),
         },
+        "rejected": selection.rejected,
         "constant": [
             {"name": constant.name, "fraction": constant.fraction, **_figures(selection, constant.trial)}
             for constant in selection.constants

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
 from pneutouch.errors import PneutouchError
-from pneutouch.evaluation.evaluate import PredictionOptions, evaluate_scene
+from pneutouch.evaluation.evaluate import Evaluation, PredictionOptions, evaluate_scene
 from pneutouch.evaluation.subject import subject_of
 from pneutouch.output.new import write_design
 from pneutouch.parts import assemble
@@ -28,20 +28,29 @@ class RejectedDesign:
     reason: str
 
 
-def rejection(source: DesignSource, library: Library, *, predicted: bool) -> tuple[str | None, str] | None:
-    """The first reason for which ``check`` rejects a design, None where it passes.
+class Judgement(NamedTuple):
+    """What ``check`` makes of a design.
 
-    ``predicted`` has the solid predict it as ``check`` does; else the print rules alone look at its bodies.
+    reason: the first broken rule (None where the design cannot be drawn or predicted) and why; None where it passes.
+    evaluation: the design as the solid predicts it; None where the print rules alone looked at it.
     """
+
+    reason: tuple[str | None, str] | None
+    evaluation: Evaluation | None = None
+
+
+def judge(source: DesignSource, library: Library, *, predicted: bool) -> Judgement:
+    """Judge a design: ``predicted`` as ``check`` does, by the solid too; else by the print rules on its bodies."""
+    evaluation = None
     try:
         scene = load_scene(source, None, library)
         if predicted:
-            findings = evaluate_scene(scene, dict, PredictionOptions()).findings
-        else:
-            findings = check(subject_of(assemble(scene)))
+            evaluation = evaluate_scene(scene, dict, PredictionOptions())
+        findings = check(subject_of(assemble(scene))) if evaluation is None else evaluation.findings
     except PneutouchError as error:
-        return None, "; ".join(part for part in (error.problem, error.remedy) if part)
-    return next(((f.rule, f"{f.body}: {f.message}") for f in findings if f.severity == "error"), None)
+        return Judgement((None, "; ".join(part for part in (error.problem, error.remedy) if part)))
+    broken = next(((f.rule, f"{f.body}: {f.message}") for f in findings if f.severity == "error"), None)
+    return Judgement(broken, evaluation)
 
 
 def source_of(base: ResolvedDesign, assignments: list[str], name: str = "selected") -> DesignSource:

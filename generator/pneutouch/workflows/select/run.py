@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.catalogue import Library, ResolvedDesign
+from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.evaluation.table_s1 import is_near_paper
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.table import shipped
@@ -33,7 +34,7 @@ from pneutouch.units import KPA
 from pneutouch.workflows.select.base import base_scene, prints, requested_pair, setting_changes, with_connector
 from pneutouch.workflows.select.connector import base_sensor, connector_fit, dead_volume
 from pneutouch.workflows.select.mix import ResinPair, mix_resins
-from pneutouch.workflows.select.passing import RejectedDesign, rejection, source_of
+from pneutouch.workflows.select.passing import RejectedDesign, judge, source_of
 
 _CONFIRMED = 3
 """Designs that are confirmed by the solid."""
@@ -54,7 +55,7 @@ class SelectionRun:
     """An answer with everything needed to show, check and write it.
 
     changes: what the target changes in its base, by ``table.key``. left_out: resins and why. rejected: designs that
-    ``check`` would reject, best first. passed: how many of the answer's designs, best first, are known to pass it.
+    ``check`` would reject, best first. judged: designs of the answer that pass ``check``, as it predicts them, by rank.
     """
 
     target: Target
@@ -65,7 +66,7 @@ class SelectionRun:
     answer: SelectionResult
     left_out: dict[str, str]
     rejected: tuple[RejectedDesign, ...] = ()
-    passed: int = 0
+    judged: Mapping[int, Evaluation] = field(default_factory=dict)
     confirmed: tuple[Confirmation, ...] = ()
 
     def assignments(self, choice: Candidate) -> list[str]:
@@ -119,8 +120,8 @@ def select(
 ) -> SelectionRun:
     """Answer a target. Raises InputError where it names what there is not; ``where`` names the file in messages.
 
-    The best design passes the print rules; that of rank ``written``, to be saved, all that ``check`` looks at, and
-    those before it the print rules. Designs that do not are taken out of the answer.
+    The best design and that of rank ``written``, to be saved, pass all that ``check`` looks at; those between them
+    the print rules. Designs that do not are taken out of the answer.
     """
     library = library or Library.default()
     progress("base")
@@ -143,24 +144,28 @@ def select(
     progress("print rules")
     run = _passing(run, written, library)
     progress("solid")
-    return replace(run, confirmed=tuple(_confirm(run, choice) for choice in run.answer.designs[:_CONFIRMED]))
+    best = enumerate(run.answer.designs[:_CONFIRMED], start=1)
+    return replace(run, confirmed=tuple(_confirm(run, choice, run.judged.get(rank)) for rank, choice in best))
 
 
 def _passing(run: SelectionRun, written: int | None, library: Library) -> SelectionRun:
     """The answer without the designs that do not pass; looked at by rank until enough do."""
     passed: list[Candidate] = []
     rejected: list[RejectedDesign] = []
+    judged: dict[int, Evaluation] = {}
     waiting = list(run.answer.designs)
     while waiting and len(passed) < (written or 1):
-        choice = waiting.pop(0)
+        choice, rank = waiting.pop(0), len(passed) + 1
         source = source_of(run.base, run.assignments(choice))
-        reason = rejection(source, library, predicted=len(passed) + 1 == written)
-        if reason is None:
-            passed.append(choice)
-        else:
+        reason, evaluation = judge(source, library, predicted=rank in (1, written))
+        if reason is not None:
             rejected.append(RejectedDesign(choice, *reason))
+            continue
+        passed.append(choice)
+        if evaluation is not None:
+            judged[rank] = evaluation
     answer = replace(run.answer, designs=[*passed, *waiting])
-    return replace(run, answer=answer, rejected=tuple(rejected), passed=len(passed))
+    return replace(run, answer=answer, rejected=tuple(rejected), judged=judged)
 
 
 def _written(resin: CandidateResin) -> str:
@@ -259,11 +264,16 @@ def _like(sensor: Sensor, batch: SensorBatch, i: int) -> Sensor:
     )
 
 
-def _confirm(selection: SelectionRun, choice: Candidate) -> Confirmation:
-    """The solid's sensitivity, compared with that of the atlas."""
+def _confirm(selection: SelectionRun, choice: Candidate, judged: Evaluation | None) -> Confirmation:
+    """The solid's sensitivity, compared with that of the atlas; of a design judged already it is known."""
     from pneutouch.mechanics.solid_states import solid_states
 
-    figures = solid_states(selection.sensor_of(choice), choice.pool.pressure)[0].figures
+    if judged is None:
+        state = solid_states(selection.sensor_of(choice), choice.pool.pressure)[0]
+    else:
+        driven = float(choice.pool.pressure[0])
+        state = min(judged.prediction.states, key=lambda state: abs(state.driving_pressure - driven))
+    figures = state.figures
     if figures is None:
         return Confirmation(float("nan"), False)
     stated_kPa_per_N = float(choice.pool.response.lines.sensitivity_kPa_per_N[0])
