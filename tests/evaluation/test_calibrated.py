@@ -356,3 +356,17 @@ def test_the_recipe_of_a_calibrated_build_is_shown(place):
     recipe = {"inputs": inputs, "name": "x", "version": "1", "versions": {}, "other_versions": [], "input_hash": "a"}
     text = "\n".join(_recipe(recipe))
     assert "calibration" in text and "mine" in text and "membrane.material" in text and "wall_thickness" not in text
+
+
+@pytest.mark.parametrize("simulated", [False, True])
+def test_text_and_sheet_state_the_specimen_and_that_data_are_simulated(simulated, library, tmp_path):
+    from pneutouch.cli.text import prediction_text
+    from pneutouch.evaluation.document import full_document
+    from pneutouch.evaluation.sheet import sheet_data
+    from pneutouch.report.sheet import content_of
+
+    content = changed(source={"simulated": simulated})
+    evaluation = predicted(library_of(tmp_path, library, content))
+    sensor = content["source"]["sensor"]
+    for text in (prediction_text(full_document(evaluation)), content_of(sheet_data(evaluation, ""))["status"]):
+        assert f"sensor {sensor}" in text and ("SIMULATED DATA" in text) is simulated

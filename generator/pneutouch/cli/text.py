@@ -15,6 +15,7 @@ def prediction_text(document: dict[str, Any]) -> str:
     lines = [
         f"{document['design']}: model {document['model']}{closure}, dead volume {document['dead_volume_mL']:.3f} mL"
         f"{idealised}",
+        *_calibrated(document.get("calibration")),
         f"{_reach(document['limit_point'])}; the {document['limits']['binding']} binds",
         *_rating(document["rating"]),
         "",
@@ -28,6 +29,14 @@ def prediction_text(document: dict[str, Any]) -> str:
         ratio = f"{aged['modulus_ratio']:.3f}"
         lines.append(f"aged one year: modulus times {ratio} by its hardness; {aged['assumes']}")
     return "\n".join(lines)
+
+
+def _calibrated(calibration: dict[str, Any] | None) -> list[str]:
+    """Which specimen the figures are of, and whether it was measured."""
+    if calibration is None:
+        return []
+    made = "SIMULATED DATA: " if calibration["simulated"] else ""
+    return [f"{made}calibration {calibration['name']}: the figures are those of sensor {calibration['sensor']} alone"]
 
 
 def _reach(point: dict[str, float] | None) -> str:

@@ -9,6 +9,7 @@ from pneutouch.report import ordering, prose
 from pneutouch.report.certainty import interval, uncertainty_section
 from pneutouch.report.environment import NOT_TESTED, environment
 from pneutouch.units import KPA, ML
+from pneutouch.wording import counted
 
 DASH = "–"
 
@@ -40,7 +41,7 @@ def content_of(sheet: SheetData) -> dict[str, Any]:
         "date": date,
         "tool": f"pneutouch {__version__}",
         "input_hash": sheet.input_hash,
-        "status": "Predicted. No unit has been built or tested.",
+        "status": _status(sheet),
         "description": prose.description(sheet.scene),
         "limits_of_use": prose.LIMITS_OF_USE,
         "warnings": _warnings(sheet),
@@ -67,6 +68,17 @@ def content_of(sheet: SheetData) -> dict[str, Any]:
         "sources": _sources(sheet),
         "revisions": [[document.revision, date, "As predicted; first issue of this revision."]],
     }
+
+
+def _status(sheet: SheetData) -> str:
+    """What the figures rest on: the design alone, or the runs of one specimen, measured or simulated."""
+    calibration = sheet.scene.calibration
+    if calibration is None:
+        return "Predicted. No unit has been built or tested."
+    source = calibration.source
+    if source.simulated:
+        return f"SIMULATED DATA: calibrated on simulated runs of sensor {source.sensor}. No unit has been tested."
+    return f"Predicted for sensor {source.sensor} alone, calibrated on {counted(source.curves, 'measured curve')}."
 
 
 def _key_figures(sheet: SheetData) -> list[list[str]]:
