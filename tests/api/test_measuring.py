@@ -76,6 +76,7 @@ def test_a_calibration_is_the_command_lines_and_can_be_used_at_once(campaign, pr
     assert (caught.value.key, caught.value.value) == ("fit", "moduls")
 
 
+@pytest.mark.slow
 def test_a_plan_is_the_command_lines(printed, tmp_path):
     found = pt.plan(pt.load("paper-dome"), specimens=1)
     assert json.loads(json.dumps(found.to_dict())) == without_folder(

@@ -102,6 +102,7 @@ def test_text_names_patterns_and_folder(again):
     assert text.rstrip().endswith(str(folder))
 
 
+@pytest.mark.slow
 def test_separate_ranks_domes():
     result = run(*ASKED, "--separate", "3@0,6@2", "--json")
     assert result.exit_code == 0, result.stderr

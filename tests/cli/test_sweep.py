@@ -46,6 +46,7 @@ def test_the_page_s_commands_run(line, command, bench):
     assert (data.status == "ok").sum() > 20
 
 
+@pytest.mark.slow
 def test_the_page_s_cluster_commands_run(command, bench, cluster):
     (line,) = [line for line in COMMANDS if "--scheduler" in line]
     local, *_ = COMMANDS

@@ -122,6 +122,7 @@ def test_beyond_the_limit_point_is_an_error_not_a_number():
         relative_height(np.array([0.0, 0.0425]), 9.25, 1.5, 0.17)
 
 
+@pytest.mark.slow
 def test_shooting_meets_every_row_that_the_error_is_stated_against():
     for p, h in RISING_BRANCH[1:-1]:
         stretch = brentq(lambda s, target=h: inflated(s)[1] - target, 1.01, 1.7, xtol=1e-9)

@@ -119,6 +119,7 @@ def test_the_air_on_the_sheet_is_computed_and_no_longer_a_fixed_factor(evaluated
     assert "1.4 times" not in html
 
 
+@pytest.mark.slow
 def test_model_and_why_it_was_taken_stand_on_the_sheet(evaluated):
     from pneutouch.evaluation import evaluate
     from pneutouch.evaluation.sheet import sheet_data
@@ -143,6 +144,7 @@ def page(monkeypatch):
     return lambda evaluation: datasheet(sheet_data(evaluation, "0"))["datasheet.html"].decode()
 
 
+@pytest.mark.slow
 def test_without_the_solid_the_sheet_says_where_shapes_come_from(evaluated, page):
     page = page(evaluated("fingertip-dome", model="atlas"))
     assert "build with model solid" in page
@@ -150,6 +152,7 @@ def test_without_the_solid_the_sheet_says_where_shapes_come_from(evaluated, page
     assert page.count("<svg") == 9
 
 
+@pytest.mark.slow
 def test_a_sensor_outside_the_atlas_says_so_on_its_sheet(page):
     from pneutouch.evaluation import evaluate
 

@@ -43,6 +43,7 @@ def test_a_fingertip_gets_designs_of_several_resins(fingertip):
     assert len({choice.resin.name for choice in fingertip.answer.designs}) >= 2
 
 
+@pytest.mark.slow
 def test_the_solid_confirms_every_design_of_another_resin(fingertip, solid):
     first = {choice.resin.name: k for k, choice in reversed(list(enumerate(fingertip.answer.designs)))}
     for number in first.values():
@@ -79,6 +80,7 @@ def test_the_ranking_is_by_the_stated_cost_best_of_each_resin_first(fingertip):
     assert [c.cost for c in designs[best:]] == sorted(c.cost for c in designs[best:])
 
 
+@pytest.mark.slow
 def test_a_weight_on_tunability_prefers_sensitivities_that_move():
     def moves(weights: dict[str, float]) -> float:
         low, high = answer(FINGERTIP, weights=weights).answer.designs[0].span

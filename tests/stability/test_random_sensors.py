@@ -63,6 +63,7 @@ def say(capsys):
     return line
 
 
+@pytest.mark.slow
 def test_twenty_random_sensors(library, say):
     ends, events = sweep(library, 20, seed=40)
     say(f"20 random sensors to R0/2: {tally(ends)}; events on the way: {tally(events)}")

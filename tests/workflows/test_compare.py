@@ -69,7 +69,7 @@ def test_a_build_is_the_design_that_it_was_built_from(built, library):
 
 
 def test_a_design_is_compared_with_its_calibrated_self(library, tmp_path):
-    """One specimen of known modulus: narrower than any print; what two sensors with it share cancels."""
+    """One specimen of known modulus: narrower than any print; its fitted parameters do not cancel between two states."""
     (tmp_path / "calibrations").mkdir()
     calibration = calibrated(0.03, 0.02, 0.0).model_dump(mode="json", exclude_none=True)
     (tmp_path / "calibrations/A1.toml").write_text(toml_text(calibration))
@@ -85,8 +85,8 @@ def test_a_design_is_compared_with_its_calibrated_self(library, tmp_path):
     together, apart = compare(["paper-dome@A1", other], library=place, model="atlas"), limit["differences"][0]
     (alike,) = rows(together, "limit_pressure_kPa")[None]["differences"]
     assert alike["exceeds"] is False
-    assert alike["high_percent"] < 0.1 * apart["high_percent"]
-    assert alike["high_percent"] < 0.3 * 100 * (specimen["high"] / specimen["value"] - 1)
+    own = 100 * (specimen["high"] / specimen["value"] - 1)
+    assert own < alike["high_percent"] < 1.5 * own < apart["high_percent"]
 
 
 def test_results_alone_are_their_measurement_and_their_prediction(results, library):

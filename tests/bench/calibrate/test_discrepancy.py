@@ -34,6 +34,7 @@ def shares(library, resins, trials, plans, model="atlas"):
     return hits / count
 
 
+@pytest.mark.slow
 def test_intervals_hold_the_truth_of_simulated_sensors(library):
     """Of 12 trials at 95 %, fewer than 8 are hit with a chance of 2e-4."""
     assert np.all(shares(library, ("TangoPlus", "FLX9960"), 6, PLANS[:1]) >= 8 / 12)

@@ -76,6 +76,7 @@ def cover(library, trials, runs, pressures, priors, floor=FLOOR):
     return hits / trials
 
 
+@pytest.mark.slow
 def test_intervals_hold_the_truth(library):
     """Of 30 trials at 95 %, fewer than 25 are hit with a chance of 0.3 %, as fewer than 52 of 60 are."""
     share = cover(library, 30, 2, (0.0, 12.0, 22.0), True)

@@ -42,6 +42,7 @@ def test_a_map_cell_holds_the_greatest_of_its_errors():
     assert np.isnan(cells[0, 1]) and np.isnan(cells[1, 0])
 
 
+@pytest.mark.slow
 def test_scenes_in_the_box_are_answered_near_the_solid_and_the_others_are_left_to_it():
     inside = [scene for scene in SCENES if atlas_answer(scene) is not None]
     assert 8 <= len(inside) < len(SCENES)

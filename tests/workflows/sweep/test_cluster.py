@@ -16,6 +16,7 @@ from pneutouch.workflows.sweep.run import ComputeResources
 from tests.workflows.sweep.conftest import PATIENCE, ended, held, journal_lines, resumed, small
 
 
+@pytest.mark.slow
 def test_a_lost_worker_changes_no_byte(undisturbed, cluster, tmp_path):
     out = tmp_path / "sweep.nc"
     process = held(out, "--scheduler", cluster.address)
@@ -31,6 +32,7 @@ def test_a_lost_worker_changes_no_byte(undisturbed, cluster, tmp_path):
     assert not out.with_name("sweep.nc.parts").exists()
 
 
+@pytest.mark.slow
 def test_a_lost_cluster_is_said_and_the_sweep_goes_on_without_it(undisturbed, cluster, tmp_path):
     out = tmp_path / "sweep.nc"
     process = held(out, "--scheduler", cluster.address)
@@ -76,6 +78,7 @@ def test_what_is_no_scheduler_is_an_input_error(library, tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_a_cluster_without_workers_or_with_others_is_an_input_error(cluster, library, tmp_path, monkeypatch):
     monkeypatch.setattr(module, "__version__", "9.9")
     with pytest.raises(InputError, match=r"a worker has pneutouch .*, this is 9\.9"):

@@ -52,6 +52,7 @@ def test_a_stopped_replacement_goes_on_and_the_old_dataset_stays_until_then(sing
     assert out.read_bytes() != content
 
 
+@pytest.mark.slow
 def test_two_sweeps_on_one_output_are_one_too_many(undisturbed, tmp_path):
     out = tmp_path / "sweep.nc"
     first = held(out, "--workers", "1")

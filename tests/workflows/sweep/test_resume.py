@@ -33,6 +33,7 @@ from tests.workflows.sweep.conftest import (
 )
 
 
+@pytest.mark.slow
 def test_three_kills_at_random_moments_change_no_byte(undisturbed, tmp_path):
     out, luck, kept = tmp_path / "sweep.nc", random.Random(20261121), 0
     for workers in (2, 1, 2):
@@ -53,6 +54,7 @@ def test_three_kills_at_random_moments_change_no_byte(undisturbed, tmp_path):
     assert [name for name in names(tmp_path) if "-over-" not in name] == ["sweep.csv", "sweep.nc"]
 
 
+@pytest.mark.slow
 def test_ctrl_c_says_how_to_go_on(undisturbed, tmp_path):
     out = tmp_path / "sweep.nc"
     process = held(out, "--workers", "1", group=True)
@@ -230,6 +232,7 @@ def test_a_worker_that_dies_is_said_and_the_progress_kept(undisturbed, tmp_path)
     assert out.read_bytes() == undisturbed
 
 
+@pytest.mark.slow
 def test_another_hash_seed_and_process_give_the_same_bytes(library, tmp_path):
     out = tmp_path / "again.nc"
     sweep(small(), tmp_path / "plain.nc", ALONE, library=library)
