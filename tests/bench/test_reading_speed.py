@@ -55,8 +55,9 @@ def test_memory_does_not_grow_with_the_file(tmp_path):
     assert len(body) > 30e6
     third = tmp_path / "third.csv"
     third.write_bytes(header + b"\n" + body[: body.rfind(b"\n", 0, len(body) // 3) + 1])
-    whole, _ = measure(path)
-    part, points = measure(third)
+    # The peak of one process is a few MB off at random: the least of three is what the job needs.
+    whole = min(measure(path)[0] for _ in range(3))
+    part, points = min(measure(third) for _ in range(3))
     assert points >= 4
     assert whole < part + 0.25 * (len(body) * 2 / 3)
 
