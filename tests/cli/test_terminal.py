@@ -101,3 +101,12 @@ def test_no_colour_in_a_pipe_unless_it_is_required(names, coloured, tmp_path):
     result = subprocess.run(words, env=environment | names, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert ("\x1b[1;31merror\x1b[0m: " in result.stderr) == coloured
     assert coloured or result.stderr.startswith("error: ")
+
+
+def test_a_stage_escapes_control_characters(capsys):
+    from pneutouch.cli.progress import bar
+
+    with bar("reading \x1b[31mred") as report:
+        report(0, 1, "evaluating a\x08b")
+    said = capsys.readouterr().err
+    assert "\x1b" not in said and "\x08" not in said and "red" in said

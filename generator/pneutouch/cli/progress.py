@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import Protocol
 
 from pneutouch.cli.terminal import notify
+from pneutouch.errors import one_line
 
 
 class ProgressCallback(Protocol):
@@ -29,7 +30,7 @@ def bar(what: str) -> Iterator[ProgressCallback]:
         task = shown.add_task(what, total=None)
 
         def report(done: int, total: int, what: str | None = None) -> None:
-            shown.update(task, description=what, completed=done, total=total)
+            shown.update(task, description=what if what is None else one_line(what), completed=done, total=total)
 
         yield report
 
@@ -38,12 +39,12 @@ def _lines(what: str) -> ProgressCallback:
     """One line a stage, the first at once."""
     last = what
     if what:
-        notify(f"{what} ...")
+        notify(f"{one_line(what)} ...")
 
     def report(done: int, total: int, what: str | None = None) -> None:
         nonlocal last
         if what is not None and what != last:
             last = what
-            notify(f"{what} ...")
+            notify(f"{one_line(what)} ...")
 
     return report

@@ -8,6 +8,7 @@ import io
 import numpy as np
 import pytest
 
+from pneutouch.errors import InputError
 from pneutouch.report.swept import SweptAxis, SweptFigure, pictures
 from pneutouch.workflows.sweep import plan_of_file, sweep
 from pneutouch.workflows.sweep.companions import swept_figure, table_csv, table_rows, write_companions
@@ -101,3 +102,11 @@ def test_a_list_is_drawn_over_its_only_field(library, tmp_path):
     assert [row["membrane_wall_thickness_mm"] for row in rows[::4]] == [1.5, 1.0, 1.2]
     value = {row["membrane_wall_thickness_mm"]: row["sensitivity_kPa_per_N"] for row in rows[::4]}
     assert figure.value[:, 0].tolist() == [value[wall] for wall in (1.0, 1.2, 1.5)]
+
+
+def test_a_dataset_that_lacks_a_column_is_refused_by_its_name(swept, tmp_path):
+    out = tmp_path / "x.nc"
+    load(swept).drop_vars("r_squared").to_netcdf(out, engine="scipy")
+    with pytest.raises(InputError, match=r"x\.nc: the dataset is damaged, .*r_squared"):
+        write_companions(out)
+    assert [path.name for path in tmp_path.iterdir()] == ["x.nc"]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pneutouch.errors import InputError
+from pneutouch.errors import InputError, one_line
 from pneutouch.output.files import replace_files
 from pneutouch.tables.csv_write import csv_bytes
 from pneutouch.workflows.sweep.dataset import PRESSURE
@@ -79,16 +79,22 @@ def check_companions(out: Path, plan: SweepPlan) -> None:
 
 
 def write_companions(out: Path) -> tuple[list[dict[str, Any]], list[Path]]:
-    """Write table and pictures of a finished dataset next to it; returns the rows and the files written."""
+    """Write table and pictures of a finished dataset next to it; returns the rows and the files written.
+
+    Raises InputError for a dataset in which a column is missing.
+    """
     import xarray
 
     from pneutouch.report.swept import pictures
 
     with xarray.open_dataset(out, engine="scipy") as opened:
         content = opened.load()
-    rows = table_rows(content)
+    try:
+        rows, swept = table_rows(content), swept_figure(content)
+    except KeyError as error:
+        problem = f"the dataset is damaged, {one_line(str(error.args[0]))}"
+        raise InputError(problem, file=out, remedy="move it, or compute it again with `fresh`") from None
     files = {out.with_suffix(".csv"): table_csv(rows)}
-    swept = swept_figure(content)
     if swept is not None:
         for name, (text, image) in pictures(swept).items():
             files |= dict(zip(_picture_files(out, name), (text.encode(), image), strict=True))
