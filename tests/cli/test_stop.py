@@ -14,7 +14,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-MOMENTS = 3
+MOMENTS = 20
 LINES = {signal.SIGINT: "stopped by Ctrl-C", signal.SIGTERM: "stopped by SIGTERM"}
 
 SWEEP = "sweep --design paper-dome --out made/s.nc --over membrane.wall_thickness_mm=1:1.6:"
