@@ -35,5 +35,7 @@ def test_of_100_campaigns_at_least_95_are_surer_and_90_to_99_hold_the_truth(fold
         assert 90 <= sum(one.after.holds for one in at) <= (100 if pressure == UNSEEN else 99)
         # Ageing is a rectangle and the widest source: k = 2 reaches beyond its ends.
         assert sum(one.after_year.holds for one in at) >= 95
+    held = [one.after.holds for result in results for one in result.values()]
+    assert 0.90 <= np.mean(held) <= 0.99
     median = np.median([one.after.width / one.before.width for result in results for one in result.values()])
     assert median < 0.4

@@ -8,7 +8,7 @@ from numpy.polynomial.legendre import legvander
 
 from pneutouch.arrays import Array
 from pneutouch.bench.record import MeasuredCurve
-from pneutouch.mechanics.response import figures, hysteresis
+from pneutouch.mechanics.response import Figures, figures, hysteresis
 from pneutouch.units import KPA
 
 Pooled = Literal["mean", "within", "between"]
@@ -78,6 +78,8 @@ to travel than force is: the least that follow the solid's loops."""
 
 _LEAST_SAMPLES = 40
 
+_SATURATION = "saturation_force_N"
+
 _ENDS = 0.15
 """Decades at either end of a hold over which a line gives the value at the end: one block would give its noise."""
 
@@ -102,10 +104,16 @@ def _line(curve: MeasuredCurve, *, saturating: bool) -> dict[str, float]:
     got = figures(curve.indentation, curve.force, curve.rise / KPA)
     if got is None:
         return {}
+    values = line_figures(got)
+    saturation = values.pop(_SATURATION, None)
     if saturating:
-        end = got.force_range[1] if got.saturation_force is None else got.saturation_force
-        saturated = {} if got.saturation_force is None else {"saturation_force_N": got.saturation_force}
-        return {**saturated, "sensing_range_N": end}
+        saturated = {} if saturation is None else {_SATURATION: saturation}
+        return {**saturated, "sensing_range_N": got.force_range[1] if saturation is None else saturation}
+    return values
+
+
+def line_figures(got: Figures) -> dict[str, float]:
+    """Figures of a loading curve by key of `FIGURES`; without saturation where it has none."""
     return {
         "sensitivity_kPa_per_N": got.sensitivity_kPa_per_N,
         "sensitivity_through_origin_kPa_per_N": got.sensitivity_through_origin_kPa_per_N,
@@ -113,6 +121,7 @@ def _line(curve: MeasuredCurve, *, saturating: bool) -> dict[str, float]:
         "nonlinearity_percent": 100 * got.nonlinearity,
         "stiffness_N_per_mm": got.stiffness,
         "force_range_N": got.force_range[1],
+        **({} if got.saturation_force is None else {_SATURATION: got.saturation_force}),
     }
 
 

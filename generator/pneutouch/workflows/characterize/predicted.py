@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from pneutouch.arrays import Array
+from pneutouch.bench.figure import line_figures
 from pneutouch.bench.plausible import ExpectedRun
 from pneutouch.bench.summary import RunGroup
 from pneutouch.catalogue import DesignSource, Library
@@ -12,7 +13,6 @@ from pneutouch.errors import PneutouchError
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
 from pneutouch.evaluation.read_at import figures_at
 from pneutouch.mechanics.prediction import SensorState
-from pneutouch.mechanics.response import Figures
 from pneutouch.report.measured import GroupComparison
 from pneutouch.spec.campaign import AS_DESIGNED
 from pneutouch.spec.read import Changes
@@ -98,34 +98,23 @@ def compared(group: RunGroup, answer: StatePrediction) -> GroupComparison:
     return GroupComparison(group, label, state, uncertainty, _figures(state, uncertainty, depths_of(group)))
 
 
-def depths_of(group: RunGroup) -> Array | None:
-    """The depths at which a group was measured, mm: those of its shallowest steps run; None without one."""
-    curves = [curve.indentation for curve in group.of_kind("steps") if curve.indentation.size > 1]
-    return min(curves, key=lambda depths: float(depths[-1])) if curves else None
-
-
-def read_at(state: SensorState, depths: Array) -> Figures | None:
-    """The predicted curve's figures at measured depths, as far as its range goes: S belongs to its fitted range."""
-    return figures_at(state.indentation, state.force, state.pressure_rise / KPA, state.range_end, depths)[0]
+def depths_of(group: RunGroup) -> list[list[Array]]:
+    """The depths of each steps run of each specimen of a group, mm."""
+    by_specimen: dict[str, list[Array]] = {}
+    for curve in group.of_kind("steps"):
+        if curve.indentation.size > 1:
+            by_specimen.setdefault(curve.run.sensor, []).append(curve.indentation)
+    return list(by_specimen.values())
 
 
 def _figures(
-    state: SensorState, uncertainty: dict[str, Any], depths: Array | None
+    state: SensorState, uncertainty: dict[str, Any], depths: list[list[Array]]
 ) -> dict[str, tuple[float, float | None, float | None]]:
-    state_figures, known = state.figures, uncertainty.get("figures", {})
-    figures_there = state_figures if depths is None else read_at(state, depths)
-    if figures_there is None or state_figures is None:
+    known = uncertainty.get("figures", {})
+    if state.figures is None:
         return {}
-    plain = {
-        "sensitivity_kPa_per_N": figures_there.sensitivity_kPa_per_N,
-        "sensitivity_through_origin_kPa_per_N": figures_there.sensitivity_through_origin_kPa_per_N,
-        "r_squared": figures_there.r_squared,
-        "nonlinearity_percent": 100 * figures_there.nonlinearity,
-        "stiffness_N_per_mm": figures_there.stiffness,
-        "force_range_N": figures_there.force_range[1],
-    }
-    if figures_there.saturation_force is not None:
-        plain["saturation_force_N"] = figures_there.saturation_force
+    curve = state.indentation, state.force, state.pressure_rise / KPA
+    plain = figures_at(*curve, state.range_end, depths) if depths else line_figures(state.figures)
     names = {**{name: name for name in _OF_STATE}, "force_range_N": "force_at_range_end_N"}
     predictions: dict[str, tuple[float, float | None, float | None]] = {}
     for key, value in plain.items():

@@ -4,7 +4,7 @@ import csv
 import io
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,7 @@ from pneutouch.errors import InputError
 from pneutouch.evaluation.comparison import ComparedFigure, ComparedSensor, ComparedState
 from pneutouch.workflows.compare.folder import listed_file, manifest_of
 
-_NAMES = {"force_range_N": "force_at_range_end_N"}
+PREDICTED_NAMES = {"force_range_N": "force_at_range_end_N"}
 """Measured figures that a prediction names otherwise."""
 
 _CURVE = ("indentation_mm", "contact_force_N", "pressure_rise_kPa")
@@ -33,21 +33,12 @@ class MeasuredColumn:
     states: tuple[ComparedState, ...]
     simulated: bool = False
     kind: str = "measured"
+    depths: Mapping[float, list[list[Array]]] = field(default_factory=dict)
 
     def sensor(self) -> ComparedSensor:
         """The column."""
         notes = (f"{self.source} is simulated, not measured.",) if self.simulated else ()
         return ComparedSensor(self.name, self.kind, self.source, {}, None, self.states, notes)
-
-    def depths(self) -> dict[float, Array]:
-        """Depths of the shallowest run by driving pressure, mm and kPa."""
-        return {
-            state.driving_pressure_kPa: min(
-                (np.array(curve["indentation_mm"]) for curve in state.curves), key=lambda depths: float(depths[-1])
-            )
-            for state in self.states
-            if state.curves
-        }
 
 
 def measured_columns(folder: Path, *, predicted: bool = False) -> list[MeasuredColumn]:
@@ -89,15 +80,33 @@ def _columns(
         columns.append(
             (
                 MeasuredColumn(f"{content['design']}{more}", source, expected, kind="design"),
-                MeasuredColumn(f"{name}{more}", source, seen, bool(content["simulated"])),
+                MeasuredColumn(
+                    f"{name}{more}", source, seen, bool(content["simulated"]), depths=_depths(content, members, curves)
+                ),
             )
         )
     return columns
 
 
+def _depths(
+    content: Mapping[str, Any], groups: list[dict[str, Any]], curves: Mapping[str, dict[str, list[float]]]
+) -> dict[float, list[list[Array]]]:
+    """Depths of each run of each specimen, mm, by driving pressure in kPa."""
+    sensor_of = {run["file"]: run["sensor"] for run in content["runs"]}
+    depths: dict[float, list[list[Array]]] = {}
+    for group in groups:
+        by_specimen: dict[str, list[Array]] = {}
+        for file in group["files"]:
+            if file in curves:
+                by_specimen.setdefault(sensor_of[file], []).append(np.array(curves[file]["indentation_mm"]))
+        if by_specimen:
+            depths[float(group["driving_pressure_kPa"])] = list(by_specimen.values())
+    return depths
+
+
 def _state(group: Mapping[str, Any], curves: Mapping[str, dict[str, list[float]]], *, measured: bool) -> ComparedState:
     entries = {
-        _NAMES.get(key, key): entry if measured else entry["predicted"]
+        PREDICTED_NAMES.get(key, key): entry if measured else entry["predicted"]
         for key, entry in group["figures"].items()
         if measured or "predicted" in entry
     }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,12 +23,13 @@ from pneutouch.output.recipe import FORMAT
 from pneutouch.output.recipe_read import read_recipe
 from pneutouch.parts import assemble
 from pneutouch.workflows.compare.folder import listed_file, manifest_of
+from pneutouch.workflows.compare.measured import PREDICTED_NAMES
 
 if TYPE_CHECKING:
     from pneutouch.parts import Assembly
 
-Depths = Mapping[float, Array]
-"""Depths of a measurement, mm, by driving pressure in kPa."""
+Depths = Mapping[float, Sequence[Sequence[Array]]]
+"""Depths of a measurement by driving pressure in kPa: of each run of each specimen, mm."""
 
 _CURVE = ("indentation_mm", "contact_force_N", "pressure_rise_kPa")
 _CLOSE = 1e-6
@@ -151,25 +152,20 @@ _OF_CURVE = (
 """Figures that depend on the range that they are read over."""
 
 
-def _read(state: Mapping[str, Any], depths: Array) -> tuple[dict[str, float], str]:
+def _read(state: Mapping[str, Any], depths: Sequence[Sequence[Array]]) -> tuple[dict[str, float], str]:
     """Figures at the depths of a measurement, and a note on them."""
-    curve = [np.array(state["curve"][key]) for key in _CURVE]
-    at_depths, reached = figures_at(curve[0], curve[1], curve[2], state["range_end_mm"], depths)
-    if at_depths is None:
+    indentation, force, rise_kPa = (np.array(state["curve"][key]) for key in _CURVE)
+    read, end = figures_at(indentation, force, rise_kPa, state["range_end_mm"], depths), state["range_end_mm"]
+    if not read:
         return {}, ""
-    read = {
-        "sensitivity_kPa_per_N": at_depths.sensitivity_kPa_per_N,
-        "stiffness_N_per_mm": at_depths.stiffness,
-        "force_at_range_end_N": at_depths.force_range[1],
-        "r_squared": at_depths.r_squared,
-        "nonlinearity_percent": 100 * at_depths.nonlinearity,
-        **({} if at_depths.saturation_force is None else {"saturation_force_N": at_depths.saturation_force}),
-    }
-    short = f"; the prediction ends at {reached:.2f} mm" if reached < float(depths[-1]) * (1 - 1e-6) else ""
+    ends = [float(run[-1]) for runs in depths for run in runs]
+    low, high = f"{min(ends):.2f}", f"{max(ends):.2f}"
+    short = f"; the prediction ends at {end:.2f} mm" if end < max(ends) * (1 - 1e-6) else ""
     note = (
-        f"At {state['driving_pressure_kPa']:g} kPa figures of predicted curves are read at the measured depths, up to "
+        f"At {state['driving_pressure_kPa']:g} kPa figures of predicted curves are read at the depths of each run, to "
+        f"{high if low == high else f'between {low} and {high}'} mm{short}."
     )
-    return read, f"{note}{float(depths[-1]):.2f} mm{short}."
+    return {PREDICTED_NAMES.get(key, key): value for key, value in read.items()}, note
 
 
 def _scaled(value: float, known: Mapping[str, Any] | None, state: Mapping[str, Any]) -> ComparedFigure:

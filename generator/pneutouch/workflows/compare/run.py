@@ -67,7 +67,7 @@ def compare(
         columns += _columns(one, changes or {}, library, options, alone=len(given) == 1)
     if len(columns) < 2:
         raise InputError("one thing alone cannot be compared", remedy="name another design or folder")
-    depths: Depths = next((c.depths() for c in columns if isinstance(c, MeasuredColumn)), {})
+    depths: Depths = next((c.depths for c in columns if isinstance(c, MeasuredColumn)), {})
     sensors = [c.sensor() if isinstance(c, MeasuredColumn) else c.sensor(depths) for c in columns]
     sensors = [replace(s, label=label) for s, label in zip(sensors, labelled(sensors), strict=True)]
     evaluations = tuple(None if isinstance(c, MeasuredColumn) else c.evaluation for c in columns)
