@@ -53,13 +53,14 @@ def test_memory_does_not_grow_with_the_file(tmp_path):
     path = write(tmp_path / "a.csv", record(faults=Faults(rate=3000.0)), decimals=(12, 16, 18, 18))
     header, _, body = path.read_bytes().partition(b"\n")
     assert len(body) > 30e6
-    third = tmp_path / "third.csv"
-    third.write_bytes(header + b"\n" + body[: body.rfind(b"\n", 0, len(body) // 3) + 1])
+    half = tmp_path / "half.csv"
+    half.write_bytes(header + b"\n" + body[: body.rfind(b"\n", 0, len(body) // 2) + 1])
     # The peak of one process is a few MB off at random: the least of three is what the job needs.
     whole = min(measure(path)[0] for _ in range(3))
-    part, points = min(measure(third) for _ in range(3))
+    # A reader that kept what it has read would grow by at least the bytes; the allocator keeps up to one chunk more.
+    part, points = min(measure(half) for _ in range(3))
     assert points >= 4
-    assert whole < part + 0.25 * (len(body) * 2 / 3)
+    assert whole < part + 0.5 * (len(body) / 2)
 
 
 @pytest.mark.slow

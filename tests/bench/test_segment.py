@@ -50,7 +50,10 @@ def test_points_are_those_of_the_law(kind, sensor, bias):
     assert result.force[1:] == pytest.approx(force, abs=0.002)
     assert result.rise[1:] == pytest.approx(sensor.slope * force, abs=0.01 * KPA)
     assert result.driving == pytest.approx(sensor.driving, abs=0.005 * KPA)
-    (missed,) = (why for why in whys(result) if not why.startswith("indentation 1: too light"))
+    # The two shallowest may end before the force to which the others are fitted.
+    light = [why for why in whys(result) if ": too light" in why]
+    assert all(why.startswith(("indentation 1:", "indentation 2:")) for why in light)
+    (missed,) = (why for why in whys(result) if why not in light)
     assert "samples missed" in missed
 
 

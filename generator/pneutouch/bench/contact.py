@@ -124,8 +124,12 @@ def onsets(
     bends = np.array(BENDS)
     bend = bends[[int(np.argmin(np.sum([_search(loading, bends, length)[1] for loading in real], axis=0)))]]
     fits = [None if loading is None else float(_search(loading, bend, length)[0][0]) for loading in loadings]
+    # A loading that ends before the fitted force gives its onset late; where all do, there is no better.
+    some = any(loading.reaches for loading in real)
     errors = [
-        np.inf if loading is None or fit is None else _error(loading, fit, float(bend[0]), length)
+        np.inf
+        if loading is None or fit is None or (some and not loading.reaches)
+        else _error(loading, fit, float(bend[0]), length)
         for loading, fit in zip(loadings, fits, strict=True)
     ]
     limit_error = UNSURE * float(np.median([error for error in errors if error < np.inf]))
@@ -176,13 +180,15 @@ def _crossing(blocks: Blocks, one: Excursion, base: Baseline, least: float, sign
 
 
 class _Loading(NamedTuple):
-    """The first part of a loading: position, force less that without contact, bounds of the onset, travel."""
+    """The first part of a loading: position, force less that without contact, bounds of the onset, travel; ``reaches``
+    where the force comes to that up to which loadings are fitted."""
 
     position: Array
     force: Array
     low: float
     high: float
     length: float
+    reaches: bool
 
 
 def _loading(blocks: Blocks, one: Excursion, base: Baseline, at: int, limit: float, sign: int) -> _Loading:
@@ -198,7 +204,9 @@ def _loading(blocks: Blocks, one: Excursion, base: Baseline, at: int, limit: flo
         starts = np.linspace(0, position.size, _MOST_POINTS, endpoint=False).astype(int)
         counts = np.diff(np.append(starts, position.size))
         position, force = np.add.reduceat(position, starts) / counts, np.add.reduceat(force, starts) / counts
-    return _Loading(position, force, min(low, first), first + 0.5 * step, max(last - first, step, 1e-9))
+    return _Loading(
+        position, force, min(low, first), first + 0.5 * step, max(last - first, step, 1e-9), beyond.size > 0
+    )
 
 
 def _search(loading: _Loading, bends: Array, length: float) -> tuple[Array, Array]:
