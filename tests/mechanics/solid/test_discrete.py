@@ -9,7 +9,7 @@ from pneutouch.mechanics.solid.cavity import Cavity
 from pneutouch.mechanics.solid.contact import Plate
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid.newton import SolidScene, evaluate, full_tangent
+from pneutouch.mechanics.solid.newton import SolidScene, TermState, evaluate, full_tangent
 from pneutouch.mechanics.solid.printed import printed_dome
 from pneutouch.mechanics.solid.supply import Gas, Liquid
 
@@ -23,13 +23,35 @@ def _dense(band):
     return out
 
 
+class Springs:
+    """Quartic springs on the nodes of the edges of both walls: a term of the energy whose derivatives are plain."""
+
+    noise = 0.0
+
+    def __init__(self, solid):
+        self.solid = solid
+
+    def at(self, x):
+        families = ((self.solid.mesh.outer, self.solid.push), (self.solid.mesh.inner, self.solid.swell))
+        energy, gradient, blocks = 0.0, 0.0, []
+        for edges, gathered in families:
+            place = x[edges].reshape(edges.shape[0], -1)
+            energy += 0.25 * float((place**4).sum())
+            gradient = gradient + gathered(place**3)
+            blocks.append(3.0 * place[:, :, None] ** 2 * np.eye(place.shape[1]))
+        return TermState(energy, gradient, *blocks)
+
+
+@pytest.mark.parametrize("terms", [(), (Springs,)])
 @pytest.mark.parametrize("order", [1, 2, 8])
 @pytest.mark.parametrize("law", [neo_hookean(0.17), ogden(((0.1, 1.3), (0.07, 4.0)))])
-def test_residual_and_tangent_are_derivatives_of_the_energy(order, law):
+def test_residual_and_tangent_are_derivatives_of_the_energy(order, law, terms):
     solid = SolidModel(dome(9.25, 1.5, arc=8, order=order), law)
     rng = np.random.default_rng(0)
     x = solid.rest + solid.expand(2e-3 * rng.normal(size=solid.size))
-    scene = SolidScene(solid, Gas.filled(0.1, 2.1, 0.6, 0.2), Plate(1.1, 0.3, 0.1))
+    scene = SolidScene(
+        solid, Gas.filled(0.1, 2.1, 0.6, 0.2), Plate(1.1, 0.3, 0.1), tuple(term(solid) for term in terms)
+    )
     state = evaluate(scene, x)
     d = rng.normal(size=solid.size)
     d /= np.linalg.norm(d)

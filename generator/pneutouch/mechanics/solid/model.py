@@ -72,7 +72,7 @@ class SolidModel:
         tables = [self.dofs[x].reshape(x.shape[0], -1) for x in (mesh.cells, mesh.inner, mesh.outer)]
         self.pattern = AssemblyPattern(tables[:2], self.size)
         self.contact_pattern = AssemblyPattern(tables[2:], self.size, self.pattern.width)
-        self._edge_pattern = AssemblyPattern(tables[1:2], self.size)
+        self.edge_pattern = AssemblyPattern(tables[1:2], self.size, self.pattern.width)
         self._order = np.empty(self.size, dtype=np.intp)
         self._order[flat[flat >= 0]] = np.flatnonzero(flat >= 0)
         self.cavity = Cavity(mesh.inner)
@@ -106,7 +106,7 @@ class SolidModel:
 
     def swell(self, blocks: Array) -> Array:
         """Sum (size,) of vectors on the edges of the inner wall, (n_edges, 2 n)."""
-        return self._edge_pattern.vector([blocks])
+        return self.edge_pattern.vector([blocks])
 
     def push(self, blocks: Array) -> Array:
         """Sum (size,) of forces on the edges of the outer wall, (n_edges, 2 n)."""

@@ -1,6 +1,7 @@
 """Newton's method on the total energy of wall, filling and contact, with an energy line search."""
 
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 
@@ -22,12 +23,38 @@ _SETTLING = 10
 
 
 @dataclass(frozen=True)
+class TermState:
+    """A further part of the total energy at one set of positions: its energy, its gradient (size,), and its second
+    derivative as ``blocks`` of `SolidModel.contact_pattern` (edges of the outer wall) and ``inner_blocks`` of
+    `SolidModel.edge_pattern` (edges of the inner wall), (n_edges, 2 n, 2 n) each; None where it has none."""
+
+    energy: float
+    gradient: Array
+    blocks: Array | None = None
+    inner_blocks: Array | None = None
+
+
+class EnergyTerm(Protocol):
+    """What adds to the total energy beside wall, filling and plate: the base below the wall, friction of one step.
+
+    ``noise`` is the force that rounding leaves in its gradient.
+    """
+
+    noise: float
+
+    def at(self, x: Array) -> TermState:
+        """Energy and its derivatives at positions x (n_nodes, 2)."""
+        ...
+
+
+@dataclass(frozen=True)
 class SolidScene:
-    """A body, what fills it, and the plate above it (None: not there); nondimensional."""
+    """A body, what fills it, the plate above it (None: not there) and what else touches it; nondimensional."""
 
     solid: SolidModel
     supply: Supply
     plate: Plate | None
+    terms: tuple[EnergyTerm, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -35,7 +62,7 @@ class SolverState:
     """Positions x (n_nodes, 2) with all that was evaluated there.
 
     residual: gradient of the total energy (size,); inner: its part without the plate; scale: size of the forces that
-    balance in it; by_volume: gradient of the cavity volume (size,).
+    balance in it; by_volume: gradient of the cavity volume (size,); terms: those of the scene.
     """
 
     x: Array
@@ -48,6 +75,7 @@ class SolverState:
     by_volume: Array
     filling: FillingState
     touch: ContactEvaluation | None
+    terms: tuple[TermState, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -97,8 +125,14 @@ def evaluate(scene: SolidScene, x: Array) -> SolverState | None:
     push = 0.0 * inner if touch is None else solid.push(solid.contact.force(touch.traction, touch.slope))
     load = abs(filling.pressure) * float(np.linalg.norm(by_volume)) + float(np.linalg.norm(push))
     noise = solid.noise if touch is None else solid.noise + solid.contact.noise
+    terms = tuple(term.at(x) for term in scene.terms)
+    for term, there in zip(scene.terms, terms, strict=True):
+        inner = inner + there.gradient
+        load += float(np.linalg.norm(there.gradient))
+        noise += term.noise
     scale = load + 1.0e-3 * solid.wall + 10.0 * noise / RESIDUAL
     energy = local.energy + filling.energy + (0.0 if touch is None else touch.energy)
+    energy += sum(there.energy for there in terms)
     return SolverState(
         x=x,
         energy=energy,
@@ -110,13 +144,21 @@ def evaluate(scene: SolidScene, x: Array) -> SolverState | None:
         by_volume=by_volume,
         filling=filling,
         touch=touch,
+        terms=terms,
     )
 
 
 def tangent(scene: SolidScene, state: SolverState) -> Array:
-    """Banded stiffness of wall and follower pressure, without contact and the rank-one term of the filling."""
-    load = -state.filling.pressure * scene.solid.cavity.hessian(state.x)
-    return scene.solid.pattern.matrix([scene.solid.stiffness(state.local), load])
+    """Banded stiffness of wall, follower pressure and terms, without plate and the rank-one term of the filling."""
+    solid = scene.solid
+    load = -state.filling.pressure * solid.cavity.hessian(state.x)
+    band = solid.pattern.matrix([solid.stiffness(state.local), load])
+    for term in state.terms:
+        if term.blocks is not None:
+            band = solid.contact_pattern.added(band, [term.blocks])
+        if term.inner_blocks is not None:
+            band = solid.edge_pattern.added(band, [term.inner_blocks])
+    return band
 
 
 def full_tangent(scene: SolidScene, state: SolverState) -> Array:
