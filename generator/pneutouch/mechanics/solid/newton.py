@@ -35,7 +35,7 @@ class TermState:
 
 
 class EnergyTerm(Protocol):
-    """What adds to the total energy beside wall, filling and plate: the base below the wall, friction of one step.
+    """What adds to the total energy of wall, filling and plate: the base below the wall, friction of one step.
 
     ``noise`` is the force that rounding leaves in its gradient.
     """
