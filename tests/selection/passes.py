@@ -1,4 +1,8 @@
-"""Random targets: what `select` saves must pass `check`. ``python -m tests.selection.passes 500`` tries as many."""
+"""Random targets: what `select` saves must pass `check` and build.
+
+``python -m tests.selection.passes 500 [FIRST [BUILDS]]`` tries the seeds from FIRST (0) up to 500 and builds the first
+BUILDS (0) designs that pass.
+"""
 
 from __future__ import annotations
 
@@ -112,5 +116,5 @@ def tally(seeds: range, builds: int = 0) -> tuple[Counter[str], Counter[str]]:
 
 
 if __name__ == "__main__":
-    first, last = (int(word) for word in [*sys.argv[2:], "0", sys.argv[1]][:2])
-    print(*tally(range(first, last)), sep="\n")  # noqa: T201
+    end, first, builds = (int(word) for word in [*sys.argv[1:], *"00"][:3])
+    print(*tally(range(first, end), builds), sep="\n")  # noqa: T201
