@@ -39,6 +39,7 @@ class PressSettings:
     steps:       equal plate steps at which states are returned.
     gauge_range: gauge pressure (MPa) beyond which the pressure sensor clips.
     break_strain: largest principal strain (stretch - 1) the material bears.
+    friction:    Coulomb's coefficient between wall and plate; inf for a plate that grips.
     """
 
     depth: float
@@ -48,6 +49,7 @@ class PressSettings:
     dead_volume: float = 0.0
     gauge_range: float = 0.1
     break_strain: float = np.inf
+    friction: float = 0.0
 
     def __post_init__(self) -> None:
         finite = np.isfinite([self.depth, self.ambient, self.dead_volume]).all()
@@ -57,6 +59,8 @@ class PressSettings:
             raise ValueError("gauge_range and break_strain must be numbers")
         if self.plate_diameter is not None and not self.plate_diameter > 0.0:
             raise ValueError("plate_diameter must be positive, or None for an endless plate")
+        if not self.friction >= 0.0:
+            raise ValueError(f"friction {self.friction} must not be negative, or inf for a plate that grips")
 
 
 @dataclass(frozen=True)
@@ -122,6 +126,8 @@ def indent(
     Returns every state found and typed events; `complete` is False where an event ended the path before the depth.
     Raises NoConvergenceError only if not even first contact has an equilibrium.
     """
+    if press.friction:
+        raise ValueError(f"friction {press.friction} cannot be solved: only a plate without friction can")
     length, mu = solid.length, solid.mu
     if free.pressure + press.ambient < -_ROUNDING * mu:
         raise UnreachableLoadError(free.pressure, -press.ambient, "it lies below absolute vacuum")
