@@ -372,7 +372,7 @@ def _separate(data: dict[str, Any]) -> list[str]:
         "## Which dome distinguishes two patterns",
         "",
         "`pneutouch scan texture-specimen --design paper-dome --separate 3@0,6@2` searches "
-        f"{found['candidates']:,} candidates (resin, radius, wall, driving pressure; everything else from the design). *Contrast*: the ratio by which one "
+        f"{found['candidates']:,} candidates (resin, radius, wall, driving pressure up to the dome's rated pressure; everything else from the design). *Contrast*: the ratio by which one "
         "driving pressure favours the surface pattern more than another. Amplitudes are those of the surface and the buried pattern in Pa; each state must "
         "show its pattern three times above white noise, and no dome is selected for being at a zero (the same 15 % as above).",
         "",

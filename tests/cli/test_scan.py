@@ -11,6 +11,10 @@ from typer.testing import CliRunner
 
 from pneutouch.cli import scan as command
 from pneutouch.cli.app import app
+from pneutouch.evaluation.evaluate import evaluate
+from pneutouch.units import KPA
+from pneutouch.workflows.scan.run import ScanOptions
+from pneutouch.workflows.scan.separate import separating
 
 ASKED = ["scan", "texture-specimen", "--design", "paper-dome"]
 assert command
@@ -109,6 +113,20 @@ def test_separate_ranks_domes():
     said = json.loads(result.stdout)
     contrasts = [dome["contrast"] for dome in said["domes"]]
     assert contrasts == sorted(contrasts, reverse=True) and contrasts[0] > 1
+
+
+def test_separate_drives_no_dome_above_its_rated_pressure(library):
+    """Built as it is printed, each dome at each of its pressures is within what `check` calls rated."""
+    said = separating("texture-specimen", "paper-dome", "3@0,6@2", ScanOptions(), library=library)
+    highest = 0.0
+    for dome in said["domes"]:
+        sizes = {f"membrane.{key}": dome[key] for key in ("inner_radius_mm", "wall_thickness_mm")}
+        changes = {"membrane.material": dome["resin"], **sizes, "pneumatics.driving_pressures_kPa": [0.0]}
+        rating = evaluate("paper-dome", changes, model="atlas", library=library).rating
+        pressures_kPa = [state["driving_pressure_kPa"] for state in dome["states"]]
+        assert [rating.severity(pressure_kPa * KPA) for pressure_kPa in pressures_kPa] == [None, None]
+        highest = max(highest, *(pressure_kPa / rating.pressure_kPa for pressure_kPa in pressures_kPa))
+    assert highest > 0.9
 
 
 @pytest.mark.slow

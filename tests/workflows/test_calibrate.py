@@ -21,6 +21,7 @@ from pneutouch.spec.campaign import Campaign, CampaignRun
 from pneutouch.units import KPA
 from pneutouch.workflows.calibrate.files import CampaignSource, calibration_content, prepare, save, write_calibration
 from pneutouch.workflows.calibrate.fit import calibrate, observations_of
+from pneutouch.workflows.calibrate.further import with_further_tests
 from pneutouch.workflows.calibrate.place import check_place, check_unlike
 from pneutouch.workflows.compare.run import compare
 from tests.bench.calibrate.sensors import curves, injections
@@ -46,7 +47,8 @@ def observations(scene):
 @pytest.fixture(scope="module")
 def found(observations, scene):
     names = ("modulus", "wall", "dead-volume", "offset")
-    return calibrate(observations, scene, names, hold_out_kPa=(22.0,), sensor="A1", title="Spring campaign")
+    fitted = calibrate(observations, scene, names, hold_out_kPa=(22.0,), sensor="A1", title="Spring campaign")
+    return with_further_tests(fitted, SOURCE)
 
 
 def test_the_document_holds_the_truth_and_is_json(found):
@@ -73,14 +75,9 @@ def test_the_document_holds_the_truth_and_is_json(found):
 
 
 def test_the_same_data_give_the_same_bytes(found, observations, scene):
-    again = calibrate(
-        observations,
-        scene,
-        ("modulus", "wall", "dead-volume", "offset"),
-        hold_out_kPa=(22.0,),
-        sensor="A1",
-        title="Spring campaign",
-    )
+    names = ("modulus", "wall", "dead-volume", "offset")
+    fitted = calibrate(observations, scene, names, hold_out_kPa=(22.0,), sensor="A1", title="Spring campaign")
+    again = with_further_tests(fitted, SOURCE)
     assert json_bytes(again.document) == json_bytes(found.document)
 
 
@@ -131,6 +128,13 @@ def test_what_is_not_fitted_stays_correlated_with_what_is(observations, scene):
     assert covariance[wall, modulus] / np.sqrt(covariance[wall, wall] * covariance[modulus, modulus]) < -0.5
     bare = calibration_content(calibrate(observations, scene, ("modulus",), priors=False), SOURCE)
     assert [entry["key"] for entry in bare["parameters"] if entry["covered"]] == ["shear_modulus_MPa"]
+
+
+def test_no_further_test_is_above_the_rated_pressure_of_the_calibrated_sensor(found, place):
+    rating = evaluate("paper-dome@dome-A1", DEAD, model="atlas", library=place).rating
+    words = [test.what for test in found.further]
+    named_kPa = [float(what.split(" kPa")[0].split()[-1]) for what in words if "kPa" in what]
+    assert max(named_kPa) == rating.pressure_kPa < rating.nominal.nominal / KPA
 
 
 def test_a_calibrated_design_predicts_what_was_measured(observations, place):

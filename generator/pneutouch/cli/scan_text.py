@@ -63,7 +63,7 @@ def separation_text(document: dict[str, Any]) -> str:
     rows = []
     for dome in document["domes"]:
         states = [
-            [f"{state['driving_pressure_kPa']:.2f}", "/".join(f"{1e3 * a:.2g}" for a in state["amplitudes_kPa"])]
+            [f"{state['driving_pressure_kPa']:.1f}", "/".join(f"{1e3 * a:.3g}" for a in state["amplitudes_kPa"])]
             for state in dome["states"]
         ]
         rows.append(

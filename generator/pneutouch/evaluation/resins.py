@@ -34,9 +34,14 @@ class SimulatedResin:
 
     @cached_property
     def rating(self) -> Rating:
-        """The rated pressure, by the limits of the cheapest model that is good enough."""
-        limits = predict("", self.sensor, [0.0], model="auto").limits
-        return rating(limits, self.sensor, self.scene.membrane_material, self.scene.printer, self.scene.calibration)
+        """The rated pressure; see `rating_of`."""
+        return rating_of(self.scene, self.sensor)
+
+
+def rating_of(scene: ResolvedDesign, sensor: Sensor) -> Rating:
+    """The rated pressure of a scene's sensor, by the limits of the cheapest model that is good enough."""
+    limits = predict("", sensor, [0.0], model="auto").limits
+    return rating(limits, sensor, scene.membrane_material, scene.printer, scene.calibration)
 
 
 def resins_of(

@@ -16,6 +16,7 @@ from pneutouch.bench.protocol import REPETITIONS, SHARE
 from pneutouch.mechanics.atlas.table import REST_VOLUME, shipped
 from pneutouch.mechanics.limits import RATED_SHARE, limits
 from pneutouch.mechanics.uncertainty.limit import COUPON
+from pneutouch.rounding import tenths_below
 from pneutouch.units import KPA
 
 CALIPER = 0.05 / np.sqrt(3.0)
@@ -29,8 +30,6 @@ CAP = 10.0
 """Standard deviation of the air under a rigid cap, mm3: our choice, 2 mm of a 2.5 mm bore."""
 
 _STEPS = 12
-_LIMIT_SHARE = 0.8
-"""Greatest pressure of a test over the limit pressure: our choice, clear of the snap."""
 _RIDGE = 1e-8
 _QUANTILE = 1.96
 
@@ -50,8 +49,11 @@ class SuggestedTest:
     half_width: Array
 
 
-def further_tests(fit: CalibrationFit) -> list[SuggestedTest]:
-    """Candidate tests, the one that helps most first. Parameters on a bound are left as they are."""
+def further_tests(fit: CalibrationFit, rated: float) -> list[SuggestedTest]:
+    """Candidate tests at no more than the rated pressure (MPa), the one that helps most first.
+
+    Parameters on a bound are left as they are.
+    """
     places = np.flatnonzero(~fit.solution.bound)
     if not places.size:
         return []
@@ -65,7 +67,7 @@ def further_tests(fit: CalibrationFit) -> list[SuggestedTest]:
     # The priors of parameters that are not fitted stay: the test concerns those that are.
     stays = (fit.covariance.considered**2).sum(axis=1)[places]
     tests = []
-    for what, gained in _candidates(fit):
+    for what, gained in _candidates(fit, rated):
         after = np.linalg.inv(now + gained[np.ix_(numbers, numbers)] * scale)
         width = np.full(fit.solution.at.size, np.nan)
         width[places] = _QUANTILE * np.sqrt(np.diag(after) * prior_spread**2 + stays)
@@ -73,22 +75,26 @@ def further_tests(fit: CalibrationFit) -> list[SuggestedTest]:
     return sorted(tests, key=lambda test: -test.gain)
 
 
-def _candidates(fit: CalibrationFit) -> Iterator[tuple[str, Array]]:
+def _candidates(fit: CalibrationFit, rated: float) -> Iterator[tuple[str, Array]]:
     """Tests with their information on all four parameters, (4, 4)."""
     full, size = fit.full, fit.sensor.dome.inner_radius
-    slices = shipped().slices(np.array([np.exp(full[WALL]) / size]), ())
-    limit = float(slices.limit_pressure[0]) * float(np.exp(full[MODULUS]))
-    highest = min(_LIMIT_SHARE * limit, 0.5 * fit.sensor.gas.gauge_limit, _rated(fit))
+    # Pressed, the cavity stays within the gauge's range.
+    highest = min(0.5 * fit.sensor.gas.gauge_limit, rated, _estimated(fit))
     measured = fit.points.driving
     depth = SHARE * size
-    for pressure in (0.0, 0.5 * highest, highest):
+    for share in (0.0, 0.5, 1.0):
+        pressure_kPa = tenths_below(share * highest / KPA)
+        pressure = pressure_kPa * KPA
         near = measured.size > 0 and float(np.abs(measured - pressure).min()) < 0.1 * highest
         deep = near and float(fit.points.travel[np.abs(measured - pressure).argmin()].max()) > 0.9 * depth
         if not deep:
-            words = f"{REPETITIONS} indentations to {depth:.2g} mm at {pressure / KPA:.2g} kPa"
+            words = f"{REPETITIONS} indentations to {depth:.2g} mm at {pressure_kPa:.3g} kPa"
             yield words, _indented(fit, full, pressure, depth)
     volume = _volume(fit, full, highest)
-    yield f"air injected into the closed sensor up to {highest / KPA:.2g} kPa", _injected(fit, full, volume)
+    yield (
+        f"air injected into the closed sensor up to {tenths_below(highest / KPA):.3g} kPa",
+        _injected(fit, full, volume),
+    )
     if full[DEAD] > 0:
         spread = np.hypot(full[DEAD] * np.hypot(READING / (0.5 * fit.sensor.gas.gauge_limit), SYRINGE), CAP)
         yield "air injected with a rigid cap in place of the dome (the dead volume alone)", _alone(DEAD, spread)
@@ -96,11 +102,11 @@ def _candidates(fit: CalibrationFit) -> Iterator[tuple[str, Array]]:
     yield "the wall measured with a caliper", _alone(WALL, CALIPER / float(np.exp(full[WALL])))
 
 
-def _rated(fit: CalibrationFit) -> float:
-    """The pressure that the sensor is rated at, as designed and as estimated whichever is less."""
+def _estimated(fit: CalibrationFit) -> float:
+    """`RATED_SHARE` of the least limit of the sensor as estimated, which a rating as designed may exceed, MPa."""
     full = fit.full
     built = fit.sensor.replace(shear_modulus=float(np.exp(full[MODULUS])), wall_thickness=float(np.exp(full[WALL])))
-    return RATED_SHARE * min(limits(fit.sensor).lowest, limits(built).lowest)
+    return RATED_SHARE * limits(built).lowest
 
 
 def _alone(number: int, spread: float) -> Array:

@@ -18,7 +18,7 @@ from pneutouch.bench.calibrate import (
     parameters,
     predict_held_out,
 )
-from pneutouch.bench.calibrate.further import SuggestedTest, further_tests
+from pneutouch.bench.calibrate.further import SuggestedTest
 from pneutouch.bench.calibrate.goodness import RunResiduals, SystematicDeviation, misses, residuals
 from pneutouch.bench.calibrate.identify import CorrelatedParameters, Identifiability, identify
 from pneutouch.bench.calibrate.notes import fit_notes
@@ -40,8 +40,9 @@ class Calibration:
     Attributes:
         scene: The design it was made to.
         sensor, title: Name of the specimen and of the campaign.
-        fit, residuals, misses, identified, further, held_out: See `bench.calibrate`.
+        fit, residuals, misses, identified, held_out: See `bench.calibrate`.
         notes: Remarks on what was read.
+        further: Tests that would reduce the uncertainty; `with_further_tests` finds them.
     """
 
     scene: ResolvedDesign
@@ -51,9 +52,9 @@ class Calibration:
     residuals: tuple[RunResiduals, ...]
     misses: list[SystematicDeviation]
     identified: Identifiability
-    further: list[SuggestedTest]
     held_out: tuple[HeldOutPrediction, ...]
     notes: tuple[str, ...] = ()
+    further: Sequence[SuggestedTest] = ()
 
     @cached_property
     def gap(self) -> ResponseGap | None:
@@ -118,7 +119,7 @@ def calibrate(
     chosen = parameters(built, scene.membrane_material, scene.printer, names, priors=priors)
     fitted = fit(observations, built, chosen)
     held = tuple(predict_held_out(observations, built, chosen, pressure_kPa) for pressure_kPa in hold_out_kPa)
-    judged = residuals(fitted), misses(fitted), identify(fitted), further_tests(fitted)
+    judged = residuals(fitted), misses(fitted), identify(fitted)
     return Calibration(scene, sensor, title, fitted, *judged, held, tuple(notes))
 
 

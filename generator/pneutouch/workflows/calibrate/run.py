@@ -21,6 +21,7 @@ from pneutouch.workflows.calibrate.files import (
     write_calibration,
 )
 from pneutouch.workflows.calibrate.fit import Calibration, calibrate, observations_of
+from pneutouch.workflows.calibrate.further import with_further_tests
 from pneutouch.workflows.calibrate.place import check_place, check_unlike
 from pneutouch.workflows.characterize import (
     CAMPAIGN,
@@ -109,6 +110,7 @@ def run_calibration(
         title=loaded.campaign.title,
         notes=notes,
     )
+    calibration = with_further_tests(calibration, source)
     written, unsaved = _write(options, calibration, name, source)
     failures = [list(failure) for failure in (*loaded.failures, *refused)]
     document = {

@@ -1,7 +1,7 @@
 """Which dome distinguishes two patterns of a specimen: candidates over radius, wall, resin and driving pressure."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -10,12 +10,16 @@ from pneutouch.arrays import Array
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import elastomers
+from pneutouch.mechanics.atlas.inflated import least_limit
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.atlas_states import resin_outside_atlas
-from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.rating import LIMIT_ERROR, rated_pressure
 from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.uncertainty.limit import limit_spread
+from pneutouch.rounding import tenths_below
+from pneutouch.spec.material import Material
 from pneutouch.spec.read import Changes
 from pneutouch.texture.separate import BarPattern, Separation, noise_amplitude, separate
 from pneutouch.units import KPA
@@ -103,46 +107,68 @@ def _dome(domes: DomeCandidates, separation: Separation, k: int) -> dict[str, An
 
 
 def candidates(scene: ResolvedDesign, sensor: Sensor, library: Library) -> DomeCandidates:
-    """A grid over the resins that the design's printer runs and the atlas covers, wall ratio, radius and pressure."""
+    """A grid over the resins that the design's printer runs and the atlas covers, wall ratio, radius and pressure.
+
+    Sizes are in hundredths of a millimetre and pressures in tenths of a kPa, as they are shown; no pressure is above
+    the rated pressure of its dome.
+    """
     recipe, feature = shipped().recipe, scene.printer.smallest.wall("elastomer")
     least = feature.least or feature.recommended
     resins = {
-        name: wall.shear_modulus
+        name: material
         for name, material in sorted(elastomers(library).items())
         if scene.printer.mode_for(material) is not None
-        and resin_outside_atlas(wall := material_sensor(material).wall, sensor.gas.ambient_pressure) is None
+        and resin_outside_atlas(material_sensor(material).wall, sensor.gas.ambient_pressure) is None
     }
     if not resins:
         raise InputError(
             f"the {scene.printer.title} runs no resin that the atlas covers", file=scene.where, key="print.profile"
         )
-    ratios = np.geomspace(recipe.thinnest, recipe.thickest, _RATIOS)
-    mu = np.array([*resins.values()])
-    resin, ratio, radius, share = _grid(
+    resin, ratio, radius = _grid(
         np.arange(len(resins), dtype=float),
-        ratios,
-        np.geomspace(_SMALLEST, _LARGEST, _RADII),
-        np.linspace(0.0, RATED_SHARE, _PRESSURES),
+        np.geomspace(recipe.thinnest, recipe.thickest, _RATIOS),
+        np.round(np.geomspace(_SMALLEST, _LARGEST, _RADII), 2),
     )
-    limit = np.interp(ratio, ratios, shipped().slices(ratios, ()).limit_pressure) * mu[resin.astype(int)]
-    pressure = share * np.minimum(limit, sensor.gas.gauge_limit)
-    keep = ratio * radius >= least
-    dome = np.repeat(np.arange(resin.size // _PRESSURES, dtype=float), _PRESSURES)[keep]
-    resin, ratio, radius, pressure = resin[keep], ratio[keep], radius[keep], pressure[keep]
-    ones = np.ones(radius.size)
-    batch = SensorBatch(
+    # Rounded, the thinnest and the thickest wall stay inside the atlas.
+    thinnest, thickest = np.ceil(100 * recipe.thinnest * radius), np.floor(100 * recipe.thickest * radius)
+    wall = np.clip(np.round(100 * ratio * radius), thinnest, thickest) / 100
+    keep = wall >= least
+    resin, radius, wall = resin[keep], radius[keep], wall[keep]
+    domes = _batch(resin, radius, wall, [*resins.values()], sensor)
+    rated = _rated(domes, resin, [*resins.values()], scene)
+    shares = np.linspace(0.0, 1.0, _PRESSURES)
+    pressure = np.array([[tenths_below(share * each / KPA) * KPA for share in shares] for each in rated]).ravel()
+    row = np.repeat(np.arange(resin.size), _PRESSURES)
+    batch = replace(domes.take(row), driving_pressure=pressure)
+    return DomeCandidates(tuple(resins), resin[row], radius[row], wall[row], row.astype(float), batch)
+
+
+def _batch(resin: Array, radius: Array, wall: Array, materials: list[Material], sensor: Sensor) -> SensorBatch:
+    """Unpressurised sensors of domes, (n,); everything else is the design's."""
+    walls = [material_sensor(material).wall for material in materials]
+    number, ones = resin.astype(int), np.ones(radius.size)
+    return SensorBatch(
         inner_radius=radius,
-        wall_thickness=ratio * radius,
-        shear_modulus=mu[resin.astype(int)],
+        wall_thickness=wall,
+        shear_modulus=np.array([wall.shear_modulus for wall in walls])[number],
         ambient_pressure=ones * sensor.gas.ambient_pressure,
         dead_volume=ones * sensor.gas.dead_volume,
-        driving_pressure=pressure,
-        depth=radius * min(sensor.protocol.depth / sensor.dome.inner_radius, recipe.deepest),
+        driving_pressure=0.0 * ones,
+        depth=radius * min(sensor.protocol.depth / sensor.dome.inner_radius, shipped().recipe.deepest),
         plate_radius=ones * sensor.protocol.plate_radius,
         gauge_limit=ones * sensor.gas.gauge_limit,
-        break_stretch=ones * np.inf,
+        break_stretch=np.array([wall.break_stretch or np.inf for wall in walls])[number],
     )
-    return DomeCandidates(tuple(resins), resin, radius, ratio * radius, dome, batch)
+
+
+def _rated(domes: SensorBatch, resin: Array, materials: list[Material], scene: ResolvedDesign) -> Array:
+    """Rated pressures of domes, (n,), MPa."""
+    limit = domes.shear_modulus * least_limit(domes.wall_ratio, domes.break_stretch)
+    spread = np.zeros_like(limit)
+    for number, material in enumerate(materials):
+        rows = resin == number
+        spread[rows] = limit_spread(domes.take(rows), material, scene.printer, LIMIT_ERROR).standard
+    return rated_pressure(limit, spread, domes.gauge_limit)
 
 
 def _grid(*axes: Array) -> list[Array]:
