@@ -72,6 +72,10 @@ def test_list_shows_designs_materials_printers_and_parts(command, root):
     assert command("list", "material", cwd=root).returncode == 2
 
 
+def test_a_group_without_entries_is_listed_as_none(command):
+    assert command("list", "calibrations").stdout == "calibrations\n  none\n"
+
+
 def test_new_writes_a_design_that_predicts_and_never_overwrites(command, tmp_path):
     assert command("new", "my-sensor").returncode == 0
     path = tmp_path / "designs/my-sensor.toml"
@@ -95,7 +99,7 @@ def test_build_prints_the_folder_and_nothing_else_on_stdout(built_as_a_user):
     document = json.loads(result.stdout)
     assert document["folder"] == "sensors/paper-dome"
     assert (folder / document["folder"] / "manifest.json").is_file()
-    assert "warning" in result.stderr
+    assert "warning: walls: connector: a wall is" in result.stderr
 
 
 def test_an_output_that_is_a_file_is_refused_before_any_work(command, tmp_path, monkeypatch):

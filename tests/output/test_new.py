@@ -44,7 +44,9 @@ def test_an_example_goes_to_the_working_folder_and_its_command_is_named(name, co
     path = f"{name}/campaign.toml" if kind == "campaign" else f"{name}.toml"
     assert (done.returncode, done.stdout) == (0, f"{path}\n")
     assert (tmp_path / path).read_bytes() == (ROOT / "docs/examples" / f"{name}.toml").read_bytes()
-    assert done.stderr == f"next: pneutouch {COMMANDS[kind]} {name if kind == 'campaign' else path}\n"
+    first = f"put the files of your runs into {name} and name them in {path}, then"
+    before, words = (first, name) if kind == "campaign" else ("next", path)
+    assert done.stderr == f"{before}: pneutouch {COMMANDS[kind]} {words}\n"
     assert command("new", "--from", name).returncode == 2
 
 

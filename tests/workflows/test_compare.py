@@ -78,7 +78,10 @@ def test_a_design_is_compared_with_its_calibrated_self(library, tmp_path):
     result = compare(["paper-dome", "paper-dome@A1", other], library=place, model="atlas")
     labels = [one["label"] for one in result.document["compared"]]
     assert labels == ["paper-dome", "paper-dome@A1", "other@A1"]
-    assert result.document["inputs"]["calibration"] == [None, "A1", "A1"]
+    inputs = result.document["inputs"]
+    assert inputs["calibration"] == [None, "A1", "A1"]
+    # The calibrated wall is the designed one, which the design alone names otherwise.
+    assert "prediction.wall_thickness_mm" not in inputs
     limit = rows(result, "limit_pressure_kPa")[None]
     drawn, specimen, same = limit["values"]
     assert specimen["low"] > drawn["low"] and specimen["high"] < drawn["high"] and same == specimen

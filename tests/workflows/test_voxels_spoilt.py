@@ -33,6 +33,13 @@ def repainted(folder, number, spoil=None, cut=None, dpi=(600, 300)):
     (folder / f"graded-dome_{number}.png").write_bytes(encode(labels[:, :cut], colours, dpi))
 
 
+def test_the_folder_of_a_build_is_answered_by_its_3mf(tmp_path):
+    (tmp_path / "mine.3mf").write_bytes(b"")
+    with pytest.raises(InputError, match=r"no stack\.json") as caught:
+        read_stack(tmp_path)
+    assert caught.value.remedy == f"of a build, give {tmp_path / 'mine.3mf'}"
+
+
 def truncated(folder):
     path = folder / "graded-dome_40.png"
     path.write_bytes(path.read_bytes()[:-20])

@@ -216,7 +216,7 @@ def new(
         else:
             raise InputError("no name for the new design", remedy="give a name, or an example with `from`")
         echo(str(made.path))
-        report_next(*made.command)
+        report_next(*made.command, first=made.first)
 
 
 def design_folder(out: Path | None) -> Path:

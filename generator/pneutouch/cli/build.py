@@ -99,9 +99,7 @@ def build(
             plan = _planned(evaluation, out, voxel_mode) if voxels or voxel_mode else None
             folder, findings = _build_sensor(evaluation, out)
             stack = None if plan is None else _write_voxels(plan, evaluation, out)
-        for finding in findings:
-            notify(f"{finding.severity}: {finding.rule}: {finding.message}; {finding.fix}")
-        _report_left_out(folder)
+        _report(findings, folder)
         if json:
             print_json({"design": folder.name, "folder": str(folder), **({"voxels": str(stack)} if stack else {})})
         else:
@@ -210,11 +208,15 @@ def _build_sensor(evaluation: Evaluation, out: Path) -> tuple[Path, list[Finding
     return folder, evaluation.findings
 
 
-def _report_left_out(folder: Path) -> None:
-    """Report on stderr which files a build left out, and why: STEP where CadQuery is missing."""
+def _report(findings: Sequence[Finding], folder: Path) -> None:
+    """Report on stderr the findings, and which files a build left out, and why: STEP where CadQuery is missing."""
     from json import loads
 
+    from pneutouch.cli.text import finding_line
     from pneutouch.output.files import MANIFEST
+
+    for finding in findings:
+        notify(finding_line(finding.document()))
 
     path = folder / MANIFEST
     manifest = loads(path.read_text(encoding="utf-8")) if path.is_file() else {}

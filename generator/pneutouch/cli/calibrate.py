@@ -59,7 +59,7 @@ def calibrate(
         options = CalibrationOptions(
             data, design, sensor, tuple(fit.split(",")), held, not no_priors, save, replace, out
         )
-        with bar("reading runs, MB") as progress:
+        with bar("reading runs", unit="MB") as progress:
             outcome = run_calibration(options, progress=progress, reading=reading_of(columns, fields))
         document = outcome.document
         if document["read_as"]:

@@ -54,7 +54,7 @@ def characterize(
 
         if evidence not in EVIDENCE:
             raise InputError(f"--evidence {evidence}: unknown.{nearest(evidence, EVIDENCE)}")
-        with bar("reading runs, MB") as progress:
+        with bar("reading runs", unit="MB") as progress:
             given, reading = changes(set_, calibration), reading_of(columns, fields)
             outcome = run(data, design, given, target=target, model=model, progress=progress, reading=reading)
         folder = write(outcome, out, evidence)

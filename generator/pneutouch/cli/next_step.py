@@ -16,9 +16,10 @@ class DesignPlace(NamedTuple):
     overwrite: bool
 
 
-def report_next(*words: object) -> None:
-    """Print ``next: pneutouch WORDS`` on stderr, quoted so that it works as it stands."""
-    notify(f"next: {shlex.join(['pneutouch', *map(str, words)])}")
+def report_next(*words: object, first: str = "") -> None:
+    """Print ``next: pneutouch WORDS`` on stderr, quoted so that it works as it stands; ``first`` is done by hand."""
+    command = shlex.join(["pneutouch", *map(str, words)])
+    notify(f"{first}, then: {command}" if first else f"next: {command}")
 
 
 def set_words(assignments: Iterable[str] | None, calibration: str | None = None) -> list[str]:

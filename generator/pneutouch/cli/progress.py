@@ -17,15 +17,18 @@ class ProgressCallback(Protocol):
 
 
 @contextlib.contextmanager
-def bar(what: str) -> Iterator[ProgressCallback]:
-    """A stage, such as "reading runs", or "" where the callback names its stages; a bar that moves by the callback."""
+def bar(what: str, *, unit: str = "") -> Iterator[ProgressCallback]:
+    """A stage, such as "reading runs", or "" where the callback names its stages; a bar that moves by the callback.
+
+    ``unit`` is that of the counts at the bar, where they are not of things."""
     if not sys.stderr.isatty():
         yield _lines(what)
         return
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    counts = (MofNCompleteColumn(), TextColumn(unit)) if unit else (MofNCompleteColumn(),)
+    columns = (TextColumn("{task.description}"), BarColumn(), *counts, TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as shown:
         task = shown.add_task(what, total=None)
 

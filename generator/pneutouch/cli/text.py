@@ -118,11 +118,13 @@ def _span(percents: list[float | None]) -> str:
 
 
 def findings_text(findings: list[dict[str, Any]]) -> str:
-    """Findings, one a line, or a word that there are none."""
-    lines = [
-        f"{f['severity']}: {f['rule']}: {f['body']}: {f['message']}; {f['fix']}  [{f['source']}]" for f in findings
-    ]
-    return "\n".join(lines) if lines else "no findings"
+    """Findings with their sources, one a line, or a word that there are none."""
+    return "\n".join(f"{finding_line(f)}  [{f['source']}]" for f in findings) or "no findings"
+
+
+def finding_line(finding: dict[str, Any]) -> str:
+    """A finding as a message: its severity, rule and body, what is wrong and the remedy."""
+    return "{severity}: {rule}: {body}: {message}; {fix}".format_map(finding)
 
 
 def listing_text(content: dict[str, list[dict[str, str]]]) -> str:
@@ -130,7 +132,7 @@ def listing_text(content: dict[str, list[dict[str, str]]]) -> str:
     blocks = []
     for group, entries in content.items():
         rows = [[entry["name"], *([entry["kind"]] if "kind" in entry else []), entry["title"]] for entry in entries]
-        blocks.append(f"{group}\n" + columns([], rows, indent="  "))
+        blocks.append(f"{group}\n" + (columns([], rows, indent="  ") or "  none"))
     return "\n\n".join(blocks)
 
 

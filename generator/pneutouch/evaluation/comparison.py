@@ -132,9 +132,11 @@ def _listed(sensor: ComparedSensor) -> str:
 def different_inputs(sensors: Sequence[ComparedSensor]) -> dict[str, list[Any]]:
     """The inputs that differ, a value a sensor; None where it is not known."""
     keys = dict.fromkeys(key for sensor in sensors for key in sensor.inputs)
-    rows = {key: [sensor.inputs.get(key) for sensor in sensors] for key in keys}
-    # What a prediction does not name it has not; of a measurement no input is known.
-    known = {key: [s.inputs.get(key) for s in sensors if s.inputs] for key in keys}
+    # What a prediction does not name it has not, but the wall, which a calibration alone names; of a measurement no
+    # input is known.
+    walls = {"prediction.wall_thickness_mm": "membrane.wall_thickness_mm"}
+    rows = {key: [s.inputs.get(key, s.inputs.get(walls.get(key, ""))) for s in sensors] for key in keys}
+    known = {key: [value for s, value in zip(sensors, row, strict=True) if s.inputs] for key, row in rows.items()}
     return {key: values for key, values in rows.items() if any(value != known[key][0] for value in known[key])}
 
 

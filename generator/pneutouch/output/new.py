@@ -17,10 +17,13 @@ from pneutouch.spec.template import design_template
 
 @dataclass(frozen=True, slots=True)
 class NewFile:
-    """A file that was written, and the words of the command that takes it: ``("select", "fingertip.toml")``."""
+    """A file that was written, and the words of the command that takes it: ``("select", "fingertip.toml")``.
+
+    ``first`` states what has to be done before that command."""
 
     path: Path
     command: tuple[str, str]
+    first: str = ""
 
 
 def new_design(name: str, folder: Path) -> Path:
@@ -45,7 +48,8 @@ def new_from(source: str, name: str | None = None, out: Path | None = None) -> N
             # The runs of a campaign lie in the folder of its file.
             path = (out or Path()) / called / "campaign.toml"
             create_file(path, text.encode())
-            return NewFile(path, (COMMANDS[example.kind], str(path.parent)))
+            first = f"put the files of your runs into {path.parent} and name them in {path}"
+            return NewFile(path, (COMMANDS[example.kind], str(path.parent)), first)
         path = (out or Path()) / f"{called}.toml"
         create_file(path, text.encode())
         return NewFile(path, (COMMANDS[example.kind], str(path)))

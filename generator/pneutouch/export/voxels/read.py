@@ -83,7 +83,9 @@ def _manifest(folder: Path) -> dict[str, Any]:
     path = folder / MANIFEST
     try:
         if not os.path.lexists(path):
-            raise InputError(f"holds no {MANIFEST}: not a voxel stack that pneutouch wrote", file=folder)
+            built = sorted(folder.glob("*.3mf"))
+            remedy = f"of a build, give {built[0]}" if built else "give the folder of a stack, or a 3MF"
+            raise InputError(f"holds no {MANIFEST}: not a voxel stack that pneutouch wrote", file=folder, remedy=remedy)
         document: Any = json.loads(read_bytes(path, _MOST_BYTES, "manifest"))
     except (ValueError, RecursionError):
         raise InputError("not JSON", file=path, remedy="write the stack again") from None
