@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from pneutouch.body import Frame, Solid
-from pneutouch.export.step import exact_solid
+from pneutouch.export.brep import exact_solid
 from pneutouch.meridian import Arc, Meridian
 
 TOLERANCES = (0.1, 0.05, 0.016, 0.005)
@@ -126,7 +126,9 @@ def occ_absolute(shape: Any, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
 
 def measure(solid: Solid) -> list[Row]:
     """Every method at every tolerance; the median of several runs taken in turn."""
-    shape = exact_solid(solid)
+    import cadquery as cq
+
+    shape = cq.Shape.cast(exact_solid(solid))
     methods: dict[str, Callable[[float], tuple[np.ndarray, np.ndarray]]] = {
         OURS: lambda t: (body := solid.mesh(t), (body.vertices, body.triangles))[1],
         MANIFOLD: lambda t: manifold_solid(solid, t),

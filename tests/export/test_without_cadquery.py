@@ -20,7 +20,7 @@ def no_cadquery(monkeypatch):
     installed = manifest.importlib.metadata.version
 
     def version(name):
-        if name == "cadquery":
+        if name in ("cadquery", "cadquery-ocp"):
             raise PackageNotFoundError(name)
         return installed(name)
 
@@ -67,14 +67,14 @@ def test_a_specimen_is_built_without_its_step_file_and_says_so(no_cadquery, comm
 def test_a_library_that_cannot_be_loaded_is_named(monkeypatch):
     class Broken:
         def find_spec(self, name, path=None, target=None):
-            if name == "cadquery":
+            if name == "OCP":
                 raise ImportError("libGL.so.1: cannot open shared object file")
 
-    monkeypatch.delitem(sys.modules, "cadquery", raising=False)
+    monkeypatch.delitem(sys.modules, "OCP", raising=False)
     monkeypatch.setattr(sys, "meta_path", [Broken(), *sys.meta_path])
-    assert step_obstacle() == "CadQuery cannot be loaded: libGL.so.1: cannot open shared object file"
+    assert step_obstacle() == "CadQuery's kernel cannot be loaded: libGL.so.1: cannot open shared object file"
 
 
 def test_the_manifest_of_a_whole_build_leaves_nothing_out(built):
     about = json.loads((built("paper-dome") / "manifest.json").read_text())
-    assert "left_out" not in about and "cadquery" in about["versions"]
+    assert "left_out" not in about and {"cadquery", "cadquery-ocp"} <= set(about["versions"])

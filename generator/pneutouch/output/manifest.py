@@ -7,7 +7,7 @@ from typing import Any
 from pneutouch import __version__
 from pneutouch.output.files import MANIFEST, digest, json_bytes
 
-LIBRARIES = ("numpy", "manifold3d", "trimesh", "lib3mf", "cadquery", "matplotlib", "jinja2", "typst")
+LIBRARIES = ("numpy", "manifold3d", "trimesh", "lib3mf", "cadquery", "cadquery-ocp", "matplotlib", "jinja2", "typst")
 """Libraries whose versions the bytes of a build depend on."""
 
 _DIGITS = 12
