@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from pydantic import ValidationError
 
 from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
@@ -84,10 +85,10 @@ def fate(seed: int, folder: Path, *, built: bool = False) -> tuple[str, Selectio
 
     ``built``: whether a design that passes is built whole as well.
     """
-    asked = random_target(np.random.default_rng(40_000 + seed))
     try:
+        asked = random_target(np.random.default_rng(40_000 + seed))
         selection = select(asked, "target", LIBRARY, written=1)
-    except InputError:
+    except (InputError, ValidationError):
         return "target refused", None
     if not selection.answer.designs:
         return ("all rejected" if selection.rejected else "not met"), selection
