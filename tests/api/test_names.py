@@ -58,3 +58,11 @@ def test_the_page_runs_and_names_every_public_name(capsys):
     }
     missing = [name for name in pt.__all__ if name not in values and not re.search(rf"\b{name}\b", text)]
     assert not missing
+
+
+def test_a_file_that_cannot_be_read_is_listed_with_what_is_wrong(tmp_path, monkeypatch):
+    monkeypatch.setenv("PNEUTOUCH_HOME", str(tmp_path))
+    (tmp_path / "designs").mkdir()
+    (tmp_path / "designs/torn.toml").write_text("membrane = 1\n")
+    assert pt.designs()["torn"].startswith("cannot be read: membrane = 1")
+    assert pt.designs()["paper-dome"] == "The paper's sensor"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 
@@ -74,6 +75,30 @@ def test_list_shows_designs_materials_printers_and_parts(command, root):
 
 def test_a_group_without_entries_is_listed_as_none(command):
     assert command("list", "calibrations").stdout == "calibrations\n  none\n"
+
+
+def test_list_shows_the_others_beside_a_broken_file(command, tmp_path, root):
+    folder = tmp_path / "designs"
+    folder.mkdir()
+    whole = (root / "designs/paper-dome.toml").read_text()
+    (folder / "mine.toml").write_text(whole)
+    (folder / "wide.toml").write_text(whole.replace("inner_radius_mm = 9.25", 'inner_radius_mm = "wide"'))
+    (folder / "torn.toml").write_text("a = [\n")
+    (folder / "two words.toml").write_text(whole)
+    listed = command("list", "designs", "--json")
+    assert listed.returncode == 2
+    entries = {entry["name"]: entry for entry in json.loads(listed.stdout)["designs"]}
+    assert entries["mine"] == {"name": "mine", "title": "The paper's sensor"} and "title" in entries["paper-dome"]
+    assert entries["wide"]["error"].startswith('membrane.inner_radius_mm = "wide": ')
+    assert entries["torn"]["error"].startswith("line 1, column 6: this is no value")
+    assert "rename the file" in entries["two words"]["error"]
+    broken = {name for name, entry in entries.items() if "error" in entry}
+    assert broken == {"wide", "torn", "two words"}
+    assert all(entries[name]["file"] == str(folder / f"{name}.toml") and not entries[name]["title"] for name in broken)
+    text = command("list")
+    assert text.returncode == 2 and text.stderr.startswith(f"error: cannot be read: {folder}/torn.toml, ")
+    assert re.search('^  wide +cannot be read: membrane.inner_radius_mm = "wide": ', text.stdout, re.MULTILINE)
+    assert "The paper's sensor" in text.stdout and "FLX9960-DM" in text.stdout
 
 
 def test_new_writes_a_design_that_predicts_and_never_overwrites(command, tmp_path):

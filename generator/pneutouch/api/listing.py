@@ -37,4 +37,8 @@ def printers() -> Listing:
 
 
 def _listed(kind: str) -> Listing:
-    return Listing({entry["name"]: entry["title"] for entry in listing(kind)[kind]})
+    """Titles by name; that of a file that cannot be read is what is wrong with it."""
+    listed = Listing()
+    for entry in listing(kind)[kind]:
+        listed[entry["name"]] = f"cannot be read: {entry['error']}" if "error" in entry else entry["title"]
+    return listed

@@ -8,6 +8,7 @@ from pneutouch.errors import InputError, nearest
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.material import Material
 from pneutouch.spec.mixing import MixingCurve
+from pneutouch.spec.names import name_of
 from pneutouch.spec.printer import Printer
 from pneutouch.spec.specimen import Specimen
 
@@ -23,15 +24,22 @@ _GROUPS = {
 }
 
 
+_NAMED_BY_FILE = ("designs", "specimens", "calibrations")
+"""Kinds whose names obey `plain_name`: those of files that users write."""
+
+
 def listing(kind: str | None, library: Library | None = None) -> dict[str, list[dict[str, str]]]:
-    """Names and titles by kind, which is a group such as designs or materials, or None for all."""
+    """Names and titles by kind, which is a group such as designs or materials, or None for all.
+
+    A file that cannot be read has no title, and ``file`` and ``error``: its path and what is wrong with it.
+    """
     if kind is not None and kind not in _GROUPS:
         raise InputError(f"unknown.{nearest(kind, _GROUPS)}", key="kind", value=kind)
     library = library or Library.default()
     groups = _GROUPS if kind is None else {kind: _GROUPS[kind]}
     listed = {
         group: [
-            {"name": name, "title": _title(library.load(each, name)), **({"kind": each} if KINDS[each].part else {})}
+            {"name": name, **_read(library, each, name), **({"kind": each} if KINDS[each].part else {})}
             for each in kinds
             for name in library.paths(each)
         ]
@@ -41,6 +49,19 @@ def listing(kind: str | None, library: Library | None = None) -> dict[str, list[
         entries = [{"name": name, "title": one.title, "kind": one.kind} for name, one in examples().items()]
         listed["examples"] = entries
     return listed
+
+
+def _read(library: Library, kind: str, name: str) -> dict[str, str]:
+    """The title of a thing, or why it has none."""
+    path = library.paths(kind)[name]
+    try:
+        if kind in _NAMED_BY_FILE:
+            name_of(path)
+        return {"title": _title(library.load(kind, name))}
+    except InputError as error:
+        for one in (error, *error.others):
+            one.file = None
+        return {"title": "", "file": str(path), "error": str(error)}
 
 
 def _title(thing: Any) -> str:

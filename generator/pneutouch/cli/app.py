@@ -193,6 +193,10 @@ def list_(
             print_json(content)
         else:
             echo(listing_text(content))
+        broken = [entry["file"] for entries in content.values() for entry in entries if "error" in entry]
+        if broken:
+            remedy = "mend or move it" if len(broken) == 1 else "mend or move them"
+            raise InputError(f"cannot be read: {', '.join(broken)}", remedy=remedy)
 
 
 @app.command()

@@ -131,9 +131,14 @@ def listing_text(content: dict[str, list[dict[str, str]]]) -> str:
     """The listing as text."""
     blocks = []
     for group, entries in content.items():
-        rows = [[entry["name"], *([entry["kind"]] if "kind" in entry else []), entry["title"]] for entry in entries]
+        rows = [[entry["name"], *([entry["kind"]] if "kind" in entry else []), _titled(entry)] for entry in entries]
         blocks.append(f"{group}\n" + (columns([], rows, indent="  ") or "  none"))
     return "\n\n".join(blocks)
+
+
+def _titled(entry: dict[str, str]) -> str:
+    """The title of an entry, or what is wrong with its file, on one line."""
+    return entry["title"] if "error" not in entry else f"cannot be read: {entry['error'].partition(chr(10))[0]}"
 
 
 def columns(head: list[str], rows: list[list[str]], indent: str = "") -> str:
