@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pneutouch.api import show
-from pneutouch.api.design import PRESSURES, Design
-from pneutouch.api.fields import keywords, named_by_keyword, plain
+from pneutouch.api.design import Design, pressures_changed
+from pneutouch.api.fields import keywords, named_by_keyword
 from pneutouch.api.prediction import Prediction
 from pneutouch.errors import InputError
 from pneutouch.mechanics.models import model_options
@@ -97,10 +97,8 @@ def compare(
     """
     if not things:
         raise InputError("no design to compare", key="designs", remedy="give designs, their names or their paths")
-    pressures_kPa = plain(driving_pressures_kPa)
-    changed = {} if pressures_kPa is None else {PRESSURES: pressures_kPa}
+    changed, options = pressures_changed(driving_pressures_kPa), model_options(model, tolerance)
     given = [thing.source if isinstance(thing, Design) else str(thing) for thing in things]
-    options = model_options(model, None if tolerance is None else str(tolerance))
     with named_by_keyword():
         result = run(given, changed, closure=closure, clamp=clamp, aged=aged, **options)
     return Comparison(result, tuple(thing for thing in things if isinstance(thing, Design)))

@@ -27,7 +27,11 @@ from pneutouch.spec.printer import Printer
 from pneutouch.spec.read import override
 from pneutouch.spec.template import design_template
 
-PRESSURES = "pneumatics.driving_pressures_kPa"
+
+def pressures_changed(driving_pressures_kPa: Iterable[float] | None) -> dict[str, Any]:
+    """The change that gives a design other driving pressures, kPa; None changes nothing."""
+    values_kPa = plain(driving_pressures_kPa)
+    return {} if values_kPa is None else {"pneumatics.driving_pressures_kPa": values_kPa}
 
 
 class Design(show.Shown):
@@ -114,8 +118,7 @@ class Design(show.Shown):
         ``model`` is "membrane", "atlas", "solid" (None) or "auto": the cheapest whose error meets ``tolerance``, a
         fraction. See `evaluation.evaluate` for the rest. Raises InputError where the design cannot work.
         """
-        changed = {} if driving_pressures_kPa is None else {PRESSURES: plain(driving_pressures_kPa)}
-        options = model_options(model, None if tolerance is None else str(tolerance))
+        changed, options = pressures_changed(driving_pressures_kPa), model_options(model, tolerance)
         with named_by_keyword():
             return Prediction(evaluate(self.source, changed, closure=closure, clamp=clamp, aged=aged, **options))
 

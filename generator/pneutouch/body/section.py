@@ -42,17 +42,19 @@ class _Tool:
     high: Array
     outline: tuple[RisingPiece, ...]
 
-    def contains(self, points: Array) -> Flags:
-        shape = self.shape
-        if isinstance(shape, Bore):
-            near = (points[:, 0] - shape.x) ** 2 + (points[:, 1] - shape.y) ** 2 < shape.radius**2
-            return np.asarray(near & (shape.low <= points[:, 2]) & (points[:, 2] < shape.high))
-        assert isinstance(shape, Turned | Prism)
-        local = shape.frame.into(points)
-        if isinstance(shape, Turned):
-            return encloses(self.outline, np.hypot(local[:, 0], local[:, 1]), local[:, 2])
-        inside = encloses(self.outline, local[:, 0], local[:, 1])
-        return np.asarray(inside & (shape.low <= local[:, 2]) & (local[:, 2] < shape.high))
+
+def _inside(tool: _Tool, points: Array) -> Flags:
+    """Whether points (n, 3) in mm lie inside the shape of a tool, (n,)."""
+    shape = tool.shape
+    if isinstance(shape, Bore):
+        near = (points[:, 0] - shape.x) ** 2 + (points[:, 1] - shape.y) ** 2 < shape.radius**2
+        return np.asarray(near & (shape.low <= points[:, 2]) & (points[:, 2] < shape.high))
+    assert isinstance(shape, Turned | Prism)
+    local = shape.frame.into(points)
+    if isinstance(shape, Turned):
+        return encloses(tool.outline, np.hypot(local[:, 0], local[:, 1]), local[:, 2])
+    inside = encloses(tool.outline, local[:, 0], local[:, 1])
+    return np.asarray(inside & (shape.low <= local[:, 2]) & (local[:, 2] < shape.high))
 
 
 class SolidSection:
@@ -70,11 +72,11 @@ class SolidSection:
 
     def contains(self, points: Array) -> Flags:
         """Whether points (n, 3) in mm lie inside, (n,)."""
-        inside = self._base.contains(points)
+        inside = _inside(self._base, points)
         for tool in self._adds:
-            inside |= tool.contains(points)
+            inside |= _inside(tool, points)
         for tool in self._cuts:
-            inside &= ~tool.contains(points)
+            inside &= ~_inside(tool, points)
         return inside
 
     def section(self, window: Window, z: float) -> Flags:
@@ -102,7 +104,7 @@ def _mark(inside: Flags, window: Window, z: float, tool: _Tool, value: bool) -> 
         return
     points = np.column_stack([np.tile(x, len(y)), np.repeat(y, len(x)), np.full(len(x) * len(y), z)])
     part = inside[box]
-    part[tool.contains(points).reshape(part.shape)] = value
+    part[_inside(tool, points).reshape(part.shape)] = value
 
 
 def _tool(shape: Shape) -> _Tool:

@@ -1,7 +1,7 @@
 """The models, cheapest first: what the error of each is, where it holds, and the cheapest one that is good enough."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TypedDict
 
 from pneutouch.errors import InputError
 from pneutouch.mechanics.prediction import ErrorEstimate
@@ -77,14 +77,21 @@ def _outside(model: str, sensor: Sensor) -> str | None:
     return None
 
 
-def model_options(model: str | None, tolerance: str | None) -> dict[str, Any]:
+class ModelOptions(TypedDict):
+    """The model of a prediction and, where it is auto, the numerical error as a fraction that it must meet."""
+
+    model: str
+    tolerance: float
+
+
+def model_options(model: str | None, tolerance: float | str | None) -> ModelOptions:
     """The model and the tolerance of a prediction; a tolerance alone requires the cheapest model that meets it."""
     if tolerance is None:
         return {"model": model or "solid", "tolerance": DEFAULT_TOLERANCE}
     if model not in (None, "auto"):
         problem = f"with `model` {model}: a tolerance is for `model` auto"
-        raise InputError(problem, key="tolerance", value=tolerance, remedy="give one of both")
-    return {"model": "auto", "tolerance": parse_tolerance(tolerance)}
+        raise InputError(problem, key="tolerance", value=str(tolerance), remedy="give one of both")
+    return {"model": "auto", "tolerance": parse_tolerance(str(tolerance))}
 
 
 def parse_tolerance(text: str) -> float:

@@ -11,6 +11,7 @@ from pneutouch.arrays import Array
 from pneutouch.errors import InputError
 from pneutouch.tables.chunk import RowChunk, places
 from pneutouch.tables.layout import TableFormat, TableLayout
+from pneutouch.tables.library_file import library_file
 
 BATCH = 2**17
 """Rows at once: as many as a chunk of a CSV file holds."""
@@ -51,17 +52,11 @@ def parquet_chunks(path: Path, names: Sequence[str], layout: TableLayout) -> Ite
 @contextmanager
 def _opened(path: Path) -> Iterator[Any]:
     """The file, for reading. Raises InputError where it is none, or pyarrow is not installed."""
-    try:
-        import pyarrow as pa
+    with library_file(path, "parquet", "pyarrow", "parquet"):
         import pyarrow.parquet as pq
-    except ImportError:
-        raise InputError('parquet files need pyarrow: pip install "pneutouch[parquet]"', file=path) from None
-    try:
+
         with pq.ParquetFile(path, memory_map=False, pre_buffer=False) as file:
             yield file
-    except pa.ArrowException as error:
-        problem = f"no whole parquet file: {str(error).splitlines()[0][:120]}"
-        raise InputError(problem, file=path, remedy="cut off, or another kind of file?") from None
 
 
 def _floats(path: Path, name: str, column: Any, row: int) -> Array:

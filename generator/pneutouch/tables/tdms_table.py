@@ -13,6 +13,7 @@ from pneutouch.arrays import Array
 from pneutouch.errors import InputError, shown
 from pneutouch.tables.chunk import RowChunk, places
 from pneutouch.tables.layout import TableFormat, TableLayout
+from pneutouch.tables.library_file import library_file
 
 _UNIT_KEYS = ("unit_string", "NI_UnitDescription", "Unit", "unit")
 """Properties of a channel that hold its unit: the first is the one of LabVIEW's library."""
@@ -126,18 +127,10 @@ def _clock(channels: Sequence[Any]) -> tuple[float, float] | None:
 @contextmanager
 def _opened(path: Path) -> Iterator[Any]:
     """The file, for reading. Raises InputError where it is none, or npTDMS is not installed."""
-    try:
+    with library_file(path, "TDMS", "npTDMS", "tdms"):
         from nptdms import TdmsFile
-    except ImportError:
-        raise InputError('TDMS files need npTDMS: pip install "pneutouch[tdms]"', file=path) from None
-    try:
+
         with warnings.catch_warnings(), path.open("rb") as stream:
             warnings.simplefilter("ignore")
             with TdmsFile.open(stream) as file:
                 yield file
-    except (InputError, OSError):
-        raise
-    except Exception as error:
-        # The library raises whatever its parsers do.
-        text = " ".join(str(error).split())[:120] or type(error).__name__
-        raise InputError(f"no whole TDMS file: {text}", file=path, remedy="cut off, or another kind of file?") from None

@@ -15,6 +15,7 @@ import numpy as np
 from pneutouch.errors import InputError, shown
 from pneutouch.tables.chunk import RowChunk, places
 from pneutouch.tables.layout import TableFormat, TableLayout
+from pneutouch.tables.library_file import library_file
 from pneutouch.tables.locate import Located, fewest, header_of, locate
 
 UNPACKED = 100e6
@@ -98,11 +99,9 @@ def _layout(title: str, located: Located, names: list[str], least: int, given: T
 @contextmanager
 def _workbook(path: Path) -> Iterator[Any]:
     """The workbook, for reading. Raises InputError where it is none, too large, or openpyxl is not installed."""
-    try:
+    with library_file(path, "Excel", "openpyxl", "xlsx"):
         from openpyxl import load_workbook
-    except ImportError:
-        raise InputError('Excel files need openpyxl: pip install "pneutouch[xlsx]"', file=path) from None
-    try:
+
         with zipfile.ZipFile(path) as packed:
             parts = packed.infolist()
         size = sum(part.file_size for part in parts)
@@ -116,14 +115,6 @@ def _workbook(path: Path) -> Iterator[Any]:
                 yield book
             finally:
                 book.close()
-    except (InputError, OSError):
-        raise
-    except Exception as error:
-        # The library raises whatever its parsers do.
-        text = " ".join(str(error).split())[:120] or type(error).__name__
-        raise InputError(
-            f"no whole Excel file: {text}", file=path, remedy="cut off, or another kind of file?"
-        ) from None
 
 
 def _rows(sheet: Any, first: int, columns: int = _COLUMNS) -> Iterator[tuple[Any, ...]]:

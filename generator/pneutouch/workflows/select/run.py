@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -137,7 +138,7 @@ def select(
     answer = choose(
         problem,
         (target.weights.robustness, target.weights.tunability),
-        _uncertainty(scene, sensor, library),
+        partial(_uncertainty, scene, sensor, measured_errors(library.all("materials", Material))),
         None if pair is None else _refined(pair),
     )
     run = SelectionRun(target, scene, setting_changes(target, library), sensor, problem, answer, left_out)
@@ -233,25 +234,20 @@ def problem_of(
 
 
 def _uncertainty(
-    scene: ResolvedDesign, sensor: Sensor, library: Library
-) -> Callable[[CandidateResin, SensorBatch], Array]:
-    materials = library.all("materials", Material)
-    known = measured_errors(materials)
-
-    def relative(resin: CandidateResin, batch: SensorBatch) -> Array:
-        errors = known.get(resin.name) or ModelErrors(pool=next(iter(known.values())).pool if known else ())
-        near = np.array([is_near_paper(_like(sensor, batch, i)) for i in range(len(batch))])
-        uncertainty = budget(
-            batch,
-            resin.material,
-            scene.printer,
-            near_paper=near,
-            errors=errors,
-            numerical={FIGURES[SENSITIVITY]: NUMERICAL["atlas"]},
-        )
-        return np.asarray(uncertainty.expanded[SENSITIVITY])
-
-    return relative
+    scene: ResolvedDesign, sensor: Sensor, known: Mapping[str, ModelErrors], resin: CandidateResin, batch: SensorBatch
+) -> Array:
+    """Relative expanded uncertainty of the sensitivity of each design of a batch, (b,)."""
+    errors = known.get(resin.name) or ModelErrors(pool=next(iter(known.values())).pool if known else ())
+    near = np.array([is_near_paper(_like(sensor, batch, i)) for i in range(len(batch))])
+    uncertainty = budget(
+        batch,
+        resin.material,
+        scene.printer,
+        near_paper=near,
+        errors=errors,
+        numerical={FIGURES[SENSITIVITY]: NUMERICAL["atlas"]},
+    )
+    return np.asarray(uncertainty.expanded[SENSITIVITY])
 
 
 def _like(sensor: Sensor, batch: SensorBatch, i: int) -> Sensor:
