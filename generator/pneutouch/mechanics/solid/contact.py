@@ -1,4 +1,4 @@
-"""A rigid flat plate with a rounded rim, met without friction: a stiff potential on the outer wall."""
+"""Contact with a rigid object, by default a flat plate with a rounded rim: a stiff potential on the outer wall."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.mechanics.solid.elements import line_shapes
+from pneutouch.mechanics.solid.indenter import Indenter
 from pneutouch.mechanics.solid.kinematics import AXIAL, RADIAL
 from pneutouch.mechanics.solid.mesh import END, START, SolidMesh
 
@@ -33,6 +34,11 @@ class Plate:
     height: float
     radius: float
     rim: float
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Radii between which it is flat."""
+        return 0.0, self.radius
 
     def underside(self, r: Array) -> tuple[Array, Array, Array]:
         """Height of the underside at r and its first two derivatives; all shaped like r."""
@@ -85,7 +91,13 @@ class Contact:
         line = nodes[self.edges]
         return line[..., 0] @ self.shape.T, line[..., 1] @ self.shape.T
 
-    def touch(self, nodes: Array, plate: Plate) -> ContactEvaluation:
+    def outline(self, nodes: Array, points: int = 9) -> tuple[Array, Array]:
+        """R and z along the outer wall, at ``points`` of every edge with its ends, (n_edges * points,) each."""
+        shape, _ = line_shapes(np.linspace(-1.0, 1.0, points), self.edges.shape[1])
+        line = nodes[self.edges]
+        return (line[..., 0] @ shape.T).ravel(), (line[..., 1] @ shape.T).ravel()
+
+    def touch(self, nodes: Array, plate: Indenter) -> ContactEvaluation:
         """Energy and tractions against the plate for positions (n_nodes, 2)."""
         r, z = self.positions(nodes)
         under, slope, curve = plate.underside(r)
@@ -120,27 +132,35 @@ class Contact:
             out[:, RADIAL, RADIAL] = (along @ self._pairs).reshape(-1, n, n)
         return out
 
-    def footprint(self, nodes: Array, touch: ContactEvaluation) -> Footprint:
-        """Edge of the contact, largest pressure, and how far the wall has left the plate inside that edge."""
+    def footprint(self, nodes: Array, touch: ContactEvaluation, annular: bool = False) -> Footprint:
+        """Edges of the contact, largest pressure, and how far the wall has left the object between them.
+
+        ``annular``: the object meets the wall around the axis, not on it, so that a gap on the axis is no separation.
+        """
         r, _ = self.positions(nodes)
         # Edges run from base to apex: reversed, the points go outward from the axis.
         out, gap, load = r.ravel()[::-1], touch.gap.ravel()[::-1], touch.traction.ravel()[::-1]
         meeting = np.flatnonzero(load > 0.0)
         if meeting.size == 0:
             return Footprint(0.0, 0.0, 0.0)
-        last = int(meeting[-1])
-        # The cell the edge runs through cannot resolve it: gaps count from the next cell inward.
-        inside = float(gap[: max(1, last + 1 - 2 * self.shape.shape[0])].max())
-        return Footprint(_edge(out[last : last + 3], gap[last + 1 : last + 3]), inside, float(load.max()))
+        last, first = int(meeting[-1]), int(meeting[0]) if annular else 0
+        # The cell an edge runs through cannot resolve it: gaps count from the next cell inside the contact.
+        cell = 2 * self.shape.shape[0]
+        begin, end = (min(first + cell, last), max(first + 1, last + 1 - cell)) if annular else (0, last + 1 - cell)
+        inside = float(gap[begin : max(begin + 1, end)].max())
+        inner = 0.0 if first == 0 else _edge(out[first::-1][:3], gap[:first][::-1][:2])
+        return Footprint(_edge(out[last : last + 3], gap[last + 1 : last + 3]), inside, float(load.max()), inner)
 
 
 @dataclass(frozen=True)
 class Footprint:
-    """radius of the contact's outer edge, the largest gap inside it (positive: the centre is off), largest traction."""
+    """radius of the contact's outer edge, the largest gap inside it (positive: the centre is off), largest traction,
+    radius of the inner edge (0 where the wall touches on the axis)."""
 
     radius: float
     inside_gap: float
     traction: float
+    inner: float = 0.0
 
 
 def _edge(r: Array, gap: Array) -> float:

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.solid.contact import Plate
 from pneutouch.mechanics.solid.errors import NoConvergenceError
+from pneutouch.mechanics.solid.indenter import Indenter
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure, SolidScene, SolverState, minimise, stability
 from pneutouch.mechanics.solid.supply import Supply
@@ -94,7 +94,7 @@ def lost_work(path: list[PlateState], after: PlateState) -> float:
 class PathFollower:
     """Keeps the states of a path and steps to new plate heights."""
 
-    def __init__(self, solid: SolidModel, supply: Supply, plate: Plate, start: Array) -> None:
+    def __init__(self, solid: SolidModel, supply: Supply, plate: Indenter, start: Array) -> None:
         self._solid = solid
         scene = SolidScene(solid, supply, plate)
         solved = minimise(scene, start)

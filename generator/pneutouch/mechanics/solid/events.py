@@ -20,12 +20,15 @@ OVERHANG = 2.0e-2
 #: Kinds after which the path is another one: a straight-line fit ends before them.
 BREAKS_CURVE = ("unstable", "snap", "clamp_fold", "separation", "lost")
 
+PLATE_RIM, OBJECT_EDGE = "plate_rim", "object_edge"
+
 DETAIL = {
     "gauge_range": "the pressure sensor's range ends",
     "break": "the material's break strain is reached",
     "crease": "a face of the wall is compressed enough to crease",
     "separation": "the wall leaves the plate inside the contact",
-    "plate_rim": "the contact reaches the plate's rim",
+    PLATE_RIM: "the contact reaches the plate's rim",
+    OBJECT_EDGE: "the contact reaches the object's edge, or a flank of 60 degrees",
     "floor": "the inner wall reaches the base plane",
     "overhang": "the wall hangs below its base plane, where no support is modelled",
 }
@@ -38,7 +41,8 @@ class SolidEvent:
     kind, of those that end the path: unstable (the inflated state itself), snap (a jump to another branch), clamp_fold
     (the same, at the clamped edge), lost (no equilibrium found), floor (the inner wall reaches the base plane).
     Of those that do not: separation (the wall leaves the plate inside the contact: buckling inward), crease, overhang
-    (the wall hangs below its base plane, where no support is modelled), plate_rim, break, gauge_range.
+    (the wall hangs below its base plane, where no support is modelled), plate_rim and object_edge (the contact
+    reaches where the object turns up), break, gauge_range.
     """
 
     kind: str

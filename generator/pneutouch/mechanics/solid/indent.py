@@ -1,8 +1,9 @@
-"""Study 2: a plate comes down on an inflated dome with its gas shut in."""
+"""Study 2: a plate or another rigid object comes down on an inflated dome with its gas shut in."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,12 +17,15 @@ from pneutouch.mechanics.solid.events import (
     BREAKS_CURVE,
     CREASE,
     DETAIL,
+    OBJECT_EDGE,
     OVERHANG,
+    PLATE_RIM,
     SEPARATION,
     PathPoint,
     SolidEvent,
     crossing,
 )
+from pneutouch.mechanics.solid.indenter import Indenter, RigidObject, first_contact
 from pneutouch.mechanics.solid.inflate import FreeState
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.stress import StrainProbe
@@ -39,6 +43,7 @@ class PressSettings:
     steps:       equal plate steps at which states are returned.
     gauge_range: gauge pressure (MPa) beyond which the pressure sensor clips.
     break_strain: largest principal strain (stretch - 1) the material bears.
+    body:        the object in mm, in place of the plate (its height does not count).
     friction:    Coulomb's coefficient between wall and plate; inf for a plate that grips.
     """
 
@@ -50,6 +55,7 @@ class PressSettings:
     gauge_range: float = 0.1
     break_strain: float = np.inf
     friction: float = 0.0
+    body: RigidObject | None = None
 
     def __post_init__(self) -> None:
         finite = np.isfinite([self.depth, self.ambient, self.dead_volume]).all()
@@ -65,11 +71,12 @@ class PressSettings:
 
 @dataclass(frozen=True)
 class PressState:
-    """One equilibrium under the plate; mm, N, MPa.
+    """One equilibrium under the plate or another object; mm, N, MPa.
 
     indentation, force, pressure (gauge), rise (over the driving pressure), volume (mm^3).
-    contact_radius: outer edge of the contact.  contact_pressure: largest, per area at rest.  inside_gap: positive where
-    the wall has left the plate within the contact.  penetration: what the plate's stiffness lets through.
+    contact_radius: outer edge of the contact.  contact_inner: inner edge, 0 where the wall touches on the axis.
+    contact_pressure: largest, per area at rest.  inside_gap: positive where the wall has left the object within the
+    contact.  penetration: what the contact's stiffness lets through.
     stiffness: dF/d(indentation), N/mm.  slope: dp/dF at shut-in gas, MPa/N.
     stretch, von_mises: largest on the faces away from the clamp; fold: see `stress.WallExtremes`.
     inner_apex: height.  overhang: how far the wall hangs below its base plane.  positions: (n_nodes, 2).
@@ -81,6 +88,7 @@ class PressState:
     rise: float
     volume: float
     contact_radius: float
+    contact_inner: float
     contact_pressure: float
     inside_gap: float
     stiffness: float
@@ -132,12 +140,10 @@ def indent(
     if free.pressure + press.ambient < -_ROUNDING * mu:
         raise UnreachableLoadError(free.pressure, -press.ambient, "it lies below absolute vacuum")
     gas = Gas.filled(free.pressure / mu, free.volume / length**3, press.ambient / mu, press.dead_volume / length**3)
-    radius = np.array(np.inf if press.plate_diameter is None else 0.5 * press.plate_diameter / length)
-    longest = np.array(solid.contact.longest)
-    apex = float(free.positions[solid.mesh.outer, 1].max()) / length
-    plate = Plate(apex, float(flat_radius(radius, longest)), float(rim_radius(radius, longest)))
+    touch = first_touch(solid, free, press)
+    plate = touch.body
     follower = PathFollower(solid, gas, plate, free.unit.x)
-    recorder = _Recorder(solid, free, plate, probe or StrainProbe(solid))
+    recorder = _Recorder(solid, free, touch, probe or StrainProbe(solid))
     states = [recorder.state(follower.here)]
     events = recorder.events(states[0], states[0], press)
     for k in range(1, press.steps + 1):
@@ -150,6 +156,26 @@ def indent(
         if jump is not None or _floored(events):
             return _finish(states, events, jump, recorder, press)
     return _finish(states, events, None, recorder, press)
+
+
+class FirstTouch(NamedTuple):
+    """An object where it first touches the free dome, in R0, and whether it does so around the axis, not on it."""
+
+    body: Indenter
+    annular: bool
+
+
+def first_touch(solid: SolidModel, free: FreeState, press: PressSettings) -> FirstTouch:
+    """The plate or the object of a press on a free state."""
+    length, longest = solid.length, np.array(solid.contact.longest)
+    if press.body is None:
+        radius = np.array(np.inf if press.plate_diameter is None else 0.5 * press.plate_diameter / length)
+        apex = float(free.positions[solid.mesh.outer, 1].max()) / length
+        return FirstTouch(Plate(apex, float(flat_radius(radius, longest)), float(rim_radius(radius, longest))), False)
+    body = press.body.scaled(1.0 / length)
+    r, z = solid.contact.outline(free.positions / length)
+    height, at = first_contact(body, r, z)
+    return FirstTouch(body.at(height), at > solid.contact.longest)
 
 
 def _floored(events: list[SolidEvent]) -> bool:
@@ -170,8 +196,10 @@ def _finish(
 class _Recorder:
     """Turns solver states into dimensional ones and compares neighbours for events."""
 
-    def __init__(self, solid: SolidModel, free: FreeState, plate: Plate, probe: StrainProbe) -> None:
-        self._solid, self._free, self._plate, self._probe = solid, free, plate, probe
+    def __init__(self, solid: SolidModel, free: FreeState, touch: FirstTouch, probe: StrainProbe) -> None:
+        self._solid, self._free, self._probe = solid, free, probe
+        self._plate, self._annular = touch
+        self._edge = PLATE_RIM if isinstance(self._plate, Plate) else OBJECT_EDGE
 
     def indentation(self, height: float) -> float:
         """Plate travel in mm at a nondimensional height."""
@@ -182,7 +210,7 @@ class _Recorder:
         solid, x, touch = self._solid, plate_state.state.x, plate_state.state.touch
         assert touch is not None
         length, mu = solid.length, solid.mu
-        foot, peak = solid.contact.footprint(x, touch), self._probe.peak(x)
+        foot, peak = solid.contact.footprint(x, touch, self._annular), self._probe.peak(x)
         pressure = plate_state.state.filling.pressure * mu
         return PressState(
             indentation=self.indentation(plate_state.height),
@@ -191,6 +219,7 @@ class _Recorder:
             rise=pressure - self._free.pressure,
             volume=plate_state.state.volume * length**3,
             contact_radius=foot.radius * length,
+            contact_inner=foot.inner * length,
             contact_pressure=foot.traction * mu,
             inside_gap=foot.inside_gap * length,
             stiffness=-plate_state.stiffness * mu * length,
@@ -206,22 +235,26 @@ class _Recorder:
 
     def events(self, a: PressState, b: PressState, press: PressSettings) -> list[SolidEvent]:
         """Levels passed between two neighbouring states."""
-        wall, flat = self._solid.mesh.wall, self._plate.radius * self._solid.length
+        wall = self._solid.mesh.wall
+        inner, outer = (edge * self._solid.length for edge in self._plate.span)
         levels = {
             "gauge_range": press.gauge_range,
             "break": press.break_strain,
             "crease": CREASE,
             "separation": SEPARATION * wall,
-            "plate_rim": flat,
+            self._edge: outer,
             "floor": 0.0,
             "overhang": OVERHANG * wall,
         }
-        before, after = _watched(a), _watched(b)
+        before, after = _watched(a, self._edge), _watched(b, self._edge)
         places = {kind: crossing(before[kind], after[kind], level) for kind, level in levels.items()}
+        if self._annular and inner > 0.0 and places[self._edge] is None and b.force > 0.0:
+            begun, ended = (PathPoint(s.indentation, -s.contact_inner if s.force > 0.0 else -outer) for s in (a, b))
+            places[self._edge] = crossing(begun, ended, -inner)
         return [SolidEvent(kind, where, DETAIL[kind]) for kind, where in places.items() if where is not None]
 
 
-def _watched(s: PressState) -> dict[str, PathPoint]:
+def _watched(s: PressState, edge: str) -> dict[str, PathPoint]:
     """The quantities whose levels are events, at one state."""
     rate = s.slope * s.stiffness if np.isfinite(s.slope) else None
     return {
@@ -229,7 +262,7 @@ def _watched(s: PressState) -> dict[str, PathPoint]:
         "break": PathPoint(s.indentation, s.stretch - 1.0),
         "crease": PathPoint(s.indentation, s.fold),
         "separation": PathPoint(s.indentation, s.inside_gap),
-        "plate_rim": PathPoint(s.indentation, s.contact_radius),
+        edge: PathPoint(s.indentation, s.contact_radius),
         "floor": PathPoint(s.indentation, -s.inner_apex),
         "overhang": PathPoint(s.indentation, s.overhang),
     }

@@ -7,7 +7,8 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.mechanics.solid.banded import negative_pivots, solve, solve_definite
-from pneutouch.mechanics.solid.contact import ContactEvaluation, Plate
+from pneutouch.mechanics.solid.contact import ContactEvaluation
+from pneutouch.mechanics.solid.indenter import Indenter
 from pneutouch.mechanics.solid.model import PointFields, SolidModel
 from pneutouch.mechanics.solid.supply import FillingState, Supply
 
@@ -53,7 +54,7 @@ class SolidScene:
 
     solid: SolidModel
     supply: Supply
-    plate: Plate | None
+    plate: Indenter | None
     terms: tuple[EnergyTerm, ...] = ()
 
 

@@ -1,0 +1,257 @@
+"""Rigid axisymmetric objects other than the plate: undersides of arcs and lines with a continuous slope."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from pneutouch.arrays import Array
+
+STEEPEST = float(np.sqrt(3.0))
+"""Steepest slope of an underside, that of a flank at 60 degrees to the plate. Contact is measured vertically: the
+stiffness of the contact normal to a flank grows with 1 + slope^2, and on a vertical flank there is no gap to measure.
+Up to here the force does not depend on it (`tests/mechanics/solid/test_indenter.py`)."""
+
+
+CELLS_PER_RADIUS = 4
+"""Cells of the outer wall that the least radius of an object spans. With fewer the wall appears to leave a ball at its
+lowest point; with these the force is within 1 % of that on a refined mesh (docs/contact.md)."""
+
+_PER_EDGE = 4.0
+
+
+class Indenter(Protocol):
+    """A rigid body above the dome. All lengths in one unit: mm, or R0 inside the solver."""
+
+    @property
+    def height(self) -> float:
+        """Height of its lowest point."""
+        ...
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Radii between which its underside is the object's own; beyond them it turns up as a parabola."""
+        ...
+
+    def underside(self, r: Array) -> tuple[Array, Array, Array]:
+        """Height of the underside at r and its first two derivatives; all shaped like r."""
+        ...
+
+    def at(self, height: float) -> Indenter:
+        """The same body at another height."""
+        ...
+
+
+class UndersidePiece(NamedTuple):
+    """A piece of an underside from ``start`` outwards.
+
+    With ``radius`` 0 a parabola: height ``z`` at ``r``, ``slope`` and ``curve`` (second derivative). Else an arc about
+    (``r``, ``z``), below its centre for a positive radius and above it for a negative one.
+    """
+
+    start: float
+    r: float
+    z: float
+    slope: float = 0.0
+    curve: float = 0.0
+    radius: float = 0.0
+
+    def scaled(self, factor: float) -> UndersidePiece:
+        """The piece with all lengths times a factor."""
+        start, r, z, radius = (factor * x for x in (self.start, self.r, self.z, self.radius))
+        return UndersidePiece(start, r, z, self.slope, self.curve / factor, radius)
+
+
+class ProfileVertex(NamedTuple):
+    """A corner of a meridian at (r, z), rounded to ``radius``."""
+
+    r: float
+    z: float
+    radius: float = 0.0
+
+
+class ObjectShapeError(ValueError):
+    """A meridian that is no underside; ``index`` of the vertex at fault."""
+
+    def __init__(self, problem: str, index: int) -> None:
+        super().__init__(problem)
+        self.index = index
+
+
+@dataclass(frozen=True)
+class RigidObject:
+    """A rigid body of revolution, its lowest point at ``height``.
+
+    kind:   its name, for messages.
+    pieces: the underside from the axis outwards, with its lowest point at 0; the slope is continuous.
+    span:   see `Indenter`.  smallest: least radius of curvature that the mesh must follow.
+    """
+
+    kind: str
+    pieces: tuple[UndersidePiece, ...]
+    span: tuple[float, float]
+    smallest: float
+    height: float = 0.0
+
+    @cached_property
+    def _table(self) -> Array:
+        return np.array(self.pieces).T
+
+    def underside(self, r: Array) -> tuple[Array, Array, Array]:
+        """Height of the underside at r and its first two derivatives; all shaped like r."""
+        table = self._table
+        index = np.maximum(np.searchsorted(table[0], r, side="right") - 1, 0)
+        _, at, z, slope, curve, radius = table[:, index]
+        along = r - at
+        bent = radius != 0.0
+        drop = np.sqrt(np.where(bent, np.maximum(radius**2 - along**2, 0.0), 1.0))
+        drop = np.where(bent, np.maximum(drop, 1e-9 * np.abs(radius)), 1.0)
+        sign = np.sign(radius)
+        height = np.where(bent, z - sign * drop, z + along * (slope + 0.5 * curve * along))
+        first = np.where(bent, sign * along / drop, slope + curve * along)
+        second = np.where(bent, sign * radius**2 / drop**3, curve)
+        return self.height + height, first, second
+
+    def at(self, height: float) -> RigidObject:
+        """The same body at another height."""
+        return replace(self, height=height)
+
+    def scaled(self, factor: float) -> RigidObject:
+        """The body with all lengths times a factor."""
+        return RigidObject(
+            self.kind,
+            tuple(piece.scaled(factor) for piece in self.pieces),
+            (factor * self.span[0], factor * self.span[1]),
+            factor * self.smallest,
+            factor * self.height,
+        )
+
+
+def ball(radius: float) -> RigidObject:
+    """A ball: an arc to 60 degrees from its lowest point."""
+    return _body("ball", [_arc(0.0, radius, 0.0)], None, _end(0.0, radius, STEEPEST), radius)
+
+
+def cone(half_angle: float, tip: float) -> RigidObject:
+    """An endless cone of a half angle (rad, between axis and flank) with a tip rounded to the radius ``tip``."""
+    slope = float(1.0 / np.tan(half_angle))
+    r, z = _on_arc(0.0, tip, slope)
+    return _body("cone", [_arc(0.0, tip, 0.0), UndersidePiece(r, r, z, slope)], None, None, tip)
+
+
+def ring(radius: float, section: float) -> RigidObject:
+    """A ring: a wire of the radius ``section`` bent to a circle of ``radius``, arcs to 60 degrees on both sides."""
+    inner, outer = _end(radius, section, -STEEPEST), _end(radius, section, STEEPEST)
+    return _body("ring", [_arc(radius, section, inner.start)], inner, outer, section)
+
+
+def profile(vertices: Sequence[ProfileVertex]) -> RigidObject:
+    """A body whose underside is the line through corners (r, z), each rounded to its radius.
+
+    The first corner may lie on the axis. The ends turn up with their own radii. Raises ObjectShapeError for a sharp
+    corner, for an arc without space and for lines that turn back or are steeper than `STEEPEST`.
+    """
+    slopes = _slopes(vertices)
+    first, last, on_axis = vertices[0], vertices[-1], vertices[0].r == 0.0
+    before = [-slopes[0] if on_axis else None, *slopes]
+    pieces = [] if on_axis else [UndersidePiece(first.r, first.r, first.z, slopes[0])]
+    reaches = []
+    for i, (vertex, inward, outward) in enumerate(zip(vertices, before, [*slopes, None], strict=True)):
+        if inward != outward and not vertex.radius > 0.0:
+            raise ObjectShapeError("a sharp edge; give its radius in mm as a third number", i)
+        rounded, reach = ([], 0.0) if inward is None or outward is None else _corner(vertex, inward, outward)
+        pieces += rounded
+        reaches.append(reach)
+    _check_space(vertices, reaches)
+    inner = None if on_axis else _turned_up(first.r, first.z, slopes[0], first.radius)
+    outer = _turned_up(last.r, last.z, slopes[-1], last.radius)
+    # The range ends where the contact reaches an edge, for which a quarter of the cells is enough.
+    followed = [_PER_EDGE * edge.radius for edge in (last, *([] if on_axis else [first]))]
+    followed += [vertex.radius for vertex, reach in zip(vertices, reaches, strict=True) if reach > 0.0]
+    return _body("profile", pieces, inner, outer, min(followed))
+
+
+def _check_space(vertices: Sequence[ProfileVertex], reaches: Sequence[float]) -> None:
+    """Raise ObjectShapeError where the lengths that arcs take of a line are more than it has."""
+    for i, (a, b) in enumerate(pairwise(vertices)):
+        if reaches[i] + reaches[i + 1] > (1.0 + 1e-9) * np.hypot(b.r - a.r, b.z - a.z):
+            raise ObjectShapeError("its arc and that of its neighbour overlap; give smaller radii", i + 1)
+
+
+def first_contact(body: Indenter, r: Array, z: Array) -> tuple[float, float]:
+    """Height of the body where it first touches points (r, z) from above, and the radius where it does."""
+    height = z - body.at(0.0).underside(r)[0]
+    first = int(height.argmax())
+    return float(height[first]), float(r[first])
+
+
+def _body(
+    kind: str, pieces: list[UndersidePiece], inner: UndersidePiece | None, outer: UndersidePiece | None, smallest: float
+) -> RigidObject:
+    """The object of its own pieces and what turns up beyond them, its lowest point at 0."""
+    inward = [] if inner is None else [inner._replace(start=0.0)]
+    outward = [] if outer is None else [outer]
+    span = (0.0 if inner is None else inner.r, np.inf if outer is None else outer.r)
+    body = RigidObject(kind, (*inward, *pieces, *outward), span, smallest)
+    edges = np.array([x for x in (*(p.start for p in body.pieces), *(p.r for p in body.pieces), *span) if x < np.inf])
+    lowest = float(body.underside(np.maximum(edges, 0.0))[0].min())
+    return replace(body, pieces=tuple(piece._replace(z=piece.z - lowest) for piece in body.pieces))
+
+
+def _arc(r: float, radius: float, start: float) -> UndersidePiece:
+    """A rounding about (r, radius) whose lowest point is at height 0."""
+    return UndersidePiece(start, r, radius, radius=radius)
+
+
+def _on_arc(r: float, radius: float, slope: float) -> tuple[float, float]:
+    """The point of `_arc` with a slope."""
+    lean = np.hypot(1.0, slope)
+    return float(r + radius * slope / lean), float(radius - radius / lean)
+
+
+def _end(r: float, radius: float, slope: float) -> UndersidePiece:
+    """Where `_arc` ends with a slope and the underside turns up."""
+    return _turned_up(*_on_arc(r, radius, slope), slope, radius)
+
+
+def _turned_up(r: float, z: float, slope: float, radius: float) -> UndersidePiece:
+    """A parabola from (r, z) with a slope and a radius of curvature there."""
+    return UndersidePiece(r, r, z, slope, float((1.0 + slope**2) ** 1.5 / abs(radius)))
+
+
+def _slopes(vertices: Sequence[ProfileVertex]) -> list[float]:
+    """Slopes of the lines between corners."""
+    if len(vertices) < 2:
+        raise ObjectShapeError("an underside has two points at least", 0)
+    slopes = []
+    for i, (a, b) in enumerate(pairwise(vertices), start=1):
+        if not b.r > a.r:
+            raise ObjectShapeError("the underside must go outwards: each radius above the one before", i)
+        slope = (b.z - a.z) / (b.r - a.r)
+        if abs(slope) > STEEPEST * (1.0 + 1e-9):
+            raise ObjectShapeError("the underside must be no steeper than 60 degrees", i)
+        slopes.append(slope)
+    if slopes[-1] < 0.0 or (vertices[0].r > 0.0 and slopes[0] > 0.0):
+        problem = "an underside must not go down towards its edge; end it where it is level or goes up"
+        raise ObjectShapeError(problem, len(vertices) - 1 if slopes[-1] < 0.0 else 0)
+    return slopes
+
+
+def _corner(vertex: ProfileVertex, before: float, after: float) -> tuple[list[UndersidePiece], float]:
+    """The arc in a corner between lines of two slopes with the line after it, and the length it takes of each line."""
+    if before == after:
+        return [UndersidePiece(vertex.r, vertex.r, vertex.z, after)], 0.0
+    low, high = float(np.arctan(before)), float(np.arctan(after))
+    reach = vertex.radius * abs(float(np.tan(0.5 * (high - low))))
+    signed = vertex.radius if high > low else -vertex.radius
+    r, z = vertex.r - reach * np.cos(low), vertex.z - reach * np.sin(low)
+    arc = UndersidePiece(
+        max(float(r), 0.0), float(r - signed * np.sin(low)), float(z + signed * np.cos(low)), radius=signed
+    )
+    r, z = float(vertex.r + reach * np.cos(high)), float(vertex.z + reach * np.sin(high))
+    return [arc, UndersidePiece(r, r, z, after)], reach
