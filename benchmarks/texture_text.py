@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from benchmarks.texture_check_text import check, plane, speed
+from benchmarks.texture_claim_text import claim
+
 
 def page(data: dict[str, Any]) -> str:
     """The whole page."""
@@ -11,11 +14,11 @@ def page(data: dict[str, Any]) -> str:
         [
             *_what(data),
             *_scan(data),
-            *_check(data),
-            *_plane(data),
-            *_speed(data),
+            *check(data),
+            *plane(data),
+            *speed(data),
             *_sweeps(data),
-            *_claim(data),
+            *claim(data),
             *_advice(data),
             *_separate(data),
             *_cannot(),
@@ -97,106 +100,6 @@ def _scan(data: dict[str, Any]) -> list[str]:
     ]
 
 
-def _check(data: dict[str, Any]) -> list[str]:
-    rows = [
-        f"| {row['pitch']:g} | {row['depth']:g} | {row['radius']:.2f} | {1e3 * row['fe']:+.3f} | {100 * abs(row['coarse'] / row['fe'] - 1):.0f} % | "
-        f"{1e3 * row['reduced']:+.3f} | {row['reduced'] / row['fe']:.2f} |"
-        for row in data["single"]
-    ]
-    both = [
-        f"| {row['depth']:g} | {row['radius']:.2f} | {1e3 * row['fe_3']:+.2f} | {1e3 * row['reduced_3']:+.2f} | {1e3 * row['fe_6']:+.2f} | "
-        f"{1e3 * row['reduced_6']:+.2f} | {abs(row['fe_3'] / row['fe_6']):.2f} | {abs(row['reduced_3'] / row['reduced_6']):.2f} |"
-        for row in data["both"]
-    ]
-    return [
-        "## The reduced model against finite elements",
-        "",
-        "![Amplitude of the compliance over depth by both](texture-check.svg)",
-        "",
-        "The reference is a strip of Agilus30 with bars of Vero, meshed in section and in Fourier waves along the bars, under a "
-        "uniform disc. It contains nothing of the reduced model. Amplitude of c at the pitch in um/N, negative where c is least over a bar. "
-        "*Cells* is the change from halving the cells from 0.5 to 0.25 mm; the remaining error is about as large: under 4 % where the amplitude is above "
-        "0.03 um/N.",
-        "",
-        "| pitch mm | depth mm | patch mm | finite elements | cells | reduced | ratio |",
-        "|---|---|---|---|---|---|---|",
-        *rows,
-        "",
-        *_ratios(data),
-        "The shipped specimen has both patterns, one over the other: amplitudes at 3 mm and 6 mm, and their ratio.",
-        "",
-        "| buried at mm | patch mm | 3 mm, FE | reduced | 6 mm, FE | reduced | surface/buried, FE | reduced |",
-        "|---|---|---|---|---|---|---|---|",
-        *both,
-        "",
-        *_verdict(data),
-    ]
-
-
-def _ratios(data: dict[str, Any]) -> list[str]:
-    """Surface 3 mm pattern over buried 6 mm pattern, each alone."""
-    at = {(row["pitch"], row["depth"], row["radius"]): row for row in data["single"]}
-    radii = sorted({row["radius"] for row in data["single"]})
-    plane = {(row["pitch"], row["depth"], row["radius"]): row["fe"] for row in data["plane"]}
-    lines = []
-    for radius in radii:
-        for depth in (1.0, 2.0, 3.0):
-            top, low = at[3.0, 0.0, radius], at[6.0, depth, radius]
-            fe, ours = abs(top["fe"] / low["fe"]), abs(top["reduced"] / low["reduced"])
-            flat = abs(plane[3.0, 0.0, radius] / plane[6.0, depth, radius])
-            lines.append(
-                f"| {depth:g} | {radius:.2f} | {fe:.2f} | {ours:.2f} | {100 * (ours / fe - 1):+.0f} % | {flat:.2f} |"
-            )
-    return [
-        "Surface pattern (3 mm) over buried pattern (6 mm), each alone in the block:",
-        "",
-        "| buried at mm | patch mm | finite elements | reduced | error | plane strain |",
-        "|---|---|---|---|---|---|",
-        *lines,
-        "",
-    ]
-
-
-def _plane(data: dict[str, Any]) -> list[str]:
-    rows = data["plane"]
-    change = max(abs(row["coarse"] / row["fe"] - 1) for row in rows)
-    return [
-        "**Plane strain is a different specimen.** The same strip under a patch infinite along the bars, which lets bars sink as a whole "
-        f"(cells of 0.25 and 0.125 mm, {100 * change:.1f} % apart at most). There a bar is not fixed, and the pattern is strongest "
-        f"{_strongest(rows)}. A reduced model made for plane strain would not apply "
-        "here, and this one does not apply to plane strain.",
-        "",
-        "| pitch mm | depth mm | half width mm | amplitude um/(N/mm) |",
-        "|---|---|---|---|",
-        *(f"| {row['pitch']:g} | {row['depth']:g} | {row['radius']:.2f} | {1e3 * row['fe']:+.2f} |" for row in rows),
-        "",
-    ]
-
-
-def _strongest(rows: list[dict[str, float]]) -> str:
-    """At which depth each column of the plane strain table is greatest."""
-    best: dict[tuple[float, float], dict[str, float]] = {}
-    for row in rows:
-        key = row["pitch"], row["radius"]
-        if key not in best or abs(row["fe"]) > abs(best[key]["fe"]):
-            best[key] = row
-    said = [f"{row['depth']:g} mm deep at {pitch:g} mm under {radius:.2f} mm" for (pitch, radius), row in best.items()]
-    return ", ".join(said)
-
-
-def _speed(data: dict[str, Any]) -> list[str]:
-    speed = data["speed"]
-    return [
-        f"**Speed.** The finite elements (cells of 0.5 mm, eight places) take {_round(speed['fe_over_reduced'])} times the processor time of the reduced "
-        f"model on the whole path. Sliding over the 60 mm block at 10 kHz and the scalogram, without the dome's loading curve and the detection, take {speed['scan_with_spectrum_s']:.2f} s.",
-        "",
-    ]
-
-
-def _round(value: float) -> str:
-    return f"{float(f'{value:.1g}'):,.0f}"
-
-
 def _sweeps(data: dict[str, Any]) -> list[str]:
     noise = data["sweeps"]["noise"]
     return [
@@ -237,106 +140,6 @@ def _trends(data: dict[str, Any]) -> list[str]:
         f"{preload} times, with extremes in between.",
         "",
     ]
-
-
-def _verdict(data: dict[str, Any]) -> list[str]:
-    def span(pitch: float, small: bool) -> str:
-        radii = [row["radius"] for row in data["single"]]
-        radius = min(radii) if small else max(radii)
-        ratios = [
-            row["reduced"] / row["fe"] for row in data["single"] if (row["pitch"], row["radius"]) == (pitch, radius)
-        ]
-        return f"{min(ratios):.2f} to {max(ratios):.2f}"
-
-    return [
-        f"Reduced over finite elements: pitch 6 mm under the small patch {span(6.0, True)}, under the large one {span(6.0, False)}; pitch 3 mm "
-        f"{span(3.0, True)} and {span(3.0, False)}. At 3 mm it is too high because bars 1 mm high do sink with their neighbours. At 6 mm the large patch "
-        "is close to the zero of its filter (rho = 0.61 pitches). There, and where almost nothing is left (3 mm, 2 mm deep and deeper), the model result is no "
-        "more than 'small': it has the zero of the surface at every depth, while the load under a deep bar has no sharp edge. Where the surface pattern "
-        "lies over the buried one, the buried one is shielded more than in the model.",
-        "",
-    ]
-
-
-def _claim(data: dict[str, Any]) -> list[str]:
-    found = _pascals(data)
-    rows = [f"| {name} | {a:.2f} | {b:.2f} | {b / a:.1f} | {c:.2f} | {d:.2f} |" for name, (a, b, c, d) in found.items()]
-    return [
-        "## The paper's claim",
-        "",
-        "The caption of Figure 9 states that the soft state (0 kPa) shows the surface pattern, at the higher frequency, more sharply, and the stiff state "
-        "(22 kPa) the buried one. The body text states that the soft state is better at the lower frequency. These contradict each other. (3 and 6 mm at "
-        "4 mm/s are 1.33 and 0.67 Hz, not the 1.5 and 0.75 Hz of the caption.)",
-        "",
-        "| pattern, in the shipped specimen | soft Pa, FE | stiff Pa, FE | stiff/soft | soft Pa, reduced | stiff Pa, reduced |",
-        "|---|---|---|---|---|---|",
-        *rows,
-        "",
-        *_compared(found, data["scan"]["states"]),
-        "- **What the model does not cover.** A soft state that is better at the surface needs an effect that grows with softness and acts at short "
-        "distance: relief of the surface, into which an unpressurised wall sags; friction, which the paper lowers with lubricant "
-        "but does not remove; bending of the wall over an edge. None of them is in the model, and a relief of some micrometres (table above) "
-        "has as much effect as the whole compliance of the specimen. The paper states neither the depths nor the sections of its bars, nor amplitudes: "
-        "its figure cannot be compared number by number.",
-        "",
-    ]
-
-
-def _pascals(data: dict[str, Any]) -> dict[str, tuple[float, float, float, float]]:
-    """By pattern: soft and stiff amplitude by finite elements, by the reduced model, Pa."""
-    states = data["scan"]["states"]
-    at = {(row["depth"], row["radius"]): row for row in data["both"]}
-    radii = sorted({radius for _, radius in at}, reverse=True)
-    kinds = {
-        "surface (over pattern 2)": (0, "fe_3", 2.0),
-        "surface (over pattern 1)": (0, "fe_3", 4.0),
-        "pattern 2, 2 mm deep": (2, "fe_6", 2.0),
-        "pattern 1, 4 mm deep": (1, "fe_6", 4.0),
-    }
-    found = {}
-    for name, (number, key, depth) in kinds.items():
-        fe = [
-            1e3
-            * state["pressure_slope_kPa_per_mm"]
-            * data["scan"]["preload_N"]
-            * abs(at[depth, radius][key])
-            / (1 + state["stiffness_N_per_mm"] * at[depth, radius]["fe_mean"])
-            for state, radius in zip(states, radii, strict=True)
-        ]
-        ours = [1e3 * state["patterns"][number]["model_amplitude_kPa"] for state in states]
-        found[name] = (fe[0], fe[1], ours[0], ours[1])
-    return found
-
-
-def _compared(found: dict[str, tuple[float, float, float, float]], states: list[dict[str, Any]]) -> list[str]:
-    """The claim against the numbers; surface over buried in both halves."""
-    gains = [row[1] / row[0] for row in found.values()]
-    lean = {
-        half: [found[f"surface (over {half})"][k] / found[buried][k] for k in (0, 1)]
-        for half, buried in (("pattern 2", "pattern 2, 2 mm deep"), ("pattern 1", "pattern 1, 4 mm deep"))
-    }
-    two, one = lean["pattern 2"], lean["pattern 1"]
-    nearer = [found["pattern 2, 2 mm deep"][k] / found["pattern 1, 4 mm deep"][k] for k in (0, 1)]
-    return [
-        f"- **The stiff state shows every pattern better**, by finite elements {min(gains):.1f} to {max(gains):.1f} times, for one reason: its patch is "
-        "smaller. Neither statement, that the soft state is better at the lower frequency (body text) or at the higher (caption), is "
-        "reproduced in terms of amplitudes.",
-        f"- **Which of the two patterns is larger.** Surface over buried, soft and stiff: {two[0]:.2f} and {two[1]:.2f} over pattern 2, {one[0]:.2f} and {one[1]:.2f} "
-        "over pattern 1. Over pattern 2 this is the order of the caption (soft: the surface a little larger; stiff: the buried one), over pattern 1 "
-        "the reverse. The reduced model has the caption's order much more strongly over pattern 2, but only because its patch of 3.58 mm is close to the zero "
-        "for 6 mm, where its error is greatest: this is no support.",
-        f"- **Pattern 2 sharper than pattern 1** in the stiff state, since it is nearer: yes, {nearer[1]:.1f} times. In the soft state they are alike ({nearer[0]:.2f}).",
-        f"- **What is detected, with the noise assumed here** (p up to 0.05, seed 0): {_found(states)}. With less noise both states would show both.",
-    ]
-
-
-def _found(states: list[dict[str, Any]]) -> str:
-    """Which patterns each state shows."""
-    said = []
-    for state in states:
-        names = [pattern["name"] for pattern in state["patterns"] if pattern["detected"]]
-        said.append(f"at {state['label']} {', '.join(names) or 'none'}")
-    return "; ".join(said)
 
 
 def _advice(data: dict[str, Any]) -> list[str]:

@@ -15,7 +15,7 @@ from pneutouch.cli.calibrate_text import calibration_text
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.workflows.calibrate.fit import observations_of
-from tests.evaluation.test_calibrated import CONTENT
+from tests.evaluation.calibrated import CONTENT
 
 assert calibrate and simulate
 

@@ -189,56 +189,6 @@ def test_rating_stays_below_the_limit_that_binds(evaluated, built):
     assert f"{int(10 * 0.9e3 * limit) / 10:.1f}" in html
 
 
-def test_a_resin_that_cannot_be_solved_does_not_stop_the_sheet(evaluated, library, monkeypatch):
-    from pneutouch.errors import ComputationError
-    from pneutouch.evaluation import variants
-    from pneutouch.spec.material import Material
-
-    def fail(*words, **options):
-        raise ComputationError("no equilibrium")
-
-    monkeypatch.setattr(variants, "predict", fail)
-    materials = library.all("materials", Material)
-    outside = evaluated("paper-dome").sensor.replace(flange=(3.0, 1.5))
-    assert variants.resin_curves(outside, materials, 0.02, "solid", None) == {}
-
-
-def test_resins_are_compared_by_the_atlas_as_respond_has_them(evaluated, library):
-    from pneutouch.evaluation.variants import in_resin, resin_curves
-    from pneutouch.mechanics.atlas.respond import respond
-    from pneutouch.mechanics.uncertainty import batch_of
-    from pneutouch.spec.material import Material
-
-    sensor, materials = evaluated("paper-dome").sensor, library.all("materials", Material)
-    elastic = {name: m for name, m in materials.items() if m.kind == "elastomer"}
-    found = resin_curves(sensor, materials, 0.022, "solid", None)
-    assert set(found) == {m.title for m in elastic.values()}
-    assert curves.drawn_by(found) == "drawn by the atlas"
-    for material in elastic.values():
-        pressure, sensitivity, model = found[material.title]
-        assert model == "atlas"
-        assert pressure[0] == 0
-        assert pressure[-1] == pytest.approx(22)
-        own = respond(batch_of(in_resin(sensor, material), (1e-3 * pressure).tolist()), sensor.protocol.steps)
-        np.testing.assert_allclose(sensitivity, own.lines.sensitivity_kPa_per_N, rtol=1e-3)
-
-
-def test_a_resin_outside_the_atlas_is_drawn_by_the_solid_and_the_caption_says_so(evaluated, library):
-    from pneutouch.evaluation.variants import resin_curves
-    from pneutouch.spec.material import Material
-
-    tango, hard = (library.load("materials", name) for name in ("TangoPlus", "FLX9960"))
-    assert isinstance(tango, Material)
-    odd = hard.model_copy(update={"poisson_ratio": hard.poisson_ratio.model_copy(update={"value": 0.48})})
-    sensor = evaluated("paper-dome").sensor
-    found = resin_curves(sensor, {"a": tango, "b": odd}, 0.02, "solid", None)
-    assert [curve.model for curve in found.values()] == ["atlas", "solid"]
-    assert curves.drawn_by(found) == "drawn by the atlas, FLX9960-DM by the solid"
-    same = resin_curves(sensor, {"b": hard}, 0.02, "solid", None)["FLX9960-DM"]
-    near = np.interp(found["FLX9960-DM"].driving_pressure_kPa, same.driving_pressure_kPa, same.sensitivity_kPa_per_N)
-    np.testing.assert_allclose(found["FLX9960-DM"].sensitivity_kPa_per_N, near, rtol=0.02)
-
-
 def test_pdf_is_a_few_a4_pages_with_text_on_each(built):
     document = pypdfium2.PdfDocument(built("paper-dome") / "datasheet.pdf")
     assert 3 <= len(document) <= 6
@@ -289,16 +239,3 @@ def test_print_sheet_names_files_resins_machines_and_the_measured_deviation(buil
         "greatest measured distance",
     ):
         assert word in text
-
-
-def test_seven_resins_are_compared_and_stop_at_their_own_limits(evaluated, library):
-    from pneutouch.evaluation.variants import resin_curves
-    from pneutouch.mechanics.limits import limits
-    from pneutouch.spec.material import Material
-
-    sensor = evaluated("paper-dome").sensor
-    materials = library.all("materials", Material)
-    found = resin_curves(sensor, materials, 0.060, "membrane", "variational")
-    assert set(found) == {m.title for m in materials.values() if m.kind == "elastomer"}
-    assert found["TangoPlus"][0][-1] <= 1e3 * limits(sensor).limit_point
-    assert found["FLX9970-DM"][0][-1] == pytest.approx(60.0)
