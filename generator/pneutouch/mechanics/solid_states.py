@@ -35,6 +35,8 @@ KINDS = {
     "plate_rim": ("plate edge", True),
     "crease": ("creasing", False),
     "overhang": ("wall below the base plane", False),
+    "sway": ("sway", False),
+    "lobes": ("lobes", False),
 }
 """The solver's events as they are reported, and whether figures must not be fitted beyond them."""
 

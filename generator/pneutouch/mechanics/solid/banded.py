@@ -53,6 +53,9 @@ class AssemblyPattern:
         return np.asarray(np.bincount(self._unknown, entries, self.size), dtype=np.float64)
 
 
+_INVERSE_ITERATIONS = 12
+
+
 @dataclass(frozen=True)
 class BandedSolution:
     """x with K x = b (size, n_rhs), and whether K is positive definite."""
@@ -81,6 +84,38 @@ def solve_definite(band: Array, b: Array) -> Array | None:
         return None
     x: Array = lapack.dpbtrs(factor, b, lower=1)[0]
     return x
+
+
+def is_definite(band: Array) -> bool:
+    """Whether the matrix is positive definite, by Cholesky."""
+    return int(lapack.dpbtrf(band, lower=1)[1]) == 0
+
+
+@dataclass(frozen=True)
+class SoftestMode:
+    """The eigenvalue nearest zero, its unit eigenvector (size,), and whether the matrix is positive definite."""
+
+    value: float
+    vector: Array
+    definite: bool
+
+
+def softest(band: Array) -> SoftestMode:
+    """The eigenvalue nearest zero, by inverse iteration from one fixed vector; of a singular matrix zero."""
+    width = band.shape[0] - 1
+    factor, info = lapack.dpbtrf(band, lower=1)
+    definite, pivots = info == 0, None
+    if not definite:
+        factor, pivots, info = lapack.dgbtrf(_general(band), width, width)
+    vector, value = np.ones(band.shape[1]), 0.0
+    for _ in range(_INVERSE_ITERATIONS if info == 0 else 0):
+        vector = vector / np.linalg.norm(vector)
+        if pivots is None:
+            image = lapack.dpbtrs(factor, vector, lower=1)[0]
+        else:
+            image = lapack.dgbtrs(factor, width, width, vector, pivots)[0]
+        value, vector = 1.0 / float(vector @ image), image
+    return SoftestMode(value, vector / np.linalg.norm(vector), definite)
 
 
 def _general(band: Array) -> Array:

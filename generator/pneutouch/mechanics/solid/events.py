@@ -31,6 +31,10 @@ DETAIL = {
     OBJECT_EDGE: "the contact reaches the object's edge, or a flank of 60 degrees",
     "floor": "the inner wall reaches the base plane",
     "overhang": "the wall hangs below its base plane, where no support is modelled",
+    "sway": "the dome is no longer stable on its axis and sways sideways where the contact slips; figures beyond are "
+    "of the axisymmetric path",
+    "lobes": "the dome is no longer stable as a body of revolution and takes {waves} lobes around the axis; figures "
+    "beyond are of the axisymmetric path",
 }
 
 
@@ -42,7 +46,8 @@ class SolidEvent:
     (the same, at the clamped edge), lost (no equilibrium found), floor (the inner wall reaches the base plane).
     Of those that do not: separation (the wall leaves the plate inside the contact: buckling inward), crease, overhang
     (the wall hangs below its base plane, where no support is modelled), plate_rim and object_edge (the contact
-    reaches where the object turns up), break, gauge_range.
+    reaches where the object turns up), break, gauge_range, sway and lobes (the
+    axisymmetric path is unstable to one wave around the axis, or to more).
     """
 
     kind: str

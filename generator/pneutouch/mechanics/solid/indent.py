@@ -30,6 +30,7 @@ from pneutouch.mechanics.solid.inflate import FreeState
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.stress import StrainProbe
 from pneutouch.mechanics.solid.supply import Gas
+from pneutouch.mechanics.solid.sway import axisymmetry_losses
 from pneutouch.units import KPA
 
 #: A pressure this far below absolute vacuum, in mu, is rounding.
@@ -43,6 +44,7 @@ class PressSettings:
     steps:       equal plate steps at which states are returned.
     gauge_range: gauge pressure (MPa) beyond which the pressure sensor clips.
     break_strain: largest principal strain (stretch - 1) the material bears.
+    waves: greatest number of waves around the axis for which the path's stability is checked (`sway`); 0: no check.
     body:        the object in mm, in place of the plate (its height does not count).
     friction:    Coulomb's coefficient between wall and plate; inf for a plate that grips.
     """
@@ -56,6 +58,7 @@ class PressSettings:
     break_strain: float = np.inf
     friction: float = 0.0
     body: RigidObject | None = None
+    waves: int = 0
 
     def __post_init__(self) -> None:
         finite = np.isfinite([self.depth, self.ambient, self.dead_volume]).all()
@@ -146,6 +149,7 @@ def indent(
     recorder = _Recorder(solid, free, touch, probe or StrainProbe(solid))
     states = [recorder.state(follower.here)]
     events = recorder.events(states[0], states[0], press)
+    jump: PathJump | None = None
     for k in range(1, press.steps + 1):
         begun = len(follower.path)
         jump = descend(follower, plate.height - press.depth / length * k / press.steps)
@@ -154,8 +158,9 @@ def indent(
                 states.append(recorder.state(plate_state))
                 events += recorder.events(states[-2], states[-1], press)
         if jump is not None or _floored(events):
-            return _finish(states, events, jump, recorder, press)
-    return _finish(states, events, None, recorder, press)
+            break
+    events += recorder.losses(follower.path[: len(states)], press.waves)
+    return _finish(states, events, jump, recorder, press)
 
 
 class FirstTouch(NamedTuple):
@@ -252,6 +257,15 @@ class _Recorder:
             begun, ended = (PathPoint(s.indentation, -s.contact_inner if s.force > 0.0 else -outer) for s in (a, b))
             places[self._edge] = crossing(begun, ended, -inner)
         return [SolidEvent(kind, where, DETAIL[kind]) for kind, where in places.items() if where is not None]
+
+    def losses(self, path: list[PlateState], waves: int) -> list[SolidEvent]:
+        """Where the axisymmetric path loses stability to displacements of up to so many waves around the axis."""
+        lost = axisymmetry_losses(self._solid, path, waves) if waves else []
+        kinds = ["sway" if loss.waves == 1 else "lobes" for loss in lost]
+        return [
+            SolidEvent(kind, self.indentation(loss.height), DETAIL[kind].format(waves=loss.waves))
+            for kind, loss in zip(kinds, lost, strict=True)
+        ]
 
 
 def _watched(s: PressState, edge: str) -> dict[str, PathPoint]:

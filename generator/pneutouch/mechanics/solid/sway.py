@@ -1,0 +1,134 @@
+"""Where the axisymmetric path under the plate stops being stable: sway (one wave around the axis) and lobes (more)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.mechanics.solid.banded import is_definite, softest
+from pneutouch.mechanics.solid.continuation import PlateState
+from pneutouch.mechanics.solid.harmonics import HarmonicSolid
+from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.newton import NewtonFailure, SolverState, minimise
+
+#: Greatest number of waves around the axis that is checked.
+MOST_WAVES = 8
+#: Plate travel between checked states, in R0: what is lost between two is searched for in the states between them.
+_TRAVEL = 0.15
+#: Position of a loss, in R0.
+_WITHIN = 5.0e-4
+_MOST_SOLVES = 12
+
+
+@dataclass(frozen=True)
+class AxisymmetryLoss:
+    """The axisymmetric path is unstable below a plate height (R0) for displacements of n ``waves`` around the axis."""
+
+    waves: int
+    height: float
+
+
+def unstable_waves(harmonic: HarmonicSolid, state: SolverState, numbers: tuple[int, ...]) -> tuple[int, ...]:
+    """Those numbers of waves for which the second variation at a state is not positive definite."""
+    return tuple(n for n, band in harmonic.bands(state, numbers).items() if not is_definite(band))
+
+
+def softest_mode(harmonic: HarmonicSolid, state: SolverState, n: int) -> tuple[float, Array]:
+    """Eigenvalue nearest zero of the second variation for n waves, and its displacements a, b, c (n_nodes, 3)."""
+    mode = softest(harmonic.bands(state, (n,))[n])
+    return mode.value, harmonic.expand(n, mode.vector)
+
+
+def axisymmetry_losses(solid: SolidModel, path: list[PlateState], most: int = MOST_WAVES) -> list[AxisymmetryLoss]:
+    """Where a path, from first contact down, loses stability to one wave around the axis, and where to 2 to ``most``.
+
+    States are checked at every 0.15 R0 of plate travel, and the last. Where stability is lost between two of them, the
+    states between are searched by halves, and the place is then located by solving for states between neighbours.
+    """
+    harmonic = HarmonicSolid(solid)
+    losses: list[AxisymmetryLoss] = []
+    watched, reached = tuple(range(1, most + 1)), 0
+    for k, state in enumerate(path):
+        if not watched:
+            break
+        if 0 < k < len(path) - 1 and path[reached].height - state.height < _TRAVEL:
+            continue
+        lost = unstable_waves(harmonic, state.state, watched)
+        for kind in ((1,), tuple(n for n in watched if n > 1)):
+            onsets = [_onset(harmonic, path[reached : k + 1], n) for n in lost if n in kind]
+            if onsets:
+                losses.append(max(onsets, key=lambda loss: loss.height))
+                watched = tuple(n for n in watched if n not in kind)
+        reached = k
+    return losses
+
+
+def _onset(harmonic: HarmonicSolid, path: list[PlateState], n: int) -> AxisymmetryLoss:
+    """The loss for n waves within a part of a path whose last state shows it."""
+    stable, unstable = 0, len(path) - 1
+    if unstable == 0:
+        return AxisymmetryLoss(n, path[0].height)
+    while unstable - stable > 1:
+        middle = (stable + unstable) // 2
+        if unstable_waves(harmonic, path[middle].state, (n,)):
+            unstable = middle
+        else:
+            stable = middle
+    return AxisymmetryLoss(n, _located(harmonic, n, path[stable], path[unstable]))
+
+
+def _located(harmonic: HarmonicSolid, n: int, before: PlateState, after: PlateState) -> float:
+    """Where the lowest eigenvalue for n waves passes zero, by inverse quadratic interpolation; by halves where that
+    leaves the bracket."""
+    high, low = before.height, after.height
+    values = {s.height: softest(harmonic.bands(s.state, (n,))[n]).value for s in (before, after)}
+    guess = low
+    for _ in range(_MOST_SOLVES):
+        last, guess = guess, _zero(values)
+        if not low < guess < high:
+            guess = 0.5 * (low + high)
+        if high - low < _WITHIN or abs(guess - last) < 0.5 * _WITHIN:
+            break
+        state = _between(before, after, guess)
+        if state is None:
+            break
+        mode = softest(harmonic.bands(state, (n,))[n])
+        values[guess] = mode.value
+        if mode.definite:
+            high = guess
+        else:
+            low = guess
+    return guess
+
+
+def _zero(values: dict[float, float]) -> float:
+    """Height where a quantity known at heights is zero, from the three heights where it is nearest zero; nan where two
+    of its values are equal."""
+    near = sorted(values.items(), key=lambda pair: abs(pair[1]))[:3]
+    heights, at = np.array([pair[0] for pair in near]), np.array([pair[1] for pair in near])
+    total = 0.0
+    for k, height in enumerate(heights):
+        others = np.delete(at, k)
+        if (others == at[k]).any():
+            return float("nan")
+        total += float(height * np.prod(others / (others - at[k])))
+    return total
+
+
+def _between(before: PlateState, after: PlateState, height: float) -> SolverState | None:
+    """The state at a plate height between two neighbours on the path."""
+    plate = after.scene.plate
+    assert plate is not None
+    span = before.height - after.height
+    share = (before.height - height) / span
+    bend = after.state.x - before.state.x
+    first, last = -span * before.by_height - bend, bend + span * after.by_height
+    guess = before.state.x + share * bend + share * (1.0 - share) * ((1.0 - share) * first + share * last)
+    scene = replace(after.scene, plate=plate.at(height))
+    for start in (guess, after.state.x, before.state.x):
+        solved = minimise(scene, np.asarray(start))
+        if not isinstance(solved, NewtonFailure):
+            return solved.state
+    return None
