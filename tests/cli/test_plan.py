@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 
 import pytest
 from typer.testing import CliRunner
@@ -21,7 +22,8 @@ def run(*arguments: str):
 def test_plan_prints_its_document_and_warns_on_stderr(tmp_path):
     rig = tmp_path / "rig.toml"
     rig.write_text('[rig]\nname = "small"\nforce_range_N = 10.0\n')
-    result = run("plan", "paper-dome", "--specimens", "1", "--rig", str(rig), "--out", str(tmp_path), "--json")
+    words = ("plan", "paper-dome", "--specimens", "1", "--rig", str(rig), "--out", str(tmp_path), "--json")
+    result = run(*words)
     assert result.exit_code == 0, result.stderr
     said = json.loads(result.stdout)
     written = json.loads((tmp_path / "paper-dome-plan" / "plan.json").read_text())
@@ -33,7 +35,13 @@ def test_plan_prints_its_document_and_warns_on_stderr(tmp_path):
         assert f"warning: {warning['rule']}: {warning['message']}" in result.stderr
 
     text = plan_text(written).splitlines()
-    assert text[0] == f"paper-dome: 26 runs on 1 specimens, {written['total_s'] / 3600:.1f} h on small"
+    rows = [re.split(" {2,}", row) for row in text[3 : text.index("", 3)]]
+    assert rows.pop() == ["all", "26"]
+    assert [row[0] for row in rows] == ["leak", "injection", "steps", "loop", "saturation", "relaxation"]
+    for _, pressures_kPa, at_each, specimens, runs, *_ in rows:
+        assert len(pressures_kPa.split(",")) * int(at_each) * int(specimens) == int(runs)
+    assert sum(int(row[4]) for row in rows) == 26
+    assert text[0] == f"paper-dome: 26 runs on 1 specimen, {written['total_s'] / 3600:.1f} h on small"
     state = written["resins"][0]["states"][-1]["points"][-1]
     assert text[-1].split()[1:5] == [
         "22",

@@ -15,7 +15,9 @@ from pneutouch.bench.protocol import protocol
 from pneutouch.bench.simulate import SimulationTruth
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import Campaign
+from pneutouch.spec.campaign_file import campaign_of, design_of
 from pneutouch.spec.read import validate
+from pneutouch.spec.toml_text import toml_text
 from pneutouch.workflows.simulate.options import KINDS, SimulationOptions
 from pneutouch.workflows.simulate.run import simulate
 
@@ -160,3 +162,67 @@ def test_what_cannot_be_is_refused_and_leaves_nothing(change, words, library, tm
         simulate("paper-dome", tmp_path / "out", None, replace(ASKED, **change), library)
     assert words in str(error.value)
     assert not (tmp_path / "out").exists() or not list((tmp_path / "out").iterdir())
+
+
+@pytest.fixture(scope="module")
+def planned(tmp_path_factory):
+    """A plan of two specimens; its last one got a name of its own by hand."""
+    folder, keys = tmp_path_factory.mktemp("planned"), [("leak", 12.0, 1), ("injection", 0.0, 1), ("loop", 12.0, 1)]
+    keys += [("steps", pressure_kPa, number) for pressure_kPa in (0.0, 12.0) for number in (1, 2)]
+    runs = [
+        {"kind": kind, "driving_pressure_kPa": at, "run": n, "sensor": sensor, "file": f"{k}-{sensor[:3]}"}
+        for sensor in ("TangoPlus-1", "tip 2/b")
+        for k, (kind, at, n) in enumerate(keys)
+    ]
+    content = {"design": "paper-dome", "runs": [{"resin": "TangoPlus", **run} for run in runs]}
+    (folder / "campaign.toml").write_text(toml_text(content))
+    return folder
+
+
+QUICK = SimulationOptions(rate=20.0, model="atlas", truth=SimulationTruth(rest=0.2, specimens=100))
+
+
+def test_a_plan_is_simulated_run_by_run(planned, library, tmp_path):
+    made = simulate(str(planned), tmp_path, None, QUICK, library)
+    there, here = (campaign_of(path)[0] for path in (planned, made))
+    assert len(here.runs) == 14 == len(list((made / "runs").iterdir()))
+    keys = [[(r.kind, r.sensor, r.driving_pressure_kPa, r.run) for r in one.runs] for one in (there, here)]
+    assert keys[0] == keys[1] and here.simulated
+    # The first specimen is that of a simulation without the plan, and so is its run.
+    alone = simulate("paper-dome", tmp_path / "alone", None, replace(QUICK, kinds=("loop",), specimens=1), library)
+    name = "runs/TangoPlus-1-12kPa-loop-1.csv"
+    assert (made / name).read_bytes() == (alone / name).read_bytes()
+    assert (made / "runs/tip 2-b-0kPa-injection-1.csv").is_file()
+    assert set(json.loads((made / "truth.json").read_text())["specimens"]) == {"TangoPlus-1", "tip 2/b"}
+
+
+def test_what_a_plan_states_is_not_requested_again(planned, library, tmp_path):
+    with pytest.raises(InputError, match=r"the plan in .* states it") as caught:
+        simulate(str(planned), tmp_path, None, replace(QUICK, runs=2), library)
+    assert caught.value.key == "runs"
+    content = (planned / "campaign.toml").read_text()
+    for spoilt, said in (
+        (content.replace("tip 2/b", "TangoPlus/1"), "those of sensor TangoPlus-1"),
+        (content.replace('design = "paper-dome"\n', ""), "names no design"),
+    ):
+        folder = tmp_path / "spoilt"
+        folder.mkdir(exist_ok=True)
+        (folder / "campaign.toml").write_text(spoilt)
+        with pytest.raises(InputError, match=said):
+            simulate(str(folder), tmp_path / "out", None, QUICK, library)
+    assert not (tmp_path / "out").exists() or not list((tmp_path / "out").iterdir())
+
+
+def test_a_campaign_of_a_copied_design_finds_it_in_its_own_folder(tmp_path):
+    """With its calibration, and from any working folder."""
+    run = {"file": "a.csv", "sensor": "A", "resin": "TangoPlus"}
+    for named, found in (
+        ("dome.toml", f"{tmp_path}/dome.toml"),
+        ("dome.toml@mine", f"{tmp_path}/dome.toml@mine"),
+        ("paper-dome@mine", "paper-dome@mine"),
+    ):
+        (tmp_path / "campaign.toml").write_text(toml_text({"design": named, "runs": [run]}))
+        assert design_of(*campaign_of(tmp_path)) == found
+    (tmp_path / "campaign.toml").write_text(toml_text({"design": "../dome.toml@mine", "runs": [run]}))
+    with pytest.raises(InputError, match="leads out of the folder"):
+        design_of(*campaign_of(tmp_path))

@@ -16,7 +16,7 @@ from pneutouch.cli.app import (
     print_json,
     reporting,
 )
-from pneutouch.cli.next_step import report_next, set_words
+from pneutouch.cli.next_step import report_next
 from pneutouch.cli.progress import bar
 from pneutouch.cli.simulate import SPECIMENS, ResinsOption, SpecimensOption, words
 from pneutouch.cli.terminal import echo, notify
@@ -59,6 +59,4 @@ def plan(
 
             echo(plan_text(result.document))
             echo(f"\n{folder}")
-            some = [] if specimens == SPECIMENS else ["--specimens", specimens]
-            which = ["--resins", resins] if resins else []
-            report_next("simulate", design, *which, *some, *set_words(set_, calibration))
+            report_next("simulate", folder)

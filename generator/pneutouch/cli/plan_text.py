@@ -3,20 +3,12 @@
 from typing import Any
 
 from pneutouch.cli.text import columns
+from pneutouch.wording import counted
 
 
 def plan_text(document: dict[str, Any]) -> str:
     """The tests with their times, and the greatest values expected of each resin at each driving pressure."""
-    tests = [
-        [
-            kind,
-            ", ".join(f"{p:g}" for p in test["driving_pressures_kPa"]),
-            str(test["runs"]),
-            f"{max(test['depths_mm']):.2f}",
-            f"{test['duration_s'] / 60:.1f}",
-        ]
-        for kind, test in document["tests"].items()
-    ]
+    tests = _tests(document)
     rows = []
     for resin in document["resins"]:
         for state in resin["states"]:
@@ -34,14 +26,36 @@ def plan_text(document: dict[str, Any]) -> str:
                     resin["model"],
                 ]
             )
-    count, sensors = len(document["runs"]), len(document["sensors"])
+    runs, sensors = counted(len(document["runs"]), "run"), counted(len(document["sensors"]), "specimen")
     return "\n".join(
         [
-            f"{document['design']}: {count} runs on {sensors} specimens, {document['total_s'] / 3600:.1f} h on "
+            f"{document['design']}: {runs} on {sensors}, {document['total_s'] / 3600:.1f} h on "
             f"{document['rig']['name']}",
             "",
-            columns(["test", "at kPa", "runs", "depth mm", "min a run"], tests),
+            columns(["test", "at kPa", "runs at each", "specimens", "runs", "depth mm", "min a run"], tests),
             "",
             columns(["resin", "kPa", "to mm", "N", "rise kPa", "model"], rows),
         ]
     )
+
+
+def _tests(document: dict[str, Any]) -> list[list[str]]:
+    """A row a kind of run, with how often it is run on all specimens, and their sum."""
+    rows = []
+    for kind in dict.fromkeys(run["kind"] for run in document["runs"]):
+        runs = [run for run in document["runs"] if run["kind"] == kind]
+        pressures_kPa = sorted({run["driving_pressure_kPa"] for run in runs})
+        sensors = len({run["sensor"] for run in runs})
+        test = document["tests"].get(kind)
+        rows.append(
+            [
+                kind,
+                ", ".join(f"{p:g}" for p in pressures_kPa),
+                str(len(runs) // (len(pressures_kPa) * sensors)),
+                str(sensors),
+                str(len(runs)),
+                "-" if test is None else f"{max(test['depths_mm']):.2f}",
+                f"{runs[0]['duration_s'] / 60:.1f}",
+            ]
+        )
+    return [*rows, ["all", "", "", "", str(len(document["runs"])), "", ""]]

@@ -7,20 +7,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from pneutouch.cli.app import (
-    CalibrationOption,
-    DesignArgument,
-    JsonOption,
-    OutOption,
-    SetOption,
-    app,
-    changes,
-    print_json,
-    reporting,
-)
+from pneutouch.cli.app import CalibrationOption, JsonOption, OutOption, SetOption, app, changes, print_json, reporting
+from pneutouch.cli.complete import names
 from pneutouch.cli.next_step import report_next
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo, notify
+from pneutouch.wording import counted
 
 if TYPE_CHECKING:
     from pneutouch.workflows.simulate.options import SimulationOptions
@@ -37,7 +29,14 @@ SPECIMENS = 3
 
 @app.command()
 def simulate(
-    design: DesignArgument,
+    design: Annotated[
+        str,
+        typer.Argument(
+            metavar="DESIGN",
+            help="Name of a design, path of a TOML file, or the folder of a plan: then every run of the plan.",
+            autocompletion=names("designs"),
+        ),
+    ],
     resins: ResinsOption = "",
     specimens: SpecimensOption = SPECIMENS,
     pressures: Annotated[
@@ -106,6 +105,8 @@ def _report(folder: Path, options: SimulationOptions, *, json: bool) -> None:
     """The folder on stdout; on stderr where runs stop short of their depth."""
     from json import loads
 
+    from pneutouch.workflows.simulate.options import KINDS
+
     truth = loads((folder / "truth.json").read_text(encoding="utf-8"))
     files = [name for name in loads((folder / "manifest.json").read_text(encoding="utf-8"))["files"] if "/" in name]
     for note in truth["notes"]:
@@ -114,6 +115,9 @@ def _report(folder: Path, options: SimulationOptions, *, json: bool) -> None:
         content = {"folder": str(folder), "simulated": True, "runs": len(files), "specimens": len(truth["specimens"])}
         print_json(content | {"seed": options.seed, "populations": truth["populations"], "notes": truth["notes"]})
         return
-    notify(f"{len(files)} simulated runs of {len(truth['specimens'])} specimens")
+    of_kind = {run.rpartition("-")[0].rpartition("-")[2] for run in files}
+    kinds = ", ".join(kind for kind in KINDS if kind in of_kind)
+    runs, specimens = counted(len(files), "simulated run"), counted(len(truth["specimens"]), "specimen")
+    notify(f"{runs} of {specimens} ({kinds})")
     echo(str(folder))
     report_next("characterize", folder)

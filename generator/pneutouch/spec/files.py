@@ -65,7 +65,13 @@ def inside(folder: Path, name: str, *, file: str | PathLike[str], key: str) -> P
 
 
 def design_inside(folder: Path, design: str, *, file: str | PathLike[str], key: str) -> str:
-    """A design that a file in ``folder`` names: a name of the catalogue as it is, a path as one `inside` the folder."""
+    """A design that a file in ``folder`` names: a name of the catalogue as it is, a path as one `inside` the folder.
+
+    A calibration after the file's name stays there: ``dome.toml@mine``.
+    """
+    plain, at, calibration = design.partition("@")
+    if at and plain.endswith(".toml"):
+        return f"{inside(folder, plain, file=file, key=key)}{at}{calibration}"
     if design.endswith(".toml") or "/" in design or "\\" in design:
         return str(inside(folder, design, file=file, key=key))
     return design

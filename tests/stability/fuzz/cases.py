@@ -43,6 +43,7 @@ LINES: dict[str, tuple[str, ...]] = {
     "simulate": (
         "paper-dome --pressures 0,22 --kinds steps --runs 1 --rest 2",
         "paper-dome --resins all --ages 0,7 --model atlas",
+        "campaign --rest 2 --rate 20 --model atlas",
     ),
     "characterize": ("campaign", "campaign --json --target target.toml", "campaign/runs/run.csv --design paper-dome"),
     "calibrate": ("campaign --sensor TangoPlus-1 --hold-out 22 --save mine", "campaign --fit modulus,wall --json"),

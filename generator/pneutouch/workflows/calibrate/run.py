@@ -9,6 +9,7 @@ from pneutouch.bench.calibrate import NAMES, Observations
 from pneutouch.catalogue import DesignSource, Library, load_scene, split_calibration, user_folder
 from pneutouch.errors import InputError
 from pneutouch.output.files import check_writable
+from pneutouch.spec.campaign_file import CAMPAIGN, design_of
 from pneutouch.spec.design import CALIBRATION
 from pneutouch.spec.read import parse_changes
 from pneutouch.workflows.calibrate.files import (
@@ -23,16 +24,7 @@ from pneutouch.workflows.calibrate.files import (
 from pneutouch.workflows.calibrate.fit import Calibration, calibrate, observations_of
 from pneutouch.workflows.calibrate.further import with_further_tests
 from pneutouch.workflows.calibrate.place import check_place, check_unlike
-from pneutouch.workflows.characterize import (
-    CAMPAIGN,
-    CampaignData,
-    Progress,
-    Reading,
-    answers,
-    load_curves,
-    read_as,
-    sound,
-)
+from pneutouch.workflows.characterize import CampaignData, Progress, Reading, answers, load_curves, read_as, sound
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +77,7 @@ def run_calibration(
     if options.save is not None:
         check_place(options.save, user_folder())
     loaded = load_curves(options.data, progress=progress, reading=reading)
-    design = options.design or loaded.campaign.design
+    design = options.design or design_of(loaded.campaign, loaded.folder)
     if design is None:
         raise InputError("names no design", file=options.data, remedy="give `design`")
     # A design that is calibrated already is fitted from its drawing again, or the prior would hold the data twice.

@@ -1,12 +1,11 @@
 """Measured data to figures, compared with the predicted ones."""
 
-from pneutouch.workflows.characterize.load import CAMPAIGN, CampaignData, Progress, load_curves
+from pneutouch.workflows.characterize.load import CampaignData, Progress, load_curves
 from pneutouch.workflows.characterize.predicted import answers
 from pneutouch.workflows.characterize.reading import Reading, parse_columns, read_as
 from pneutouch.workflows.characterize.run import CharacterizationResult, characterize, sound
 
 __all__ = [
-    "CAMPAIGN",
     "CampaignData",
     "CharacterizationResult",
     "Progress",

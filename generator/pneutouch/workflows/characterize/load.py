@@ -16,13 +16,11 @@ from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError, PneutouchError
 from pneutouch.evaluation.resins import resin_of
 from pneutouch.spec.campaign import Campaign, CampaignRun
-from pneutouch.spec.files import inside, is_file
+from pneutouch.spec.campaign_file import campaign_of
+from pneutouch.spec.files import is_file
 from pneutouch.spec.names import file_name
-from pneutouch.spec.read import read_toml, validate
 from pneutouch.units import KPA
 from pneutouch.workflows.characterize.reading import Reading, with_reading
-
-CAMPAIGN = "campaign.toml"
 
 Progress = Callable[[int, int], None]
 """Receives the megabytes read and the megabytes in all."""
@@ -70,17 +68,6 @@ class _Gathered:
     failures: list[tuple[str, str]] = field(default_factory=list)
     questions: list[tuple[str, str]] = field(default_factory=list)
     sources: dict[str, MeasuredFile] = field(default_factory=dict)
-
-
-def campaign_of(data: Path) -> tuple[Campaign, Path]:
-    """The campaign of a folder or of its campaign file, whose runs lie in that folder. Raises InputError."""
-    path = data / CAMPAIGN if data.is_dir() else data
-    if data.is_dir() and not path.is_file():
-        raise InputError(f"holds no {CAMPAIGN}", file=data, remedy="`pneutouch plan` writes one to be filled in")
-    campaign = validate(Campaign, read_toml(path), str(path))
-    for place, run in enumerate(campaign.runs):
-        inside(path.parent, run.file, file=path, key=f"runs[{place}].file")
-    return campaign, path.parent
 
 
 def load_curves(

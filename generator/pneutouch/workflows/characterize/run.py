@@ -17,12 +17,12 @@ from pneutouch.output.files import MANIFEST, check_writable, json_bytes, write_f
 from pneutouch.output.manifest import entry, input_hash, manifest
 from pneutouch.report.measured import CampaignReport
 from pneutouch.spec.campaign import AS_DESIGNED
-from pneutouch.spec.files import design_inside
+from pneutouch.spec.campaign_file import CAMPAIGN, campaign_of, design_of
 from pneutouch.spec.names import file_name
 from pneutouch.spec.read import Changes, parse_changes, read_toml, validate
 from pneutouch.spec.target import Target
 from pneutouch.workflows.characterize.document import document
-from pneutouch.workflows.characterize.load import CAMPAIGN, CampaignData, Progress, campaign_of, load_curves
+from pneutouch.workflows.characterize.load import CampaignData, Progress, load_curves
 from pneutouch.workflows.characterize.predicted import StatePrediction, answers, compared
 from pneutouch.workflows.characterize.reading import Reading, read_as
 from pneutouch.workflows.characterize.tables import injections, points_csv, segments_csv
@@ -115,11 +115,11 @@ def _design_of(data: Path) -> tuple[str, dict[str, Any]]:
             raise InputError("no such file or folder", file=data)
         raise InputError("a single file needs its sensor", file=data, remedy="give `design`")
     campaign, folder = campaign_of(data)
-    if campaign.design is None:
+    name = design_of(campaign, folder)
+    if name is None:
         raise InputError(
             "the campaign names no design", file=folder, remedy='give `design`, or design = "..." in its file'
         )
-    name = design_inside(folder, campaign.design, file=folder / CAMPAIGN, key="design")
     return name, parse_changes(campaign.assignments)
 
 

@@ -2,9 +2,8 @@
 
 from pneutouch.catalogue import DesignSource, Library
 from pneutouch.catalogue.scene import split_calibration
+from pneutouch.spec.campaign_file import CAMPAIGN
 from pneutouch.spec.files import read_bytes
-
-CAMPAIGN = "campaign.toml"
 
 
 def named_design(design: str | DesignSource, library: Library) -> tuple[str, dict[str, bytes]]:

@@ -5,7 +5,7 @@ from typing import get_args
 
 from pneutouch.bench.simulate import SimulationTruth
 from pneutouch.errors import InputError, nearest
-from pneutouch.spec.campaign import RunKind
+from pneutouch.spec.campaign import CampaignRun, RunKind
 
 KINDS: tuple[str, ...] = get_args(RunKind)
 PRESSED = ("steps", "saturation", "loop", "relaxation")
@@ -17,7 +17,10 @@ REPEATED = ("steps", "saturation")
 
 @dataclass(frozen=True)
 class SimulationOptions:
-    """What shall be simulated. Pressures in kPa (None: the design's), rate in Hz, ages in days."""
+    """What shall be simulated. Pressures in kPa (None: the design's), rate in Hz, ages in days.
+
+    ``planned`` are the runs of a plan; specimens, pressures, runs and kinds then follow from them.
+    """
 
     resins: tuple[str, ...] = ()
     specimens: int = 3
@@ -30,6 +33,7 @@ class SimulationOptions:
     ages_days: tuple[float, ...] = (0.0,)
     parquet: bool = False
     truth: SimulationTruth = field(default_factory=SimulationTruth)
+    planned: tuple[CampaignRun, ...] = ()
 
 
 def check_options(options: SimulationOptions) -> None:

@@ -32,8 +32,10 @@ from pneutouch.spec.campaign import Campaign, CampaignRun, Rig
 from pneutouch.spec.read import Changes, assignments, validate
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.units import KPA, ML
+from pneutouch.workflows.simulate.listed import driving_pressures_kPa, label, runs_of, sensors_of
 from pneutouch.workflows.simulate.named import named_design
-from pneutouch.workflows.simulate.options import KINDS, PRESSED, REPEATED, SimulationOptions, check_options
+from pneutouch.workflows.simulate.options import KINDS, PRESSED, SimulationOptions, check_options
+from pneutouch.workflows.simulate.planned import as_planned
 
 PUSHED = np.linspace(0.0, 0.5, 11) * ML
 """Volumes of an injection run, mm3: 0 to 0.5 mL, our choice."""
@@ -57,8 +59,10 @@ def simulate(
 ) -> Path:
     """Write ``out/<design>-campaign/``: campaign.toml, runs, truth.json, manifest; the same input, the same bytes.
 
-    Runs are written to a hidden folder next to it as they are made. Raises InputError for what cannot be.
+    ``design`` may be the folder of a plan, whose runs are simulated. Runs are written to a hidden folder next to the
+    one to be as they are made. Raises InputError for what cannot be.
     """
+    design, changes, options = as_planned(design, changes, options)
     check_options(options)
     library = library or Library.default()
     subjects = resins_of(design, changes, options.resins, options.truth, library)
@@ -99,12 +103,12 @@ def _write_all(
 ) -> None:
     runs: list[CampaignRun] = []
     truth: dict[str, Any] = {"specimens": {}, "populations": [], "notes": []}
-    total = len(subjects) * options.specimens * len(options.ages_days)
+    total = sum(len(sensors_of(subject.name, options)) for subject in subjects) * len(options.ages_days)
     for subject in subjects:
         for age in options.ages_days:
             truth["populations"] += _populations(subject, age, options)
-            for k in range(options.specimens):
-                for run, content in _specimen(subject, age, k, options, truth):
+            for k, sensor in enumerate(sensors_of(subject.name, options)):
+                for run, content in _specimen(subject, sensor, k, age, options, truth):
                     runs.append(run)
                     writer.put(run.file, content)
                 progress(truth["done"], total)
@@ -143,12 +147,6 @@ def campaign_toml(campaign: Campaign, comment: str) -> bytes:
     return f"{comment}\n{toml_text(content)}".encode()
 
 
-def _driving_pressures_kPa(subject: SimulatedResin, options: SimulationOptions) -> list[float]:
-    """Driving pressures in kPa."""
-    given_kPa = options.driving_pressures_kPa
-    return sorted(subject.scene.design.pneumatics.driving_pressures_kPa if given_kPa is None else given_kPa)
-
-
 def _depth(subject: SimulatedResin, options: SimulationOptions) -> float:
     """The deepest plate travel of the requested kinds, mm."""
     reach = subject.sensor.dome.inner_radius
@@ -157,68 +155,55 @@ def _depth(subject: SimulatedResin, options: SimulationOptions) -> float:
 
 
 def _pressed(subject: SimulatedResin, sensor: Sensor, options: SimulationOptions, who: str) -> PressCurves:
-    driving = [p * KPA for p in _driving_pressures_kPa(subject, options)]
+    driving = [p * KPA for p in driving_pressures_kPa(subject, options)]
     return pressed(who, sensor, driving, _depth(subject, options), options.model)
 
 
 def _populations(subject: SimulatedResin, age: float, options: SimulationOptions) -> Iterator[dict[str, Any]]:
     nominal = _pressed(subject, aged(subject.sensor, subject.truth, age), options, subject.name)
     seeds = options.seed, _number(subject.name)
-    for k, pressure_kPa in enumerate(_driving_pressures_kPa(subject, options)):
+    for k, pressure_kPa in enumerate(driving_pressures_kPa(subject, options)):
         spread_of: Population = population(nominal, k, subject.truth, options.rate, seeds)
         about = {key: getattr(spread_of, key) for key in ("figures", "spread", "count", "basis")}
         yield {"resin": subject.name, "age_days": age, "driving_pressure_kPa": pressure_kPa, **about}
 
 
 def _specimen(
-    subject: SimulatedResin, age: float, k: int, options: SimulationOptions, truth: dict[str, Any]
+    subject: SimulatedResin, name: str, k: int, age: float, options: SimulationOptions, truth: dict[str, Any]
 ) -> Iterator[tuple[CampaignRun, bytes]]:
-    """Every run of one specimen at one age, and what is true of it."""
-    name = f"{subject.name}-{k + 1}"
+    """Every run of one specimen, the resin's k-th, at one age, and what is true of it."""
     rng = np.random.default_rng([options.seed, _number(subject.name), k])
     drawn = SimulatedSpecimens.draw(subject.truth.scatter, 1, rng)
     sensor = aged(drawn.sensor(subject.sensor, 0), subject.truth, age)
     stream = np.random.default_rng([options.seed, _number(subject.name), k, _DEVIATION])
     pressed_curves = subject.truth.deviation.deviated(_pressed(subject, sensor, options, name), stream)
-    known: dict[str, Any] = {
+    pressures_kPa = driving_pressures_kPa(subject, options)
+    truth["specimens"][label(name, age, options)] = {
         "resin": subject.name,
         "age_days": age,
         "shear_modulus_MPa": sensor.wall.hyperelastic.mu,
-        "pressures": {},
+        "pressures": {
+            f"{pressure_kPa:g}": {
+                **specimen_figures(curve, subject.truth, sensor.dome.inner_radius, options.rate),
+                "range_end_mm": curve.reach,
+                "range_ends_by": None if curve.ends is None else curve.ends[0],
+            }
+            for pressure_kPa, curve in zip(pressures_kPa, pressed_curves.curves, strict=True)
+        },
         "wall_thickness_mm": sensor.dome.wall_thickness,
         "dead_volume_mL": sensor.gas.dead_volume / ML,
         "model": pressed_curves.model,
     }
-    truth["specimens"][_label(name, age, options)] = known
     truth["done"] = truth.get("done", 0) + 1
-    pressures_kPa = _driving_pressures_kPa(subject, options)
-    for place, (pressure, curve) in enumerate(zip(pressures_kPa, pressed_curves.curves, strict=True)):
-        known["pressures"][f"{pressure:g}"] = {
-            **specimen_figures(curve, subject.truth, sensor.dome.inner_radius, options.rate),
-            "range_end_mm": curve.reach,
-            "range_ends_by": None if curve.ends is None else curve.ends[0],
-        }
-        for kind in options.kinds:
-            if kind == "injection" and place > 0:
-                continue
-            for number in range(1, (options.runs if kind in REPEATED else 1) + 1):
-                at = 0.0 if kind == "injection" else pressure
-                stem = f"{_label(name, age, options)}-{at:g}kPa-{kind}-{number}"
-                run = CampaignRun(
-                    file=f"runs/{stem}.{'parquet' if options.parquet else 'csv'}",
-                    kind=kind,  # type: ignore[arg-type]
-                    sensor=name,
-                    resin=subject.name,
-                    driving_pressure_kPa=at,
-                    run=number,
-                    age_days=age,
-                )
-                key = [_number(subject.name), k, round(1e3 * age), round(1e6 * pressure), KINDS.index(kind), number]
-                rng = np.random.default_rng([options.seed, *key])
-                if kind in PRESSED:
-                    _note_end(run, subject, curve.reach, curve.ends, truth)
-                samples = _columns(kind, subject, pressed_curves, place, options, rng)
-                yield run, encoded(samples, parquet=options.parquet)
+    for run in runs_of(name, subject, age, options):
+        place = 0 if run.kind == "injection" else pressures_kPa.index(run.driving_pressure_kPa)
+        pressure_kPa, curve = pressures_kPa[place], pressed_curves.curves[place]
+        key = [_number(subject.name), k, round(1e3 * age), round(1e6 * pressure_kPa), KINDS.index(run.kind), run.run]
+        rng = np.random.default_rng([options.seed, *key])
+        if run.kind in PRESSED:
+            _note_end(run, subject, curve.reach, curve.ends, truth)
+        samples = _columns(run.kind, subject, pressed_curves, place, options, rng)
+        yield run, encoded(samples, parquet=options.parquet)
 
 
 def _note_end(
@@ -260,10 +245,6 @@ def _columns(
     }
 
 
-def _label(name: str, age: float, options: SimulationOptions) -> str:
-    return name if options.ages_days == (0.0,) else f"{name}-{age:g}d"
-
-
 def _number(name: str) -> int:
     """A number for a name, so that a resin's specimens do not depend on which others are simulated."""
     return zlib.crc32(name.encode())
@@ -271,10 +252,14 @@ def _number(name: str) -> int:
 
 def _inputs(subjects: list[SimulatedResin], options: SimulationOptions) -> dict[str, Any]:
     first = subjects[0]
+    stated = ("specimens", "runs") if options.planned else ()
+    chosen = {key: getattr(options, key) for key in _OPTIONS if key not in stated}
+    planned = [[run.sensor, run.kind, run.driving_pressure_kPa, run.run, run.age_days] for run in options.planned]
     return {
         "design": first.scene.design.model_dump(mode="json"),
         "resins": {subject.name: subject.scene.membrane_material.model_dump(mode="json") for subject in subjects},
-        "options": {key: value for key in _OPTIONS if (value := getattr(options, key)) is not None},
+        "options": {key: value for key, value in chosen.items() if value is not None},
+        **({"planned": planned} if planned else {}),
         "parameters": _parameters(first),
         "rest": first.truth.rest,
     }
