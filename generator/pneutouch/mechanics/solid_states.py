@@ -35,6 +35,7 @@ KINDS = {
     "plate_rim": ("plate edge", True),
     "crease": ("creasing", False),
     "overhang": ("wall below the base plane", False),
+    "base": ("wall on its base", False),
     "sway": ("sway", False),
     "lobes": ("lobes", False),
 }

@@ -9,9 +9,10 @@ from pneutouch.mechanics.solid.cavity import Cavity
 from pneutouch.mechanics.solid.contact import Plate
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid.newton import SolidScene, TermState, evaluate, full_tangent
+from pneutouch.mechanics.solid.newton import SolidScene, evaluate, full_tangent
 from pneutouch.mechanics.solid.printed import printed_dome
 from pneutouch.mechanics.solid.supply import Gas, Liquid
+from pneutouch.mechanics.solid.terms import TermState
 
 
 def _dense(band):

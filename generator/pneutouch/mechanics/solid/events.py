@@ -16,9 +16,11 @@ CREASE = 2.4
 SEPARATION = 1.0e-2
 #: The wall hangs over its clamp when it passes below the base plane by this share of itself.
 OVERHANG = 2.0e-2
+#: The wall lies on its base when it passes this share of the plate's force on to it.
+BASE_SHARE = 2.0e-2
 
 #: Kinds after which the path is another one: a straight-line fit ends before them.
-BREAKS_CURVE = ("unstable", "snap", "clamp_fold", "separation", "lost")
+BREAKS_CURVE = ("unstable", "snap", "clamp_fold", "separation", "lost", "floor")
 
 PLATE_RIM, OBJECT_EDGE = "plate_rim", "object_edge"
 
@@ -30,7 +32,8 @@ DETAIL = {
     PLATE_RIM: "the contact reaches the plate's rim",
     OBJECT_EDGE: "the contact reaches the object's edge, or a flank of 60 degrees",
     "floor": "the inner wall reaches the base plane",
-    "overhang": "the wall hangs below its base plane, where no support is modelled",
+    "overhang": "the wall hangs below its base plane, where it has no support",
+    "base": "the outer wall lies down on the base next to its clamp",
     "sway": "the dome is no longer stable on its axis and sways sideways where the contact slips; figures beyond are "
     "of the axisymmetric path",
     "lobes": "the dome is no longer stable as a body of revolution and takes {waves} lobes around the axis; figures "
@@ -43,11 +46,11 @@ class SolidEvent:
     """An event at an indentation (mm).
 
     kind, of those that end the path: unstable (the inflated state itself), snap (a jump to another branch), clamp_fold
-    (the same, at the clamped edge), lost (no equilibrium found), floor (the inner wall reaches the base plane).
-    Of those that do not: separation (the wall leaves the plate inside the contact: buckling inward), crease, overhang
-    (the wall hangs below its base plane, where no support is modelled), plate_rim and object_edge (the contact
-    reaches where the object turns up), break, gauge_range, sway and lobes (the
-    axisymmetric path is unstable to one wave around the axis, or to more).
+    (the same, at the clamped edge), lost (no equilibrium found), floor (the inner wall reaches the base plane; a solid
+    with a base goes on). Of those that do not: base (the outer wall lies down next to its clamp), separation (the wall
+    leaves the plate inside the contact: buckling inward), crease, overhang (the wall hangs below its base plane where
+    the solid has no base), plate_rim and object_edge (the contact reaches where the object turns up), break,
+    gauge_range, sway and lobes (the axisymmetric path is unstable to one wave around the axis, or to more).
     """
 
     kind: str

@@ -124,7 +124,10 @@ class HarmonicSolid:
         """The second variation by cells, by edges of the inner and by edges of the outer wall."""
         gas = _second_volume(self.solid, state.x)
         gas = HarmonicBlocks(*(-state.filling.pressure * part for part in (gas.constant, gas.linear, gas.square)))
-        return [self.wall(state.local), gas, self._contact(state)]
+        cells, faces = self.wall(state.local), [gas, self._contact(state)]
+        if self.solid.base is None:
+            return [cells, *faces]
+        return [cells, *map(_supported, faces, self.solid.base.waves(state.x))]
 
     def wall(self, local: PointFields) -> HarmonicBlocks:
         """Second variation of the stored energy by cells."""
@@ -219,6 +222,15 @@ class HarmonicSolid:
             load = -contact.weight * touch.traction * touch.slope / radius
             constant[:, :, _C, :, _C] = np.einsum("eq,qi,qk->eik", load, contact.shape, contact.shape)
         return _family((constant, empty, empty))
+
+
+def _supported(face: HarmonicBlocks, base: tuple[Array, Array] | None) -> HarmonicBlocks:
+    """A face of the wall with the stiffness of the base under it: in the meridian, and around the axis."""
+    if base is None:
+        return face
+    more = _placed(base[0])
+    more[:, :, _C, :, _C] = base[1]
+    return HarmonicBlocks(face.constant + more.reshape(face.constant.shape), face.linear, face.square)
 
 
 def _around(d: Array) -> Array:

@@ -9,11 +9,13 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.response import Figures, figures
+from pneutouch.mechanics.solid.base_contact import BaseLoad
 from pneutouch.mechanics.solid.contact import Plate, flat_radius, rim_radius
 from pneutouch.mechanics.solid.continuation import PathFollower, PlateState
 from pneutouch.mechanics.solid.descend import PathJump, descend
 from pneutouch.mechanics.solid.errors import UnreachableLoadError
 from pneutouch.mechanics.solid.events import (
+    BASE_SHARE,
     BREAKS_CURVE,
     CREASE,
     DETAIL,
@@ -82,7 +84,8 @@ class PressState:
     contact.  penetration: what the contact's stiffness lets through.
     stiffness: dF/d(indentation), N/mm.  slope: dp/dF at shut-in gas, MPa/N.
     stretch, von_mises: largest on the faces away from the clamp; fold: see `stress.WallExtremes`.
-    inner_apex: height.  overhang: how far the wall hangs below its base plane.  positions: (n_nodes, 2).
+    inner_apex: height.  overhang: how far the wall hangs below its base plane.  base_force, base_pressure (per area at
+    rest): what the outer wall puts on its base where the solid has one.  positions: (n_nodes, 2).
     """
 
     indentation: float
@@ -102,6 +105,8 @@ class PressState:
     penetration: float
     inner_apex: float
     overhang: float
+    base_force: float
+    base_pressure: float
     positions: Array
 
 
@@ -154,10 +159,10 @@ def indent(
         begun = len(follower.path)
         jump = descend(follower, plate.height - press.depth / length * k / press.steps)
         for plate_state in follower.path[begun:]:
-            if not _floored(events):
+            if not _ended(events, solid):
                 states.append(recorder.state(plate_state))
                 events += recorder.events(states[-2], states[-1], press)
-        if jump is not None or _floored(events):
+        if jump is not None or _ended(events, solid):
             break
     events += recorder.losses(follower.path[: len(states)], press.waves)
     return _finish(states, events, jump, recorder, press)
@@ -183,8 +188,9 @@ def first_touch(solid: SolidModel, free: FreeState, press: PressSettings) -> Fir
     return FirstTouch(body.at(height), at > solid.contact.longest)
 
 
-def _floored(events: list[SolidEvent]) -> bool:
-    return any(e.kind == "floor" for e in events)
+def _ended(events: list[SolidEvent], solid: SolidModel) -> bool:
+    """Whether the inner wall is on a base that is not there."""
+    return solid.base is None and any(e.kind == "floor" for e in events)
 
 
 def _finish(
@@ -215,6 +221,7 @@ class _Recorder:
         solid, x, touch = self._solid, plate_state.state.x, plate_state.state.touch
         assert touch is not None
         length, mu = solid.length, solid.mu
+        base = BaseLoad() if solid.base is None else solid.base.load(x)
         foot, peak = solid.contact.footprint(x, touch, self._annular), self._probe.peak(x)
         pressure = plate_state.state.filling.pressure * mu
         return PressState(
@@ -232,9 +239,11 @@ class _Recorder:
             stretch=peak.stretch,
             von_mises=peak.von_mises,
             fold=peak.fold,
-            penetration=max(0.0, -float(touch.gap.min())) * length,
+            penetration=max(base.penetration, -float(touch.gap.min())) * length,
             inner_apex=float(x[solid.mesh.inner_apex, 1]) * length,
             overhang=max(0.0, float((solid.rest[:, 1].min() - x[:, 1]).max()) * length),
+            base_force=base.force * mu * length**2,
+            base_pressure=base.traction * mu,
             positions=x * length,
         )
 
@@ -250,6 +259,7 @@ class _Recorder:
             self._edge: outer,
             "floor": 0.0,
             "overhang": OVERHANG * wall,
+            "base": BASE_SHARE,
         }
         before, after = _watched(a, self._edge), _watched(b, self._edge)
         places = {kind: crossing(before[kind], after[kind], level) for kind, level in levels.items()}
@@ -279,4 +289,5 @@ def _watched(s: PressState, edge: str) -> dict[str, PathPoint]:
         edge: PathPoint(s.indentation, s.contact_radius),
         "floor": PathPoint(s.indentation, -s.inner_apex),
         "overhang": PathPoint(s.indentation, s.overhang),
+        "base": PathPoint(s.indentation, s.base_force / max(s.force, 1.0e-300)),
     }

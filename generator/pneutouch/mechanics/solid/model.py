@@ -9,6 +9,7 @@ from pneutouch.arrays import Array, Index
 from pneutouch.mechanics.laws.hyperelastic import Hyperelastic
 from pneutouch.mechanics.laws.strain import BY_A, BY_H, BY_J, BY_JH, GRADIENT, HESSIAN, VALUE, Strain
 from pneutouch.mechanics.solid.banded import AssemblyPattern
+from pneutouch.mechanics.solid.base_contact import BaseContact, RigidBase
 from pneutouch.mechanics.solid.cavity import Cavity
 from pneutouch.mechanics.solid.contact import Contact
 from pneutouch.mechanics.solid.elements import (
@@ -20,6 +21,7 @@ from pneutouch.mechanics.solid.elements import (
 )
 from pneutouch.mechanics.solid.kinematics import F_RR, F_RZ, F_ZR, F_ZZ, HOOP, IN_PLANE, area_ratio
 from pneutouch.mechanics.solid.mesh import SolidMesh
+from pneutouch.mechanics.solid.terms import EnergyTerm
 
 ModulusField = Callable[[Array, Array], Array]
 
@@ -50,7 +52,8 @@ class SolidModel:
     """A wall on one mesh, of one law whose modulus may vary along the arc.  Positions are (n_nodes, 2) arrays in units
     of the inner radius.
 
-    ``grade`` gives the modulus over the material's own at reference points (r, z), arrays of any one shape.
+    ``grade`` gives the modulus over the material's own at reference points (r, z), arrays of any one shape.  ``base``
+    is what both faces of the wall lie down on; None lets them pass through.
     """
 
     def __init__(
@@ -59,6 +62,7 @@ class SolidModel:
         material: Hyperelastic,
         scheme: IntegrationScheme | None = None,
         grade: ModulusField | None = None,
+        base: RigidBase | None = None,
     ) -> None:
         self.mesh, self.material, self.grade = mesh, material, grade or _even
         self.scheme = scheme or DEFAULT_SCHEME[mesh.cells.shape[1]]
@@ -80,6 +84,8 @@ class SolidModel:
         idle = self.forces(self.local(self.rest))
         self.noise = float(np.linalg.norm(self.pattern.vector([idle, np.zeros((len(mesh.inner), tables[1].shape[1]))])))
         self.contact = Contact(mesh, self.rest, float(self._relative.max()) * CONTACT_STIFFNESS / self.wall)
+        self.base = None if base is None else BaseContact(self, base)
+        self.supports: tuple[EnergyTerm, ...] = () if self.base is None else (self.base,)
 
     def _integration(self) -> None:
         """Constant operators: strains (`_b`, also as `_tall` and its transpose `_wide`) and tested pressure modes."""

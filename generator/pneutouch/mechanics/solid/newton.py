@@ -1,7 +1,6 @@
 """Newton's method on the total energy of wall, filling and contact, with an energy line search."""
 
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 
@@ -11,6 +10,7 @@ from pneutouch.mechanics.solid.contact import ContactEvaluation
 from pneutouch.mechanics.solid.indenter import Indenter
 from pneutouch.mechanics.solid.model import PointFields, SolidModel
 from pneutouch.mechanics.solid.supply import FillingState, Supply
+from pneutouch.mechanics.solid.terms import EnergyTerm, TermState
 
 #: Converged: unbalanced force below this share of the forces that balance (wall, gas, plate).
 RESIDUAL = 1.0e-9
@@ -24,31 +24,6 @@ _SETTLING = 10
 
 
 @dataclass(frozen=True)
-class TermState:
-    """A further part of the total energy at one set of positions: its energy, its gradient (size,), and its second
-    derivative as ``blocks`` of `SolidModel.contact_pattern` (edges of the outer wall) and ``inner_blocks`` of
-    `SolidModel.edge_pattern` (edges of the inner wall), (n_edges, 2 n, 2 n) each; None where it has none."""
-
-    energy: float
-    gradient: Array
-    blocks: Array | None = None
-    inner_blocks: Array | None = None
-
-
-class EnergyTerm(Protocol):
-    """What adds to the total energy of wall, filling and plate: the base below the wall, friction of one step.
-
-    ``noise`` is the force that rounding leaves in its gradient.
-    """
-
-    noise: float
-
-    def at(self, x: Array) -> TermState:
-        """Energy and its derivatives at positions x (n_nodes, 2)."""
-        ...
-
-
-@dataclass(frozen=True)
 class SolidScene:
     """A body, what fills it, the plate above it (None: not there) and what else touches it; nondimensional."""
 
@@ -57,13 +32,18 @@ class SolidScene:
     plate: Indenter | None
     terms: tuple[EnergyTerm, ...] = ()
 
+    @property
+    def acting(self) -> tuple[EnergyTerm, ...]:
+        """The terms, after what the body itself rests on."""
+        return (*self.solid.supports, *self.terms)
+
 
 @dataclass(frozen=True)
 class SolverState:
     """Positions x (n_nodes, 2) with all that was evaluated there.
 
     residual: gradient of the total energy (size,); inner: its part without the plate; scale: size of the forces that
-    balance in it; by_volume: gradient of the cavity volume (size,); terms: those of the scene.
+    balance in it; by_volume: gradient of the cavity volume (size,); terms: what acts in the scene.
     """
 
     x: Array
@@ -126,8 +106,9 @@ def evaluate(scene: SolidScene, x: Array) -> SolverState | None:
     push = 0.0 * inner if touch is None else solid.push(solid.contact.force(touch.traction, touch.slope))
     load = abs(filling.pressure) * float(np.linalg.norm(by_volume)) + float(np.linalg.norm(push))
     noise = solid.noise if touch is None else solid.noise + solid.contact.noise
-    terms = tuple(term.at(x) for term in scene.terms)
-    for term, there in zip(scene.terms, terms, strict=True):
+    acting = scene.acting
+    terms = tuple(term.at(x) for term in acting)
+    for term, there in zip(acting, terms, strict=True):
         inner = inner + there.gradient
         load += float(np.linalg.norm(there.gradient))
         noise += term.noise

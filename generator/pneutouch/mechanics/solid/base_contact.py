@@ -1,0 +1,180 @@
+"""The rigid base under the dome, met without friction: a stiff potential on both faces of the wall."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from pneutouch.arrays import Array, Flags, Index
+from pneutouch.mechanics.solid.contact import Contact
+from pneutouch.mechanics.solid.elements import line_shapes
+from pneutouch.mechanics.solid.kinematics import AXIAL, RADIAL
+from pneutouch.mechanics.solid.mesh import SolidMesh
+from pneutouch.mechanics.solid.terms import TermState
+
+_POINTS = 3
+"""Quadrature points of an edge, as many as against the plate."""
+
+
+@dataclass(frozen=True)
+class RigidBase:
+    """The plane z = 0 on which the dome stands, in mm.
+
+    opening: radius of the hole in it inside the dome.  flange: outer radius of a flange that is part of the solid and
+    on which the outer wall therefore does not meet this base; 0 where the wall itself is clamped at z = 0.
+    """
+
+    opening: float = 0.0
+    flange: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite([self.opening, self.flange]).all() and self.opening >= 0.0 and self.flange >= 0.0):
+            raise ValueError(f"opening {self.opening} and flange {self.flange} must be finite and not negative")
+
+
+class _Body(Protocol):
+    """What a `SolidModel` is to its base: this file cannot import it, for it imports this file."""
+
+    mesh: SolidMesh
+    length: float
+    rest: Array
+    size: int
+    contact: Contact
+
+    def push(self, blocks: Array) -> Array:
+        """Sum (size,) of vectors on the edges of the outer wall."""
+        ...
+
+    def swell(self, blocks: Array) -> Array:
+        """Sum (size,) of vectors on the edges of the inner wall."""
+        ...
+
+
+@dataclass(frozen=True)
+class BaseLoad:
+    """What the outer wall puts on the base: force (mu R0^2), greatest traction (mu, per area at rest) and greatest
+    penetration (R0); all 0 without contact."""
+
+    force: float = 0.0
+    traction: float = 0.0
+    penetration: float = 0.0
+
+
+class BaseContact:
+    """psi = (k/2) sum w <-g>^2 on both faces, g the height over the base; an `EnergyTerm`.
+
+    The stiffness is the plate's. A wall lies down on its base point by point from the clamp outward, so plain Newton
+    steps settle it: the stiff potential costs no iteration more than a soft one. Rounding of its gaps is no greater
+    than that of the plate's, which the residual allows for.
+    """
+
+    noise = 0.0
+
+    def __init__(self, solid: _Body, base: RigidBase) -> None:
+        length = solid.length
+        self._outer = _Face(solid, solid.mesh.outer, base.flange / length)
+        self._inner = _Face(solid, solid.mesh.inner, base.opening / length)
+        self._solid = solid
+
+    def at(self, x: Array) -> TermState:
+        """Energy and its derivatives at positions x (n_nodes, 2)."""
+        solid = self._solid
+        outer, inner = self._outer.meet(x), self._inner.meet(x)
+        energy, gradient = 0.0, np.zeros(solid.size)
+        if outer is not None:
+            energy += self._outer.energy(outer)
+            gradient = solid.push(self._outer.force(outer))
+        if inner is not None:
+            energy += self._inner.energy(inner)
+            gradient = gradient + solid.swell(self._inner.force(inner))
+        return TermState(
+            energy,
+            gradient,
+            None if outer is None else self._outer.hessian(outer),
+            None if inner is None else self._inner.hessian(inner),
+        )
+
+    def waves(self, x: Array) -> list[tuple[Array, Array] | None]:
+        """Of the inner and the outer face at positions x: second derivative by edge positions (n_edges, 2 n, 2 n), and
+        by displacements around the axis (n_edges, n, n), by which a point moves outwards, too; None off the base."""
+        meetings = [(face, face.meet(x)) for face in (self._inner, self._outer)]
+        return [None if met is None else (face.hessian(met), face.around(met)) for face, met in meetings]
+
+    def load(self, x: Array) -> BaseLoad:
+        """What the outer wall puts on the base at positions x (n_nodes, 2)."""
+        face, meeting = self._outer, self._outer.meet(x)
+        if meeting is None:
+            return BaseLoad()
+        most = float(meeting.traction.max())
+        return BaseLoad(float(np.vdot(face.weight, meeting.traction)), most, most / face.stiffness)
+
+
+@dataclass(frozen=True)
+class _Meeting:
+    """Radius and traction, slope and curvature of the base at the points of a face, (n_edges, n_points) each."""
+
+    radius: Array
+    traction: Array
+    slope: Array
+    curve: Array
+
+
+class _Face:
+    """The quadrature points of one face of the wall, and the base that they can meet: flat from ``start`` outward."""
+
+    def __init__(self, solid: _Body, edges: Index, start: float) -> None:
+        self.edges, self.start, self.stiffness = edges, start, solid.contact.stiffness
+        x, w = np.polynomial.legendre.leggauss(_POINTS)
+        self.shape, slope = line_shapes(x, edges.shape[1])
+        line = solid.rest[edges]
+        measure = np.hypot(line[..., 0] @ slope.T, line[..., 1] @ slope.T) * w
+        self.weight = 2.0 * np.pi * (line[..., 0] @ self.shape.T) * measure
+        self._pairs = (self.shape[:, :, None] * self.shape[:, None, :]).reshape(_POINTS, -1)
+        # An edge of the base is as round as the longest cell, as the rim of a plate is.
+        self._rim = solid.contact.longest
+
+    def meet(self, nodes: Array) -> _Meeting | None:
+        """Points below the surface of the base at positions (n_nodes, 2); None where there are none."""
+        line = nodes[self.edges]
+        z = line[..., 1] @ self.shape.T
+        if z.min() >= 0.0:
+            return None
+        r = line[..., 0] @ self.shape.T
+        short = np.maximum(self.start - r, 0.0)
+        traction = np.maximum(-self.stiffness * (z + 0.5 * short**2 / self._rim), 0.0)
+        if not traction.any():
+            return None
+        return _Meeting(r, traction, short / self._rim, np.where(short > 0.0, -1.0 / self._rim, 0.0))
+
+    def energy(self, meeting: _Meeting) -> float:
+        return float(np.vdot(self.weight, meeting.traction**2)) / (2.0 * self.stiffness)
+
+    def force(self, meeting: _Meeting) -> Array:
+        """Derivative of the energy by edge positions, (n_edges, 2 n)."""
+        load = self.weight * meeting.traction
+        out = np.empty((load.shape[0], 2 * self.edges.shape[1]))
+        out[:, AXIAL] = -load @ self.shape
+        out[:, RADIAL] = (load * meeting.slope) @ self.shape
+        return out
+
+    def hessian(self, meeting: _Meeting) -> Array:
+        """Second derivative by edge positions, (n_edges, 2 n, 2 n)."""
+        touching: Flags = meeting.traction > 0.0
+        stiff = np.where(touching, self.stiffness, 0.0) * self.weight
+        n = self.edges.shape[1]
+        out = np.zeros((stiff.shape[0], 2 * n, 2 * n))
+        out[:, AXIAL, AXIAL] = (stiff @ self._pairs).reshape(-1, n, n)
+        if meeting.slope[touching].any():
+            across = -((stiff * meeting.slope) @ self._pairs).reshape(-1, n, n)
+            out[:, RADIAL, AXIAL], out[:, AXIAL, RADIAL] = across, across
+            along = stiff * meeting.slope**2 + self.weight * meeting.traction * meeting.curve
+            out[:, RADIAL, RADIAL] = (along @ self._pairs).reshape(-1, n, n)
+        return out
+
+    def around(self, meeting: _Meeting) -> Array:
+        """Second derivative by displacements around the axis, (n_edges, n, n)."""
+        load = self.weight * meeting.traction * meeting.slope / np.maximum(meeting.radius, 1.0e-300)
+        n = self.edges.shape[1]
+        return np.asarray((load @ self._pairs).reshape(-1, n, n))
