@@ -13,10 +13,17 @@ _OBJECTS_BEFORE_COLLECTION = 100_000
 """A command ends within seconds and keeps most of what it makes: collecting garbage at Python's 700 is a sixth of
 the time that CadQuery and matplotlib take to load."""
 
+_KEPT_BYTES = 1 << 20
+"""The GNU C library returns freed memory to the system above a bound, which a freed block of this size raises.
+
+Without it the arrays of each Newton step are returned and requested again: a tenth of the time of ``predict``.
+"""
+
 
 def run() -> None:
     """Entry point of the ``pneutouch`` command."""
     gc.set_threshold(_OBJECTS_BEFORE_COLLECTION, 50, 50)
+    bytes(_KEPT_BYTES)
     # The models have no plugins: to look for some, pydantic reads the metadata of every installed package.
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     with stop_signals(after=signal.SIG_IGN) as stop:

@@ -2,11 +2,12 @@
 
 from dataclasses import dataclass
 from itertools import product
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
+from pneutouch.printability.measure.joined import distances, grown, largest_pieces, outside
 from pneutouch.printability.measure.voxels import PartVoxels
 from pneutouch.printability.subject import Point3
 
@@ -49,13 +50,13 @@ def pockets(voxels: PartVoxels, radius: Array, most: float = NARROW) -> list[Poc
     The space where a ball of a radius fits falls into pieces as the radius grows; a piece that does not reach the
     outside lies behind an opening narrower than that. ``radius`` is that of `balls`, good to half a cube.
     """
-    outside = _outside(voxels.label == 0)
+    reaching = outside(voxels.label == 0)
     pockets: list[Pocket] = []
     taken = np.zeros(radius.shape, bool)
     # Closed altogether, as far as the cubes resolve: an opening narrower than one of them.
-    closed = (voxels.label == 0) & ~outside
+    closed = (voxels.label == 0) & ~reaching
     if closed.any():
-        for piece in _pieces(closed):
+        for piece in largest_pieces(closed):
             pockets.append(_pocket(voxels, radius, piece, 0.5 * voxels.pitch))
             taken |= piece
     enclosed = _capped(radius, most)
@@ -64,8 +65,8 @@ def pockets(voxels: PartVoxels, radius: Array, most: float = NARROW) -> list[Poc
     levels = np.geomspace(voxels.pitch, enclosed, _STEPS)
     below = 0.5 * voxels.pitch
     for level in levels:
-        cut = (radius >= level) & ~_outside(radius >= level) & ~taken
-        for piece in _pieces(cut) if cut.any() else []:
+        cut = (radius >= level) & ~outside(radius >= level) & ~taken
+        for piece in largest_pieces(cut) if cut.any() else []:
             low = _narrowed(radius, piece, below, float(level))
             pocket = _pocket(voxels, radius, _grown(voxels, piece, float(level)), 2 * low)
             if pocket.ratio <= most:
@@ -77,9 +78,7 @@ def pockets(voxels: PartVoxels, radius: Array, most: float = NARROW) -> list[Poc
 
 def balls(voxels: PartVoxels) -> Array:
     """Radius of the largest ball around each empty cube that meets no full one, mm."""
-    from scipy.ndimage import distance_transform_edt
-
-    return np.maximum(cast(Array, distance_transform_edt(voxels.label == 0)) - _BIAS, 0.0) * voxels.pitch
+    return np.maximum(distances(voxels.label == 0) - _BIAS, 0.0) * voxels.pitch
 
 
 def _capped(radius: Array, most: float) -> float:
@@ -87,36 +86,12 @@ def _capped(radius: Array, most: float) -> float:
     return most * float(radius[1:-1, 1:-1, 1:-1].max())
 
 
-def _outside(space: Flags) -> Flags:
-    """The pieces of a space that reach the model's border."""
-    from scipy.ndimage import label
-
-    number, count = label(space)
-    border = np.zeros(count + 1, bool)
-    for axis in range(3):
-        for side in (0, -1):
-            border[np.unique(np.take(number, side, axis=axis))] = True
-    border[0] = False
-    return cast(Flags, border[number])
-
-
-def _pieces(space: Flags) -> list[Flags]:
-    """Connected pieces of more than one cube, by size from the largest; at most ten."""
-    from scipy.ndimage import label
-
-    number, _ = label(space)
-    size = np.bincount(number.ravel())
-    size[0] = 0
-    order = np.argsort(-size, kind="stable")[:10]
-    return [number == one for one in order if size[one] > 1]
-
-
 def _narrowed(radius: Array, piece: Flags, low: float, high: float) -> float:
     """Radius of the opening of a piece that is open at ``low`` and closed at ``high``, mm."""
     seed = np.unravel_index(int(np.where(piece, radius, -1.0).argmax()), radius.shape)
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
-        if _outside(radius >= middle)[seed]:
+        if outside(radius >= middle)[seed]:
             low = middle
         else:
             high = middle
@@ -125,10 +100,8 @@ def _narrowed(radius: Array, piece: Flags, low: float, high: float) -> float:
 
 def _grown(voxels: PartVoxels, piece: Flags, by: float) -> Flags:
     """The piece with the empty cubes around it up to a distance, mm."""
-    from scipy.ndimage import distance_transform_edt
-
-    away = distance_transform_edt(~piece) * voxels.pitch
-    return cast(Flags, (away <= by + 0.5 * voxels.pitch) & (voxels.label == 0))
+    away = distances(~piece) * voxels.pitch
+    return np.asarray((away <= by + 0.5 * voxels.pitch) & (voxels.label == 0))
 
 
 def _pocket(voxels: PartVoxels, radius: Array, region: Flags, opening: float) -> Pocket:
@@ -178,11 +151,9 @@ def _shifted(lit: Flags, by: Any) -> Flags:
 
 def unseen(voxels: PartVoxels, radius: Array, reached: Flags) -> Flags:
     """Empty cubes out of sight in hollows at least two cubes wide: the cubes do not resolve anything narrower."""
-    from scipy.ndimage import binary_dilation
-
     hidden = (voxels.label == 0) & ~reached
     core = hidden & (radius >= voxels.pitch)
-    return cast(Flags, binary_dilation(core, iterations=2) & hidden)
+    return np.asarray(grown(grown(core)) & hidden if core.any() else core)
 
 
 def supported(voxels: PartVoxels) -> Flags:
@@ -200,12 +171,8 @@ def overhangs(voxels: PartVoxels) -> Flags:
 
     That is an overhang beyond 45 degrees, or a bridge.
     """
-    from scipy.ndimage import binary_dilation
-
     full = voxels.label > 0
-    cross = np.zeros((3, 3, 1), bool)
-    cross[:, 1], cross[1, :] = True, True
-    carried = binary_dilation(full, cross)
+    carried = grown(full, (0, 1))
     below = np.zeros_like(full)
     below[:, :, 1:] = carried[:, :, :-1]
     # What stands on the tray is carried.

@@ -97,25 +97,31 @@ def chords(manifold: Any, surface: SurfaceMesh, samples: SurfaceSamples, reach: 
 
 
 def described(manifold: Any, surface: SurfaceMesh, chords: Chords) -> Chords:
-    """The chords with ``second``, ``axis`` and ``flank`` measured."""
+    """The chords with ``second``, ``axis`` and, where it is at most `FLANK`, ``flank`` measured."""
     if not len(chords):
         return chords
-    second, sides, axis, flank = chords.second, chords.sides, chords.axis, chords.flank
+    second, sides, axis, flank = chords.second, chords.sides, chords.axis, chords.flank.copy()
     u, v = _tangents(chords.direction)
+    reach = max(2.1 * float(chords.length.max()), FLANK)
     for k in range(_LINES):
         angle = np.pi * k / _LINES
         line = np.cos(angle) * u + np.sin(angle) * v
-        middle = _lines(manifold, surface, chords.middle, line, chords.length)
+        middle = _lines(manifold, surface, chords.middle, line, reach)
         across = middle.across
         narrower = across < second
         second = np.where(narrower, across, second)
         sides = np.where(narrower[:, None], middle.faces, sides)
         axis = np.where(narrower[:, None], np.cross(line, chords.direction), axis)
-        shift = np.minimum(0.02, 0.1 * chords.length)
+        # A flank is low where a face square to the line ends it within FLANK: elsewhere no second line can make it low.
+        rows = np.flatnonzero(middle.square.min(axis=1) <= FLANK)
+        if not len(rows):
+            continue
+        low = chords.take(rows)
+        shift = np.minimum(0.02, 0.1 * low.length)
         # Just behind the face that the chord starts on: air behind a wall, body behind a gap.
-        behind = _lines(manifold, surface, chords.start - shift[:, None] * chords.direction, line, chords.length)
+        behind = _lines(manifold, surface, low.start - shift[:, None] * low.direction, line[rows], reach)
         for one, other in ((0, 1), (1, 0)):
-            flank = np.minimum(flank, behind.square[:, one] + middle.square[:, other])
+            flank[rows] = np.minimum(flank[rows], behind.square[:, one] + middle.square[rows, other])
     return replace(chords, second=second, sides=sides, axis=axis, flank=flank)
 
 
@@ -129,8 +135,7 @@ class _Line:
     faces: Indices
 
 
-def _lines(manifold: Any, surface: SurfaceMesh, middles: Array, directions: Array, lengths: Array) -> _Line:
-    reach = max(2.1 * float(lengths.max()), FLANK)
+def _lines(manifold: Any, surface: SurfaceMesh, middles: Array, directions: Array, reach: float) -> _Line:
     hit = neighbours(manifold, middles, directions, reach)
     normals = surface.normals[hit.faces]
     facing = np.einsum("ij,ij->i", normals[:, 0], normals[:, 1])

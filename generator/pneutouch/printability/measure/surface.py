@@ -7,6 +7,7 @@ from typing import cast
 import numpy as np
 
 from pneutouch.arrays import Array, Flags, Indices
+from pneutouch.printability.measure.joined import components
 
 CREASE = np.radians(40.0)
 """Edges that turn more are drawn edges; less, they approximate a curve: nine sides and more count as round."""
@@ -99,12 +100,8 @@ class SurfaceMesh:
 
     def _joined(self, smooth: Flags) -> Indices:
         """Number of the group of each triangle, (m,), where groups are joined over given edges."""
-        from scipy.sparse import coo_array
-        from scipy.sparse.csgraph import connected_components
-
         pairs = self.edges.faces[smooth]
-        graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(self.triangles),) * 2)
-        return cast(Indices, connected_components(graph, directed=False)[1].astype(np.int64))
+        return components(len(self.triangles), pairs[:, 0], pairs[:, 1])
 
     @cached_property
     def groups(self) -> Indices:

@@ -12,6 +12,7 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags, Indices
 from pneutouch.printability.measure.chords import FLANK, Chords, Side, continues, described
+from pneutouch.printability.measure.joined import components
 from pneutouch.printability.measure.surface import SurfaceMesh
 from pneutouch.printability.subject import Point3
 
@@ -166,15 +167,10 @@ def _thinned(chords: Chords, groups: Indices) -> Chords:
 
 def _connected(some: Chords, groups: Indices, round_: Flags) -> list[Indices]:
     """Rows of each place: chords whose face groups they join at both ends, and across where the place is round."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     near = groups[some.near]
     one = np.concatenate([near, *[near[round_]] * 2])
     other = groups[np.concatenate([some.far, *some.sides[round_].T])]
-    size = int(groups.max()) + 1
-    graph = coo_array((np.ones(len(one)), (one, other)), shape=(size, size))
-    label = connected_components(graph, directed=False)[1][near]
+    label = components(int(groups.max()) + 1, one, other)[near]
     return [np.flatnonzero(label == number) for number in np.unique(label)]
 
 
