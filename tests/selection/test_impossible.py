@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
+from pneutouch.cli.select_text import selection_text
 from pneutouch.errors import InputError
+from pneutouch.selection.missed import missed_percent
 from pneutouch.workflows.select.document import document
 from tests.selection.targets import FINGERTIP, answer
 
@@ -54,6 +58,37 @@ def test_the_document_says_so():
         entry["attainable"] for entry in said["dropped_requirements"] if entry["requirement"] == "force range"
     )
     assert said["nearest"]["margins"]["force range"] < 0
+
+
+@pytest.mark.parametrize(
+    "wanted",
+    [{"force_range_N": 150.0}, {"force_range_N": 150.0, "max_diameter_mm": 8.0, "stiffness_most_N_per_mm": 0.2}],
+)
+def test_what_is_missed_is_in_percent_of_what_is_required(wanted):
+    """Of the required value, not of the tolerance or of the candidate's own value."""
+    found = answer({**FINGERTIP, **wanted})
+    nearest, missed = found.answer.nearest, missed_percent(found.problem, found.answer.nearest)
+    lines, required = nearest.pool.response.lines, FINGERTIP["sensitivity_kPa_per_N"]
+    off = {
+        "sensitivity": abs(lines.sensitivity_kPa_per_N[0] - required) / required,
+        "force range": (150.0 - nearest.pool.force[0]) / 150.0,
+        "stiffness": (lines.stiffness[0] - 0.2) / 0.2,
+    }
+    assert len(missed) == 2 and missed.keys() <= off.keys()
+    assert missed == pytest.approx({name: 100 * off[name] for name in missed})
+    assert document(found)["nearest"]["misses_percent"] == missed
+    said = selection_text(found).split("it misses: ")[1].split("\n")[0]
+    for name, percent in missed.items():
+        assert float(said.split(f"{name} by ")[1].split(" %")[0]) == pytest.approx(percent, abs=0.5)
+
+
+@pytest.mark.parametrize("margin", [-0.2, -0.5])
+def test_what_exceeds_a_greatest_value_is_in_percent_of_that_value(margin):
+    """A margin of -0.5 to 10 mm is a candidate of 20 mm, which is 100 % more."""
+    found = answer({**FINGERTIP, "force_range_N": 150.0})
+    wide = replace(found.answer.nearest, margins={"outer diameter": margin, "footprint": margin})
+    wanted = 100 * (10.0 / (1.0 + margin) - 10.0) / 10.0
+    assert missed_percent(found.problem, wide) == pytest.approx({"outer diameter": wanted, "footprint": wanted})
 
 
 @pytest.mark.parametrize(

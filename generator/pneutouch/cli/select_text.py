@@ -3,6 +3,7 @@
 from pneutouch.cli.text import columns
 from pneutouch.mechanics.atlas.respond import DEPTH, ENDS
 from pneutouch.selection import Candidate
+from pneutouch.selection.missed import missed_percent
 from pneutouch.units import KPA
 from pneutouch.workflows.select.document import would_need
 from pneutouch.workflows.select.passing import RejectedDesign
@@ -10,6 +11,9 @@ from pneutouch.workflows.select.run import SelectionRun
 
 _HEAD = ["", "resin", "R0 mm", "t0 mm", "wide mm", "kPa", "S kPa/N", "U (k=2)", "range N", "ends with"]
 _HEAD += ["S 0 kPa..rated", "rated kPa", "binds", "solid S"]
+
+_FEW = 9.95
+"""Percents below this are shown with a decimal."""
 
 
 def selection_text(selection: SelectionRun) -> str:
@@ -31,13 +35,11 @@ def selection_text(selection: SelectionRun) -> str:
         return "\n".join(["no design that meets the target passes the check", "", *left])
     lines = ["no design meets the target"]
     if answer.nearest is not None:
-        margins = answer.nearest.margins.items()
-        broken = ", ".join(f"{name} by {-100 * margin:.0f} %" for name, margin in margins if margin < 0)
         lines += [
             "",
             "nearest:",
             columns(_HEAD[:-1], [["", *_row(selection, answer.nearest)]]),
-            f"it misses: {broken or 'nothing once rounded'}",
+            f"it misses: {_missed(selection, answer.nearest)}",
         ]
     lines += [
         "",
@@ -57,6 +59,16 @@ def _rejected(one: RejectedDesign) -> str:
     pool = one.choice.pool
     size = f"{one.choice.resin.name}, R0 {pool.radius[0]:.2f} mm, t0 {pool.wall[0]:.2f} mm"
     return f"rejected: {size}: {one.rule + ': ' if one.rule else ''}{one.reason}"
+
+
+def _missed(selection: SelectionRun, nearest: Candidate) -> str:
+    """What the nearest design misses, in percent of what is required."""
+    parts = []
+    for name, percent in missed_percent(selection.problem, nearest).items():
+        allowed = f" ({100 * selection.problem.tolerance:g} % is allowed)" if name == "sensitivity" else ""
+        digits = 1 if percent is not None and percent < _FEW else 0
+        parts.append(f"{name}, not known" if percent is None else f"{name} by {percent:.{digits}f} %{allowed}")
+    return ", ".join(parts) or "nothing once rounded"
 
 
 def _row(selection: SelectionRun, choice: Candidate) -> list[str]:

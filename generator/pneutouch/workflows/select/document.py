@@ -9,6 +9,7 @@ from pneutouch.errors import InputError
 from pneutouch.mechanics.atlas.respond import ENDS
 from pneutouch.parts import assemble
 from pneutouch.selection import Candidate, DroppedRequirement
+from pneutouch.selection.missed import missed_percent
 from pneutouch.units import KPA, ML
 from pneutouch.workflows.select.passing import RejectedDesign, write_assigned
 from pneutouch.workflows.select.run import Confirmation, SelectionRun
@@ -34,7 +35,12 @@ def document(selection: SelectionRun) -> dict[str, Any]:
             }
             for rank, (choice, solid) in enumerate(zip(answer.designs, confirmed, strict=True), start=1)
         ],
-        "nearest": None if answer.nearest is None else _choice(selection, answer.nearest, None),
+        "nearest": None
+        if answer.nearest is None
+        else {
+            **_choice(selection, answer.nearest, None),
+            "misses_percent": missed_percent(selection.problem, answer.nearest),
+        },
         "dropped_requirements": [_dropped(selection, dropped) for dropped in answer.dropped],
         "rejected": [_rejected(selection, rejected) for rejected in selection.rejected],
         "left_out": selection.left_out,
