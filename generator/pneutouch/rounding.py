@@ -1,18 +1,23 @@
 """Numbers of a document rounded: the last bits differ between processors, and no figure needs them."""
 
 import math
-from typing import Any
+from typing import Any, TypeVar, cast
 
 _ROUNDING = 1e-9
 
+_Json = TypeVar("_Json")
 
-def rounded(value: Any, digits: int, nothing: float = 0.0) -> Any:
+
+def rounded(value: _Json, digits: int, nothing: float = 0.0) -> _Json:
     """A JSON value with every float to ``digits`` significant digits; those below ``nothing`` are 0."""
+    result: Any = value
     if isinstance(value, float):
-        return float(f"{value:.{digits}g}") + 0.0 if abs(value) >= nothing else 0.0
-    if isinstance(value, dict):
-        return {key: rounded(item, digits, nothing) for key, item in value.items()}
-    return [rounded(item, digits, nothing) for item in value] if isinstance(value, list) else value
+        result = float(f"{value:.{digits}g}") + 0.0 if abs(value) >= nothing else 0.0
+    elif isinstance(value, dict):
+        result = {key: rounded(item, digits, nothing) for key, item in value.items()}
+    elif isinstance(value, list):
+        result = [rounded(item, digits, nothing) for item in value]
+    return cast("_Json", result)
 
 
 def tenths_below(value: float) -> float:

@@ -12,7 +12,7 @@ import numpy as np
 from pneutouch.api import show
 from pneutouch.arrays import Array
 from pneutouch.errors import InputError, shown
-from pneutouch.evaluation.document import full_document, prediction_document
+from pneutouch.evaluation.document import UncertainStateRecord, full_document, prediction_document
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -80,7 +80,7 @@ class PredictedState(show.Shown):
     curve: dict[str, Array]
     uncertainty: dict[str, Any]
 
-    def __init__(self, content: dict[str, Any]) -> None:
+    def __init__(self, content: UncertainStateRecord) -> None:
         self.figures: dict[str, FigureValue] = {}
         known = content["uncertainty"].get("figures", {})
         curve = {name: np.array(values) for name, values in content["curve"].items()}
@@ -137,7 +137,7 @@ class Prediction(show.Shown):
 
     def to_dict(self) -> dict[str, Any]:
         """The whole prediction, as the command ``predict`` prints it as JSON."""
-        return full_document(self.evaluation)
+        return dict(full_document(self.evaluation))
 
     def to_frame(self) -> DataFrame:
         """A row a driving pressure; a column a figure, with ``_low`` and ``_high`` where its interval is known."""

@@ -142,7 +142,7 @@ def check(
         else:
             from pneutouch.cli.text import findings_text
 
-            echo(findings_text([finding.document() for finding in findings]))
+            echo(findings_text(findings))
             if not broken:
                 report_next("build", design, *set_words(set_, calibration), *(["--voxels"] if voxels else []))
         if broken:
@@ -216,7 +216,7 @@ def _report(findings: Sequence[Finding], folder: Path) -> None:
     from pneutouch.output.files import MANIFEST
 
     for finding in findings:
-        notify(finding_line(finding.document()))
+        notify(finding_line(finding))
 
     path = folder / MANIFEST
     manifest = loads(path.read_text(encoding="utf-8")) if path.is_file() else {}

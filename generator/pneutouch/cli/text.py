@@ -1,11 +1,20 @@
 """What the commands print for people: plain text tables that fit a terminal."""
 
-from typing import Any
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
 
 from pneutouch.rounding import tenths_below
 
+if TYPE_CHECKING:
+    from pneutouch.evaluation.document import PredictionRecord, UncertainStateRecord
+    from pneutouch.mechanics.rating import RatingRecord
+    from pneutouch.mechanics.uncertainty.record import SampleRecord, UncertaintyRecord
+    from pneutouch.printability import Finding
 
-def prediction_text(document: dict[str, Any]) -> str:
+
+def prediction_text(document: PredictionRecord) -> str:
     """The prediction as a table, with limits, events, the interval of the sensitivity and the model's error."""
     closure = f" ({document['closure']} contact)" if document["closure"] else ""
     error = document["error_estimate"]
@@ -46,14 +55,14 @@ def _reach(point: dict[str, float] | None) -> str:
     return f"limit point {point['driving_pressure_kPa']:.2f} kPa at {inner:.2f} mm inside, {outer:.2f} mm outside"
 
 
-def _rating(rating: dict[str, Any]) -> list[str]:
+def _rating(rating: RatingRecord) -> list[str]:
     """The rated pressure with its basis, what would raise it, and what is driven above it."""
     lines = [f"rated pressure {tenths_below(rating['rated_pressure_kPa']):.1f} kPa: {rating['basis']}"]
     lines += [] if rating["remedy"] is None else [f"to raise it: {rating['remedy']}"]
     return lines + [f"{finding['severity']}: {finding['message']}" for finding in rating["findings"]]
 
 
-def _state_table(states: list[dict[str, Any]]) -> str:
+def _state_table(states: list[UncertainStateRecord]) -> str:
     sampled = ["sampled"] if any("monte_carlo" in state["uncertainty"] for state in states) else []
     head = ["kPa", "apex in mm", "apex out mm", "S kPa/N", "interval (k = 2)", *sampled]
     head += ["R2", "N/mm", "range N", "range ends at"]
@@ -67,7 +76,7 @@ def _state_table(states: list[dict[str, Any]]) -> str:
             f"{state['apex_height_outer_mm']:.3f}",
             _optional(state["sensitivity_kPa_per_N"], ".3f"),
             _interval(uncertainty),
-            *(_interval(uncertainty.get("monte_carlo", {})) for _ in sampled),
+            *(_interval(uncertainty.get("monte_carlo")) for _ in sampled),
             _optional(state["r_squared"], ".4f"),
             _optional(state["stiffness_N_per_mm"], ".3f"),
             "-" if force is None else f"0-{force[1]:.2f}",
@@ -77,13 +86,13 @@ def _state_table(states: list[dict[str, Any]]) -> str:
     return columns(head, rows)
 
 
-def _interval(uncertainty: dict[str, Any]) -> str:
+def _interval(uncertainty: UncertaintyRecord | SampleRecord | None) -> str:
     """The interval of the sensitivity in a document of uncertainty, or a dash."""
-    figure = uncertainty.get("figures", {}).get("sensitivity_kPa_per_N")
+    figure = None if uncertainty is None else uncertainty.get("figures", {}).get("sensitivity_kPa_per_N")
     return "-" if figure is None else f"{figure['low']:.2f} to {figure['high']:.2f}"
 
 
-def _uncertainty(states: list[dict[str, Any]]) -> list[str]:
+def _uncertainty(states: list[UncertainStateRecord]) -> list[str]:
     """What to measure first, at the highest driving pressure; or why nothing is known."""
     last = states[-1]
     if "unknown" in last["uncertainty"]:
@@ -117,14 +126,14 @@ def _span(percents: list[float | None]) -> str:
     return ends if len(known) == len(percents) else f"{ends} (not known by every source)"
 
 
-def findings_text(findings: list[dict[str, Any]]) -> str:
+def findings_text(findings: Iterable[Finding]) -> str:
     """Findings with their sources, one a line, or a word that there are none."""
-    return "\n".join(f"{finding_line(f)}  [{f['source']}]" for f in findings) or "no findings"
+    return "\n".join(f"{finding_line(finding)}  [{finding.source}]" for finding in findings) or "no findings"
 
 
-def finding_line(finding: dict[str, Any]) -> str:
+def finding_line(finding: Finding) -> str:
     """A finding as a message: its severity, rule and body, what is wrong and the remedy."""
-    return "{severity}: {rule}: {body}: {message}; {fix}".format_map(finding)
+    return f"{finding.severity}: {finding.rule}: {finding.body}: {finding.message}; {finding.fix}"
 
 
 def listing_text(content: dict[str, list[dict[str, str]]]) -> str:

@@ -174,7 +174,7 @@ def comparison_document(sensors: Sequence[ComparedSensor]) -> dict[str, Any]:
             for curve in (() if state is None else state.curves)
         ],
     }
-    return rounded(content, _DIGITS, 1e-12)  # type: ignore[no-any-return]
+    return rounded(content, _DIGITS, 1e-12)
 
 
 def _row(figure: FigureColumn, pressure_kPa: float | None, sensors: Sequence[ComparedSensor]) -> dict[str, Any]:

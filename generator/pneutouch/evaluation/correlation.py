@@ -1,10 +1,10 @@
 """Uncertainty of the difference of two predicted figures: what both sensors share cancels in part."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
+from pneutouch.mechanics.uncertainty.record import UncertaintyRecord
 from pneutouch.mechanics.uncertainty.sources.model import MODEL, MODEL_CORRELATION
 
 _OF_RESIN = ("published modulus", "mixing fraction", "ageing of the modulus", "ageing")
@@ -20,7 +20,7 @@ class SourceEffect:
     size: float
 
 
-def effects_of(uncertainty: Mapping[str, Any], figure: str) -> tuple[SourceEffect, ...]:
+def effects_of(uncertainty: UncertaintyRecord, figure: str) -> tuple[SourceEffect, ...]:
     """Effects of every source on a figure, from a state's uncertainty document; their squares sum to its variance."""
     entry = uncertainty["figures"][figure]
     total, slopes = entry["standard_uncertainty_relative"], uncertainty["elasticities"][figure]

@@ -2,17 +2,44 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NotRequired, TypedDict, cast
 
 from pneutouch.evaluation.uncertainty import documents
+from pneutouch.mechanics.prediction import SensorRecord, StateRecord
 from pneutouch.mechanics.viscous.known import AGED, ageing_ratio
 from pneutouch.rounding import rounded
 
 if TYPE_CHECKING:
     from pneutouch.evaluation.evaluate import Evaluation
+    from pneutouch.mechanics.rating import RatingRecord
+    from pneutouch.mechanics.uncertainty.record import UncertaintyRecord
 
 _DIGITS = 6
 """Significant digits: more than the figures have, fewer than differ between processors."""
+
+
+class UncertainStateRecord(StateRecord):
+    """A state with its uncertainty."""
+
+    uncertainty: UncertaintyRecord
+
+
+class AgedRecord(TypedDict):
+    """The modulus after a year over the fresh one, and what that assumes."""
+
+    modulus_ratio: float
+    assumes: str
+
+
+class PredictionRecord(SensorRecord):
+    """A prediction as ``predict`` prints it; ``prediction.json`` holds it up to ``states``."""
+
+    dead_volume_note: NotRequired[str]
+    rating: RatingRecord
+    states: list[UncertainStateRecord]
+    viscous: NotRequired[dict[str, Any]]
+    calibration: NotRequired[dict[str, Any]]
+    aged: NotRequired[AgedRecord]
 
 
 def viscous(evaluation: Evaluation) -> dict[str, Any]:
@@ -21,12 +48,12 @@ def viscous(evaluation: Evaluation) -> dict[str, Any]:
     return {"unknown": runs} if isinstance(runs, str) else rounded(runs.document(), _DIGITS)
 
 
-def rating_document(evaluation: Evaluation) -> dict[str, Any]:
+def rating_document(evaluation: Evaluation) -> RatingRecord:
     """The rated pressure, what it follows from and what would raise it; driving pressures above it are findings."""
     return evaluation.rating.document([state.driving_pressure for state in evaluation.prediction.states])
 
 
-def prediction_document(evaluation: Evaluation, samples: int = 0) -> dict[str, Any]:
+def prediction_document(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
     """The prediction as ``predict`` prints it, with its ``rating``, every state with its ``uncertainty``.
 
     ``dead_volume_note`` stands there where the stated dead volume is an idealisation.
@@ -37,19 +64,17 @@ def prediction_document(evaluation: Evaluation, samples: int = 0) -> dict[str, A
         uncertainty = documents(
             evaluation.prediction, evaluation.sensor, evaluation.scene, lambda: evaluation.resins, samples
         )
-    return {
-        **content,
-        **({"dead_volume_note": evaluation.assembly.dead_volume_note} if evaluation.assembly.dead_volume_note else {}),
-        "rating": rating_document(evaluation),
-        "states": [
-            {**state, "uncertainty": entry} for state, entry in zip(content["states"], uncertainty, strict=True)
-        ],
-    }
+    states = [{**state, "uncertainty": entry} for state, entry in zip(content["states"], uncertainty, strict=True)]
+    record = cast("PredictionRecord", {**content, "rating": rating_document(evaluation), "states": states})
+    if evaluation.assembly.dead_volume_note:
+        record["dead_volume_note"] = evaluation.assembly.dead_volume_note
+    return record
 
 
-def full_document(evaluation: Evaluation, samples: int = 0) -> dict[str, Any]:
+def full_document(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
     """`prediction_document` with ``viscous``, and ``aged`` where the prediction is of an aged sensor."""
-    content = {**prediction_document(evaluation, samples), "viscous": viscous(evaluation)}
+    content = prediction_document(evaluation, samples)
+    content["viscous"] = viscous(evaluation)
     calibration = evaluation.scene.calibration
     if calibration is not None:
         content["calibration"] = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -25,6 +25,7 @@ from pneutouch.units import KPA
 
 if TYPE_CHECKING:
     from pneutouch.mechanics.rating import Rating
+    from pneutouch.mechanics.uncertainty.record import UncertaintyRecord
     from pneutouch.mechanics.viscous.describe import ViscousRuns
     from pneutouch.printability import Finding
     from pneutouch.printability.estimate import JobEstimate
@@ -98,7 +99,7 @@ class Evaluation:
         return [finding for body, solid in pairs for finding in inspect(body, solid, tolerance)]
 
     @cached_property
-    def uncertainty(self) -> tuple[dict[str, Any], ...]:
+    def uncertainty(self) -> tuple[UncertaintyRecord, ...]:
         """Uncertainty of the figures of each state; computed on first use, so that a sweep without it saves the
         time."""
         from pneutouch.evaluation.uncertainty import documents

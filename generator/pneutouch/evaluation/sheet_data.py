@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from pneutouch.arrays import Array
@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from pneutouch.mechanics.prediction import SensorPrediction
     from pneutouch.mechanics.rating import Rating
     from pneutouch.mechanics.uncertainty import GasNotes
+    from pneutouch.mechanics.uncertainty.record import UncertaintyRecord
     from pneutouch.parts import Assembly
     from pneutouch.printability import Finding
     from pneutouch.printability.estimate import JobEstimate
@@ -116,7 +117,7 @@ class SheetData:
     prediction: SensorPrediction
     findings: list[Finding]
     input_hash: str
-    uncertainty: tuple[dict[str, Any], ...]
+    uncertainty: tuple[UncertaintyRecord, ...]
     estimates: tuple[JobEstimate, ...]
     rating: Rating
     numerical_error: float

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.evaluation.graded_uncertainty import even_wall, notes_on
@@ -20,10 +20,9 @@ from pneutouch.units import KPA
 if TYPE_CHECKING:
     from pneutouch.mechanics.atlas.press import SensorBatch
     from pneutouch.mechanics.uncertainty import Budget
+    from pneutouch.mechanics.uncertainty.record import FigureRecord, IntervalRecord, SampleRecord, UncertaintyRecord
 
 # The uncertainty, through the atlas, loads scipy; a prediction by the membrane alone must not pay for that.
-
-Document = dict[str, Any]
 
 _DIGITS = 6
 """Significant digits of an uncertainty: more than it has, fewer than differ between processors."""
@@ -87,7 +86,7 @@ def documents(
     scene: ResolvedDesign,
     resins: Callable[[], Mapping[str, Material]],
     samples: int = 0,
-) -> tuple[Document, ...]:
+) -> tuple[UncertaintyRecord, ...]:
     """One document a state: see `mechanics.uncertainty.document`, with its ``summary``; or ``{"unknown": why}``.
 
     ``resins`` gives the elastomers whose measurements the model's error is taken from. ``samples`` > 0 adds
@@ -112,10 +111,10 @@ def documents(
         missing = entry["figures"].keys() - values.keys()
         for name in missing:
             del entry["figures"][name], entry["elasticities"][name]
-        more = {"monte_carlo": _sampled(estimate, row, samples, entry["figures"])} if samples else {}
-        content.append(
-            rounded({**entry, "summary": text(estimate.budget, row, calibrated=calibrated), **more}, _DIGITS, _NOTHING)
-        )
+        entry["summary"] = text(estimate.budget, row, calibrated=calibrated)
+        if samples:
+            entry["monte_carlo"] = _sampled(estimate, row, samples, entry["figures"])
+        content.append(rounded(entry, _DIGITS, _NOTHING))
     return tuple(content)
 
 
@@ -136,12 +135,12 @@ def _values(prediction: SensorPrediction, state: SensorState) -> dict[str, float
     }
 
 
-def _sampled(estimate: SensorBudget, row: int, samples: int, figures: Document) -> Document:
+def _sampled(estimate: SensorBudget, row: int, samples: int, figures: Mapping[str, FigureRecord]) -> SampleRecord:
     """The 95.45 % intervals of the samples about the model's figures, and the share of samples without a figure."""
     from pneutouch.mechanics.uncertainty import FIGURES, monte_carlo
 
     drawn = monte_carlo(estimate.batch, estimate.budget.sources, row, samples)
-    intervals = {}
+    intervals: dict[str, IntervalRecord] = {}
     for i, name in enumerate(FIGURES):
         if name in figures and drawn.lost[i] < 1:
             scale = figures[name]["value"] / float(estimate.budget.values[i, row])

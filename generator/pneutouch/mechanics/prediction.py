@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, TypedDict
+from typing import TypedDict
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.events import Event
+from pneutouch.mechanics.events import Event, EventRecord
 from pneutouch.mechanics.limits import LimitPoint, Limits
 from pneutouch.mechanics.response import Figures, tangent_stiffness
 from pneutouch.mechanics.sensor import ResponseCorrection
@@ -33,6 +33,71 @@ class ErrorEstimate(TypedDict, total=False):
     sensitivity_relative_0kPa_22kPa: list[float | None]
     sensitivity_basis: str
     summary: list[str]
+
+
+class StressRecord(TypedDict, total=False):
+    """The greatest von Mises stress along a loading curve, where the model computes it."""
+
+    max_von_mises_MPa: list[float]
+
+
+class CurveRecord(StressRecord):
+    """A loading curve, lists of one length."""
+
+    indentation_mm: list[float]
+    contact_force_N: list[float]
+    pressure_rise_kPa: list[float]
+    contact_radius_mm: list[float]
+    max_stretch: list[float]
+    tangent_stiffness_N_per_mm: list[float]
+
+
+class StateRecord(TypedDict):
+    """A state as ``predict`` prints it; figures are None where no line can be fitted."""
+
+    driving_pressure_kPa: float
+    apex_height_inner_mm: float
+    apex_height_outer_mm: float
+    cavity_volume_mL: float
+    range_end_mm: float
+    sensitivity_kPa_per_N: float | None
+    sensitivity_through_origin_kPa_per_N: float | None
+    r_squared: float | None
+    nonlinearity_percent: float | None
+    stiffness_N_per_mm: float | None
+    force_range_N: list[float] | None
+    saturation_force_N: float | None
+    curve: CurveRecord
+    events: list[EventRecord]
+
+
+class LimitsRecord(TypedDict):
+    """The limits of the driving pressure, and which binds."""
+
+    limit_point_kPa: float | None
+    break_strain_kPa: float | None
+    gauge_range_kPa: float
+    binding: str
+
+
+class SensorRecord(TypedDict):
+    """What a prediction states of the sensor as a whole."""
+
+    design: str
+    model: str
+    closure: str | None
+    error_estimate: ErrorEstimate
+    limit_point: dict[str, float] | None
+    limits: LimitsRecord
+    dead_volume_mL: float
+    inflation: dict[str, list[float]]
+    assumptions: list[str]
+
+
+class ModelRecord(SensorRecord):
+    """A prediction by the model alone."""
+
+    states: list[StateRecord]
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,9 +147,12 @@ class SensorState:
             figures=None if self.figures is None else self.figures.scaled(by_force, by_rise),
         )
 
-    def document(self) -> dict[str, Any]:
-        """The state as ``predict`` prints it."""
+    def document(self) -> StateRecord:
+        """The state as ``predict`` prints it, without its uncertainty."""
         f = self.figures
+        stress: StressRecord = {}
+        if self.max_von_mises is not None:
+            stress["max_von_mises_MPa"] = self.max_von_mises.tolist()
         return {
             "driving_pressure_kPa": self.driving_pressure / KPA,
             "apex_height_inner_mm": self.apex_inner,
@@ -104,7 +172,7 @@ class SensorState:
                 "pressure_rise_kPa": (self.pressure_rise / KPA).tolist(),
                 "contact_radius_mm": self.contact_radius.tolist(),
                 "max_stretch": self.max_stretch.tolist(),
-                **({} if self.max_von_mises is None else {"max_von_mises_MPa": self.max_von_mises.tolist()}),
+                **stress,
                 "tangent_stiffness_N_per_mm": tangent_stiffness(self.indentation, self.force).tolist(),
             },
             "events": [event.document() for event in self.events],
@@ -149,15 +217,15 @@ class SensorPrediction:
     def __repr__(self) -> str:
         return f"SensorPrediction({self.design!r}, model {self.model}, {len(self.states)} states)"
 
-    def document(self) -> dict[str, Any]:
-        """The prediction as ``predict`` prints it and ``prediction.json`` keeps it."""
+    def document(self) -> ModelRecord:
+        """The prediction as ``predict`` prints it, without rating and uncertainty."""
         point, caps = self.limit_point, self.limits
-        content = {
+        content: ModelRecord = {
             "design": self.design,
             "model": self.model,
             "closure": self.closure,
             "error_estimate": self.error_estimate,
-            "limit_point": point and point.document(),
+            "limit_point": None if point is None else point.document(),
             "limits": {
                 "limit_point_kPa": None if caps.limit_point is None else caps.limit_point / KPA,
                 "break_strain_kPa": None if caps.break_strain is None else caps.break_strain / KPA,
@@ -174,4 +242,4 @@ class SensorPrediction:
             "states": [state.document() for state in self.states],
             "assumptions": list(self.assumptions),
         }
-        return rounded(content, _DIGITS, _NOTHING)  # type: ignore[no-any-return]
+        return rounded(content, _DIGITS, _NOTHING)

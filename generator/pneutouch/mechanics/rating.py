@@ -1,7 +1,7 @@
 """The rated pressure: how far a sensor may be driven, the uncertainty of its limits included."""
 
 from dataclasses import dataclass
-from typing import Any, Literal, NamedTuple
+from typing import Literal, NamedTuple, TypedDict
 
 import numpy as np
 
@@ -34,6 +34,30 @@ class UncertainLimit(NamedTuple):
     nominal: float
     low: float
     high: float
+
+
+class RatingFinding(TypedDict):
+    """A driving pressure above the rated pressure."""
+
+    severity: Literal["error", "warning"]
+    driving_pressure_kPa: float
+    message: str
+
+
+class RatingRecord(TypedDict):
+    """The rating in boundary units."""
+
+    rated_pressure_kPa: float
+    share: float
+    coverage_factor: float
+    limit: str
+    limit_kPa: float
+    limit_low_kPa: float
+    limit_high_kPa: float
+    basis: str
+    rated_pressure_with_measured_modulus_kPa: float | None
+    remedy: str | None
+    findings: list[RatingFinding]
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,11 +135,11 @@ class Rating:
         """The remedy where it lets the sensor be driven at a pressure (MPa); None where only less pressure does."""
         return self.remedy if self.measured >= pressure else None
 
-    def document(self, driving_pressures: list[float]) -> dict[str, Any]:
+    def document(self, driving_pressures: list[float]) -> RatingRecord:
         """The rating in boundary units, with its findings on driving pressures (MPa)."""
         limit, remedy = self.limit, self.remedy
         judged = [(p, self.severity(p)) for p in driving_pressures]
-        content = {
+        content: RatingRecord = {
             "rated_pressure_kPa": self.pressure / KPA,
             "share": RATED_SHARE,
             "coverage_factor": COVERAGE,
@@ -132,7 +156,7 @@ class Rating:
                 if severity is not None
             ],
         }
-        return rounded(content, _DIGITS)  # type: ignore[no-any-return]
+        return rounded(content, _DIGITS)
 
 
 def rated_pressure(limit: Array, spread: Array, gauge: Array | float) -> Array:

@@ -4,9 +4,8 @@ from typing import Any
 
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.mechanics.prediction import SensorPrediction
+from pneutouch.mechanics.uncertainty.record import SourceRecord, UncertaintyRecord
 from pneutouch.units import KPA
-
-Document = dict[str, Any]
 
 SENSITIVITY = "sensitivity_kPa_per_N"
 
@@ -29,20 +28,20 @@ _INPUTS = {
 }
 
 
-def ends(prediction: SensorPrediction, documents: tuple[Document, ...]) -> dict[str, Document]:
-    """Documents of the lowest and the highest driving pressure, by label; those of which something is known."""
+def ends(prediction: SensorPrediction, documents: tuple[UncertaintyRecord, ...]) -> dict[str, UncertaintyRecord]:
+    """Uncertainties of the lowest and the highest driving pressure, by label; those of which something is known."""
     pairs = list(zip(prediction.states, documents, strict=True))
     chosen = pairs[:1] + pairs[1:][-1:]
     return {f"{s.driving_pressure / KPA:g} kPa": d for s, d in chosen if SENSITIVITY in d.get("figures", {})}
 
 
-def interval(document: Document, figure: str = SENSITIVITY) -> str:
+def interval(document: UncertaintyRecord, figure: str = SENSITIVITY) -> str:
     """The k = 2 interval of a figure, such as ``1.57 to 2.38``; empty where it is not known."""
     estimate = document.get("figures", {}).get(figure)
     return "" if estimate is None else f"{_digits(estimate['low'])} to {_digits(estimate['high'])}"
 
 
-def shares(covered: dict[str, Document]) -> dict[str, dict[str, float]]:
+def shares(covered: dict[str, UncertaintyRecord]) -> dict[str, dict[str, float]]:
     """Shares of the variance of the sensitivity by label of the driving pressure."""
     return {label: document["figures"][SENSITIVITY]["shares"] for label, document in covered.items()}
 
@@ -65,7 +64,7 @@ def uncertainty_section(sheet: SheetData) -> dict[str, Any]:
     }
 
 
-def _summary(covered: dict[str, Document]) -> list[str]:
+def _summary(covered: dict[str, UncertaintyRecord]) -> list[str]:
     """What to measure first, one line for driving pressures with the same result."""
     labels_of: dict[str, list[str]] = {}
     for label, document in covered.items():
@@ -80,7 +79,7 @@ def _plain(text: str) -> str:
     return text.replace("+-", "±")
 
 
-def _figures(covered: dict[str, Document]) -> list[list[str]]:
+def _figures(covered: dict[str, UncertaintyRecord]) -> list[list[str]]:
     rows = []
     for name, (title, unit) in _FIGURES.items():
         cells = []
@@ -91,13 +90,13 @@ def _figures(covered: dict[str, Document]) -> list[list[str]]:
     return rows
 
 
-def _width(document: Document, name: str) -> str:
+def _width(document: UncertaintyRecord, name: str) -> str:
     """The interval; a figure under which no source has an effect is as it was stated."""
     figure = document["figures"][name]
     return interval(document, name) if figure["expanded_uncertainty"] > 0 else "as stated"
 
 
-def _source(source: dict[str, Any]) -> list[str]:
+def _source(source: SourceRecord) -> list[str]:
     """Name, standard uncertainty, what it acts on, known or assumed, where from."""
     size = source["standard_uncertainty"]
     value = f"{size:.2g} mL" if source["unit"] == "mL" else f"{100 * size:.2g} %"

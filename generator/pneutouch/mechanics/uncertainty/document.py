@@ -1,13 +1,13 @@
 """A budget as it leaves the program: the document of one sensor, and sentences for its datasheet."""
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.uncertainty.gas_notes import ADIABATIC, REFERENCE_TEMPERATURE, gas_notes
 from pneutouch.mechanics.uncertainty.propagate import COVERAGE, Budget
+from pneutouch.mechanics.uncertainty.record import FigureRecord, IntervalRecord, UncertaintyRecord
 from pneutouch.mechanics.uncertainty.source import FIGURES, INPUTS, SENSITIVITY
 from pneutouch.mechanics.uncertainty.sources.modulus import AGEING
 
@@ -29,7 +29,7 @@ def document(
     notes: tuple[str, ...] = (),
     *,
     calibrated: bool = False,
-) -> dict[str, Any]:
+) -> UncertaintyRecord:
     """Figures, sources and notes of sensor ``row``.
 
     Args:
@@ -40,8 +40,7 @@ def document(
         calibrated: Whether to add to each figure ``at_calibration``, its interval without the ageing since then.
 
     Returns:
-        A dict of plain numbers, texts and lists. A figure that the atlas does not have is left out; without any the
-        notes state it.
+        A figure that the atlas does not have is left out; without any the notes state it.
     """
     known = [i for i in range(len(FIGURES)) if np.isfinite(budget.standard[i, row])]
     given = values or {}
@@ -50,7 +49,7 @@ def document(
         for i in known:
             width = _fresh_width(budget, i, row)
             value = figures[FIGURES[i]]["value"]
-            ends = {"low": value * float(np.exp(-width)), "high": value * float(np.exp(width))}
+            ends: IntervalRecord = {"low": value * float(np.exp(-width)), "high": value * float(np.exp(width))}
             figures[FIGURES[i]]["at_calibration"] = ends
     return {
         "coverage_factor": COVERAGE,
@@ -70,7 +69,7 @@ def _fresh_width(budget: Budget, figure: int, row: int) -> float:
     return COVERAGE * float(np.sqrt(budget.variances[kept, figure, row].sum()))
 
 
-def _figure(budget: Budget, figure: int, row: int, given: float | None) -> dict[str, Any]:
+def _figure(budget: Budget, figure: int, row: int, given: float | None) -> FigureRecord:
     value = float(budget.values[figure, row]) if given is None else given
     width = float(budget.expanded[figure, row])
     freedom = float(budget.freedom[figure, row])

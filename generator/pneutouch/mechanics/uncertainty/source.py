@@ -2,11 +2,12 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
+from pneutouch.mechanics.uncertainty.record import SourceRecord
 
 FIGURES = (
     "sensitivity_kPa_per_N",
@@ -100,13 +101,13 @@ class UncertaintySource:
             return np.asarray(deviation)
         return np.asarray(np.exp(deviation) if self.distribution.startswith("log") else 1.0 + deviation)
 
-    def documents(self, row: int) -> list[dict[str, Any]]:
+    def documents(self, row: int) -> list[SourceRecord]:
         """The source as it leaves the program, for sensor ``row``; a joint one as an entry an input."""
         if self.acts_on == FIGURE:
             return [self._document(row, FIGURE, float(self.standard[row]))]
         return [self._document(row, name, float(standard[row])) for name, standard in self.moves.items()]
 
-    def _document(self, row: int, acts_on: str, standard: float) -> dict[str, Any]:
+    def _document(self, row: int, acts_on: str, standard: float) -> SourceRecord:
         absolute = acts_on == INPUTS[DEAD]
         return {
             "name": self.name,

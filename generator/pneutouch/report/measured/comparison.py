@@ -2,12 +2,12 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.bench.summary import RunGroup
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.mechanics.prediction import SensorState
+from pneutouch.mechanics.uncertainty.record import UncertaintyRecord
 from pneutouch.spec.campaign import Campaign
 
 
@@ -28,7 +28,7 @@ class GroupComparison:
     group: RunGroup
     label: str
     state: SensorState | None
-    uncertainty: dict[str, Any]
+    uncertainty: UncertaintyRecord
     predicted: dict[str, tuple[float, float | None, float | None]]
     why: str = ""
 

@@ -173,7 +173,7 @@ def calibration_content(calibration: Calibration, source: CampaignSource) -> dic
         ],
         **({} if gap is None else {"response": _response(gap, calibration)}),
     }
-    return rounded(content, _DIGITS)  # type: ignore[no-any-return]
+    return rounded(content, _DIGITS)
 
 
 def _covariance(calibration: Calibration) -> tuple[list[int], Array]:

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
 
 from pneutouch.arrays import Array
 from pneutouch.bench.figure import line_figures
@@ -13,6 +12,7 @@ from pneutouch.errors import PneutouchError
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
 from pneutouch.evaluation.read_at import figures_at
 from pneutouch.mechanics.prediction import SensorState
+from pneutouch.mechanics.uncertainty.record import UncertaintyRecord
 from pneutouch.report.measured import GroupComparison
 from pneutouch.spec.campaign import AS_DESIGNED
 from pneutouch.spec.read import Changes
@@ -108,7 +108,7 @@ def depths_of(group: RunGroup) -> list[list[Array]]:
 
 
 def _figures(
-    state: SensorState, uncertainty: dict[str, Any], depths: list[list[Array]]
+    state: SensorState, uncertainty: UncertaintyRecord, depths: list[list[Array]]
 ) -> dict[str, tuple[float, float | None, float | None]]:
     known = uncertainty.get("figures", {})
     if state.figures is None:

@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from pneutouch.arrays import Array
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.evaluation.comparison import FIGURES, ComparedFigure, ComparedSensor, ComparedState
 from pneutouch.evaluation.correlation import effects_of
-from pneutouch.evaluation.document import prediction_document
+from pneutouch.evaluation.document import PredictionRecord, UncertainStateRecord, prediction_document
 from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.evaluation.read_at import figures_at
 from pneutouch.export.threemf_read import Package
@@ -31,7 +31,11 @@ if TYPE_CHECKING:
 Depths = Mapping[float, Sequence[Sequence[Array]]]
 """Depths of a measurement by driving pressure in kPa: of each run of each specimen, mm."""
 
-_CURVE = ("indentation_mm", "contact_force_N", "pressure_rise_kPa")
+_CURVE: tuple[Literal["indentation_mm", "contact_force_N", "pressure_rise_kPa"], ...] = (
+    "indentation_mm",
+    "contact_force_N",
+    "pressure_rise_kPa",
+)
 _CLOSE = 1e-6
 
 
@@ -39,7 +43,7 @@ _CLOSE = 1e-6
 class PredictedColumn:
     """A prediction as ``predict`` prints it, the scene it is of, and where it comes from."""
 
-    document: Mapping[str, Any]
+    document: PredictionRecord
     scene: ResolvedDesign
     model: str
     clamp: str
@@ -115,10 +119,10 @@ def of_build(folder: Path) -> PredictedColumn:
     return PredictedColumn(document, recipe.scene, document["model"], clamp, "build", str(folder), notes=notes)
 
 
-def _state(state: Mapping[str, Any], document: Mapping[str, Any], depths: Depths) -> tuple[ComparedState, str]:
+def _state(state: UncertainStateRecord, document: PredictionRecord, depths: Depths) -> tuple[ComparedState, str]:
     known = state["uncertainty"].get("figures", {})
     pressure_kPa = float(state["driving_pressure_kPa"])
-    plain = {
+    plain: dict[str, Any] = {
         "limit_pressure_kPa": document["limits"]["limit_point_kPa"],
         "rated_pressure_kPa": document.get("rating", {}).get("rated_pressure_kPa"),
         "force_at_range_end_N": None if state["force_range_N"] is None else state["force_range_N"][1],
@@ -152,7 +156,7 @@ _OF_CURVE = (
 """Figures that depend on the range that they are read over."""
 
 
-def _read(state: Mapping[str, Any], depths: Sequence[Sequence[Array]]) -> tuple[dict[str, float], str]:
+def _read(state: UncertainStateRecord, depths: Sequence[Sequence[Array]]) -> tuple[dict[str, float], str]:
     """Figures at the depths of a measurement, and a note on them."""
     indentation, force, rise_kPa = (np.array(state["curve"][key]) for key in _CURVE)
     read, end = figures_at(indentation, force, rise_kPa, state["range_end_mm"], depths), state["range_end_mm"]

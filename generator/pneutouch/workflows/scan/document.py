@@ -51,7 +51,7 @@ def document(run: ScanRun) -> dict[str, Any]:
         "states": [_state(run, number, seen) for number, seen in enumerate(run.seen)],
         "assumptions": list(ASSUMPTIONS),
     }
-    return rounded(content, _DIGITS)  # type: ignore[no-any-return]
+    return rounded(content, _DIGITS)
 
 
 def inputs(run: ScanRun) -> dict[str, Any]:

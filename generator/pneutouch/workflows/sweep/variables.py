@@ -1,10 +1,11 @@
 """The variables of a sweep's dataset: each declared once, with its place in a prediction, unit and meaning."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-Document = dict[str, Any]
+Document = Mapping[str, Any]
+"""A state or a prediction, as `evaluation.document` gives them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,11 +102,11 @@ POINT: tuple[SweepVariable, ...] = (
 """Variables of every point."""
 
 
-def state_values(state: Document) -> Document:
+def state_values(state: Document) -> dict[str, Any]:
     """What a dataset keeps of a state of a prediction, its uncertainty included."""
     return {variable.name: variable.read(state) for variable in STATE}
 
 
-def point_values(prediction: Document) -> Document:
+def point_values(prediction: Document) -> dict[str, Any]:
     """What a dataset keeps of a prediction, apart from its states."""
     return {variable.name: variable.read(prediction) for variable in POINT}
