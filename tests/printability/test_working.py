@@ -59,13 +59,27 @@ def test_a_wall_of_whole_layers_is_no_finding_at_the_pole():
 
 
 def test_a_wall_between_layers_says_what_it_prints_as_and_what_it_reads_then():
-    found = of(working([0, 12], wall=1.5), "layers")
-    (pole,) = [finding for finding in found if "pole" in finding.message]
-    assert pole.severity == "note"
-    assert "1.488 or 1.504 mm" in pole.message
-    thin, thick = map(float, re.search(r"reads ([\d.]+) or ([\d.]+) kPa/N", pole.message).groups())
-    # A thinner wall is softer and reads more; a layer of 16 um is a hundredth of the wall.
-    assert 0 < thin / thick - 1 < 0.02
+    (found,) = of(working([0, 12], wall=1.5), "layers")
+    assert found.severity == "note"
+    assert "93.8 layers of 16 um at the pole, where it prints as 1.488 or 1.504 mm" in found.message
+    assert "at the rim, where it prints as 1.482 or 1.524 mm" in found.message
+    least, most = map(float, re.search(r"reads ([\d.]+) to ([\d.]+) kPa/N", found.message).groups())
+    # A pixel of 42 um is a thirtieth of the wall.
+    assert 0 < most / least - 1 < 0.03
+
+
+@pytest.mark.parametrize("wall", [1.5, 1.488, 0.6, 0.73, 2.345])
+def test_the_wall_that_is_advised_is_no_finding_any_more(wall):
+    """One wall for the pole and the rim, near the drawn one."""
+    for finding in of(working([0], wall=wall), "layers"):
+        advised = float(re.fullmatch(r"draw the wall ([\d.]+) mm thick: .*", finding.fix)[1])
+        assert abs(advised - wall) <= 2 * 0.0424
+        assert not of(working([0], wall=advised), "layers")
+
+
+def test_the_wall_of_a_calibrated_sensor_is_printed_already():
+    assert of(working([0, 12], wall=1.5), "layers")
+    assert not of(working([0, 12], wall=1.5, calibrated=True), "layers")
 
 
 def test_outside_the_atlas_the_note_gives_the_thickness_alone():

@@ -14,12 +14,17 @@ WORKING = ("layers", "driving", "freedom")
 
 
 def working(
-    pressures: list[float], wall: float = 1.488, radius: float = 9.3, resin: str = "TangoPlus"
+    pressures: list[float],
+    wall: float = 1.488,
+    radius: float = 9.3,
+    resin: str = "TangoPlus",
+    *,
+    calibrated: bool = False,
 ) -> list[Finding]:
     """Findings of the rules on working for the paper's dome (kPa, mm); 1.488 mm are 93 layers of 16 um."""
     sensor = material_sensor(material(resin)).replace(wall_thickness=wall, inner_radius=radius)
     prediction = predict("dome", sensor, [p * KPA for p in pressures], model="membrane")
     dome = item(cup(radius + wall, wall), "membrane", resin)
     judged = rating(prediction.limits, sensor, material(resin), dome.printer)
-    found = check(PrintSubject((dome,)), SensorContext(prediction, sensor, judged))
+    found = check(PrintSubject((dome,)), SensorContext(prediction, sensor, judged, calibrated=calibrated))
     return [finding for finding in found if finding.rule in WORKING]

@@ -80,7 +80,9 @@ class Evaluation:
 
         # What is printed is the wall as drawn, whatever wall a calibration gives the model.
         drawn = self.sensor.replace(wall_thickness=self.assembly.layout.wall)
-        return check(subject_of(self.assembly), SensorContext(self.prediction, drawn, self.rating))
+        calibrated = self.scene.calibration is not None
+        context = SensorContext(self.prediction, drawn, self.rating, calibrated=calibrated)
+        return check(subject_of(self.assembly), context)
 
     @cached_property
     def estimates(self) -> tuple[JobEstimate, ...]:

@@ -29,13 +29,14 @@ if TYPE_CHECKING:
 class SensorContext:
     """What the rules on the sensor's working need: its prediction, the mechanics' view of it, and its rating.
 
-    ``membrane`` is the name of the item whose wall the sensor presses.
+    ``membrane`` is the name of the item whose wall the sensor presses; ``calibrated``: the sensor is a printed one.
     """
 
     prediction: SensorPrediction
     sensor: Sensor
     rating: Rating
     membrane: str = "membrane"
+    calibrated: bool = False
 
 
 NARROW = 3.0

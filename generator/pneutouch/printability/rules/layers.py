@@ -1,10 +1,13 @@
 """The dome's wall in whole layers and pixels, and what rounding it does to the sensitivity."""
 
+import math
+from typing import NamedTuple
+
 import numpy as np
 
 from pneutouch.mechanics import Sensor
 from pneutouch.printability.finding import Excess, Finding
-from pneutouch.printability.view import PrintPart, PrintView, SensorContext
+from pneutouch.printability.view import PrintView
 from pneutouch.units import KPA, UM
 
 _SOURCE = "layer height and pixel as the printer's profile states them; a tenth of a step: own, unverified"
@@ -12,39 +15,85 @@ _OFF = 0.1
 """Share of a step by which a wall may miss a whole number of them."""
 
 
+_FAR = 2.0
+"""The advised wall is at most this many of the coarser steps from the one drawn."""
+
+
+class WallStep(NamedTuple):
+    """The machine's step across the wall at one place: layers or pixels, mm."""
+
+    unit: str
+    place: str
+    size: float
+
+    def off(self, wall: float) -> float:
+        """Share of a step by which a wall misses a whole number of them."""
+        return abs(wall / self.size - round(wall / self.size))
+
+    def printed(self, wall: float) -> tuple[float, float]:
+        """The walls that it prints as, mm."""
+        return self.size * math.floor(wall / self.size), self.size * math.ceil(wall / self.size)
+
+
 def check(view: PrintView) -> list[Finding]:
-    """Compare the wall with the steps of the machine at the pole and at the rim."""
+    """Compare the wall with the steps of the machine at the pole and at the rim: one finding a wall.
+
+    The wall of a calibrated sensor is printed already, and fitted: nothing is found of it.
+    """
     context = view.sensor
     part = None if context is None else view.part(context.membrane)
-    if context is None or part is None:
+    if context is None or part is None or context.calibrated:
         return []
     printer, wall = part.item.printer, context.sensor.dome.wall_thickness
-    layer = UM * part.item.mode.layer_height_um
-    pixel = UM * max(printer.resolution.x_um, printer.resolution.y_um)
     upright = abs(part.item.up[2]) / float(np.linalg.norm(part.item.up)) > 0.7
-    steps = {"layers": ("pole" if upright else "rim", layer), "pixels": ("rim" if upright else "pole", pixel)}
-    findings = [_check(context, part, where, unit, step, wall) for unit, (where, step) in steps.items()]
-    return [finding for finding in findings if finding is not None]
+    along, across = ("pole", "rim") if upright else ("rim", "pole")
+    layer = WallStep("layers", along, UM * part.item.mode.layer_height_um)
+    pixel = WallStep("pixels", across, UM * max(printer.resolution.x_um, printer.resolution.y_um))
+    missed = [step for step in (layer, pixel) if step.off(wall) > _OFF]
+    if not missed:
+        return []
+    clauses = [
+        f"{wall / step.size:.1f} {step.unit} of {step.size / UM:g} um at the {step.place}, where it prints as "
+        f"{low:.3f} or {high:.3f} mm"
+        for step in missed
+        for low, high in [step.printed(wall)]
+    ]
+    ends = [end for step in missed for end in step.printed(wall)]
+    read = _sensitivities(context.sensor, context.prediction.states[-1].driving_pressure, min(ends), max(ends))
+    best, radius = _advised(wall, layer, pixel), context.sensor.dome.inner_radius + 0.5 * wall
+    counts = f"{best / layer.size:.1f} layers and {best / pixel.size:.1f} pixels"
+    fix = part.item.hints.get("layers", f"draw the wall {best:.3f} mm thick: {counts}")
+    at = (0.0, 0.0, radius) if missed[0].place == "pole" else (radius, 0.0, 0.0)
+    excess = Excess(missed[0].off(wall), _OFF, missed[0].unit)
+    text = f"the wall is {', and '.join(clauses)}{read}"
+    return [Finding("layers", "note", part.name, text, fix, _SOURCE, at, excess)]
 
 
-def _check(context: SensorContext, part: PrintPart, where: str, unit: str, step: float, wall: float) -> Finding | None:
-    count = wall / step
-    off = abs(count - round(count))
-    if off <= _OFF:
-        return None
-    low, high = step * np.floor(count), step * np.ceil(count)
-    text = (
-        f"the wall at the {where} is {count:.1f} {unit} of {step / UM:g} um: it prints as {low:.3f} or {high:.3f} mm"
-        f"{_sensitivities(context.sensor, context.prediction.states[-1].driving_pressure, low, high)}"
-    )
-    radius = context.sensor.dome.inner_radius + 0.5 * wall
-    at = (0.0, 0.0, radius) if where == "pole" else (radius, 0.0, 0.0)
-    fix = part.item.hints.get("layers", f"draw the wall {round(count) * step:.3f} mm thick")
-    return Finding("layers", "note", part.name, text, fix, _SOURCE, at, Excess(off, _OFF, unit))
+def _advised(wall: float, layer: WallStep, pixel: WallStep) -> float:
+    """The nearest wall, mm, that is close to whole numbers of both steps; where there is none, the closest to them.
+
+    Between a number of layers and one of pixels the wall that misses both by one share of a step is the best.
+    """
+    far = _FAR * max(layer.size, pixel.size)
+    steps = layer.size + pixel.size
+    walls = [
+        round((n + m) * layer.size * pixel.size / steps, 3)
+        for n in _numbers(wall, far, layer)
+        for m in _numbers(wall, far, pixel)
+        if abs(n * layer.size - m * pixel.size) <= 0.5 * steps
+    ]
+    near = [one for one in walls if abs(one - wall) <= far] or [wall]
+    worst = {one: max(layer.off(one), pixel.off(one)) for one in near}
+    return min(near, key=lambda one: (max(worst[one], _OFF), abs(one - wall)))
+
+
+def _numbers(wall: float, far: float, step: WallStep) -> range:
+    """The numbers of steps of walls at most ``far`` mm from a wall."""
+    return range(max(1, math.floor((wall - far) / step.size)), math.ceil((wall + far) / step.size) + 1)
 
 
 def _sensitivities(sensor: Sensor, pressure: float, low: float, high: float) -> str:
-    """The atlas's sensitivities for both walls; nothing where it does not cover the sensor."""
+    """The atlas's sensitivities between both walls; nothing where it does not cover the sensor."""
     from pneutouch.mechanics.atlas.batches import batch_of
     from pneutouch.mechanics.atlas.respond import OUTSIDE, respond
     from pneutouch.mechanics.atlas_states import outside_atlas
@@ -59,4 +108,5 @@ def _sensitivities(sensor: Sensor, pressure: float, low: float, high: float) -> 
         if response.ends[0] == OUTSIDE or not np.isfinite(value):
             return ""
         sensitivities.append(value)
-    return f", and reads {sensitivities[0]:.3f} or {sensitivities[1]:.3f} kPa/N at {pressure / KPA:g} kPa"
+    least, most = sorted(sensitivities)
+    return f"; it reads {least:.3f} to {most:.3f} kPa/N at {pressure / KPA:g} kPa"
