@@ -80,6 +80,21 @@ def test_far_from_what_was_measured_the_models_error_stays_even_where_the_correc
     assert np.log(inner["high"] / inner["low"]) >= 4 * standard(far)
 
 
+@pytest.mark.parametrize("error", [0.01, 0.03])
+def test_the_scatter_of_the_runs_and_the_gauges_of_the_rig_are_in_the_interval(error, library, tmp_path):
+    place = library_of(tmp_path, library, changed(response={"sensitivity_errors_relative": [error, error]}))
+    (entry,) = predicted(place, {**DEAD, "pneumatics.driving_pressures_kPa": [12.0]}).uncertainty
+    sources = {s["name"]: s["standard_uncertainty"] for s in entry["sources"] if SENSITIVITY in s["figures"]}
+    figure = entry["figures"][SENSITIVITY]
+    stated = {"model as calibrated": error}
+    # Assumed: 2 % of the pressure and 1 % of the force, as limits of a rectangular distribution.
+    stated |= {"pressure gauge of the rig": 0.02 / np.sqrt(3), "force sensor of the rig": 0.01 / np.sqrt(3)}
+    for name, standard in stated.items():
+        assert sources[name] == pytest.approx(standard, rel=1e-4)
+        counted = figure["standard_uncertainty_relative"] ** 2 * figure["shares"][name]
+        assert counted == pytest.approx(standard**2, rel=0.01)
+
+
 @pytest.mark.parametrize("freedom", [2.0, 0.0])
 def test_few_degrees_of_freedom_of_the_runs_are_those_of_the_figure(freedom, library, tmp_path):
     """0 stands for an assumed scatter, which has none (JCGM 100, G.4.3) and is not known."""

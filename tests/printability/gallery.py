@@ -137,9 +137,10 @@ def _sliver() -> PrintSubject:
     return PrintSubject((replace(whole, body=body),))
 
 
-def _two(
+def two(
     apart: float, job: str = "", joint: bool = False, resins: tuple[str, str] = ("VeroClear", "VeroClear")
 ) -> PrintSubject:
+    """Two blocks of 10 mm above one another, ``apart`` mm."""
     items = (
         item(box(10, 10, 10), "one", resins[0], job=job),
         item(box(10, 10, 10, (0.0, 0.0, 10.0 + apart)), "other", resins[1], job=job),
@@ -149,7 +150,7 @@ def _two(
 
 def _mixed() -> PrintSubject:
     """Two resins in one job, in the mode that runs one."""
-    return _two(5.0, "tray", resins=("VeroClear", "TangoPlus"))
+    return two(5.0, "tray", resins=("VeroClear", "TangoPlus"))
 
 
 def _unrun() -> PrintSubject:
@@ -198,7 +199,7 @@ BAD: dict[str, Exhibit] = {
     "capillary": Exhibit(lambda: one(box(10, 10, 4) - rod(0.25, 6, (5.0, 5.0, -1.0))), {"channels": "error"}),
     "long bore": Exhibit(lambda: one(box(12, 12, 30) - rod(1.1, 32, (6.0, 6.0, -1.0))), {"cleaning": "warning"}),
     "saw cut": Exhibit(lambda: one(box(12, 12, 8) - box(0.15, 14, 4, (6.0, -1.0, 4.5))), {"gaps": "error"}),
-    "tight fit": Exhibit(lambda: _two(0.1, "tray"), {"gaps": "error"}),
+    "tight fit": Exhibit(lambda: two(0.1, "tray"), {"gaps": "error"}),
     "hairline": Exhibit(lambda: one(box(12, 12, 5) + box(8, 0.25, 0.7, (2.0, 6.0, 5.0))), {"emboss": "warning"}),
     "scratch": Exhibit(lambda: one(box(12, 12, 5) - box(8, 0.25, 0.5, (2.0, 6.0, 4.5))), {"emboss": "warning"}),
     "low dot": Exhibit(lambda: one(box(12, 12, 5) + rod(0.5, 0.3, (6.0, 6.0, 5.0))), {"emboss": "warning"}),
@@ -213,8 +214,8 @@ BAD: dict[str, Exhibit] = {
     "meander": Exhibit(lambda: one(meander()), {"cleaning": "warning"}),
     "beam": Exhibit(lambda: one(box(300, 12, 12)), {"envelope": "error"}),
     "pole": Exhibit(lambda: one(box(220, 12, 12), up=(1.0, 0.0, 0.0)), {"envelope": "error"}),
-    "overlap": Exhibit(lambda: _two(-0.5, joint=True), {"contact faces": "error"}),
-    "parted": Exhibit(lambda: _two(0.5, joint=True), {"contact faces": "error"}),
+    "overlap": Exhibit(lambda: two(-0.5, joint=True), {"contact faces": "error"}),
+    "parted": Exhibit(lambda: two(0.5, joint=True), {"contact faces": "error"}),
     "face down": Exhibit(_face_down, {"matte": "warning"}),
     "shadowed": Exhibit(_shadowed, {"matte": "warning"}),
     "two resins": Exhibit(_mixed, {"resins": "error"}),
@@ -244,8 +245,8 @@ GOOD: dict[str, Callable[[], PrintSubject]] = {
     "pot": lambda: one(box(14, 14, 14) - ball(5, (7.0, 7.0, 7.0)) - rod(4, 8, (7.0, 7.0, 7.0))),
     "lying pole": lambda: one(box(220, 12, 12)),
     "turned beam": lambda: one(box(12, 253, 12)),
-    "joined": lambda: _two(0.0, joint=True),
-    "one job": lambda: _two(0.0, "tray", joint=True),
+    "joined": lambda: two(0.0, joint=True),
+    "one job": lambda: two(0.0, "tray", joint=True),
     "ball": lambda: one(ball(10, sides=96)),
     "filament bottle": lambda: one(
         box(14, 14, 14) - ball(3, (7.0, 7.0, 7.0), 48) - rod(1.5, 8, (7.0, 7.0, 7.0), 32),

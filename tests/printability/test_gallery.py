@@ -8,7 +8,7 @@ import pytest
 
 from pneutouch.printability import check
 from pneutouch.printability.check import RULES
-from tests.printability.gallery import BAD, GOOD
+from tests.printability.gallery import BAD, GOOD, ball, box, one, rod, taper, two
 from tests.printability.working import WORKING
 
 
@@ -27,6 +27,43 @@ def test_a_bad_part_breaks_the_rules_it_was_made_for_and_no_other(name):
 @pytest.mark.parametrize("name", GOOD)
 def test_a_good_part_breaks_no_rule(name):
     assert check(GOOD[name]()) == []
+
+
+def pin(width):
+    return one(box(8, 8, 3) + rod(width / 2, 7, (4.0, 4.0, 2.0)))
+
+
+def hole(width):
+    return one(box(8, 8, 1.7) - rod(width / 2, 4, (4.0, 4.0, -1.0)))
+
+
+def bore(widths):
+    return one(box(8, 8, 2.2 * widths) - rod(1.1, 2.2 * widths + 2, (4.0, 4.0, -1.0)))
+
+
+def bottle(share):
+    """A ball of a hollow and its neck, as wide as a share of the hollow."""
+    return one(box(14, 14, 14) - ball(5, (7.0, 7.0, 7.0)) - rod(5 * share, 8, (7.0, 7.0, 7.0)))
+
+
+@pytest.mark.parametrize(
+    ("rule", "make", "sizes", "expected"),
+    [
+        ("walls", lambda t: one(box(12, 12, t)), (0.59, 0.61, 0.99, 1.01), ("error", "warning", "warning", None)),
+        ("pins", pin, (0.49, 0.52, 0.98, 1.02), ("error", "warning", "warning", None)),
+        ("holes", hole, (0.58, 0.62, 0.98, 1.02), ("error", "warning", "warning", None)),
+        ("gaps", lambda t: two(t, "tray"), (0.19, 0.21, 0.39, 0.41), ("error", "warning", "warning", None)),
+        ("edges", lambda angle: one(taper(angle, 0.0)), (29, 31), ("warning", None)),
+        ("cleaning", bore, (10.3, 9.7), ("warning", None)),
+        # The neck is measured by cubes of 0.25 mm.
+        ("cleaning", bottle, (0.46, 0.54, 0.66, 0.74), ("error", "warning", "warning", None)),
+    ],
+    ids=["walls", "pins", "holes", "gaps", "edges", "bores", "necks"],
+)
+def test_a_rule_turns_at_its_limit(rule, make, sizes, expected):
+    """Limits of the printer's profile (walls, pins, holes and gaps in mm), a knife's angle, and shares of a width."""
+    found = [{(finding.rule, finding.severity) for finding in check(make(size))} for size in sizes]
+    assert found == [set() if severity is None else {(rule, severity)} for severity in expected]
 
 
 def test_every_rule_has_an_exhibit():
