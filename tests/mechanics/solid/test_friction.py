@@ -1,12 +1,204 @@
-"""Coulomb friction between wall and plate."""
+"""Coulomb friction between wall and plate: the law at every point, its derivatives, its limits and its energy."""
+
+from itertools import pairwise
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
-from pneutouch.mechanics.solid.indent import PressSettings
+from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.solid.contact import Plate
+from pneutouch.mechanics.solid.continuation import PathFollower
+from pneutouch.mechanics.solid.descend import descend
+from pneutouch.mechanics.solid.events import BREAKS_CURVE
+from pneutouch.mechanics.solid.friction import FrictionStep
+from pneutouch.mechanics.solid.friction_newton import FrictionSolver
+from pneutouch.mechanics.solid.friction_path import FrictionFollower
+from pneutouch.mechanics.solid.general_band import OneSidedBlocks
+from pneutouch.mechanics.solid.indent import PressSettings, indent
+from pneutouch.mechanics.solid.inflate import inflate, state_at
+from pneutouch.mechanics.solid.mesh import dome
+from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.newton import SolidScene, evaluate, full_tangent
+from pneutouch.mechanics.solid.supply import Gas
+from tests.mechanics.solid.test_discrete import _dense
+
+DEPTH = 0.5 * 9.25
+
+
+def coarse(mu=0.17, wall=1.5):
+    return SolidModel(dome(9.25, wall, arc=12, through=1), neo_hookean(mu))
+
+
+def press(friction, mu=0.17, pressure=0.0, **options):
+    solid = coarse(mu)
+    return indent(solid, state_at(solid, pressure), PressSettings(DEPTH, friction=friction, **options))
+
+
+def follow(friction, mu=0.17, pressure=0.0, steps=14, plate=np.inf):
+    """The follower of a press to `DEPTH`, with all its states."""
+    solid = coarse(mu)
+    free = state_at(solid, pressure)
+    gas = Gas.filled(free.pressure / solid.mu, free.unit.volume, 0.101325 / solid.mu, 0.0)
+    top = free.unit.x[solid.mesh.outer_apex, 1]
+    follower = FrictionFollower(solid, gas, Plate(top, plate, solid.contact.longest), free.unit.x, friction)
+    for k in range(1, steps + 1):
+        assert descend(follower, top - DEPTH / 9.25 * k / steps) is None
+    return follower
 
 
 @pytest.mark.parametrize("friction", [-0.1, -np.inf, np.nan])
 def test_a_friction_that_is_no_coefficient_is_refused(friction):
-    with pytest.raises(ValueError, match="friction .* must not be negative"):
+    with pytest.raises(ValueError, match="must not be negative, or inf"):
         PressSettings(1.0, friction=friction)
+
+
+def test_a_vanishing_coefficient_tends_to_the_plate_without_friction():
+    without, with_little = press(0.0, pressure=0.01), press(1e-11, pressure=0.01)
+    for name in ("force", "pressure", "contact_radius"):
+        assert np.allclose(with_little.column(name), without.column(name), rtol=1e-8, atol=1e-9)
+
+
+def test_the_largest_coefficients_tend_to_grip():
+    forces = [press(f, mu=0.91, steps=28).column("force")[8:] for f in (0.3, 3.0, 300.0, np.inf)]
+    off = [np.abs(one / forces[-1] - 1.0).max() for one in forces[:-1]]
+    assert off[0] > 0.02 and off[1] < 0.01 and off[2] < 0.003
+
+
+@pytest.mark.parametrize("friction", [0.3, 1.0])
+def test_no_traction_passes_the_largest_and_both_kinds_of_points_obey_the_law(friction):
+    kinds = np.zeros(2)
+    for state in follow(friction, 0.91).path[1:]:
+        points, touch = state.friction.points, state.state.touch
+        largest = friction * touch.traction * np.hypot(1.0, touch.slope)
+        assert (np.abs(points.traction) <= largest * (1 + 1e-12)).all()
+        assert np.allclose(np.abs(points.traction)[points.sliding], largest[points.sliding])
+        assert ((points.sticking | points.sliding) == (touch.traction > 0.0)).all()
+        kinds += points.sticking.sum(), points.sliding.sum()
+    assert (kinds > 15).all()
+
+
+@pytest.mark.parametrize("friction", [1.0, np.inf])
+def test_sticking_points_stay_where_they_first_touched(friction):
+    path = follow(friction, 0.91).path
+    contact, held = path[0].scene.solid.contact, 0
+    for a, b in pairwise(path[1:]):
+        both = a.friction.points.sticking & b.friction.points.sticking
+        radius = [contact.positions(s.state.x)[0][both] for s in (a, b)]
+        # what is left is the springs' own stretch, a few thousandths of the way of free points
+        assert np.abs(radius[1] - radius[0]).max(initial=0.0) < 5e-5
+        held += both.sum()
+    assert held > 20
+
+
+def test_without_friction_those_points_move():
+    solid = coarse(0.91)
+    free = state_at(solid, 0.0)
+    gas = Gas.filled(0.0, free.unit.volume, 0.101325 / solid.mu, 0.0)
+    top = free.unit.x[solid.mesh.outer_apex, 1]
+    follower = PathFollower(solid, gas, Plate(top, np.inf, 0.1), free.unit.x)
+    descend(follower, top - 0.5)
+    a, b = follower.path[-2:]
+    both = (a.state.touch.traction > 0.0) & (b.state.touch.traction > 0.0)
+    radius = [solid.contact.positions(s.state.x)[0][both] for s in (a, b)]
+    assert np.abs(radius[1] - radius[0]).max() > 1e-3
+
+
+@pytest.mark.parametrize("friction", [0.3, 1.0, np.inf])
+def test_the_plate_s_work_is_stored_or_dissipated(friction):
+    """Work by the cubic through force and stiffness; stored in wall, gas, plate and springs."""
+    path = follow(friction, 0.91, steps=28).path[1:]
+    height, force, rate = (np.array([getattr(s, n) for s in path]) for n in ("height", "force", "stiffness"))
+    travel = -np.diff(height)
+    work = 0.5 * travel * (force[1:] + force[:-1]) + travel**2 / 12.0 * (rate[1:] - rate[:-1])
+    spent = sum(s.friction.dissipated for s in path[1:])
+    stored = path[-1].state.energy - path[0].state.energy
+    assert stored + spent == pytest.approx(work.sum(), rel=2e-3)
+    assert spent > (0.004 if friction < 0.5 else 0.0) * stored
+
+
+def test_stiffness_and_rate_of_pressure_are_those_of_the_path_that_goes_on():
+    for friction in (0.3, 1.0, np.inf):
+        follower = follow(friction, 0.91, steps=10)
+        here = follower.here
+        further = follower.solve(here.height - 1e-5)
+        assert (further.force - here.force) / -1e-5 == pytest.approx(here.stiffness, rel=3e-3)
+        rate = (further.state.filling.pressure - here.state.filling.pressure) / -1e-5
+        assert rate == pytest.approx(here.pressure_rate, rel=3e-3)
+
+
+@pytest.mark.parametrize("friction", [0.1, np.inf])
+def test_the_tangent_is_the_derivative_of_the_residual(friction):
+    """On a plate whose rim turns up, with points that stick and points that slide either way."""
+    solid = coarse()
+    rng = np.random.default_rng(0)
+    x = solid.rest + solid.expand(2e-3 * rng.normal(size=solid.size))
+    scene = SolidScene(solid, Gas.filled(0.1, 2.1, 0.6, 0.2), Plate(1.14, 0.02, 5.0))
+    r, _ = solid.contact.positions(x)
+    stiffness = 10.0 * solid.contact.stiffness
+    rest = r + 1e-3 * rng.normal(size=r.shape)
+    solver = FrictionSolver(scene, FrictionStep(solid.contact, scene.plate, friction, rest, stiffness), None)
+    at = solver.hold(evaluate(scene, x))
+    if friction < 1.0:
+        assert at.points.sliding.sum() > 2 and (at.points.slip[at.points.sliding] > 0).any()
+    d = rng.normal(size=solid.size)
+    step = 1e-7
+    up, down = (solver.hold(evaluate(scene, x + s * step * solid.expand(d))).residual for s in (1, -1))
+    sign = np.where(at.points.sliding, np.sign(at.points.slip), 0.0)
+    slope = at.touch.slope
+    k = _dense(
+        solid.contact_pattern.added(full_tangent(scene, at.state), [solver.step.stick(at.points.sticking, slope)])
+    )
+    k += at.state.filling.rate * np.outer(at.state.by_volume, at.state.by_volume)
+    blocks = solver.step.slide(at.points.traction, at.touch, sign)
+    move = solid.expand(d)[solid.mesh.outer].reshape(len(solid.mesh.outer), -1, 1)
+    change = k @ d + solid.push((blocks @ move)[..., 0])
+    measured = (up - down) / (2 * step)
+    assert np.abs(change - measured).max() < 5e-3 * np.abs(measured).max()
+    assert np.abs(k @ d - measured).max() > (1e-2 if friction < 1.0 else 0.0) * np.abs(measured).max()
+
+
+def test_systems_with_one_sided_blocks_are_solved():
+    solid = coarse()
+    rng = np.random.default_rng(1)
+    band = full_tangent(
+        SolidScene(solid, Gas.filled(0.1, 2.1, 0.6, 0.2), None),
+        evaluate(SolidScene(solid, Gas.filled(0.1, 2.1, 0.6, 0.2), None), solid.rest),
+    )
+    blocks = rng.normal(size=(len(solid.mesh.outer), 6, 6))
+    b = rng.normal(size=(solid.size, 2))
+    x = OneSidedBlocks(solid).solve(band, blocks, b)
+    for k in range(2):
+        edges = solid.expand(x[:, k])[solid.mesh.outer].reshape(len(blocks), -1, 1)
+        assert np.allclose(_dense(band) @ x[:, k] + solid.push((blocks @ edges)[..., 0]), b[:, k])
+
+
+def test_friction_lowers_the_sensitivity_of_a_stiff_wall_evenly():
+    runs = [press(f, mu=0.91, gauge_range=np.inf) for f in (0.0, 0.1, 0.3, 0.6, 1.0, np.inf)]
+    slopes = [np.polyfit(run.column("force"), run.column("rise"), 1)[0] for run in runs]
+    assert (np.diff(slopes) < 0.0).all() and slopes[-1] < 0.9 * slopes[0]
+
+
+@pytest.mark.parametrize("friction", [0.6, np.inf])
+def test_steps_and_springs_hardly_matter(friction, monkeypatch):
+    fine = press(friction, mu=0.91, steps=56).figures().sensitivity_kPa_per_N
+    assert press(friction, mu=0.91).figures().sensitivity_kPa_per_N == pytest.approx(fine, rel=0.01)
+    monkeypatch.setattr("pneutouch.mechanics.solid.friction_path.TANGENTIAL", 1.0)
+    assert press(friction, mu=0.91, steps=28).figures().sensitivity_kPa_per_N == pytest.approx(fine, rel=0.005)
+
+
+@settings(max_examples=12)
+@given(
+    friction=st.one_of(st.floats(0.0, 1.5), st.just(np.inf)),
+    wall=st.floats(0.06, 0.4),
+    share=st.floats(0.01, 0.8),
+    dead=st.floats(0.0, 4000.0),
+)
+def test_every_press_ends_at_its_depth_or_by_an_event(friction, wall, share, dead):
+    solid = coarse(wall=9.25 * wall)
+    free = inflate(solid, past_limit=1.0)
+    start = state_at(solid, share * free.limit.pressure, free)
+    run = indent(solid, start, PressSettings(DEPTH, 6, friction=friction, dead_volume=dead))
+    assert run.complete or run.events[-1].kind in (*BREAKS_CURVE, "floor")
+    assert np.isfinite(run.column("force")).all() and run.column("penetration").max() < 1e-3 * solid.mesh.wall

@@ -132,6 +132,15 @@ class Contact:
             out[:, RADIAL, RADIAL] = (along @ self._pairs).reshape(-1, n, n)
         return out
 
+    def blocks(self, parts: list[tuple[slice, slice, Array]]) -> Array:
+        """Stiffness of the edges (n_edges, 2 n, 2 n) of stiffnesses per area at rest at the points (n_edges, n_points),
+        by direction of the traction and of the displacement; zero where not given."""
+        n = self._n // 2
+        out = np.zeros((self.weight.shape[0], self._n, self._n))
+        for rows, columns, value in parts:
+            out[:, rows, columns] = ((self.weight * value) @ self._pairs).reshape(-1, n, n)
+        return out
+
     def footprint(self, nodes: Array, touch: ContactEvaluation, annular: bool = False) -> Footprint:
         """Edges of the contact, largest pressure, and how far the wall has left the object between them.
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.solid.errors import NoConvergenceError
+from pneutouch.mechanics.solid.friction import FrictionState
 from pneutouch.mechanics.solid.indenter import Indenter
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure, SolidScene, SolverState, minimise, stability
@@ -25,7 +26,7 @@ class PlateState:
     """A converged state under the plate at `height`; all nondimensional (R0, mu).
 
     force: on the plate.  stiffness: dF/dheight (negative).  by_height: dx/dheight, (n_nodes, 2).  pressure_rate:
-    dp/dheight.  stable: the total tangent is positive definite.
+    dp/dheight.  stable: the total tangent is positive definite.  friction: None without.
     """
 
     height: float
@@ -37,6 +38,7 @@ class PlateState:
     by_height: Array
     pressure_rate: float
     stable: bool
+    friction: FrictionState | None = None
 
 
 def plate_state(scene: SolidScene, state: SolverState, height: float, iterations: int) -> PlateState:
@@ -68,8 +70,9 @@ def plate_state(scene: SolidScene, state: SolverState, height: float, iterations
 def lost_work(path: list[PlateState], after: PlateState) -> float:
     """Energy unaccounted for from the end of a path to `after`, as a share of the plate's work in a full step.
 
-    Near zero along one branch, since dPi/dheight = -force there.  The trapezium is corrected by the curvature of the
-    force through three states; the first step, whose force starts at zero, by the slope at its end, which is coarser.
+    Near zero along one branch, since dPi/dheight = -force there; what friction dissipates is accounted for.  The
+    trapezium is corrected by the curvature of the force through three states; the first step, whose force starts at
+    zero, by the slope at its end, which is coarser.
     """
     here = path[-1]
     travel = here.height - after.height
@@ -84,7 +87,8 @@ def lost_work(path: list[PlateState], after: PlateState) -> float:
     else:
         fixed = work - travel * (-after.stiffness * travel - (after.force - here.force)) / 6.0
         allowance = _FIRST_STEP
-    lost = abs(fixed - (after.state.energy - here.state.energy))
+    spent = 0.0 if after.friction is None else after.friction.dissipated
+    lost = abs(fixed - (after.state.energy - here.state.energy) - spent)
     # A jump releases the same energy however short the step it falls in, so short steps are held to the work of a
     # full one.
     share = lost / (max(1.0, LONGEST / travel) * (work + floor))
@@ -95,13 +99,15 @@ class PathFollower:
     """Keeps the states of a path and steps to new plate heights."""
 
     def __init__(self, solid: SolidModel, supply: Supply, plate: Indenter, start: Array) -> None:
-        self._solid = solid
-        scene = SolidScene(solid, supply, plate)
+        self._solid, self._plate = solid, plate
+        self.path = [self._first(SolidScene(solid, supply, plate), start)]
+
+    def _first(self, scene: SolidScene, start: Array) -> PlateState:
+        """First contact, near positions `start`."""
         solved = minimise(scene, start)
         if isinstance(solved, NewtonFailure):
             raise NoConvergenceError("first contact", solved.why, "a finer mesh")
-        self.path = [plate_state(scene, solved.state, plate.height, solved.iterations)]
-        self._plate = plate
+        return plate_state(scene, solved.state, self._plate.height, solved.iterations)
 
     @property
     def here(self) -> PlateState:

@@ -27,6 +27,7 @@ from pneutouch.mechanics.solid.events import (
     SolidEvent,
     crossing,
 )
+from pneutouch.mechanics.solid.friction_path import FrictionFollower
 from pneutouch.mechanics.solid.indenter import Indenter, RigidObject, first_contact
 from pneutouch.mechanics.solid.inflate import FreeState
 from pneutouch.mechanics.solid.model import SolidModel
@@ -142,15 +143,17 @@ def indent(
     Returns every state found and typed events; `complete` is False where an event ended the path before the depth.
     Raises NoConvergenceError only if not even first contact has an equilibrium.
     """
-    if press.friction:
-        raise ValueError(f"friction {press.friction} cannot be solved: only a plate without friction can")
     length, mu = solid.length, solid.mu
     if free.pressure + press.ambient < -_ROUNDING * mu:
         raise UnreachableLoadError(free.pressure, -press.ambient, "it lies below absolute vacuum")
     gas = Gas.filled(free.pressure / mu, free.volume / length**3, press.ambient / mu, press.dead_volume / length**3)
-    touch = first_touch(solid, free, press)
+    touch, start = first_touch(solid, free, press), free.unit.x
     plate = touch.body
-    follower = PathFollower(solid, gas, plate, free.unit.x)
+    follower = (
+        FrictionFollower(solid, gas, plate, start, press.friction)
+        if press.friction
+        else PathFollower(solid, gas, plate, start)
+    )
     recorder = _Recorder(solid, free, touch, probe or StrainProbe(solid))
     states = [recorder.state(follower.here)]
     events = recorder.events(states[0], states[0], press)

@@ -161,14 +161,14 @@ def direction(scene: SolidScene, state: SolverState) -> NewtonDirection:
     """
     band = tangent(scene, state)
     if state.touch is None:
-        return _downhill(state, band, state.residual)
+        return downhill(state, band, state.residual)
     touch, contact = state.touch, scene.solid.contact
     linear = contact.linear(touch, np.zeros_like(state.x))
     active = linear > 0.0
     seen = {active.tobytes()}
     for _ in range(_SETTLING):
         pull = state.inner + scene.solid.push(contact.force(np.where(active, linear, 0.0), touch.slope))
-        newton = _downhill(state, _touching(scene, band, touch, active), pull)
+        newton = downhill(state, _touching(scene, band, touch, active), pull)
         if newton.lift:
             # Keep what made this tangent definite for the rest of the settling: fewer failed factorisations.
             band = band.copy(order="F")
@@ -180,20 +180,24 @@ def direction(scene: SolidScene, state: SolverState) -> NewtonDirection:
     return newton
 
 
-def stability(scene: SolidScene, state: SolverState, load: Array | None = None) -> NewtonDirection:
+def stability(
+    scene: SolidScene, state: SolverState, load: Array | None = None, band: Array | None = None
+) -> NewtonDirection:
     """The tangent at a converged state, its negative pivots counted where there are any; `step` answers `load` (size,).
+
+    ``band``: the full tangent, where it is known already.
 
     An indefinite band can still belong to a stable total, since the filling stiffens one mode:
     negatives(K + c g g') = negatives(K) - [1 + c g'K^-1 g < 0], from the inertia of the bordered matrix.
     """
-    band = full_tangent(scene, state)
-    newton = _rank_one(state, band, state.residual if load is None else load)
+    band = full_tangent(scene, state) if band is None else band
+    newton = rank_one(state, band, state.residual if load is None else load)
     if newton.wall_stable or not newton.stable:
         return newton
     return replace(newton, stable=negative_pivots(band) == 1)
 
 
-def _rank_one(state: SolverState, band: Array, load: Array) -> NewtonDirection:
+def rank_one(state: SolverState, band: Array, load: Array) -> NewtonDirection:
     """-(band + c g g')^-1 load by Sherman-Morrison; one negative pivot is presumed where the band is not definite."""
     solved = solve(band, np.stack([-load, state.by_volume], axis=1))
     plain, soft = solved.x[:, 0], solved.x[:, 1]
@@ -204,9 +208,9 @@ def _rank_one(state: SolverState, band: Array, load: Array) -> NewtonDirection:
     return NewtonDirection(step, soft, denominator, stable, solved.definite)
 
 
-def _downhill(state: SolverState, band: Array, residual: Array) -> NewtonDirection:
+def downhill(state: SolverState, band: Array, residual: Array) -> NewtonDirection:
     """The Newton step if the tangent is positive definite, else one of a lifted tangent."""
-    newton = _rank_one(state, band, residual)
+    newton = rank_one(state, band, residual)
     if newton.stable and float(newton.step @ residual) <= 0.0:
         return newton
     step, lift = _safe_step(state, band, residual)
@@ -243,7 +247,7 @@ def minimise(scene: SolidScene, x: Array, max_iterations: int = MAX_ITERATIONS) 
         newton = direction(scene, state)
         slope = float(newton.step @ state.residual)
         if slope >= 0.0 and scene.plate is not None:
-            newton = _downhill(state, full_tangent(scene, state), state.residual)
+            newton = downhill(state, full_tangent(scene, state), state.residual)
             slope = float(newton.step @ state.residual)
         if not np.isfinite(slope) or slope >= 0.0:
             return NewtonFailure(f"the Newton step does not go downhill (slope {slope:.2e})")

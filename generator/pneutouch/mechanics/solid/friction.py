@@ -1,0 +1,193 @@
+"""Coulomb friction between the outer wall and what presses it, by return mapping at the contact's quadrature points.
+
+A point that touches is held by a stiff spring along the object's surface, from the place where it first touched; the
+spring's traction never exceeds the coefficient times the normal traction: beyond, its place of rest slides along.
+Tractions are per area at rest, in mu; lengths in R0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pneutouch.arrays import Array, Flags
+from pneutouch.mechanics.solid.contact import Contact, ContactEvaluation
+from pneutouch.mechanics.solid.indenter import Indenter
+from pneutouch.mechanics.solid.kinematics import AXIAL, RADIAL
+from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.terms import TermState
+
+#: Stiffness along the surface over that of the contact.
+TANGENTIAL = 0.1
+
+
+@dataclass(frozen=True)
+class FrictionPoints:
+    """Friction at the quadrature points of the outer wall at one set of positions, (n_edges, n_points) each.
+
+    traction: along the object's surface, positive where it pulls the wall towards the axis.  cap: what it may be.
+    slope: of the surface; slip: from the place of rest along the surface.  sticking, sliding: of the points that touch.
+    """
+
+    traction: Array
+    cap: Array
+    slope: Array
+    slip: Array
+    sticking: Flags
+    sliding: Flags
+
+    @property
+    def secant(self) -> Array:
+        """Length along the surface over that along the radius."""
+        return np.hypot(1.0, self.slope)
+
+
+@dataclass(frozen=True)
+class FrictionStep:
+    """Friction while the object stands at one place: ``rest`` (n_edges, n_points) are the radii at which the points of
+    the wall rest or first touch; ``stiffness`` in mu/R0."""
+
+    contact: Contact
+    plate: Indenter
+    coefficient: float
+    rest: Array
+    stiffness: float
+
+    def slip(self, x: Array, slope: Array) -> Array:
+        """Distance of the points from their places of rest along tangents of given slopes."""
+        r, z = self.contact.positions(x)
+        height = self.plate.underside(self.rest)[0]
+        return np.asarray((r - self.rest + slope * (z - height)) / np.hypot(1.0, slope))
+
+    def change(self, move: Array, slope: Array) -> Array:
+        """Change of `slip` with a nodal displacement (n_nodes, 2)."""
+        r, z = self.contact.positions(move)
+        return np.asarray((r + slope * z) / np.hypot(1.0, slope))
+
+    def cap(self, traction: Array, slope: Array) -> Array:
+        """Largest tangential traction under given vertical tractions per area at rest; none where there is none."""
+        out = np.zeros_like(traction)
+        np.multiply(self.coefficient, traction * np.hypot(1.0, slope), out=out, where=traction > 0.0)
+        return out
+
+    def rate(self, sign: Array, slope: Array) -> Array:
+        """Traction of sliding points, of which ``sign`` is not 0, by the vertical traction."""
+        out = np.zeros_like(sign)
+        np.multiply(self.coefficient, sign * np.hypot(1.0, slope), out=out, where=sign != 0.0)
+        return out
+
+    def at(self, x: Array, touch: ContactEvaluation) -> FrictionPoints:
+        """Return mapping at positions x (n_nodes, 2) with the contact evaluated there."""
+        cap, slip = self.cap(touch.traction, touch.slope), self.slip(x, touch.slope)
+        trial = self.stiffness * slip
+        touching = touch.traction > 0.0
+        sliding = touching & (np.abs(trial) > cap)
+        return FrictionPoints(np.clip(trial, -cap, cap), cap, touch.slope, slip, touching & ~sliding, sliding)
+
+    def force(self, traction: Array, slope: Array) -> Array:
+        """Force on the outer edges (n_edges, 2 n) of tractions along the surface: gradient of the energy."""
+        load = self.contact.weight * traction / np.hypot(1.0, slope)
+        out = np.empty((load.shape[0], 2 * self.contact.shape.shape[1]))
+        out[:, RADIAL] = load @ self.contact.shape
+        out[:, AXIAL] = (load * slope) @ self.contact.shape
+        return out
+
+    def stick(self, sticking: Flags, slope: Array) -> Array:
+        """Stiffness of the sticking points as blocks of the outer edges (n_edges, 2 n, 2 n), symmetric."""
+        share = np.where(sticking, self.stiffness, 0.0)
+        if not slope.any():
+            return self.contact.blocks([(RADIAL, RADIAL, share)])
+        share = share / (1.0 + slope**2)
+        across = share * slope
+        return self.contact.blocks(
+            [(RADIAL, RADIAL, share), (RADIAL, AXIAL, across), (AXIAL, RADIAL, across), (AXIAL, AXIAL, across * slope)]
+        )
+
+    def slide(self, traction: Array, touch: ContactEvaluation, sign: Array) -> Array | None:
+        """What the symmetric stiffness leaves out, (n_edges, 2 n, 2 n), or None: the traction of sliding points
+        (``sign``, else 0) follows the normal one, and its direction follows the surface."""
+        slope = touch.slope
+        if not slope.any():
+            by_z = self.rate(sign, slope) * self.contact.stiffness
+            return self.contact.blocks([(RADIAL, AXIAL, by_z)]) if sign.any() else None
+        secant = np.hypot(1.0, slope)
+        rate = self.rate(sign, slope) / secant
+        by_z = rate * self.contact.stiffness
+        by_r = -by_z * slope + rate * touch.traction * slope * touch.curve / secant**2
+        turn = traction * touch.curve / secant**3
+        return self.contact.blocks(
+            [
+                (RADIAL, RADIAL, by_r - turn * slope),
+                (RADIAL, AXIAL, by_z),
+                (AXIAL, RADIAL, by_r * slope + turn),
+                (AXIAL, AXIAL, by_z * slope),
+            ]
+        )
+
+    def stored(self, points: FrictionPoints) -> float:
+        """Energy in the springs of the points that touch."""
+        return float(np.vdot(self.contact.weight, points.traction**2)) / (2.0 * self.stiffness)
+
+    def moved(self, x: Array, points: FrictionPoints) -> Array:
+        """Radii at which the points rest after the step; NaN where a point does not touch."""
+        r, _ = self.contact.positions(x)
+        slid = r - points.traction / self.stiffness / points.secant
+        return np.where(points.sliding, slid, np.where(points.sticking, self.rest, np.nan))
+
+
+class FrictionTerm:
+    """Friction with the largest tractions (``cap``) and the slopes held: the pseudo-potential of a step, convex in
+    the slip; an `EnergyTerm`. Its gradient is that of friction where the held values are those of the positions."""
+
+    def __init__(self, solid: SolidModel, step: FrictionStep, held: FrictionPoints) -> None:
+        self.solid, self.step, self.held = solid, step, held
+        # Rounding of the slip leaves less force than that of the gap, as the springs are softer.
+        self.noise = solid.contact.noise * step.stiffness / solid.contact.stiffness
+
+    def energy(self, x: Array) -> float:
+        """Energy stored in the springs, and traction times slip beyond what they bear."""
+        trial = self.step.stiffness * self.step.slip(x, self.held.slope)
+        bears = np.clip(trial, -self.held.cap, self.held.cap)
+        return float(np.vdot(self.solid.contact.weight, bears * (trial - 0.5 * bears))) / self.step.stiffness
+
+    def at(self, x: Array) -> TermState:
+        """Energy and its derivatives at positions x (n_nodes, 2)."""
+        cap, slope = self.held.cap, self.held.slope
+        trial = self.step.stiffness * self.step.slip(x, slope)
+        force = self.step.force(np.clip(trial, -cap, cap), slope)
+        stick = self.step.stick((cap > 0.0) & (np.abs(trial) <= cap), slope)
+        return TermState(self.energy(x), self.solid.push(force), stick)
+
+
+@dataclass(frozen=True)
+class FrictionState:
+    """Friction at an accepted state: its points, the radii (n_edges, n_points) at which they rest (NaN: not touching),
+    the stiffness of the springs in mu/R0, and what the step to here stored in them and dissipated, in mu R0^3."""
+
+    points: FrictionPoints
+    rest: Array
+    stiffness: float
+    stored: float
+    dissipated: float
+
+    @classmethod
+    def after(cls, before: FrictionState | None, step: FrictionStep, x: Array, points: FrictionPoints) -> FrictionState:
+        """The state a step ends in at positions x (n_nodes, 2)."""
+        return cls(
+            points, step.moved(x, points), step.stiffness, step.stored(points), _dissipated(before, step, points)
+        )
+
+
+def _dissipated(before: FrictionState | None, step: FrictionStep, points: FrictionPoints) -> float:
+    """Work of the largest tractions over the sliding of a step, by the trapezium; springs of released points lose what
+    they held."""
+    weight = step.contact.weight
+    slid = points.sliding
+    beyond = np.abs(points.slip[slid]) - np.abs(points.traction[slid]) / step.stiffness
+    cap = points.cap[slid] if before is None else 0.5 * (points.cap[slid] + before.points.cap[slid])
+    work = float(np.vdot(weight[slid], cap * beyond))
+    if before is None:
+        return work
+    released = ~(points.sticking | points.sliding)
+    return work + float(np.vdot(weight[released], before.points.traction[released] ** 2)) / (2.0 * step.stiffness)

@@ -1,0 +1,145 @@
+"""Follows a branch of equilibria while the plate comes down or goes up with friction: each accepted state keeps where
+its points stick, and every step, also one that is cut or repeated, starts from there."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.mechanics.solid.continuation import PathFollower, PlateState
+from pneutouch.mechanics.solid.errors import NoConvergenceError
+from pneutouch.mechanics.solid.friction import TANGENTIAL, FrictionState, FrictionStep
+from pneutouch.mechanics.solid.friction_newton import FrictionSolver, HeldState, SlidingResult
+from pneutouch.mechanics.solid.general_band import OneSidedBlocks
+from pneutouch.mechanics.solid.indenter import Indenter
+from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.newton import NewtonFailure, SolidScene, full_tangent, stability
+from pneutouch.mechanics.solid.supply import Supply
+from pneutouch.mechanics.solid.terms import TermState
+
+#: Share of its present speed that a free point keeps on average until it is held: next to the edge of a held zone the
+#: speed grows with the square root of the distance, as at the tip of a crack, and the distance closes evenly.
+_KEPT_SPEED = 2.0 / 3.0
+_SETTLING = 6
+
+
+class FrictionFollower(PathFollower):
+    """A `PathFollower` whose plate holds the wall by friction; ``coefficient`` inf for one that grips."""
+
+    def __init__(self, solid: SolidModel, supply: Supply, plate: Indenter, start: Array, coefficient: float) -> None:
+        self._sides = OneSidedBlocks(solid)
+        self._coefficient = coefficient
+        self._stiffness = TANGENTIAL * solid.contact.stiffness
+        super().__init__(solid, supply, plate, start)
+
+    def _first(self, scene: SolidScene, start: Array) -> PlateState:
+        self._bare = scene
+        rest, _ = self._solid.contact.positions(start)
+        solver = self._solver(self._plate.height, rest)
+        solved = solver.minimise(start)
+        if isinstance(solved, NewtonFailure):
+            raise NoConvergenceError("first contact", solved.why, "a finer mesh")
+        return friction_plate_state(solver, solved, None)
+
+    def _solver(self, height: float, rest: Array) -> FrictionSolver:
+        plate = self._plate.at(height)
+        step = FrictionStep(self._solid.contact, plate, self._coefficient, rest, self._stiffness)
+        return FrictionSolver(replace(self._bare, plate=plate), step, self._sides)
+
+    def solve(self, height: float) -> PlateState | NewtonFailure:
+        """State at `height` from the extrapolated path; not kept."""
+        solver = self._solver(height, self._rest(height))
+        solved = solver.minimise(self._extrapolate(height))
+        if isinstance(solved, NewtonFailure):
+            solved = solver.minimise(self.here.state.x)
+        if isinstance(solved, NewtonFailure):
+            return solved
+        return friction_plate_state(solver, solved, self.here)
+
+    def _rest(self, height: float) -> Array:
+        """Radii at which points rest, or will touch: the gap before the contact's edge opens with the square of the
+        distance, so its root closes evenly, and the wall slows down evenly to where it is held."""
+        here = self.here
+        assert here.friction is not None and here.state.touch is not None
+        contact, touch = self._solid.contact, here.state.touch
+        r, _ = contact.positions(here.state.x)
+        if len(self.path) > 1:
+            rate_r, rate_z = contact.positions(here.by_height)
+            travel = height - here.height
+            closing = (1.0 + touch.slope * rate_r - rate_z) * travel
+            share = np.where(
+                closing < 0.0, np.clip(-2.0 * touch.gap / np.where(closing < 0.0, closing, -1.0), 0.0, 1.0), 1.0
+            )
+            r = r + _KEPT_SPEED * share * rate_r * travel
+        return np.where(np.isnan(here.friction.rest), r, here.friction.rest)
+
+
+def friction_plate_state(
+    solver: FrictionSolver, solved: SlidingResult, before: PlateState | None, down: float = 1.0
+) -> PlateState:
+    """Force and the consistent tangent of the path at a converged state with friction."""
+    held, step, points = solved.held, solver.step, solved.held.points
+    past = None if before is None else before.friction
+    friction = FrictionState.after(past, step, held.state.x, points)
+    term = held.term.at(held.state.x)
+    there = TermState(friction.stored, term.gradient, term.blocks)
+    state = replace(
+        held.state,
+        energy=held.state.energy + friction.stored,
+        residual=held.residual,
+        inner=held.state.inner + held.pull,
+        scale=held.scale,
+        terms=(*held.state.terms, there),
+    )
+    scene = replace(solver.scene, terms=(*solver.scene.terms, held.term))
+    band = full_tangent(solver.scene, held.state)
+    move, force, stiffness = _by_height(solver, held, band, down)
+    assert term.blocks is not None
+    whole = solver.solid.contact_pattern.added(band, [term.blocks])
+    rate = -state.filling.rate * float(state.by_volume @ move)
+    return PlateState(
+        height=step.plate.height,
+        state=state,
+        scene=scene,
+        iterations=solved.iterations,
+        force=force,
+        stiffness=stiffness,
+        by_height=solver.solid.expand(move),
+        pressure_rate=rate,
+        stable=stability(scene, state, band=whole).stable,
+        friction=friction,
+    )
+
+
+def _by_height(solver: FrictionSolver, held: HeldState, band: Array, down: float) -> tuple[Array, float, float]:
+    """Rate of the unknowns (size,), force on the plate and its rate, by the plate's height where it goes on.
+
+    Points that slid in the step slide on where that lengthens their path, else they stick.
+    """
+    solid, step, touch, points = solver.solid, solver.step, held.touch, held.points
+    contact, slope, secant = solid.contact, held.touch.slope, held.points.secant
+    normal = np.where(touch.traction > 0.0, -contact.stiffness, 0.0)
+    slid = np.where(points.sliding, np.sign(points.slip), 0.0)
+    sign = slid
+    for _ in range(_SETTLING):
+        sticking = (points.sticking | points.sliding) & (sign == 0.0)
+        follow, stick = step.rate(sign, slope), np.where(sticking, step.stiffness, 0.0)
+        load = contact.force(normal, slope) + step.force(follow * normal - stick * slope / secant, slope)
+        full = solid.contact_pattern.added(band, [step.stick(sticking, slope)])
+        move = solver.solve(held.state, full, step.slide(points.traction, touch, sign), solid.push(load))
+        nodes = solid.expand(move)
+        r, z = contact.positions(nodes)
+        pressing = normal * (1.0 + slope * r - z)
+        slips = step.change(nodes, slope) - slope / secant
+        turning = slope * touch.curve / secant**2 * r
+        bears = step.rate(slid, slope) * (pressing + touch.traction * turning)
+        on = np.where(sign == 0.0, down * slid * (bears - step.stiffness * slips) > 0.0, down * slid * slips < 0.0)
+        if (np.where(on, slid, 0.0) == sign).all():
+            break
+        sign = np.where(on, slid, 0.0)
+    along = stick * slips + np.where(sign == 0.0, 0.0, bears)
+    turned = points.traction * touch.curve / secant**3 * r
+    force = float(np.vdot(contact.weight, touch.traction + points.traction * slope / secant))
+    return move, force, float(np.vdot(contact.weight, pressing + along * slope / secant + turned))
