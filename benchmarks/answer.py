@@ -42,7 +42,8 @@ class Answer:
 def solid_answer(scene: Scene, arc: int | None, through: int | None, depth: float | None = None) -> Answer:
     """Study 1 to the driving pressure and study 2 in 14 steps, mesh and all; ``depth`` (mm) may stop it short."""
     s = scene.sensor
-    solid = SolidModel(dome(s.dome.inner_radius, s.dome.wall_thickness, arc=arc, through=through), s.wall.hyperelastic)
+    mesh = dome(s.dome.inner_radius, s.dome.wall_thickness, arc=arc, through=through)
+    solid = SolidModel(mesh, s.wall.hyperelastic, base=s.dome.base)
     free = state_at(solid, scene.pressure)
     press = PressSettings(
         depth or s.protocol.depth,

@@ -35,6 +35,7 @@ def outside_atlas(sensor: Sensor, atlas: Atlas | None = None) -> str | None:
         (wall.law is not None, "the resin has a law of its own, not the neo-Hookean one"),
         (wall.poisson_ratio != nu, f"Poisson ratio {wall.poisson_ratio:g}, not {nu:g}"),
         (dome.flange is not None, "the flange is held as printed, not the base plane"),
+        (dome.base is not None, "the wall lies down on its base"),
         (not inside, f"wall {ratio:.3g} R0, not {recipe.thinnest:g} to {recipe.thickest:g}"),
         (depth > recipe.deepest * (1 + 1e-9), f"depth {depth:.3g} R0, more than {recipe.deepest:g}"),
         (gas > recipe.stiffest, f"ambient pressure {gas:.3g} mu, more than {recipe.stiffest:g}"),

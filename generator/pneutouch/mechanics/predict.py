@@ -42,11 +42,19 @@ _MEMBRANE_ASSUMPTIONS = (
     "uniaxial elongation at break is set against the equibiaxial stretch",
 )
 
+_THROUGH_BASE = (
+    "the wall below the base plane, self-contact and contact with the connector are not modelled",
+    "the fold of the wall at its clamped corner, which refined meshes find in deep presses, is not resolved by default",
+)
+_ON_BASE = (
+    "next to its clamp and inside, the wall lies down without friction on what it stands on; contact of the rest of "
+    "the wall with itself is not modelled"
+)
+
 _SOLID_ASSUMPTIONS = (
     "axisymmetric hyperelastic solid with the wall's full stiffness; no wrinkles around the axis",
     "R0 is the inner radius; heights are those of the inner and the outer surface",
-    "the wall below the base plane, self-contact and contact with the connector are not modelled",
-    "the fold of the wall at its clamped corner, which refined meshes find in deep presses, is not resolved by default",
+    *_THROUGH_BASE,
     "the plate's edge is rounded with a thirtieth of its radius",
     "elongation at break is set against the greatest principal stretch on the faces, half a wall away from the clamp",
 )
@@ -96,6 +104,8 @@ def predict(
     errors, assumptions = _stated(chosen, sensor, pressures)
     if sensitivity_error is not None:
         errors = _merged(errors, sensitivity_error(chosen))
+    if sensor.dome.base is not None and chosen == "solid":
+        assumptions = (*(line for line in assumptions if line not in _THROUGH_BASE), _ON_BASE)
     if why:
         errors = _merged({"model_choice": why, "summary": [f"Model {chosen}: {why}."]}, errors)
     dead, ambient_kPa = sensor.gas.dead_volume, sensor.gas.ambient_pressure / KPA

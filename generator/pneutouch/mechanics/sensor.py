@@ -9,16 +9,19 @@ from typing import Any
 import numpy as np
 
 from pneutouch.mechanics.laws import Hyperelastic, hyperelastic, neo_hookean
+from pneutouch.mechanics.solid.base_contact import RigidBase
 
 
 @dataclass(frozen=True, slots=True)
 class Dome:
     """The unloaded membrane. ``flange`` is the width and thickness of the flange where the solid is clamped as printed;
-    without it the wall is clamped at the base plane, as in the paper."""
+    without it the wall is clamped at the base plane, as in the paper. ``base`` is what the wall lies down on next to
+    its clamp, and inside; without it the wall passes through its base plane."""
 
     inner_radius: float
     wall_thickness: float
     flange: tuple[float, float] | None = None
+    base: RigidBase | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,6 +1,7 @@
 """The model ``solid``: the paper's finite element study (section 2-C and Supplement B) run for a sensor."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from pneutouch.mechanics.limits import LimitPoint, Limits
 from pneutouch.mechanics.prediction import DeformedShape, InflationCurve, ModelResult, SensorState
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.solid.base_contact import RigidBase
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, PressState, indent
 from pneutouch.mechanics.solid.inflate import FreeState, Inflation, inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
@@ -68,7 +70,15 @@ def _probe(sensor: Sensor, cells: int | None = None) -> StrainProbe:
     """The sensor's wall as the solid takes it, and the probe of its strains."""
     size = (sensor.dome.inner_radius, sensor.dome.wall_thickness)
     mesh = dome(*size, arc=cells) if sensor.dome.flange is None else printed_dome(*size, *sensor.dome.flange, arc=cells)
-    return StrainProbe(SolidModel(mesh, sensor.wall.hyperelastic, grade=_grade(sensor)))
+    return StrainProbe(SolidModel(mesh, sensor.wall.hyperelastic, grade=_grade(sensor), base=_base(sensor)))
+
+
+def _base(sensor: Sensor) -> RigidBase | None:
+    """The rigid base as the solid takes it: where the flange is held as printed, outside the flange alone."""
+    dome = sensor.dome
+    if dome.base is None or dome.flange is None:
+        return dome.base
+    return replace(dome.base, flange=dome.inner_radius + dome.wall_thickness + dome.flange[0])
 
 
 def _grade(sensor: Sensor) -> Callable[[Array, Array], Array] | None:

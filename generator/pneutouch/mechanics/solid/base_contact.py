@@ -54,12 +54,17 @@ class _Body(Protocol):
 
 @dataclass(frozen=True)
 class BaseLoad:
-    """What the outer wall puts on the base: force (mu R0^2), greatest traction (mu, per area at rest) and greatest
-    penetration (R0); all 0 without contact."""
+    """What the outer wall puts on what it lies on: force along the axis (mu R0^2), greatest traction (mu, per area at
+    rest) and greatest penetration (R0); all 0 without contact."""
 
     force: float = 0.0
     traction: float = 0.0
     penetration: float = 0.0
+
+    def __add__(self, other: BaseLoad) -> BaseLoad:
+        """Both on different parts of the wall."""
+        most = (max(a, b) for a, b in ((self.traction, other.traction), (self.penetration, other.penetration)))
+        return BaseLoad(self.force + other.force, *most)
 
 
 class BaseContact:

@@ -78,7 +78,7 @@ class HarmonicSolid:
         self._wide = np.ascontiguousarray(np.swapaxes(self._tall, 1, 2))
         self._over = np.ascontiguousarray(self._gradient[:, :, _OVER_R])
         self._over_wide = np.ascontiguousarray(np.swapaxes(self._over, 1, 2))
-        families = (mesh.cells, mesh.inner, mesh.outer)
+        families = [mesh.cells, mesh.inner, mesh.outer, *([] if solid.meeting.size == 0 else [solid.meeting])]
         self._numbers = _number(solid)
         tables = [self._numbers[x].reshape(x.shape[0], -1) for x in families]
         self._pattern = AssemblyPattern(tables, int(self._numbers.max()) + 1)
@@ -121,13 +121,18 @@ class HarmonicSolid:
         return self._pattern.matrix([block * sign[:, :, None] * sign[:, None, :] for block, sign in pairs])
 
     def blocks(self, state: SolverState) -> list[HarmonicBlocks]:
-        """The second variation by cells, by edges of the inner and by edges of the outer wall."""
+        """The second variation by cells, by edges of the inner and of the outer wall, and where the wall can meet a
+        flange by those edges with its top: there without the work of sliding around the axis."""
         gas = _second_volume(self.solid, state.x)
         gas = HarmonicBlocks(*(-state.filling.pressure * part for part in (gas.constant, gas.linear, gas.square)))
         cells, faces = self.wall(state.local), [gas, self._contact(state)]
         if self.solid.base is None:
             return [cells, *faces]
-        return [cells, *map(_supported, faces, self.solid.base.waves(state.x))]
+        supported = [cells, *map(_supported, faces, self.solid.base.waves(state.x))]
+        if self.solid.meeting.size:
+            fold, empty = state.terms[1].fold_blocks, _empty(*self.solid.meeting.shape)
+            supported.append(_family((empty if fold is None else _placed(fold), empty, empty)))
+        return supported
 
     def wall(self, local: PointFields) -> HarmonicBlocks:
         """Second variation of the stored energy by cells."""

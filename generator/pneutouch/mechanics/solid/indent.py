@@ -9,7 +9,6 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.response import Figures, figures
-from pneutouch.mechanics.solid.base_contact import BaseLoad
 from pneutouch.mechanics.solid.contact import Plate, flat_radius, rim_radius
 from pneutouch.mechanics.solid.continuation import PathFollower, PlateState
 from pneutouch.mechanics.solid.descend import PathJump, descend
@@ -86,7 +85,7 @@ class PressState:
     stiffness: dF/d(indentation), N/mm.  slope: dp/dF at shut-in gas, MPa/N.
     stretch, von_mises: largest on the faces away from the clamp; fold: see `stress.WallExtremes`.
     inner_apex: height.  overhang: how far the wall hangs below its base plane.  base_force, base_pressure (per area at
-    rest): what the outer wall puts on its base where the solid has one.  positions: (n_nodes, 2).
+    rest): what the outer wall puts on its base and flange where the solid has one.  positions: (n_nodes, 2).
     """
 
     indentation: float
@@ -224,7 +223,7 @@ class _Recorder:
         solid, x, touch = self._solid, plate_state.state.x, plate_state.state.touch
         assert touch is not None
         length, mu = solid.length, solid.mu
-        base = BaseLoad() if solid.base is None else solid.base.load(x)
+        base = solid.base_load(x)
         foot, peak = solid.contact.footprint(x, touch, self._annular), self._probe.peak(x)
         pressure = plate_state.state.filling.pressure * mu
         return PressState(

@@ -1,6 +1,6 @@
 """Meridian meshes: quadrilaterals in the (r, z) half plane with named boundaries."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -31,6 +31,7 @@ class SolidMesh:
     axis:    nodes on r = 0, whose radial displacement is zero.
     sliding: nodes whose vertical displacement alone is zero (a symmetry plane).
     length, wall: inner radius and wall thickness, the scales of lengths and of contact.
+    flange: (n_edges, 3) edges of a flange's free top, from the foot of the outer wall to the rim; none without one.
     """
 
     nodes: Array
@@ -42,6 +43,7 @@ class SolidMesh:
     sliding: Index
     length: float
     wall: float
+    flange: Index = field(default_factory=lambda: np.zeros((0, 3), dtype=np.intp))
 
     @property
     def inner_apex(self) -> int:

@@ -9,7 +9,7 @@ from pneutouch.arrays import Array, Index
 from pneutouch.mechanics.laws.hyperelastic import Hyperelastic
 from pneutouch.mechanics.laws.strain import BY_A, BY_H, BY_J, BY_JH, GRADIENT, HESSIAN, VALUE, Strain
 from pneutouch.mechanics.solid.banded import AssemblyPattern
-from pneutouch.mechanics.solid.base_contact import BaseContact, RigidBase
+from pneutouch.mechanics.solid.base_contact import BaseContact, BaseLoad, RigidBase
 from pneutouch.mechanics.solid.cavity import Cavity
 from pneutouch.mechanics.solid.contact import Contact
 from pneutouch.mechanics.solid.elements import (
@@ -19,6 +19,7 @@ from pneutouch.mechanics.solid.elements import (
     pressure_modes,
     strain_operator,
 )
+from pneutouch.mechanics.solid.flange_contact import FlangeContact, meeting_nodes
 from pneutouch.mechanics.solid.kinematics import F_RR, F_RZ, F_ZR, F_ZZ, HOOP, IN_PLANE, area_ratio
 from pneutouch.mechanics.solid.mesh import SolidMesh
 from pneutouch.mechanics.solid.terms import EnergyTerm
@@ -70,11 +71,14 @@ class SolidModel:
         self.wall = mesh.wall / mesh.length
         self.rest = mesh.nodes / mesh.length
         self._integration()
-        self.dofs = _number_dofs(mesh)
+        self.meeting = meeting_nodes(mesh) if base is not None else np.zeros((0, 0), np.intp)
+        self.dofs = _number_dofs(mesh, self.meeting)
         flat = self.dofs.ravel()
         self.size = int((flat >= 0).sum())
         tables = [self.dofs[x].reshape(x.shape[0], -1) for x in (mesh.cells, mesh.inner, mesh.outer)]
-        self.pattern = AssemblyPattern(tables[:2], self.size)
+        folding = self.dofs[self.meeting].reshape(self.meeting.shape[0], 2 * self.meeting.shape[1])
+        self.pattern = AssemblyPattern(tables[:2], self.size, _half_width(folding))
+        self.fold_pattern = AssemblyPattern([folding], self.size, self.pattern.width) if folding.size else None
         self.contact_pattern = AssemblyPattern(tables[2:], self.size, self.pattern.width)
         self.edge_pattern = AssemblyPattern(tables[1:2], self.size, self.pattern.width)
         self._order = np.empty(self.size, dtype=np.intp)
@@ -85,7 +89,13 @@ class SolidModel:
         self.noise = float(np.linalg.norm(self.pattern.vector([idle, np.zeros((len(mesh.inner), tables[1].shape[1]))])))
         self.contact = Contact(mesh, self.rest, float(self._relative.max()) * CONTACT_STIFFNESS / self.wall)
         self.base = None if base is None else BaseContact(self, base)
-        self.supports: tuple[EnergyTerm, ...] = () if self.base is None else (self.base,)
+        self.fold = None if self.fold_pattern is None else FlangeContact(self)
+        self.supports: tuple[EnergyTerm, ...] = tuple(part for part in (self.base, self.fold) if part is not None)
+
+    def base_load(self, x: Array) -> BaseLoad:
+        """What the outer wall puts on its base and on its own flange at positions x (n_nodes, 2)."""
+        loads = [part.load(x) for part in (self.base, self.fold) if part is not None]
+        return sum(loads, BaseLoad())
 
     def _integration(self) -> None:
         """Constant operators: strains (`_b`, also as `_tall` and its transpose `_wide`) and tested pressure modes."""
@@ -117,6 +127,11 @@ class SolidModel:
     def push(self, blocks: Array) -> Array:
         """Sum (size,) of forces on the edges of the outer wall, (n_edges, 2 n)."""
         return self.contact_pattern.vector([blocks])
+
+    def folded(self, blocks: Array) -> Array:
+        """Sum (size,) of vectors on edges of the outer wall with the flange's top, (n_edges, 2 n)."""
+        assert self.fold_pattern is not None
+        return self.fold_pattern.vector([blocks])
 
     def local(self, x: Array) -> PointFields:
         """Strains, energy and energy derivatives at the integration points for positions x."""
@@ -181,13 +196,20 @@ def _even(radius: Array, height: Array) -> Array:
     return np.ones_like(radius)
 
 
-def _number_dofs(mesh: SolidMesh) -> Index:
+def _half_width(table: Index) -> int:
+    """Greatest distance between two unknowns of one row; -1 stands for none."""
+    if not table.size:
+        return 0
+    return int((table.max(axis=1) - np.where(table < 0, table.max(), table).min(axis=1)).max())
+
+
+def _number_dofs(mesh: SolidMesh, meeting: Index) -> Index:
     """Unknown of each node and direction (n_nodes, 2), -1 where fixed; renumbered if that narrows the band."""
     n = mesh.nodes.shape[0]
     native = np.arange(n)
     # Two columns of nodes span a cell of a dome numbered down each column: no order is narrower.
     span = int(np.ptp(mesh.cells, axis=1).max())
-    rank = native if span <= 2 * mesh.axis.size + 2 else _narrower(mesh.cells, n, span)
+    rank = native if span <= 2 * mesh.axis.size + 2 else _narrower([mesh.cells, meeting], n)
     fixed = np.zeros((n, 2), dtype=bool)
     fixed[mesh.clamped] = True
     fixed[mesh.axis, 0] = True
@@ -199,15 +221,17 @@ def _number_dofs(mesh: SolidMesh) -> Index:
     return numbers[rank].astype(np.intp)
 
 
-def _narrower(cells: Index, n: int, span: int) -> Index:
-    """Rank of each of n nodes by reverse Cuthill-McKee where that spans less than ``span`` in a cell."""
+def _narrower(groups: list[Index], n: int) -> Index:
+    """Rank of each of n nodes by reverse Cuthill-McKee where that spans less in a row of nodes that are coupled."""
     # Only a flange needs these, which take a tenth of SciPy's import.
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-    d = cells.shape[1]
-    i, k = np.repeat(cells, d, axis=1).ravel(), np.tile(cells, (1, d)).ravel()
+    groups = [rows for rows in groups if rows.size]
+    i = np.concatenate([np.repeat(rows, rows.shape[1], axis=1).ravel() for rows in groups])
+    k = np.concatenate([np.tile(rows, (1, rows.shape[1])).ravel() for rows in groups])
     graph = csr_array((np.ones(i.size), (i, k)), shape=(n, n))
     order = np.empty(n, dtype=np.intp)
     order[reverse_cuthill_mckee(graph, symmetric_mode=True)] = np.arange(n)
-    return order if np.ptp(order[cells], axis=1).max() < span else np.arange(n)
+    spans = [max(int(np.ptp(rank[rows], axis=1).max()) for rows in groups) for rank in (order, np.arange(n))]
+    return order if spans[0] < spans[1] else np.arange(n)

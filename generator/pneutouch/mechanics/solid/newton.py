@@ -140,6 +140,8 @@ def tangent(scene: SolidScene, state: SolverState) -> Array:
             band = solid.contact_pattern.added(band, [term.blocks])
         if term.inner_blocks is not None:
             band = solid.edge_pattern.added(band, [term.inner_blocks])
+        if term.fold_blocks is not None and solid.fold_pattern is not None:
+            band = solid.fold_pattern.added(band, [term.fold_blocks])
     return band
 
 

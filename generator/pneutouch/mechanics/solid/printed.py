@@ -44,6 +44,9 @@ def printed_dome(
     nodes, cells, first = _merge(blocks, _COINCIDE * wall)
     height = cap.shape[1]
     r, z = nodes.T
+    high = np.flatnonzero((np.abs(z) <= _COINCIDE * wall) & (r >= outer - _COINCIDE * wall))
+    high = high[np.argsort(r[high])]
+    top = np.stack([high[:-2:2], high[2::2], high[1:-1:2]], axis=1).astype(np.intp)
     faces = (r <= inner_radius + _COINCIDE) | (z <= _COINCIDE - flange_thickness) | (r >= rim - _COINCIDE)
     return SolidMesh(
         nodes,
@@ -55,6 +58,7 @@ def printed_dome(
         sliding=np.zeros(0, np.intp),
         length=inner_radius,
         wall=wall,
+        flange=top,
     )
 
 

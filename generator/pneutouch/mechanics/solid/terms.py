@@ -12,12 +12,14 @@ from pneutouch.arrays import Array
 class TermState:
     """A further part of the total energy at one set of positions: its energy, its gradient (size,), and its second
     derivative as ``blocks`` of `SolidModel.contact_pattern` (edges of the outer wall) and ``inner_blocks`` of
-    `SolidModel.edge_pattern` (edges of the inner wall), (n_edges, 2 n, 2 n) each; None where it has none."""
+    `SolidModel.edge_pattern` (edges of the inner wall), (n_edges, 2 n, 2 n) each, and ``fold_blocks`` of
+    `SolidModel.fold_pattern` (edges of the outer wall with the flange's top); None where it has none."""
 
     energy: float
     gradient: Array
     blocks: Array | None = None
     inner_blocks: Array | None = None
+    fold_blocks: Array | None = None
 
 
 class EnergyTerm(Protocol):
