@@ -61,6 +61,7 @@ DRAWN_FROM = {
     "pneutouch.mechanics.prediction",
     "pneutouch.mechanics.uncertainty.record",
     "pneutouch.evaluation.chart_data",
+    "pneutouch.evaluation.comparison_record",
     "pneutouch.evaluation.sheet_data",
 }
 """Modules of records, which is all that `report` may import of the layers that compute."""

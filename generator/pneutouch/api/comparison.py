@@ -11,6 +11,7 @@ from pneutouch.api.design import Design, pressures_changed
 from pneutouch.api.fields import keywords, named_by_keyword
 from pneutouch.api.prediction import Prediction
 from pneutouch.errors import InputError
+from pneutouch.evaluation.comparison_record import RowRecord
 from pneutouch.mechanics.models import model_options
 from pneutouch.report.compared import words
 from pneutouch.spec.design import DesignFile
@@ -48,11 +49,12 @@ class Comparison(show.Shown):
         columns: dict[tuple[str, str], list[Any]] = {}
         for k, label in enumerate(self.labels):
             for key in ("value", "low", "high"):
-                columns[label, key] = [None if row["values"][k] is None else row["values"][k][key] for row in rows]
+                values = [row["values"][k] for row in rows]
+                columns[label, key] = [None if one is None else one.get(key) for one in values]
         for k, label in enumerate(self.labels[1:]):
             for key in ("percent", "low_percent", "high_percent", "exceeds"):
                 entries = [row["differences"][k] for row in rows]
-                columns[label, key] = [None if one is None else one[key] for one in entries]
+                columns[label, key] = [None if one is None else one.get(key) for one in entries]
         return DataFrame(columns, index)
 
     def to_dict(self) -> dict[str, Any]:
@@ -72,7 +74,7 @@ class Comparison(show.Shown):
         figures = sorted(self._result.document["figures"], key=lambda row: row["figure"] != "sensitivity_kPa_per_N")
         return [*inputs, *(self._row(row) for row in figures)]
 
-    def _row(self, row: dict[str, Any]) -> tuple[str, ...]:
+    def _row(self, row: RowRecord) -> tuple[str, ...]:
         at = "" if row["driving_pressure_kPa"] is None else f" {words.heading(row['driving_pressure_kPa'])}"
         values = [f"{value} ({ends})" if ends else value for value, ends in words.figure_cells(row)]
         return (f"{row['name']}{at}", *values, *(f"{p}, {word}" for p, _, word in words.difference_cells(row)))

@@ -1,12 +1,11 @@
 """What ``compare`` prints for people."""
 
-from typing import Any
-
 from pneutouch.cli.table import table_text
+from pneutouch.evaluation.comparison_record import ColumnRecord, ComparisonRecord, RowRecord
 from pneutouch.report.compared import words
 
 
-def comparison_text(document: dict[str, Any]) -> str:
+def comparison_text(document: ComparisonRecord) -> str:
     """What differs, every figure with its interval, what exceeds its uncertainty, and what is assumed."""
     labels = words.labels(document)
     lines = [f"{one['label']}: {one['kind']}{_from(one)}" for one in document["compared"]]
@@ -25,11 +24,11 @@ def _difference_heads(labels: list[str]) -> list[str]:
     return ["difference"] if len(labels) == 2 else [f"{label}, difference" for label in labels[1:]]
 
 
-def _from(one: dict[str, Any]) -> str:
+def _from(one: ColumnRecord) -> str:
     return f", {one['source']}" if one["source"] not in ("", one["label"]) else ""
 
 
-def _row(row: dict[str, Any]) -> list[str]:
+def _row(row: RowRecord) -> list[str]:
     values = [f"{value} ({interval})" if interval else value for value, interval in words.figure_cells(row)]
     differences = [
         f"{percent} ({interval}): {word}" if interval else f"{percent}: {word}" if percent != word else word

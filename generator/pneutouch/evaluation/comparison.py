@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pneutouch.errors import InputError
+from pneutouch.evaluation.comparison_record import ComparisonRecord, CurvePoints, DifferenceRecord, RowRecord
 from pneutouch.evaluation.correlation import SourceEffect, variance_of_ratio
 from pneutouch.mechanics.uncertainty.sources.model import MODEL_CORRELATION
 from pneutouch.rounding import rounded
@@ -76,7 +77,7 @@ class ComparedState:
 
     driving_pressure_kPa: float
     figures: Mapping[str, ComparedFigure]
-    curves: tuple[Mapping[str, Sequence[float]], ...]
+    curves: tuple[CurvePoints, ...]
 
 
 @dataclass(frozen=True)
@@ -140,7 +141,7 @@ def different_inputs(sensors: Sequence[ComparedSensor]) -> dict[str, list[Any]]:
     return {key: values for key, values in rows.items() if any(value != known[key][0] for value in known[key])}
 
 
-def comparison_document(sensors: Sequence[ComparedSensor]) -> dict[str, Any]:
+def comparison_document(sensors: Sequence[ComparedSensor]) -> ComparisonRecord:
     """Everything a comparison states, as plain data; the first sensor is what the others are compared with.
 
     Raises InputError where there is nothing to compare.
@@ -149,7 +150,7 @@ def comparison_document(sensors: Sequence[ComparedSensor]) -> dict[str, Any]:
     rows = [_row(figure, None, sensors) for figure in FIGURES if not figure.of_state]
     rows += [_row(figure, p, sensors) for p in pressures_kPa for figure in FIGURES if figure.of_state]
     inputs = different_inputs(sensors)
-    content = {
+    content: ComparisonRecord = {
         "compared": [
             {
                 "label": s.label,
@@ -177,7 +178,7 @@ def comparison_document(sensors: Sequence[ComparedSensor]) -> dict[str, Any]:
     return rounded(content, _DIGITS, 1e-12)
 
 
-def _row(figure: FigureColumn, pressure_kPa: float | None, sensors: Sequence[ComparedSensor]) -> dict[str, Any]:
+def _row(figure: FigureColumn, pressure_kPa: float | None, sensors: Sequence[ComparedSensor]) -> RowRecord:
     values = [_of(sensor, figure.key, pressure_kPa) for sensor in sensors]
     return {
         "figure": figure.key,
@@ -197,12 +198,19 @@ def _of(sensor: ComparedSensor, key: str, pressure_kPa: float | None) -> Compare
     return next((s.figures[key] for s in states if s is not None and key in s.figures), None)
 
 
-def _difference(one: ComparedFigure | None, other: ComparedFigure | None, *, same_resin: bool) -> dict[str, Any] | None:
+def _difference(
+    one: ComparedFigure | None, other: ComparedFigure | None, *, same_resin: bool
+) -> DifferenceRecord | None:
     """The second figure less the first, with the interval of the difference in percent, and whether it exceeds it."""
     if one is None or other is None:
         return None
-    row: dict[str, Any] = {"difference": other.value - one.value, "percent": None, "exceeds": None}
-    row |= {"low_percent": None, "high_percent": None}
+    row: DifferenceRecord = {
+        "difference": other.value - one.value,
+        "percent": None,
+        "low_percent": None,
+        "high_percent": None,
+        "exceeds": None,
+    }
     if one.value * other.value <= 0:
         return row
     ratio = math.log(other.value / one.value)
@@ -213,8 +221,9 @@ def _difference(one: ComparedFigure | None, other: ComparedFigure | None, *, sam
     both = one.effects and other.effects
     total = variance_of_ratio(one.effects, other.effects, same_resin=same_resin) if both else first + second
     width = COVERAGE * math.sqrt(total)
-    row |= {"low_percent": 100 * math.expm1(ratio - width), "high_percent": 100 * math.expm1(ratio + width)}
-    return {**row, "exceeds": abs(ratio) > max(width, _EXACT)}
+    row["low_percent"], row["high_percent"] = (100 * math.expm1(ratio + sign * width) for sign in (-1, 1))
+    row["exceeds"] = abs(ratio) > max(width, _EXACT)
+    return row
 
 
 def _notes(sensors: Sequence[ComparedSensor], pressures_kPa: Sequence[float], inputs: Mapping[str, Any]) -> list[str]:

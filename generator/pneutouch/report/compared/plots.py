@@ -9,6 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pneutouch.evaluation.comparison_record import (
+    ComparedCurve,
+    ComparisonRecord,
+    CurveKey,
+    DifferenceRecord,
+    RowRecord,
+)
 from pneutouch.parts import Assembly
 from pneutouch.report.compared.words import labels
 from pneutouch.report.section import section
@@ -40,21 +47,23 @@ def _spots(k: int) -> dict[str, Any]:
     return {"ls": "", "marker": MARKERS[k % len(MARKERS)], "ms": 2.8, "mew": 0.6, "mec": tone, "mfc": "white"}
 
 
-def responses(document: Mapping[str, Any]) -> dict[str, str]:
+def responses(document: ComparisonRecord) -> dict[str, str]:
     """Pressure rise over contact force with the band of the sensitivity, a plot a driving pressure."""
-    axes = "contact_force_N", "pressure_rise_kPa"
+    axes: tuple[CurveKey, CurveKey] = ("contact_force_N", "pressure_rise_kPa")
     words = "contact force  (N)", "pressure rise  (kPa)"
     return _curves(document, axes, words, "sensitivity_kPa_per_N")
 
 
-def indentations(document: Mapping[str, Any]) -> dict[str, str]:
+def indentations(document: ComparisonRecord) -> dict[str, str]:
     """Contact force over indentation in the same way; the band is that of the stiffness."""
-    axes = "indentation_mm", "contact_force_N"
+    axes: tuple[CurveKey, CurveKey] = ("indentation_mm", "contact_force_N")
     words = "indentation  (mm)", "contact force  (N)"
     return _curves(document, axes, words, "stiffness_N_per_mm")
 
 
-def _curves(document: Mapping[str, Any], keys: tuple[str, str], words: tuple[str, str], band: str) -> dict[str, str]:
+def _curves(
+    document: ComparisonRecord, keys: tuple[CurveKey, CurveKey], words: tuple[str, str], band: str
+) -> dict[str, str]:
     """A plot a driving pressure, by its title; all have the same axes."""
     names, plots = labels(document)[:MOST], {}
     ends = [max((max(c[key]) for c in document["curves"] if c["label"] in names), default=0.0) for key in keys]
@@ -71,7 +80,7 @@ def _curves(document: Mapping[str, Any], keys: tuple[str, str], words: tuple[str
     return plots
 
 
-def _top(document: Mapping[str, Any], band: str) -> float:
+def _top(document: ComparisonRecord, band: str) -> float:
     """Height of the axis over the greatest value: space for the bands, as far as they do not flatten the curves."""
     shown = [(k, row["driving_pressure_kPa"]) for row in document["figures"] for k in range(len(row["values"][:MOST]))]
     ratios = [matching[1] for k, p in shown if (matching := _ends(document, band, k, p)) is not None]
@@ -85,12 +94,12 @@ def _spread(values: Sequence[float]) -> list[float]:
     return [values[round(k * (len(values) - 1) / (_PANELS - 1))] for k in range(_PANELS)]
 
 
-def _of(document: Mapping[str, Any], label: str, pressure_kPa: float) -> list[Mapping[str, Any]]:
+def _of(document: ComparisonRecord, label: str, pressure_kPa: float) -> list[ComparedCurve]:
     matching = [c for c in document["curves"] if c["label"] == label and c["driving_pressure_kPa"] == pressure_kPa]
     return matching[:: math.ceil(len(matching) / _RUNS) or 1]
 
 
-def _ends(document: Mapping[str, Any], key: str, k: int, pressure_kPa: float) -> tuple[float, float] | None:
+def _ends(document: ComparisonRecord, key: str, k: int, pressure_kPa: float | None) -> tuple[float, float] | None:
     """Ends of a figure's interval over its value."""
     for row in document["figures"]:
         if row["figure"] == key and row["driving_pressure_kPa"] == pressure_kPa:
@@ -101,7 +110,7 @@ def _ends(document: Mapping[str, Any], key: str, k: int, pressure_kPa: float) ->
 
 
 def _draw(
-    ax: Axes, k: int, curves: Sequence[Mapping[str, Any]], keys: tuple[str, str], ends: tuple[float, float] | None
+    ax: Axes, k: int, curves: Sequence[ComparedCurve], keys: tuple[CurveKey, CurveKey], ends: tuple[float, float] | None
 ) -> None:
     """One predicted curve with its band, or the points of measured runs."""
     for curve in curves:
@@ -117,7 +126,7 @@ def _draw(
                 ax.plot(x, end * y, color=tone, lw=0.4, ls=LINES[k % len(LINES)], zorder=2)
 
 
-def _legend(drawn: Figure, document: Mapping[str, Any], names: Sequence[str]) -> None:
+def _legend(drawn: Figure, document: ComparisonRecord, names: Sequence[str]) -> None:
     from matplotlib.lines import Line2D
 
     measured = [one["kind"] == "measured" for one in document["compared"]]
@@ -140,27 +149,27 @@ def _cut(text: str, most: int = 44) -> str:
     return plain if len(text) <= most else f"{plain[: most - 1]}…"
 
 
-def differences(document: Mapping[str, Any]) -> str | None:
+def differences(document: ComparisonRecord) -> str | None:
     """Differences from the first sensor in percent with their intervals; filled where they exceed them."""
     rows = [
-        (f"{row['name']}{_at(row)}", one, k)
+        (f"{row['name']}{_at(row)}", span, one["exceeds"], k)
         for row in document["figures"]
         for k, one in enumerate(row["differences"][: MOST - 1])
-        if one is not None and one["low_percent"] is not None and one["high_percent"] > one["low_percent"]
+        if one is not None and (span := _span(one)) is not None
     ]
     if not rows:
         return None
-    names = list(dict.fromkeys(name for name, _, _ in rows))
+    names = list(dict.fromkeys(name for name, *_ in rows))
     others = labels(document)[1:MOST]
     with figure(WIDTH, 14 + 4.2 * len(names) + 4 * _key_lines(others) * (len(others) > 1)) as drawn:
         ax = drawn.subplots()
-        for name, one, k in rows:
+        for name, (low, percent, high), exceeds, k in rows:
             place = names.index(name) + 0.22 * (k - 0.5 * (len(others) - 1))
             tone = _TONES[(k + 1) % len(_TONES)] if len(others) > 1 else INK
-            ax.plot([one["low_percent"], one["high_percent"]], [place, place], color=tone, lw=1.0, marker="|", ms=4)
+            ax.plot([low, high], [place, place], color=tone, lw=1.0, marker="|", ms=4)
             marker = MARKERS[k % len(MARKERS)]
-            face = tone if one["exceeds"] else "white"
-            ax.plot(one["percent"], place, ls="", marker=marker, ms=4.4, mec=tone, mfc=face, zorder=4)
+            face = tone if exceeds else "white"
+            ax.plot(percent, place, ls="", marker=marker, ms=4.4, mec=tone, mfc=face, zorder=4)
         ax.axvline(0, color=INK, lw=0.8)
         ax.set_yticks(range(len(names)), names)
         ax.set(xlabel=f"difference from {_cut(labels(document)[0])}  (%)", ylim=(len(names) - 0.5, -0.5))
@@ -170,7 +179,13 @@ def differences(document: Mapping[str, Any]) -> str | None:
         return svg(drawn)
 
 
-def _at(row: Mapping[str, Any]) -> str:
+def _span(one: DifferenceRecord) -> tuple[float, float, float] | None:
+    """Lower end, value and upper end of a difference in percent; None without an interval or with one of no width."""
+    low, percent, high = one["low_percent"], one["percent"], one["high_percent"]
+    return None if low is None or percent is None or high is None or high <= low else (low, percent, high)
+
+
+def _at(row: RowRecord) -> str:
     return "" if row["driving_pressure_kPa"] is None else f" at {row['driving_pressure_kPa']:g} kPa"
 
 
@@ -183,7 +198,7 @@ def _key(drawn: Figure, others: Sequence[str]) -> None:
     drawn.legend(handles, [_cut(name) for name in others], loc="outside upper left", ncols=_key_columns(others))
 
 
-def sections(document: Mapping[str, Any], parts: Mapping[str, Assembly]) -> str | None:
+def sections(document: ComparisonRecord, parts: Mapping[str, Assembly]) -> str | None:
     """Outlines of the sections of all sensors on one another, their domes' base planes at one height."""
     names = [name for name in labels(document)[:MOST] if name in parts]
     if not names:

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
+from pneutouch.evaluation.comparison_record import ComparisonRecord, RowRecord
 from pneutouch.parts import Assembly
 from pneutouch.report import pages
 from pneutouch.report.compared import plots, words
@@ -12,7 +13,7 @@ _KINDS = {"design": "design, predicted", "build": "build, as predicted when it w
 _MANY = f"The first {plots.MOST} are drawn."
 
 
-def comparison_sheet(document: Mapping[str, Any], parts: Mapping[str, Assembly]) -> dict[str, bytes]:
+def comparison_sheet(document: ComparisonRecord, parts: Mapping[str, Assembly]) -> dict[str, bytes]:
     """``comparison.html`` and ``comparison.pdf``; ``parts`` are the assemblies by label. Same input, same bytes."""
     groups = _pictures(document, parts)
     names = {picture: f"figure-{k}" for k, picture in enumerate(p for _, _, drawn in groups for p in drawn.values())}
@@ -35,7 +36,7 @@ def comparison_sheet(document: Mapping[str, Any], parts: Mapping[str, Assembly])
     }
 
 
-def _content(document: Mapping[str, Any]) -> dict[str, Any]:
+def _content(document: ComparisonRecord) -> dict[str, Any]:
     """The sections of the sheet; every leaf is text."""
     labels = words.labels(document)
     return {
@@ -57,7 +58,7 @@ def _content(document: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def _row(row: Mapping[str, Any]) -> dict[str, Any]:
+def _row(row: RowRecord) -> dict[str, Any]:
     return {
         "name": words.figure_name(row),
         "values": [list(pair) for pair in words.figure_cells(row)],
@@ -65,7 +66,7 @@ def _row(row: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def _pictures(document: Mapping[str, Any], parts: Mapping[str, Assembly]) -> list[tuple[str, str, dict[str, str]]]:
+def _pictures(document: ComparisonRecord, parts: Mapping[str, Assembly]) -> list[tuple[str, str, dict[str, str]]]:
     """Title, caption, and the plots by their own titles."""
     many = f" {_MANY}" if len(document["compared"]) > plots.MOST else ""
     apart, cut = plots.differences(document), plots.sections(document, parts)

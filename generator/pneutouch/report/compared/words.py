@@ -1,19 +1,20 @@
 """The tables of a comparison in words: the same cells on a terminal, on the page and in the PDF."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
+from pneutouch.evaluation.comparison_record import ComparisonRecord, DifferenceRecord, RowRecord
 from pneutouch.report.measured.words import DASH, between, number, signed
 
 _DIGITS = 4
 
 
-def labels(document: Mapping[str, Any]) -> list[str]:
+def labels(document: ComparisonRecord) -> list[str]:
     """Names of the columns."""
     return [str(one["label"]) for one in document["compared"]]
 
 
-def input_rows(document: Mapping[str, Any]) -> list[list[str]]:
+def input_rows(document: ComparisonRecord) -> list[list[str]]:
     """The inputs that differ, a row each: its key, and a value a sensor."""
     return [[key, *(_value(value) for value in values)] for key, values in document["inputs"].items()]
 
@@ -30,12 +31,12 @@ def _value(value: Any) -> str:
     return str(value)
 
 
-def figure_name(row: Mapping[str, Any]) -> str:
+def figure_name(row: RowRecord) -> str:
     """Name and unit of a figure."""
     return f"{row['name']}, {row['unit']}" if row["unit"] else str(row["name"])
 
 
-def figure_cells(row: Mapping[str, Any]) -> list[tuple[str, str]]:
+def figure_cells(row: RowRecord) -> list[tuple[str, str]]:
     """Value and interval, a pair a sensor."""
     return [
         (DASH, "") if one is None else (number(one["value"], _DIGITS), _interval(one["value"], one["low"], one["high"]))
@@ -50,12 +51,12 @@ def _interval(value: float, low: float | None, high: float | None) -> str:
     return between((value, low, high), _DIGITS)
 
 
-def difference_cells(row: Mapping[str, Any]) -> list[tuple[str, str, str]]:
+def difference_cells(row: RowRecord) -> list[tuple[str, str, str]]:
     """Difference in percent, its interval, and whether it exceeds its uncertainty: one each for all but the first."""
     return [_difference(one) for one in row["differences"]]
 
 
-def _difference(one: Mapping[str, Any] | None) -> tuple[str, str, str]:
+def _difference(one: DifferenceRecord | None) -> tuple[str, str, str]:
     if one is None:
         return DASH, "", DASH
     if one["percent"] is None:
@@ -70,7 +71,7 @@ def verdict(exceeds: bool | None) -> str:
     return "not known" if exceeds is None else "exceeds" if exceeds else "within"
 
 
-def pressures(document: Mapping[str, Any]) -> list[float | None]:
+def pressures(document: ComparisonRecord) -> list[float | None]:
     """The groups of figures: those of the whole sensor (None), then by driving pressure, kPa."""
     return list(dict.fromkeys(row["driving_pressure_kPa"] for row in document["figures"]))
 
@@ -80,12 +81,12 @@ def heading(pressure_kPa: float | None) -> str:
     return "the sensor" if pressure_kPa is None else f"at {pressure_kPa:g} kPa"
 
 
-def summary(document: Mapping[str, Any]) -> list[str]:
+def summary(document: ComparisonRecord) -> list[str]:
     """One sentence a sensor after the first: in which figures the difference exceeds its uncertainty."""
     first, *others = labels(document)
     sentences = []
     for k, label in enumerate(others):
-        known_rows = [(row, row["differences"][k]) for row in document["figures"] if row["differences"][k] is not None]
+        known_rows = [(row, one) for row in document["figures"] if (one := row["differences"][k]) is not None]
         beyond = [(row, one) for row, one in known_rows if one["exceeds"]]
         known = [one for _, one in known_rows if one["exceeds"] is not None]
         if not known:
@@ -99,7 +100,7 @@ def summary(document: Mapping[str, Any]) -> list[str]:
     return sentences
 
 
-def _joined(beyond: Sequence[tuple[Mapping[str, Any], Mapping[str, Any]]]) -> str:
+def _joined(beyond: Sequence[tuple[RowRecord, DifferenceRecord]]) -> str:
     by_name: dict[str, list[str]] = {}
     for row, one in beyond:
         p = row["driving_pressure_kPa"]

@@ -13,12 +13,11 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.errors import InputError
 from pneutouch.evaluation.comparison import ComparedFigure, ComparedSensor, ComparedState
+from pneutouch.evaluation.comparison_record import CURVE_KEYS, CurvePoints
 from pneutouch.workflows.compare.folder import listed_file, manifest_of
 
 PREDICTED_NAMES = {"force_range_N": "force_at_range_end_N"}
 """Measured figures that a prediction names otherwise."""
-
-_CURVE = ("indentation_mm", "contact_force_N", "pressure_rise_kPa")
 
 
 @dataclass(frozen=True)
@@ -65,7 +64,7 @@ def measured_columns(folder: Path, *, predicted: bool = False) -> list[MeasuredC
 
 
 def _columns(
-    content: Mapping[str, Any], curves: Mapping[str, dict[str, list[float]]], name: str, source: str
+    content: Mapping[str, Any], curves: Mapping[str, CurvePoints], name: str, source: str
 ) -> list[tuple[MeasuredColumn, MeasuredColumn]]:
     """The prediction and the measurement of each resin and age."""
     groups: dict[tuple[str, str], list[dict[str, Any]]] = {}
@@ -89,7 +88,7 @@ def _columns(
 
 
 def _depths(
-    content: Mapping[str, Any], groups: list[dict[str, Any]], curves: Mapping[str, dict[str, list[float]]]
+    content: Mapping[str, Any], groups: list[dict[str, Any]], curves: Mapping[str, CurvePoints]
 ) -> dict[float, list[list[Array]]]:
     """Depths of each run of each specimen, mm, by driving pressure in kPa."""
     sensor_of = {run["file"]: run["sensor"] for run in content["runs"]}
@@ -104,7 +103,7 @@ def _depths(
     return depths
 
 
-def _state(group: Mapping[str, Any], curves: Mapping[str, dict[str, list[float]]], *, measured: bool) -> ComparedState:
+def _state(group: Mapping[str, Any], curves: Mapping[str, CurvePoints], *, measured: bool) -> ComparedState:
     entries = {
         PREDICTED_NAMES.get(key, key): entry if measured else entry["predicted"]
         for key, entry in group["figures"].items()
@@ -115,13 +114,14 @@ def _state(group: Mapping[str, Any], curves: Mapping[str, dict[str, list[float]]
     return ComparedState(float(group["driving_pressure_kPa"]), figures, runs)
 
 
-def _curves(content: Mapping[str, Any], points: bytes) -> dict[str, dict[str, list[float]]]:
+def _curves(content: Mapping[str, Any], points: bytes) -> dict[str, CurvePoints]:
     """Loading points of the runs in steps, by file."""
     stepped = {run["file"] for run in content["runs"] if run["kind"] == "steps"}
-    curves: dict[str, dict[str, list[float]]] = {}
+    curves: dict[str, CurvePoints] = {}
     for row in csv.DictReader(io.StringIO(points.decode(), newline="")):
         if row["file"] in stepped:
-            curve = curves.setdefault(row["file"], {key: [] for key in _CURVE})
-            for key in _CURVE:
+            empty: CurvePoints = {"indentation_mm": [], "contact_force_N": [], "pressure_rise_kPa": []}
+            curve = curves.setdefault(row["file"], empty)
+            for key in CURVE_KEYS:
                 curve[key].append(float(row[key]))
     return curves

@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from pneutouch import __version__
 from pneutouch.arrays import Array
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.evaluation.comparison import FIGURES, ComparedFigure, ComparedSensor, ComparedState
+from pneutouch.evaluation.comparison_record import CURVE_KEYS, CurvePoints
 from pneutouch.evaluation.correlation import effects_of
 from pneutouch.evaluation.document import PredictionRecord, UncertainStateRecord, prediction_document
 from pneutouch.evaluation.evaluate import Evaluation
@@ -31,11 +32,6 @@ if TYPE_CHECKING:
 Depths = Mapping[float, Sequence[Sequence[Array]]]
 """Depths of a measurement by driving pressure in kPa: of each run of each specimen, mm."""
 
-_CURVE: tuple[Literal["indentation_mm", "contact_force_N", "pressure_rise_kPa"], ...] = (
-    "indentation_mm",
-    "contact_force_N",
-    "pressure_rise_kPa",
-)
 _CLOSE = 1e-6
 
 
@@ -139,9 +135,14 @@ def _state(state: UncertainStateRecord, document: PredictionRecord, depths: Dept
         read, note = _read(state, measured)
         figures = {key: value for key, value in figures.items() if key not in _OF_CURVE}
         figures |= {key: _scaled(value, known.get(key), state) for key, value in read.items()}
-    curve = {key: state["curve"][key] for key in _CURVE}
+    curve = state["curve"]
     kept = sum(at <= state["range_end_mm"] * (1 + 1e-9) for at in curve["indentation_mm"])
-    return ComparedState(pressure_kPa, figures, ({key: values[:kept] for key, values in curve.items()},)), note
+    points: CurvePoints = {
+        "indentation_mm": curve["indentation_mm"][:kept],
+        "contact_force_N": curve["contact_force_N"][:kept],
+        "pressure_rise_kPa": curve["pressure_rise_kPa"][:kept],
+    }
+    return ComparedState(pressure_kPa, figures, (points,)), note
 
 
 _OF_CURVE = (
@@ -158,7 +159,7 @@ _OF_CURVE = (
 
 def _read(state: UncertainStateRecord, depths: Sequence[Sequence[Array]]) -> tuple[dict[str, float], str]:
     """Figures at the depths of a measurement, and a note on them."""
-    indentation, force, rise_kPa = (np.array(state["curve"][key]) for key in _CURVE)
+    indentation, force, rise_kPa = (np.array(state["curve"][key]) for key in CURVE_KEYS)
     read, end = figures_at(indentation, force, rise_kPa, state["range_end_mm"], depths), state["range_end_mm"]
     if not read:
         return {}, ""

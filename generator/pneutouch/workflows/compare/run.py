@@ -12,6 +12,7 @@ from pneutouch import __version__
 from pneutouch.catalogue import DesignSource, Library
 from pneutouch.errors import InputError
 from pneutouch.evaluation.comparison import ComparedSensor, comparison_document, labelled
+from pneutouch.evaluation.comparison_record import ComparisonRecord
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
 from pneutouch.output.files import check_writable, digest, json_bytes, write_folder
 from pneutouch.output.manifest import short_digest, with_manifest
@@ -35,7 +36,7 @@ class CompareResult:
 
     sensors: tuple[ComparedSensor, ...]
     evaluations: tuple[Evaluation | None, ...]
-    document: dict[str, Any]
+    document: ComparisonRecord
 
     @property
     def name(self) -> str:
@@ -71,7 +72,8 @@ def compare(
     sensors = [c.sensor() if isinstance(c, MeasuredColumn) else c.sensor(depths) for c in columns]
     sensors = [replace(s, label=label) for s, label in zip(sensors, labelled(sensors), strict=True)]
     evaluations = tuple(None if isinstance(c, MeasuredColumn) else c.evaluation for c in columns)
-    document = {"pneutouch": __version__, **comparison_document(sensors)}
+    document = comparison_document(sensors)
+    document["pneutouch"] = __version__
     return CompareResult(tuple(sensors), evaluations, document)
 
 
