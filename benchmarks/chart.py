@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks import laws, peers, shares, speed_accuracy, validation, validity
+from benchmarks import full_depth, laws, peers, shares, speed_accuracy, validation, validity
 from benchmarks.pages import speed
 from benchmarks.pages.speed_chart import chart
 from benchmarks.scenes import SCENES
@@ -44,6 +44,7 @@ def main() -> None:
         _write(name, json.dumps(data, indent=1) + "\n")
     sections = [
         *contact_section(cells),
+        *full_depth.section(),
         *speed.section(speeds, programs, shares.shares()),
         *validity.section(map_rows),
         *inflation_section(),

@@ -1,0 +1,133 @@
+"""The paper's sensor refined over its whole depth: ``python -m benchmarks.full_depth`` writes this part of docs/accuracy.md."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.scenes import PAPER
+from benchmarks.speed_accuracy import REFINEMENTS, extrapolate
+from pneutouch.mechanics.response import figures
+from pneutouch.mechanics.solid.base_contact import RigidBase
+from pneutouch.mechanics.solid.indent import PressSettings, indent
+from pneutouch.mechanics.solid.inflate import state_at
+from pneutouch.mechanics.solid.mesh import dome
+from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.printed import printed_dome
+from pneutouch.mechanics.solid_states import KINDS, _curve
+from pneutouch.units import KPA
+
+PAGE = Path(__file__).resolve().parents[1] / "docs" / "accuracy.md"
+HEADING = "## The paper's sensor over its whole depth"
+FLANGE = 2.25
+"""Width and thickness of the flange of a glued seat around this wall, mm."""
+SHALLOW = 5.75
+"""Depth in mm beyond which refined meshes without a base fold at the clamp."""
+COARSE: tuple[tuple[int | None, int | None], ...] = ((None, None), (36, 2), (48, 3))
+MESHES = (*COARSE, *REFINEMENTS)
+PRESSURES = (0.0, 22 * KPA)
+
+
+@dataclass(frozen=True)
+class FullDepthPress:
+    """One press: cells, processor time, sensitivities in kPa/N to 5.75 mm and to the whole depth (nan: not reached),
+    and what happened: the end of the path, and where the wall lies down on its base."""
+
+    mesh: tuple[int | None, int | None]
+    cells: int
+    seconds: float
+    shallow: float
+    deep: float
+    happened: str
+
+
+def pressed(mesh: tuple[int | None, int | None], pressure: float, held: str, base: bool) -> FullDepthPress:
+    """TangoPlus on one mesh at a driving pressure (MPa); ``held``: "base plane" or "printed"."""
+    s, start = PAPER, time.process_time()
+    size = (s.dome.inner_radius, s.dome.wall_thickness)
+    printed = held == "printed"
+    body = printed_dome(*size, FLANGE, FLANGE, *mesh) if printed else dome(*size, *mesh)
+    rigid = RigidBase(flange=sum(size) + FLANGE if printed else 0.0) if base else None
+    solid = SolidModel(body, s.wall.hyperelastic, base=rigid)
+    press = PressSettings(
+        s.protocol.depth, s.protocol.steps, 2 * s.protocol.plate_radius, s.gas.ambient_pressure, s.gas.dead_volume
+    )
+    run = indent(solid, state_at(solid, pressure), press)
+    seconds = time.process_time() - start
+    last = run.path[-1].indentation
+
+    def slope(depth: float) -> float:
+        if last < depth - 1e-9:
+            return np.nan
+        grid = np.linspace(0.0, depth, s.protocol.steps + 1)
+        force, rise = _curve(run.path, grid)
+        found = figures(grid, force, rise / KPA)
+        return np.nan if found is None else found.sensitivity_kPa_per_N
+
+    kinds = ("base", "overhang", "clamp_fold", "snap", "lost")
+    events = [f"{KINDS[e.kind][0]} {e.indentation:.2f}" for e in run.events if e.kind in kinds]
+    return FullDepthPress(
+        mesh, len(body.cells), seconds, slope(SHALLOW), slope(press.depth), ", ".join(events) or "none"
+    )
+
+
+def section() -> list[str]:
+    """The part of the page, measured now."""
+    lines = [
+        HEADING,
+        "",
+        "TangoPlus, no dead volume, fitted from first contact to 5.75 mm and to the whole depth of 6.94 mm, as far as the "
+        "path goes. With `base` the wall lies down next to its clamp on what it stands on: on the rigid base plane, or on "
+        "the free top of its own flange where the rim is held as printed. Without, it passes through, and refined meshes "
+        "fold at the clamp. Extrapolated from 32 x 2, 64 x 4 and 128 x 8 cells. Times over the default mesh without base.",
+        "",
+        "| held at | base | driving kPa | mesh | cells | time | S to 5.75 mm | S to 6.94 mm | events, mm |",
+        "|---|---|---|---|---|---|---|---|---|",
+    ]
+    verdicts = []
+    for held in ("base plane", "printed"):
+        for pressure in PRESSURES:
+            unit = 0.0
+            for base in (False, True):
+                fine = MESHES if held == "base plane" and base else COARSE
+                presses = [pressed(mesh, pressure, held, base) for mesh in fine]
+                unit = unit or presses[0].seconds
+                label = f"| {held} | {'yes' if base else 'no'} | {1e3 * pressure:.0f} |"
+                lines += [f"{label} {_row(press, unit)}" for press in presses]
+                if fine is MESHES:
+                    value, error = extrapolate(*(np.array([p.shallow, p.deep]) for p in presses[-3:]))
+                    lines.append(
+                        f"{label} extrapolated | | | {_pair(value[0], error[0])} | {_pair(value[1], error[1])} | |"
+                    )
+                    verdicts.append(f"{1e3 * pressure:.0f} kPa {presses[0].deep / value[1] - 1:+.2%}")
+    return [*lines, "", f"Default mesh with base over the whole depth against extrapolated: {', '.join(verdicts)}.", ""]
+
+
+def _row(press: FullDepthPress, unit: float) -> str:
+    mesh = "default" if press.mesh[0] is None else f"{press.mesh[0]} x {press.mesh[1]}"
+    shallow, deep = ("not reached" if np.isnan(x) else f"{x:.4f}" for x in (press.shallow, press.deep))
+    return f"{mesh} | {press.cells} | {press.seconds / unit:.1f} | {shallow} | {deep} | {press.happened} |"
+
+
+def _pair(value: float, error: float) -> str:
+    return f"{value:.4f} ± {error / value:.2%}"
+
+
+def main() -> None:
+    text = PAGE.read_text(encoding="utf-8")
+    begin = text.find(HEADING + "\n")
+    before, rest = (text[:begin], text[begin + 1 :]) if begin >= 0 else (text, "")
+    if not rest:
+        before, _, after = text.partition("## Speed against accuracy\n")
+        after = "## Speed against accuracy\n" + after
+    else:
+        after = rest[rest.index("\n## ") + 1 :]
+    PAGE.write_text(before + "\n".join(section()) + "\n" + after, encoding="utf-8")
+    print(f"wrote {HEADING.removeprefix('## ')} of docs/{PAGE.name}")
+
+
+if __name__ == "__main__":
+    main()
