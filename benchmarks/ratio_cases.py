@@ -151,6 +151,16 @@ def atlas_single(folder: Path) -> Pair:
     return lambda: respond(single), _one_of_the_solid()
 
 
+def sway(folder: Path) -> Pair:
+    from benchmarks.scenes import PAPER
+    from pneutouch.mechanics import predict
+
+    def solved(waves: int) -> Callable[[], object]:
+        return lambda: predict("", PAPER.replace(waves=waves), [0.0, 0.005, 0.012, 0.022], model="solid")
+
+    return solved(8), solved(0)
+
+
 def reading(folder: Path) -> Pair:
     import pandas as pd
     from tests.bench.test_reading_speed import long_file

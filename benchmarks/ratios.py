@@ -33,6 +33,7 @@ RATIOS: dict[str, tuple[Callable[[Path], cases.Pair], float]] = {
     "relaxation and two loops / one response": (cases.relaxation_and_loops, 40.0),
     "1,000 responses of the atlas / one of the solid": (cases.atlas_batch, 2.0),
     "one response of the atlas / one of the solid": (cases.atlas_single, 0.1),
+    "solid with the check for sway and lobes / without": (cases.sway, 1.3),
     "reading 100 MB to a curve / pandas reading it": (cases.reading, 4.0),
     "fit of 40 curves / 100 responses of each": (cases.fit_of_curves, 0.6),
     "voxels of the graded dome / a random number each": (cases.voxels, 5.0),

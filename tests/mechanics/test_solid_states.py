@@ -104,6 +104,20 @@ def test_stiff_resin_buckles_inwards_and_the_fit_stops_there():
     assert state.indentation[-1] <= event.indentation, "no state beyond the jump is reported"
 
 
+def test_a_sway_is_reported_and_changes_no_figure():
+    pressures = [0.0, 0.022]
+    checked, plain = (predict("x", PAPER.replace(waves=waves), pressures) for waves in (8, 0))
+    for one, other in zip(checked.states, plain.states, strict=True):
+        assert (one.range_end, one.figures) == (other.range_end, other.figures)
+        assert [e for e in one.events if e not in one.off_axis] == list(other.events)
+    (event,) = checked.states[0].off_axis
+    assert event.kind == "sway" and event.indentation == pytest.approx(6.75, abs=0.02) and not event.ends_range
+    assert "figures beyond are of the axisymmetric path" in event.message
+    assert checked.states[1].off_axis == ()
+    assert "; sway and lobes are looked for with up to 8 waves around the axis" in checked.assumptions[1]
+    assert "; sway and lobes of the dome around its axis are not looked for" in plain.assumptions[1]
+
+
 def test_figures_do_not_depend_on_the_number_of_steps():
     few, many = (
         predict("x", PAPER.replace(steps=n), [0.022]).states[0].figures.sensitivity_kPa_per_N for n in (14, 56)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
+from pneutouch.mechanics.events import LOBES, SWAY
 from pneutouch.rounding import tenths_below
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ def prediction_text(document: PredictionRecord) -> str:
         "",
         _state_table(document["states"]),
         "",
+        *_off_axis(document["states"]),
         f"error in sensitivity {far}: {error['sensitivity_basis']}",
         *_uncertainty(document["states"]),
         *_viscous(document["viscous"]),
@@ -84,6 +86,17 @@ def _state_table(states: list[UncertainStateRecord]) -> str:
         ]
         rows.append(row)
     return columns(head, rows)
+
+
+def _off_axis(states: list[UncertainStateRecord]) -> list[str]:
+    """Where the axisymmetric path is unstable, one line an event."""
+    return [
+        f"warning: {event['kind']} at {event['indentation_mm']:.2f} mm and {state['driving_pressure_kPa']:g} kPa: "
+        f"{event['message']}"
+        for state in states
+        for event in state["events"]
+        if event["kind"] in (SWAY, LOBES)
+    ]
 
 
 def _interval(uncertainty: UncertaintyRecord | SampleRecord | None) -> str:

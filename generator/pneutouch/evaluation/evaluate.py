@@ -209,6 +209,7 @@ def sensor_of(assembly: Assembly, clamp: str = "base") -> Sensor:
         plate_radius=0.5 * design.indentation.plate_diameter_mm,
         depth=design.depth_mm,
         steps=design.indentation.steps,
+        waves=design.indentation.checked_waves,
         flange=(layout.flange_width, layout.flange_thickness) if clamp == "flange" else None,
     )
     return calibrated_sensor(sensor, assembly.scene)

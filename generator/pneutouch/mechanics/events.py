@@ -9,6 +9,9 @@ from pneutouch.arrays import Array
 from pneutouch.mechanics.contact import PressedStates
 from pneutouch.mechanics.sensor import Sensor
 
+SWAY, LOBES = "sway", "lobes"
+"""Kinds after which the path is that of a body of revolution only: the dome leaves its axis, or its round form."""
+
 _NEAR_BASE = 0.98
 """Share of R0 at which the contact counts as having reached the base; beyond it the free arc has no space."""
 

@@ -51,13 +51,16 @@ _ON_BASE = (
     "the wall with itself is not modelled"
 )
 
+_BODY = "axisymmetric hyperelastic solid with the wall's full stiffness"
+
 _SOLID_ASSUMPTIONS = (
-    "axisymmetric hyperelastic solid with the wall's full stiffness; no wrinkles around the axis",
     "R0 is the inner radius; heights are those of the inner and the outer surface",
     *_THROUGH_BASE,
     "the plate's edge is rounded with a thirtieth of its radius",
     "elongation at break is set against the greatest principal stretch on the faces, half a wall away from the clamp",
 )
+
+_NOT_CHECKED = "sway and lobes of the dome around its axis are not looked for"
 
 _CLAMPED_BASE = "rim clamped at the base plane, as in the paper"
 _CLAMPED_FLANGE = "flange clamped on the faces that the connector holds, its top free"
@@ -174,5 +177,7 @@ def _stated(model: str, sensor: Sensor, pressures: Array) -> tuple[ErrorEstimate
             "sensitivity_tabulation_relative": TABULATION,
             "summary": [_TABULATION_SUMMARY],
         }
-        return errors, (law, *_SOLID_ASSUMPTIONS)
-    return {**DISCRETISATION, "summary": [_DISCRETISATION_SUMMARY]}, (law, *_SOLID_ASSUMPTIONS)
+        return errors, (law, f"{_BODY}; {_NOT_CHECKED}", *_SOLID_ASSUMPTIONS)
+    waves = sensor.protocol.waves
+    checked = f"sway and lobes are looked for with up to {waves} waves around the axis" if waves else _NOT_CHECKED
+    return {**DISCRETISATION, "summary": [_DISCRETISATION_SUMMARY]}, (law, f"{_BODY}; {checked}", *_SOLID_ASSUMPTIONS)

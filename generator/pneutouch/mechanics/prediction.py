@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import TypedDict
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.events import Event, EventRecord
+from pneutouch.mechanics.events import LOBES, SWAY, Event, EventRecord
 from pneutouch.mechanics.limits import LimitPoint, Limits
 from pneutouch.mechanics.response import Figures, tangent_stiffness
 from pneutouch.mechanics.sensor import ResponseCorrection
@@ -134,6 +134,11 @@ class SensorState:
 
     def __repr__(self) -> str:
         return f"SensorState({self.driving_pressure / KPA:g} kPa, {len(self.indentation)} points)"
+
+    @property
+    def off_axis(self) -> tuple[Event, ...]:
+        """Where the axisymmetric path loses its stability; what is computed beyond is of that path all the same."""
+        return tuple(event for event in self.events if event.kind in (SWAY, LOBES))
 
     def corrected(self, correction: ResponseCorrection) -> SensorState:
         """The state with factors on force and pressure rise; its events and the end of its range stay."""

@@ -58,11 +58,15 @@ class GasCircuit:
 
 @dataclass(frozen=True, slots=True)
 class IndentationProtocol:
-    """The test: a flat plate moved to ``depth`` after first contact in ``steps`` equal steps."""
+    """The test: a flat plate moved to ``depth`` after first contact in ``steps`` equal steps.
+
+    The solid checks the stability of the press for 1 to ``waves`` waves around the axis; 0: no check.
+    """
 
     plate_radius: float
     depth: float
     steps: int
+    waves: int = 0
 
 
 @dataclass(frozen=True, slots=True)

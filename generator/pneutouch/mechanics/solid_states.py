@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.mechanics.events import Event, range_end
+from pneutouch.mechanics.events import LOBES, SWAY, Event, range_end
 from pneutouch.mechanics.hermite import hermite
 from pneutouch.mechanics.limits import LimitPoint, Limits
 from pneutouch.mechanics.prediction import DeformedShape, InflationCurve, ModelResult, SensorState
@@ -38,8 +38,8 @@ KINDS = {
     "crease": ("creasing", False),
     "overhang": ("wall below the base plane", False),
     "base": ("wall on its base", False),
-    "sway": ("sway", False),
-    "lobes": ("lobes", False),
+    "sway": (SWAY, False),
+    "lobes": (LOBES, False),
 }
 """The solver's events as they are reported, and whether figures must not be fitted beyond them."""
 
@@ -60,7 +60,11 @@ def solid_result(
 
 
 def solid_states(sensor: Sensor, driving_pressures: Array) -> tuple[SensorState, ...]:
-    """The states of `solid_result` alone: inflation ends at the highest driving pressure (MPa), a stable state."""
+    """The states of `solid_result` alone: inflation ends at the highest driving pressure (MPa), a stable state.
+
+    The stability around the axis, which changes no figure, is not checked.
+    """
+    sensor = sensor.replace(waves=0)
     probe = _probe(sensor)
     run = inflate(probe.solid, to_pressure=float(np.max(driving_pressures)))
     return tuple(_state(sensor, probe, run, float(p)) for p in driving_pressures)
@@ -137,6 +141,7 @@ def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) 
         dead_volume=gas.dead_volume,
         gauge_range=gas.gauge_limit,
         break_strain=np.inf if stretch is None else stretch - 1,
+        waves=test.waves,
     )
     pressed = indent(probe.solid, free, press, probe)
     happened = _events(pressed)

@@ -102,9 +102,14 @@ def _key_figures(sheet: SheetData) -> list[list[str]]:
 
 
 def _warnings(sheet: SheetData) -> list[str]:
-    """Driving pressures of the design that the rating does not allow."""
+    """Driving pressures of the design that the rating does not allow, and where a pressed dome leaves its axis."""
     judged = ((sheet.rating.severity(s.driving_pressure), s.driving_pressure) for s in sheet.prediction.states)
-    return [f"{severity.capitalize()}: {sheet.rating.excess(p)}." for severity, p in judged if severity is not None]
+    above = [f"{severity.capitalize()}: {sheet.rating.excess(p)}." for severity, p in judged if severity is not None]
+    return above + [
+        f"Warning: {event.kind} at {event.indentation:.2f} mm and {state.driving_pressure / KPA:g} kPa: {event.message}."
+        for state in sheet.prediction.states
+        for event in state.off_axis
+    ]
 
 
 def _condition(sheet: SheetData, k: int) -> str:

@@ -122,6 +122,14 @@ class Indentation(Table):
         help="Plate travel after first contact; left out: three quarters of the inner radius.",
     )
     steps: int = number(14, unit="", low=2, high=1000, help="Number of equal plate steps.")
+    checked_waves: int = number(
+        8,
+        unit="",
+        low=0,
+        high=32,
+        help="Greatest number of waves around the axis for which the model solid checks the stability of the pressed "
+        "dome: one is sway, more are lobes; 0: no check.",
+    )
     plate_diameter_mm: float = number(30.0, unit="mm", low=1, high=500, help="Diameter of the rigid flat plate.")
 
 

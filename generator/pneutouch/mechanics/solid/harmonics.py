@@ -84,7 +84,10 @@ class HarmonicSolid:
         self._pattern = AssemblyPattern(tables, int(self._numbers.max()) + 1)
         signs = np.ones((mesh.nodes.shape[0], 3))
         signs[mesh.axis, _C] = -1.0
-        self._signs = [signs[x].reshape(x.shape[0], -1) for x in families]
+        by_block = [signs[x].reshape(x.shape[0], -1) for x in families]
+        self._turned = [np.flatnonzero((sign < 0.0).any(axis=1)) for sign in by_block]
+        pairs = zip(by_block, self._turned, strict=True)
+        self._signs = [sign[at, :, None] * sign[at, None, :] for sign, at in pairs]
         self._on_axis = self._numbers[mesh.axis, _A]
 
     def expand(self, n: int, vector: Array) -> Array:
@@ -117,8 +120,10 @@ class HarmonicSolid:
         return out
 
     def _assembled(self, blocks: list[Array]) -> Array:
-        pairs = zip(blocks, self._signs, strict=True)
-        return self._pattern.matrix([block * sign[:, :, None] * sign[:, None, :] for block, sign in pairs])
+        """Band of a sum of blocks, whose signs of c on the axis are turned in place."""
+        for block, turned, sign in zip(blocks, self._turned, self._signs, strict=True):
+            block[turned] *= sign
+        return self._pattern.matrix(blocks)
 
     def blocks(self, state: SolverState) -> list[HarmonicBlocks]:
         """The second variation by cells, by edges of the inner and of the outer wall, and where the wall can meet a
@@ -220,13 +225,13 @@ class HarmonicSolid:
         edges, nodes = self.solid.mesh.outer.shape
         empty = _empty(edges, nodes)
         if touch is None:
-            return _family((empty, empty, empty))
+            return _family((empty, empty.copy(), empty.copy()))
         constant = _placed(contact.hessian(touch, touch.traction > 0.0))
         if touch.slope.any():
             radius = np.maximum(contact.positions(state.x)[0], 1.0e-300)
             load = -contact.weight * touch.traction * touch.slope / radius
             constant[:, :, _C, :, _C] = np.einsum("eq,qi,qk->eik", load, contact.shape, contact.shape)
-        return _family((constant, empty, empty))
+        return _family((constant, empty, empty.copy()))
 
 
 def _supported(face: HarmonicBlocks, base: tuple[Array, Array] | None) -> HarmonicBlocks:

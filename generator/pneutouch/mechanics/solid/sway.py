@@ -16,9 +16,11 @@ from pneutouch.mechanics.solid.newton import NewtonFailure, SolverState, minimis
 #: Greatest number of waves around the axis that is checked.
 MOST_WAVES = 8
 #: Plate travel between checked states, in R0: what is lost between two is searched for in the states between them.
-_TRAVEL = 0.15
+_TRAVEL = 0.25
 #: Position of a loss, in R0.
 _WITHIN = 5.0e-4
+#: An interpolation that moves its estimate by less than this, in R0, has an error well within `_WITHIN`.
+_MOVED = 3.0e-3
 _MOST_SOLVES = 12
 
 
@@ -44,7 +46,7 @@ def softest_mode(harmonic: HarmonicSolid, state: SolverState, n: int) -> tuple[f
 def axisymmetry_losses(solid: SolidModel, path: list[PlateState], most: int = MOST_WAVES) -> list[AxisymmetryLoss]:
     """Where a path, from first contact down, loses stability to one wave around the axis, and where to 2 to ``most``.
 
-    States are checked at every 0.15 R0 of plate travel, and the last. Where stability is lost between two of them, the
+    States are checked at every quarter of R0 of plate travel, and the last. Where stability is lost between two of them, the
     states between are searched by halves, and the place is then located by solving for states between neighbours.
     """
     harmonic = HarmonicSolid(solid)
@@ -76,20 +78,21 @@ def _onset(harmonic: HarmonicSolid, path: list[PlateState], n: int) -> Axisymmet
             unstable = middle
         else:
             stable = middle
-    return AxisymmetryLoss(n, _located(harmonic, n, path[stable], path[unstable]))
+    return AxisymmetryLoss(n, _located(harmonic, n, path[max(0, unstable - 2) : unstable + 1]))
 
 
-def _located(harmonic: HarmonicSolid, n: int, before: PlateState, after: PlateState) -> float:
-    """Where the lowest eigenvalue for n waves passes zero, by inverse quadratic interpolation; by halves where that
-    leaves the bracket."""
+def _located(harmonic: HarmonicSolid, n: int, path: list[PlateState]) -> float:
+    """Where the lowest eigenvalue for n waves passes zero between the last two states of a path, by inverse quadratic
+    interpolation; by halves where that leaves the bracket."""
+    before, after = path[-2:]
     high, low = before.height, after.height
-    values = {s.height: softest(harmonic.bands(s.state, (n,))[n]).value for s in (before, after)}
+    values = {s.height: softest(harmonic.bands(s.state, (n,))[n]).value for s in path}
     guess = low
     for _ in range(_MOST_SOLVES):
         last, guess = guess, _zero(values)
         if not low < guess < high:
             guess = 0.5 * (low + high)
-        if high - low < _WITHIN or abs(guess - last) < 0.5 * _WITHIN:
+        if high - low < _WITHIN or abs(guess - last) < _MOVED:
             break
         state = _between(before, after, guess)
         if state is None:
