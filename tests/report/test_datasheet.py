@@ -119,6 +119,17 @@ def test_the_air_on_the_sheet_is_computed_and_no_longer_a_fixed_factor(evaluated
     assert "1.4 times" not in html
 
 
+def test_sheet_and_text_warn_of_the_sway(built, html, pdf_text):
+    from pneutouch.cli.text import prediction_text
+
+    prediction = json.loads((built("paper-dome") / "prediction.json").read_text())
+    (event,) = [event for event in prediction["states"][0]["events"] if event["kind"] == "sway"]
+    warning = f"sway at {event['indentation_mm']:.2f} mm and 0 kPa: {event['message']}"
+    assert f"Warning: {warning}." in html
+    assert f"Warning: {warning}." in " ".join("\n".join(pdf_text).split())
+    assert f"\nwarning: {warning}\n" in prediction_text(prediction)
+
+
 @pytest.mark.slow
 def test_model_and_why_it_was_taken_stand_on_the_sheet(evaluated):
     from pneutouch.evaluation import evaluate

@@ -105,11 +105,8 @@ def _warnings(sheet: SheetData) -> list[str]:
     """Driving pressures of the design that the rating does not allow, and where a pressed dome leaves its axis."""
     judged = ((sheet.rating.severity(s.driving_pressure), s.driving_pressure) for s in sheet.prediction.states)
     above = [f"{severity.capitalize()}: {sheet.rating.excess(p)}." for severity, p in judged if severity is not None]
-    return above + [
-        f"Warning: {event.kind} at {event.indentation:.2f} mm and {state.driving_pressure / KPA:g} kPa: {event.message}."
-        for state in sheet.prediction.states
-        for event in state.off_axis
-    ]
+    left = [(state.driving_pressure / KPA, event) for state in sheet.prediction.states for event in state.off_axis]
+    return above + [f"Warning: {e.kind} at {e.indentation:.2f} mm and {p:g} kPa: {e.message}." for p, e in left]
 
 
 def _condition(sheet: SheetData, k: int) -> str:
