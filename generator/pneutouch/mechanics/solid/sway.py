@@ -46,8 +46,8 @@ def softest_mode(harmonic: HarmonicSolid, state: SolverState, n: int) -> tuple[f
 def axisymmetry_losses(solid: SolidModel, path: list[PlateState], most: int = MOST_WAVES) -> list[AxisymmetryLoss]:
     """Where a path, from first contact down, loses stability to one wave around the axis, and where to 2 to ``most``.
 
-    States are checked at every quarter of R0 of plate travel, and the last. Where stability is lost between two of them,
-    the states between are searched by halves, and the place is then located by solving for states between neighbours.
+    States are checked at every quarter of R0 of plate travel, and the last. Where stability is lost between two of
+    them, the states between are searched by halves, and the place is located by solving for states between neighbours.
     """
     harmonic = HarmonicSolid(solid)
     losses: list[AxisymmetryLoss] = []
