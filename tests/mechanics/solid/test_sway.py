@@ -32,6 +32,10 @@ def test_the_unpressurised_sensor_sways_and_the_pressurised_one_does_not():
     assert places(pressed(0.022)) == {}
 
 
+def test_a_plate_that_holds_the_wall_keeps_the_dome_on_its_axis():
+    assert places(pressed(friction=0.1)) == places(pressed(friction=np.inf)) == {}
+
+
 def test_the_place_of_the_sway_does_not_depend_on_the_steps():
     few, many = places(pressed(steps=2)), places(pressed(steps=35))
     assert few["sway"] == pytest.approx(many["sway"], abs=1e-3 * R0)

@@ -104,6 +104,12 @@ class FrictionStep:
             [(RADIAL, RADIAL, share), (RADIAL, AXIAL, across), (AXIAL, RADIAL, across), (AXIAL, AXIAL, across * slope)]
         )
 
+    def around(self, sticking: Flags) -> Array:
+        """Stiffness of the sticking points around the axis, by edges (n_edges, n, n): the springs hold in all
+        directions of the surface. Points that slide are taken as free around the axis."""
+        share = np.where(sticking, self.stiffness, 0.0)
+        return self.contact.blocks([(RADIAL, RADIAL, share)])[:, RADIAL, RADIAL]
+
     def slide(self, traction: Array, touch: ContactEvaluation, sign: Array) -> Array | None:
         """What the symmetric stiffness leaves out, (n_edges, 2 n, 2 n), or None: the traction of sliding points
         (``sign``, else 0) follows the normal one, and its direction follows the surface."""
@@ -156,8 +162,9 @@ class FrictionTerm:
         cap, slope = self.held.cap, self.held.slope
         trial = self.step.stiffness * self.step.slip(x, slope)
         force = self.step.force(np.clip(trial, -cap, cap), slope)
-        stick = self.step.stick((cap > 0.0) & (np.abs(trial) <= cap), slope)
-        return TermState(self.energy(x), self.solid.push(force), stick)
+        sticking = (cap > 0.0) & (np.abs(trial) <= cap)
+        stick, around = self.step.stick(sticking, slope), self.step.around(sticking)
+        return TermState(self.energy(x), self.solid.push(force), stick, around=around)
 
 
 @dataclass(frozen=True)

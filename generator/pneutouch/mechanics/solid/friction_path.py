@@ -84,7 +84,7 @@ def friction_plate_state(
     past = None if before is None else before.friction
     friction = FrictionState.after(past, step, held.state.x, points)
     term = held.term.at(held.state.x)
-    there = TermState(friction.stored, term.gradient, term.blocks)
+    there = TermState(friction.stored, term.gradient, term.blocks, around=term.around)
     state = replace(
         held.state,
         energy=held.state.energy + friction.stored,

@@ -7,54 +7,30 @@ second variation is then that of the axisymmetric solid. It is a polynomial K0 +
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from pneutouch.arrays import Array, Index
 from pneutouch.mechanics.laws.strain import BY_AH, BY_HH, BY_JH
 from pneutouch.mechanics.solid.banded import AssemblyPattern
-from pneutouch.mechanics.solid.elements import gauss_square, line_shapes, pressure_modes, strain_operator
+from pneutouch.mechanics.solid.elements import gauss_square, pressure_modes, strain_operator
+from pneutouch.mechanics.solid.harmonic_faces import (
+    AROUND,
+    IN_R,
+    IN_Z,
+    HarmonicBlocks,
+    block_family,
+    empty_blocks,
+    face_blocks,
+    with_around,
+)
 from pneutouch.mechanics.solid.kinematics import F_RR, F_RZ, F_ZR, F_ZZ, HOOP, IN_PLANE, RADIAL, area_ratio
 from pneutouch.mechanics.solid.mesh import SolidMesh
 from pneutouch.mechanics.solid.model import PointFields, SolidModel
 from pneutouch.mechanics.solid.newton import SolverState
 from pneutouch.mechanics.solid.out_of_plane import R_T, T_R, T_Z, Z_T, shear_moduli
 
-#: Displacements of a node, a in r, b in z and c around the axis, and the gradients of a scalar: by R, by Z, over R.
-_A, _B, _C = range(3)
+#: Gradients of a scalar: by R, by Z, over R.
 _BY_R, _BY_Z, _OVER_R = range(3)
-
-
-@dataclass(frozen=True)
-class HarmonicBlocks:
-    """Coefficients of 1, n and n^2 of one family of blocks, each (n_blocks, 3 n, 3 n): a, b, c node by node."""
-
-    constant: Array
-    linear: Array
-    square: Array
-
-    def at(self, n: int) -> Array:
-        """The blocks for n waves."""
-        return np.asarray(self.constant + n * self.linear + n * n * self.square)
-
-
-def _empty(blocks: int, nodes: int) -> Array:
-    """Zeros, indexed by block, node, displacement, node, displacement."""
-    return np.zeros((blocks, nodes, 3, nodes, 3))
-
-
-def _family(parts: tuple[Array, Array, Array]) -> HarmonicBlocks:
-    size = 3 * parts[0].shape[1]
-    return HarmonicBlocks(*(part.reshape(-1, size, size) for part in parts))
-
-
-def _placed(meridian: Array) -> Array:
-    """Blocks of the axisymmetric solid (n_blocks, 2 n, 2 n) with space for c."""
-    nodes = meridian.shape[1] // 2
-    out = _empty(meridian.shape[0], nodes)
-    out[:, :, :_C, :, :_C] = meridian.reshape(-1, nodes, 2, nodes, 2)
-    return out
 
 
 class HarmonicSolid:
@@ -83,17 +59,17 @@ class HarmonicSolid:
         tables = [self._numbers[x].reshape(x.shape[0], -1) for x in families]
         self._pattern = AssemblyPattern(tables, int(self._numbers.max()) + 1)
         signs = np.ones((mesh.nodes.shape[0], 3))
-        signs[mesh.axis, _C] = -1.0
+        signs[mesh.axis, AROUND] = -1.0
         by_block = [signs[x].reshape(x.shape[0], -1) for x in families]
         self._turned = [np.flatnonzero((sign < 0.0).any(axis=1)) for sign in by_block]
         pairs = zip(by_block, self._turned, strict=True)
         self._signs = [sign[at, :, None] * sign[at, None, :] for sign, at in pairs]
-        self._on_axis = self._numbers[mesh.axis, _A]
+        self._on_axis = self._numbers[mesh.axis, IN_R]
 
     def expand(self, n: int, vector: Array) -> Array:
         """Nodal displacements a, b, c (n_nodes, 3) of the unknowns of n waves."""
         out = np.where(self._numbers >= 0, vector[self._numbers], 0.0)
-        out[self.solid.mesh.axis, _C] *= -1.0
+        out[self.solid.mesh.axis, AROUND] *= -1.0
         if n > 1:
             out[self.solid.mesh.axis] = 0.0
         return np.asarray(out)
@@ -128,39 +104,30 @@ class HarmonicSolid:
     def blocks(self, state: SolverState) -> list[HarmonicBlocks]:
         """The second variation by cells, by edges of the inner and of the outer wall, and where the wall can meet a
         flange by those edges with its top: there without the work of sliding around the axis."""
-        gas = _second_volume(self.solid, state.x)
-        gas = HarmonicBlocks(*(-state.filling.pressure * part for part in (gas.constant, gas.linear, gas.square)))
-        cells, faces = self.wall(state.local), [gas, self._contact(state)]
-        if self.solid.base is None:
-            return [cells, *faces]
-        supported = [cells, *map(_supported, faces, self.solid.base.waves(state.x))]
-        if self.solid.meeting.size:
-            fold, empty = state.terms[1].fold_blocks, _empty(*self.solid.meeting.shape)
-            supported.append(_family((empty if fold is None else _placed(fold), empty, empty)))
-        return supported
+        return [self.wall(state.local), *face_blocks(self.solid, state)]
 
     def wall(self, local: PointFields) -> HarmonicBlocks:
         """Second variation of the stored energy by cells."""
         d, n_cells = self._shears(local), self._weight.shape[0]
-        constant = _placed(self.solid.stiffness(local))
+        constant = with_around(self.solid.stiffness(local))
         nodes = constant.shape[1]
-        linear, square = _empty(n_cells, nodes), _empty(n_cells, nodes)
-        constant[:, :, _C, :, _C] = self._product(_around(d))
-        for field, block in zip((_A, _B), self._mixed(local, d), strict=True):
-            linear[:, :, field, :, _C] = block
-            linear[:, :, _C, :, field] = np.swapaxes(block, 1, 2)
+        linear, square = empty_blocks(n_cells, nodes), empty_blocks(n_cells, nodes)
+        constant[:, :, AROUND, :, AROUND] = self._product(_around(d))
+        for field, block in zip((IN_R, IN_Z), self._mixed(local, d), strict=True):
+            linear[:, :, field, :, AROUND] = block
+            linear[:, :, AROUND, :, field] = np.swapaxes(block, 1, 2)
         hoop = local.jets[BY_HH]
         for i, k, values in (
-            (_A, _A, d[:, R_T, R_T]),
-            (_B, _B, d[:, Z_T, Z_T]),
-            (_A, _B, d[:, R_T, Z_T]),
-            (_C, _C, hoop),
+            (IN_R, IN_R, d[:, R_T, R_T]),
+            (IN_Z, IN_Z, d[:, Z_T, Z_T]),
+            (IN_R, IN_Z, d[:, R_T, Z_T]),
+            (AROUND, AROUND, hoop),
         ):
             block = np.matmul(self._over_wide, values.reshape(n_cells, -1, 1) * self._over)
             square[:, :, i, :, k] = block
             square[:, :, k, :, i] = block
         self._add_swelling(local, linear, square)
-        return _family((constant, linear, square))
+        return block_family((constant, linear, square))
 
     def _product(self, form: Array) -> Array:
         """Blocks (n_cells, n, n) of a form of the gradients of two displacements, (n_points, 3, 3)."""
@@ -213,34 +180,11 @@ class HarmonicSolid:
             )
         )
         stiff = self._kappa * swell_c
-        for field, swell in ((_A, swell_a), (_B, swell_b)):
+        for field, swell in ((IN_R, swell_a), (IN_Z, swell_b)):
             block = np.matmul(np.swapaxes(swell, 1, 2), stiff)
-            linear[:, :, field, :, _C] += block
-            linear[:, :, _C, :, field] += np.swapaxes(block, 1, 2)
-        square[:, :, _C, :, _C] += np.matmul(np.swapaxes(swell_c, 1, 2), stiff)
-
-    def _contact(self, state: SolverState) -> HarmonicBlocks:
-        """Second variation of the contact's energy: a point that moves around the axis moves outwards, too."""
-        contact, touch = self.solid.contact, state.touch
-        edges, nodes = self.solid.mesh.outer.shape
-        empty = _empty(edges, nodes)
-        if touch is None:
-            return _family((empty, empty.copy(), empty.copy()))
-        constant = _placed(contact.hessian(touch, touch.traction > 0.0))
-        if touch.slope.any():
-            radius = np.maximum(contact.positions(state.x)[0], 1.0e-300)
-            load = -contact.weight * touch.traction * touch.slope / radius
-            constant[:, :, _C, :, _C] = np.einsum("eq,qi,qk->eik", load, contact.shape, contact.shape)
-        return _family((constant, empty, empty.copy()))
-
-
-def _supported(face: HarmonicBlocks, base: tuple[Array, Array] | None) -> HarmonicBlocks:
-    """A face of the wall with the stiffness of the base under it: in the meridian, and around the axis."""
-    if base is None:
-        return face
-    more = _placed(base[0])
-    more[:, :, _C, :, _C] = base[1]
-    return HarmonicBlocks(face.constant + more.reshape(face.constant.shape), face.linear, face.square)
+            linear[:, :, field, :, AROUND] += block
+            linear[:, :, AROUND, :, field] += np.swapaxes(block, 1, 2)
+        square[:, :, AROUND, :, AROUND] += np.matmul(np.swapaxes(swell_c, 1, 2), stiff)
 
 
 def _around(d: Array) -> Array:
@@ -253,45 +197,18 @@ def _around(d: Array) -> Array:
     return form
 
 
-def _second_volume(solid: SolidModel, x: Array) -> HarmonicBlocks:
-    """Second variation of the cavity volume by edges of the inner wall.
-
-    V = (1/2) integral of z_s [h, h_t] - z_t [h, h_s] over the surface, h the horizontal position: to second order
-    pi integral of z'(a^2 + 2 n a c + c^2) + r b'(2 a + n c) + n b (r c' - r' c) along the meridian.
-    """
-    cavity, edges = solid.cavity, solid.mesh.inner
-    n = edges.shape[1]
-    point, weight = np.polynomial.legendre.leggauss(n)
-    value, slope = line_shapes(point, n)
-    line = x[edges]
-    r, by_r, by_z = line[..., 0] @ value.T, line[..., 0] @ slope.T, line[..., 1] @ slope.T
-
-    def form(load: Array, left: Array, right: Array) -> Array:
-        return np.asarray(np.einsum("eq,qi,qk->eik", weight * load, left, right))
-
-    rising = 2.0 * np.pi * form(by_z, value, value)
-    cross = np.pi * (form(r, slope, value) + form(r, value, slope) - form(by_r, value, value))
-    constant = _placed(cavity.hessian(x))
-    constant[:, :, _C, :, _C] = rising
-    linear = _empty(edges.shape[0], n)
-    for field, block in ((_A, rising), (_B, cross)):
-        linear[:, :, field, :, _C] = block
-        linear[:, :, _C, :, field] = np.swapaxes(block, 1, 2)
-    return _family((constant, linear, np.zeros_like(linear)))
-
-
 def _number(solid: SolidModel) -> Index:
     """Unknowns (n_nodes, 3) in the order of the axisymmetric solid's, -1 where fixed; on the axis a and c are one."""
     mesh: SolidMesh = solid.mesh
     free = np.ones((mesh.nodes.shape[0], 3), dtype=bool)
     free[mesh.axis] = True, False, False
-    free[mesh.sliding, _B] = False
+    free[mesh.sliding, IN_Z] = False
     free[mesh.clamped] = False
     order = np.argsort(solid.dofs.max(axis=1), kind="stable")
     numbers = np.empty(free.shape, dtype=np.intp)
     ranked = free[order]
     numbers[order] = np.where(ranked, np.cumsum(ranked).reshape(ranked.shape) - 1, -1)
-    numbers[mesh.axis, _C] = numbers[mesh.axis, _A]
+    numbers[mesh.axis, AROUND] = numbers[mesh.axis, IN_R]
     return numbers
 
 

@@ -13,13 +13,15 @@ class TermState:
     """A further part of the total energy at one set of positions: its energy, its gradient (size,), and its second
     derivative as ``blocks`` of `SolidModel.contact_pattern` (edges of the outer wall) and ``inner_blocks`` of
     `SolidModel.edge_pattern` (edges of the inner wall), (n_edges, 2 n, 2 n) each, and ``fold_blocks`` of
-    `SolidModel.fold_pattern` (edges of the outer wall with the flange's top); None where it has none."""
+    `SolidModel.fold_pattern` (edges of the outer wall with the flange's top); ``around`` by displacements of the edges
+    of the outer wall around the axis, (n_edges, n, n). None where it has none."""
 
     energy: float
     gradient: Array
     blocks: Array | None = None
     inner_blocks: Array | None = None
     fold_blocks: Array | None = None
+    around: Array | None = None
 
 
 class EnergyTerm(Protocol):
