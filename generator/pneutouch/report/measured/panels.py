@@ -19,6 +19,8 @@ from pneutouch.report.style import FAINT, INK, LINES, MARKERS, MUTED, figure, sv
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
 
 NARROW, WIDE = 86.0, 180.0
 """Widths in mm: two in a row on A4, and the whole row."""
@@ -160,11 +162,11 @@ def _legend(drawn: Figure, legend: dict[str, Any], wide: float) -> None:
         )
 
 
-def key(panels: Sequence[Panel]) -> dict[str, Any]:
+def key(panels: Sequence[Panel]) -> dict[str, Line2D]:
     """Legend of a plot of runs: markers of the specimens, fill of the ages."""
     from matplotlib.lines import Line2D
 
-    handles: dict[str, Any] = {}
+    handles: dict[str, Line2D] = {}
     for k in range(min(max((len(panel.sensors) for panel in panels), default=0), len(MARKERS))):
         handles[f"specimen {k + 1}"] = Line2D([], [], ls="", marker=MARKERS[k], color=INK, ms=3.4)
     ages = sorted({age for panel in panels for age in panel.ages})
@@ -174,7 +176,7 @@ def key(panels: Sequence[Panel]) -> dict[str, Any]:
     return handles
 
 
-def lines_of(panels: Sequence[Panel], driving_pressures_kPa: Sequence[float]) -> dict[str, Any]:
+def lines_of(panels: Sequence[Panel], driving_pressures_kPa: Sequence[float]) -> dict[str, Line2D]:
     """Legend of the driving pressures, kPa, that are drawn."""
     from matplotlib.lines import Line2D
 
@@ -185,7 +187,7 @@ def lines_of(panels: Sequence[Panel], driving_pressures_kPa: Sequence[float]) ->
     return handles
 
 
-def band_of() -> dict[str, Any]:
+def band_of() -> dict[str, Patch]:
     """Legend of a predicted band."""
     from matplotlib.patches import Patch
 

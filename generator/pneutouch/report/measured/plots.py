@@ -16,6 +16,7 @@ from pneutouch.report.style import FAINT, INK, LINES, MARKERS, MUTED
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
 SENSITIVITY, STIFFNESS = "sensitivity_kPa_per_N", "stiffness_N_per_mm"
@@ -40,7 +41,7 @@ def sensitivities(panels: Sequence[Panel]) -> Plot | None:
     from matplotlib.lines import Line2D
 
     known = any(SENSITIVITY in b.predicted for p in panels for b in p.comparisons)
-    legend = {"predicted": Line2D([], [], color=INK, lw=1.0), **band_of()} if known else {}
+    legend: dict[str, Artist] = {"predicted": Line2D([], [], color=INK, lw=1.0), **band_of()} if known else {}
     for k, age in enumerate(_ages(panels)):
         legend[f"measured, {age}"] = Line2D([], [], ls="", **_spot(k))
     pressures_kPa = panels[0].campaign_pressures_kPa
@@ -147,7 +148,7 @@ def _curves(panels: Sequence[Panel], over: _Axes, labels: tuple[str, str]) -> Pl
         return None
     drawn = [b for p in panels for b in p.comparisons if b.group.of_kind("steps")]
     pressures_kPa = sorted({b.group.key.driving_pressure_kPa for b in drawn})
-    legend = {**key(panels), **lines_of(panels, pressures_kPa)}
+    legend: dict[str, Artist] = {**key(panels), **lines_of(panels, pressures_kPa)}
     if any(b.state is not None and _ends(b, over.figure) for b in drawn):
         legend |= band_of()
     return multiples(panels, lambda ax, panel: _draw(ax, panel, over), labels, legend)

@@ -16,6 +16,7 @@ from pneutouch.evaluation.comparison_record import ComparisonRecord
 from pneutouch.evaluation.evaluate import Evaluation, evaluate
 from pneutouch.output.files import check_writable, digest, json_bytes, write_folder
 from pneutouch.output.manifest import short_digest, with_manifest
+from pneutouch.parts import Assembly
 from pneutouch.spec.read import Changes
 from pneutouch.workflows.compare.folder import manifest_of
 from pneutouch.workflows.compare.measured import MeasuredColumn, measured_columns
@@ -130,5 +131,5 @@ def write(result: CompareResult, out: Path) -> Path:
     return folder
 
 
-def _parts(result: CompareResult) -> dict[str, Any]:
+def _parts(result: CompareResult) -> dict[str, Assembly]:
     return {sensor.label: sensor.assembly() for sensor in result.sensors if sensor.assembly is not None}
