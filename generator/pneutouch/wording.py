@@ -1,4 +1,7 @@
-"""Words that follow from numbers."""
+"""Words that follow from numbers, and the mark of simulated data."""
+
+SIMULATED = "SIMULATED DATA"
+"""Stands before every figure that no sensor was measured for, on screen and sheet."""
 
 
 def counted(count: int, one: str, many: str = "") -> str:

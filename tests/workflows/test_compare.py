@@ -10,7 +10,9 @@ import pytest
 
 from pneutouch.bench.simulate import SimulationTruth
 from pneutouch.catalogue import DesignSource, Library
+from pneutouch.cli.compare_text import comparison_text
 from pneutouch.errors import InputError
+from pneutouch.report.compared import words
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.workflows.characterize.run import characterize
 from pneutouch.workflows.characterize.run import write as write_measured
@@ -78,6 +80,9 @@ def test_a_design_is_compared_with_its_calibrated_self(library, tmp_path):
     result = compare(["paper-dome", "paper-dome@A1", other], library=place, model="atlas")
     labels = [one["label"] for one in result.document["compared"]]
     assert labels == ["paper-dome", "paper-dome@A1", "other@A1"]
+    assert result.name == "compare-paper-dome-A1-other-A1"
+    marked = calibration["source"]["simulated"]
+    assert [one["simulated"] for one in result.document["compared"]] == [False, marked, marked]
     inputs = result.document["inputs"]
     assert inputs["calibration"] == [None, "A1", "A1"]
     # The calibrated wall is the designed one, which the design alone names otherwise.
@@ -124,7 +129,7 @@ def test_a_prediction_is_read_at_the_depths_of_the_measurement(results, library)
 def test_the_sheet_is_written_whole_and_the_same_twice(tmp_path, results, library):
     result = compare(["paper-dome", THICK, str(results)], library=library, model="atlas")
     folder = write(result, tmp_path / "one")
-    assert folder.name == "compare-paper-dome-thick-paper-dome-campaign-measured"
+    assert folder.name == "compare-paper-dome-thick-campaign-measured"
     again = write(compare(["paper-dome", THICK, str(results)], library=library, model="atlas"), tmp_path / "two")
     names = ["comparison.html", "comparison.json", "comparison.pdf", "manifest.json"]
     assert sorted(path.name for path in folder.iterdir()) == names
@@ -134,6 +139,11 @@ def test_the_sheet_is_written_whole_and_the_same_twice(tmp_path, results, librar
     assert not any(word in page for word in ('src="http', 'href="http', "url(http", "<script"))
     pdf = pypdfium2.PdfDocument(folder / "comparison.pdf")
     text = " ".join(page.get_textpage().get_text_range() for page in pdf)
+    # Both are marked, as every sheet of simulated data; the note among the assumptions would be read last.
+    mark = "SIMULATED DATA: paper-dome-campaign-measured: a program made these runs"
+    assert words.marks(result.document) == [f"{mark}; no sensor was measured."]
+    assert mark in page and mark in text.replace("\r\n", " ")
+    assert comparison_text(result.document).splitlines()[3].startswith(mark)
     for word in ("paper-dome", "thick", "membrane.wall_thickness_mm", "exceeds", "sensitivity, kPa/N"):
         assert word in page and word in text, word
 
@@ -162,3 +172,10 @@ def test_what_cannot_be_compared_is_refused(built, library):
         compare(["paper-dome"], library=library, model="membrane")
     with pytest.raises(InputError, match="no such design or file"):
         compare(["paper-dome", "nothing"], library=library, model="membrane")
+
+
+@pytest.mark.parametrize(("kind", "how"), [("measured", "a program made"), ("design", "calibrated on simulated runs")])
+def test_what_rests_on_simulated_runs_is_marked(kind, how):
+    document = {"compared": [{"label": "A", "kind": kind, "simulated": True}, {"label": "B", "simulated": False}]}
+    (mark,) = words.marks(document)
+    assert mark.startswith(f"SIMULATED DATA: A: {how}")

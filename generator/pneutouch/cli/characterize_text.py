@@ -3,12 +3,13 @@
 from typing import Any
 
 from pneutouch.bench.figure import BY_KEY
+from pneutouch.wording import SIMULATED
 
 
 def measured_text(document: dict[str, Any]) -> str:
     """A table a group: measured with its interval, and the prediction; then the warnings."""
     head = f"{document['title']}: measured on {document['design']}, predicted by {document['model']}"
-    lines = [head + ("  SIMULATED DATA" if document["simulated"] else "")]
+    lines = [head + (f"  {SIMULATED}" if document["simulated"] else "")]
     for group in document["groups"]:
         lines += ["", *_group(group)]
     for entry in document["target"]:

@@ -9,6 +9,7 @@ def comparison_text(document: ComparisonRecord) -> str:
     """What differs, every figure with its interval, what exceeds its uncertainty, and what is assumed."""
     labels = words.labels(document)
     lines = [f"{one['label']}: {one['kind']}{_from(one)}" for one in document["compared"]]
+    lines += words.marks(document)
     inputs = words.input_rows(document)
     if inputs:
         lines += ["", table_text(["inputs that differ", *labels], inputs)]

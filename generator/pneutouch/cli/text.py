@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from pneutouch.mechanics.events import LOBES, SWAY
 from pneutouch.rounding import tenths_below
+from pneutouch.wording import SIMULATED
 
 if TYPE_CHECKING:
     from pneutouch.evaluation.document import PredictionRecord, UncertainStateRecord
@@ -46,7 +47,7 @@ def _calibrated(calibration: dict[str, Any] | None) -> list[str]:
     """Which specimen the figures are of, and whether it was measured."""
     if calibration is None:
         return []
-    made = "SIMULATED DATA: " if calibration["simulated"] else ""
+    made = f"{SIMULATED}: " if calibration["simulated"] else ""
     return [f"{made}calibration {calibration['name']}: the figures are those of sensor {calibration['sensor']} alone"]
 
 

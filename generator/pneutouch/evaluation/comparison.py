@@ -85,7 +85,7 @@ class ComparedSensor:
     """One column of a comparison.
 
     ``inputs`` are by ``table.key``; ``resin`` is all that is known of the membrane's, None where it was measured;
-    ``assembly`` draws the parts.
+    ``assembly`` draws the parts; ``simulated``: a program made the runs that it rests on.
     """
 
     name: str
@@ -97,6 +97,7 @@ class ComparedSensor:
     notes: tuple[str, ...] = ()
     assembly: Callable[[], Assembly] | None = None
     label: str = ""
+    simulated: bool = False
 
     def state(self, pressure_kPa: float) -> ComparedState | None:
         """The state at a driving pressure, or None."""
@@ -157,6 +158,7 @@ def comparison_document(sensors: Sequence[ComparedSensor]) -> ComparisonRecord:
                 "name": s.name,
                 "kind": s.kind,
                 "source": s.source,
+                "simulated": s.simulated,
                 "driving_pressures_kPa": [state.driving_pressure_kPa for state in s.states],
             }
             for s in sensors

@@ -31,6 +31,7 @@ class ColumnRecord(TypedDict):
     name: str
     kind: str
     source: str
+    simulated: bool
     driving_pressures_kPa: list[float]
 
 

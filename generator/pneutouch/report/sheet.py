@@ -9,7 +9,7 @@ from pneutouch.report import ordering, prose
 from pneutouch.report.certainty import interval, uncertainty_section
 from pneutouch.report.environment import NOT_TESTED, environment
 from pneutouch.units import KPA, ML
-from pneutouch.wording import counted
+from pneutouch.wording import SIMULATED, counted
 
 DASH = "–"
 
@@ -77,7 +77,7 @@ def _status(sheet: SheetData) -> str:
         return "Predicted. No unit has been built or tested."
     source = calibration.source
     if source.simulated:
-        return f"SIMULATED DATA: calibrated on simulated runs of sensor {source.sensor}. No unit has been tested."
+        return f"{SIMULATED}: calibrated on simulated runs of sensor {source.sensor}. No unit has been tested."
     return f"Predicted for sensor {source.sensor} alone, calibrated on {counted(source.curves, 'measured curve')}."
 
 

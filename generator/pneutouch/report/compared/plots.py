@@ -172,7 +172,8 @@ def differences(document: ComparisonRecord) -> str | None:
             ax.plot(percent, place, ls="", marker=marker, ms=4.4, mec=tone, mfc=face, zorder=4)
         ax.axvline(0, color=INK, lw=0.8)
         ax.set_yticks(range(len(names)), names)
-        ax.set(xlabel=f"difference from {_cut(labels(document)[0])}  (%)", ylim=(len(names) - 0.5, -0.5))
+        # The caption names the first sensor: its name may be longer than the axis.
+        ax.set(xlabel="difference  (%)", ylim=(len(names) - 0.5, -0.5))
         ax.grid(visible=False, axis="y")
         if len(others) > 1:
             _key(drawn, others)

@@ -44,6 +44,7 @@ def _content(document: ComparisonRecord) -> dict[str, Any]:
         "tool": f"pneutouch {document['pneutouch']}",
         "labels": labels,
         "compared": [[one["label"], _KINDS[one["kind"]], one["source"] or "–"] for one in document["compared"]],
+        "marks": words.marks(document),
         "summary": words.summary(document),
         "inputs": words.input_rows(document),
         "groups": [

@@ -5,6 +5,7 @@ from typing import Any
 
 from pneutouch.evaluation.comparison_record import ComparisonRecord, DifferenceRecord, RowRecord
 from pneutouch.report.measured.words import DASH, between, number, signed
+from pneutouch.wording import SIMULATED
 
 _DIGITS = 4
 
@@ -79,6 +80,16 @@ def pressures(document: ComparisonRecord) -> list[float | None]:
 def heading(pressure_kPa: float | None) -> str:
     """Title of a group of figures."""
     return "the sensor" if pressure_kPa is None else f"at {pressure_kPa:g} kPa"
+
+
+def marks(document: ComparisonRecord) -> list[str]:
+    """One sentence a sensor whose figures rest on simulated runs."""
+    how = {"measured": "a program made these runs; no sensor was measured"}
+    return [
+        f"{SIMULATED}: {one['label']}: {how.get(one['kind'], 'calibrated on simulated runs; no unit has been tested')}."
+        for one in document["compared"]
+        if one["simulated"]
+    ]
 
 
 def summary(document: ComparisonRecord) -> list[str]:

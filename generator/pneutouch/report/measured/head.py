@@ -10,8 +10,8 @@ from pneutouch.bench.interval import Estimate
 from pneutouch.report.measured.comparison import CampaignReport, GroupComparison, Verdict
 from pneutouch.report.measured.words import between, difference, listed, number, overlap, signed, word_of
 from pneutouch.units import KPA
+from pneutouch.wording import SIMULATED, counted
 
-SIMULATED = "SIMULATED DATA"
 _SENSITIVITY = "sensitivity_kPa_per_N"
 _WORDS = ("passed", "failed", "not decided")
 
@@ -35,11 +35,6 @@ def head(measured: CampaignReport) -> dict[str, Any]:
         "simulated": SIMULATED if campaign.simulated else "",
         "simulated_note": "A program made these runs. No sensor was measured." if campaign.simulated else "",
     }
-
-
-def counted(count: int, what: str) -> str:
-    """``1 run``, ``2 runs``."""
-    return f"{count} {what}{'' if count == 1 else 's'}"
 
 
 def dates(measured: CampaignReport) -> str:

@@ -36,8 +36,7 @@ class MeasuredColumn:
 
     def sensor(self) -> ComparedSensor:
         """The column."""
-        notes = (f"{self.source} is simulated, not measured.",) if self.simulated else ()
-        return ComparedSensor(self.name, self.kind, self.source, {}, None, self.states, notes)
+        return ComparedSensor(self.name, self.kind, self.source, {}, None, self.states, simulated=self.simulated)
 
 
 def measured_columns(folder: Path, *, predicted: bool = False) -> list[MeasuredColumn]:

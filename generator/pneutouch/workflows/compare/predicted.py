@@ -60,6 +60,7 @@ class PredictedColumn:
             states=tuple(state for state, _ in states),
             notes=tuple(dict.fromkeys((*self.notes, *(note for _, note in states if note)))),
             assembly=self._assembly,
+            simulated=self.scene.calibration is not None and self.scene.calibration.source.simulated,
         )
 
     def _inputs(self) -> dict[str, Any]:

@@ -42,10 +42,21 @@ class CompareResult:
     @property
     def name(self) -> str:
         """Name of the output folder."""
-        words = "-".join(re.sub(r"[^A-Za-z0-9_.-]+", "-", sensor.label).strip("-.") for sensor in self.sensors)
+        words = "-".join(_distinct([sensor.label for sensor in self.sensors]))
         if len(words) > _LONGEST:
             words = f"{words[: _LONGEST - 9]}-{digest(words.encode())[:8]}"
         return f"compare-{words}"
+
+
+def _distinct(labels: Sequence[str]) -> list[str]:
+    """Labels as parts of a file's name, without the first one's name where another repeats it."""
+    plain = [re.sub(r"[^A-Za-z0-9_.@-]+", "-", label).strip("-.") for label in labels]
+    first = plain[0].partition("@")[0]
+    parts = [plain[0].replace("@", "-")]
+    for label in plain[1:]:
+        words = [word.removeprefix(f"{first}-") for word in label.split("@") if word != first]
+        parts.append("-".join(words) or first)
+    return parts
 
 
 def compare(
