@@ -17,6 +17,18 @@ import pytest
         (["simulate", "paper-dome", "--pressures", "0,1_0"], "--pressures 0,1_0"),
         (["scan", "texture-specimen", "--design", "paper-dome", "--pressures", "0,1_0"], "--pressures 0,1_0"),
         (["select", "--sensitivity", "2", "--same-at", "0,1_0"], "--same-at 0,1_0"),
+        (["predict", "paper-dome", "--set", "membrane.inner_radius_mm=1_0"], "--set membrane.inner_radius_mm=1_0"),
+        (["predict", "paper-dome", "--set", "membrane.inner_radius_mm=0x10"], "--set membrane.inner_radius_mm=0x10"),
+        (
+            ["predict", "paper-dome", "--set", "pneumatics.driving_pressures_kPa=0,1_0"],
+            "--set pneumatics.driving_pressures_kPa=0,1_0",
+        ),
+        (
+            ["predict", "paper-dome", "--set", "pneumatics.driving_pressures_kPa=[0, 1_0.5]"],
+            "--set pneumatics.driving_pressures_kPa=[0, 1_0.5]",
+        ),
+        (["sweep", "--design", "paper-dome", "--over", "membrane.inner_radius_mm=8,1_0"], 'inner_radius_mm = "1_0"'),
+        (["sweep", "--design", "paper-dome", "--over", "membrane.inner_radius_mm=8:1_0:3"], "8 to 1_0"),
     ],
 )
 def test_a_number_with_an_underscore_is_none(words, flag, command, tmp_path):

@@ -11,6 +11,10 @@ _BARE = re.compile(r"[A-Za-z0-9_-]+")
 _LONG = re.compile(r"[0-9a-fA-F_]{16}|[01_]{60}")
 """Digits of which a whole number may be too long: TOML has 64 bits, Python has no bound, and a float overflows."""
 
+_QUOTED = re.compile(r""""(?:\\.|[^"\\])*"|'[^']*'""")
+_ODD_NUMBER = re.compile(r"(?<![\w.-])[+-]?(?:\d[\d.eE+-]*_[\d_.eE+-]*|0[xob]\w+)(?![\w-])")
+"""Numbers of TOML with underscores, or not decimal: on a command line ``1_0`` is a slip of the keyboard, not ten."""
+
 
 def toml_text(content: Mapping[str, Any]) -> str:
     """TOML of nested tables, lists, text, numbers, booleans and dates; what is None is left out."""
@@ -26,7 +30,9 @@ def toml_content(text: str) -> dict[str, Any]:
 
 
 def toml_value(text: str) -> Any:
-    """The value that TOML reads from a text; the very same text where it is a bare word."""
+    """The value that TOML reads from a text; the very same text where it is a bare word, or has a number with ``_``."""
+    if _ODD_NUMBER.search(_QUOTED.sub("", text)):
+        return text
     try:
         content = toml_content(f"value = {text}")
     except (ValueError, RecursionError):
