@@ -65,7 +65,8 @@ def pockets(voxels: PartVoxels, radius: Array, most: float = NARROW) -> list[Poc
     levels = np.geomspace(voxels.pitch, enclosed, _STEPS)
     below = 0.5 * voxels.pitch
     for level in levels:
-        cut = (radius >= level) & ~outside(radius >= level) & ~taken
+        space = radius >= level
+        cut = space & ~outside(space) & ~taken
         for piece in largest_pieces(cut) if cut.any() else []:
             low = _narrowed(radius, piece, below, float(level))
             pocket = _pocket(voxels, radius, _grown(voxels, piece, float(level)), 2 * low)
