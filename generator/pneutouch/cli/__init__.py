@@ -9,7 +9,7 @@ from pneutouch.cli.stop import StopSignals, stop_signals
 
 __all__ = ["command_line", "run"]
 
-_OBJECTS_BEFORE_COLLECTION = 100_000
+_OBJECTS_BEFORE_COLLECTION = 250_000
 """A command ends within seconds and keeps most of what it makes: collecting garbage at Python's 700 is a sixth of
 the time that CadQuery and matplotlib take to load."""
 

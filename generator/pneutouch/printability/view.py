@@ -99,14 +99,14 @@ class PrintPart:
     @cached_property
     def chords(self) -> dict[Side, Chords]:
         """Thicknesses and clearances as far as the printer's limits reach."""
-        return chords(self.manifold, self.surface, self.samples, self._limits)
+        return chords(self.manifold, self.surface, self.samples, max(self._limits.values()))
 
     @cached_property
     def places(self) -> list[ThinPlace]:
         """Thin places, narrowest first."""
         solid = self.item.solid
         exact = None if solid is None else lambda chords: refined(chords, solid.distance)
-        return thin_places(self.manifold, self.surface, self.chords, exact)
+        return thin_places(self.manifold, self.surface, self.chords, self._limits, exact)
 
     def slack(self, size: float, turn: float) -> float:
         """How far a measured size (mm) may be off, mm, between curves whose faces turn by ``turn`` (radians).

@@ -9,7 +9,7 @@ flank how high the flank is (a ridge or a groove on a face).
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
-from typing import Any, Literal
+from typing import Any, Literal, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,21 +70,18 @@ class Chords:
         return Chords(*(getattr(self, field.name)[rows] for field in fields(self)))
 
 
-def chords(
-    manifold: Any, surface: SurfaceMesh, samples: SurfaceSamples, limits: dict[Side, float]
-) -> dict[Side, Chords]:
-    """Chords of each side no longer than its limit, mm. ``surface`` is the manifold's own mesh."""
+def chords(manifold: Any, surface: SurfaceMesh, samples: SurfaceSamples, reach: float) -> dict[Side, Chords]:
+    """Chords of both sides no longer than ``reach`` mm. ``surface`` is the manifold's own mesh."""
     # The smooth surface's normals: those of flat faces miss the axis of a round pin or hole.
     normals = surface.smooth_normals(samples.faces, samples.points)
-    chords = neighbours(manifold, samples.points, -normals, limits["inside"], limits["outside"])
+    chords = neighbours(manifold, samples.points, -normals, reach)
     sides: dict[Side, Chords] = {}
-    sights: tuple[tuple[Side, int, float], ...] = (("outside", 0, 1.0), ("inside", 1, -1.0))
-    for side, column, sign in sights:
+    for side, column, sign in (("outside", 0, 1.0), ("inside", 1, -1.0)):
         length, far = chords.distances[:, column], chords.faces[:, column]
         facing = np.einsum("ij,ij->i", normals, surface.normals[far])
-        rows = np.flatnonzero(np.isfinite(length) & (length <= limits[side]) & (facing < _OPPOSING))
+        rows = np.flatnonzero(np.isfinite(length) & (length <= reach) & (facing < _OPPOSING))
         wide = np.full(len(rows), np.inf)
-        sides[side] = Chords(
+        sides[cast(Side, side)] = Chords(
             start=samples.points[rows],
             direction=sign * normals[rows],
             length=length[rows],

@@ -108,7 +108,7 @@ def _along_last(space: Flags, most: int, kind: Any) -> NDArray[Any]:
     before = np.maximum.accumulate(np.where(space, kind(-n), place), axis=2)
     after = np.minimum.accumulate(np.where(space, kind(2 * n), place)[:, :, ::-1], axis=2)[:, :, ::-1]
     near = np.minimum(place - before, after - place)
-    return np.where(near < n, near * near, kind(most))
+    return np.asarray(np.where(near < n, near * near, kind(most)))
 
 
 _ROWS = 8

@@ -20,37 +20,33 @@ class Neighbours:
     faces: Indices
 
 
-def neighbours(
-    manifold: Any, middles: Array, directions: Array, reach: float, before: float | None = None
-) -> Neighbours:
-    """Cast lines through ``middles`` (n, 3) along unit ``directions`` (n, 3), from ``before`` mm before them to
-    ``reach`` mm past them; left out, ``before`` is ``reach`` too.
+def neighbours(manifold: Any, middles: Array, directions: Array, reach: float) -> Neighbours:
+    """Cast lines through ``middles`` (n, 3), from ``reach`` mm before along unit ``directions`` (n, 3) to as far past.
 
     ``manifold`` is manifold3d's; its hits come in order along the line.
     """
-    back = reach if before is None else before
     cast = manifold.ray_cast
     count = len(middles)
     distances, faces = np.full((count, 2), np.inf), np.full((count, 2), -1, dtype=np.int64)
-    span = back + reach
-    middle, margin = back / span, _SELF / span
-    low, high = middle - margin, middle + margin
-    starts, ends = (middles - back * directions).tolist(), (middles + reach * directions).tolist()
+    margin = 0.5 * _SELF / reach
+    low, high = 0.5 - margin, 0.5 + margin
+    starts, ends = (middles - reach * directions).tolist(), (middles + reach * directions).tolist()
     for k in range(count):
-        front = behind = None
+        before = behind = None
         for hit in cast(starts[k], ends[k]):
             share = hit.distance
             if share < low:
-                front = (share, hit.face_id)
+                before = (share, hit.face_id)
             elif share > high:
                 behind = (share, hit.face_id)
                 break
-        if front is not None:
-            distances[k, 0], faces[k, 0] = front
+        if before is not None:
+            distances[k, 0], faces[k, 0] = before
         if behind is not None:
             distances[k, 1], faces[k, 1] = behind
-    distances[:, 0] = np.where(faces[:, 0] >= 0, (middle - distances[:, 0]) * span, np.inf)
-    distances[:, 1] = np.where(faces[:, 1] >= 0, (distances[:, 1] - middle) * span, np.inf)
+    span = 2 * reach
+    distances[:, 0] = np.where(faces[:, 0] >= 0, (0.5 - distances[:, 0]) * span, np.inf)
+    distances[:, 1] = np.where(faces[:, 1] >= 0, (distances[:, 1] - 0.5) * span, np.inf)
     return Neighbours(distances, faces)
 
 

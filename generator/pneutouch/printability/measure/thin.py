@@ -58,10 +58,13 @@ class ThinPlace:
     turn: float = 0.0
 
 
-def thin_places(manifold: Any, surface: SurfaceMesh, sides: dict[Side, Chords], exact: Any = None) -> list[ThinPlace]:
-    """Places with a chord, narrowest first. ``exact`` turns chords into exact lengths."""
+def thin_places(
+    manifold: Any, surface: SurfaceMesh, sides: dict[Side, Chords], limits: dict[Side, float], exact: Any = None
+) -> list[ThinPlace]:
+    """Places with a chord up to a side's limit, mm, narrowest first. ``exact`` turns chords into exact lengths."""
     places = []
-    for side, short in sides.items():
+    for side, chords in sides.items():
+        short = chords.take(chords.length <= limits[side])
         short = short.take(np.logical_not(_in_wedge(surface, short, side)))
         short = described(manifold, surface, _thinned(short, surface.groups))
         if not len(short):
