@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NotRequired, TypedDict, cast
 
+from pneutouch.evaluation.contact_object import contact_document
 from pneutouch.evaluation.uncertainty import documents
 from pneutouch.mechanics.prediction import SensorRecord, StateRecord
 from pneutouch.mechanics.viscous.known import AGED, ageing_ratio
@@ -34,6 +35,7 @@ class AgedRecord(TypedDict):
 class PredictionRecord(SensorRecord):
     """A prediction as ``predict`` prints it; ``prediction.json`` holds it up to ``states``."""
 
+    contact: NotRequired[dict[str, Any]]
     dead_volume_note: NotRequired[str]
     rating: RatingRecord
     states: list[UncertainStateRecord]
@@ -56,7 +58,8 @@ def rating_document(evaluation: Evaluation) -> RatingRecord:
 def prediction_document(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
     """The prediction as ``predict`` prints it, with its ``rating``, every state with its ``uncertainty``.
 
-    ``dead_volume_note`` stands there where the stated dead volume is an idealisation.
+    ``contact`` stands there where something else than a plate presses the sensor, ``dead_volume_note`` where the stated
+    dead volume is an idealisation.
     """
     content = evaluation.prediction.document()
     uncertainty = evaluation.uncertainty
@@ -65,7 +68,10 @@ def prediction_document(evaluation: Evaluation, samples: int = 0) -> PredictionR
             evaluation.prediction, evaluation.sensor, evaluation.scene, lambda: evaluation.resins, samples
         )
     states = [{**state, "uncertainty": entry} for state, entry in zip(content["states"], uncertainty, strict=True)]
-    record = cast("PredictionRecord", {**content, "rating": rating_document(evaluation), "states": states})
+    record = cast(
+        "PredictionRecord",
+        {**content, **contact_document(evaluation.scene), "rating": rating_document(evaluation), "states": states},
+    )
     if evaluation.assembly.dead_volume_note:
         record["dead_volume_note"] = evaluation.assembly.dead_volume_note
     return record

@@ -12,6 +12,7 @@ import numpy as np
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
 from pneutouch.errors import BeyondLimitError, InputError, nearest
 from pneutouch.evaluation.calibrated import assumption, calibrated_error, calibrated_sensor, check_options, unmeasured
+from pneutouch.evaluation.contact_object import check_first_touch, check_object, contact_object
 from pneutouch.evaluation.table_s1 import sensitivity_error
 from pneutouch.mechanics import Sensor, SensorPrediction, predict
 from pneutouch.mechanics.models import DEFAULT_TOLERANCE
@@ -160,6 +161,7 @@ def evaluate_scene(scene: ResolvedDesign, find_resins: Callable[[], Resins], opt
     sensor = sensor_of(assembly, options.clamp)
     if options.aged:
         sensor, shift = _aged(scene, sensor)
+    check_object(scene, sensor)
     pressures = [p * KPA for p in scene.design.pneumatics.driving_pressures_kPa]
     try:
         prediction = predict(
@@ -174,6 +176,7 @@ def evaluate_scene(scene: ResolvedDesign, find_resins: Callable[[], Resins], opt
     except BeyondLimitError as error:
         raise _beyond_limit(scene, error) from None
     _check_plate(scene, prediction)
+    check_first_touch(scene, prediction)
     more = [shift] if options.aged else []
     if scene.calibration:
         deepest = max(state.range_end for state in prediction.states)
@@ -210,6 +213,9 @@ def sensor_of(assembly: Assembly, clamp: str = "base") -> Sensor:
         depth=design.depth_mm,
         steps=design.indentation.steps,
         waves=design.indentation.checked_waves,
+        body=contact_object(assembly.scene),
+        plate_rim=design.contact.plate_rim_mm,
+        friction=design.contact.friction,
         flange=(layout.flange_width, layout.flange_thickness) if clamp == "flange" else None,
     )
     return calibrated_sensor(sensor, assembly.scene)

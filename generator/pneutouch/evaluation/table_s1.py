@@ -73,7 +73,8 @@ def is_near_paper(sensor: Sensor) -> bool:
     low, high = NEAR_WALL
     cavity = 2 / 3 * np.pi * sensor.dome.inner_radius**3
     close = low <= sensor.dome.wall_thickness / sensor.dome.inner_radius <= high
-    return bool(close and sensor.gas.dead_volume <= NEAR_DEAD_VOLUME * cavity and sensor.dome.flange is None)
+    known = sensor.protocol.other_contact is None
+    return bool(close and known and sensor.gas.dead_volume <= NEAR_DEAD_VOLUME * cavity and sensor.dome.flange is None)
 
 
 def sensitivity_error(material: Material, sensor: Sensor, model: str, closure: str) -> ErrorEstimate:
@@ -85,7 +86,8 @@ def sensitivity_error(material: Material, sensor: Sensor, model: str, closure: s
         return _unknown(f"no measurement of a sensor in {material.label} is known")
     if not is_near_paper(sensor):
         return _unknown(
-            "the only measurements are of the paper's sensor (wall 0.16 R0, no stated dead volume, clamped base)"
+            "the only measurements are of the paper's sensor (wall 0.16 R0, no stated dead volume, clamped base) under "
+            "a plate taken as frictionless"
         )
     if model in ("atlas", "solid"):
         errors = json.loads(SHIPPED.read_text(encoding="utf-8")).get(fingerprint(material))

@@ -31,6 +31,7 @@ def outside_atlas(sensor: Sensor, atlas: Atlas | None = None) -> str | None:
     gas, nu = sensor.gas.ambient_pressure / wall.shear_modulus, recipe.poisson_ratio
     inside = recipe.thinnest * (1 - 1e-9) <= ratio <= recipe.thickest * (1 + 1e-9)
     reasons = [
+        (sensor.protocol.other_contact is not None, str(sensor.protocol.other_contact)),
         (wall.grade is not None, "the wall is graded along its arc"),
         (wall.law is not None, "the resin has a law of its own, not the neo-Hookean one"),
         (wall.poisson_ratio != nu, f"Poisson ratio {wall.poisson_ratio:g}, not {nu:g}"),

@@ -18,6 +18,10 @@ DEFAULT_TOLERANCE = 0.02
 DISCRETISATION: ErrorEstimate = {"sensitivity_discretisation_relative": 0.011, "limit_pressure_relative": 0.002}
 """Greatest relative errors of the solid at its default resolution against a refined mesh (docs/accuracy.md)."""
 
+OBJECT_DISCRETISATION = 0.02
+"""Greatest relative error of the solid's sensitivity under an object that is no plate, at the resolution it takes,
+against a refined mesh (docs/contact.md): 0.002 where the range ends at the depth, more where an event ends it."""
+
 TABULATION = 0.0075
 """Greatest relative error of the atlas's sensitivity against the solid where `auto` takes it: away from buckling and
 tearing (docs/atlas.md); held by `make check-slow`."""
@@ -70,6 +74,8 @@ def _outside(model: str, sensor: Sensor) -> str | None:
         from pneutouch.mechanics.atlas_states import outside_atlas
 
         return outside_atlas(sensor)
+    if model == "membrane" and sensor.protocol.other_contact is not None:
+        return sensor.protocol.other_contact
     if model == "membrane" and not (
         sensor.wall.law is None and sensor.dome.flange is None and sensor.wall.grade is None
     ):

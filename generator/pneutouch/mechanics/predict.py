@@ -16,11 +16,12 @@ from pneutouch.mechanics.models import (
     DISCRETISATION,
     MODEL_CHOICES,
     NUMERICAL,
+    OBJECT_DISCRETISATION,
     TABULATION,
     models_for,
 )
 from pneutouch.mechanics.prediction import ErrorEstimate, ModelResult, SensorPrediction
-from pneutouch.mechanics.sensor import ResponseCorrection, Sensor
+from pneutouch.mechanics.sensor import IndentationProtocol, ResponseCorrection, Sensor
 from pneutouch.units import KPA, ML
 
 if TYPE_CHECKING:
@@ -29,6 +30,10 @@ if TYPE_CHECKING:
 _DISCRETISATION_SUMMARY = (
     f"Discretisation: sensitivity within {DISCRETISATION['sensitivity_discretisation_relative']:.1%}, limit pressure "
     f"within {DISCRETISATION['limit_pressure_relative']:.1%} of a refined mesh."
+)
+_OBJECT_SUMMARY = (
+    f"Discretisation: sensitivity within {OBJECT_DISCRETISATION:.0%}, limit pressure within "
+    f"{DISCRETISATION['limit_pressure_relative']:.1%} of a refined mesh (docs/contact.md)."
 )
 _TABULATION_SUMMARY = (
     f"Tabulation: sensitivity within {TABULATION:.1%} of the solid, that is within {NUMERICAL['atlas']:.1%} "
@@ -56,7 +61,6 @@ _BODY = "axisymmetric hyperelastic solid with the wall's full stiffness"
 _SOLID_ASSUMPTIONS = (
     "R0 is the inner radius; heights are those of the inner and the outer surface",
     *_THROUGH_BASE,
-    "the plate's edge is rounded with a thirtieth of its radius",
     "elongation at break is set against the greatest principal stretch on the faces, half a wall away from the clamp",
 )
 
@@ -65,8 +69,9 @@ _NOT_CHECKED = "sway and lobes of the dome around its axis are not looked for"
 _CLAMPED_BASE = "rim clamped at the base plane, as in the paper"
 _CLAMPED_FLANGE = "flange clamped on the faces that the connector holds, its top free"
 
+_PLATE = "rigid, flat, frictionless plate"
+
 _COMMON_ASSUMPTIONS = (
-    "rigid, flat, frictionless plate",
     "ideal gas at constant temperature (Boyle): slow contact; how far adiabatic air differs follows from wall and gas",
     "elastic wall: no rate, relaxation or temperature dependence of the resin",
 )
@@ -124,8 +129,26 @@ def predict(
         dead_volume=dead,
         inflation=answer.inflation,
         states=tuple(state.corrected(correction) for state in answer.states),
-        assumptions=(*assumptions, held, *_COMMON_ASSUMPTIONS, gas),
+        assumptions=(*assumptions, held, _contact(sensor.protocol), *_COMMON_ASSUMPTIONS, gas),
     )
+
+
+def _contact(protocol: IndentationProtocol) -> str:
+    """What presses the sensor, in words."""
+    if protocol.body is None and not protocol.friction:
+        return _PLATE
+    body = "flat plate" if protocol.body is None else protocol.body.label
+    hold = f"friction coefficient {protocol.friction:g} (Coulomb)" if protocol.friction else "frictionless"
+    return f"rigid {body}, {'a surface that grips' if protocol.friction == np.inf else hold}, central and straight down"
+
+
+def _edge(protocol: IndentationProtocol) -> str:
+    """How the solid ends what presses the sensor."""
+    if protocol.body is not None:
+        return "beyond its edge, or flanks of 60 degrees, the object turns up as a parabola; there the range ends"
+    if protocol.plate_rim is not None:
+        return f"the plate's edge is rounded with {protocol.plate_rim:g} mm, or with a cell of the mesh if that is more"
+    return "the plate's edge is rounded with a thirtieth of its radius"
 
 
 def _answer(
@@ -151,6 +174,8 @@ def _answer(
 def _result(model: str, sensor: Sensor, pressures: Array, closure: str) -> tuple[ModelResult, AnswerLimitation | None]:
     """The result of one model and its limitation."""
     if model == "membrane":
+        if sensor.protocol.other_contact is not None:
+            raise InputError(sensor.protocol.other_contact, key="model", value=model, remedy=_OTHER)
         if sensor.wall.grade is not None:
             raise InputError("the wall is graded along its arc", key="model", value=model, remedy=_OTHER)
         return membrane_result(sensor, pressures, closure), None
@@ -177,7 +202,15 @@ def _stated(model: str, sensor: Sensor, pressures: Array) -> tuple[ErrorEstimate
             "sensitivity_tabulation_relative": TABULATION,
             "summary": [_TABULATION_SUMMARY],
         }
-        return errors, (law, f"{_BODY}; {_NOT_CHECKED}", *_SOLID_ASSUMPTIONS)
+        return errors, (law, f"{_BODY}; {_NOT_CHECKED}", *_solid_assumptions(sensor))
     waves = sensor.protocol.waves
     checked = f"sway and lobes are looked for with up to {waves} waves around the axis" if waves else _NOT_CHECKED
-    return {**DISCRETISATION, "summary": [_DISCRETISATION_SUMMARY]}, (law, f"{_BODY}; {checked}", *_SOLID_ASSUMPTIONS)
+    errors = {**DISCRETISATION, "summary": [_DISCRETISATION_SUMMARY]}
+    if sensor.protocol.body is not None:
+        own = OBJECT_DISCRETISATION
+        errors = {**DISCRETISATION, "sensitivity_discretisation_relative": own, "summary": [_OBJECT_SUMMARY]}
+    return errors, (law, f"{_BODY}; {checked}", *_solid_assumptions(sensor))
+
+
+def _solid_assumptions(sensor: Sensor) -> tuple[str, ...]:
+    return (*_SOLID_ASSUMPTIONS[:-1], _edge(sensor.protocol), _SOLID_ASSUMPTIONS[-1])

@@ -103,11 +103,12 @@ class ModelRecord(SensorRecord):
 @dataclass(frozen=True, slots=True)
 class DeformedShape:
     """The deformed wall at an indentation (mm; None before contact): cells (n, m, 2) in (r, z), mm, and the
-    greatest principal stretch in each cell (n,)."""
+    greatest principal stretch in each cell (n,); ``body`` is the section of an object that is no plate, (k, 2)."""
 
     indentation: float | None
     cells: Array
     stretch: Array
+    body: Array | None = None
 
 
 @dataclass(frozen=True, slots=True)

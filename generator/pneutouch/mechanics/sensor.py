@@ -10,6 +10,7 @@ import numpy as np
 
 from pneutouch.mechanics.laws import Hyperelastic, hyperelastic, neo_hookean
 from pneutouch.mechanics.solid.base_contact import RigidBase
+from pneutouch.mechanics.solid.indenter import RigidObject
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,15 +59,29 @@ class GasCircuit:
 
 @dataclass(frozen=True, slots=True)
 class IndentationProtocol:
-    """The test: a flat plate moved to ``depth`` after first contact in ``steps`` equal steps.
+    """The test: a plate or an object moved to ``depth`` after first contact in ``steps`` equal steps.
 
-    The solid checks the stability of the press for 1 to ``waves`` waves around the axis; 0: no check.
+    The solid checks the stability of the press for 1 to ``waves`` waves around the axis; 0: no check. ``body`` in place
+    of the flat plate; ``plate_rim`` of a plate whose rim is stated; ``friction`` is Coulomb's coefficient, inf for a
+    surface that grips.
     """
 
     plate_radius: float
     depth: float
     steps: int
     waves: int = 0
+    body: RigidObject | None = None
+    plate_rim: float | None = None
+    friction: float = 0.0
+
+    @property
+    def other_contact(self) -> str | None:
+        """What is not the contact that membrane and atlas cover, a plate without friction; None where it is that."""
+        if self.body is not None:
+            return f"the object is a {self.body.label}, not a plate"
+        if self.friction > 0.0:
+            return f"the contact has friction ({self.friction:g})"
+        return None if self.plate_rim is None else "the radius of the plate's rim is stated"
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,14 +13,22 @@ from pneutouch.mechanics.prediction import DeformedShape, InflationCurve, ModelR
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.base_contact import RigidBase
+from pneutouch.mechanics.solid.first_touch import first_touch
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, PressState, indent
+from pneutouch.mechanics.solid.indenter import CELLS_PER_RADIUS, Indenter
 from pneutouch.mechanics.solid.inflate import FreeState, Inflation, inflate, state_at
-from pneutouch.mechanics.solid.mesh import dome
+from pneutouch.mechanics.solid.mesh import arc_cells, dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.printed import printed_dome
 from pneutouch.mechanics.solid.stress import StrainProbe, burst
 from pneutouch.meridian.arc import arc_share
 from pneutouch.units import KPA
+
+MOST_CELLS = 192
+"""Most cells along the arc for the sake of an object; beyond, a prediction takes minutes."""
+
+_DRAWN = 3.0
+"""Radius over R0 to which an object is drawn."""
 
 _PAST_LIMIT = 1.6
 """Inflation goes on to this multiple of the limit volume: enough to show the falling branch."""
@@ -35,6 +43,7 @@ KINDS = {
     "break": ("break strain", True),
     "gauge_range": ("gauge range", True),
     "plate_rim": ("plate edge", True),
+    "object_edge": ("object edge", True),
     "crease": ("creasing", False),
     "overhang": ("wall below the base plane", False),
     "base": ("wall on its base", False),
@@ -73,6 +82,7 @@ def solid_states(sensor: Sensor, driving_pressures: Array) -> tuple[SensorState,
 def _probe(sensor: Sensor, cells: int | None = None) -> StrainProbe:
     """The sensor's wall as the solid takes it, and the probe of its strains."""
     size = (sensor.dome.inner_radius, sensor.dome.wall_thickness)
+    cells = cells or object_cells(sensor)
     mesh = dome(*size, arc=cells) if sensor.dome.flange is None else printed_dome(*size, *sensor.dome.flange, arc=cells)
     return StrainProbe(SolidModel(mesh, sensor.wall.hyperelastic, grade=_grade(sensor), base=_base(sensor)))
 
@@ -83,6 +93,16 @@ def _base(sensor: Sensor) -> RigidBase | None:
     if dome.base is None or dome.flange is None:
         return dome.base
     return replace(dome.base, flange=dome.inner_radius + dome.wall_thickness + dome.flange[0])
+
+
+def object_cells(sensor: Sensor) -> int | None:
+    """Cells along the arc that follow the object that presses a sensor; None where the default does, as for a plate."""
+    if sensor.protocol.body is None:
+        return None
+    dome, smallest = sensor.dome, sensor.protocol.body.smallest
+    arc = 0.5 * np.pi * (dome.inner_radius + dome.wall_thickness)
+    cells = int(np.ceil(CELLS_PER_RADIUS * arc / smallest))
+    return cells if cells > arc_cells(dome.wall_thickness / dome.inner_radius) else None
 
 
 def _grade(sensor: Sensor) -> Callable[[Array, Array], Array] | None:
@@ -137,6 +157,9 @@ def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) 
         depth=test.depth,
         steps=test.steps,
         plate_diameter=2 * test.plate_radius,
+        plate_rim=test.plate_rim,
+        body=test.body,
+        friction=test.friction,
         ambient=gas.ambient_pressure,
         dead_volume=gas.dead_volume,
         gauge_range=gas.gauge_limit,
@@ -162,7 +185,7 @@ def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) 
         max_stretch=pressed.column("stretch"),
         max_von_mises=pressed.column("von_mises"),
         events=tuple(happened),
-        shapes=_shapes(probe, free, pressed, end),
+        shapes=_shapes(probe, free, press, pressed, end),
     )
 
 
@@ -182,9 +205,22 @@ def _curve(path: list[PressState], grid: Array) -> tuple[Array, Array]:
     return hermite(grid, x, force, stiffness), hermite(grid, x, rise, rate)
 
 
-def _shapes(probe: StrainProbe, free: FreeState, pressed: IndentationPath, end: float) -> tuple[DeformedShape, ...]:
+def _shapes(
+    probe: StrainProbe, free: FreeState, press: PressSettings, pressed: IndentationPath, end: float
+) -> tuple[DeformedShape, ...]:
     """The wall at rest, inflated, and pressed to the end of the range."""
     solid = probe.solid
     last = max((s for s in pressed.path if s.indentation <= end * (1 + 1e-9)), key=lambda s: s.indentation)
     positions = [(None, solid.rest * solid.length), (0.0, free.positions), (last.indentation, last.positions)]
-    return tuple(DeformedShape(at, probe.outlines(x), probe.cell_stretch(x / solid.length)) for at, x in positions)
+    body = None if press.body is None else first_touch(solid, free, press.body, press.plate_diameter).body
+    return tuple(
+        DeformedShape(at, probe.outlines(x), probe.cell_stretch(x / solid.length), _section(press, body, at, solid))
+        for at, x in positions
+    )
+
+
+def _section(press: PressSettings, start: Indenter | None, at: float | None, solid: SolidModel) -> Array | None:
+    """The object's section at an indentation (mm), to draw; None for a plate and before contact."""
+    if press.body is None or start is None or at is None:
+        return None
+    return press.body.at(start.height * solid.length - at).outline(_DRAWN * solid.length)

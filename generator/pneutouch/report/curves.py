@@ -77,7 +77,10 @@ def shapes(prediction: SensorPrediction) -> list[str]:
     drawn_shapes = [(state, shape) for state in states for shape in state.shapes[1:]]
     top = max(float(shape.stretch.max()) for _, shape in drawn_shapes)
     every = np.concatenate([shape.cells.reshape(-1, 2) for _, shape in drawn_shapes])
+    # Of an object that is higher than the wall as much is shown as of the pressed dome.
     (right, high), low = 1.06 * every.max(axis=0), min(0.0, float(every[:, 1].min())) - 0.05 * float(every[:, 1].max())
+    if any(shape.body is not None for _, shape in drawn_shapes):
+        high *= 1.3
     limits = {"xlim": (0, right), "ylim": (low, high)}
     return [_shape(state, shape, top, limits) for state, shape in drawn_shapes]
 
@@ -94,7 +97,9 @@ def _shape(state: SensorState, shape: DeformedShape, top: float, limits: dict[st
         ax.add_collection(rest)
         ax.add_collection(wall)
         ax.axhline(0, color=INK, lw=0.8)
-        if shape.indentation:
+        if shape.body is not None:
+            ax.plot(*shape.body.T, color=INK, lw=1.6)
+        elif shape.indentation:
             ax.axhline(float(shape.cells[..., 1].max()), xmax=0.97, color=INK, lw=1.6)
         pressed = f", pressed {shape.indentation:.2f} mm" if shape.indentation else ""
         ax.set_title(f"{state.driving_pressure / KPA:g} kPa{pressed}", fontsize=7)

@@ -73,12 +73,17 @@ def _head(plan: dict[str, Any]) -> list[str]:
     return [
         f"Design {_escaped(plan['design'])}: R0 {plan['inner_radius_mm']:g} mm, wall {plan['wall_thickness_mm']:g} mm, "
         f"dead volume {plan['dead_volume_mL']:.3g} mL{idealised}, "
-        f"driving pressures {pressures} kPa, plate {plan['plate_diameter_mm']:g} mm.",
+        f"driving pressures {pressures} kPa, {_object(plan)}.",
         f"{len(plan['runs'])} runs on {len(names)} specimen{'s' if len(names) > 1 else ''} "
         f"({', '.join(map(_escaped, names))}): **{_time(plan['total_s'])}** on the rig, mounting and looking aside.",
         "Laboratory: ______________________  Operator: ______________________  Date: ______________",
         "Room: ______ °C  Air pressure: ________ hPa  Resin lots: ________________________________",
     ]
+
+
+def _object(plan: dict[str, Any]) -> str:
+    """What presses the sensor."""
+    return f"{plan['contact']['label']}" if "contact" in plan else f"plate {plan['plate_diameter_mm']:g} mm"
 
 
 def _warnings(plan: dict[str, Any]) -> list[str]:

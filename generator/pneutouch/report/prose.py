@@ -11,7 +11,7 @@ PAPER = (
 
 LIMITS_OF_USE = (
     "Laboratory use. Not a safety component; not for fluids other than clean dry air; not for contact with "
-    "food or wounds. The figures hold for slow, central contact with a flat rigid body."
+    "food or wounds."
 )
 
 RELIABILITY = (
@@ -93,12 +93,37 @@ def description(scene: ResolvedDesign) -> str:
     )
 
 
+def contact_body(scene: ResolvedDesign) -> tuple[str, str, str]:
+    """Size, unit and kind of what presses the sensor, for the table of operating conditions."""
+    contact = scene.design.contact
+    if contact.is_plate:
+        return f"Ø{scene.design.indentation.plate_diameter_mm:g}", "mm", "rigid, flat, frictionless plate"
+    sizes = {"ball": contact.ball_radius_mm, "cone": contact.cone_tip_radius_mm, "ring": contact.ring_radius_mm}
+    if contact.object in sizes:
+        return f"R{sizes[contact.object]:g}", "mm", f"rigid, frictionless {contact.label}"
+    widest = max(corner[0] for corner in contact.profile_mm or [])
+    return f"Ø{2 * widest:g}", "mm", "rigid, frictionless body with the profile that the section shows"
+
+
+def presser(scene: ResolvedDesign) -> str:
+    """What presses the sensor, in words."""
+    contact = scene.design.contact
+    size = f" of {scene.design.indentation.plate_diameter_mm:g} mm" if contact.is_plate else ""
+    return f"rigid {contact.label}{size}"
+
+
+def limits_of_use(scene: ResolvedDesign) -> str:
+    """What the sensor and its figures are for."""
+    body = "flat rigid body" if scene.design.contact.is_plate else presser(scene)
+    return f"{LIMITS_OF_USE} The figures hold for slow, central contact with a {body}."
+
+
 def method(scene: ResolvedDesign) -> tuple[str, ...]:
     """How to measure what the sheet predicts, after the paper's section 3-B and Supplement C."""
     indentation = scene.design.indentation
     step = scene.design.depth_mm / indentation.steps
     return (
-        f"Press a rigid flat plate of {indentation.plate_diameter_mm:g} mm centrally, in {indentation.steps} steps of "
+        f"Press a {presser(scene)} centrally, in {indentation.steps} steps of "
         f"{step:.2f} mm to {scene.design.depth_mm:.2f} mm; hold 4 s.",
         "Return to no contact, rest 30 s and reset the driving pressure between indentations.",
         "Three runs at each driving pressure; record force, cavity pressure and plate position.",

@@ -43,7 +43,7 @@ def content_of(sheet: SheetData) -> dict[str, Any]:
         "input_hash": sheet.input_hash,
         "status": _status(sheet),
         "description": prose.description(sheet.scene),
-        "limits_of_use": prose.LIMITS_OF_USE,
+        "limits_of_use": prose.limits_of_use(sheet.scene),
         "warnings": _warnings(sheet),
         "key_figures": _key_figures(sheet),
         "ratings": _ratings(sheet),
@@ -174,7 +174,7 @@ def _operating(sheet: SheetData) -> list[list[str]]:
         ["Medium", "air", "", "trapped, isothermal"],
         ["Ambient pressure", f"{design.pneumatics.ambient_pressure_kPa:g}", "kPa", "absolute"],
         ["Dead volume", f"{sheet.prediction.dead_volume / ML:.3f}", "mL", stated],
-        ["Contact body", f"Ø{design.indentation.plate_diameter_mm:g}", "mm", "rigid, flat, frictionless plate"],
+        ["Contact body", *prose.contact_body(sheet.scene)],
         ["Indentation", f"0 to {design.depth_mm:.2f}", "mm", f"{design.indentation.steps} steps from first contact"],
     ]
 

@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from pneutouch.errors import shown
+from pneutouch.spec.contact import ContactTable
 from pneutouch.spec.fields import EntryError, Table, name, number, numbers
 from pneutouch.spec.grade import ResinOrMix
 
@@ -130,7 +131,9 @@ class Indentation(Table):
         help="Greatest number of waves around the axis for which the model solid checks the stability of the pressed "
         "dome: one is sway, more are lobes; 0: no check.",
     )
-    plate_diameter_mm: float = number(30.0, unit="mm", low=1, high=500, help="Diameter of the rigid flat plate.")
+    plate_diameter_mm: float = number(
+        30.0, unit="mm", low=1, high=500, help="Diameter of the rigid flat plate; the same key of [contact] is as good."
+    )
 
 
 class Print(Table):
@@ -165,7 +168,27 @@ class DesignFile(Table):
     connector: Connector = Connector()
     pneumatics: Pneumatics = Pneumatics()
     indentation: Indentation = Indentation()
+    contact: ContactTable = ContactTable()
     print: Print = Print()
+
+    @model_validator(mode="before")
+    @classmethod
+    def _one_plate(cls, content: Any) -> Any:
+        """The plate's diameter, stated in one of two tables, stands in both."""
+        if not isinstance(content, dict):
+            return content
+        tables = [content.get("indentation", {}), content.get("contact", {})]
+        if not all(isinstance(table, dict) for table in tables):
+            return content
+        old, new = (table.get("plate_diameter_mm") for table in tables)
+        if new is None:
+            return content
+        if old is not None and old != new:
+            raise ValueError(
+                f"contact.plate_diameter_mm = {shown(new)} and indentation.plate_diameter_mm = {shown(old)} are one "
+                "diameter: change both, or take one out"
+            )
+        return {**content, "indentation": {**tables[0], "plate_diameter_mm": new}}
 
     @model_serializer(mode="wrap")
     def _without_no_calibration(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:

@@ -6,7 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.indent import PressSettings, first_touch, indent
+from pneutouch.mechanics.solid.first_touch import first_touch
+from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.indenter import STEEPEST, ObjectShapeError, ProfileVertex, ball, cone, profile, ring
 from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome
@@ -135,8 +136,8 @@ def test_an_object_meets_an_unloaded_dome_where_two_circles_touch():
     outer, radius, section = 10.75, 5.0, 2.0
     solid_free = state_at(DOME, 0.0)
     run = indent(DOME, solid_free, PressSettings(0.01, steps=1, body=ring(radius, section)))
-    touch = first_touch(DOME, solid_free, PressSettings(0.01, body=ring(radius, section)))
-    assert touch.annular
+    touch = first_touch(DOME, solid_free, ring(radius, section), None)
+    assert touch.radius * 9.25 == pytest.approx(radius * outer / (outer + section), abs=0.05)
     above = np.sqrt((outer + section) ** 2 - radius**2) - section
     assert touch.body.height * 9.25 == pytest.approx(above, abs=2e-4)
     assert run.states[0].force < 1e-3 * run.states[-1].force
@@ -163,3 +164,11 @@ def test_the_stiffness_of_the_contact_does_not_count_on_the_steepest_flank():
     assert stiff.states[-1].contact_radius > 1.5 * np.sin(np.pi / 3)
     assert soft.column("force")[1:] == pytest.approx(stiff.column("force")[1:], rel=2e-3)
     assert stiff.column("penetration").max() < 1e-3 * 1.5
+
+
+def test_a_stated_rim_rounds_the_edge_of_the_plate():
+    blunt, sharp = (press(None, plate_diameter=10.0, plate_rim=rim) for rim in (6.0, 1.5))
+    assert (blunt.column("force") <= sharp.column("force") * (1 + 1e-9)).all()
+    assert blunt.states[-1].force < 0.99 * sharp.states[-1].force
+    usual = press(None, plate_diameter=90.0)
+    assert press(None, plate_diameter=90.0, plate_rim=1.5).column("force") == pytest.approx(usual.column("force"))

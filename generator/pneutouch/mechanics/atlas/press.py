@@ -10,7 +10,7 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags, Index
 from pneutouch.mechanics.atlas.table import REST_VOLUME, AtlasPoint, AtlasSlices
-from pneutouch.mechanics.solid.contact import flat_radius
+from pneutouch.mechanics.solid.contact import flat_radius, rim_radius
 from pneutouch.mechanics.solid.mesh import longest_outer_edge
 
 _NEWTON = 8
@@ -179,7 +179,7 @@ class AtlasPress:
     def flat_radius(self) -> Array:
         """How far the plate is flat, in R0."""
         radius = self.batch.plate_radius / self.batch.inner_radius
-        return flat_radius(radius, longest_outer_edge(self.batch.wall_ratio))
+        return flat_radius(radius, rim_radius(radius, longest_outer_edge(self.batch.wall_ratio)))
 
 
 def _inflated(slices: AtlasSlices, k: Index, pressure: Array) -> Array:

@@ -17,14 +17,16 @@ from pneutouch.mechanics.solid.mesh import END, START, SolidMesh
 RIM = 1.0 / 30.0
 
 
-def rim_radius(radius: Array, longest: Array) -> Array:
-    """Curvature radius of the rim of plates on meshes whose longest outer edges are given."""
+def rim_radius(radius: Array, longest: Array, rim: float | None = None) -> Array:
+    """Curvature radius of the rim of plates on meshes whose longest outer edges are given; ``rim``: a stated one."""
+    if rim is not None:
+        return np.maximum(rim, longest)
     return np.maximum(np.where(np.isfinite(radius), RIM * radius, 0.0), longest)
 
 
-def flat_radius(radius: Array, longest: Array) -> Array:
+def flat_radius(radius: Array, rim: Array) -> Array:
     """How far a plate is flat: its rim begins half the rim's radius inside its edge."""
-    return np.maximum(radius - 0.5 * rim_radius(radius, longest), 0.5 * radius)
+    return np.maximum(radius - 0.5 * rim, 0.5 * radius)
 
 
 @dataclass(frozen=True)

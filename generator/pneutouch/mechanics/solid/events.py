@@ -40,6 +40,9 @@ DETAIL = {
     "beyond are of the axisymmetric path",
 }
 
+OBJECT_DETAIL = {**DETAIL, "separation": "the wall leaves the object inside the contact"}
+"""The same under another object than a plate."""
+
 
 @dataclass(frozen=True)
 class SolidEvent:

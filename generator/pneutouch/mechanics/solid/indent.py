@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.response import Figures, figures
-from pneutouch.mechanics.solid.contact import Plate, flat_radius, rim_radius
+from pneutouch.mechanics.solid.contact import Footprint, Plate
 from pneutouch.mechanics.solid.continuation import PathFollower, PlateState
 from pneutouch.mechanics.solid.descend import PathJump, descend
 from pneutouch.mechanics.solid.errors import UnreachableLoadError
@@ -18,6 +17,7 @@ from pneutouch.mechanics.solid.events import (
     BREAKS_CURVE,
     CREASE,
     DETAIL,
+    OBJECT_DETAIL,
     OBJECT_EDGE,
     OVERHANG,
     PLATE_RIM,
@@ -26,8 +26,9 @@ from pneutouch.mechanics.solid.events import (
     SolidEvent,
     crossing,
 )
+from pneutouch.mechanics.solid.first_touch import FirstTouch, first_touch
 from pneutouch.mechanics.solid.friction_path import FrictionFollower
-from pneutouch.mechanics.solid.indenter import Indenter, RigidObject, first_contact
+from pneutouch.mechanics.solid.indenter import RigidObject
 from pneutouch.mechanics.solid.inflate import FreeState
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.stress import StrainProbe
@@ -47,6 +48,7 @@ class PressSettings:
     gauge_range: gauge pressure (MPa) beyond which the pressure sensor clips.
     break_strain: largest principal strain (stretch - 1) the material bears.
     waves: greatest number of waves around the axis for which the path's stability is checked (`sway`); 0: no check.
+    plate_rim:   radius of curvature of the plate's rim; None: a thirtieth of the plate's radius.
     body:        the object in mm, in place of the plate (its height does not count).
     friction:    Coulomb's coefficient between wall and plate; inf for a plate that grips.
     """
@@ -60,6 +62,7 @@ class PressSettings:
     break_strain: float = np.inf
     friction: float = 0.0
     body: RigidObject | None = None
+    plate_rim: float | None = None
     waves: int = 0
 
     def __post_init__(self) -> None:
@@ -146,7 +149,7 @@ def indent(
     if free.pressure + press.ambient < -_ROUNDING * mu:
         raise UnreachableLoadError(free.pressure, -press.ambient, "it lies below absolute vacuum")
     gas = Gas.filled(free.pressure / mu, free.volume / length**3, press.ambient / mu, press.dead_volume / length**3)
-    touch, start = first_touch(solid, free, press), free.unit.x
+    touch, start = first_touch(solid, free, press.body, press.plate_diameter, press.plate_rim), free.unit.x
     plate = touch.body
     follower = (
         FrictionFollower(solid, gas, plate, start, press.friction)
@@ -170,26 +173,6 @@ def indent(
     return _finish(states, events, jump, recorder, press)
 
 
-class FirstTouch(NamedTuple):
-    """An object where it first touches the free dome, in R0, and whether it does so around the axis, not on it."""
-
-    body: Indenter
-    annular: bool
-
-
-def first_touch(solid: SolidModel, free: FreeState, press: PressSettings) -> FirstTouch:
-    """The plate or the object of a press on a free state."""
-    length, longest = solid.length, np.array(solid.contact.longest)
-    if press.body is None:
-        radius = np.array(np.inf if press.plate_diameter is None else 0.5 * press.plate_diameter / length)
-        apex = float(free.positions[solid.mesh.outer, 1].max()) / length
-        return FirstTouch(Plate(apex, float(flat_radius(radius, longest)), float(rim_radius(radius, longest))), False)
-    body = press.body.scaled(1.0 / length)
-    r, z = solid.contact.outline(free.positions / length)
-    height, at = first_contact(body, r, z)
-    return FirstTouch(body.at(height), at > solid.contact.longest)
-
-
 def _ended(events: list[SolidEvent], solid: SolidModel) -> bool:
     """Whether the inner wall is on a base that is not there."""
     return solid.base is None and any(e.kind == "floor" for e in events)
@@ -211,7 +194,9 @@ class _Recorder:
 
     def __init__(self, solid: SolidModel, free: FreeState, touch: FirstTouch, probe: StrainProbe) -> None:
         self._solid, self._free, self._probe = solid, free, probe
-        self._plate, self._annular = touch
+        self._plate, self._first = touch
+        # Within the length of an edge of the axis the wall is touched at the axis.
+        self._annular = touch.radius > solid.contact.longest
         self._edge = PLATE_RIM if isinstance(self._plate, Plate) else OBJECT_EDGE
 
     def indentation(self, height: float) -> float:
@@ -225,6 +210,8 @@ class _Recorder:
         length, mu = solid.length, solid.mu
         base = solid.base_load(x)
         foot, peak = solid.contact.footprint(x, touch, self._annular), self._probe.peak(x)
+        if foot.traction == 0.0:
+            foot = Footprint(self._first, 0.0, 0.0, self._first if self._annular else 0.0)
         pressure = plate_state.state.filling.pressure * mu
         return PressState(
             indentation=self.indentation(plate_state.height),
@@ -265,10 +252,11 @@ class _Recorder:
         }
         before, after = _watched(a, self._edge), _watched(b, self._edge)
         places = {kind: crossing(before[kind], after[kind], level) for kind, level in levels.items()}
-        if self._annular and inner > 0.0 and places[self._edge] is None and b.force > 0.0:
-            begun, ended = (PathPoint(s.indentation, -s.contact_inner if s.force > 0.0 else -outer) for s in (a, b))
+        if self._annular and places[self._edge] is None:
+            begun, ended = (PathPoint(s.indentation, -s.contact_inner) for s in (a, b))
             places[self._edge] = crossing(begun, ended, -inner)
-        return [SolidEvent(kind, where, DETAIL[kind]) for kind, where in places.items() if where is not None]
+        detail = DETAIL if self._edge == PLATE_RIM else OBJECT_DETAIL
+        return [SolidEvent(kind, where, detail[kind]) for kind, where in places.items() if where is not None]
 
     def losses(self, path: list[PlateState], waves: int) -> list[SolidEvent]:
         """Where the axisymmetric path loses stability to displacements of up to so many waves around the axis."""

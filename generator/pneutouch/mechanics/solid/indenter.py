@@ -87,16 +87,18 @@ class ObjectShapeError(ValueError):
 class RigidObject:
     """A rigid body of revolution, its lowest point at ``height``.
 
-    kind:   its name, for messages.
+    label:  what it is, in words.
     pieces: the underside from the axis outwards, with its lowest point at 0; the slope is continuous.
     span:   see `Indenter`.  smallest: least radius of curvature that the mesh must follow.
+    circle: radius about the axis of the centre of a round section and its radius; None for another section.
     """
 
-    kind: str
+    label: str
     pieces: tuple[UndersidePiece, ...]
     span: tuple[float, float]
     smallest: float
     height: float = 0.0
+    circle: tuple[float, float] | None = None
 
     @cached_property
     def _table(self) -> Array:
@@ -117,6 +119,15 @@ class RigidObject:
         second = np.where(bent, sign * radius**2 / drop**3, curve)
         return self.height + height, first, second
 
+    def outline(self, reach: float, count: int = 181) -> Array:
+        """Its section to draw, r from 0 to ``reach``, (n, 2): a whole circle where it is round, else the underside."""
+        if self.circle is not None:
+            centre, radius = self.circle
+            angle = np.linspace(-0.5, 1.5 if centre > 0.0 else 0.5, count) * np.pi
+            return np.stack([centre + radius * np.cos(angle), self.height + radius * (1.0 + np.sin(angle))], axis=1)
+        r = np.linspace(self.span[0], min(self.span[1], reach), count)
+        return np.stack([r, self.underside(r)[0]], axis=1)
+
     def at(self, height: float) -> RigidObject:
         """The same body at another height."""
         return replace(self, height=height)
@@ -124,34 +135,37 @@ class RigidObject:
     def scaled(self, factor: float) -> RigidObject:
         """The body with all lengths times a factor."""
         return RigidObject(
-            self.kind,
+            self.label,
             tuple(piece.scaled(factor) for piece in self.pieces),
             (factor * self.span[0], factor * self.span[1]),
             factor * self.smallest,
             factor * self.height,
+            None if self.circle is None else (factor * self.circle[0], factor * self.circle[1]),
         )
 
 
 def ball(radius: float) -> RigidObject:
-    """A ball: an arc to 60 degrees from its lowest point."""
-    return _body("ball", [_arc(0.0, radius, 0.0)], None, _end(0.0, radius, STEEPEST), radius)
+    """A ball of a radius (mm): an arc to 60 degrees from its lowest point."""
+    body = _body("ball", [_arc(0.0, radius, 0.0)], None, _end(0.0, radius, STEEPEST), radius)
+    return replace(body, circle=(0.0, radius))
 
 
 def cone(half_angle: float, tip: float) -> RigidObject:
-    """An endless cone of a half angle (rad, between axis and flank) with a tip rounded to the radius ``tip``."""
+    """An endless cone of a half angle (rad, between axis and flank) with a tip rounded to the radius ``tip`` (mm)."""
     slope = float(1.0 / np.tan(half_angle))
     r, z = _on_arc(0.0, tip, slope)
     return _body("cone", [_arc(0.0, tip, 0.0), UndersidePiece(r, r, z, slope)], None, None, tip)
 
 
 def ring(radius: float, section: float) -> RigidObject:
-    """A ring: a wire of the radius ``section`` bent to a circle of ``radius``, arcs to 60 degrees on both sides."""
+    """A ring: a wire of the radius ``section`` bent to a circle of ``radius`` (mm), up to 60 degrees on both sides."""
     inner, outer = _end(radius, section, -STEEPEST), _end(radius, section, STEEPEST)
-    return _body("ring", [_arc(radius, section, inner.start)], inner, outer, section)
+    body = _body("ring", [_arc(radius, section, inner.start)], inner, outer, section)
+    return replace(body, circle=(radius, section))
 
 
 def profile(vertices: Sequence[ProfileVertex]) -> RigidObject:
-    """A body whose underside is the line through corners (r, z), each rounded to its radius.
+    """A body whose underside is the line through corners (r, z), each rounded to its radius (mm).
 
     The first corner may lie on the axis. The ends turn up with their own radii. Raises ObjectShapeError for a sharp
     corner, for an arc without space and for lines that turn back or are steeper than `STEEPEST`.
@@ -191,13 +205,17 @@ def first_contact(body: Indenter, r: Array, z: Array) -> tuple[float, float]:
 
 
 def _body(
-    kind: str, pieces: list[UndersidePiece], inner: UndersidePiece | None, outer: UndersidePiece | None, smallest: float
+    label: str,
+    pieces: list[UndersidePiece],
+    inner: UndersidePiece | None,
+    outer: UndersidePiece | None,
+    smallest: float,
 ) -> RigidObject:
     """The object of its own pieces and what turns up beyond them, its lowest point at 0."""
     inward = [] if inner is None else [inner._replace(start=0.0)]
     outward = [] if outer is None else [outer]
     span = (0.0 if inner is None else inner.r, np.inf if outer is None else outer.r)
-    body = RigidObject(kind, (*inward, *pieces, *outward), span, smallest)
+    body = RigidObject(label, (*inward, *pieces, *outward), span, smallest)
     edges = np.array([x for x in (*(p.start for p in body.pieces), *(p.r for p in body.pieces), *span) if x < np.inf])
     lowest = float(body.underside(np.maximum(edges, 0.0))[0].min())
     return replace(body, pieces=tuple(piece._replace(z=piece.z - lowest) for piece in body.pieces))

@@ -10,6 +10,7 @@ from pneutouch.bench.simulate.curve import PressCurves
 from pneutouch.bench.simulate.encode import LEAK_SECONDS
 from pneutouch.catalogue import DesignSource, Library
 from pneutouch.errors import InputError
+from pneutouch.evaluation.contact_object import contact_document
 from pneutouch.evaluation.resins import SimulatedResin, pressed, resins_of
 from pneutouch.output.files import check_writable, json_bytes, write_folder
 from pneutouch.output.manifest import with_manifest
@@ -105,7 +106,7 @@ def make_plan(
         "ambient_pressure_kPa": pneumatics.ambient_pressure_kPa,
         "driving_pressures_kPa": pneumatics.driving_pressures_kPa,
         "dead_volume_mL": subjects[0].sensor.gas.dead_volume / ML,
-        **({"dead_volume_note": idealised} if idealised else {}),
+        **(({"dead_volume_note": idealised} if idealised else {}) | contact_document(scene)),
         "clearance_mm": CLEARANCE,
         "plate_diameter_mm": scene.design.indentation.plate_diameter_mm,
         "rig": {**rig.model_dump(mode="json"), "file": rig_name or None},

@@ -1,0 +1,107 @@
+"""The object that presses a design's sensor, as the solid takes it."""
+
+import dataclasses
+import math
+from typing import Any
+
+import numpy as np
+
+from pneutouch.catalogue import ResolvedDesign
+from pneutouch.errors import InputError
+from pneutouch.mechanics import Sensor, SensorPrediction
+from pneutouch.mechanics.solid.indenter import (
+    CELLS_PER_RADIUS,
+    ObjectShapeError,
+    ProfileVertex,
+    RigidObject,
+    ball,
+    cone,
+    first_contact,
+    profile,
+    ring,
+)
+from pneutouch.mechanics.solid_states import MOST_CELLS, object_cells
+
+_AT_ONCE = 1e-6
+"""Share of R0 within which the contact reaches an edge at first touch."""
+
+_POINTS = 2001
+"""Points of the unloaded dome that an object may touch first."""
+
+_MAKE = {
+    "ball": lambda sizes: ball(sizes["ball_radius_mm"]),
+    "cone": lambda sizes: cone(math.radians(sizes["cone_half_angle_deg"]), sizes["cone_tip_radius_mm"]),
+    "ring": lambda sizes: ring(sizes["ring_radius_mm"], sizes["ring_section_radius_mm"]),
+    "profile": lambda sizes: profile([ProfileVertex(*corner) for corner in sizes["profile_mm"]]),
+}
+
+
+def contact_object(scene: ResolvedDesign) -> RigidObject | None:
+    """The object of a design in mm; None for a plate. Raises InputError for a profile that is no underside."""
+    contact = scene.design.contact
+    make = _MAKE.get(contact.object)
+    if make is None:
+        return None
+    try:
+        return dataclasses.replace(make(contact.sizes()), label=contact.label)
+    except ObjectShapeError as error:
+        corners = contact.profile_mm or []
+        key, value = f"contact.profile_mm[{error.index}]", corners[error.index]
+        raise InputError(str(error), file=scene.where, key=key, value=value) from None
+
+
+def contact_document(scene: ResolvedDesign) -> dict[str, Any]:
+    """``contact`` with what presses the sensor, by the keys of ``[contact]``; empty for a plate with its usual rim."""
+    contact = scene.design.contact
+    if not contact.is_plate:
+        return {"contact": {"object": contact.object, "label": contact.label, **contact.sizes()}}
+    if contact.plate_rim_mm is None:
+        return {}
+    plate = {"plate_diameter_mm": scene.design.indentation.plate_diameter_mm, "plate_rim_mm": contact.plate_rim_mm}
+    return {"contact": {"object": contact.object, "label": contact.label, **plate}}
+
+
+def _check_cells(scene: ResolvedDesign, sensor: Sensor) -> None:
+    """Raise InputError for an object that the finest mesh of the solid cannot follow."""
+    body, cells = sensor.protocol.body, object_cells(sensor)
+    if body is None or cells is None or cells <= MOST_CELLS:
+        return
+    least = body.smallest * cells / MOST_CELLS
+    raise _object_error(
+        scene,
+        f"its least radius of curvature, {body.smallest:.3g} mm, is too small for the mesh: a mesh of {cells} cells "
+        f"along the arc would do ({CELLS_PER_RADIUS} to that radius), the solid takes {MOST_CELLS} at most",
+        f"for this dome the radius must be at least {math.ceil(100 * least) / 100:g} mm",
+    )
+
+
+def check_object(scene: ResolvedDesign, sensor: Sensor) -> None:
+    """Raise InputError for an object that the mesh cannot follow or that meets the unloaded dome with its edge."""
+    body = sensor.protocol.body
+    if body is None:
+        return
+    _check_cells(scene, sensor)
+    angle = np.linspace(0.0, 0.5 * np.pi, _POINTS)
+    outer = sensor.dome.inner_radius + sensor.dome.wall_thickness
+    _, at = first_contact(body, outer * np.sin(angle), outer * np.cos(angle))
+    if not body.span[0] <= at <= body.span[1]:
+        raise _edge_first(scene)
+
+
+def check_first_touch(scene: ResolvedDesign, prediction: SensorPrediction) -> None:
+    """Raise InputError for an object that meets an inflated dome with its edge or a steep flank from the start."""
+    limit = _AT_ONCE * scene.design.membrane.inner_radius_mm
+    for state in prediction.states:
+        if any(event.kind == "object edge" and event.indentation <= limit for event in state.events):
+            raise _edge_first(scene)
+
+
+def _edge_first(scene: ResolvedDesign) -> InputError:
+    problem = "it meets the dome with its edge, or with a flank steeper than 60 degrees, at first touch"
+    return _object_error(scene, problem, "take an object that touches the dome nearer to its axis", 0)
+
+
+def _object_error(scene: ResolvedDesign, problem: str, remedy: str, which: int = -1) -> InputError:
+    """An error of the object, on one of the keys that shape it; the last is that of its least radius."""
+    key, value = list[tuple[str, Any]](scene.design.contact.sizes().items())[which]
+    return InputError(problem, file=scene.where, key=f"contact.{key}", value=value, remedy=remedy)

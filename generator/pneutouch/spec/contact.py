@@ -1,0 +1,138 @@
+"""[contact] of a design file: what presses the sensor, and with how much friction."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer, model_validator
+
+from pneutouch.spec.fields import EntryError, Table, number
+
+ContactKind = Literal["plate", "ball", "cone", "ring", "profile"]
+
+SIZES: dict[ContactKind, tuple[str, ...]] = {
+    "plate": (),
+    "ball": ("ball_radius_mm",),
+    "cone": ("cone_half_angle_deg", "cone_tip_radius_mm"),
+    "ring": ("ring_radius_mm", "ring_section_radius_mm"),
+    "profile": ("profile_mm",),
+}
+"""Keys that each object needs; those of the plate have defaults."""
+
+LARGEST = 250.0
+"""Greatest radius of an object, mm: that of the greatest plate."""
+
+_MOST_FRICTION = 10.0
+_MOST_CORNERS = 40
+
+
+def _coefficient(value: float) -> float:
+    if not (0.0 <= value <= _MOST_FRICTION or value == float("inf")):
+        raise ValueError(f"friction = {value:g} must be from 0 to {_MOST_FRICTION:g}, or inf for a surface that grips")
+    return value
+
+
+def _corners(corners: list[list[float]]) -> list[list[float]]:
+    """Lists of r, z and the radius of the corner, inside the greatest object."""
+    if not 2 <= len(corners) <= _MOST_CORNERS:
+        raise ValueError(f"profile_mm has {len(corners)} points; give 2 to {_MOST_CORNERS}")
+    for index, corner in enumerate(corners):
+        if len(corner) not in (2, 3):
+            raise EntryError("a point is [r, z] or [r, z, radius], mm", index, corner)
+        r, z, radius = (*corner, 0.0)[:3]
+        if not (0.0 <= r <= LARGEST and abs(z) <= LARGEST and 0.0 <= radius <= LARGEST):
+            problem = f"r and the radius must be from 0 to {LARGEST:g} mm, z from {-LARGEST:g} to {LARGEST:g} mm"
+            raise EntryError(problem, index, corner)
+    return corners
+
+
+Friction = Annotated[
+    float,
+    BeforeValidator(lambda value: float("inf") if value == "inf" else value),
+    AfterValidator(_coefficient),
+    PlainSerializer(lambda value: "inf" if value == float("inf") else value, when_used="json"),
+]
+"""A coefficient of friction; in JSON, which has no infinity, a surface that grips is the text "inf"."""
+
+
+class ContactTable(Table):
+    """[contact]: the object that presses the sensor, centrally and straight down."""
+
+    object: ContactKind = Field(
+        default="plate", description="What presses the sensor: plate, ball, cone, ring or profile."
+    )
+    plate_diameter_mm: float | None = number(
+        None, unit="mm", low=1, high=500, help="Diameter of the flat plate; left out: that of [indentation]."
+    )
+    plate_rim_mm: float | None = number(
+        None, unit="mm", low=0.01, high=50, help="Radius of the plate's rim; left out: a thirtieth of its radius."
+    )
+    ball_radius_mm: float | None = number(None, unit="mm", low=0.05, high=LARGEST, help="Radius of the ball.")
+    cone_half_angle_deg: float | None = number(
+        None, unit="deg", low=30, high=85, help="Angle between the cone's axis and its flank."
+    )
+    cone_tip_radius_mm: float | None = number(
+        None, unit="mm", low=0.05, high=LARGEST, help="Radius that the cone's tip is rounded to."
+    )
+    ring_radius_mm: float | None = number(
+        None, unit="mm", low=0.1, high=LARGEST, help="Radius of the circle on which the ring touches a plane."
+    )
+    ring_section_radius_mm: float | None = number(
+        None, unit="mm", low=0.05, high=LARGEST, help="Radius of the ring's round section."
+    )
+    profile_mm: Annotated[list[list[float]], AfterValidator(_corners)] | None = Field(
+        default=None,
+        json_schema_extra={"unit": "mm", "low": -LARGEST, "high": LARGEST},
+        description="Underside of a body of one's own: points [r, z] or [r, z, radius] from the axis outwards, z "
+        "upwards, joined by lines and each rounded to its radius.",
+    )
+
+    friction: Friction = Field(
+        default=0.0,
+        allow_inf_nan=True,
+        description="Coefficient of friction between sensor and object, from 0 to 10; inf for a surface that grips.",
+    )
+
+    @model_validator(mode="after")
+    def _has_its_sizes(self) -> ContactTable:
+        missing = [key for key in SIZES[self.object] if getattr(self, key) is None]
+        if missing:
+            raise ValueError(f'object = "{self.object}" needs {" and ".join(missing)}')
+        if "object" not in self.model_fields_set:
+            for kind, keys in SIZES.items():
+                for key in keys:
+                    if getattr(self, key) is not None:
+                        raise ValueError(f'{key} is the size of another object; give object = "{kind}" as well')
+        if self.object == "ring":
+            radius, section = self.ring_radius_mm, self.ring_section_radius_mm
+            if radius is not None and section is not None and section >= radius:
+                raise ValueError(
+                    f"ring_section_radius_mm = {section:g} must be less than ring_radius_mm = {radius:g}: "
+                    "a ring without a hole is a ball"
+                )
+        return self
+
+    @property
+    def is_plate(self) -> bool:
+        """Whether a flat plate presses the sensor."""
+        return self.object == "plate"
+
+    @property
+    def label(self) -> str:
+        """The object in words, with its sizes; those of a plate are not all here."""
+        if self.object == "ball":
+            return f"ball of {self.ball_radius_mm:g} mm radius"
+        if self.object == "cone":
+            tip, angle = self.cone_tip_radius_mm, self.cone_half_angle_deg
+            return f"cone of {angle:g}° half angle with a tip of {tip:g} mm radius"
+        if self.object == "ring":
+            section = self.ring_section_radius_mm
+            return f"ring of {self.ring_radius_mm:g} mm radius and {section:g} mm section radius"
+        if self.object == "profile":
+            widest = max(corner[0] for corner in self.profile_mm or [])
+            return f"body of {2 * widest:g} mm diameter with its own profile"
+        return "flat plate"
+
+    def sizes(self) -> dict[str, Any]:
+        """The keys that shape the object and their values, without those of other objects."""
+        return {key: getattr(self, key) for key in SIZES[self.object]}

@@ -1,0 +1,60 @@
+"""Objects in a design file: what the predictions of all commands make of them."""
+
+import json
+
+import numpy as np
+import pytest
+
+from pneutouch.catalogue import DEFAULT
+from pneutouch.errors import InputError
+from pneutouch.evaluation.document import prediction_document
+from pneutouch.evaluation.evaluate import evaluate
+from pneutouch.spec.design import DesignFile
+from pneutouch.spec.read import validate
+
+BALL = {"contact.object": "ball", "contact.ball_radius_mm": 10.0, "pneumatics.driving_pressures_kPa": [22.0]}
+
+
+def test_the_plate_of_one_table_stands_in_both():
+    design = validate(DesignFile, {"contact": {"plate_diameter_mm": 20}}, "here")
+    assert design.indentation.plate_diameter_mm == 20
+    again = validate(DesignFile, json.loads(json.dumps(design.model_dump(mode="json"))), "here")
+    assert again == design
+    same = {"contact": {"plate_diameter_mm": 20}, "indentation": {"plate_diameter_mm": 20.0}}
+    assert validate(DesignFile, same, "here").indentation.plate_diameter_mm == 20
+
+
+def test_a_plate_by_its_new_key_answers_as_by_its_old_one():
+    driven = {"pneumatics.driving_pressures_kPa": [12.0]}
+    old = evaluate(DEFAULT, {**driven, "indentation.plate_diameter_mm": 25.0}, model="atlas")
+    new = evaluate(DEFAULT, {**driven, "contact.plate_diameter_mm": 25.0}, model="atlas")
+    assert prediction_document(old) == prediction_document(new)
+
+
+def test_a_ball_is_answered_by_the_solid_alone_and_stated():
+    ball = evaluate("paper-dome", BALL, model="auto")
+    document = prediction_document(ball)
+    assert document["model"] == "solid"
+    assert document["contact"] == {"object": "ball", "label": "ball of 10 mm radius", "ball_radius_mm": 10.0}
+    assert any("rigid ball of 10 mm radius, frictionless" in text for text in document["assumptions"])
+    assert not any("plate" in text for text in document["assumptions"])
+    assert "not a plate" in document["states"][0]["uncertainty"]["unknown"]
+    assert document["error_estimate"]["sensitivity_relative"] is None
+    # a ball meets less of the dome than the plate: less force, more pressure for each newton of it
+    plate = evaluate("paper-dome", {"pneumatics.driving_pressures_kPa": [22.0]}).prediction.states[0]
+    state = ball.prediction.states[0]
+    assert (state.force[1:] < plate.force[1:]).all()
+    assert state.figures.sensitivity_kPa_per_N > plate.figures.sensitivity_kPa_per_N
+    # where it is drawn it touches the wall and does not cut it
+    pressed = state.shapes[-1]
+    reach = np.interp(pressed.cells[..., 0], *pressed.body[pressed.body[:, 1] < 14].T)
+    under = pressed.cells[..., 0] < 4.0
+    assert (pressed.cells[..., 1][under] < reach[under] + 0.02).all()
+    assert (reach - pressed.cells[..., 1])[under].min() == pytest.approx(0.0, abs=0.02)
+
+
+@pytest.mark.parametrize("model", ["atlas", "membrane"])
+def test_models_of_a_plate_refuse_another_object_and_name_the_one_that_answers(model):
+    with pytest.raises(InputError, match="ball of 10 mm radius, not a plate") as refused:
+        evaluate("paper-dome", BALL, model=model)
+    assert refused.value.key == "model" and "solid" in refused.value.remedy
