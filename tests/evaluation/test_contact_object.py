@@ -35,7 +35,8 @@ def test_a_ball_is_answered_by_the_solid_alone_and_stated():
     ball = evaluate("paper-dome", BALL, model="auto")
     document = prediction_document(ball)
     assert document["model"] == "solid"
-    assert document["contact"] == {"object": "ball", "label": "ball of 10 mm radius", "ball_radius_mm": 10.0}
+    stated = {"object": "ball", "label": "ball of 10 mm radius", "ball_radius_mm": 10.0, "friction": 0.0}
+    assert document["contact"] == stated
     assert any("rigid ball of 10 mm radius, frictionless" in text for text in document["assumptions"])
     assert not any("plate" in text for text in document["assumptions"])
     assert "not a plate" in document["states"][0]["uncertainty"]["unknown"]
@@ -58,3 +59,19 @@ def test_models_of_a_plate_refuse_another_object_and_name_the_one_that_answers(m
     with pytest.raises(InputError, match="ball of 10 mm radius, not a plate") as refused:
         evaluate("paper-dome", BALL, model=model)
     assert refused.value.key == "model" and "solid" in refused.value.remedy
+
+
+@pytest.mark.parametrize(("friction", "stated"), [(0.6, 0.6), (float("inf"), "inf"), ("inf", "inf")])
+def test_friction_reaches_the_solid_and_the_document(friction, stated):
+    given = {"contact.friction": friction, "pneumatics.driving_pressures_kPa": [0.0], "indentation.depth_mm": 4.0}
+    rough = evaluate("paper-dome", given, model="auto")
+    document = prediction_document(rough)
+    assert (document["model"], document["contact"]["friction"]) == ("solid", stated)
+    json.dumps(document, allow_nan=False)
+    assert rough.sensor.protocol.friction == float(friction)
+    smooth = evaluate("paper-dome", {**given, "contact.friction": 0.0}).prediction.states[0]
+    assert rough.prediction.states[0].force[-1] > 1.005 * smooth.force[-1]
+    with pytest.raises(InputError, match="friction"):
+        evaluate("paper-dome", given, model="atlas")
+    again = validate(DesignFile, json.loads(json.dumps(rough.scene.design.model_dump(mode="json"))), "here")
+    assert again == rough.scene.design

@@ -51,14 +51,15 @@ def contact_object(scene: ResolvedDesign) -> RigidObject | None:
 
 
 def contact_document(scene: ResolvedDesign) -> dict[str, Any]:
-    """``contact`` with what presses the sensor, by the keys of ``[contact]``; empty for a plate with its usual rim."""
+    """``contact`` with what presses the sensor, by the keys of ``[contact]``; empty for a frictionless plate with its
+    usual rim. A surface that grips has the friction "inf"."""
     contact = scene.design.contact
-    if not contact.is_plate:
-        return {"contact": {"object": contact.object, "label": contact.label, **contact.sizes()}}
-    if contact.plate_rim_mm is None:
+    if contact.is_plate and contact.plate_rim_mm is None and not contact.friction:
         return {}
     plate = {"plate_diameter_mm": scene.design.indentation.plate_diameter_mm, "plate_rim_mm": contact.plate_rim_mm}
-    return {"contact": {"object": contact.object, "label": contact.label, **plate}}
+    friction = contact.model_dump(mode="json")["friction"]
+    sizes = {key: size for key, size in plate.items() if size is not None} if contact.is_plate else contact.sizes()
+    return {"contact": {"object": contact.object, "label": contact.label, **sizes, "friction": friction}}
 
 
 def _check_cells(scene: ResolvedDesign, sensor: Sensor) -> None:

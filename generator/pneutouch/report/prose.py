@@ -97,12 +97,12 @@ def contact_body(scene: ResolvedDesign) -> tuple[str, str, str]:
     """Size, unit and kind of what presses the sensor, for the table of operating conditions."""
     contact = scene.design.contact
     if contact.is_plate:
-        return f"Ø{scene.design.indentation.plate_diameter_mm:g}", "mm", "rigid, flat, frictionless plate"
+        return f"Ø{scene.design.indentation.plate_diameter_mm:g}", "mm", f"rigid, flat, {contact.hold} plate"
     sizes = {"ball": contact.ball_radius_mm, "cone": contact.cone_tip_radius_mm, "ring": contact.ring_radius_mm}
     if contact.object in sizes:
-        return f"R{sizes[contact.object]:g}", "mm", f"rigid, frictionless {contact.label}"
+        return f"R{sizes[contact.object]:g}", "mm", f"rigid, {contact.hold} {contact.label}"
     widest = max(corner[0] for corner in contact.profile_mm or [])
-    return f"Ø{2 * widest:g}", "mm", "rigid, frictionless body with the profile that the section shows"
+    return f"Ø{2 * widest:g}", "mm", f"rigid, {contact.hold} body with the profile that the section shows"
 
 
 def presser(scene: ResolvedDesign) -> str:

@@ -133,6 +133,13 @@ class ContactTable(Table):
             return f"body of {2 * widest:g} mm diameter with its own profile"
         return "flat plate"
 
+    @property
+    def hold(self) -> str:
+        """The friction in words."""
+        if self.friction == float("inf"):
+            return "gripping"
+        return f"friction coefficient {self.friction:g}" if self.friction else "frictionless"
+
     def sizes(self) -> dict[str, Any]:
         """The keys that shape the object and their values, without those of other objects."""
         return {key: getattr(self, key) for key in SIZES[self.object]}
