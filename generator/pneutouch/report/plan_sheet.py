@@ -135,7 +135,7 @@ def _order(plan: dict[str, Any]) -> list[str]:
 def _before(plan: dict[str, Any]) -> list[str]:
     return [
         "1. ☐ Measure the wall where the dome is open, and the dome's height: note both.",
-        "2. ☐ Clean and dry plate and dome; dust them with talc (the prediction has no friction).",
+        f"2. ☐ Clean and dry plate and dome; {_dust(plan)}.",
         "3. ☐ Plate square to the base within half a degree; dome on the plate's axis within 0.5 mm.",
         f"4. ☐ Zero the force sensor with the plate {plan['clearance_mm']:g} mm clear, the gauge with the cavity "
         "vented.",
@@ -143,6 +143,13 @@ def _before(plan: dict[str, Any]) -> list[str]:
         "depth 0. Find it again at each driving pressure: the dome grows.",
         f"6. ☐ Try the program once with the plate {plan['clearance_mm'] + 20:g} mm clear.",
     ]
+
+
+def _dust(plan: dict[str, Any]) -> str:
+    friction = plan.get("contact", {}).get("friction", 0.0)
+    if not friction:
+        return "dust them with talc (the prediction has no friction)"
+    return "no talc: the prediction has a surface that grips" if friction == "inf" else f"the friction is {friction:g}"
 
 
 def _air(plan: dict[str, Any]) -> list[str]:
