@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
+from pneutouch.mechanics.prediction import DeformedShape
 from pneutouch.printability import PrintSubject, check
-from tests.printability.gallery import cup, item
-from tests.printability.working import WORKING, working
+from pneutouch.printability.rules import freedom, layers
+from pneutouch.printability.view import PrintView
+from tests.printability.gallery import box, cup, item
+from tests.printability.working import WORKING, dome, working
 
 
 def of(found, rule):
@@ -66,6 +71,25 @@ def test_a_wall_between_layers_says_what_it_prints_as_and_what_it_reads_then():
     least, most = map(float, re.search(r"reads ([\d.]+) to ([\d.]+) kPa/N", found.message).groups())
     # A pixel of 42 um is a thirtieth of the wall.
     assert 0 < most / least - 1 < 0.03
+
+
+@pytest.mark.parametrize(("share", "found"), [(0.0, False), (0.08, False), (-0.08, False), (0.12, True), (-0.12, True)])
+def test_a_wall_may_miss_whole_layers_by_a_tenth_of_one(share, found):
+    messages = [finding.message for finding in layers.check(PrintView(*dome([0], wall=(93 + share) * 0.016)))]
+    assert any("at the pole" in message for message in messages) is found
+
+
+@pytest.mark.parametrize(("depth", "expected"), [(0.04, []), (0.06, [0.06])])
+def test_a_dome_meets_a_body_from_a_twentieth_of_a_millimetre_on(depth, expected):
+    """One point of the predicted wall, inside a block at that distance from its corner."""
+    subject, context = dome([0])
+    place = np.array([20.0, 0.0]) + depth / np.sqrt(2)
+    (state,) = context.prediction.states
+    shape = DeformedShape(None, place.reshape(1, 1, 2), np.ones(1))
+    prediction = replace(context.prediction, states=(replace(state, shapes=(shape,)),))
+    block = item(box(5, 5, 5, (20.0, 0.0, 0.0)), "block")
+    view = PrintView(PrintSubject((*subject.items, block)), replace(context, prediction=prediction))
+    assert [finding.excess.measured for finding in freedom.check(view)] == pytest.approx(expected, abs=1e-3)
 
 
 @pytest.mark.parametrize("wall", [1.5, 1.488, 0.6, 0.73, 2.345])

@@ -22,9 +22,21 @@ def working(
     calibrated: bool = False,
 ) -> list[Finding]:
     """Findings of the rules on working for the paper's dome (kPa, mm); 1.488 mm are 93 layers of 16 um."""
+    found = check(*dome(pressures, wall, radius, resin, calibrated=calibrated))
+    return [finding for finding in found if finding.rule in WORKING]
+
+
+def dome(
+    pressures: list[float],
+    wall: float = 1.488,
+    radius: float = 9.3,
+    resin: str = "TangoPlus",
+    *,
+    calibrated: bool = False,
+) -> tuple[PrintSubject, SensorContext]:
+    """The dome of `working` as a subject, and what the rules on working need of it."""
     sensor = material_sensor(material(resin)).replace(wall_thickness=wall, inner_radius=radius)
     prediction = predict("dome", sensor, [p * KPA for p in pressures], model="membrane")
-    dome = item(cup(radius + wall, wall), "membrane", resin)
-    judged = rating(prediction.limits, sensor, material(resin), dome.printer)
-    found = check(PrintSubject((dome,)), SensorContext(prediction, sensor, judged, calibrated=calibrated))
-    return [finding for finding in found if finding.rule in WORKING]
+    part = item(cup(radius + wall, wall), "membrane", resin)
+    judged = rating(prediction.limits, sensor, material(resin), part.printer)
+    return PrintSubject((part,)), SensorContext(prediction, sensor, judged, calibrated=calibrated)
