@@ -1,5 +1,6 @@
 """The trade-off: for each resin the greatest force range that goes with each sensitivity, at one driving pressure."""
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -8,10 +9,14 @@ from pneutouch.arrays import Array, Index
 from pneutouch.selection.pool import CandidatePool, evaluated, joined, margins
 from pneutouch.selection.problem import CandidateResin, SelectionProblem
 
-_RATIOS, _RADII = 30, 18
-_LEVELS = 64
-_STEPS = (0.8, 0.4, 0.2, 0.1)
-"""How far each closer look goes from the best so far, in steps of the scan."""
+_RATIOS, _RADII = 30, 8
+_FINER = (6, 24)
+"""Parts that each cell of the scan is cut into, along wall ratio and radius, to interpolate in it."""
+_LEVELS = 48
+_STEPS = (0.35, 0.12)
+"""How far each closer look goes from the best so far, in steps of the scan along the wall ratio."""
+_ALONG_RADIUS = 0.5
+"""The same along the radius, over that along the wall ratio."""
 _REQUIREMENTS = ("sensitivity", "force range", "stiffness")
 
 
@@ -28,29 +33,79 @@ class TradeOffFront(NamedTuple):
 def front(problem: SelectionProblem) -> list[TradeOffFront]:
     """Fronts of all resins at the problem's driving pressure (none given: no pressure), inside every limit.
 
-    No point of a front has both more sensitivity and more force than another. A scan over wall ratio and radius; then,
-    at each of many levels, closer and closer looks around the candidate of most force that is at least so sensitive.
-    Ends of ranges jump with the dimensions, so that no slope could be followed.
+    No point of a front has both more sensitivity and more force than another. A scan over wall ratio and radius, on a
+    plate without edge, where the figures are smooth; interpolated in it, at each of many levels, the place of most
+    force that is at least so sensitive and stays on the plate; then closer looks around the best candidates. Ends of
+    ranges jump with the dimensions, so that no slope could be followed, and each candidate of a front is evaluated.
     """
     u, v = np.meshgrid(np.linspace(0.0, 1.0, _RATIOS), np.linspace(0.0, 1.0, _RADII), indexing="ij")
-    scan, count = np.stack([u.ravel(), v.ravel()]), len(problem.resins)
-    places = [scan] * count
-    pools = _pools(problem, places)
-    around = np.array([(i, k) for i in (-1, 0, 1) for k in (-1, 0, 1) if (i, k) != (0, 0)], float).T
-    for step in _STEPS:
-        move = around * np.array([[step / (_RATIOS - 1)], [step / (_RADII - 1)]])
-        near = [_near(where[:, _best(problem, pool)], move) for where, pool in zip(places, pools, strict=True)]
+    scan = np.stack([u.ravel(), v.ravel()])
+    places, pools, near = [], [], []
+    for pool in _pools(replace(problem, plate_radius=np.inf), [scan] * len(problem.resins)):
+        on_plate = _plate_margin(problem, pool)
+        near.append(_between(problem, pool, on_plate))
+        places.append(scan[:, on_plate >= 0.0])
+        pools.append(pool.take(on_plate >= 0.0))
+    for step in (*_STEPS, None):
         if not any(where.size for where in near):
             break
         places = [np.concatenate(both, axis=1) for both in zip(places, near, strict=True)]
         pools = [joined(list(both)) for both in zip(pools, _pools(problem, near), strict=True)]
+        if step is not None:
+            near = [_near(problem, where, pool, step) for where, pool in zip(places, pools, strict=True)]
     return [_hull(problem, number, pool) for number, pool in enumerate(pools)]
 
 
-def _near(best: Array, move: Array) -> Array:
-    """Places around the best ones, (2, n), each once."""
-    near = np.clip(best[:, :, None] + move[:, None, :], 0.0, 1.0).reshape(2, -1)
-    return np.unique(near.round(6), axis=1)
+def _plate_margin(problem: SelectionProblem, pool: CandidatePool) -> Array:
+    """Logarithm of the radius at which the plate ends over the contact's at the end of the range, -1 to 1; (n,)."""
+    flat = problem.batch(pool.resin, pool.radius, pool.wall, pool.pressure).flat_radius * pool.radius
+    with np.errstate(divide="ignore"):
+        margin = np.log(flat / pool.response.contact_radius)
+    return np.asarray(np.clip(np.nan_to_num(margin, nan=-1.0), -1.0, 1.0))
+
+
+def _between(problem: SelectionProblem, pool: CandidatePool, on_plate: Array) -> Array:
+    """Places of most force at each level, (2, n), by linear interpolation in the scan of one resin."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        logs, forces = np.log(pool.response.lines.sensitivity_kPa_per_N), np.log(pool.force)
+    logs, forces, limits, plate = (
+        _finer(values.reshape(_RATIOS, _RADII))
+        for values in (logs, forces, np.clip(_least_margin(problem, pool), -1.0, 1.0), on_plate)
+    )
+    u, v = np.meshgrid(*(np.linspace(0.0, 1.0, n) for n in logs.shape), indexing="ij")
+    good = np.isfinite(logs) & np.isfinite(forces) & (limits >= 0.0) & (plate >= 0.0)
+    best = np.unique(_best(logs[good], forces[good])[0])
+    return np.stack([u[good][best], v[good][best]]).round(6)
+
+
+def _finer(values: Array) -> Array:
+    """Values on a grid interpolated in its cells; NaN where a corner is, but not on the grid's own points."""
+    for finer in _FINER:
+        x = np.linspace(0.0, len(values) - 1, (len(values) - 1) * finer + 1)
+        at = np.minimum(x.astype(np.intp), len(values) - 2)
+        share = (x - at)[:, None]
+        with np.errstate(invalid="ignore"):
+            between = (1.0 - share) * values[at] + share * values[at + 1]
+        values = np.where(share == 0.0, values[at], between).T
+    return values
+
+
+def _near(problem: SelectionProblem, places: Array, pool: CandidatePool, step: float) -> Array:
+    """Places around the best candidates of one resin, (2, n), each once."""
+    good = np.flatnonzero(_least_margin(problem, pool) >= 0.0)
+    logs = np.log(pool.response.lines.sensitivity_kPa_per_N[good])
+    rows, levels = _best(logs, np.log(pool.force[good]))
+    u, v = places[:, good[rows]]
+    across, along = step / (_RATIOS - 1), step * _ALONG_RADIUS / (_RADII - 1)
+    moved = [(u + a * across, v + b * along) for a, b in ((-1, 0), (1, 0), (0, -1), (0, 1))]
+    # Of one wall ratio the sensitivity falls nearly with the square of the radius: so the level is met.
+    radius = pool.radius[good[rows]] * np.exp(0.5 * (logs[rows] - levels))
+    for ratio_at in (u - across, u, u + across):
+        low, high = _bounds(problem, _ratio(problem, np.clip(ratio_at, 0.0, 1.0)))
+        share = np.log(radius / low) / np.log(np.maximum(high / low, 1.0 + 1e-12))
+        moved.append((ratio_at, share))
+    near: Array = np.clip(np.concatenate(moved, axis=1), 0.0, 1.0).round(6)
+    return np.unique(near, axis=1)
 
 
 def _pools(problem: SelectionProblem, places: list[Array]) -> list[CandidatePool]:
@@ -58,17 +113,29 @@ def _pools(problem: SelectionProblem, places: list[Array]) -> list[CandidatePool
 
     All resins are pressed in one batch: a seventh of the calls of the atlas.
     """
-    box, counts = problem.recipe, [where.shape[1] for where in places]
+    counts = [where.shape[1] for where in places]
     along, across = np.concatenate(places, axis=1)
-    ratio = box.thinnest * (box.thickest / box.thinnest) ** along
-    low, high = problem.radii(ratio)
-    # Where the size limit is smaller than the least wall needs, the candidate breaks a limit and is dropped as such.
-    radius = low * (np.maximum(high, low) / low) ** across
+    ratio = _ratio(problem, along)
+    low, high = _bounds(problem, ratio)
+    radius = low * (high / low) ** across
     resin = np.repeat(np.arange(len(places), dtype=float), counts)
     pressure = np.full_like(ratio, problem.driving_pressure or 0.0)
     pool = evaluated(problem, resin, radius, ratio * radius, pressure)
     ends = np.cumsum(counts)
     return [pool.take(np.arange(end - count, end)) for end, count in zip(ends, counts, strict=True)]
+
+
+def _ratio(problem: SelectionProblem, along: Array) -> Array:
+    """Wall ratios at places from 0 to 1 of the atlas."""
+    box = problem.recipe
+    return np.asarray(box.thinnest * (box.thickest / box.thinnest) ** along)
+
+
+def _bounds(problem: SelectionProblem, ratio: Array) -> tuple[Array, Array]:
+    """Least and greatest radius for wall ratios, mm."""
+    low, high = problem.radii(ratio)
+    # Where the size limit is smaller than the least wall needs, the candidate breaks a limit and is dropped as such.
+    return low, np.maximum(high, low)
 
 
 def _least_margin(problem: SelectionProblem, pool: CandidatePool) -> Array:
@@ -77,25 +144,33 @@ def _least_margin(problem: SelectionProblem, pool: CandidatePool) -> Array:
     return np.asarray(np.min(rest, axis=0) + 1e-9)
 
 
-def _best(problem: SelectionProblem, pool: CandidatePool) -> Index:
-    """At each level the candidate of most force that is at least so sensitive and keeps every limit, (few,)."""
-    good = np.flatnonzero(_least_margin(problem, pool) >= 0.0)
-    if good.size == 0:
-        return good
-    good = good[np.argsort(-pool.response.lines.sensitivity_kPa_per_N[good], kind="stable")]
-    logs, force = np.log(pool.response.lines.sensitivity_kPa_per_N[good]), pool.force[good]
-    last = np.searchsorted(-logs, -np.linspace(logs[0], logs[-1], _LEVELS), side="right") - 1
-    leader = np.maximum.accumulate(force)
-    return np.unique(good[np.searchsorted(leader, leader)[last]])
+def _best(logs: Array, forces: Array) -> tuple[Index, Array]:
+    """Rows in even steps along the front of points, and the level that each stands for.
+
+    ``logs`` and ``forces`` are the logarithms of sensitivities and forces. A row has the most force of those at least
+    as sensitive as its level. Returns (few,) each; none of none.
+    """
+    rows = _unbeaten(logs, forces)
+    if rows.size == 0:
+        return rows, logs
+    length = logs[rows[0]] - logs[rows] + forces[rows] - forces[rows[0]]
+    steps = np.linspace(0.0, length[-1], _LEVELS)
+    last = np.searchsorted(length, steps, side="right") - 1
+    return rows[last], np.interp(steps, length, logs[rows])
+
+
+def _unbeaten(first: Array, second: Array) -> Index:
+    """Rows that no other exceeds in both, in falling order of the first."""
+    rows = np.argsort(-first, kind="stable")
+    before = np.maximum.accumulate(np.concatenate([[-np.inf], second[rows]]))[:-1]
+    return rows[second[rows] > before]
 
 
 def _hull(problem: SelectionProblem, number: int, pool: CandidatePool) -> TradeOffFront:
     """Candidates that meet every limit, without those that another beats in both."""
-    rows = np.flatnonzero(_least_margin(problem, pool) >= 0.0)
-    rows = rows[np.argsort(-pool.response.lines.sensitivity_kPa_per_N[rows], kind="stable")]
-    force = pool.force[rows]
-    rows = rows[force > np.maximum.accumulate(np.concatenate([[-np.inf], force[:-1]]))][::-1] if rows.size else rows
-    lines = pool.response.lines
+    good = np.flatnonzero(_least_margin(problem, pool) >= 0.0)
+    sensitivity_kPa_per_N = pool.response.lines.sensitivity_kPa_per_N
+    rows = good[_unbeaten(sensitivity_kPa_per_N[good], pool.force[good])][::-1]
     return TradeOffFront(
-        problem.resins[number], lines.sensitivity_kPa_per_N[rows], pool.force[rows], pool.radius[rows], pool.wall[rows]
+        problem.resins[number], sensitivity_kPa_per_N[rows], pool.force[rows], pool.radius[rows], pool.wall[rows]
     )

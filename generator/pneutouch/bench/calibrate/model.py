@@ -70,7 +70,7 @@ class AtlasModel:
             return np.take_along_axis(field, place, axis=1).reshape(s, c * m)
 
         mu = batch.shear_modulus[:, None]
-        edge = press.field("contact_radius", track) < press.flat_radius[:, None]
+        edge = press.field("contact_radius", track) < press.batch.flat_radius[:, None]
         ok = track.ok & edge & (press.pressure < press.limit)[:, None]
         force = track.point.force * mu * size**2
         return at(force), at((track.point.pressure - press.pressure[:, None]) * mu), at(ok)

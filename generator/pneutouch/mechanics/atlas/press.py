@@ -51,6 +51,12 @@ class SensorBatch:
         """t0/R0."""
         return self.wall_thickness / self.inner_radius
 
+    @property
+    def flat_radius(self) -> Array:
+        """How far the plate is flat, in R0."""
+        radius = self.plate_radius / self.inner_radius
+        return flat_radius(radius, rim_radius(radius, longest_outer_edge(self.wall_ratio)))
+
 
 class PressTrack(NamedTuple):
     """States along the plate's travel, (n, m) each; nondimensional. ok: the gas has a stable state and the atlas
@@ -174,12 +180,6 @@ class AtlasPress:
         k = np.repeat(self.k, track.nu.shape[1])
         flat = self.slices.several(names, k, track.nu.ravel(), track.height.ravel())
         return [values.reshape(track.nu.shape) for values in flat]
-
-    @property
-    def flat_radius(self) -> Array:
-        """How far the plate is flat, in R0."""
-        radius = self.batch.plate_radius / self.batch.inner_radius
-        return flat_radius(radius, rim_radius(radius, longest_outer_edge(self.batch.wall_ratio)))
 
 
 def _inflated(slices: AtlasSlices, k: Index, pressure: Array) -> Array:

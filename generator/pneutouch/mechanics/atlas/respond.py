@@ -30,8 +30,9 @@ class AtlasResponse(NamedTuple):
     """Answers for n sensors; (n,) or (n, m) arrays in mm, N, MPa, sensitivities in kPa/N.
 
     ends: number in `ENDS`. near_buckling: the wall would buckle within NEAR more of travel, so close to the edge of the
-    tabulated states that they are less certain. range_end: mm of indentation. limit_pressure: of the limit point.
-    Curves reach from first contact to range_end in equal steps. max_stretch: over the range, the free state included.
+    tabulated states that they are less certain. range_end: mm of indentation. contact_radius: of the contact at
+    range_end. limit_pressure: of the limit point. Curves reach from first contact to range_end in equal steps.
+    max_stretch: over the range, the free state included.
     Rows that cannot be (beyond the limit point, outside the box) are NaN throughout.
     """
 
@@ -39,6 +40,7 @@ class AtlasResponse(NamedTuple):
     ends: Index
     near_buckling: Flags
     range_end: Array
+    contact_radius: Array
     limit_pressure: Array
     apex_outer: Array
     cavity_volume: Array
@@ -126,11 +128,13 @@ def _respond(batch: SensorBatch, steps: int, atlas: Atlas) -> AtlasResponse:
     for array in (indentation, force, rise):
         array[infeasible] = np.nan
     stretch = press.field("stretch", track).max(axis=1)
+    contact = press.field("contact_radius", track.each(lambda column: column[:, -1:]))[:, 0]
     return AtlasResponse(
         lines=lines(indentation, force, rise / KPA),
         ends=np.where(good, ends, OUTSIDE),
         near_buckling=good & _near(press, track),
         range_end=np.where(infeasible, np.nan, end * batch.inner_radius),
+        contact_radius=np.where(infeasible, np.nan, contact * batch.inner_radius),
         limit_pressure=np.where(good, limit, np.nan),
         apex_outer=np.where(infeasible, np.nan, press.apex * batch.inner_radius),
         cavity_volume=np.where(infeasible, np.nan, press.volume(press.free) * batch.inner_radius**3),
@@ -154,7 +158,7 @@ def _margins(press: AtlasPress, track: PressTrack) -> Array:
     batch = press.batch
     gauge = (track.point.pressure - (batch.gauge_limit / batch.shear_modulus)[:, None]) / press.limit[:, None]
     stretch, radius = press.several(_FIELDS, track)
-    return np.stack([radius - press.flat_radius[:, None], gauge, stretch - batch.break_stretch[:, None]])
+    return np.stack([radius - batch.flat_radius[:, None], gauge, stretch - batch.break_stretch[:, None]])
 
 
 def _first_end(press: AtlasPress, indentation: Array, track: PressTrack) -> tuple[Array, Index]:
