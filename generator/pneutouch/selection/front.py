@@ -150,7 +150,7 @@ def _best(logs: Array, forces: Array) -> tuple[Index, Array]:
     ``logs`` and ``forces`` are the logarithms of sensitivities and forces. A row has the most force of those at least
     as sensitive as its level. Returns (few,) each; none of none.
     """
-    rows = _unbeaten(logs, forces)
+    rows = _unbeaten(np.stack([logs, forces]))
     if rows.size == 0:
         return rows, logs
     length = logs[rows[0]] - logs[rows] + forces[rows] - forces[rows[0]]
@@ -159,8 +159,9 @@ def _best(logs: Array, forces: Array) -> tuple[Index, Array]:
     return rows[last], np.interp(steps, length, logs[rows])
 
 
-def _unbeaten(first: Array, second: Array) -> Index:
-    """Rows that no other exceeds in both, in falling order of the first."""
+def _unbeaten(points: Array) -> Index:
+    """Of points (2, n) those that no other exceeds in both, in falling order of the first."""
+    first, second = points
     rows = np.argsort(-first, kind="stable")
     before = np.maximum.accumulate(np.concatenate([[-np.inf], second[rows]]))[:-1]
     return rows[second[rows] > before]
@@ -170,7 +171,7 @@ def _hull(problem: SelectionProblem, number: int, pool: CandidatePool) -> TradeO
     """Candidates that meet every limit, without those that another beats in both."""
     good = np.flatnonzero(_least_margin(problem, pool) >= 0.0)
     sensitivity_kPa_per_N = pool.response.lines.sensitivity_kPa_per_N
-    rows = good[_unbeaten(sensitivity_kPa_per_N[good], pool.force[good])][::-1]
+    rows = good[_unbeaten(np.stack([sensitivity_kPa_per_N, pool.force])[:, good])][::-1]
     return TradeOffFront(
         problem.resins[number], sensitivity_kPa_per_N[rows], pool.force[rows], pool.radius[rows], pool.wall[rows]
     )
