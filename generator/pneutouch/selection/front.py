@@ -164,7 +164,7 @@ def _unbeaten(points: Array) -> Index:
     first, second = points
     rows = np.argsort(-first, kind="stable")
     before = np.maximum.accumulate(np.concatenate([[-np.inf], second[rows]]))[:-1]
-    return rows[second[rows] > before]
+    return np.asarray(rows[second[rows] > before])
 
 
 def _hull(problem: SelectionProblem, number: int, pool: CandidatePool) -> TradeOffFront:
