@@ -6,9 +6,11 @@ from functools import cache
 
 import pytest
 
-from pneutouch.printability import check
+from pneutouch.printability import Joint, PrintSubject, check
 from pneutouch.printability.check import RULES
-from tests.printability.gallery import BAD, GOOD, ball, box, one, rod, taper, two
+from pneutouch.printability.rules import cleaning, contact_faces, matte
+from pneutouch.printability.view import PrintView
+from tests.printability.gallery import BAD, GOOD, ball, box, item, one, rod, taper, two
 from tests.printability.working import WORKING
 
 
@@ -64,6 +66,33 @@ def test_a_rule_turns_at_its_limit(rule, make, sizes, expected):
     """Limits of the printer's profile (walls, pins, holes and gaps in mm), a knife's angle, and shares of a width."""
     found = [{(finding.rule, finding.severity) for finding in check(make(size))} for size in sizes]
     assert found == [set() if severity is None else {(rule, severity)} for severity in expected]
+
+
+def bend(length):
+    """A shaft of 2 mm from above, and a side room of that length at its bottom."""
+    return one(box(12, 8, 10) - box(2, 2, 7, (3, 3, 4)) - box(length + 1, 2, 2, (4, 3, 4)))
+
+
+def roofed(share):
+    """A sensing face of 100 mm of length, and a roof over a share of it."""
+    face = item(box(100, 10, 10), "face", job="tray", sensing=lambda points: points[:, 2] > 9.999)
+    return PrintSubject((face, item(box(100 * share, 12, 1, (50, -1, 12)), "roof", job="tray")))
+
+
+def joined(share):
+    """Two blocks that share 100 mm2, a share of their joint."""
+    return PrintSubject(two(0.0).items, (Joint("one", "other", 100 / share, (5.0, 5.0, 10.0)),))
+
+
+@pytest.mark.parametrize(
+    ("rule", "make", "kept", "broken"),
+    [(cleaning, bend, 0.5, 1.5), (matte, roofed, 0.008, 0.012), (contact_faces, joined, 0.9995, 0.995)],
+    ids=["hidden", "matte", "joint"],
+)
+def test_a_rule_by_itself_turns_at_its_limit(rule, make, kept, broken):
+    """2 mm3 out of sight, 1 % of a sensing face, and 99.9 % of a joint."""
+    assert rule.check(PrintView(make(kept))) == []
+    assert len(rule.check(PrintView(make(broken)))) == 1
 
 
 def test_every_rule_has_an_exhibit():
