@@ -101,3 +101,14 @@ def process(tmp_path: Path) -> Command:
         return in_new_process(words, cwd or tmp_path)
 
     return run
+
+
+@pytest.fixture
+def say(capsys: pytest.CaptureFixture[str]) -> Callable[[str], None]:
+    """Print past pytest's capture, where figures are the result of a test."""
+
+    def line(text: str) -> None:
+        with capsys.disabled():
+            print(f"\n{text}")  # noqa: T201
+
+    return line

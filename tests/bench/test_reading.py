@@ -14,17 +14,7 @@ from pneutouch.bench.source import identify
 from pneutouch.spec.campaign import Column, ColumnMap
 from pneutouch.units import KPA
 from tests.bench.reads import COLUMNS, RIG, read, refuse
-from tests.bench.rig import Faults, record, small, write
-
-
-@pytest.fixture(scope="module")
-def samples():
-    return small()
-
-
-@pytest.fixture(scope="module")
-def file(tmp_path_factory, samples):
-    return write(tmp_path_factory.mktemp("run") / "run.csv", samples)
+from tests.bench.rig import Faults, record, write
 
 
 def test_blocks_are_the_means_of_the_samples(file, samples):

@@ -8,17 +8,7 @@ import pytest
 
 from pneutouch.spec.campaign import Column, ColumnMap
 from tests.bench.reads import read, refuse, spoilt
-from tests.bench.rig import HEADER, small, write
-
-
-@pytest.fixture(scope="module")
-def samples():
-    return small()
-
-
-@pytest.fixture(scope="module")
-def file(tmp_path_factory, samples):
-    return write(tmp_path_factory.mktemp("run") / "run.csv", samples)
+from tests.bench.rig import HEADER, write
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 import re
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,18 +17,8 @@ from pneutouch.errors import InputError
 from pneutouch.mechanics.response import figures
 from pneutouch.spec.campaign import Rig
 from pneutouch.units import KPA
-from tests.bench.rig import Dome, Faults, Sensor, record, run_of, small
-
-FILE = Path("run.csv")
-LAWS = [Sensor(0.6, 1.0), Sensor(0.25, 1.5), Sensor(0.12, 1.8), Dome()]
-
-
-def curve(samples, kind="steps", sensor=LAWS[1], rig=None, **more):
-    return curve_of(run_of(kind, sensor), blocks_of(FILE, *samples, **more), rig or Rig())
-
-
-def whys(result, used=None):
-    return [warning.why for warning in result.warnings if used is None or warning.used == used]
+from tests.bench.curves import FILE, LAWS, curve, whys
+from tests.bench.rig import Faults, Sensor, record, run_of, small
 
 
 @pytest.mark.parametrize(("sensor", "bias"), [(LAWS[0], 0.01), (LAWS[1], 0.05), (LAWS[2], 0.09), (LAWS[3], 0.04)])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,18 +15,8 @@ from pneutouch.bench.source import identify
 from pneutouch.bench.suspect import MOST
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import ColumnMap, Rig
-from tests.bench.rig import Dome, Sensor, run_of, small, write
-
-FILE = Path("run.csv")
-LAWS = [Sensor(0.6, 1.0), Sensor(0.25, 1.5), Sensor(0.12, 1.8), Dome()]
-
-
-def curve(samples, kind="steps", sensor=LAWS[1], rig=None, **more):
-    return curve_of(run_of(kind, sensor), blocks_of(FILE, *samples, **more), rig or Rig())
-
-
-def whys(result, used=None):
-    return [warning.why for warning in result.warnings if used is None or warning.used == used]
+from tests.bench.curves import FILE, curve, whys
+from tests.bench.rig import run_of, small, write
 
 
 def test_clipped_points_are_left_out_and_reported():

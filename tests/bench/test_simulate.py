@@ -22,26 +22,14 @@ from pneutouch.bench.simulate import (
     simulate_run,
     specimen_figures,
 )
-from pneutouch.bench.simulate.curve import PressCurves
 from pneutouch.bench.simulate.inject import line_pressure, sensor_pressure
 from pneutouch.bench.simulate.parameter import parameters
 from pneutouch.bench.simulate.run import _lagging, within
-from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.solid_states import solid_result
 from pneutouch.units import KPA
-from tests.bench.truths import NO_WALL, R0, ends, line, paper_pressed, paper_sensor, rng
+from tests.bench.truths import NO_WALL, R0, ends, line, rng
 
 QUIET = {"wall": NO_WALL, "scatter": ScatterModel.none()}
-
-
-@pytest.fixture(scope="module")
-def sensor() -> Sensor:
-    return paper_sensor()
-
-
-@pytest.fixture(scope="module")
-def pressed() -> PressCurves:
-    return paper_pressed()
 
 
 def test_quiet_record_is_the_solids_curve_at_the_holds(sensor, pressed):

@@ -21,21 +21,10 @@ from pneutouch.bench.simulate import (
 )
 from pneutouch.bench.simulate.curve import PressCurves
 from pneutouch.bench.simulate.scatter import ageing_factor, stiffened
-from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.units import KPA
-from tests.bench.truths import NO_WALL, R0, ends, paper_pressed, paper_sensor, rng
-
-
-@pytest.fixture(scope="module")
-def sensor() -> Sensor:
-    return paper_sensor()
-
-
-@pytest.fixture(scope="module")
-def pressed() -> PressCurves:
-    return paper_pressed()
+from tests.bench.truths import NO_WALL, R0, ends, rng
 
 
 @pytest.fixture(scope="module")

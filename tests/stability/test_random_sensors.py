@@ -52,17 +52,6 @@ def sweep(library, count, seed, **options) -> tuple[Counter[str], Counter[str]]:
     return ends, events
 
 
-@pytest.fixture
-def say(capsys):
-    """Print past pytest's capture: the counts are the result."""
-
-    def line(text: str) -> None:
-        with capsys.disabled():
-            print(f"\n{text}")  # noqa: T201
-
-    return line
-
-
 @pytest.mark.slow
 def test_twenty_random_sensors(library, say):
     ends, events = sweep(library, 20, seed=40)

@@ -29,17 +29,6 @@ def gaps() -> list[Gap]:
     return [gap for gap in found if gap is not None]
 
 
-@pytest.fixture
-def say(capsys):
-    """Print past pytest's capture: the figures are the result."""
-
-    def line(text: str) -> None:
-        with capsys.disabled():
-            print(f"\n{text}")  # noqa: T201
-
-    return line
-
-
 def parted(gaps: list[Gap]) -> tuple[list[Gap], list[Gap]]:
     """Presses inside the box, and those at its edge, where the wall buckles or would within 0.03 R0 more of travel."""
     return [gap for gap in gaps if gap.inside], [gap for gap in gaps if not gap.inside]
