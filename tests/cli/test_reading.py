@@ -18,6 +18,7 @@ from pneutouch.cli import calibrate, characterize, plan
 from pneutouch.cli.app import app
 from pneutouch.errors import InputError
 from pneutouch.spec.campaign import Campaign, ColumnMap
+from pneutouch.spec.read import validate
 from pneutouch.tables.unit_words import UNITS
 from pneutouch.workflows.characterize import parse_columns
 from pneutouch.workflows.characterize.reading import with_reading
@@ -94,6 +95,55 @@ def test_what_is_printed_is_what_the_page_shows(tmp_path, recording):
     again = run("characterize", tmp_path, "--model", "atlas", "--evidence", "none", "--out", tmp_path)
     assert again.exit_code == 0 and "note: " not in again.stderr
     assert "next: pneutouch calibrate" in again.stderr
+
+
+def test_what_is_printed_of_mixed_files_belongs_to_their_runs(tmp_path, recording):
+    """Pasted below each entry it is what was read, and nothing is printed again; a plain file between needs nothing."""
+    plain = dict(zip(("time_s", "position_mm", "force_N", "pressure_kPa"), recording, strict=True))
+    pd.DataFrame(plain).to_csv(tmp_path / "plain.csv", index=False)
+    names = [zwick(tmp_path, *recording).name, "plain.csv", logger(tmp_path, *recording).name]
+    entries = [f'[[runs]]\nfile = "{name}"\nsensor = "{name[0]}"\nresin = "TangoPlus"\n' for name in names]
+    (tmp_path / "campaign.toml").write_text('design = "paper-dome"\n' + "".join(entries))
+    words = ("characterize", tmp_path, "--model", "atlas", "--evidence", "none", "--json", "--out", tmp_path / "out")
+    first = run(*words)
+    assert first.exit_code == 0, first.output
+    assert [entry["whole_campaign"] for entry in json.loads(first.stdout)["read_as"]] == [False, False]
+    noted = re.findall(
+        r"note: (\S+): read as follows; .* below the \[\[runs\]\] entry .*\n((?:(?!note).*\n?)*)", first.stderr
+    )
+    assert [name for name, _ in noted] == [names[0], names[2]]
+    pasted = [entries[0] + noted[0][1], entries[1], entries[2] + noted[1][1]]
+    (tmp_path / "campaign.toml").write_text('design = "paper-dome"\n' + "\n".join(pasted))
+    again = run(*words)
+    assert again.exit_code == 0 and "note: " not in again.stderr, again.output
+    assert figures(json.loads(again.stdout)) == figures(json.loads(first.stdout))
+    (entry,) = [one for one in tomllib.loads("\n".join(pasted))["runs"] if one["file"] == names[0]]
+    assert entry["columns"]["pressure"] == {"name": "Innendruck", "unit": "mbar"}
+
+
+def test_a_run_states_its_own_columns_over_those_of_its_campaign():
+    own = {"columns": {"force": {"name": "F2", "unit": "kN"}}, "format": {"decimal": ","}}
+    run = {"file": "a.csv", "sensor": "A", "resin": "TangoPlus"}
+    content = {
+        "columns": {"force": {"name": "F"}, "time": {"name": "t"}},
+        "format": {"delimiter": ";"},
+        "runs": [{**run, **own}, {**run, "file": "b.csv", "run": 2}],
+    }
+    campaign = Campaign.model_validate(content)
+    columns, written = campaign.reading(campaign.runs[0])
+    assert (columns.force.name, columns.force.unit, columns.time.name) == ("F2", "kN", "t")
+    assert columns.model_fields_set == {"force", "time"} and (written.delimiter, written.decimal) == (";", ",")
+    plain, unwritten = campaign.reading(campaign.runs[1])
+    assert plain.force.name == "F" and unwritten.decimal is None
+    # The command line comes before both.
+    laid = with_reading(campaign, {"columns": {"force": {"name": "Load"}}, "format": {"decimal": "."}})
+    assert [laid.reading(one)[0].force.name for one in laid.runs] == ["Load", "Load"]
+    assert [laid.reading(one)[1].decimal for one in laid.runs] == [".", "."]
+    with pytest.raises(InputError, match=r"with the columns of a\.csv in the campaign: time") as caught:
+        with_reading(campaign, {"columns": {"time": {"name": "F2"}}})
+    assert caught.value.key == "columns"
+    with pytest.raises(InputError, match=r"runs\[0\].columns with those of the campaign: time.name = \"t\""):
+        validate(Campaign, {**content, "runs": [{**run, "columns": {"force": {"name": "t"}}}]}, "campaign.toml")
 
 
 def test_an_error_names_the_option_and_the_lines_to_paste(tmp_path, recording):

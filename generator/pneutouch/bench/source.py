@@ -42,10 +42,13 @@ class MeasuredFile:
         return {"format": kept, "columns": columns} if kept else {"columns": columns}
 
 
-def campaign_lines(content: Mapping[str, Any]) -> str:
-    """The tables [format] and [columns] of `MeasuredFile.content` as lines of a campaign file."""
+def campaign_lines(content: Mapping[str, Any], within: str = "") -> str:
+    """The tables [format] and [columns] of `MeasuredFile.content` as lines of a campaign file.
+
+    ``within`` stands before their names: ``runs.`` where they belong to the [[runs]] entry above them.
+    """
     return "\n\n".join(
-        "\n".join([f"[{name}]", *(f"{key} = {value_text(value)}" for key, value in content[name].items())])
+        "\n".join([f"[{within}{name}]", *(f"{key} = {value_text(value)}" for key, value in content[name].items())])
         for name in ("format", "columns")
         if name in content
     )
@@ -147,7 +150,10 @@ def _undecided(
     missing = not open_[first]
     key = f"column {getattr(columns, first).name if missing else names[open_[first][0]]}"
     problem = f"{'missing from' if missing else 'in'} {where}: {text}"
-    remedy = f"state it in the campaign file, or give `columns`:\n{_lines(lines, remarks)}"
+    remedy = (
+        "state it in the campaign file (of this file alone: as [runs.columns] below its entry), or give `columns`:\n"
+        f"{_lines(lines, remarks)}"
+    )
     return InputError(problem, file=path, key=key, remedy=remedy)
 
 

@@ -87,6 +87,20 @@ class FileFormat(Table):
     )
 
 
+def merged_columns(under: ColumnMap, over: ColumnMap | None) -> ColumnMap:
+    """Columns of ``under``, those that ``over`` states in their place."""
+    both = [one for one in (under, over) if one is not None]
+    return ColumnMap.model_validate(
+        {key: getattr(one, key).model_dump() for one in both for key in one.model_fields_set}
+    )
+
+
+def merged_format(under: FileFormat, over: FileFormat | None) -> FileFormat:
+    """What ``under`` states of the files, what ``over`` states in its place."""
+    both = [one.model_dump(exclude_none=True) for one in (under, over) if one is not None]
+    return FileFormat.model_validate({key: value for one in both for key, value in one.items()})
+
+
 class Rig(Table):
     """[rig]: what the instruments can do. Defaults are the paper's (Supplement C)."""
 
@@ -111,6 +125,8 @@ class CampaignRun(Table):
     run: int = Field(default=1, ge=1, le=10_000, description="Number of the repetition.")
     date: datetime.date | None = Field(default=None, description="Day of the run.")
     age_days: float = number(0.0, unit="d", low=0, high=36_500, help="Age of the print on that day.")
+    columns: ColumnMap | None = Field(default=None, description="Columns of this file, in place of the campaign's.")
+    format: FileFormat | None = Field(default=None, description="How this file is written, likewise.")
 
     @property
     def label(self) -> str:
@@ -135,6 +151,22 @@ class Campaign(Table):
     columns: ColumnMap = ColumnMap()
     format: FileFormat = FileFormat()
     runs: list[CampaignRun] = Field(min_length=1, max_length=100_000, description="The runs.")
+
+    def reading(self, run: CampaignRun) -> tuple[ColumnMap, FileFormat]:
+        """The columns and the format of a run's file."""
+        return merged_columns(self.columns, run.columns), merged_format(self.format, run.format)
+
+    @model_validator(mode="after")
+    def _runs_can_be_read(self) -> Campaign:
+        for place, run in enumerate(self.runs):
+            try:
+                self.reading(run)
+            except ValueError as error:
+                # Pydantic's own errors hold the words of the model behind a head of their own.
+                details = getattr(error, "errors", list)()
+                why = str(details[0]["ctx"]["error"]) if details else str(error)
+                raise ValueError(f"runs[{place}].columns with those of the campaign: {why}") from None
+        return self
 
     @model_validator(mode="after")
     def _runs_differ(self) -> Campaign:

@@ -111,7 +111,7 @@ def run_calibration(
         "calibration": None if unsaved else name,
         "written": [str(path) for path in written],
         "failures": failures,
-        "read_as": read_as(loaded.sources),
+        "read_as": read_as(loaded.sources, len(loaded.campaign.runs)),
     }
     return CalibrationOutcome(document, calibration, source, _named(design), loaded.campaign.assignments)
 

@@ -147,7 +147,8 @@ def _read(
     if not is_file(path):
         raise InputError("no such file", file=path, remedy=f"the campaign names it as {run.label}")
     channels = {"injection": INJECTION, "leak": LEAK}.get(run.kind, PLATE)
-    source = gathered.sources[run.file] = identify(path, campaign.columns, channels, campaign.format)
+    columns, written = campaign.reading(run)
+    source = gathered.sources[run.file] = identify(path, columns, channels, written)
     if run.kind == "injection":
         gathered.injections.append((run, *read_injection(source)))
         return

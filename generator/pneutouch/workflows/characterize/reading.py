@@ -37,23 +37,39 @@ def parse_columns(texts: Sequence[str]) -> dict[str, dict[str, Any]]:
 
 
 def with_reading(campaign: Campaign, reading: Reading | None) -> Campaign:
-    """The campaign with what ``reading`` states in place of its own columns and format. Raises InputError."""
+    """The campaign with what ``reading`` states in place of its columns and format, those of its runs too.
+
+    Raises InputError.
+    """
     if not reading:
         return campaign
-    stated = {key: getattr(campaign.columns, key).model_dump() for key in campaign.columns.model_fields_set}
-    written = campaign.format.model_dump(exclude_none=True)
+    runs = []
+    for run in campaign.runs:
+        tables = run.columns or ColumnMap(), run.format or FileFormat()
+        is_plain = run.columns is None and run.format is None
+        runs.append(run if is_plain else run.model_copy(update=_with_stated(*tables, reading, run.file)))
+    return campaign.model_copy(update={**_with_stated(campaign.columns, campaign.format, reading), "runs": runs})
+
+
+def _with_stated(columns: ColumnMap, written: FileFormat, reading: Reading, file: str = "") -> dict[str, Any]:
+    """Columns and format with what ``reading`` states in their place; ``file``: of one run. Raises InputError."""
+    stated = {key: getattr(columns, key).model_dump() for key in columns.model_fields_set}
     try:
-        columns = validate(ColumnMap, {**stated, **reading.get("columns", {})}, "")
+        merged = validate(ColumnMap, {**stated, **reading.get("columns", {})}, "")
     except InputError as error:
-        raise InputError(str(error), key="columns") from None
-    how = validate(FileFormat, {**written, **reading.get("format", {})}, "")
-    return campaign.model_copy(update={"columns": columns, "format": how})
+        where = f"with the columns of {file} in the campaign: " if file else ""
+        raise InputError(f"{where}{error}", key="columns") from None
+    how = validate(FileFormat, {**written.model_dump(exclude_none=True), **reading.get("format", {})}, "")
+    return {"columns": merged, "format": how}
 
 
-def read_as(sources: Mapping[str, MeasuredFile]) -> list[dict[str, Any]]:
-    """What was found by the look of the files: those read alike, and the tables of a campaign file that state it."""
+def read_as(sources: Mapping[str, MeasuredFile], runs: int) -> list[dict[str, Any]]:
+    """What was found by the look of the files: those read alike, and the tables of a campaign file that state it.
+
+    ``whole_campaign``: the tables hold for all of its ``runs``; else they belong to the runs of these files.
+    """
     alike: dict[str, dict[str, Any]] = {}
     for file, source in sources.items():
         if source.guessed:
             alike.setdefault(campaign_lines(source.content), {"files": [], **source.content})["files"].append(file)
-    return list(alike.values())
+    return [{**entry, "whole_campaign": len(entry["files"]) == runs} for entry in alike.values()]

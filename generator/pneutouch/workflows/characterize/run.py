@@ -105,7 +105,9 @@ def characterize(
         model=model,
         input_hash=_hash(loaded, scene.design.model_dump(mode="json")),
     )
-    return CharacterizationResult(measured, loaded.traces, f"{_stem(data)}-measured", read_as(loaded.sources))
+    return CharacterizationResult(
+        measured, loaded.traces, f"{_stem(data)}-measured", read_as(loaded.sources, len(loaded.campaign.runs))
+    )
 
 
 def _design_of(data: Path) -> tuple[str, dict[str, Any]]:
