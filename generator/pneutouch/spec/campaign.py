@@ -7,7 +7,7 @@ import os
 from pathlib import PurePosixPath
 from typing import Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationError, model_validator
 
 from pneutouch.errors import shown
 from pneutouch.spec.design import Printable
@@ -161,10 +161,9 @@ class Campaign(Table):
         for place, run in enumerate(self.runs):
             try:
                 self.reading(run)
-            except ValueError as error:
-                # Pydantic's own errors hold the words of the model behind a head of their own.
-                details = getattr(error, "errors", list)()
-                why = str(details[0]["ctx"]["error"]) if details else str(error)
+            except ValidationError as error:
+                # The words of `ColumnMap`, without the head that pydantic gives them.
+                why = error.errors()[0]["msg"].removeprefix("Value error, ")
                 raise ValueError(f"runs[{place}].columns with those of the campaign: {why}") from None
         return self
 
