@@ -55,20 +55,20 @@ class HarmonicSolid:
         self._over = np.ascontiguousarray(self._gradient[:, :, _OVER_R])
         self._over_wide = np.ascontiguousarray(np.swapaxes(self._over, 1, 2))
         families = [mesh.cells, mesh.inner, mesh.outer, *([] if solid.meeting.size == 0 else [solid.meeting])]
-        self._numbers = _number(solid)
-        tables = [self._numbers[x].reshape(x.shape[0], -1) for x in families]
-        self._pattern = AssemblyPattern(tables, int(self._numbers.max()) + 1)
+        self.unknowns = _number(solid)
+        tables = [self.unknowns[x].reshape(x.shape[0], -1) for x in families]
+        self._pattern = AssemblyPattern(tables, int(self.unknowns.max()) + 1)
         signs = np.ones((mesh.nodes.shape[0], 3))
         signs[mesh.axis, AROUND] = -1.0
         by_block = [signs[x].reshape(x.shape[0], -1) for x in families]
         self._turned = [np.flatnonzero((sign < 0.0).any(axis=1)) for sign in by_block]
         pairs = zip(by_block, self._turned, strict=True)
         self._signs = [sign[at, :, None] * sign[at, None, :] for sign, at in pairs]
-        self._on_axis = self._numbers[mesh.axis, IN_R]
+        self._on_axis = self.unknowns[mesh.axis, IN_R]
 
     def expand(self, n: int, vector: Array) -> Array:
         """Nodal displacements a, b, c (n_nodes, 3) of the unknowns of n waves."""
-        out = np.where(self._numbers >= 0, vector[self._numbers], 0.0)
+        out = np.where(self.unknowns >= 0, vector[self.unknowns], 0.0)
         out[self.solid.mesh.axis, AROUND] *= -1.0
         if n > 1:
             out[self.solid.mesh.axis] = 0.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,6 +11,7 @@ from pneutouch.arrays import Array
 from pneutouch.mechanics.solid.banded import is_definite, softest
 from pneutouch.mechanics.solid.continuation import PlateState
 from pneutouch.mechanics.solid.harmonics import HarmonicSolid
+from pneutouch.mechanics.solid.inflate import FreeState, Inflation, at_volume, between, pressure_between
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure, SolverState, minimise
 
@@ -19,8 +21,9 @@ MOST_WAVES = 8
 _TRAVEL = 0.25
 #: Position of a loss, in R0.
 _WITHIN = 5.0e-4
-#: An interpolation that moves its estimate by less than this, in R0, has an error well within `_WITHIN`.
-_MOVED = 3.0e-3
+#: Position of a loss between two states of a free dome, as a share of the way between them.
+_FREE_WITHIN = 2.0e-3
+_SETTLED = 6.0
 _MOST_SOLVES = 12
 
 
@@ -30,6 +33,14 @@ class AxisymmetryLoss:
 
     waves: int
     height: float
+
+
+@dataclass(frozen=True)
+class FreeLoss:
+    """The dome without contact is unstable beyond a gauge pressure (MPa) for n ``waves`` around the axis."""
+
+    waves: int
+    pressure: float
 
 
 def unstable_waves(harmonic: HarmonicSolid, state: SolverState, numbers: tuple[int, ...]) -> tuple[int, ...]:
@@ -82,41 +93,83 @@ def _onset(harmonic: HarmonicSolid, path: list[PlateState], n: int) -> Axisymmet
 
 
 def _located(harmonic: HarmonicSolid, n: int, path: list[PlateState]) -> float:
-    """Where the lowest eigenvalue for n waves passes zero between the last two states of a path, by inverse quadratic
-    interpolation; by halves where that leaves the bracket."""
+    """Plate height at which the lowest eigenvalue for n waves passes zero between the last two states of a path."""
     before, after = path[-2:]
-    high, low = before.height, after.height
-    values = {s.height: softest(harmonic.bands(s.state, (n,))[n]).value for s in path}
-    guess = low
+    span = before.height - after.height
+    values = {(before.height - s.height) / span: _eigenvalue(harmonic, n, s.state) for s in path}
+
+    def solve(share: float) -> SolverState | None:
+        return _between(before, after, before.height - share * span)
+
+    return before.height - span * _root(harmonic, n, values, solve, _WITHIN / span)
+
+
+def free_loss(solid: SolidModel, run: Inflation, most: int = MOST_WAVES) -> FreeLoss | None:
+    """Where a dome that is filled or emptied loses stability to 1 to ``most`` waves first; None where it does not."""
+    harmonic, waves = HarmonicSolid(solid), tuple(range(1, most + 1))
+    for before, after in zip(run.states, run.states[1:], strict=False):
+        lost = unstable_waves(harmonic, after.unit, waves)
+        if lost:
+            losses = [_free_place(harmonic, n, before, after) for n in lost]
+            return min(losses, key=lambda loss: abs(loss.pressure))
+    return None
+
+
+def _free_place(harmonic: HarmonicSolid, n: int, before: FreeState, after: FreeState) -> FreeLoss:
+    solid, (a, b) = harmonic.solid, (before.unit.volume, after.unit.volume)
+    values = {0.0: _eigenvalue(harmonic, n, before.unit), 1.0: _eigenvalue(harmonic, n, after.unit)}
+
+    def solve(share: float) -> SolverState | None:
+        volume = a + share * (b - a)
+        found = at_volume(solid, [before], volume, between(before, after, volume))
+        return None if isinstance(found, NewtonFailure) else found.unit
+
+    return FreeLoss(n, pressure_between(before, after, _root(harmonic, n, values, solve, _FREE_WITHIN)))
+
+
+def _eigenvalue(harmonic: HarmonicSolid, n: int, state: SolverState) -> float:
+    return softest(harmonic.bands(state, (n,))[n]).value
+
+
+def _root(
+    harmonic: HarmonicSolid,
+    n: int,
+    values: dict[float, float],
+    solve: Callable[[float], SolverState | None],
+    within: float,
+) -> float:
+    """Share of the way from a stable state (0) to an unstable one (1) at which the lowest eigenvalue is zero.
+
+    By inverse quadratic interpolation of the ``values`` at known shares, and by halves where that leaves the bracket.
+    """
+    known, low, high, guess = len(values), 0.0, 1.0, 1.0
     for _ in range(_MOST_SOLVES):
         last, guess = guess, _zero(values)
         if not low < guess < high:
             guess = 0.5 * (low + high)
-        if high - low < _WITHIN or abs(guess - last) < _MOVED:
+        # An interpolation that moves its estimate little has an error that is much smaller still.
+        if high - low < within or (len(values) > known and abs(guess - last) < _SETTLED * within):
             break
-        state = _between(before, after, guess)
+        state = solve(guess)
         if state is None:
             break
         mode = softest(harmonic.bands(state, (n,))[n])
         values[guess] = mode.value
-        if mode.definite:
-            high = guess
-        else:
-            low = guess
+        low, high = (guess, high) if mode.definite else (low, guess)
     return guess
 
 
 def _zero(values: dict[float, float]) -> float:
-    """Height where a quantity known at heights is zero, from the three heights where it is nearest zero; nan where two
-    of its values are equal."""
+    """Where a quantity known at places is zero, from the three places where it is nearest zero; nan where two of its
+    values are equal."""
     near = sorted(values.items(), key=lambda pair: abs(pair[1]))[:3]
-    heights, at = np.array([pair[0] for pair in near]), np.array([pair[1] for pair in near])
+    places, at = np.array([pair[0] for pair in near]), np.array([pair[1] for pair in near])
     total = 0.0
-    for k, height in enumerate(heights):
+    for k, place in enumerate(places):
         others = np.delete(at, k)
         if (others == at[k]).any():
             return float("nan")
-        total += float(height * np.prod(others / (others - at[k])))
+        total += float(place * np.prod(others / (others - at[k])))
     return total
 
 
