@@ -27,7 +27,9 @@ from pneutouch.report.style import (
 from pneutouch.units import KPA
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
+    from matplotlib.cm import ScalarMappable
 
 SIZE = (86.0, 62.0)
 """Width and height of a plot in mm: two in a row on A4."""
@@ -72,41 +74,47 @@ def _mark_limits(ax: Axes, prediction: SensorPrediction) -> None:
 
 
 def shapes(prediction: SensorPrediction) -> list[str]:
-    """Half sections of the deformed wall at the lowest and the highest driving pressure, shaded by stretch."""
+    """Half sections of the deformed wall at the lowest and the highest driving pressure, shaded by stretch.
+
+    They have one frame, which is laid out once.
+    """
+    from matplotlib.cm import ScalarMappable
+
     states = prediction.states[:1] + prediction.states[1:][-1:]
     drawn_shapes = [(state, shape) for state in states for shape in state.shapes[1:]]
     top = max(float(shape.stretch.max()) for _, shape in drawn_shapes)
     every = np.concatenate([shape.cells.reshape(-1, 2) for _, shape in drawn_shapes])
-    # Of an object that is higher than the wall as much is shown as of the pressed dome.
     (right, high), low = 1.06 * every.max(axis=0), min(0.0, float(every[:, 1].min())) - 0.05 * float(every[:, 1].max())
-    if any(shape.body is not None for _, shape in drawn_shapes):
-        high *= 1.3
-    limits = {"xlim": (0, right), "ylim": (low, high)}
-    return [_shape(state, shape, top, limits) for state, shape in drawn_shapes]
-
-
-def _shape(state: SensorState, shape: DeformedShape, top: float, limits: dict[str, tuple[float, float]]) -> str:
-    """One deformed half section; ``top`` is the stretch at the dark end of the colours."""
-    from matplotlib.collections import PolyCollection
-
+    texts = []
     with figure(SIZE[0], 0.75 * SIZE[1]) as drawn:
         ax = drawn.add_subplot()
-        look: dict[str, Any] = {"cmap": "cividis_r", "clim": (1.0, top), "edgecolors": "face", "lw": 0.2}
-        wall = PolyCollection(list(shape.cells), array=shape.stretch, **look)
-        rest = PolyCollection(list(state.shapes[0].cells), facecolors="none", edgecolors=FAINT, lw=0.3, zorder=0)
-        ax.add_collection(rest)
-        ax.add_collection(wall)
         ax.axhline(0, color=INK, lw=0.8)
-        if shape.body is not None:
-            ax.plot(*shape.body.T, color=INK, lw=1.6)
-        elif shape.indentation:
-            ax.axhline(float(shape.cells[..., 1].max()), xmax=0.97, color=INK, lw=1.6)
-        pressed = f", pressed {shape.indentation:.2f} mm" if shape.indentation else ""
-        ax.set_title(f"{state.driving_pressure / KPA:g} kPa{pressed}", fontsize=7)
-        ax.set(aspect="equal", xlabel="radius  (mm)", ylabel="height  (mm)", **limits)
+        ax.set(aspect="equal", xlabel="radius  (mm)", ylabel="height  (mm)", xlim=(0, right), ylim=(low, high))
         ax.grid(False)
-        drawn.colorbar(wall, ax=ax, label="greatest stretch  (-)", shrink=0.9)
-        return svg(drawn)
+        colours = ScalarMappable(cmap="cividis_r")
+        colours.set_clim(1.0, top)
+        drawn.colorbar(colours, ax=ax, label="greatest stretch  (-)", shrink=0.9)
+        for state, shape in drawn_shapes:
+            artists = _shape(ax, state, shape, colours)
+            texts.append(svg(drawn))
+            for artist in artists:
+                artist.remove()
+    return texts
+
+
+def _shape(ax: Axes, state: SensorState, shape: DeformedShape, colours: ScalarMappable) -> list[Artist]:
+    """One deformed half section over the unloaded one, drawn into its frame; what was added to it."""
+    from matplotlib.collections import PolyCollection
+
+    look: dict[str, Any] = {"cmap": colours.cmap, "norm": colours.norm, "edgecolors": "face", "lw": 0.2}
+    wall = PolyCollection(list(shape.cells), array=shape.stretch, **look)
+    rest = PolyCollection(list(state.shapes[0].cells), facecolors="none", edgecolors=FAINT, lw=0.3, zorder=0)
+    added: list[Artist] = [ax.add_collection(rest), ax.add_collection(wall)]
+    if shape.indentation:
+        added.append(ax.axhline(float(shape.cells[..., 1].max()), xmax=0.97, color=INK, lw=1.6))
+    pressed = f", pressed {shape.indentation:.2f} mm" if shape.indentation else ""
+    ax.set_title(f"{state.driving_pressure / KPA:g} kPa{pressed}", fontsize=7)
+    return added
 
 
 def response(prediction: SensorPrediction) -> str:
