@@ -180,6 +180,7 @@ def test_friction_lowers_the_sensitivity_of_a_stiff_wall_evenly():
     assert (np.diff(slopes) < 0.0).all() and slopes[-1] < 0.9 * slopes[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("friction", [0.6, np.inf])
 def test_steps_and_springs_hardly_matter(friction, monkeypatch):
     fine = press(friction, mu=0.91, steps=56).figures().sensitivity_kPa_per_N
@@ -188,7 +189,7 @@ def test_steps_and_springs_hardly_matter(friction, monkeypatch):
     assert press(friction, mu=0.91, steps=28).figures().sensitivity_kPa_per_N == pytest.approx(fine, rel=0.005)
 
 
-@settings(max_examples=12)
+@settings(max_examples=6)
 @given(
     friction=st.one_of(st.floats(0.0, 1.5), st.just(np.inf)),
     wall=st.floats(0.06, 0.4),

@@ -1,6 +1,8 @@
 """Follows one branch of equilibria as the plate comes down: predictor, solution, stability, cutback."""
 
+from copy import copy
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 
@@ -77,7 +79,7 @@ def lost_work(path: list[PlateState], after: PlateState) -> float:
     here = path[-1]
     travel = here.height - after.height
     work = 0.5 * travel * (here.force + after.force)
-    floor = 1.0e-6 * here.scene.solid.wall * travel
+    floor = 1.0e-6 * here.scene.solid.wall * abs(travel)
     if len(path) > 1:
         before = path[-2]
         past = before.height - here.height
@@ -91,12 +93,15 @@ def lost_work(path: list[PlateState], after: PlateState) -> float:
     lost = abs(fixed - (after.state.energy - here.state.energy) - spent)
     # A jump releases the same energy however short the step it falls in, so short steps are held to the work of a
     # full one.
-    share = lost / (max(1.0, LONGEST / travel) * (work + floor))
+    share = lost / (max(1.0, LONGEST / abs(travel)) * (abs(work) + floor))
     return max(0.0, share - allowance)
 
 
 class PathFollower:
-    """Keeps the states of a path and steps to new plate heights."""
+    """Keeps the states of a path and steps to new plate heights, from first contact down."""
+
+    #: 1 while the plate comes down, -1 while it goes up.
+    down = 1.0
 
     def __init__(self, solid: SolidModel, supply: Supply, plate: Indenter, start: Array) -> None:
         self._solid, self._plate = solid, plate
@@ -114,13 +119,23 @@ class PathFollower:
         """The newest state."""
         return self.path[-1]
 
+    def left(self, height: float) -> float:
+        """Travel from the newest state to a height on the path ahead; negative beyond it."""
+        return self.down * (self.here.height - height)
+
+    def turned(self) -> Self:
+        """A follower that starts at the newest state in the opposite direction."""
+        other = copy(self)
+        other.path, other.down = [self.here], -self.down
+        return other
+
     def step(self, height: float) -> PlateState:
-        """One state further down the path, at `height` or short of it where the step had to be cut; kept."""
-        travel = min(self.here.height - height, LONGEST)
+        """One state further along the path, at `height` or short of it where the step had to be cut; kept."""
+        travel = min(self.left(height), LONGEST)
         why = ""
         shortest = min(_SHORTEST, 0.5 * travel)
         while travel > shortest:
-            state = self.solve(self.here.height - travel)
+            state = self.solve(self.here.height - self.down * travel)
             if not isinstance(state, NewtonFailure):
                 self.path.append(state)
                 return state
@@ -141,6 +156,6 @@ class PathFollower:
 
     def _extrapolate(self, height: float) -> Array:
         """Positions ahead along the tangent of the path; at first contact, a point, there is none."""
-        if len(self.path) < 2:
+        if len(self.path) < 2 and self.down > 0.0:
             return self.here.state.x
         return np.asarray(self.here.state.x + (height - self.here.height) * self.here.by_height)

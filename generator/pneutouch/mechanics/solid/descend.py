@@ -27,10 +27,10 @@ class PathJump:
 
 
 def descend(follower: PathFollower, height: float) -> PathJump | None:
-    """Continue the path down to `height`: None, or the jump that ended it; the path then ends before the jump."""
+    """Continue the path to `height`: None, or the jump that ended it; the path then ends before the jump."""
     if not follower.here.stable:
         return PathJump("unstable", follower.here.height, "the state itself is unstable with its gas shut in")
-    while follower.here.height - height > 1.0e-12:
+    while follower.left(height) > 1.0e-12:
         before = follower.here
         try:
             after = follower.step(height)
@@ -58,7 +58,7 @@ def _close_in(follower: PathFollower, end: float) -> PathJump | None:
     bad, tried_from_here = end, False
     for _ in range(_MOST_TRIES):
         here = follower.here
-        closed = here.height - bad <= JUMP_WITHIN
+        closed = follower.left(bad) <= JUMP_WITHIN
         if closed and tried_from_here:
             break
         height = bad if closed else 0.5 * (here.height + bad)
@@ -67,7 +67,7 @@ def _close_in(follower: PathFollower, end: float) -> PathJump | None:
             beyond, bad, tried_from_here = other, height, True
             continue
         follower.path.append(other)
-        if other.height <= end + 1.0e-12:
+        if follower.left(end) <= 1.0e-12:
             return None
         bad, tried_from_here = end if closed else bad, False
     if isinstance(beyond, NewtonFailure):
@@ -78,7 +78,7 @@ def _close_in(follower: PathFollower, end: float) -> PathJump | None:
 def _past_a_stall(follower: PathFollower, stalled: NewtonFailure) -> PathJump:
     """A solver that failed is no evidence of another branch: search a little further before naming the end."""
     for further in (1, 2, 4, 8):
-        other = follower.solve(follower.here.height - further * _BEYOND_STALL)
+        other = follower.solve(follower.here.height - follower.down * further * _BEYOND_STALL)
         if (
             not isinstance(other, NewtonFailure)
             and not _sound(follower.path, other)

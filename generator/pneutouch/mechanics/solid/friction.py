@@ -187,8 +187,11 @@ class FrictionState:
 
 
 def _dissipated(before: FrictionState | None, step: FrictionStep, points: FrictionPoints) -> float:
-    """Work of the largest tractions over the sliding of a step, by the trapezium; springs of released points lose what
-    they held."""
+    """Work of the largest tractions over the sliding of a step, by the trapezium.
+
+    A point that is released slides for half of the step on average, under a traction that falls to nothing; springs of
+    points that are released lose what they held.
+    """
     weight = step.contact.weight
     slid = points.sliding
     beyond = np.abs(points.slip[slid]) - np.abs(points.traction[slid]) / step.stiffness
@@ -196,5 +199,8 @@ def _dissipated(before: FrictionState | None, step: FrictionStep, points: Fricti
     work = float(np.vdot(weight[slid], cap * beyond))
     if before is None:
         return work
-    released = ~(points.sticking | points.sliding)
-    return work + float(np.vdot(weight[released], before.points.traction[released] ** 2)) / (2.0 * step.stiffness)
+    past, touching = before.points, points.sticking | points.sliding
+    held = (past.sticking | past.sliding) & ~touching
+    work += float(np.vdot(weight[held], past.traction[held] ** 2)) / (2.0 * step.stiffness)
+    let_go = past.sliding & ~touching
+    return work + 0.25 * float(np.vdot(weight[let_go], past.cap[let_go] * np.abs(points.slip[let_go])))

@@ -15,7 +15,7 @@ from pneutouch.mechanics.solid.friction_newton import FrictionSolver, HeldState,
 from pneutouch.mechanics.solid.general_band import OneSidedBlocks
 from pneutouch.mechanics.solid.indenter import Indenter
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid.newton import NewtonFailure, SolidScene, full_tangent, stability
+from pneutouch.mechanics.solid.newton import NewtonFailure, SolidScene, evaluate, full_tangent, stability
 from pneutouch.mechanics.solid.supply import Supply
 from pneutouch.mechanics.solid.terms import TermState
 
@@ -48,6 +48,23 @@ class FrictionFollower(PathFollower):
         step = FrictionStep(self._solid.contact, plate, self._coefficient, rest, self._stiffness)
         return FrictionSolver(replace(self._bare, plate=plate), step, self._sides)
 
+    def turned(self) -> FrictionFollower:
+        """A follower that starts at the newest state in the opposite direction, in which all points stick at first."""
+        other, here = super().turned(), self.here
+        assert here.friction is not None
+        r, _ = self._solid.contact.positions(here.state.x)
+        solver = self._solver(here.height, np.where(np.isnan(here.friction.rest), r, here.friction.rest))
+        state = evaluate(solver.scene, here.state.x)
+        assert state is not None
+        held = solver.hold(state)
+        touching, none = held.points.sticking | held.points.sliding, np.zeros_like(held.points.sliding)
+        held = replace(held, points=replace(held.points, sticking=touching, sliding=none))
+        move, _, stiffness = _by_height(solver, held, full_tangent(solver.scene, state), other.down)
+        rate = -state.filling.rate * float(state.by_volume @ move)
+        by_height = self._solid.expand(move)
+        other.path = [replace(here, by_height=by_height, stiffness=stiffness, pressure_rate=rate)]
+        return other
+
     def solve(self, height: float) -> PlateState | NewtonFailure:
         """State at `height` from the extrapolated path; not kept."""
         solver = self._solver(height, self._rest(height))
@@ -56,7 +73,7 @@ class FrictionFollower(PathFollower):
             solved = solver.minimise(self.here.state.x)
         if isinstance(solved, NewtonFailure):
             return solved
-        return friction_plate_state(solver, solved, self.here)
+        return friction_plate_state(solver, solved, self.here, self.down)
 
     def _rest(self, height: float) -> Array:
         """Radii at which points rest, or will touch: the gap before the contact's edge opens with the square of the

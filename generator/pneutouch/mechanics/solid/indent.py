@@ -145,17 +145,8 @@ def indent(
     Returns every state found and typed events; `complete` is False where an event ended the path before the depth.
     Raises NoConvergenceError only if not even first contact has an equilibrium.
     """
-    length, mu = solid.length, solid.mu
-    if free.pressure + press.ambient < -_ROUNDING * mu:
-        raise UnreachableLoadError(free.pressure, -press.ambient, "it lies below absolute vacuum")
-    gas = Gas.filled(free.pressure / mu, free.volume / length**3, press.ambient / mu, press.dead_volume / length**3)
-    touch, start = first_touch(solid, free, press.body, press.plate_diameter, press.plate_rim), free.unit.x
-    plate = touch.body
-    follower = (
-        FrictionFollower(solid, gas, plate, start, press.friction)
-        if press.friction
-        else PathFollower(solid, gas, plate, start)
-    )
+    touch = first_touch(solid, free, press.body, press.plate_diameter, press.plate_rim)
+    follower, length, plate = follower_of(solid, free, press, touch), solid.length, touch.body
     recorder = _Recorder(solid, free, touch, probe or StrainProbe(solid))
     states = [recorder.state(follower.here)]
     events = recorder.events(states[0], states[0], press)
@@ -171,6 +162,17 @@ def indent(
             break
     events += recorder.losses(follower.path[: len(states)], press.waves)
     return _finish(states, events, jump, recorder, press)
+
+
+def follower_of(solid: SolidModel, free: FreeState, press: PressSettings, touch: FirstTouch) -> PathFollower:
+    """The follower of a press with its gas shut in, at first contact."""
+    length, mu = solid.length, solid.mu
+    if free.pressure + press.ambient < -_ROUNDING * mu:
+        raise UnreachableLoadError(free.pressure, -press.ambient, "it lies below absolute vacuum")
+    gas = Gas.filled(free.pressure / mu, free.volume / length**3, press.ambient / mu, press.dead_volume / length**3)
+    if press.friction:
+        return FrictionFollower(solid, gas, touch.body, free.unit.x, press.friction)
+    return PathFollower(solid, gas, touch.body, free.unit.x)
 
 
 def _ended(events: list[SolidEvent], solid: SolidModel) -> bool:
