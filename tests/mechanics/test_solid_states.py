@@ -11,6 +11,7 @@ import pytest
 from pneutouch.errors import BeyondLimitError, InputError
 from pneutouch.evaluation.table_s1 import SHIPPED, compute_errors, fingerprint, sensitivity_error
 from pneutouch.mechanics import predict
+from pneutouch.mechanics.solid.base_contact import RigidBase
 from pneutouch.spec.material import Material
 from pneutouch.spec.quantity import Quantity
 from tests.mechanics.test_contact import PAPER
@@ -157,3 +158,26 @@ def test_shapes_lie_above_the_base_and_under_the_plate(paper):
 def test_poisson_ratio_of_a_half_is_refused():
     with pytest.raises(InputError, match=r"poisson_ratio = 0\.5"):
         predict("x", PAPER.replace(poisson_ratio=0.5), [0.0])
+
+
+def test_a_wall_on_its_base_is_stated_and_changes_the_deep_press_alone():
+    base = RigidBase(opening=1.0)
+    on_base = predict("paper", PAPER.replace(base=base), [0.0])
+    through = predict("paper", PAPER, [0.0])
+    events = [{event.kind for event in one.states[0].events} for one in (on_base, through)]
+    assert events[0] - events[1] == {"wall on its base"} and events[1] - events[0] == {"wall below the base plane"}
+    # Extrapolated from meshes of up to 128 x 8 cells over the same depth: docs/accuracy.md.
+    assert on_base.states[0].figures.sensitivity_kPa_per_N == pytest.approx(2.3218, rel=0.002)
+    assert any("lies down" in line for line in on_base.assumptions)
+    assert not any("lies down" in line for line in through.assumptions)
+    with pytest.raises(InputError, match="lies down on its base"):
+        predict("paper", PAPER.replace(base=base), [0.0], model="atlas")
+
+
+def test_the_flange_of_a_printed_rim_carries_the_wall():
+    sensor = PAPER.replace(flange=(2.25, 2.25))
+    found = [predict("paper", one, [0.0]).states[0] for one in (sensor.replace(base=RigidBase()), sensor)]
+    assert "wall on its base" in {event.kind for event in found[0].events}
+    # Without it the wall passes through the flange: docs/accuracy.md.
+    assert found[0].figures.sensitivity_kPa_per_N == pytest.approx(2.366, rel=0.003)
+    assert found[1].figures.sensitivity_kPa_per_N > 1.05 * found[0].figures.sensitivity_kPa_per_N

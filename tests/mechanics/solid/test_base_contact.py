@@ -46,7 +46,10 @@ def _sunk(base, arc=12):
     return SolidModel(replace(mesh, nodes=mesh.nodes - [0.0, 2.5]), neo_hookean(0.17), base=base)
 
 
-@pytest.mark.parametrize("base", [RigidBase(), RigidBase(opening=9.1, flange=10.65)])
+BASES = [RigidBase(), RigidBase(opening=9.1, flange=10.65), RigidBase(ring=10.2, ring_height=0.4)]
+
+
+@pytest.mark.parametrize("base", BASES)
 def test_gradient_and_tangent_are_derivatives_of_the_energy(base):
     solid = _sunk(base)
     rng = np.random.default_rng(3)
@@ -124,6 +127,23 @@ def test_the_wall_lies_down_and_is_not_let_through():
     assert run.states[-1].force > 1.02 * press(paper(base=None)).states[-1].force
 
 
+def test_a_ring_holds_the_wall_that_bulges_out():
+    """A thin wall in a ring that opens at 45 degrees from 11 mm to a height of 2.5 mm."""
+    found = {}
+    for base in (RigidBase(), RigidBase(ring=11.0, ring_height=2.5)):
+        solid = SolidModel(dome(9.25, 0.6), neo_hookean(0.17), base=base)
+        run = press(solid, 0.0)
+        r, z = solid.contact.outline(run.states[-1].positions)
+        found[base.ring] = (np.where(z < 2.0, r - 11.0 - z, -np.inf).max(), run)
+    free, held = found[0.0], found[11.0]
+    # Between the points where the contact is counted, the wall bends through the cone by a hundredth of itself at most.
+    assert free[0] > 0.9 and held[0] < 1e-2 * 0.6
+    assert held[1].complete and held[1].column("penetration").max() < 1e-3 * 0.6
+    early = held[1].column("indentation") < 2.0
+    assert np.array_equal(held[1].column("force")[early], free[1].column("force")[early])
+    assert held[1].states[-1].base_force > 1.2 * free[1].states[-1].base_force
+
+
 def test_before_the_wall_lies_down_the_base_changes_nothing():
     with_base, without = press(paper(), 0.022, 5.0), press(paper(base=None), 0.022, 5.0)
     assert with_base.column("base_force").max() == 0.0
@@ -151,7 +171,7 @@ def test_the_inner_wall_rests_on_the_base_inside(opening):
 
 
 def test_a_base_of_no_size_is_refused():
-    for wrong in ({"opening": -1.0}, {"flange": np.nan}):
+    for wrong in ({"opening": -1.0}, {"flange": np.nan}, {"ring_height": np.inf}):
         with pytest.raises(ValueError, match="must be finite"):
             RigidBase(**wrong)
 

@@ -20,18 +20,23 @@ _POINTS = 3
 
 @dataclass(frozen=True)
 class RigidBase:
-    """The plane z = 0 on which the dome stands, in mm.
+    """The plane z = 0 on which the dome stands, and a ring around it that opens upwards at 45 degrees; in mm.
 
     opening: radius of the hole in it inside the dome.  flange: outer radius of a flange that is part of the solid and
     on which the outer wall therefore does not meet this base; 0 where the wall itself is clamped at z = 0.
+    ring, ring_height: radius of the ring's inner edge at z = 0, and its height; no ring at height 0.
     """
 
     opening: float = 0.0
     flange: float = 0.0
+    ring: float = 0.0
+    ring_height: float = 0.0
 
     def __post_init__(self) -> None:
-        if not (np.isfinite([self.opening, self.flange]).all() and self.opening >= 0.0 and self.flange >= 0.0):
-            raise ValueError(f"opening {self.opening} and flange {self.flange} must be finite and not negative")
+        sizes = vars(self)
+        if not all(np.isfinite(size) and size >= 0.0 for size in sizes.values()):
+            stated = ", ".join(f"{name} {size}" for name, size in sizes.items())
+            raise ValueError(f"{stated}: the sizes of a base must be finite and not negative")
 
 
 class _Body(Protocol):
@@ -79,7 +84,9 @@ class BaseContact:
 
     def __init__(self, solid: _Body, base: RigidBase) -> None:
         length = solid.length
-        self._outer = _Face(solid, solid.mesh.outer, base.flange / length)
+        self._outer = _Face(
+            solid, solid.mesh.outer, base.flange / length, (base.ring / length, base.ring_height / length)
+        )
         self._inner = _Face(solid, solid.mesh.inner, base.opening / length)
         self._solid = solid
 
@@ -127,31 +134,44 @@ class _Meeting:
 
 
 class _Face:
-    """The quadrature points of one face of the wall, and the base that they can meet: flat from ``start`` outward."""
+    """The quadrature points of one face of the wall, and the base that they can meet: flat from ``start`` outward, with
+    a ``ring``: radius and height (R0)."""
 
-    def __init__(self, solid: _Body, edges: Index, start: float) -> None:
+    def __init__(self, solid: _Body, edges: Index, start: float, ring: tuple[float, float] = (0.0, 0.0)) -> None:
         self.edges, self.start, self.stiffness = edges, start, solid.contact.stiffness
+        self._ring, self._high = ring
         x, w = np.polynomial.legendre.leggauss(_POINTS)
         self.shape, slope = line_shapes(x, edges.shape[1])
         line = solid.rest[edges]
         measure = np.hypot(line[..., 0] @ slope.T, line[..., 1] @ slope.T) * w
         self.weight = 2.0 * np.pi * (line[..., 0] @ self.shape.T) * measure
         self._pairs = (self.shape[:, :, None] * self.shape[:, None, :]).reshape(_POINTS, -1)
-        # An edge of the base is as round as the longest cell, as the rim of a plate is.
+        # Edges and corners of the base are as round as the longest cell, as the rim of a plate is.
         self._rim = solid.contact.longest
 
     def meet(self, nodes: Array) -> _Meeting | None:
         """Points below the surface of the base at positions (n_nodes, 2); None where there are none."""
         line = nodes[self.edges]
         z = line[..., 1] @ self.shape.T
-        if z.min() >= 0.0:
+        if z.min() >= self._high:
             return None
         r = line[..., 0] @ self.shape.T
-        short = np.maximum(self.start - r, 0.0)
-        traction = np.maximum(-self.stiffness * (z + 0.5 * short**2 / self._rim), 0.0)
-        if not traction.any():
-            return None
-        return _Meeting(r, traction, short / self._rim, np.where(short > 0.0, -1.0 / self._rim, 0.0))
+        height, slope, curve = self._surface(r)
+        traction = np.maximum(self.stiffness * (height - z), 0.0)
+        return _Meeting(r, traction, slope, curve) if traction.any() else None
+
+    def _surface(self, r: Array) -> tuple[Array, Array, Array]:
+        """Height of the base at radii r and its first two derivatives."""
+        rim, short = self._rim, np.maximum(self.start - r, 0.0)
+        height, slope, curve = -0.5 * short**2 / rim, short / rim, np.where(short > 0.0, -1.0 / rim, 0.0)
+        if self._high:
+            for corner, sign in ((self._ring, 1.0), (self._ring + self._high, -1.0)):
+                along = np.clip((r - corner) / rim + 0.5, 0.0, 1.0)
+                beyond = np.maximum(r - corner - 0.5 * rim, 0.0)
+                height = height + sign * (0.5 * rim * along**2 + beyond)
+                slope = slope + sign * along
+                curve = curve + sign * np.where((along > 0.0) & (along < 1.0), 1.0 / rim, 0.0)
+        return height, slope, curve
 
     def energy(self, meeting: _Meeting) -> float:
         return float(np.vdot(self.weight, meeting.traction**2)) / (2.0 * self.stiffness)
