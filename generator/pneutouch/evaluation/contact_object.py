@@ -9,6 +9,7 @@ import numpy as np
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.mechanics import Sensor, SensorPrediction
+from pneutouch.mechanics.solid.base_contact import RigidBase
 from pneutouch.mechanics.solid.indenter import (
     CELLS_PER_RADIUS,
     ObjectShapeError,
@@ -21,6 +22,8 @@ from pneutouch.mechanics.solid.indenter import (
     ring,
 )
 from pneutouch.mechanics.solid_states import MOST_CELLS, object_cells
+from pneutouch.parts import Assembly
+from pneutouch.spec.part import ClampedFlange
 
 _AT_ONCE = 1e-6
 """Share of R0 within which the contact reaches an edge at first touch."""
@@ -34,6 +37,16 @@ _MAKE = {
     "ring": lambda sizes: ring(sizes["ring_radius_mm"], sizes["ring_section_radius_mm"]),
     "profile": lambda sizes: profile([ProfileVertex(*corner) for corner in sizes["profile_mm"]]),
 }
+
+
+def rigid_base(assembly: Assembly) -> RigidBase | None:
+    """What the wall of a design can lie down on, from the connector's faces; None where it passes through."""
+    layout, seat = assembly.layout, assembly.scene.seat
+    if not assembly.scene.design.contact.base:
+        return None
+    if isinstance(seat, ClampedFlange):
+        return RigidBase(layout.channel_radius, ring=layout.ring_inner, ring_height=seat.ring_thickness)
+    return RigidBase(layout.channel_radius)
 
 
 def contact_object(scene: ResolvedDesign) -> RigidObject | None:

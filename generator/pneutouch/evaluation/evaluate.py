@@ -12,7 +12,7 @@ import numpy as np
 from pneutouch.catalogue import DesignSource, Library, ResolvedDesign, load_scene
 from pneutouch.errors import BeyondLimitError, InputError, nearest
 from pneutouch.evaluation.calibrated import assumption, calibrated_error, calibrated_sensor, check_options, unmeasured
-from pneutouch.evaluation.contact_object import check_first_touch, check_object, contact_object
+from pneutouch.evaluation.contact_object import check_first_touch, check_object, contact_object, rigid_base
 from pneutouch.evaluation.table_s1 import sensitivity_error
 from pneutouch.mechanics import Sensor, SensorPrediction, predict
 from pneutouch.mechanics.models import DEFAULT_TOLERANCE
@@ -216,6 +216,7 @@ def sensor_of(assembly: Assembly, clamp: str = "base") -> Sensor:
         body=contact_object(assembly.scene),
         plate_rim=design.contact.plate_rim_mm,
         friction=design.contact.friction,
+        base=rigid_base(assembly),
         flange=(layout.flange_width, layout.flange_thickness) if clamp == "flange" else None,
     )
     return calibrated_sensor(sensor, assembly.scene)

@@ -92,6 +92,11 @@ class ContactTable(Table):
         allow_inf_nan=True,
         description="Coefficient of friction between sensor and object, from 0 to 10; inf for a surface that grips.",
     )
+    base: bool = Field(
+        default=False,
+        description="Whether the wall lies down on the connector next to its clamp and inside, without friction, in "
+        "place of passing through; the solid alone answers it.",
+    )
 
     @model_validator(mode="after")
     def _has_its_sizes(self) -> ContactTable:

@@ -82,6 +82,14 @@ def _check_contact(design: DesignFile, where: str) -> None:
             value=contact.object,
             remedy="select with a plate, then vary wall and radius of the selected design under the object by `sweep`",
         )
+    if contact.base:
+        raise InputError(
+            "the search is made with the atlas, whose domes pass through their base plane next to the clamp",
+            file=where,
+            key="contact.base",
+            value=True,
+            remedy="select with contact.base = false, then predict the selected design with true",
+        )
 
 
 def requested_pair(target: Target, where: str, printer: Printer, library: Library) -> ResinPair | None:

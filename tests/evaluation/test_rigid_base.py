@@ -1,0 +1,44 @@
+"""The key contact.base of a design: what the wall lies down on."""
+
+import numpy as np
+import pytest
+
+from pneutouch.errors import InputError
+from pneutouch.evaluation.evaluate import evaluate, sensor_of
+from pneutouch.mechanics.solid.base_contact import RigidBase
+from pneutouch.spec.target import Target
+from pneutouch.workflows.select.base import base_scene
+
+ON = {"contact.base": True}
+
+
+def test_the_base_is_the_connector_s(library):
+    plain = evaluate("agilus-dome", {"pneumatics.driving_pressures_kPa": [0.0]}, model="membrane")
+    assert plain.sensor.dome.base is None
+    found = evaluate("agilus-dome", {"pneumatics.driving_pressures_kPa": [0.0], **ON})
+    assert found.sensor.dome.base == RigidBase(found.assembly.layout.channel_radius)
+    assert any("lies down" in line for line in found.prediction.assumptions)
+
+
+def test_a_clamping_ring_is_part_of_the_base():
+    changes = {"connector.seat": "clamped-flange-M2", "pneumatics.driving_pressures_kPa": [0.0]}
+    assembly = evaluate("paper-dome", changes, model="membrane").assembly
+    scene = evaluate("paper-dome", {**changes, **ON}, model="auto").assembly
+    base, layout = sensor_of(scene).dome.base, scene.layout
+    assert sensor_of(assembly).dome.base is None
+    assert base.ring == layout.ring_inner and base.ring_height == scene.scene.seat.ring_thickness
+    # the ring's cone, drawn by the parts, begins and ends where the base has it
+    cone = next(piece for piece in scene.solid("ring").meridian.pieces if piece.tag == "ring cone")
+    ends = sorted([cone.start, cone.end])
+    assert np.allclose(ends, [(base.ring, 0.0), (base.ring + base.ring_height, base.ring_height)])
+
+
+def test_the_atlas_does_not_answer_and_no_search_is_made(library):
+    with pytest.raises(InputError, match="lies down on its base"):
+        evaluate("paper-dome", ON, model="atlas")
+    target = Target.model_validate(
+        {"target": {"sensitivity_kPa_per_N": 1.9}, "setting": {"assignments": ["contact.base=true"]}}
+    )
+    with pytest.raises(InputError, match="pass through their base plane") as refused:
+        base_scene(target, "target.toml", library)
+    assert refused.value.key == "contact.base" and "predict" in refused.value.remedy
