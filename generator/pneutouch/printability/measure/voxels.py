@@ -60,32 +60,31 @@ def fill(parts: list[Array], frame: Array, most: int = MOST) -> PartVoxels:
     origin = low - pitch * np.array([*_OFF, 0.5])
     label = np.zeros(shape, dtype=np.int8)
     for number, corners in enumerate(turned, start=1):
-        label[_filled((corners - origin) / pitch, shape)] = number
+        np.copyto(label, number, where=_filled((corners - origin) / pitch, shape))
     return PartVoxels(label, pitch, origin, frame)
 
 
 def _filled(corners: Array, shape: tuple[int, ...]) -> Flags:
     """Cubes with their centres at whole numbers that lie inside, by counting the crossings below each."""
+    a, b, c = np.moveaxis(corners, 1, 0)
+    (ab_x, ab_y, ab_z), (ac_x, ac_y, ac_z) = (b - a).T, (c - a).T
+    twice = ab_x * ac_y - ac_x * ab_y
     flat = corners[:, :, :2]
     low = np.ceil(flat.min(axis=1)).astype(np.int64)
     count = np.maximum(np.floor(flat.max(axis=1)).astype(np.int64) - low + 1, 0)
-    number = count[:, 0] * count[:, 1]
+    number = np.where(twice != 0, count[:, 0] * count[:, 1], 0)
     face = np.repeat(np.arange(len(corners)), number)
     serial = np.arange(len(face)) - np.repeat(np.cumsum(number) - number, number)
-    column = low[face] + np.column_stack([serial // count[face, 1], serial % count[face, 1]])
-    a, b, c = np.moveaxis(corners, 1, 0)
-    twice = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
-    keep = twice[face] != 0
-    face, column = face[keep], column[keep]
-    dx, dy = (column - a[face, :2]).T
-    along, over = (b - a)[face], (c - a)[face]
-    s = (dx * over[:, 1] - dy * over[:, 0]) / twice[face]
-    t = (along[:, 0] * dy - along[:, 1] * dx) / twice[face]
-    hit = (s >= 0) & (t >= 0) & (s + t <= 1)
-    face, column, s, t = face[hit], column[hit], s[hit], t[hit]
-    height = a[face, 2] + s * (b - a)[face, 2] + t * (c - a)[face, 2]
+    x, y = np.divmod(serial, count[face, 1])
+    x, y = x + low[face, 0], y + low[face, 1]
+    dx, dy = x - a[face, 0], y - a[face, 1]
+    s = (dx * ac_y[face] - dy * ac_x[face]) / twice[face]
+    t = (ab_x[face] * dy - ab_y[face] * dx) / twice[face]
+    hit = np.flatnonzero((s >= 0) & (t >= 0) & (s + t <= 1))
+    face, s, t = face[hit], s[hit], t[hit]
+    height = a[face, 2] + s * ab_z[face] + t * ac_z[face]
     layer = np.clip(np.ceil(height).astype(np.int64), 0, shape[2] - 1)
-    cell = np.ravel_multi_index((column[:, 0], column[:, 1], layer), shape)
+    cell = np.ravel_multi_index((x[hit], y[hit], layer), shape)
     # Going up, a face that looks down is the entry.
     steps = np.bincount(cell, weights=-np.sign(twice[face]), minlength=int(np.prod(shape)))
-    return np.cumsum(steps.reshape(shape), axis=2) > 0.5
+    return np.cumsum(steps.astype(np.int8).reshape(shape), axis=2, dtype=np.int8) > 0

@@ -1,11 +1,10 @@
 """Bodies must not overlap, and must meet where they are bonded. Measured on the meshes."""
 
 from itertools import combinations
-from typing import Any
 
 import numpy as np
 
-from pneutouch.arrays import Array
+from pneutouch.arrays import Array, Indices
 from pneutouch.body import Body
 from pneutouch.printability.finding import Excess, Finding
 from pneutouch.printability.sizes import spot
@@ -67,17 +66,26 @@ def overlap_volume(one: Body, other: Body) -> float:
 
 def shared_area(one: Body, other: Body) -> float:
     """Area in mm2 of the triangles that both bodies have, facing in opposite directions."""
-    first, second = _rows(one), _rows(other)
-    both = np.concatenate([first, second])
-    _, number = np.unique(both, axis=0, return_inverse=True)
-    common = np.isin(number.reshape(-1)[len(first) :], number.reshape(-1)[: len(first)])
+    first, second = _whole(one), _whole(other)
+    # What both have lies where their boxes meet.
+    low = np.maximum(first.min(axis=(0, 1)), second.min(axis=(0, 1)))
+    high = np.minimum(first.max(axis=(0, 1)), second.max(axis=(0, 1)))
+    near = [np.flatnonzero(((corners >= low) & (corners <= high)).all(axis=(1, 2))) for corners in (first, second)]
+    rows = np.concatenate([_ordered(first[near[0]]), _ordered(second[near[1]])])
+    _, number = np.unique(rows, axis=0, return_inverse=True)
+    number = number.reshape(-1)
+    common = near[1][np.isin(number[len(near[0]) :], number[: len(near[0])])]
     a, b, c = np.moveaxis(other.corners[common], 1, 0)
     return float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
 
 
-def _rows(body: Body) -> Any:
-    """Each triangle as nine whole numbers, its corners in order of size, (m, 9)."""
+def _whole(body: Body) -> Indices:
+    """Corners of the triangles in whole numbers, (m, 3, 3)."""
     corners: Array = np.rint(body.corners / _SAME)
-    whole = corners.astype(np.int64)
+    return corners.astype(np.int64)
+
+
+def _ordered(whole: Indices) -> Indices:
+    """Each triangle's corners in order of size, (m, 9)."""
     order = np.lexsort((whole[:, :, 2], whole[:, :, 1], whole[:, :, 0]), axis=1)
     return np.take_along_axis(whole, order[:, :, None], axis=1).reshape(-1, 9)
