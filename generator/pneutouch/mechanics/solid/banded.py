@@ -1,8 +1,11 @@
 """Banded storage of a symmetric matrix assembled from blocks, its factorisations and its inertia."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import lapack
 
 from pneutouch.arrays import Array, Index
@@ -17,7 +20,7 @@ class AssemblyPattern:
 
     def __init__(self, tables: list[Index], size: int, width: int = 0) -> None:
         self.size = size
-        rows, cols, flat, offset = [], [], [], 0
+        rows, cols, self._entries = [], [], []
         for table in tables:
             d = table.shape[1]
             i = np.broadcast_to(table[:, :, None], (table.shape[0], d, d)).ravel()
@@ -25,32 +28,36 @@ class AssemblyPattern:
             keep = np.flatnonzero((i >= j) & (j >= 0))
             rows.append(i[keep])
             cols.append(j[keep])
-            flat.append(keep + offset)
-            offset += i.size
-        i, j, self._entries = np.concatenate(rows), np.concatenate(cols), np.concatenate(flat)
+            self._entries.append(keep)
+        i, j = np.concatenate(rows), np.concatenate(cols)
         self.width = max(width, int((i - j).max()))
-        self._places, self._number = np.unique((i - j) + j * (self.width + 1), return_inverse=True)
-        place = np.concatenate([t.ravel() for t in tables])
-        self._free = np.flatnonzero(place >= 0)
-        self._unknown = place[self._free]
+        self._place = (i - j) + j * (self.width + 1)
+        self._places, self._number = np.unique(self._place, return_inverse=True)
+        self._free = [np.flatnonzero(table.ravel() >= 0) for table in tables]
+        self._unknown = _gathered(tables, self._free)
 
     def matrix(self, blocks: list[Array]) -> Array:
         """Lower band (width + 1, size), Fortran ordered, of the sum of blocks."""
-        return self._added(np.zeros(self.size * (self.width + 1)), blocks)
+        entries = _gathered(blocks, self._entries)
+        flat = np.asarray(np.bincount(self._place, entries, self.size * (self.width + 1)), dtype=np.float64)
+        return flat.reshape(self.size, self.width + 1).T
 
     def added(self, band: Array, blocks: list[Array]) -> Array:
         """A band, as `matrix` gives it, with the sum of blocks added; a new one."""
-        return self._added(band.T.flatten(), blocks)
-
-    def _added(self, flat: Array, blocks: list[Array]) -> Array:
-        entries = np.concatenate([b.ravel() for b in blocks])[self._entries]
-        flat[self._places] += np.bincount(self._number, entries)
+        flat = band.T.flatten()
+        flat[self._places] += np.bincount(self._number, _gathered(blocks, self._entries))
         return flat.reshape(self.size, self.width + 1).T
 
     def vector(self, blocks: list[Array]) -> Array:
         """Sum (size,) of block vectors, each (n_blocks, d)."""
-        entries = np.concatenate([b.ravel() for b in blocks])[self._free]
+        entries = _gathered(blocks, self._free)
         return np.asarray(np.bincount(self._unknown, entries, self.size), dtype=np.float64)
+
+
+def _gathered(blocks: Sequence[NDArray[Any]], rows: Sequence[Index]) -> NDArray[Any]:
+    """Entries of each family's blocks, one family after the other."""
+    parts = [block.ravel().take(row) for block, row in zip(blocks, rows, strict=True)]
+    return parts[0] if len(parts) == 1 else np.concatenate(parts)
 
 
 _INVERSE_ITERATIONS = 12
