@@ -4,17 +4,20 @@ from pathlib import Path
 from typing import Any
 
 from pneutouch.cli.table import table_text
+from pneutouch.rounding import tenths_below
 
 _MOST = 24
 """Rows that are printed: what a screen shows."""
 
 _FIGURES = {
-    "sensitivity_kPa_per_N": "S kPa/N",
-    "stiffness_N_per_mm": "N/mm",
-    "force_range_high_N": "N at the end",
-    "range_end_mm": "range mm",
-    "limit_point_kPa": "limit kPa",
+    "sensitivity_kPa_per_N": ("S kPa/N", 3),
+    "stiffness_N_per_mm": ("N/mm", 3),
+    "force_range_high_N": ("N at the end", 2),
+    "range_end_mm": ("range mm", 2),
+    "limit_point_kPa": ("limit kPa", 1),
+    "rated_pressure_kPa": ("rated kPa", 1),
 }
+"""Columns with their decimals, as `predict` shows the same figures."""
 
 
 def sweep_text(rows: list[dict[str, Any]], table: Path) -> str:
@@ -23,7 +26,7 @@ def sweep_text(rows: list[dict[str, Any]], table: Path) -> str:
         return "no state"
     names = list(rows[0])
     swept = names[: names.index("driving_pressure_kPa")]
-    head = [*swept, "kPa", "S kPa/N", "interval (k = 2)", *list(_FIGURES.values())[1:], "status"]
+    head = [*swept, "kPa", "S kPa/N", "interval (k = 2)", *(name for name, _ in list(_FIGURES.values())[1:]), "status"]
     shown = [_cells(row, swept) for row in rows[:_MOST]]
     text = table_text(head, shown)
     left = len(rows) - len(shown)
@@ -32,11 +35,18 @@ def sweep_text(rows: list[dict[str, Any]], table: Path) -> str:
 
 def _cells(row: dict[str, Any], swept: list[str]) -> list[str]:
     low, high = row["sensitivity_low_kPa_per_N"], row["sensitivity_high_kPa_per_N"]
-    sensitivity, *others = (_number(row[name]) for name in _FIGURES)
-    interval = "-" if low is None else f"{low:.3g} to {high:.3g}"
-    fields = [_number(row[name]) for name in (*swept, "driving_pressure_kPa")]
+    sensitivity, *others = (_figure(name, row[name]) for name in _FIGURES)
+    interval = "-" if low is None else f"{low:.2f} to {high:.2f}"
+    fields = [_field(row[name]) for name in (*swept, "driving_pressure_kPa")]
     return [*fields, sensitivity, interval, *others, row["status"]]
 
 
-def _number(value: Any) -> str:
-    return "-" if value is None else f"{value:.4g}" if isinstance(value, float) else str(value)
+def _figure(name: str, value: float | None) -> str:
+    """A figure with its decimals; a rated pressure is rounded down, so that what is shown is never above it."""
+    if value is None:
+        return "-"
+    return f"{tenths_below(value) if name == 'rated_pressure_kPa' else value:.{_FIGURES[name][1]}f}"
+
+
+def _field(value: Any) -> str:
+    return "-" if value is None else f"{value:g}" if isinstance(value, float) else str(value)

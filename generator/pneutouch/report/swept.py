@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pneutouch.arrays import Array
+from pneutouch.report.bands import band, band_key
 from pneutouch.report.style import INK, LINES, MARKERS, MUTED, figure, svg
 
 if TYPE_CHECKING:
@@ -183,12 +184,11 @@ def _lines(ax: Axes, swept: SweptFigure, span: tuple[float, float]) -> dict[str,
         value, low, high = (a[:, n] for a in _arrays(swept))
         ax.plot(x, value, ls=style, lw=1.2, zorder=4, **look)
         if axis.numeric:
-            ax.fill_between(x, low, high, fc=_TONES[n], alpha=0.12, ec="none", zorder=1)
-            for end in (low, high):
-                ax.plot(x, end, color=_TONES[n], lw=0.4, ls=LINES[n % len(LINES)], zorder=2)
+            band(ax, x, low, high, n, _TONES[n])
         else:
             ax.vlines(x, low, high, color=_TONES[n], lw=0.9, zorder=3)
-        handles[_plain(lines.text(n))] = Line2D([], [], ls=style, lw=1.2, **look)
+        line = Line2D([], [], ls=style, lw=1.2, **look)
+        handles[_plain(lines.text(n))] = (band_key(n, _TONES[n]), line) if axis.numeric else line
     if not axis.numeric:
         ax.set_xticks(range(len(axis.values)), [str(v) for v in axis.values])
         ax.tick_params(axis="x", labelrotation=30 if len(axis.values) > 4 else 0)

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import csv
 import io
+import re
 
 import numpy as np
 import pytest
 
+from pneutouch.cli.sweep_text import sweep_text
 from pneutouch.errors import InputError
+from pneutouch.report.bands import HATCHES
 from pneutouch.report.swept import SweptAxis, SweptFigure, pictures
 from pneutouch.workflows.sweep import plan_of_file, sweep
 from pneutouch.workflows.sweep.companions import swept_figure, table_csv, table_rows, write_companions
@@ -110,3 +113,29 @@ def test_a_dataset_that_lacks_a_column_is_refused_by_its_name(swept, tmp_path):
     with pytest.raises(InputError, match=r"x\.nc: the dataset is damaged, .*r_squared"):
         write_companions(out)
     assert [path.name for path in tmp_path.iterdir()] == ["x.nc"]
+
+
+def test_bands_of_several_lines_are_hatched_apart():
+    """In grayscale shades of one lightness run together: each band has a hatch of its own, in the legend too."""
+    numbers, names = SweptAxis("a_mm", "a", "mm", (1.0, 2.0)), SweptAxis("resin", "resin", "", ("A", "B", "C"))
+    value = np.array([[1.0, 1.1, 1.2], [2.0, 2.1, 2.2]])
+    text, _ = pictures(SweptFigure("S", (numbers, names), value, 0.8 * value, 1.2 * value))["over-a_mm"]
+    patterns = re.findall(r'<pattern id="(h[0-9a-f]+)".*?<path d="([^"]*)"', text, re.DOTALL)
+    # Three bands and their entries in the legend, whose hatches are closer.
+    assert len(patterns) == len(set(patterns)) == len({lines for _, lines in patterns}) == 6
+    assert {name for name, _ in patterns} == set(re.findall(r"url\(#(h[0-9a-f]+)\)", text))
+    assert len(set(HATCHES)) == 6
+
+
+def test_the_printed_table_has_the_rated_pressure_and_one_number_of_decimals_a_column(swept):
+    rows = table_rows(load(swept))
+    head, *lines = sweep_text(rows, swept).splitlines()
+    names = re.split(" {2,}", head)
+    assert names[-4:] == ["range mm", "limit kPa", "rated kPa", "status"]
+    shown = [dict(zip(names, re.split(" {2,}", line), strict=True)) for line in lines[: len(rows)]]
+    for name, decimals in (("S kPa/N", 3), ("N/mm", 3), ("range mm", 2), ("limit kPa", 1), ("rated kPa", 1)):
+        cells = [row[name] for row in shown if row[name] != "-"]
+        assert cells and all(len(cell.partition(".")[2]) == decimals for cell in cells), name
+    for row, cells in zip(rows, shown, strict=False):
+        if row["rated_pressure_kPa"] is not None:
+            assert 0 <= row["rated_pressure_kPa"] - float(cells["rated kPa"]) < 0.1

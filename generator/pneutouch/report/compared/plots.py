@@ -17,6 +17,7 @@ from pneutouch.evaluation.comparison_record import (
     RowRecord,
 )
 from pneutouch.parts import Assembly
+from pneutouch.report.bands import band
 from pneutouch.report.compared.words import labels
 from pneutouch.report.section import section
 from pneutouch.report.style import ACCENT, INK, LINES, MARKERS, MUTED, figure, svg
@@ -120,10 +121,7 @@ def _draw(
             continue
         ax.plot(x, y, zorder=3, **_look(k))
         if ends is not None:
-            tone = _TONES[k % len(_TONES)]
-            ax.fill_between(x, ends[0] * y, ends[1] * y, fc=tone, alpha=0.13, ec="none", zorder=1)
-            for end in ends:
-                ax.plot(x, end * y, color=tone, lw=0.4, ls=LINES[k % len(LINES)], zorder=2)
+            band(ax, x, ends[0] * y, ends[1] * y, k, _TONES[k % len(_TONES)])
 
 
 def _legend(drawn: Figure, document: ComparisonRecord, names: Sequence[str]) -> None:
