@@ -85,7 +85,7 @@ def test_no_interval_reaches_below_no_dead_volume(observations, scene):
     """Few runs of a sensor that has next to none: the interval ends at zero."""
     truth = sensor_of(assemble(scene)).replace(break_stretch=None, shear_modulus=0.2, dead_volume=5.0)
     seen = Observations(curves(truth, (0.0, 12.0), 2, np.random.default_rng(5), 0.02))
-    (_, dead) = calibrate(seen, scene, ("modulus", "dead-volume"), priors=False).estimates
+    (_, dead) = calibrate(seen, scene, ("modulus", "dead-volume"), priors=False).document["estimates"]
     assert dead["on_bound"] or dead["interval_95"][0] == 0.0
 
 
@@ -102,8 +102,8 @@ def test_the_file_holds_the_fit_and_what_it_was_made_for(found, place):
     kept = place.load("calibrations", "dome-A1")
     assert (kept.source.digest, kept.source.curves, kept.source.injections) == ("ab" * 32, 9, 1)
     assert (kept.design.name, kept.design.material, kept.design.wall_thickness_mm) == ("paper-dome", "TangoPlus", 1.5)
-    assert kept.covered == tuple(estimate["key"] for estimate in found.estimates)
-    for k, estimate in enumerate(found.estimates):
+    assert kept.covered == tuple(estimate["key"] for estimate in found.document["estimates"])
+    for k, estimate in enumerate(found.document["estimates"]):
         assert kept.value(estimate["key"]) == pytest.approx(estimate["value"], rel=1e-6)
         low, high = np.array(estimate["interval_95"])
         spread = np.sqrt(kept.covariance[k][k])
@@ -171,8 +171,8 @@ def test_an_estimate_without_interval_is_no_calibration(scene, tmp_path):
         for c in curves(truth, (0.0,), 3, np.random.default_rng(1), 0.002)
     )
     found = calibrate(Observations(soft), scene, ("modulus",), priors=False)
-    assert found.estimates[0]["on_bound"]
-    assert found.estimates[0]["interval_95"] is None
+    assert found.document["estimates"][0]["on_bound"]
+    assert found.document["estimates"][0]["interval_95"] is None
     with pytest.raises(InputError, match="has no interval") as refused:
         prepare(found, "soft", tmp_path, SOURCE)
     assert (refused.value.key, refused.value.remedy) == ("fit", "leave out modulus")

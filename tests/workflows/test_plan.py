@@ -17,7 +17,8 @@ from pneutouch.spec.campaign import Campaign, Rig
 from pneutouch.spec.read import validate
 from pneutouch.units import KPA, ML
 from pneutouch.workflows.plan.expected import curve_warnings, injection, leak_limit, points, travel_warnings
-from pneutouch.workflows.plan.run import make_plan, plated_tests, rig_of, steps_of, write_plan
+from pneutouch.workflows.plan.run import make_plan, plated_tests, rig_of, write_plan
+from pneutouch.workflows.plan.steps import steps_of
 
 R0 = 9.25
 PLATED = ("steps", "saturation", "loop", "relaxation")

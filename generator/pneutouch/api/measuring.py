@@ -138,7 +138,7 @@ class FittedSensor(Result):
     """
 
     def __init__(self, outcome: CalibrationOutcome) -> None:
-        super().__init__("Calibration", outcome.document)
+        super().__init__("Calibration", dict(outcome.document))
         self._outcome = outcome
         self.name: str | None = outcome.document["calibration"]
 

@@ -1,11 +1,10 @@
 """A calibration as text for people."""
 
-from typing import Any
-
 from pneutouch.cli.text import columns
+from pneutouch.workflows.calibrate.record import EstimateRecord, OutcomeRecord, ResponseRecord
 
 
-def calibration_text(document: dict[str, Any]) -> str:
+def calibration_text(document: OutcomeRecord) -> str:
     """The estimates and the design's values, the goodness of the fit, notes, and the files written."""
     rows = [
         [e["key"], f"{e['value']:.4g}", _interval(e), f"designed {e['designed']:.4g}"] for e in document["estimates"]
@@ -28,7 +27,7 @@ def calibration_text(document: dict[str, Any]) -> str:
     return "\n\n".join(part for part in parts if part)
 
 
-def _response(response: list[dict[str, float]]) -> str:
+def _response(response: list[ResponseRecord]) -> str:
     if not response:
         return "no curves: the model's error in sensitivity stays that of the resin"
     head = ["kPa", "force times", "pressure rise times", "sensitivity", "error left in it"]
@@ -45,7 +44,7 @@ def _response(response: list[dict[str, float]]) -> str:
     return f"correction of the fitted model (errors are standard uncertainties):\n{columns(head, rows)}"
 
 
-def _interval(estimate: dict[str, Any]) -> str:
+def _interval(estimate: EstimateRecord) -> str:
     interval = estimate["interval_95"]
     if interval is None:
         return "on its bound, no interval" if estimate["on_bound"] else "no interval"

@@ -3,9 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
-
-import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.bench.calibrate import (
@@ -20,9 +17,8 @@ from pneutouch.bench.calibrate import (
 )
 from pneutouch.bench.calibrate.further import SuggestedTest
 from pneutouch.bench.calibrate.goodness import RunResiduals, SystematicDeviation, misses, residuals
-from pneutouch.bench.calibrate.identify import CorrelatedParameters, Identifiability, identify
+from pneutouch.bench.calibrate.identify import Identifiability, identify
 from pneutouch.bench.calibrate.notes import fit_notes
-from pneutouch.bench.calibrate.parameters import DEAD, KEYS, LOGARITHMIC, UNITS, outside_value
 from pneutouch.bench.calibrate.response import ResponseGap, response_gap
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.catalogue import ResolvedDesign
@@ -30,7 +26,17 @@ from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.parts import assemble
 from pneutouch.spec.campaign import Campaign, CampaignRun
-from pneutouch.units import KPA, ML
+from pneutouch.units import KPA
+from pneutouch.workflows.calibrate.document import (
+    correlated_record,
+    fit_document,
+    further_record,
+    held_out_record,
+    miss_record,
+    residual_record,
+    response_records,
+)
+from pneutouch.workflows.calibrate.record import CalibrationRecord
 
 
 @dataclass(frozen=True)
@@ -67,31 +73,20 @@ class Calibration:
         return [*self.notes, *fit_notes(self.fit, self.identified, self.further, self.misses, self.held_out)]
 
     @property
-    def estimates(self) -> list[dict[str, Any]]:
-        """One entry a fitted parameter: value, 95 % interval or None, prior; in the unit it leaves with."""
-        return [_estimate(self.fit, place) for place in range(len(self.fit.parameters.fitted))]
-
-    @property
-    def document(self) -> dict[str, Any]:
+    def document(self) -> CalibrationRecord:
         """The calibration as data."""
         return {
             "design": self.scene.name,
             "sensor": self.sensor,
             "campaign": self.title,
-            "runs": len(self.fit.observations.curves),
-            "injections": len(self.fit.observations.injections),
-            "driving_pressures_kPa": list(self.fit.observations.driving_pressures_kPa),
-            "ambient_pressure_kPa": self.fit.observations.ambient / KPA,
-            "estimates": self.estimates,
-            "correlation": _correlation(self.fit),
-            "fit": _goodness(self.fit),
-            "response": [] if self.gap is None else _response(self.gap),
-            "residuals": [_residual(run) for run in self.residuals],
-            "misses": [_miss(m) for m in self.misses],
-            "strongly_correlated": [_ambiguity(group) for group in self.identified.ambiguities],
+            **fit_document(self.fit),
+            "response": [] if self.gap is None else response_records(self.gap),
+            "residuals": [residual_record(run) for run in self.residuals],
+            "misses": [miss_record(miss) for miss in self.misses],
+            "strongly_correlated": [correlated_record(group) for group in self.identified.ambiguities],
             "unidentified": [NAMES[k] for k in self.identified.unseen],
-            "further_tests": [_further(self.fit, test) for test in self.further],
-            "held_out": [_held_out(one) for one in self.held_out],
+            "further_tests": [further_record(self.fit, test) for test in self.further],
+            "held_out": [held_out_record(one) for one in self.held_out],
             "notes": self.notes_for_reader,
         }
 
@@ -166,127 +161,3 @@ def _remarks(campaign: Campaign, scene: ResolvedDesign, sensor: str) -> list[str
             "design's resin gives the start and the prior of the modulus"
         )
     return fitted
-
-
-def _estimate(fitted: CalibrationFit, place: int) -> dict[str, Any]:
-    k = fitted.parameters.fitted[place]
-    at, half = float(fitted.solution.at[place]), float(fitted.half_width[place])
-    interval = None
-    if np.isfinite(half):
-        low = at - half if k != DEAD else max(at - half, 0.0)
-        interval = [outside_value(k, low), outside_value(k, at + half)]
-    prior_spread = float(fitted.parameters.prior_spread[k])
-    return {
-        "parameter": NAMES[k],
-        "key": KEYS[k],
-        "unit": UNITS[k],
-        "value": outside_value(k, at),
-        "interval_95": interval,
-        "on_bound": bool(fitted.solution.bound[place]),
-        "designed": outside_value(k, float(fitted.parameters.start[k])),
-        "prior": {
-            "counted": fitted.parameters.priors,
-            "standard_deviation": prior_spread / (ML if k == DEAD else 1.0),
-            "relative": bool(LOGARITHMIC[k]),
-            "source": fitted.parameters.origin[k],
-        },
-    }
-
-
-def _correlation(fitted: CalibrationFit) -> dict[str, Any]:
-    matrix = fitted.covariance.matrix
-    spread = np.sqrt(np.diag(matrix))
-    scaled = matrix / np.outer(spread, spread)
-    return {
-        "parameters": list(fitted.parameters.names),
-        "matrix": [[float(x) if np.isfinite(x) else None for x in row] for row in scaled],
-    }
-
-
-def _goodness(fitted: CalibrationFit) -> dict[str, Any]:
-    force, rise, injection = (float(x) for x in fitted.channel_factor)
-    return {
-        "chi_squared": fitted.chi_squared,
-        "degrees_of_freedom": fitted.freedom,
-        "chi_squared_per_degree": fitted.chi_squared / fitted.freedom if fitted.freedom else None,
-        "points_used": int(fitted.solution.use.sum()),
-        "points_left_out": int(fitted.left_out.sum() + fitted.injections_left_out.sum()),
-        "scatter_over_stated": {"force": force, "pressure": rise, "injection": injection},
-        "model_leaves_out_share_of_reading": dict(
-            zip(("force", "pressure", "injection"), (float(x) for x in fitted.sizes), strict=True)
-        ),
-        "considered": [NAMES[k] for k in fitted.parameters.others],
-        "variance_of_runs_over_points": fitted.run_factor,
-        "interval_from_runs": fitted.covariance.clustered,
-    }
-
-
-def _response(gap: ResponseGap) -> list[dict[str, float]]:
-    correction = gap.correction
-    return [
-        {
-            "driving_pressure_kPa": pressure_kPa,
-            "force_factor": correction.force_factors[k],
-            "pressure_factor": correction.rise_factors[k],
-            "sensitivity_error_relative": float(gap.sensitivity_errors[k]),
-            "force_error_relative": float(gap.force_errors[k]),
-        }
-        for k, pressure_kPa in enumerate(gap.driving_pressures_kPa)
-    ]
-
-
-def _miss(miss: SystematicDeviation) -> dict[str, Any]:
-    place = {"driving_pressure_kPa": miss.driving_pressure_kPa, "channel": miss.channel}
-    return {**place, "from_mm": miss.start, "to_mm": miss.end, "share": miss.share}
-
-
-def _residual(run: RunResiduals) -> dict[str, Any]:
-    return {
-        "run": run.label,
-        "driving_pressure_kPa": _number(run.driving_pressure_kPa),
-        "force_share_of_full_scale": _number(run.force_error),
-        "pressure_share_of_full_scale": _number(run.rise_error),
-    }
-
-
-def _ambiguity(group: CorrelatedParameters) -> dict[str, Any]:
-    return {
-        "parameters": [NAMES[k] for k in group.members],
-        "correlation": group.correlation,
-        "standard_deviation_alone": [_leaving(k, x) for k, x in zip(group.members, group.alone, strict=True)],
-        "standard_deviation_others_known": [_leaving(k, x) for k, x in zip(group.members, group.given, strict=True)],
-        "modulus_times_wall_to_the": group.combination,
-    }
-
-
-def _further(fitted: CalibrationFit, test: SuggestedTest) -> dict[str, Any]:
-    widths = zip(fitted.parameters.fitted, test.half_width, strict=True)
-    return {
-        "test": test.what,
-        "widest_interval_shrinks": test.gain,
-        "expected_half_widths": {NAMES[k]: _leaving(k, width) for k, width in widths},
-    }
-
-
-def _held_out(one: HeldOutPrediction) -> dict[str, Any]:
-    return {
-        "driving_pressure_kPa": one.driving_pressure_kPa,
-        "sensitivity_measured_kPa_per_N": one.measured_kPa_per_N,
-        "sensitivity_predicted_kPa_per_N": one.predicted_kPa_per_N,
-        "sensitivity_error": one.error,
-        "force_rms_share": one.force_error,
-        "force_greatest_share": one.force_worst,
-        "pressure_rms_share": one.rise_error,
-        "pressure_greatest_share": one.rise_worst,
-        "points": one.points,
-        "points_left_out": one.left_out,
-    }
-
-
-def _leaving(k: int, deviation: float) -> float | None:
-    """A deviation as it leaves: relative (of the logarithm), mL, or mm."""
-    return _number(float(deviation) / (ML if k == DEAD else 1.0))
-
-
-def _number(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None

@@ -3,7 +3,6 @@
 import hashlib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from pneutouch.bench.calibrate import NAMES, Observations
 from pneutouch.catalogue import DesignSource, Library, load_scene, split_calibration, user_folder
@@ -24,6 +23,7 @@ from pneutouch.workflows.calibrate.files import (
 from pneutouch.workflows.calibrate.fit import Calibration, calibrate, observations_of
 from pneutouch.workflows.calibrate.further import with_further_tests
 from pneutouch.workflows.calibrate.place import check_place, check_unlike
+from pneutouch.workflows.calibrate.record import OutcomeRecord
 from pneutouch.workflows.characterize import CampaignData, Progress, Reading, answers, load_curves, read_as, sound
 
 
@@ -55,7 +55,7 @@ class CalibrationOutcome:
         assignments: What the campaign changes in it.
     """
 
-    document: dict[str, Any]
+    document: OutcomeRecord
     calibration: Calibration
     source: CampaignSource
     design_given: str
@@ -105,7 +105,7 @@ def run_calibration(
     calibration = with_further_tests(calibration, source)
     written, unsaved = _write(options, calibration, name, source)
     failures = [list(failure) for failure in (*loaded.failures, *refused)]
-    document = {
+    document: OutcomeRecord = {
         **calibration.document,
         "notes": [*calibration.notes_for_reader, *unsaved],
         "calibration": None if unsaved else name,

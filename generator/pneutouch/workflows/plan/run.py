@@ -7,7 +7,6 @@ from typing import Any
 
 from pneutouch.bench.protocol import CLEARANCE, REPETITIONS, RunProtocol, protocol
 from pneutouch.bench.simulate.curve import PressCurves
-from pneutouch.bench.simulate.encode import LEAK_SECONDS
 from pneutouch.catalogue import DesignSource, Library
 from pneutouch.errors import InputError
 from pneutouch.evaluation.contact_object import contact_document
@@ -27,18 +26,13 @@ from pneutouch.workflows.plan.expected import (
     refuse_above_limits,
     travel_warnings,
 )
+from pneutouch.workflows.plan.steps import StepRecord, injection_steps, leak_steps, steps_of
 from pneutouch.workflows.simulate import campaign_toml, named_design
 
 PAPER = Rig()
 
 SATURATION = (0.0, 12.0)
 """Driving pressures of the saturation test, kPa (paper, section 3-C)."""
-
-FILL, PUSH, SETTLE = 30.0, 2.0, 20.0
-"""Seconds to fill before a leak run, to push one volume, and to let it settle and cool: our choice."""
-
-_REST = (("wait", 0.2), ("vent", 0.2), ("set_pressure", 0.2), ("wait", 0.4))
-"""A rest with reset, in shares of it: our choice; the last share lets the pressure settle."""
 
 
 @dataclass(frozen=True)
@@ -228,12 +222,12 @@ def _runs(
 ) -> list[dict[str, Any]]:
     """Every run of one specimen in order: leak and dead volume first, relaxation last: it strains the wall longest."""
     top_kPa = max(subject.scene.design.pneumatics.driving_pressures_kPa)
-    volume = injection(pressed_curves, subject.rating, rig)["sensor_volume_mL"]
-    planned: list[tuple[str, float, int, list[dict[str, Any]], list[Any]]] = [
-        ("leak", top_kPa, 1, _leak(top_kPa, rig), [])
+    volume_mL = injection(pressed_curves, subject.rating, rig)["sensor_volume_mL"]
+    planned: list[tuple[str, float, int, list[StepRecord], list[Any]]] = [
+        ("leak", top_kPa, 1, leak_steps(top_kPa, rig), [])
     ]
-    if volume is not None:
-        planned.append(("injection", 0.0, 1, _inject(volume), []))
+    if volume_mL is not None:
+        planned.append(("injection", 0.0, 1, injection_steps(volume_mL), []))
     curves = {round(curve.driving / KPA, 9): curve for curve in pressed_curves.curves}
     for kind, (test, pressures_kPa) in tests.items():
         for pressure_kPa in pressures_kPa:
@@ -256,45 +250,3 @@ def _runs(
         }
         for place, (kind, pressure_kPa, n, steps, expected) in enumerate(planned, start=1)
     ]
-
-
-def _step(action: str, value: float | None, unit: str, seconds: float) -> dict[str, Any]:
-    return {"action": action, "value": value, "unit": unit, "seconds": seconds}
-
-
-def steps_of(test: RunProtocol, pressure_kPa: float, rig: Rig) -> list[dict[str, Any]]:
-    """What rig and hand do in one run with a plate; travels count from first contact, below zero the plate is clear."""
-    steps = [_step("record", rig.rate_Hz, "Hz", 0.0)]
-    for k, depth in enumerate(test.depths):
-        if test.reset:
-            values = {"wait": (None, ""), "vent": (0.0, "kPa"), "set_pressure": (pressure_kPa, "kPa")}
-            steps += [_step(action, *values[action], share * test.rest) for action, share in _REST]
-        else:
-            steps.append(
-                _step("set_pressure", pressure_kPa, "kPa", test.rest) if k == 0 else _step("wait", None, "", test.rest)
-            )
-        seconds = (depth + CLEARANCE) / test.speed
-        steps.append(_step("move", depth, "mm", seconds))
-        if test.hold > 0:
-            steps.append(_step("hold", depth, "mm", test.hold))
-        steps.append(_step("move", -CLEARANCE, "mm", seconds))
-    return steps
-
-
-def _leak(pressure_kPa: float, rig: Rig) -> list[dict[str, Any]]:
-    return [
-        _step("set_pressure", pressure_kPa, "kPa", FILL),
-        _step("record", rig.rate_Hz, "Hz", 0.0),
-        _step("wait", None, "", LEAK_SECONDS),
-    ]
-
-
-def _inject(volume: float) -> list[dict[str, Any]]:
-    steps = [_step("vent", 0.0, "kPa", SETTLE)]
-    for share in (0.2, 0.4, 0.6, 0.8, 1.0):
-        steps += [
-            _step("inject", share * volume, "mL", PUSH),
-            _step("wait", None, "", SETTLE),
-            _step("record", None, "", 0.0),
-        ]
-    return steps
