@@ -207,8 +207,8 @@ def _stated(model: str, sensor: Sensor, pressures: Array) -> tuple[ErrorEstimate
     checked = f"sway and lobes are looked for with up to {waves} waves around the axis" if waves else _NOT_CHECKED
     errors = {**DISCRETISATION, "summary": [_DISCRETISATION_SUMMARY]}
     if sensor.protocol.body is not None:
-        own = OBJECT_DISCRETISATION
-        errors = {**DISCRETISATION, "sensitivity_discretisation_relative": own, "summary": [_OBJECT_SUMMARY]}
+        share = OBJECT_DISCRETISATION
+        errors = {**DISCRETISATION, "sensitivity_discretisation_relative": share, "summary": [_OBJECT_SUMMARY]}
     return errors, (law, f"{_BODY}; {checked}", *_solid_assumptions(sensor))
 
 
