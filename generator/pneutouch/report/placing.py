@@ -137,12 +137,13 @@ def _dense(xy: Array) -> Array:
     """Points of a line through (n, 2) that are at most a step apart."""
     if len(xy) < 2:
         return xy
-    length = np.minimum(np.hypot(*np.diff(xy, axis=0).T), 1e4)
-    parts = [
-        a + (b - a) * np.linspace(0, 1, int(size / _STEP) + 2)[:, None]
-        for a, b, size in zip(xy[:-1], xy[1:], length, strict=True)
-    ]
-    return np.concatenate(parts)
+    leap = np.diff(xy, axis=0)
+    count = (np.minimum(np.hypot(*leap.T), 1e4) / _STEP).astype(np.intp) + 2
+    ends = np.cumsum(count)
+    which = np.repeat(np.arange(count.size), count)
+    share = (np.arange(ends[-1]) - (ends - count)[which]) / (count - 1)[which]
+    dense: Array = xy[which] + share[:, None] * leap[which]
+    return dense
 
 
 def _near(ax: Axes, label: Annotation, curves: Array, taken: list[LabelBox]) -> tuple[LabelBox, Array]:
