@@ -10,12 +10,28 @@ import pytest
 from typer.testing import CliRunner
 
 from pneutouch.cli.app import app
+from pneutouch.cli.select_text import mount_note
+from pneutouch.spec.target import Target, TargetFigures
+from pneutouch.workflows.select.base import base_scene
 
 ASKED = ["select", "--sensitivity", "1.9", "--at", "12", "--force-range", "15", "--max-diameter", "25"]
 
 
 def run(*arguments: str):
     return CliRunner().invoke(app, list(arguments))
+
+
+@pytest.mark.parametrize(("finger", "note"), [("20", True), ("16", False), ("7.5", True)])
+def test_the_sleeve_is_named_by_its_finger_where_the_mount_s_name_has_another(finger, note, library):
+    target = Target(target=TargetFigures(sensitivity_kPa_per_N=3.0, driving_pressure_kPa=10.0, fits=f"finger:{finger}"))
+    base = base_scene(target, "target", library)
+    sentence = (
+        f"mount: Sleeve over a {finger} mm finger, two M3 set screws: finger-16 with connector.finger_diameter_mm = "
+        f"{finger}"
+    )
+    assert mount_note(target, base) == ([sentence] if note else [])
+    assert base.mount.finger_diameter == float(finger)
+    assert base.mount.code == f"F{finger}"
 
 
 def test_json_lists_ranked_designs_with_uncertainty_and_margins():

@@ -1,9 +1,11 @@
 """A selection as text for people."""
 
+from pneutouch.catalogue import ResolvedDesign
 from pneutouch.cli.text import columns
 from pneutouch.mechanics.atlas.respond import DEPTH, ENDS
 from pneutouch.selection import Candidate
 from pneutouch.selection.missed import missed_percent
+from pneutouch.spec.target import Target
 from pneutouch.units import KPA
 from pneutouch.workflows.select.document import would_need
 from pneutouch.workflows.select.passing import RejectedDesign
@@ -19,7 +21,7 @@ _FEW = 9.95
 def selection_text(selection: SelectionRun) -> str:
     """Ranked designs, or why there are none."""
     answer = selection.answer
-    left = [_rejected(one) for one in selection.rejected]
+    left = [*mount_note(selection.target, selection.base), *(_rejected(one) for one in selection.rejected)]
     left += [f"left out: {name}: {why}" for name, why in selection.left_out.items()]
     if answer.designs:
         seen: set[str] = set()
@@ -52,6 +54,14 @@ def selection_text(selection: SelectionRun) -> str:
     if not answer.dropped:
         lines.append("no design fits with any single requirement dropped")
     return "\n".join([*lines, *left]).rstrip()
+
+
+def mount_note(target: Target, base: ResolvedDesign) -> list[str]:
+    """The sleeve for the finger that the target names: its own name has the number of another finger."""
+    diameter_mm, name = target.target.finger_diameter_mm, base.design.connector.mount
+    if diameter_mm is None or name.endswith(f"-{diameter_mm:g}"):
+        return []
+    return [f"mount: {base.mount.title}: {name} with connector.finger_diameter_mm = {diameter_mm:g}"]
 
 
 def _rejected(one: RejectedDesign) -> str:

@@ -77,7 +77,8 @@ class Connector(Table):
         unit="mm",
         low=6,
         high=100,
-        help="Finger that a sleeve goes over, for a mount that is one; left out: the mount's own.",
+        help="Finger that a sleeve goes over, for a mount that is one, whatever number its name has; left out: the "
+        "mount's own.",
     )
 
 
