@@ -12,11 +12,12 @@ from pneutouch.mechanics.solid.contact import Plate
 from pneutouch.mechanics.solid.continuation import PathFollower
 from pneutouch.mechanics.solid.descend import descend
 from pneutouch.mechanics.solid.events import BREAKS_CURVE
+from pneutouch.mechanics.solid.first_touch import first_touch
 from pneutouch.mechanics.solid.friction import FrictionStep
 from pneutouch.mechanics.solid.friction_newton import FrictionSolver
-from pneutouch.mechanics.solid.friction_path import FrictionFollower
 from pneutouch.mechanics.solid.general_band import OneSidedBlocks
-from pneutouch.mechanics.solid.indent import PressSettings, indent
+from pneutouch.mechanics.solid.indent import PressSettings, follower_of, indent
+from pneutouch.mechanics.solid.indenter import ball
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
@@ -36,13 +37,13 @@ def press(friction, mu=0.17, pressure=0.0, **options):
     return indent(solid, state_at(solid, pressure), PressSettings(DEPTH, friction=friction, **options))
 
 
-def follow(friction, mu=0.17, pressure=0.0, steps=14, plate=np.inf):
-    """The follower of a press to `DEPTH`, with all its states."""
+def follow(friction, mu=0.17, pressure=0.0, steps=14, body=None):
+    """The follower of a press by a plate or a body to `DEPTH`, with all its states."""
     solid = coarse(mu)
     free = state_at(solid, pressure)
-    gas = Gas.filled(free.pressure / solid.mu, free.unit.volume, 0.101325 / solid.mu, 0.0)
-    top = free.unit.x[solid.mesh.outer_apex, 1]
-    follower = FrictionFollower(solid, gas, Plate(top, plate, solid.contact.longest), free.unit.x, friction)
+    press = PressSettings(DEPTH, friction=friction, plate_diameter=None, body=body)
+    touch = first_touch(solid, free, press.body, press.plate_diameter)
+    follower, top = follower_of(solid, free, press, touch), touch.body.height
     for k in range(1, steps + 1):
         assert descend(follower, top - DEPTH / 9.25 * k / steps) is None
     return follower
@@ -105,10 +106,12 @@ def test_without_friction_those_points_move():
     assert np.abs(radius[1] - radius[0]).max() > 1e-3
 
 
-@pytest.mark.parametrize("friction", [0.3, 1.0, np.inf])
-def test_the_plate_s_work_is_stored_or_dissipated(friction):
+@pytest.mark.parametrize(
+    ("friction", "body"), [(0.3, None), (1.0, None), (np.inf, None), (0.3, ball(8.0)), (np.inf, ball(8.0))]
+)
+def test_the_work_is_stored_or_dissipated(friction, body):
     """Work by the cubic through force and stiffness; stored in wall, gas, plate and springs."""
-    path = follow(friction, 0.91, steps=28).path[1:]
+    path = follow(friction, 0.91, steps=28, body=body).path[1:]
     height, force, rate = (np.array([getattr(s, n) for s in path]) for n in ("height", "force", "stiffness"))
     travel = -np.diff(height)
     work = 0.5 * travel * (force[1:] + force[:-1]) + travel**2 / 12.0 * (rate[1:] - rate[:-1])

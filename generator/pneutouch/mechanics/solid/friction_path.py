@@ -19,6 +19,10 @@ from pneutouch.mechanics.solid.newton import NewtonFailure, SolidScene, evaluate
 from pneutouch.mechanics.solid.supply import Supply
 from pneutouch.mechanics.solid.terms import TermState
 
+#: Coefficient of a surface that grips. A point that is about to leave, with a hundredth of its tangential traction left
+#: as normal one, is let go evenly: under a boundless coefficient it would neither stay nor leave. The sensitivities of
+#: the paper's presses are those of a boundless one to five digits.
+GRIP = 100.0
 #: Share of its present speed that a free point keeps on average until it is held: next to the edge of a held zone the
 #: speed grows with the square root of the distance, as at the tip of a crack, and the distance closes evenly.
 _KEPT_SPEED = 2.0 / 3.0
@@ -30,7 +34,7 @@ class FrictionFollower(PathFollower):
 
     def __init__(self, solid: SolidModel, supply: Supply, plate: Indenter, start: Array, coefficient: float) -> None:
         self._sides = OneSidedBlocks(solid)
-        self._coefficient = coefficient
+        self._coefficient = min(coefficient, GRIP)
         self._stiffness = TANGENTIAL * solid.contact.stiffness
         super().__init__(solid, supply, plate, start)
 
