@@ -138,9 +138,10 @@ class AtlasPress:
             excess = gas - self.ambient - stiffening * point.pressure - memory
             step = excess / np.where(margin > 0, margin, 1.0) / self.reach
             reached = np.abs(step) < _LAST_STEP
-            if np.all(reached | (margin <= 0)):
+            sound = margin > 0
+            if (reached | (margin <= 0)).all():
                 break
-            nu = nu + np.where(margin > 0, np.clip(step, -_LONGEST, _LONGEST), 0.0)
+            nu = nu + np.where(sound, np.minimum(np.maximum(step, -_LONGEST), _LONGEST), 0.0)
         step = np.where(reached, step, 0.0)
         swell = step * self.reach
         point = point._replace(

@@ -69,9 +69,13 @@ class AtlasSlices:
         return self._apex(k, cell, weight)
 
     def _apex(self, k: Index, cell: Index, weight: Array) -> Array:
-        block = self.apex[k[:, None], cell[:, None] + np.arange(self.grid.volume.degree + 1)]
-        values: Array = np.matmul(weight, block[..., None])[..., 0]
+        values: Array = np.matmul(weight, self._apex_windows[k, cell][..., None])[..., 0]
         return values
+
+    @cached_property
+    def _apex_windows(self) -> Array:
+        """The apex's coefficients of each cell, (k, volume cells, coefficients)."""
+        return np.lib.stride_tricks.sliding_window_view(self.apex, self.grid.volume.degree + 1, axis=1)
 
     def point(self, k: Index, nu: Array, height: Array, *, with_folded: bool = True) -> AtlasPoint:
         """Pressure, force and their slopes at volumes nu and plate heights, (n,) each.
@@ -81,7 +85,7 @@ class AtlasSlices:
         cell, by_nu = self.grid.volume.basis(nu)
         apex = self._apex(k, cell, by_nu)
         depth, by_w = self.grid.depth.basis(apex[:, 0] - height)
-        jet = np.matmul(np.matmul(by_nu, self._windows[k, cell, depth]), np.swapaxes(by_w, 1, 2))
+        jet = np.matmul(np.matmul(by_nu, self._windows[k, cell, depth]), by_w.swapaxes(1, 2))
         rise, bend, reach = apex[:, 1], apex[:, 2], self.reach(k)
         force = jet[:, 0, 1]
         mixed = (jet[:, 1, 1] + jet[:, 0, 2] * rise) / reach
