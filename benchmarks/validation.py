@@ -10,6 +10,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from benchmarks.calculix_sweep import calculix_limit
+from benchmarks.contact_references import balls
 from benchmarks.scenes import PAPER, Scene
 from benchmarks.speed_accuracy import solid_limit
 from benchmarks.theory import Cell, table_s1
@@ -270,6 +271,7 @@ def page() -> str:
             *spheres(),
             *thin_walls(),
             *pressed_membrane(),
+            *balls(),
             *refinement(),
             *incompressibility(),
             *invariances(),

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.mechanics import Sensor, SensorPrediction
@@ -30,6 +31,9 @@ _AT_ONCE = 1e-6
 
 _POINTS = 2001
 """Points of the unloaded dome that an object may touch first."""
+
+_DRAWN = 1.5
+"""Radius over that of the dome to which an object is drawn."""
 
 _MAKE = {
     "ball": lambda sizes: ball(sizes["ball_radius_mm"]),
@@ -95,11 +99,25 @@ def check_object(scene: ResolvedDesign, sensor: Sensor) -> None:
     if body is None:
         return
     _check_cells(scene, sensor)
-    angle = np.linspace(0.0, 0.5 * np.pi, _POINTS)
-    outer = sensor.dome.inner_radius + sensor.dome.wall_thickness
-    _, at = first_contact(body, outer * np.sin(angle), outer * np.cos(angle))
+    _, at = _at_rest(body, sensor)
     if not body.span[0] <= at <= body.span[1]:
         raise _edge_first(scene)
+
+
+def object_section(sensor: Sensor) -> Array | None:
+    """Section (n, 2) of the object, r and z in mm, at first contact with the unloaded dome; None for a plate."""
+    body = sensor.protocol.body
+    if body is None:
+        return None
+    reach = _DRAWN * (sensor.dome.inner_radius + sensor.dome.wall_thickness)
+    return body.at(_at_rest(body, sensor)[0]).outline(reach)
+
+
+def _at_rest(body: RigidObject, sensor: Sensor) -> tuple[float, float]:
+    """Height of the object at first contact with the unloaded dome, and the radius of that contact, mm."""
+    angle = np.linspace(0.0, 0.5 * np.pi, _POINTS)
+    outer = sensor.dome.inner_radius + sensor.dome.wall_thickness
+    return first_contact(body, outer * np.sin(angle), outer * np.cos(angle))
 
 
 def check_first_touch(scene: ResolvedDesign, prediction: SensorPrediction) -> None:

@@ -8,6 +8,7 @@ from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import ComputationError
 from pneutouch.evaluation.chart_data import ComparedMembrane
 from pneutouch.evaluation.charts import air, tradeoff, tuning
+from pneutouch.evaluation.contact_object import object_section
 from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.evaluation.relaxation import ageing_data, viscous_data
 from pneutouch.evaluation.sheet_data import SheetData
@@ -45,6 +46,7 @@ def sheet_data(evaluation: Evaluation, input_hash: str) -> SheetData:
         ageing=ageing_data(prediction, material, sensor),
         constants=constant_membranes(sensor, prediction),
         published_kPa_per_N=published,
+        object_section=object_section(sensor),
     )
     if unknown(sensor, prediction.model) is not None:
         return sheet

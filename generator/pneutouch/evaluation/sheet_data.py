@@ -110,6 +110,8 @@ class SheetData:
         gas: Effect of the air, one entry a state; None outside the atlas.
         tradeoff: The trade-off that the design is part of; None outside the atlas.
         tuning: Its sensitivity over the driving pressure; None outside the atlas.
+        object_section: Section (n, 2) in mm, r and z, of the object that presses it, at first contact with the unloaded
+            dome; None for a plate.
     """
 
     scene: ResolvedDesign
@@ -130,3 +132,4 @@ class SheetData:
     gas: GasNotes | None = None
     tradeoff: TradeOff | None = None
     tuning: TuningChart | None = None
+    object_section: Array | None = None

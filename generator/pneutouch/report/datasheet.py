@@ -44,7 +44,7 @@ def _figures(sheet: SheetData) -> dict[str, str]:
     """The figures as SVG by name; those without data are left out."""
     prediction, chosen = sheet.prediction, sheet.scene.membrane_material.title
     figures = {
-        **section_drawing(sheet.assembly),
+        **section_drawing(sheet.assembly, sheet.object_section),
         "inflation": curves.inflation(prediction),
         "sensitivity": curves.sensitivities(sheet.resin_curves, prediction, chosen, sheet.published_kPa_per_N),
         "response": curves.response(prediction),

@@ -16,6 +16,9 @@ THIN = 0.4
 CENTRE = (0, (8, 2, 2, 2))
 """Dashes of a centre line."""
 
+NEIGHBOUR = (0, (8, 2, 1.5, 2, 1.5, 2))
+"""Dashes of a neighbouring part, which is no part of what is drawn."""
+
 _SIZE = 6.8
 
 

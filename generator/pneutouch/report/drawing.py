@@ -7,22 +7,26 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.parts import Assembly
-from pneutouch.report.dimension import CENTRE, THIN, circle, horizontal, leader, polar, vertical
+from pneutouch.report.dimension import CENTRE, NEIGHBOUR, THIN, circle, horizontal, leader, polar, vertical
 from pneutouch.report.port_note import port_note
 from pneutouch.report.section import draw_bores, draw_section
-from pneutouch.report.style import BOLD, MM, MUTED, figure, svg
+from pneutouch.report.style import BOLD, INK, MM, MUTED, figure, svg
 from pneutouch.spec.part import BoltCircle, ClampedFlange, OnePiece, RobotFlange, Sleeve
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-def section_drawing(assembly: Assembly) -> dict[str, str]:
-    """Section through the axis, and the plan from above, as SVG: ``drawing`` and ``plan``."""
+def section_drawing(assembly: Assembly, body: Array | None = None) -> dict[str, str]:
+    """Section through the axis, and the plan from above, as SVG: ``drawing`` and ``plan``.
+
+    ``body`` (n, 2), r and z in mm, is the section of what presses the dome; drawn to scale where it is given.
+    """
     with figure(_WIDE, 76) as drawn:
         ax = drawn.add_subplot()
-        _Section(ax, assembly).draw()
+        _Section(ax, assembly).draw(body)
         # As high as the section needs in this width, and its title.
         low, high = ax.get_ylim()
         drawn.set_figheight((6 + min(_WIDE * (high - low) / np.ptp(ax.get_xlim()), 84)) * MM)
@@ -31,6 +35,9 @@ def section_drawing(assembly: Assembly) -> dict[str, str]:
         _plan(drawn.add_subplot(), assembly)
         return {"drawing": section, "plan": svg(drawn)}
 
+
+_OBJECT = 0.6
+"""How much of an object is drawn above the dimensions, over the dome's radius."""
 
 _WIDE, _NARROW = 112.0, 68.0
 """Widths of section and plan in mm: together the width of a page."""
@@ -52,7 +59,7 @@ class _Section:
         rigid = assembly.scene.connector_printer.accuracy_mm.nominal
         self.soft, self.rigid = f"±{soft:.2f}", f"±{rigid:.2f}"
 
-    def draw(self) -> None:
+    def draw(self, body: Array | None = None) -> None:
         draw_section(self.ax, self.assembly)
         axis = [self.bottom - 2 * self.unit, self.layout.outer_radius + 2 * self.unit]
         self.ax.plot([0, 0], axis, color=MUTED, lw=THIN, ls=CENTRE)
@@ -60,7 +67,18 @@ class _Section:
         self._widths()
         self._leaders()
         xs = (self.left - 21 * self.unit, self.right + 13 * self.unit)
-        _finish(self.ax, "Section A-A", xs, (self.low - 7.5 * self.unit, self.layout.outer_radius + 5 * self.unit))
+        high = self.layout.outer_radius + 5 * self.unit
+        if body is not None:
+            high += _OBJECT * self.layout.outer_radius
+            self._body(body, high)
+        _finish(self.ax, "Section A-A", xs, (self.low - 7.5 * self.unit, high))
+
+    def _body(self, body: Array, high: float) -> None:
+        """What presses the dome, in the dashes of a neighbouring part; cut off where the drawing ends."""
+        wide = self.layout.plate_radius
+        shown = (body[:, 1] <= high) & (body[:, 0] <= wide)
+        for side in (-1.0, 1.0):
+            self.ax.plot(side * np.where(shown, body[:, 0], np.nan), body[:, 1], color=INK, lw=THIN, ls=NEIGHBOUR)
 
     def _heights(self) -> None:
         layout, ax, right, plate = self.layout, self.ax, self.right, self.layout.plate_radius
