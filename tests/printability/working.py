@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from pneutouch.mechanics import predict
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.rating import rating
@@ -13,16 +15,9 @@ WORKING = ("layers", "driving", "freedom")
 """Rules that need a sensor's prediction."""
 
 
-def working(
-    pressures: list[float],
-    wall: float = 1.488,
-    radius: float = 9.3,
-    resin: str = "TangoPlus",
-    *,
-    calibrated: bool = False,
-) -> list[Finding]:
-    """Findings of the rules on working for the paper's dome (kPa, mm); 1.488 mm are 93 layers of 16 um."""
-    found = check(*dome(pressures, wall, radius, resin, calibrated=calibrated))
+def working(pressures: list[float], **options: Any) -> list[Finding]:
+    """Findings of the rules on working for the `dome`."""
+    found = check(*dome(pressures, **options))
     return [finding for finding in found if finding.rule in WORKING]
 
 
@@ -34,7 +29,7 @@ def dome(
     *,
     calibrated: bool = False,
 ) -> tuple[PrintSubject, SensorContext]:
-    """The dome of `working` as a subject, and what the rules on working need of it."""
+    """The paper's dome (kPa, mm) and what the rules on working need of it; 1.488 mm are 93 layers of 16 um."""
     sensor = material_sensor(material(resin)).replace(wall_thickness=wall, inner_radius=radius)
     prediction = predict("dome", sensor, [p * KPA for p in pressures], model="membrane")
     part = item(cup(radius + wall, wall), "membrane", resin)
