@@ -49,6 +49,14 @@ def completed(line):
         ("pneutouch charac", ["characterize"]),
         ("pneutouch coupons --profile objet260-c", ["objet260-connex"]),
         ("pneutouch check x --set membrane.mat", ["membrane.material="]),
+        ("pneutouch select --profile objet260-c", ["objet260-connex"]),
+        ("pneutouch select --material TangoPlus,FLX9940,Agilus30", ["TangoPlus,FLX9940,Agilus30"]),
+        ("pneutouch select --base paper-d", ["paper-dome"]),
+        ("pneutouch coupons --material FLX9960,TangoP", ["FLX9960,TangoPlus"]),
+        ("pneutouch simulate x --resins TangoP", ["TangoPlus"]),
+        ("pneutouch compare soft-pad paper-d", ["paper-dome"]),
+        ("pneutouch scan texture-s", ["texture-specimen"]),
+        ("pneutouch sweep --over membrane.mat", ["membrane.material="]),
     ],
 )
 def test_names_and_keys_are_completed_without_numpy(line, offered):

@@ -18,6 +18,7 @@ from pneutouch.cli.app import (
     print_json,
     reporting,
 )
+from pneutouch.cli.complete import names
 from pneutouch.cli.terminal import echo
 
 
@@ -25,7 +26,11 @@ from pneutouch.cli.terminal import echo
 def compare(
     things: Annotated[
         list[str],
-        typer.Argument(metavar="A B...", help="Designs, DESIGN@CALIBRATION, folders of build or characterize."),
+        typer.Argument(
+            metavar="A B...",
+            help="Designs, DESIGN@CALIBRATION, folders of build or characterize.",
+            autocompletion=names("designs"),
+        ),
     ],
     set_: SetOption = None,
     model: ModelOption = None,

@@ -3,14 +3,16 @@
 from collections.abc import Callable
 
 
-def names(*kinds: str) -> Callable[[str], list[str]]:
-    """Completes the names of these kinds, such as materials."""
+def names(*kinds: str, listed: bool = False) -> Callable[[str], list[str]]:
+    """Completes the names of these kinds, such as materials; ``listed``: the last of a list with commas between."""
 
     def complete(incomplete: str) -> list[str]:
         from pneutouch.catalogue.library import Library
 
         library = Library.default()
-        return [name for kind in kinds for name in library.paths(kind) if name.startswith(incomplete)]
+        before, comma, word = incomplete.rpartition(",") if listed else ("", "", incomplete)
+        found = [name for kind in kinds for name in library.paths(kind) if name.startswith(word)]
+        return [f"{before}{comma}{name}" for name in found]
 
     return complete
 
@@ -30,4 +32,4 @@ def assignment(incomplete: str) -> list[str]:
     if not equals:
         return [f"{name}=" for name in fields if name.startswith(incomplete)]
     registry = fields[key].registry if key in fields else None
-    return [f"{key}={name}" for name in names(registry)(word)] if registry else []
+    return [f"{key}={name}" for name in names(registry, listed=True)(word)] if registry else []

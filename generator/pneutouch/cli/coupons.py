@@ -37,7 +37,11 @@ def coupons(
     ] = None,
     material: Annotated[
         list[str] | None,
-        typer.Option(help="Resin; may be repeated.", show_default="the design's membrane, else TangoPlus"),
+        typer.Option(
+            help="Resin; may be repeated.",
+            show_default="the design's membrane, else TangoPlus",
+            autocompletion=names("materials", listed=True),
+        ),
     ] = None,
     mixing: Annotated[
         list[str] | None, typer.Option(metavar="SOFT+STIFF", help="Two resins: coupons of eight mixes of them.")

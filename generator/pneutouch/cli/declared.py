@@ -76,7 +76,7 @@ def _parameter(model: type[BaseModel], name: str, option: FieldOption) -> inspec
     field = declaration(table, option.key)
     kind: Any = str if option.parse else _kind(table, option.key)
     flags = [f"--{name.replace('_', '-')}"] if kind is bool else []
-    known = names(field.registry) if field.registry else None
+    known = names(field.registry, listed=kind is not str) if field.registry else None
     info = typer.Option(*flags, metavar=option.metavar, help=_help(field), autocompletion=known)
     annotation: Any = Annotated[kind | None, info]
     return inspect.Parameter(name, inspect.Parameter.POSITIONAL_OR_KEYWORD, default=None, annotation=annotation)

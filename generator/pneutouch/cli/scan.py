@@ -32,7 +32,12 @@ _NOT_SEPARATING = {key: f"--{key}" for key in ("pressures", "control", "seed", "
 @app.command()
 def scan(
     context: typer.Context,
-    specimen: Annotated[str, typer.Argument(metavar="SPECIMEN", help="Name of a specimen, or path of its TOML file.")],
+    specimen: Annotated[
+        str,
+        typer.Argument(
+            metavar="SPECIMEN", help="Name of a specimen, or path of its TOML file.", autocompletion=names("specimens")
+        ),
+    ],
     design: Annotated[
         str,
         typer.Option("--design", help="Sensor that scans: name of a design, or path.", autocompletion=names("designs")),

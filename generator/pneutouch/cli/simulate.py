@@ -20,7 +20,10 @@ if TYPE_CHECKING:
 ResinsOption = Annotated[
     str,
     typer.Option(
-        "--resins", metavar="NAME,NAME", help="Resins of the dome, or all of the paper's; left out: the design's."
+        "--resins",
+        metavar="NAME,NAME",
+        help="Resins of the dome, or all of the paper's; left out: the design's.",
+        autocompletion=names("materials", listed=True),
     ),
 ]
 SpecimensOption = Annotated[int, typer.Option("--specimens", help="Specimens of each resin.")]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from pneutouch.cli.app import CalibrationOption, JsonOption, SetOption, app, changes, print_json, reporting
-from pneutouch.cli.complete import names
+from pneutouch.cli.complete import assignment, names
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo, notify
 from pneutouch.errors import InputError
@@ -30,7 +30,10 @@ def sweep(
     over: Annotated[
         list[str] | None,
         typer.Option(
-            "--over", metavar="TABLE.KEY=VALUES", help="Vary a field: A,B,C or FROM:TO:COUNT; may be repeated."
+            "--over",
+            metavar="TABLE.KEY=VALUES",
+            help="Vary a field: A,B,C or FROM:TO:COUNT; may be repeated.",
+            autocompletion=assignment,
         ),
     ] = None,
     set_: SetOption = None,

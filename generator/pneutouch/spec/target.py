@@ -104,7 +104,11 @@ class Given(Table):
 
     inner_radius_mm: float | None = number(None, unit="mm", low=1, high=100, help="Inner radius R0 of the dome.")
     wall_thickness_mm: float | None = number(None, unit="mm", low=0.05, high=50, help="Wall thickness t0 of the dome.")
-    materials: Names | None = Field(default=None, description="Resins to choose from; left out: all the printer runs.")
+    materials: Names | None = Field(
+        default=None,
+        description="Resins to choose from; left out: all the printer runs.",
+        json_schema_extra={"registry": "materials"},
+    )
     mix: str | None = Field(
         default=None,
         pattern=r"^[^+]+\+[^+]+$",
@@ -130,12 +134,17 @@ class Setting(Table):
     """[setting]: the design that gives everything else: connector, tube, plate, ambient pressure, printer."""
 
     base: str | None = Field(
-        default=None, min_length=1, description="Name or path of a design; left out: the defaults."
+        default=None,
+        min_length=1,
+        description="Name or path of a design; left out: the defaults.",
+        json_schema_extra={"registry": "designs"},
     )
     assignments: list[str] = Field(
         default=[], max_length=100, description="What changes the base design, TABLE.KEY=VALUE each."
     )
-    profile: str | None = Field(default=None, min_length=1, description="Printer of the membrane.")
+    profile: str | None = Field(
+        default=None, min_length=1, description="Printer of the membrane.", json_schema_extra={"registry": "printers"}
+    )
     tube_length_mm: float | None = number(None, unit="mm", low=0, high=20000, help="Tube to the pressure sensor.")
     dead_volume_mL: float | None = number(
         None, unit="mL", low=0, high=1000, help="Total gas volume behind the cavity; left out: computed."
