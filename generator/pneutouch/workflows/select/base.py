@@ -74,22 +74,15 @@ def base_scene(target: Target, where: str, library: Library) -> ResolvedDesign:
 def _check_contact(design: DesignFile, where: str) -> None:
     """Raise InputError where the atlas, which the search is made with, does not cover what presses the sensor."""
     contact = design.contact
+    remedy = (
+        "select with a plate without friction, then `sweep` wall and radius of the selected design with `[contact]`"
+    )
     if not contact.is_plate:
-        raise InputError(
-            f"the search is made with the atlas, whose domes are pressed by a plate, not by a {contact.label}",
-            file=where,
-            key="contact.object",
-            value=contact.object,
-            remedy="select with a plate, then vary wall and radius of the selected design under the object by `sweep`",
-        )
-    if contact.base:
-        raise InputError(
-            "the search is made with the atlas, whose domes pass through their base plane next to the clamp",
-            file=where,
-            key="contact.base",
-            value=True,
-            remedy="select with contact.base = false, then predict the selected design with true",
-        )
+        problem = f"the search is made with the atlas, whose domes are pressed by a plate, not by a {contact.label}"
+        raise InputError(problem, file=where, key="contact.object", value=contact.object, remedy=remedy)
+    if contact.friction:
+        problem = "the search is made with the atlas, whose plate has no friction"
+        raise InputError(problem, file=where, key="contact.friction", value=contact.friction, remedy=remedy)
 
 
 def requested_pair(target: Target, where: str, printer: Printer, library: Library) -> ResinPair | None:
