@@ -40,10 +40,13 @@ class Judgement(NamedTuple):
 
 
 def judge(source: DesignSource, library: Library, *, predicted: bool) -> Judgement:
-    """Judge a design: ``predicted`` as ``check`` does, by the solid too; else by the print rules on its bodies."""
+    """Judge a design: ``predicted`` as ``check`` does, by the solid too; else by the print rules on its bodies.
+
+    The stability around the axis, which changes neither a finding nor a figure, is not checked.
+    """
     evaluation = None
     try:
-        scene = load_scene(source, None, library)
+        scene = load_scene(source, {"indentation.checked_waves": 0}, library)
         if predicted:
             evaluation = evaluate_scene(scene, dict, PredictionOptions())
         findings = check(subject_of(assemble(scene))) if evaluation is None else evaluation.findings
