@@ -1,6 +1,7 @@
 """Objects in a design file: what the predictions of all commands make of them."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from pneutouch.catalogue import DEFAULT, Library
 from pneutouch.errors import InputError
 from pneutouch.evaluation.document import prediction_document
 from pneutouch.evaluation.evaluate import evaluate
+from pneutouch.report.curves import shapes
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import validate
 from pneutouch.spec.target import Target
@@ -54,6 +56,16 @@ def test_a_ball_is_answered_by_the_solid_alone_and_stated():
     under = pressed.cells[..., 0] < 4.0
     assert (pressed.cells[..., 1][under] < reach[under] + 0.02).all()
     assert (reach - pressed.cells[..., 1])[under].min() == pytest.approx(0.0, abs=0.02)
+
+
+def test_the_object_is_drawn_in_the_pressed_section():
+    """With the ball there is a curve of many lines in place of the straight one of a plate."""
+    prediction = evaluate("paper-dome", BALL).prediction
+    state = prediction.states[0]
+    bare = replace(state, shapes=tuple(replace(shape, body=None) for shape in state.shapes))
+    pressed = shapes(prediction)[1]
+    without = shapes(replace(prediction, states=(bare,)))
+    assert pressed.count("L ") > without[1].count("L ") + 10
 
 
 @pytest.mark.parametrize("model", ["atlas", "membrane"])

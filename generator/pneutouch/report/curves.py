@@ -85,6 +85,9 @@ def shapes(prediction: SensorPrediction) -> list[str]:
     top = max(float(shape.stretch.max()) for _, shape in drawn_shapes)
     every = np.concatenate([shape.cells.reshape(-1, 2) for _, shape in drawn_shapes])
     (right, high), low = 1.06 * every.max(axis=0), min(0.0, float(every[:, 1].min())) - 0.05 * float(every[:, 1].max())
+    if any(shape.body is not None for _, shape in drawn_shapes):
+        # So much of an object is shown above the wall.
+        high *= 1.3
     texts = []
     with figure(SIZE[0], 0.75 * SIZE[1]) as drawn:
         ax = drawn.add_subplot()
@@ -110,7 +113,9 @@ def _shape(ax: Axes, state: SensorState, shape: DeformedShape, colours: ScalarMa
     wall = PolyCollection(list(shape.cells), array=shape.stretch, **look)
     rest = PolyCollection(list(state.shapes[0].cells), facecolors="none", edgecolors=FAINT, lw=0.3, zorder=0)
     added: list[Artist] = [ax.add_collection(rest), ax.add_collection(wall)]
-    if shape.indentation:
+    if shape.body is not None:
+        added += ax.plot(*shape.body.T, color=INK, lw=1.6)
+    elif shape.indentation:
         added.append(ax.axhline(float(shape.cells[..., 1].max()), xmax=0.97, color=INK, lw=1.6))
     pressed = f", pressed {shape.indentation:.2f} mm" if shape.indentation else ""
     ax.set_title(f"{state.driving_pressure / KPA:g} kPa{pressed}", fontsize=7)
