@@ -66,3 +66,13 @@ def test_tables_keep_to_the_width_and_lose_no_word():
     assert sorted("".join(text.split())) == sorted(
         "".join("".join(["at 0 kPa", "paper-dome", "thick", "difference", *rows[0]]).split())
     )
+
+
+def test_a_table_without_a_head_keeps_its_indent_and_its_width():
+    rows = [["paper-dome", "the sensor of the paper, with its specimen and a long title"], ["x", "short"]]
+    whole = table_text([], rows, indent="  ")
+    assert whole == f"  paper-dome  {rows[0][1]}\n  x           short"
+    lines = table_text([], rows, 40, indent="  ").splitlines()
+    assert len(lines) > 2 and all(line.startswith("  ") and len(line) <= 40 for line in lines)
+    assert "".join("".join(lines).split()) == "".join("".join(rows[0] + rows[1]).split())
+    assert table_text([], []) == "" and table_text(["a", "b"], []) == "a  b"

@@ -1,6 +1,6 @@
 """A calibration as text for people."""
 
-from pneutouch.cli.text import columns
+from pneutouch.cli.table import table_text
 from pneutouch.workflows.calibrate.record import EstimateRecord, OutcomeRecord, ResponseRecord
 
 
@@ -17,7 +17,7 @@ def calibration_text(document: OutcomeRecord) -> str:
     chi = fit["chi_squared_per_degree"]
     parts = [
         head,
-        columns([], rows),
+        table_text([], rows),
         "" if chi is None else f"chi-squared per degree of freedom: {chi:.2f}",
         _response(document["response"]),
         "\n".join(f"note: {note}" for note in document["notes"]),
@@ -41,7 +41,7 @@ def _response(response: list[ResponseRecord]) -> str:
         ]
         for row in response
     ]
-    return f"correction of the fitted model (errors are standard uncertainties):\n{columns(head, rows)}"
+    return f"correction of the fitted model (errors are standard uncertainties):\n{table_text(head, rows)}"
 
 
 def _interval(estimate: EstimateRecord) -> str:

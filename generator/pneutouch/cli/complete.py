@@ -11,8 +11,8 @@ def names(*kinds: str, listed: bool = False) -> Callable[[str], list[str]]:
 
         library = Library.default()
         before, comma, word = incomplete.rpartition(",") if listed else ("", "", incomplete)
-        found = [name for kind in kinds for name in library.paths(kind) if name.startswith(word)]
-        return [f"{before}{comma}{name}" for name in found]
+        matching = [name for kind in kinds for name in library.paths(kind) if name.startswith(word)]
+        return [f"{before}{comma}{name}" for name in matching]
 
     return complete
 

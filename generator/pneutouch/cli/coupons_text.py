@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from pneutouch.cli.text import columns
+from pneutouch.cli.table import table_text
 
 
 def results_text(document: dict[str, Any]) -> str:
@@ -21,8 +21,8 @@ def results_text(document: dict[str, Any]) -> str:
         [change["key"], _shown(change["before"]), "->", _shown(change["after"])] for change in document["changes"]
     ]
     parts = [
-        columns([], figures),
-        columns([], changes),
+        table_text([], figures),
+        table_text([], changes),
         "\n".join(f"written: {path}" for path in document["written"]),
         "\n".join(f"note: {note}" for note in document["notes"]),
     ]

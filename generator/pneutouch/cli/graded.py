@@ -10,8 +10,8 @@ import typer
 from pneutouch.cli.app import print_json
 from pneutouch.cli.next_step import DesignPlace, report_written
 from pneutouch.cli.progress import bar
+from pneutouch.cli.table import table_text
 from pneutouch.cli.terminal import echo, notify
-from pneutouch.cli.text import columns
 from pneutouch.errors import InputError, RuleBrokenError
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA
@@ -62,7 +62,7 @@ def graded_text(selection: GradedSelectionRun) -> str:
     rows += [[constant.name, *_row(selection, constant.trial)] for constant in selection.constants]
     size = f"R0 {sensor.dome.inner_radius:g} mm, t0 {sensor.dome.wall_thickness:g} mm, on {selection.base.where}"
     met = "a grade meets the target" if selection.search.met else "no grade of this size meets the target; the nearest"
-    lines = [f"{met}: {size}", "", columns(head, rows), ""]
+    lines = [f"{met}: {size}", "", table_text(head, rows), ""]
     if not selection.search.met:
         lines += [f"it misses {line}" if k == 0 else line for k, line in enumerate(missed(selection))]
     warning = rated_warning(selection)

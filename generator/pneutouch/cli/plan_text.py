@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from pneutouch.cli.text import columns
+from pneutouch.cli.table import table_text
 from pneutouch.wording import counted
 
 
@@ -32,9 +32,9 @@ def plan_text(document: dict[str, Any]) -> str:
             f"{document['design']}: {runs} on {sensors}, {document['total_s'] / 3600:.1f} h on "
             f"{document['rig']['name']}",
             "",
-            columns(["test", "at kPa", "runs at each", "specimens", "runs", "depth mm", "min a run"], tests),
+            table_text(["test", "at kPa", "runs at each", "specimens", "runs", "depth mm", "min a run"], tests),
             "",
-            columns(["resin", "kPa", "to mm", "N", "rise kPa", "model"], rows),
+            table_text(["resin", "kPa", "to mm", "N", "rise kPa", "model"], rows),
         ]
     )
 

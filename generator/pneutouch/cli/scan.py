@@ -26,18 +26,20 @@ if TYPE_CHECKING:
     from pneutouch.workflows.scan.run import ScanOptions
 
 
+SpecimenArgument = Annotated[
+    str,
+    typer.Argument(
+        metavar="SPECIMEN", help="Name of a specimen, or path of its TOML file.", autocompletion=names("specimens")
+    ),
+]
+
 _NOT_SEPARATING = {key: f"--{key}" for key in ("pressures", "control", "seed", "data")}
 
 
 @app.command()
 def scan(
     context: typer.Context,
-    specimen: Annotated[
-        str,
-        typer.Argument(
-            metavar="SPECIMEN", help="Name of a specimen, or path of its TOML file.", autocompletion=names("specimens")
-        ),
-    ],
+    specimen: SpecimenArgument,
     design: Annotated[
         str,
         typer.Option("--design", help="Sensor that scans: name of a design, or path.", autocompletion=names("designs")),

@@ -2,7 +2,9 @@
 
 from typing import Any
 
-from pneutouch.cli.text import columns
+from pneutouch.cli.table import table_text
+
+_HEAD = ["state", "patch radius mm", "N/mm", "kPa/mm", "kPa", "model"]
 
 
 def scan_text(document: dict[str, Any]) -> str:
@@ -31,9 +33,13 @@ def scan_text(document: dict[str, Any]) -> str:
         [
             f"{document['specimen']} scanned by {document['design']}: {document['preload_N']:g} N, "
             f"{document['control']} held, {document['speed_mm_per_s']:g} mm/s from {first:.2f} to {last:.2f} mm",
-            *(["", columns(["state", "patch radius mm", "N/mm", "kPa/mm", "kPa", "model"], states)] if states else []),
+            *(
+                ["", table_text(["state", "patch radius mm", "N/mm", "kPa/mm", "kPa", "model"], states)]
+                if states
+                else []
+            ),
             "",
-            columns(head, rows),
+            table_text(head, rows),
             *(["", *notes] if notes else []),
         ]
     )
@@ -79,4 +85,4 @@ def separation_text(document: dict[str, Any]) -> str:
         )
     head = ["", "resin", "R0 mm", "t0 mm", "1st: kPa", "Pa", "2nd: kPa", "Pa", "contrast"]
     first = f"1st pattern {one}, 2nd {two}; {document['candidates']} candidates at {document['preload_N']:g} N"
-    return "\n".join([first, "", columns(head, rows)])
+    return "\n".join([first, "", table_text(head, rows)])

@@ -1,7 +1,7 @@
 """A selection as text for people."""
 
 from pneutouch.catalogue import ResolvedDesign
-from pneutouch.cli.text import columns
+from pneutouch.cli.table import table_text
 from pneutouch.mechanics.atlas.respond import DEPTH, ENDS
 from pneutouch.selection import Candidate
 from pneutouch.selection.missed import missed_percent
@@ -32,7 +32,7 @@ def selection_text(selection: SelectionRun) -> str:
             seen.add(choice.resin.name)
             rows.append([label, *_row(selection, choice), solid])
         first = f"{len(answer.designs)} designs of {answer.candidates} candidates, on {selection.base.where}"
-        return "\n".join([first, "", columns(_HEAD, rows), "", *left]).rstrip()
+        return "\n".join([first, "", table_text(_HEAD, rows), "", *left]).rstrip()
     if selection.rejected:
         return "\n".join(["no design that meets the target passes the check", "", *left])
     lines = ["no design meets the target"]
@@ -40,7 +40,7 @@ def selection_text(selection: SelectionRun) -> str:
         lines += [
             "",
             "nearest:",
-            columns(_HEAD[:-1], [["", *_row(selection, answer.nearest)]]),
+            table_text(_HEAD[:-1], [["", *_row(selection, answer.nearest)]]),
             f"it misses: {_missed(selection, answer.nearest)}",
         ]
     lines += [

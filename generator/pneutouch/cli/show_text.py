@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from pneutouch.cli.text import columns
+from pneutouch.cli.table import table_text
 
 NO_RECIPE = "no recipe: not built by pneutouch, so it can be shown but not rebuilt"
 
@@ -49,9 +49,9 @@ def stack_text(document: dict[str, Any]) -> str:
             about,
             *([machine] if machine else []),
             "",
-            columns(["resin", "RGBA", "voxels", "volume mm3", "share"], resins),
+            table_text(["resin", "RGBA", "voxels", "volume mm3", "share"], resins),
             "",
-            columns(["body", "voxels", "volume mm3", "off exact", "dithered in", "designed", "realised"], bodies),
+            table_text(["body", "voxels", "volume mm3", "off exact", "dithered in", "designed", "realised"], bodies),
             "",
             *(f"assumed: {line}" for line in document.get("assumptions", [])),
         ]
@@ -80,7 +80,7 @@ def _bodies(document: dict[str, Any]) -> str:
     bodies, thumbnail = "body" if count == 1 else "bodies", "with" if document["thumbnail"] else "no"
     about = f"{document['file']}: {count} {bodies}, {thumbnail} thumbnail"
     warned = [f"warning: {text}" for text in document["warnings"]]
-    return "\n".join([about, *warned, "", columns(head, _flat(rows)), *mixes])
+    return "\n".join([about, *warned, "", table_text(head, _flat(rows)), *mixes])
 
 
 def _recipe(recipe: dict[str, Any] | None) -> list[str]:
@@ -113,7 +113,7 @@ def _table(title: str, content: dict[str, Any]) -> str:
         [key, ", ".join(f"{x}" for x in value) if isinstance(value, list) else str(value)]
         for key, value in content.items()
     ]
-    return f"{title}\n" + columns([], _flat(rows), indent="  ") if rows else ""
+    return f"{title}\n" + table_text([], _flat(rows), indent="  ") if rows else ""
 
 
 def _flat(rows: list[list[str]]) -> list[list[str]]:

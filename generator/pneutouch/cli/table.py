@@ -6,23 +6,35 @@ from collections.abc import Sequence
 
 from pneutouch.cli.terminal import width
 
-_WHOLE = 100_000
-"""Columns where stdout is no terminal: more than any line has."""
+
+def table_text(
+    head: Sequence[str], rows: Sequence[Sequence[str]], columns: int | None = None, *, indent: str = ""
+) -> str:
+    """Left-aligned columns two spaces apart, under a head where there is one; "" without rows and head.
+
+    Cells are wrapped so that no line has more than ``columns`` letters (None: the terminal's).
+    """
+    table = [head, *rows] if head else list(rows)
+    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+    lines = ["  ".join(map(str.ljust, row, widths)).rstrip() for row in table]
+    most = columns or width(sys.stdout)
+    if most is not None and any(len(indent) + len(line) > most for line in lines):
+        lines = _wrapped(head, rows, most - len(indent))
+    return "\n".join(f"{indent}{line}" for line in lines)
 
 
-def table_text(head: Sequence[str], rows: Sequence[Sequence[str]], columns: int | None = None) -> str:
-    """Left-aligned columns under a head, cells wrapped so that no line has more than ``columns`` letters (None: the
-    terminal's)."""
+def _wrapped(head: Sequence[str], rows: Sequence[Sequence[str]], columns: int) -> list[str]:
+    """The lines of the table, cells over as many as they take."""
     from rich.console import Console
     from rich.table import Table
     from rich.text import Text
 
-    table = Table(box=None, pad_edge=False, show_edge=False, padding=(0, 2, 0, 0), header_style="")
-    for name in head:
-        table.add_column(Text(name), overflow="fold")
+    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="", show_edge=False)
+    table.show_header = bool(head)
+    for name in head or rows[0]:
+        table.add_column(Text(name) if head else "", overflow="fold")
     for row in rows:
         table.add_row(*(Text(cell) for cell in row))
     stream = io.StringIO()
-    fit = columns or width(sys.stdout) or _WHOLE
-    Console(file=stream, width=fit, no_color=True, highlight=False, legacy_windows=False).print(table)
-    return "\n".join(line.rstrip() for line in stream.getvalue().splitlines())
+    Console(file=stream, width=columns, no_color=True, highlight=False, legacy_windows=False).print(table)
+    return [line.rstrip() for line in stream.getvalue().splitlines()]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
+from pneutouch.cli.table import table_text
 from pneutouch.mechanics.events import LOBES, SWAY
 from pneutouch.rounding import tenths_below
 from pneutouch.wording import SIMULATED
@@ -86,7 +87,7 @@ def _state_table(states: list[UncertainStateRecord]) -> str:
             f"{ends[0] if ends else 'depth'}, {state['range_end_mm']:.2f} mm",
         ]
         rows.append(row)
-    return columns(head, rows)
+    return table_text(head, rows)
 
 
 def _off_axis(states: list[UncertainStateRecord]) -> list[str]:
@@ -155,23 +156,13 @@ def listing_text(content: dict[str, list[dict[str, str]]]) -> str:
     blocks = []
     for group, entries in content.items():
         rows = [[entry["name"], *([entry["kind"]] if "kind" in entry else []), _titled(entry)] for entry in entries]
-        blocks.append(f"{group}\n" + (columns([], rows, indent="  ") or "  none"))
+        blocks.append(f"{group}\n" + (table_text([], rows, indent="  ") or "  none"))
     return "\n\n".join(blocks)
 
 
 def _titled(entry: dict[str, str]) -> str:
     """The title of an entry, or what is wrong with its file, on one line."""
     return entry["title"] if "error" not in entry else f"cannot be read: {entry['error'].partition(chr(10))[0]}"
-
-
-def columns(head: list[str], rows: list[list[str]], indent: str = "") -> str:
-    """Left-aligned columns two spaces apart."""
-    table = [head, *rows] if head else rows
-    widths = [max(len(row[k]) for row in table) for k in range(len(table[0]))] if table else []
-    return "\n".join(
-        (indent + "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True))).rstrip()
-        for row in table
-    )
 
 
 def _optional(value: float | None, form: str) -> str:
