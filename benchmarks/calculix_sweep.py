@@ -19,7 +19,8 @@ _INCREMENTS = "0.2,1.,0.002,0.3"
 """First, total, least and greatest increment, as shares of the thin membrane's limit pressure."""
 
 
-def _model(sensor: Sensor, arc: int, through: int) -> list[str]:
+def calculix_model(sensor: Sensor, arc: int, through: int) -> list[str]:
+    """Mesh, material and supports as lines of a deck: nodes ALL, cells WALL, those inside INNER, BASE, AXIS."""
     mesh = dome(sensor.dome.inner_radius, sensor.dome.wall_thickness, arc=arc, through=through, order=8)
     nu, mu = sensor.wall.poisson_ratio, sensor.wall.shear_modulus
     bulk = 2 * mu * (1 + nu) / (3 * (1 - 2 * nu))
@@ -59,7 +60,7 @@ def calculix_limit(sensor: Sensor, arc: int, through: int) -> tuple[float, int, 
     """Limit pressure (MPa), increments, and processor time of the whole process and without reading the deck (s)."""
     full = RISING_BRANCH[-1, 0] * sensor.wall.shear_modulus * sensor.dome.wall_thickness / sensor.dome.inner_radius
     step = ["*STEP,NLGEOM,INC=200", "*STATIC", _INCREMENTS, "*DLOAD", f"INNER,P4,{full:.12g}", "*END STEP"]
-    model = _model(sensor, arc, through)
+    model = calculix_model(sensor, arc, through)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         reading = _seconds(folder, model)

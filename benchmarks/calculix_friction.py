@@ -1,0 +1,114 @@
+"""The press with friction by CalculiX (an optional peer, found on PATH): a deck of CAX8R cells written here.
+
+CalculiX has no trapped gas: the inside pressure follows the solid's own curve over the depth, so that the force on the
+plate is what is compared. Contact is face to face with a linear penalty; a plate that grips has a coefficient of 10.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.calculix_sweep import calculix_model
+from pneutouch.arrays import Array
+from pneutouch.mechanics import Sensor
+from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, indent
+from pneutouch.mechanics.solid.inflate import state_at
+from pneutouch.mechanics.solid.mesh import dome
+from pneutouch.mechanics.solid.model import SolidModel
+
+GRIP = 10.0
+_PENALTY = 2.0e3
+"""Contact stiffness in mu/mm; along the surface a tenth of it."""
+_INCREMENT = 0.125
+"""Share of the depth in one increment."""
+_PLATE_CELLS = 40
+_WEDGE = 2.0
+"""Degrees of the wedge into which CalculiX turns axisymmetric cells."""
+
+
+def solid_press(sensor: Sensor, friction: float, depth: float, cells: tuple[int, int], steps: int) -> IndentationPath:
+    """The solid on the same eight-node cells with reduced integration, its gas shut in at ambient pressure."""
+    mesh = dome(sensor.dome.inner_radius, sensor.dome.wall_thickness, *cells, order=8)
+    solid = SolidModel(mesh, neo_hookean(sensor.wall.shear_modulus, sensor.wall.poisson_ratio))
+    settings = PressSettings(depth, steps, 2 * sensor.protocol.plate_radius, friction=friction, gauge_range=np.inf)
+    return indent(solid, state_at(solid, 0.0), settings)
+
+
+def calculix_press(sensor: Sensor, friction: float, depths: Array, pressures: Array, cells: tuple[int, int]) -> Array:
+    """Force on the plate (N) at depths (mm, rising, the first 0) with gauge pressures (MPa) given there; nan where
+    CalculiX did not converge."""
+    top, half = sensor.dome.inner_radius + sensor.dome.wall_thickness, sensor.protocol.plate_radius
+    arc, through = cells
+    model = calculix_model(sensor, arc, through)
+    outer = range(through, arc * through + 1, through)
+    mu, stiff = sensor.wall.shear_modulus, _PENALTY * sensor.wall.shear_modulus
+    coefficient = min(friction, GRIP)
+    radii, first = np.linspace(1e-3, half, _PLATE_CELLS + 1), 900001
+    plate = [(r, top + rise) for r in radii for rise in (0.0, 1.0)]
+    corners = [(2 * k, 2 * k + 2, 2 * k + 3, 2 * k + 1) for k in range(_PLATE_CELLS)]
+    deck = [
+        *model,
+        "*NODE,NSET=PLATE",
+        *(f"{first + k},{r:.12g},{z:.12g},0." for k, (r, z) in enumerate(plate)),
+        "*ELEMENT,TYPE=CAX4,ELSET=STAMP",
+        *(f"{first + k}," + ",".join(str(first + n) for n in corner) for k, corner in enumerate(corners)),
+        "*MATERIAL,NAME=STEEL",
+        "*ELASTIC",
+        f"{1e3 * mu:.12g},0.3",
+        "*SOLID SECTION,ELSET=STAMP,MATERIAL=STEEL",
+        "*ELSET,ELSET=OUTER",
+        *(f"{k}," for k in outer),
+        "*SURFACE,NAME=SKIN",
+        "OUTER,S2",
+        "*SURFACE,NAME=UNDERSIDE",
+        "STAMP,S1",
+        "*SURFACE INTERACTION,NAME=DRY",
+        "*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=LINEAR",
+        f"{stiff:.12g},{1e-3 * mu:.12g},{1e-4:.12g}",
+        *(["*FRICTION", f"{coefficient:.12g},{0.1 * stiff:.12g}"] if coefficient else []),
+        "*CONTACT PAIR,INTERACTION=DRY,TYPE=SURFACE TO SURFACE",
+        "SKIN,UNDERSIDE",
+        "*AMPLITUDE,NAME=DOWN",
+        f"0.,0.,1.,{-depths[-1]:.12g}",
+        "*AMPLITUDE,NAME=GAS",
+        *(f"{d / depths[-1]:.12g},{p:.12g}" for d, p in zip(depths, pressures, strict=True)),
+        "*TIME POINTS,NAME=SHOWN",
+        *(f"{d / depths[-1]:.12g}" for d in depths[1:]),
+        "*STEP,NLGEOM,INC=2000",
+        "*STATIC",
+        f"{_INCREMENT},1.,1e-5,{_INCREMENT}",
+        "*BOUNDARY,AMPLITUDE=DOWN",
+        "PLATE,2,2,1.",
+        "*BOUNDARY",
+        "PLATE,1,1,0.",
+        "*DLOAD,AMPLITUDE=GAS",
+        "INNER,P4,1.",
+        "*CONTACT PRINT,MASTER=UNDERSIDE,SLAVE=SKIN,TIME POINTS=SHOWN",
+        "CF",
+        "*END STEP",
+    ]
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "press.inp").write_text("\n".join([*deck, ""]), encoding="ascii")
+        alone = {**os.environ, "OMP_NUM_THREADS": "1"}
+        subprocess.run(["ccx", "press"], cwd=folder, capture_output=True, check=False, env=alone)
+        lines = (folder / "press.dat").read_text(encoding="ascii").splitlines()
+    return _forces(lines, depths)
+
+
+def _forces(lines: list[str], depths: Array) -> Array:
+    """Vertical force of the whole turn at every depth, from the total contact forces printed for the wedge."""
+    out = np.full(depths.size, np.nan)
+    out[0] = 0.0
+    for k, line in enumerate(lines):
+        if line.startswith(" statistics for slave set"):
+            depth = depths[-1] * float(line.split()[-1])
+            near = np.flatnonzero(np.abs(depths - depth) < 1e-6 * depths[-1])
+            out[near] = -360.0 / _WEDGE * float(lines[k + 4].split()[1])
+    return out

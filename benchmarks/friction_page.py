@@ -1,0 +1,196 @@
+"""Write docs/friction.md, every number computed: ``python -m benchmarks.friction_page`` (a minute)."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from unittest import mock
+
+import numpy as np
+
+from pneutouch.catalogue import Library
+from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.paper_sensor import material_sensor
+from pneutouch.mechanics.response import figures
+from pneutouch.mechanics.solid.friction_loop import friction_loop
+from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, indent
+from pneutouch.mechanics.solid.inflate import FreeState, state_at
+from pneutouch.mechanics.solid.mesh import dome
+from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.units import KPA
+
+ROOT = Path(__file__).resolve().parents[1]
+RESINS = ("TangoPlus", "FLX9940", "FLX9950", "FLX9960", "FLX9970", "FLX9985")
+FRICTIONS = (0.0, 0.3, 0.6, 1.0, np.inf)
+RADIUS, WALL, DEPTH, PRESSURES = 9.25, 1.5, 0.75 * 9.25, (0.0, 22 * KPA)
+LOOP_DEPTH = 0.5 * RADIUS
+BEFORE_EVENTS = 0.6 * RADIUS
+"""Depth before which no press of the tables of steps and of time jumps."""
+
+Scene = tuple[SolidModel, FreeState]
+
+
+def scene(modulus: float, pressure: float) -> Scene:
+    """The paper's dome in a modulus (MPa) at a driving pressure (MPa)."""
+    solid = SolidModel(dome(RADIUS, WALL), neo_hookean(modulus))
+    return solid, state_at(solid, pressure)
+
+
+def press(one: Scene, friction: float, depth: float = DEPTH, steps: int = 14) -> IndentationPath:
+    """A press without the end of the gauge's range."""
+    return indent(*one, PressSettings(depth, steps, friction=friction, gauge_range=np.inf))
+
+
+def label(friction: float) -> str:
+    """A coefficient as the tables show it."""
+    return "grip" if np.isinf(friction) else f"{friction:g}"
+
+
+def _table(head: list[str], rows: list[list[str]]) -> list[str]:
+    rule = "| --- |" + " ---: |" * (len(head) - 1)
+    return ["| " + " | ".join(head) + " |", rule, *("| " + " | ".join(row) + " |" for row in rows), ""]
+
+
+def _sensitivities(moduli: dict[str, float]) -> list[str]:
+    rows = []
+    for name, modulus in moduli.items():
+        row = [name]
+        for pressure in PRESSURES:
+            one = scene(modulus, pressure)
+            found = [press(one, friction).figures() for friction in FRICTIONS]
+            row += ["-" if figure is None else f"{figure.sensitivity_kPa_per_N:.3f}" for figure in found]
+        rows.append(row)
+    return _table(["resin", *(f"{p / KPA:g} kPa, {label(f)}" for p in PRESSURES for f in FRICTIONS)], rows)
+
+
+def _loops(moduli: dict[str, float], measured: dict[str, float]) -> list[str]:
+    rows = []
+    for name, modulus in moduli.items():
+        one, row = scene(modulus, 0.0), [name]
+        for friction in (0.1, 0.3, 0.6, 1.0, np.inf):
+            loop = friction_loop(*one, PressSettings(LOOP_DEPTH, 14, friction=friction))
+            width, area = loop.hysteresis()
+            row.append(" / ".join(f"{abs(100 * share):.1f}" for share in (width, area, loop.lost_share)))
+        rows.append([*row, f"{measured[name]:g}"])
+    return _table(["resin", "0.1", "0.3", "0.6", "1", "grip", "measured"], rows)
+
+
+def _steps() -> list[str]:
+    rows = []
+    for modulus, pressure, friction in ((0.17, 0.0, 1.0), (0.91, 0.0, 0.6), (0.91, 0.0, np.inf), (4.0, 22 * KPA, 1.0)):
+        one = scene(modulus, pressure)
+        row = [f"{modulus:g} MPa, {pressure / KPA:g} kPa, {label(friction)}"]
+        for steps in (14, 28, 56, 112):
+            row.append(_slope(press(one, friction, BEFORE_EVENTS, steps), steps // 14))
+        with mock.patch("pneutouch.mechanics.solid.friction_path.TANGENTIAL", 1.0):
+            row.append(_slope(press(one, friction, BEFORE_EVENTS), 1))
+        rows.append(row)
+    return _table(
+        ["modulus, pressure, friction", "14 steps", "28", "56", "112", "14, springs ten times as stiff"], rows
+    )
+
+
+def _slope(run: IndentationPath, every: int) -> str:
+    """Sensitivity over the 15 depths that all numbers of steps share."""
+    d, f, p = (run.column(name)[::every] for name in ("indentation", "force", "rise"))
+    found = figures(d, f, p / KPA)
+    assert found is not None
+    return f"{found.sensitivity_kPa_per_N:.4f}"
+
+
+def _times() -> list[str]:
+    rows, ratios = [], []
+    for modulus, pressure in ((0.17, 0.0), (0.17, 22 * KPA), (0.91, 0.0), (0.91, 22 * KPA), (4.0, 22 * KPA)):
+        one = scene(modulus, pressure)
+        without, *others = (min(_seconds(one, friction) for _ in range(2)) for friction in FRICTIONS)
+        ratios += [other / without for other in others]
+        rows.append([f"{modulus:g} MPa, {pressure / KPA:g} kPa", *(f"{other / without:.1f}" for other in others)])
+    mean = f"The mean of all {len(ratios)} is {np.mean(ratios):.2f}, the largest {max(ratios):.1f}."
+    return [*_table(["press", *map(label, FRICTIONS[1:])], rows), mean, ""]
+
+
+def _seconds(one: Scene, friction: float) -> float:
+    begun = time.process_time()
+    press(one, friction, BEFORE_EVENTS)
+    return time.process_time() - begun
+
+
+def page(library: Library) -> str:
+    """The whole page."""
+    materials = {name: library.load("materials", name) for name in RESINS}
+    moduli = {name: material_sensor(material).wall.shear_modulus for name, material in materials.items()}
+    measured = {name: material.measured.hysteresis_percent.nominal for name, material in materials.items()}
+    return "\n".join(
+        [
+            *TEXT["what"],
+            *_sensitivities(moduli),
+            *TEXT["loop"],
+            *_loops(moduli, measured),
+            *TEXT["steps"],
+            *_steps(),
+            *TEXT["time"],
+            *_times(),
+            *TEXT["reference"],
+        ]
+    )
+
+
+def main() -> None:
+    (ROOT / "docs" / "friction.md").write_text(page(Library.default()), encoding="utf-8")
+
+
+TEXT = {
+    "what": [
+        "# Friction between wall and plate",
+        "",
+        "`python -m benchmarks.friction_page` computes this page. The sensor is the paper's, without dead volume.",
+        "",
+        "`predict` takes a coefficient: `pneutouch predict paper-dome --set contact.friction=0.6`. The default is 0, as in "
+        "the paper's finite elements; `inf` is a surface that grips. Friction is solved by the solid.",
+        "",
+        "The law is Coulomb's. A point of the wall that touches is held, where it first touched, by a stiff spring along "
+        "the object's surface; where the spring's traction would pass the coefficient times the normal traction, the "
+        "point slides. Each accepted state keeps where its points stick, and every step starts from there.",
+        "",
+        "## Sensitivity",
+        "",
+        f"S in kPa/N over {DEPTH:.2f} mm or to the first event that ends the curve, by driving pressure and friction. The "
+        "end of the gauge's range does not count here.",
+        "",
+    ],
+    "loop": [
+        "## The loop that friction alone makes",
+        "",
+        f"The plate goes {LOOP_DEPTH:.2f} mm down at 0 kPa and up again. Each cell: greatest difference of the rise over full "
+        "scale / area of the loop of rise over force / work that the plate does not get back over what it put in, all "
+        "in percent. Measured: the paper's Table S1, normalised, without a formula. The resin's relaxation is not in "
+        "the loop (viscous.md).",
+        "",
+    ],
+    "steps": [
+        "## Steps and springs",
+        "",
+        f"S in kPa/N over {BEFORE_EVENTS:.2f} mm, from the same 15 depths each. The springs have a tenth of the contact's "
+        "stiffness.",
+        "",
+    ],
+    "time": [
+        "## Time",
+        "",
+        "Processor time of a press with friction over the same press without, least of two each, in one run.",
+        "",
+    ],
+    "reference": [
+        "## CalculiX",
+        "",
+        "`tests/mechanics/solid/test_calculix_friction.py` presses the sensor in FLX9960 with CalculiX 2.20 on the same "
+        "cells, with the solid's own pressure over the depth: forces agree within 1 %. A finer mesh of the solid moves "
+        "the force by as much again (accuracy.md).",
+        "",
+    ],
+}
+"""The prose of the page by section."""
+
+
+if __name__ == "__main__":
+    main()

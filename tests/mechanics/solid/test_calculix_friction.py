@@ -1,0 +1,23 @@
+"""The press with friction by CalculiX, an independent program, where it is installed."""
+
+from __future__ import annotations
+
+import shutil
+
+import numpy as np
+import pytest
+from benchmarks.calculix_friction import calculix_press, solid_press
+from benchmarks.scenes import paper
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX (ccx) is not installed: the comparison is not made")
+@pytest.mark.parametrize("friction", [0.0, 0.3, 0.6, np.inf])
+def test_force_under_friction_agrees_with_calculix(friction):
+    """On the same cells, with the solid's pressure over the depth; from where the contact is wider than two cells."""
+    sensor, cells = paper(0.91), (24, 2)
+    ours = solid_press(sensor, friction, 2.4, cells, 4)
+    depths, forces, pressures = (ours.column(name) for name in ("indentation", "force", "pressure"))
+    theirs = calculix_press(sensor, friction, depths, pressures, cells)
+    assert np.isfinite(theirs).all()
+    assert forces[2:] == pytest.approx(theirs[2:], rel=0.01)
