@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from pneutouch.cli.table import table_text
 from pneutouch.mechanics.events import LOBES, SWAY
 from pneutouch.rounding import tenths_below
-from pneutouch.wording import SIMULATED
+from pneutouch.wording import SIMULATED, counted
 
 if TYPE_CHECKING:
     from pneutouch.evaluation.document import PredictionRecord, UncertainStateRecord
@@ -127,8 +127,8 @@ def _viscous(relaxation: dict[str, Any]) -> list[str]:
     return [
         f"held at {relaxation['depth_mm']:.2f} mm and {last['driving_pressure_kPa']:g} kPa the pressure rise loses "
         f"{_span(held)} from 1 s to "
-        f"600 s; hysteresis at {speed} {_span(wide)} of full scale ({len(relaxation['sources'])} source(s) of "
-        "relaxation data)"
+        f"600 s; hysteresis at {speed} {_span(wide)} of full scale ("
+        f"{counted(len(relaxation['sources']), 'source')} of relaxation data)"
     ]
 
 

@@ -11,6 +11,7 @@ from pneutouch.cli.app import JsonOption, OutOption, SetOption, app, changes, pr
 from pneutouch.cli.complete import names
 from pneutouch.cli.terminal import echo, notify
 from pneutouch.errors import InputError
+from pneutouch.wording import counted
 
 if TYPE_CHECKING:
     from pneutouch.workflows.tray.lay import TrayLayout
@@ -79,13 +80,13 @@ def _report(step: str) -> None:
 
 def _text(layout: TrayLayout) -> str:
     """A line a job: what to load, how full it is."""
-    from pneutouch.workflows.tray.lay import counted, fill
+    from pneutouch.workflows.tray.lay import fill
 
-    lines = [f"{layout.printer.title}: {counted(layout.parts)}, {layout.resin_note}"]
+    lines = [f"{layout.printer.title}: {counted(len(layout.parts), 'part')}, {layout.resin_note}"]
     for job in layout.jobs:
         shares = fill(job, layout.printer)
         lines.append(
-            f"{layout.name(job)}: {counted(job.parts)}, {' + '.join(job.resins)}, {job.mode.name}, {job.layers} "
-            f"layers, bounding boxes take {shares['bounding_boxes']:.1%} of the footprint"
+            f"{layout.name(job)}: {counted(len(job.parts), 'part')}, {' + '.join(job.resins)}, {job.mode.name}, "
+            f"{job.layers} layers, bounding boxes take {shares['bounding_boxes']:.1%} of the footprint"
         )
     return "\n".join(lines)

@@ -4,6 +4,7 @@ from itertools import groupby
 from typing import Any
 
 from pneutouch.rounding import tenths_below
+from pneutouch.wording import counted
 
 _WORDS = {
     "leak": "Leak",
@@ -74,7 +75,7 @@ def _head(plan: dict[str, Any]) -> list[str]:
         f"Design {_escaped(plan['design'])}: R0 {plan['inner_radius_mm']:g} mm, wall {plan['wall_thickness_mm']:g} mm, "
         f"dead volume {plan['dead_volume_mL']:.3g} mL{idealised}, "
         f"driving pressures {pressures} kPa, {_object(plan)}.",
-        f"{len(plan['runs'])} runs on {len(names)} specimen{'s' if len(names) > 1 else ''} "
+        f"{counted(len(plan['runs']), 'run')} on {counted(len(names), 'specimen')} "
         f"({', '.join(map(_escaped, names))}): **{_time(plan['total_s'])}** on the rig, mounting and looking aside.",
         "Laboratory: ______________________  Operator: ______________________  Date: ______________",
         "Room: ______ °C  Air pressure: ________ hPa  Resin lots: ________________________________",
@@ -200,8 +201,8 @@ def _steps(plan: dict[str, Any]) -> list[str]:
         reset = "vent, then set the driving pressure again, and let it settle"
         even = f"{depths[1] - depths[0]:g} mm steps to " if len(set(depths)) > 1 else ""
         lines += [
-            f"**{_WORDS[kind]}** (`{kind}`, at {_list(test['driving_pressures_kPa'])} kPa, {test['runs']} run"
-            f"{'s' if test['runs'] > 1 else ''} each, {_time(test['duration_s'])} a run)",
+            f"**{_WORDS[kind]}** (`{kind}`, at {_list(test['driving_pressures_kPa'])} kPa, "
+            f"{counted(test['runs'], 'run')} each, {_time(test['duration_s'])} a run)",
             "",
             "1. Start recording.",
             f"2. Plate {plan['clearance_mm']:g} mm clear, rest {test['rest_s']:g} s: "

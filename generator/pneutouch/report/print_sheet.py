@@ -8,6 +8,7 @@ from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.report import prose
 from pneutouch.report.ordering import part_number
 from pneutouch.units import ML
+from pneutouch.wording import counted
 
 
 def print_sheet(sheet: SheetData, left_out: Mapping[str, str]) -> str:
@@ -76,7 +77,7 @@ def _takes(sheet: SheetData) -> str:
     rows, notes = [], []
     for job in sheet.estimates:
         resins = ", ".join(f"{name} {volume:.2f} mL" for name, volume in job.resins.items())
-        swaths = "" if job.swaths is None else f" x {job.swaths} swath{'s' if job.swaths > 1 else ''}"
+        swaths = "" if job.swaths is None else f" x {counted(job.swaths, 'swath')}"
         rows.append(
             f"| {job.name} | {job.mode} | {resins} | {job.support / ML:.2f} mL | {job.layers}{swaths} | "
             f"{_time(job.seconds)} |"

@@ -9,6 +9,7 @@ from pneutouch.parts.coupons import Nominal
 from pneutouch.spec.coupon import CouponResults
 from pneutouch.spec.fields import table_of
 from pneutouch.spec.toml_text import key_text, value_text
+from pneutouch.wording import counted
 from pneutouch.workflows.coupons.order import CouponItem, CouponOrder
 
 _HEAD = """\
@@ -85,7 +86,7 @@ def _reading(model: type[BaseModel], nominal: Nominal) -> str:
 def _empty(nominal: Nominal, copies: int) -> str:
     drawn = "" if nominal.value is None else f"nominal {nominal.value:.4g} {nominal.unit}; "
     each = f" on each of {copies}" if copies > 1 else ""
-    return f"{nominal.feature} = []  # {drawn}{nominal.readings} reading{'s' if nominal.readings > 1 else ''}{each}"
+    return f"{nominal.feature} = []  # {drawn}{counted(nominal.readings, 'reading')}{each}"
 
 
 def _rows(feature: str, nominals: list[Nominal]) -> list[str]:

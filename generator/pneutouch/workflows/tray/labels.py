@@ -5,7 +5,8 @@ from typing import Any
 from pneutouch.parts.lettering.tally import EXPLAINED
 from pneutouch.tables.csv_write import csv_bytes
 from pneutouch.units import grams
-from pneutouch.workflows.tray.lay import TrayJob, TrayLayout, TrayPart, counted, fill, layers
+from pneutouch.wording import counted
+from pneutouch.workflows.tray.lay import TrayJob, TrayLayout, TrayPart, fill, layers
 from pneutouch.workflows.tray.rules import TrayFinding
 
 
@@ -26,7 +27,7 @@ def labels_md(layout: TrayLayout, findings: tuple[TrayFinding, ...] = ()) -> byt
     lines = [
         f"# {_escaped(head.title)}",
         "",
-        f"{printer.title}: {counted(layout.parts)}, **{layout.resin_note}**. Support: {printer.support}.",
+        f"{printer.title}: {counted(len(layout.parts), 'part')}, **{layout.resin_note}**. Support: {printer.support}.",
         "",
         *(f"Not on this tray: {_escaped(note)}." for note in layout.expanded.left_out),
     ]

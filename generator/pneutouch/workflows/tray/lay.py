@@ -131,11 +131,6 @@ def lay(order: TrayOrder, library: Library | None = None, progress: StepReport =
     return TrayLayout(order, expanded, tuple(done))
 
 
-def counted(parts: Sequence[TrayPart]) -> str:
-    """How many parts, in words."""
-    return f"{len(parts)} part{'' if len(parts) == 1 else 's'}"
-
-
 def layers(height: float, mode: Mode) -> int:
     """Layers of a mode in a height in mm; a micrometre too much is rounding."""
     return math.ceil((height - UM) / (UM * mode.layer_height_um))

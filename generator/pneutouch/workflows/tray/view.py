@@ -8,7 +8,8 @@ import numpy as np
 
 from pneutouch.parts.lettering.mark import shape_of
 from pneutouch.report.style import BOLD, INK, MM, MUTED, figure, halo, svg
-from pneutouch.workflows.tray.lay import TrayJob, TrayLayout, TrayPart, counted, outline
+from pneutouch.wording import counted
+from pneutouch.workflows.tray.lay import TrayJob, TrayLayout, TrayPart, outline
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,7 +32,7 @@ def tray_svg(layout: TrayLayout, job: TrayJob) -> bytes:
                 outlines[key] = outline(part.bodies).to_polygons()
             _part(ax, part, outlines[key], envelope.x)
         ax.set_title(
-            f"{layout.printer.title}, seen from above: {layout.name(job)}, {counted(job.parts)}, "
+            f"{layout.printer.title}, seen from above: {layout.name(job)}, {counted(len(job.parts), 'part')}, "
             f"{' + '.join(job.resins)}",
             loc="left",
             fontsize=7.5,

@@ -13,8 +13,9 @@ from pneutouch.output.files import check_writable, write_folder
 from pneutouch.output.manifest import short_digest, with_manifest
 from pneutouch.output.recipe import scene_parts
 from pneutouch.printability import refuse
+from pneutouch.wording import counted
 from pneutouch.workflows.tray.labels import labels_csv, labels_md, rows
-from pneutouch.workflows.tray.lay import StepReport, TrayJob, TrayLayout, TrayPart, counted, fill
+from pneutouch.workflows.tray.lay import StepReport, TrayJob, TrayLayout, TrayPart, fill
 from pneutouch.workflows.tray.rules import TrayFinding, findings
 from pneutouch.workflows.tray.view import tray_svg
 
@@ -108,7 +109,7 @@ def _metadata(layout: TrayLayout, job: TrayJob, recipe: str) -> dict[str, str]:
     return {
         "Title": layout.order.tray.tray.title,
         "Application": f"pneutouch {__version__}",
-        "Description": f"Tray {layout.name(job)} for the {layout.printer.title}: {counted(job.parts)}, "
+        "Description": f"Tray {layout.name(job)} for the {layout.printer.title}: {counted(len(job.parts), 'part')}, "
         f"mode {job.mode.name}",
         TRAY_RECIPE: recipe,
         "resins": " + ".join(job.resins),
