@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: venv demo test pytest lint review ratios check-slow chart chart-meshes texture-page coverage-page voxel-page mixing-page atlas atlas-page lock clean
+.PHONY: venv demo test pytest lint review ratios check-slow chart chart-meshes texture-page coverage-page sway-page voxel-page mixing-page atlas atlas-page lock clean
 
 venv: $(VENV)/.dev
 
@@ -71,6 +71,10 @@ texture-page: $(VENV)/.dev
 # How often the intervals of simulated campaigns hold the truth; writes docs/coverage.json and the table of docs/measuring.md.
 coverage-page: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.coverage
+
+# Where a pressed dome leaves its axis; writes docs/sway.md with its map. CalculiX's part: python -m benchmarks.sway_calculix.
+sway-page: $(VENV)/.dev
+	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.sway_page
 
 # The mixing curve between its bounds; writes docs/mixing.md and its chart.
 mixing-page: $(VENV)/.dev

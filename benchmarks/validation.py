@@ -266,7 +266,8 @@ def page() -> str:
             "# Validation of the solid",
             "",
             "`make chart` writes this page. The tests assert these and more: energy against work, scale invariance in size and "
-            "modulus to 1e-9, tangent and force against differences, Boyle's law, stability against dense eigenvalues.",
+            "modulus to 1e-9, tangent and force against differences, Boyle's law, stability against dense eigenvalues. "
+            "Stability around the axis: [sway.md](sway.md).",
             "",
             *spheres(),
             *thin_walls(),

@@ -129,6 +129,34 @@ def test_intervals_of_simulated_campaigns_hold_what_they_say():
             assert min(held) >= 0.86, key
 
 
+def test_the_page_on_the_sway_is_made_of_the_stored_numbers():
+    """Thin clamped hemispheres buckle within 5 % of the published share, and nearer to it the thinner they are."""
+    from benchmarks.sway_page import page as sway_page
+
+    data, calculix = stored("sway.json"), stored("sway-calculix.json")
+    assert (DOCS / "sway.md").read_text(encoding="utf-8") == sway_page(data, calculix)
+    # The sideways stiffness of the dome is that of CalculiX in three dimensions until it falls steeply.
+    rows = [row for row in calculix["rows"] if row["depth_mm"] < 6.3]
+    ratios = [row["calculix_sideways_N_per_mm"] / row["solid_sideways_N_per_mm"] for row in rows]
+    assert len(rows) > 15 and np.median(ratios) == pytest.approx(1.0, abs=0.03) and max(ratios) < 1.08
+    shares = [row["share"] for row in sorted(data["hemisphere"], key=lambda row: row["wall_ratio"])]
+    assert shares == sorted(shares) and all(abs(share / 0.8 - 1) < 0.05 for share in shares[:3])
+
+
+@pytest.mark.slow
+def test_the_map_of_axisymmetry_is_what_the_code_gives_today():
+    from benchmarks.sway_map import DEAD, RESINS, inflated, pressed
+
+    for resin, ratio, gas in (
+        ("FLX9970, 1.64 MPa", 0.25, "vented"),
+        ("TangoPlus, 0.17 MPa", 0.12, "sealed, no dead volume"),
+    ):
+        place = {"resin": resin, "wall_ratio": ratio, "limit_fraction": 0.0, "gas": gas}
+        (row,) = [row for row in stored("sway.json")["map"] if place.items() <= row.items()]
+        outcome, depth, _ = pressed(*inflated(ratio, RESINS[resin]), 0.0, DEAD[gas])
+        assert (outcome, depth) == (row["outcome"], pytest.approx(row["depth_ratio"], abs=2e-3))
+
+
 @pytest.mark.parametrize("count", [2, pytest.param(4, marks=pytest.mark.slow)])
 def test_the_stored_coverage_is_what_the_code_gives_today(count):
     """A few campaigns again: whether each interval held is decided by the code alone."""

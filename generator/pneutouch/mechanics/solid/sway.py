@@ -21,7 +21,7 @@ MOST_WAVES = 8
 _TRAVEL = 0.25
 #: Position of a loss, in R0.
 _WITHIN = 5.0e-4
-#: Position of a loss between two states of a free dome, as a share of the way between them.
+#: Position of a loss between two states of a free dome, as a share of the path between them.
 _FREE_WITHIN = 2.0e-3
 _SETTLED = 6.0
 _MOST_SOLVES = 12
@@ -66,7 +66,7 @@ def axisymmetry_losses(solid: SolidModel, path: list[PlateState], most: int = MO
     for k, state in enumerate(path):
         if not watched:
             break
-        if 0 < k < len(path) - 1 and path[reached].height - state.height < _TRAVEL:
+        if k < len(path) - 1 and path[reached].height - state.height < _TRAVEL:
             continue
         lost = unstable_waves(harmonic, state.state, watched)
         for kind in ((1,), tuple(n for n in watched if n > 1)):
@@ -81,7 +81,7 @@ def axisymmetry_losses(solid: SolidModel, path: list[PlateState], most: int = MO
 def _onset(harmonic: HarmonicSolid, path: list[PlateState], n: int) -> AxisymmetryLoss:
     """The loss for n waves within a part of a path whose last state shows it."""
     stable, unstable = 0, len(path) - 1
-    if unstable == 0:
+    if unstable_waves(harmonic, path[0].state, (n,)):
         return AxisymmetryLoss(n, path[0].height)
     while unstable - stable > 1:
         middle = (stable + unstable) // 2
@@ -121,8 +121,8 @@ def _free_place(harmonic: HarmonicSolid, n: int, before: FreeState, after: FreeS
 
     def solve(share: float) -> SolverState | None:
         volume = a + share * (b - a)
-        found = at_volume(solid, [before], volume, between(before, after, volume))
-        return None if isinstance(found, NewtonFailure) else found.unit
+        state = at_volume(solid, [before], volume, between(before, after, volume))
+        return None if isinstance(state, NewtonFailure) else state.unit
 
     return FreeLoss(n, pressure_between(before, after, _root(harmonic, n, values, solve, _FREE_WITHIN)))
 
@@ -138,7 +138,7 @@ def _root(
     solve: Callable[[float], SolverState | None],
     within: float,
 ) -> float:
-    """Share of the way from a stable state (0) to an unstable one (1) at which the lowest eigenvalue is zero.
+    """Share of the path from a stable state (0) to an unstable one (1) at which the lowest eigenvalue is zero.
 
     By inverse quadratic interpolation of the ``values`` at known shares, and by halves where that leaves the bracket.
     """
