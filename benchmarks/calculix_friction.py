@@ -1,7 +1,8 @@
 """The press with friction by CalculiX (an optional peer, found on PATH): a deck of CAX8R cells written here.
 
 CalculiX has no trapped gas: the inside pressure follows the solid's own curve over the depth, so that the force on the
-plate is what is compared. Contact is face to face with a linear penalty; a plate that grips has a coefficient of 10.
+plate is what is compared. Contact is face to face with a linear penalty; a plate that grips has a coefficient of
+10, and is not confirmed (docs/friction.md).
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ from benchmarks.scenes import paper
 
 @pytest.mark.slow
 @pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX (ccx) is not installed: the comparison is not made")
-@pytest.mark.parametrize("friction", [0.0, 0.3, 0.6, np.inf])
+@pytest.mark.parametrize("friction", [0.0, 0.6])
 def test_force_under_friction_agrees_with_calculix(friction):
     """On the same cells, with the solid's pressure over the depth; from where the contact is wider than two cells."""
     sensor, cells = paper(0.91), (24, 2)
