@@ -107,7 +107,8 @@ def contact_section(cells: list[Cell]) -> list[str]:
         "that modulus, which is unexplained, and a slightly low sensitivity for FLX9985-DM. The membrane has no bending "
         "stiffness, so the resin has little effect on "
         "its sensitivity; at zero driving pressure F = p pi rho^2 even bounds S from below by 1/(pi R0^2) = 3.72 kPa/N, above "
-        "every measured value. Use the membrane for inflation, limits and trends; choose a resin by the solid.",
+        "every measured value. Use the membrane for inflation, limits and trends; choose a resin by the solid. What friction, the "
+        "rim, dead volume and the fitted range change in each cell: [table-s1.md](table-s1.md).",
         "",
     ]
 

@@ -18,8 +18,8 @@ _WIDTH = 0.6
 _MARKS = ("o", "v", "^", "s", "P")
 
 
-def draw(rows: list[CellRow], size: tuple[float, float] = (6.6, 3.0)) -> str:
-    """SVG of two panels, one for each driving pressure."""
+def draw(rows: list[CellRow], size: tuple[float, float] = (175.0, 80.0)) -> str:
+    """SVG of two panels, one for each driving pressure; ``size`` in mm."""
     with figure(*size) as drawn:
         panels = drawn.subplots(1, len(PRESSURES), sharey=True)
         for ax, pressure in zip(panels, PRESSURES, strict=True):

@@ -180,9 +180,10 @@ def _stated(rows: list[CellRow]) -> list[str]:
     inside = sum(np.nanmin(values) <= 1 <= np.nanmax(values) for values in np.exp(table).T)
     rms = root_mean_square(errors(rows, Assumptions()))
     return [
-        "## What this says of the model's error",
+        "## What follows for the error of the model",
         "",
-        f"The model's stated error is the root mean square error of the default against the table: {rms:.1%} over these cells. "
+        "The budget of an uncertainty takes the model's error from this table: for each resin from its own two cells, elsewhere "
+        f"from all of them. The root mean square error of the default over these cells is {rms:.1%}. "
         f"The standard deviation of a cell over all combinations, each taken as equally likely, is {share:.1%} (root mean "
         f"square over the cells): what is unknown of the contact, the rim, the air and the range is {(share / rms) ** 2:.0%} of "
         f"the square of that error. {inside} of {len(rows)} measured values lie within the span of the combinations. The rest is "
@@ -229,12 +230,16 @@ def read(text: str) -> list[CellRow]:
     ]
 
 
-def main() -> None:
-    rows = cells(Library((ROOT,)))
-    (DOCS / "table-s1.json").write_text(json.dumps(raw(rows), indent=1) + "\n", encoding="utf-8")
-    rows = read((DOCS / "table-s1.json").read_text(encoding="utf-8"))
+def write(rows: list[CellRow]) -> None:
+    """The chart and the page of rows that were read from the stored ones."""
     (DOCS / "table-s1.svg").write_text(draw(rows), encoding="utf-8")
     (DOCS / "table-s1.md").write_text(page(rows), encoding="utf-8")
+
+
+def main() -> None:
+    stored = DOCS / "table-s1.json"
+    stored.write_text(json.dumps(raw(cells(Library((ROOT,)))), indent=1) + "\n", encoding="utf-8")
+    write(read(stored.read_text(encoding="utf-8")))
     print("wrote docs/table-s1.md")
 
 

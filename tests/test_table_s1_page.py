@@ -1,0 +1,52 @@
+"""docs/table-s1.md: its numbers are what the solid gives today, its text and chart are those of its numbers."""
+
+import numpy as np
+import pytest
+from benchmarks.table_s1_cells import ALL, Assumptions, resin_rows
+from benchmarks.table_s1_chart import draw
+from benchmarks.table_s1_page import page, ranked, read, spread
+from benchmarks.theory import resins
+
+from pneutouch.catalogue import Library
+from tests.conftest import ROOT
+
+DOCS = ROOT / "docs"
+ROWS = read((DOCS / "table-s1.json").read_text(encoding="utf-8"))
+
+
+def test_page_and_chart_are_those_of_the_stored_cells():
+    assert (DOCS / "table-s1.md").read_text(encoding="utf-8") == page(ROWS)
+    assert (DOCS / "table-s1.svg").read_text(encoding="utf-8") == draw(ROWS)
+
+
+@pytest.mark.parametrize(
+    "assumed",
+    [
+        Assumptions(),
+        pytest.param(Assumptions(friction=0.3, dead_volume_mL=0.2), marks=pytest.mark.slow),
+        pytest.param(Assumptions(friction=np.inf, range="depth"), marks=pytest.mark.slow),
+        pytest.param(Assumptions(friction=0.6, rim="as printed"), marks=pytest.mark.slow),
+    ],
+)
+def test_cells_are_what_the_solid_gives_today(assumed):
+    soft = resins(Library((ROOT,)))[0]
+    for row, stored in zip(resin_rows(soft, (assumed,)), ROWS, strict=False):
+        assert (row.material, row.pressure_kPa) == (stored.material, stored.pressure_kPa)
+        assert row.sensitivity[assumed] == pytest.approx(stored.sensitivity[assumed], rel=1e-4)
+        assert row.ends[assumed][0] == pytest.approx(stored.ends[assumed][0], abs=0.01)
+
+
+def test_air_softens_the_reading_of_every_cell():
+    for row in ROWS:
+        for assumed in ALL:
+            if assumed.dead_volume_mL == 0:
+                more = row.sensitivity[assumed._replace(dead_volume_mL=0.2)]
+                assert more < row.sensitivity[assumed] * 1.001
+
+
+def test_the_best_combination_ranks_first_and_the_default_lies_in_the_span():
+    order = ranked(ROWS[:12])
+    assert len(order) == len(ALL) == len(set(order))
+    for row in ROWS:
+        low, high = spread(row)
+        assert low <= row.sensitivity[Assumptions()] <= high
