@@ -11,12 +11,12 @@ import numpy as np
 from benchmarks.scenes import PAPER
 from benchmarks.speed_accuracy import REFINEMENTS, extrapolate
 from pneutouch.mechanics.response import figures
-from pneutouch.mechanics.solid.base_contact import RigidBase
 from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.printed import printed_dome
+from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid_states import KINDS, _curve
 from pneutouch.units import KPA
 

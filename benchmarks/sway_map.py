@@ -8,11 +8,11 @@ import numpy as np
 
 from pneutouch.errors import PneutouchError
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.base_contact import RigidBase
 from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.inflate import Inflation, inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.report.style import INK, MUTED, figure, svg
 
 RADIUS, DEPTH, WAVES = 9.25, 0.75, 16

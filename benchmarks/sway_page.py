@@ -12,13 +12,13 @@ import numpy as np
 
 from benchmarks import sway_map
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.base_contact import RigidBase
 from pneutouch.mechanics.solid.harmonics import HarmonicSolid
 from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure, SolidScene, minimise
+from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid.supply import Regulator
 from pneutouch.mechanics.solid.sway import unstable_waves
 

@@ -11,7 +11,7 @@ import pytest
 from pneutouch.errors import BeyondLimitError, InputError
 from pneutouch.evaluation.table_s1 import SHIPPED, compute_errors, fingerprint, sensitivity_error
 from pneutouch.mechanics import predict
-from pneutouch.mechanics.solid.base_contact import RigidBase
+from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.spec.material import Material
 from pneutouch.spec.quantity import Quantity
 from tests.mechanics.test_contact import PAPER

@@ -10,7 +10,7 @@ from pneutouch.arrays import Array
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.mechanics import Sensor, SensorPrediction
-from pneutouch.mechanics.solid.base_contact import RigidBase
+from pneutouch.mechanics.object_mesh import MOST_CELLS, object_cells
 from pneutouch.mechanics.solid.indenter import (
     CELLS_PER_RADIUS,
     ObjectShapeError,
@@ -22,7 +22,7 @@ from pneutouch.mechanics.solid.indenter import (
     profile,
     ring,
 )
-from pneutouch.mechanics.solid_states import MOST_CELLS, object_cells
+from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.parts import Assembly
 from pneutouch.spec.part import ClampedFlange
 

@@ -9,23 +9,21 @@ from pneutouch.arrays import Array
 from pneutouch.mechanics.events import LOBES, SWAY, Event, range_end
 from pneutouch.mechanics.hermite import hermite
 from pneutouch.mechanics.limits import LimitPoint, Limits
+from pneutouch.mechanics.object_mesh import object_cells
 from pneutouch.mechanics.prediction import DeformedShape, InflationCurve, ModelResult, SensorState
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.solid.base_contact import RigidBase
 from pneutouch.mechanics.solid.first_touch import first_touch
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, PressState, indent
-from pneutouch.mechanics.solid.indenter import CELLS_PER_RADIUS, Indenter
+from pneutouch.mechanics.solid.indenter import Indenter
 from pneutouch.mechanics.solid.inflate import FreeState, Inflation, inflate, state_at
-from pneutouch.mechanics.solid.mesh import arc_cells, dome
+from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.printed import printed_dome
+from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid.stress import StrainProbe, burst
 from pneutouch.meridian.arc import arc_share
 from pneutouch.units import KPA
-
-MOST_CELLS = 192
-"""Most cells along the arc for the sake of an object; beyond, a prediction takes minutes."""
 
 _DRAWN = 3.0
 """Radius over R0 to which an object is drawn."""
@@ -93,16 +91,6 @@ def _base(sensor: Sensor) -> RigidBase | None:
     if dome.base is None or dome.flange is None:
         return dome.base
     return replace(dome.base, flange=dome.inner_radius + dome.wall_thickness + dome.flange[0])
-
-
-def object_cells(sensor: Sensor) -> int | None:
-    """Cells along the arc that follow the object that presses a sensor; None where the default does, as for a plate."""
-    if sensor.protocol.body is None:
-        return None
-    dome, smallest = sensor.dome, sensor.protocol.body.smallest
-    arc = 0.5 * np.pi * (dome.inner_radius + dome.wall_thickness)
-    cells = int(np.ceil(CELLS_PER_RADIUS * arc / smallest))
-    return cells if cells > arc_cells(dome.wall_thickness / dome.inner_radius) else None
 
 
 def _grade(sensor: Sensor) -> Callable[[Array, Array], Array] | None:

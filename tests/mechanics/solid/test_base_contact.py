@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.base_contact import BaseContact, RigidBase
+from pneutouch.mechanics.solid.base_contact import BaseContact
 from pneutouch.mechanics.solid.contact import Plate
 from pneutouch.mechanics.solid.harmonics import HarmonicSolid
 from pneutouch.mechanics.solid.indent import PressSettings, indent
@@ -14,6 +14,7 @@ from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonResult, SolidScene, evaluate, full_tangent, minimise
+from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid.supply import Liquid, Regulator
 
 DEPTH = 0.75 * 9.25

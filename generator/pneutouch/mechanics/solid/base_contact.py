@@ -12,31 +12,11 @@ from pneutouch.mechanics.solid.contact import Contact
 from pneutouch.mechanics.solid.elements import line_shapes
 from pneutouch.mechanics.solid.kinematics import AXIAL, RADIAL
 from pneutouch.mechanics.solid.mesh import SolidMesh
+from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid.terms import TermState
 
 _POINTS = 3
 """Quadrature points of an edge, as many as against the plate."""
-
-
-@dataclass(frozen=True)
-class RigidBase:
-    """The plane z = 0 on which the dome stands, and a ring around it that opens upwards at 45 degrees; in mm.
-
-    opening: radius of the hole in it inside the dome.  flange: outer radius of a flange that is part of the solid and
-    on which the outer wall therefore does not meet this base; 0 where the wall itself is clamped at z = 0.
-    ring, ring_height: radius of the ring's inner edge at z = 0, and its height; no ring at height 0.
-    """
-
-    opening: float = 0.0
-    flange: float = 0.0
-    ring: float = 0.0
-    ring_height: float = 0.0
-
-    def __post_init__(self) -> None:
-        sizes = vars(self)
-        if not all(np.isfinite(size) and size >= 0.0 for size in sizes.values()):
-            stated = ", ".join(f"{name} {size}" for name, size in sizes.items())
-            raise ValueError(f"{stated}: the sizes of a base must be finite and not negative")
 
 
 class _Body(Protocol):

@@ -9,7 +9,7 @@ from pneutouch.arrays import Array, Index
 from pneutouch.mechanics.laws.hyperelastic import Hyperelastic
 from pneutouch.mechanics.laws.strain import BY_A, BY_H, BY_J, BY_JH, GRADIENT, HESSIAN, VALUE, Strain
 from pneutouch.mechanics.solid.banded import AssemblyPattern
-from pneutouch.mechanics.solid.base_contact import BaseContact, BaseLoad, RigidBase
+from pneutouch.mechanics.solid.base_contact import BaseContact, BaseLoad
 from pneutouch.mechanics.solid.cavity import Cavity
 from pneutouch.mechanics.solid.contact import Contact
 from pneutouch.mechanics.solid.elements import (
@@ -22,6 +22,7 @@ from pneutouch.mechanics.solid.elements import (
 from pneutouch.mechanics.solid.flange_contact import FlangeContact, meeting_nodes
 from pneutouch.mechanics.solid.kinematics import F_RR, F_RZ, F_ZR, F_ZZ, HOOP, IN_PLANE, area_ratio
 from pneutouch.mechanics.solid.mesh import SolidMesh
+from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid.terms import EnergyTerm
 
 ModulusField = Callable[[Array, Array], Array]
