@@ -1,4 +1,4 @@
-"""Write docs/friction.md, every number computed: ``python -m benchmarks.friction_page`` (a minute)."""
+"""Write docs/friction.md, every number computed: ``make friction-page`` (a minute)."""
 
 from __future__ import annotations
 
@@ -143,7 +143,7 @@ TEXT = {
     "what": [
         "# Friction between wall and plate",
         "",
-        "`python -m benchmarks.friction_page` computes this page. The sensor is the paper's, without dead volume.",
+        "`make friction-page` computes this page. The sensor is the paper's, without dead volume.",
         "",
         "`predict` takes a coefficient: `pneutouch predict paper-dome --set contact.friction=0.6`. The default is 0, as in "
         "the paper's finite elements; `inf` is a surface that grips. Friction is solved by the solid.",
