@@ -1,8 +1,8 @@
 """The press with friction by CalculiX (an optional peer, found on PATH): a deck of CAX8R cells written here.
 
 CalculiX has no trapped gas: the inside pressure follows the solid's own curve over the depth, so that the force on the
-plate is what is compared. Contact is face to face with a linear penalty; a plate that grips has a coefficient of
-10, and is not confirmed (docs/friction.md).
+plate is what is compared. Contact is face to face with a linear penalty. A plate that grips is beyond CalculiX's
+friction (`calculix_grip`).
 """
 
 from __future__ import annotations
@@ -23,7 +23,6 @@ from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 
-GRIP = 10.0
 _PENALTY = 2.0e3
 """Contact stiffness in mu/mm; along the surface a tenth of it."""
 _INCREMENT = 0.125
@@ -49,7 +48,6 @@ def calculix_press(sensor: Sensor, friction: float, depths: Array, pressures: Ar
     model = calculix_model(sensor, arc, through)
     outer = range(through, arc * through + 1, through)
     mu, stiff = sensor.wall.shear_modulus, _PENALTY * sensor.wall.shear_modulus
-    coefficient = min(friction, GRIP)
     radii, first = np.linspace(1e-3, half, _PLATE_CELLS + 1), 900001
     plate = [(r, top + rise) for r in radii for rise in (0.0, 1.0)]
     corners = [(2 * k, 2 * k + 2, 2 * k + 3, 2 * k + 1) for k in range(_PLATE_CELLS)]
@@ -72,7 +70,7 @@ def calculix_press(sensor: Sensor, friction: float, depths: Array, pressures: Ar
         "*SURFACE INTERACTION,NAME=DRY",
         "*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=LINEAR",
         f"{stiff:.12g},{1e-3 * mu:.12g},{1e-4:.12g}",
-        *(["*FRICTION", f"{coefficient:.12g},{0.1 * stiff:.12g}"] if coefficient else []),
+        *(["*FRICTION", f"{friction:.12g},{0.1 * stiff:.12g}"] if friction else []),
         "*CONTACT PAIR,INTERACTION=DRY,TYPE=SURFACE TO SURFACE",
         "SKIN,UNDERSIDE",
         "*AMPLITUDE,NAME=DOWN",
