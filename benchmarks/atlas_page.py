@@ -88,7 +88,7 @@ def _what() -> list[str]:
         "",
         f"Ambient pressure up to {RECIPE.stiffest:g} mu, any dead volume, Poisson ratio {RECIPE.poisson_ratio:g}, base clamped, any "
         "driving pressure below the limit point. In addition to the energy it holds the quantities that define events: contact radius, greatest stretch "
-        "and stress, the fold of a face, the overhang, the inner apex.",
+        "and stress, the fold of a face, the inner apex.",
         "",
     ]
 

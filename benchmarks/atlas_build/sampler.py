@@ -11,6 +11,7 @@ from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
 from pneutouch.mechanics.atlas.recipe import AtlasRecipe, axes
 from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.solid.base_contact import RigidBase
 from pneutouch.mechanics.solid.contact import Plate
 from pneutouch.mechanics.solid.continuation import PathFollower
 from pneutouch.mechanics.solid.descend import descend
@@ -90,7 +91,7 @@ class AtlasSampler:
 
     def __init__(self, wall_ratio: float, recipe: AtlasRecipe) -> None:
         self.recipe = recipe
-        self.solid = SolidModel(dome(1.0, wall_ratio), neo_hookean(1.0, recipe.poisson_ratio))
+        self.solid = SolidModel(dome(1.0, wall_ratio), neo_hookean(1.0, recipe.poisson_ratio), base=RigidBase())
         self.probe = StrainProbe(self.solid)
         self.run = run = inflate(self.solid, past_limit=1.2)
         if run.limit is None:

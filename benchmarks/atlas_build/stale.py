@@ -14,6 +14,8 @@ from pneutouch.mechanics.atlas.recipe import RECIPE, AtlasRecipe
 _WALLS = (0.07, 0.16, 0.3)
 _ROWS = (0, 12)
 _DEPTH = 0.4
+_AMBIENT = 0.45
+"""Gas of the press that goes to the greatest depth, in mu: there the wall lies on its base."""
 _DIGITS = 6
 _HOLDING = ("stiffest", "degree", "volume_cells", "volume_stretch", "depth_cells")
 
@@ -25,7 +27,7 @@ def survey_fingerprint(recipe: AtlasRecipe) -> str:
 
 
 def solid_fingerprint() -> str:
-    """The solid's answers for three walls, two volumes and one depth, to six digits.
+    """The solid's answers for three walls, two volumes and one depth, and at the end of a press, to six digits.
 
     It follows from the solid's behaviour and not from its text: rewriting the solid without changing its answers
     leaves the atlas fresh.
@@ -42,4 +44,6 @@ def solid_fingerprint() -> str:
                 here = equilibrium
             answers += [here.state.filling.pressure, here.force, here.energy]
             answers += sampler.probe.stretch_by_zone(here.state.x).tolist()
+        last = sampler.pressed(0.0, _AMBIENT).path[-1]
+        answers += [last.state.filling.pressure, last.force, last.energy]
     return hashlib.sha256(" ".join(f"{x:.{_DIGITS}g}" for x in answers).encode()).hexdigest()[:16]

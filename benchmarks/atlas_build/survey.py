@@ -134,7 +134,6 @@ def _gathered(sampler: AtlasSampler, nodes: list[Equilibrium], fold_from: float,
             "von_mises": peak.von_mises,
             "fold": peak.fold,
             "inner_apex": float(x[inner, 1]),
-            "overhang": float((solid.rest[:, 1].min() - x[:, 1]).max()),
         }
         return [values[name] for name in STORED]
 

@@ -16,7 +16,7 @@ from pneutouch.mechanics.limits import LimitPoint, Limits
 from pneutouch.mechanics.prediction import InflationCurve, ModelResult, SensorState
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import Sensor, WallMaterial
-from pneutouch.mechanics.solid.events import CREASE, DETAIL, OVERHANG, PathPoint, crossing
+from pneutouch.mechanics.solid.events import CREASE, DETAIL, PathPoint, crossing
 from pneutouch.units import KPA
 
 _BUCKLES = "the wall buckles inward under the plate, or its gas no longer holds it"
@@ -36,7 +36,7 @@ def outside_atlas(sensor: Sensor, atlas: Atlas | None = None) -> str | None:
         (wall.law is not None, "the resin has a law of its own, not the neo-Hookean one"),
         (wall.poisson_ratio != nu, f"Poisson ratio {wall.poisson_ratio:g}, not {nu:g}"),
         (dome.flange is not None, "the flange is held as printed, not the base plane"),
-        (dome.base is not None, "the wall lies down on its base"),
+        (dome.base is None, "the wall passes through its base plane"),
         (not inside, f"wall {ratio:.3g} R0, not {recipe.thinnest:g} to {recipe.thickest:g}"),
         (depth > recipe.deepest * (1 + 1e-9), f"depth {depth:.3g} R0, more than {recipe.deepest:g}"),
         (gas > recipe.stiffest, f"ambient pressure {gas:.3g} mu, more than {recipe.stiffest:g}"),
@@ -115,7 +115,7 @@ def _state(sensor: Sensor, press: AtlasPress, track: PressTrack, i: int, end: in
         pressure_rise=rise,
         contact_radius=np.maximum(field["contact_radius"], 0.0) * length,
         max_stretch=field["stretch"],
-        events=tuple(_events(sensor, depth, field, end, range_end)),
+        events=tuple(_events(depth, field, end, range_end)),
         max_von_mises=field["von_mises"] * mu,
     )
 
@@ -126,17 +126,14 @@ def _curve(row: AtlasPress, end: float, steps: int) -> tuple[Array, Array, Array
     return grid, track.point.force[0], track.point.pressure[0] - row.pressure[0]
 
 
-def _events(sensor: Sensor, depth: Array, field: dict[str, Array], end: int, range_end: float) -> list[Event]:
+def _events(depth: Array, field: dict[str, Array], end: int, range_end: float) -> list[Event]:
     """What ends the range, and the warnings before it."""
     happened = [] if end == DEPTH else [Event(ENDS[end], range_end, True, _DETAIL.get(end, ENDS[end]))]
-    wall = sensor.dome.wall_thickness / sensor.dome.inner_radius
-    for kind, name, level in (("creasing", "fold", CREASE), ("wall below the base plane", "overhang", OVERHANG * wall)):
-        values = field[name]
-        points = [PathPoint(float(x), float(y)) for x, y in zip(depth, values, strict=True)]
-        pairs = zip([points[0], *points], points, strict=False)
-        where = next((at for a, b in pairs if (at := crossing(a, b, level)) is not None), None)
-        if where is not None:
-            happened.append(Event(kind, where, False, DETAIL["crease" if kind == "creasing" else "overhang"]))
+    points = [PathPoint(float(x), float(y)) for x, y in zip(depth, field["fold"], strict=True)]
+    pairs = zip([points[0], *points], points, strict=False)
+    where = next((at for a, b in pairs if (at := crossing(a, b, CREASE)) is not None), None)
+    if where is not None:
+        happened.append(Event("creasing", where, False, DETAIL["crease"]))
     return sorted(happened, key=lambda event: event.indentation)
 
 

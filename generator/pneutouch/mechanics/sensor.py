@@ -12,6 +12,8 @@ from pneutouch.mechanics.laws import Hyperelastic, hyperelastic, neo_hookean
 from pneutouch.mechanics.solid.indenter import RigidObject
 from pneutouch.mechanics.solid.rigid_base import RigidBase
 
+_PLANE = RigidBase()
+
 
 @dataclass(frozen=True, slots=True)
 class Dome:
@@ -22,7 +24,7 @@ class Dome:
     inner_radius: float
     wall_thickness: float
     flange: tuple[float, float] | None = None
-    base: RigidBase | None = None
+    base: RigidBase | None = _PLANE
 
 
 @dataclass(frozen=True, slots=True)

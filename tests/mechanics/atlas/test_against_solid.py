@@ -16,6 +16,7 @@ from pneutouch.mechanics.exact_membrane import RISING_BRANCH
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.prediction import ModelResult
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
+from pneutouch.mechanics.solid.base_contact import RigidBase
 from pneutouch.mechanics.solid.inflate import at_volume, inflate
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
@@ -83,7 +84,7 @@ def test_the_fixed_sensors_meet_every_end_but_the_edge():
 
 @pytest.mark.parametrize("wall", [0.065, 0.1622, 0.33])
 def test_free_inflation_to_the_limit_point_is_the_solids(wall):
-    solid = SolidModel(dome(1.0, wall), neo_hookean(1.0, 0.49))
+    solid = SolidModel(dome(1.0, wall), neo_hookean(1.0, 0.49), base=RigidBase())
     run, probe = inflate(solid, past_limit=1.2), StrainProbe(solid)
     assert run.limit is not None
     nu = np.array([0.02, 0.1, 0.3, 0.6, 0.8, 0.9, 0.95, 0.98, 1.0])

@@ -7,6 +7,7 @@ import pytest
 from benchmarks.atlas_presses import Case
 
 from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.solid.base_contact import RigidBase
 from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
@@ -22,7 +23,7 @@ THIN_DEEP_AND_WITHOUT_PRESSURE = [
 
 
 def force(case: Case, arc: int | None, through: int | None) -> np.ndarray:
-    solid = SolidModel(dome(1.0, case.wall, arc=arc, through=through), neo_hookean(1.0, 0.49))
+    solid = SolidModel(dome(1.0, case.wall, arc=arc, through=through), neo_hookean(1.0, 0.49), base=RigidBase())
     run = inflate(solid, past_limit=1.0)
     press = PressSettings(case.depth, 14, None, case.ambient, case.dead, np.inf, np.inf)
     return _curve(indent(solid, state_at(solid, 0.0, run), press).path, np.linspace(0.0, case.depth, 15))[0]

@@ -91,13 +91,13 @@ def axes(recipe: AtlasRecipe) -> AtlasAxes:
 
 RECIPE = AtlasRecipe()
 
-FIELDS = ("contact_radius", "stretch", "von_mises", "overhang", "fold", "inner_apex")
+FIELDS = ("contact_radius", "stretch", "von_mises", "fold", "inner_apex")
 """Fields that can be read in addition to the potential: see `solid.PressState`; lengths in R0, stresses in mu."""
 
 STRETCHES = tuple(f"stretch_{face}_{part}" for face in ("inner", "outer") for part in ("low", "middle", "high"))
 """The greatest stretch by face and third of the arc, each smooth where the greatest of all has kinks."""
 
-STORED = (*STRETCHES, "contact_radius", "von_mises", "overhang", "fold", "inner_apex")
+STORED = (*STRETCHES, "contact_radius", "von_mises", "fold", "inner_apex")
 """What is tabulated."""
 
 
