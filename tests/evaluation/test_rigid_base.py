@@ -9,21 +9,21 @@ from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.spec.target import Target
 from pneutouch.workflows.select.base import base_scene
 
-ON = {"contact.base": True}
+OFF = {"contact.base": False}
 
 
 def test_the_base_is_the_connector_s(library):
-    plain = evaluate("agilus-dome", {"pneumatics.driving_pressures_kPa": [0.0]}, model="membrane")
+    plain = evaluate("agilus-dome", {"pneumatics.driving_pressures_kPa": [0.0], **OFF}, model="membrane")
     assert plain.sensor.dome.base is None
-    found = evaluate("agilus-dome", {"pneumatics.driving_pressures_kPa": [0.0], **ON})
+    found = evaluate("agilus-dome", {"pneumatics.driving_pressures_kPa": [0.0]})
     assert found.sensor.dome.base == RigidBase(found.assembly.layout.channel_radius)
     assert any("lies down" in line for line in found.prediction.assumptions)
 
 
 def test_a_clamping_ring_is_part_of_the_base():
     changes = {"connector.seat": "clamped-flange-M2", "pneumatics.driving_pressures_kPa": [0.0]}
-    assembly = evaluate("paper-dome", changes, model="membrane").assembly
-    scene = evaluate("paper-dome", {**changes, **ON}, model="auto").assembly
+    assembly = evaluate("paper-dome", {**changes, **OFF}, model="membrane").assembly
+    scene = evaluate("paper-dome", changes, model="auto").assembly
     base, layout = sensor_of(scene).dome.base, scene.layout
     assert sensor_of(assembly).dome.base is None
     assert base.ring == layout.ring_inner and base.ring_height == scene.scene.seat.ring_thickness
@@ -34,11 +34,11 @@ def test_a_clamping_ring_is_part_of_the_base():
 
 
 def test_the_atlas_does_not_answer_and_no_search_is_made(library):
-    with pytest.raises(InputError, match="lies down on its base"):
-        evaluate("paper-dome", ON, model="atlas")
+    with pytest.raises(InputError, match="passes through its base plane"):
+        evaluate("paper-dome", OFF, model="atlas")
     target = Target.model_validate(
-        {"target": {"sensitivity_kPa_per_N": 1.9}, "setting": {"assignments": ["contact.base=true"]}}
+        {"target": {"sensitivity_kPa_per_N": 1.9}, "setting": {"assignments": ["contact.base=false"]}}
     )
-    with pytest.raises(InputError, match="pass through their base plane") as refused:
+    with pytest.raises(InputError, match="lie down on their base") as refused:
         base_scene(target, "target.toml", library)
     assert refused.value.key == "contact.base" and "predict" in refused.value.remedy

@@ -37,6 +37,7 @@ def outside_atlas(sensor: Sensor, atlas: Atlas | None = None) -> str | None:
         (wall.poisson_ratio != nu, f"Poisson ratio {wall.poisson_ratio:g}, not {nu:g}"),
         (dome.flange is not None, "the flange is held as printed, not the base plane"),
         (dome.base is None, "the wall passes through its base plane"),
+        (dome.base is not None and dome.base.ring_height > 0.0, "the wall can meet the ring that clamps its flange"),
         (not inside, f"wall {ratio:.3g} R0, not {recipe.thinnest:g} to {recipe.thickest:g}"),
         (depth > recipe.deepest * (1 + 1e-9), f"depth {depth:.3g} R0, more than {recipe.deepest:g}"),
         (gas > recipe.stiffest, f"ambient pressure {gas:.3g} mu, more than {recipe.stiffest:g}"),

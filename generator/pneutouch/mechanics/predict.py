@@ -112,7 +112,7 @@ def predict(
     errors, assumptions = _stated(chosen, sensor, pressures)
     if sensitivity_error is not None:
         errors = _merged(errors, sensitivity_error(chosen))
-    if sensor.dome.base is not None and chosen == "solid":
+    if sensor.dome.base is not None and chosen != "membrane":
         assumptions = (*(line for line in assumptions if line not in _THROUGH_BASE), _ON_BASE)
     if why:
         errors = _merged({"model_choice": why, "summary": [f"Model {chosen}: {why}."]}, errors)

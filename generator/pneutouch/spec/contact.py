@@ -93,9 +93,9 @@ class ContactTable(Table):
         description="Coefficient of friction between sensor and object, from 0 to 10; inf for a surface that grips.",
     )
     base: bool = Field(
-        default=False,
-        description="Whether the wall lies down on the connector next to its clamp and inside, without friction, in "
-        "place of passing through; the solid alone answers it.",
+        default=True,
+        description="Whether the wall lies down on the connector next to its clamp and inside, without friction; "
+        "where not, it passes through, and the solid alone answers it.",
     )
 
     @model_validator(mode="after")

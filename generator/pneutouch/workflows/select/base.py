@@ -83,10 +83,10 @@ def _check_contact(design: DesignFile, where: str) -> None:
     if contact.friction:
         problem = "the search is made with the atlas, whose plate has no friction"
         raise InputError(problem, file=where, key="contact.friction", value=contact.friction, remedy=remedy)
-    if contact.base:
-        problem = "the search is made with the atlas, whose domes pass through their base plane next to the clamp"
-        remedy = "select with contact.base = false, then predict the selected design with true"
-        raise InputError(problem, file=where, key="contact.base", value=True, remedy=remedy)
+    if not contact.base:
+        problem = "the search is made with the atlas, whose domes lie down on their base next to the clamp"
+        remedy = "select with contact.base = true, then predict the selected design with false"
+        raise InputError(problem, file=where, key="contact.base", value=False, remedy=remedy)
 
 
 def requested_pair(target: Target, where: str, printer: Printer, library: Library) -> ResinPair | None:
