@@ -19,12 +19,19 @@ from pneutouch.mechanics.sensor import Sensor, WallMaterial
 from pneutouch.mechanics.solid.events import CREASE, DETAIL, PathPoint, crossing
 from pneutouch.units import KPA
 
+_BULGE, _RING_FROM, _RING_ROUND = 0.0107, 0.6, 0.04
+"""How far a wall comes outwards next to its base in R0 times wall ratio, from which depth on (R0), and how far inside
+its edge the solid's ring begins (R0): `meets_ring`."""
+
 _BUCKLES = "the wall buckles inward under the plate, or its gas no longer holds it"
 _DETAIL = {EDGE: DETAIL["plate_rim"], GAUGE: DETAIL["gauge_range"], BREAK: DETAIL["break"], BUCKLING: _BUCKLES}
 
 
 def outside_atlas(sensor: Sensor, atlas: Atlas | None = None) -> str | None:
-    """Why the atlas does not cover a sensor, or None where it does. Its box is in `atlas.recipe.Recipe`."""
+    """Why the atlas does not cover a sensor, or None where it does. Its box is in `atlas.recipe.Recipe`.
+
+    A ring that clamps the flange does not put a sensor outside: the atlas answers without it (`meets_ring`).
+    """
     recipe = (atlas or shipped()).recipe
     dome, wall = sensor.dome, sensor.wall
     ratio, depth = dome.wall_thickness / dome.inner_radius, sensor.protocol.depth / dome.inner_radius
@@ -37,7 +44,6 @@ def outside_atlas(sensor: Sensor, atlas: Atlas | None = None) -> str | None:
         (wall.poisson_ratio != nu, f"Poisson ratio {wall.poisson_ratio:g}, not {nu:g}"),
         (dome.flange is not None, "the flange is held as printed, not the base plane"),
         (dome.base is None, "the wall passes through its base plane"),
-        (dome.base is not None and dome.base.ring_height > 0.0, "the wall can meet the ring that clamps its flange"),
         (not inside, f"wall {ratio:.3g} R0, not {recipe.thinnest:g} to {recipe.thickest:g}"),
         (depth > recipe.deepest * (1 + 1e-9), f"depth {depth:.3g} R0, more than {recipe.deepest:g}"),
         (gas > recipe.stiffest, f"ambient pressure {gas:.3g} mu, more than {recipe.stiffest:g}"),
@@ -54,12 +60,33 @@ def resin_outside_atlas(wall: WallMaterial, ambient_pressure: float) -> str | No
     return "it is too soft for the atlas in so high an ambient pressure" if too_soft else None
 
 
+def meets_ring(sensor: Sensor) -> bool:
+    """Whether the wall can come to the ring that clamps its flange, which the solid has and the atlas has not.
+
+    The wall comes farthest outwards without driving pressure: next to the base by at most 0.0107 R0^2/t0 at the
+    atlas's greatest depth, by none at 0.6 R0 (solid, walls from 0.065 to 0.33 R0, ambient pressure 0.3 mu). The ring of the solid is rounded over half a cell, 0.04 R0, before its edge.
+    """
+    dome, base = sensor.dome, sensor.dome.base
+    if base is None or base.ring_height == 0.0:
+        return False
+    wall, depth = dome.wall_thickness / dome.inner_radius, sensor.protocol.depth / dome.inner_radius
+    deep = max(0.0, depth - _RING_FROM) / (shipped().recipe.deepest - _RING_FROM)
+    gap = base.ring / dome.inner_radius - 1.0 - wall
+    return deep > 0.0 and gap < _BULGE * deep / wall + _RING_ROUND
+
+
 class AnswerLimitation(NamedTuple):
     """Why a result is not to be used by `auto`, and whether it is no result at all (fatal)."""
 
     why: str
     fatal: bool
 
+
+_MEETS_RING = AnswerLimitation(
+    "in a deep press the wall meets the ring that clamps its flange, which the atlas leaves out: its sensitivity is up "
+    "to 10% too high without driving pressure",
+    False,
+)
 
 _LIMITATIONS = {
     OUTSIDE: AnswerLimitation("the press leaves the states that the atlas covers", True),
@@ -90,6 +117,8 @@ def atlas_result(sensor: Sensor, driving_pressures: Array) -> tuple[ModelResult,
     if limitation is None and response.near_buckling.any():
         why = f"the wall would buckle within {NEAR:g} R0 more of travel, where the table is less accurate"
         limitation = AnswerLimitation(why, False)
+    if limitation is None and meets_ring(sensor):
+        limitation = _MEETS_RING
     curve, point, rupture = _inflation(sensor, slices)
     return ModelResult(point, Limits(limit, rupture, sensor.gas.gauge_limit), curve, states), limitation
 
