@@ -18,11 +18,11 @@ from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.events import range_end
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.response import figures
-from pneutouch.mechanics.solid.base_contact import RigidBase
 from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid_states import _curve, _events
 from pneutouch.units import KPA
 

@@ -11,7 +11,6 @@ from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
 from pneutouch.mechanics.atlas.recipe import AtlasRecipe, axes
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.base_contact import RigidBase
 from pneutouch.mechanics.solid.contact import Plate
 from pneutouch.mechanics.solid.continuation import PathFollower
 from pneutouch.mechanics.solid.descend import descend
@@ -19,6 +18,7 @@ from pneutouch.mechanics.solid.inflate import FreeState, Inflation, at_volume, i
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import NewtonFailure, SolidScene, SolverState, minimise, stability
+from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid.stress import StrainProbe
 from pneutouch.mechanics.solid.supply import Gas, Liquid, Regulator, Supply
 

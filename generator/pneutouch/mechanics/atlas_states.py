@@ -63,8 +63,9 @@ def resin_outside_atlas(wall: WallMaterial, ambient_pressure: float) -> str | No
 def meets_ring(sensor: Sensor) -> bool:
     """Whether the wall can come to the ring that clamps its flange, which the solid has and the atlas has not.
 
-    The wall comes farthest outwards without driving pressure: next to the base by at most 0.0107 R0^2/t0 at the
-    atlas's greatest depth, by none at 0.6 R0 (solid, walls from 0.065 to 0.33 R0, ambient pressure 0.3 mu). The ring of the solid is rounded over half a cell, 0.04 R0, before its edge.
+    The wall comes farthest outwards without driving pressure: next to its base by at most 0.0107 R0^2/t0 at the
+    atlas's greatest depth, by none at 0.6 R0 (solid, walls from 0.065 to 0.33 R0, ambient pressure 0.3 mu). The ring
+    of the solid is rounded over half a cell, 0.04 R0, before its edge.
     """
     dome, base = sensor.dome, sensor.dome.base
     if base is None or base.ring_height == 0.0:

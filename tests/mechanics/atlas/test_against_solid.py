@@ -16,10 +16,10 @@ from pneutouch.mechanics.exact_membrane import RISING_BRANCH
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.prediction import ModelResult
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
-from pneutouch.mechanics.solid.base_contact import RigidBase
 from pneutouch.mechanics.solid.inflate import at_volume, inflate
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid.stress import StrainProbe
 from pneutouch.mechanics.solid_states import solid_result
 from pneutouch.units import KPA, STANDARD_ATMOSPHERE

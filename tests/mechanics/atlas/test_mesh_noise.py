@@ -7,11 +7,11 @@ import pytest
 from benchmarks.atlas_presses import Case
 
 from pneutouch.mechanics.laws import neo_hookean
-from pneutouch.mechanics.solid.base_contact import RigidBase
 from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.mechanics.solid_states import _curve
 
 pytestmark = pytest.mark.slow
