@@ -7,7 +7,9 @@ from pneutouch.printability.finding import Excess, Finding
 from pneutouch.printability.view import PrintPart, PrintView
 from pneutouch.units import KPA
 
-_SOURCE = "this project's prediction: the model has no body next to the dome: its figures do not hold where they touch"
+_SOURCE = (
+    "this project's prediction: the model's wall passes through this body: its figures do not hold where they touch"
+)
 _TOUCH = 0.05
 """Depth in mm below which a meeting is the mesh's and the prediction's own error."""
 
