@@ -15,6 +15,7 @@ from pneutouch.cli.calibrate_text import calibration_text
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.spec.toml_text import toml_text
 from pneutouch.workflows.calibrate.fit import observations_of
+from tests.bench.calibrate.sensors import softer
 from tests.evaluation.calibrated import CONTENT
 
 assert calibrate and simulate
@@ -179,13 +180,16 @@ def test_a_folder_that_cannot_be_written_is_refused_before_the_fit(words, campai
 def soft(monkeypatch):
     """Curves that are too soft for any modulus of the atlas, so that the modulus ends on its bound."""
 
-    def scaled(*given):
+    designed = evaluate("paper-dome", {"pneumatics.dead_volume_mL": 0.3}, model="membrane").sensor
+
+    def exchanged(*given):
         sensor, seen, notes = observations_of(*given)
-        bare = [curve for curve in seen.curves if curve.run.driving_pressure_kPa == 0]
-        curves = tuple(replace(curve, force=0.2 * curve.force, rise=0.2 * curve.rise) for curve in bare)
+        bare = [curve.run for curve in seen.curves if curve.run.driving_pressure_kPa == 0]
+        made = zip(bare, softer(designed, len(bare)), strict=True)
+        curves = tuple(replace(curve, run=run) for run, curve in made)
         return sensor, replace(seen, curves=curves, injections=()), notes
 
-    monkeypatch.setattr("pneutouch.workflows.calibrate.run.observations_of", scaled)
+    monkeypatch.setattr("pneutouch.workflows.calibrate.run.observations_of", exchanged)
 
 
 def test_a_fit_that_is_no_calibration_is_reported(campaign, place, soft):

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 
 from pneutouch.bench.calibrate import Observations
-from pneutouch.bench.record import MeasuredCurve
 from pneutouch.catalogue import Library, load_scene
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import evaluate, sensor_of
@@ -24,7 +23,7 @@ from pneutouch.workflows.calibrate.fit import calibrate, observations_of
 from pneutouch.workflows.calibrate.further import with_further_tests
 from pneutouch.workflows.calibrate.place import check_place, check_unlike
 from pneutouch.workflows.compare.run import compare
-from tests.bench.calibrate.sensors import curves, injections
+from tests.bench.calibrate.sensors import curves, injections, softer
 
 SOURCE = CampaignSource("ab" * 32)
 DEAD = {"pneumatics.dead_volume_mL": 0.3}
@@ -164,12 +163,8 @@ def test_a_file_of_the_name_is_left_alone(found, place):
 
 
 def test_an_estimate_without_interval_is_no_calibration(scene, tmp_path):
-    """Forces as of air alone: the modulus ends on its bound, and nothing is saved."""
-    truth = sensor_of(assemble(scene)).replace(break_stretch=None)
-    soft = tuple(
-        MeasuredCurve(c.run, c.indentation, 0.3 * c.force, 0.3 * c.rise, c.driving)
-        for c in curves(truth, (0.0,), 3, np.random.default_rng(1), 0.002)
-    )
+    """A wall softer than any of the atlas: the modulus ends on its bound, and nothing is saved."""
+    soft = softer(sensor_of(assemble(scene)), 3, 0.002)
     found = calibrate(Observations(soft), scene, ("modulus",), priors=False)
     assert found.document["estimates"][0]["on_bound"]
     assert found.document["estimates"][0]["interval_95"] is None

@@ -49,6 +49,16 @@ def curves(truth: Sensor, pressures, runs: int, rng, gain=GAIN, offset=0.0) -> t
     )
 
 
+def softer(truth: Sensor, runs: int, gain=GAIN) -> tuple[MeasuredCurve, ...]:
+    """Runs without driving pressure of a wall softer than any of the atlas, extrapolated from two that it holds."""
+    walls = (truth.replace(shear_modulus=modulus, break_stretch=None) for modulus in (0.102, 0.13))
+    low, high = (curves(wall, (0.0,), runs, np.random.default_rng(1), gain) for wall in walls)
+    return tuple(
+        MeasuredCurve(a.run, a.indentation, 2 * a.force - b.force, 2 * a.rise - b.rise, a.driving)
+        for a, b in zip(low, high, strict=True)
+    )
+
+
 def exact(truth: Sensor, pressures) -> tuple[MeasuredCurve, ...]:
     result = respond(batch_of(truth, [p * KPA for p in pressures]), truth.protocol.steps)
     return tuple(
