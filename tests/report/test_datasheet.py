@@ -100,7 +100,7 @@ def test_intervals_on_the_sheet_are_those_of_the_budget(built, html, pdf_text):
                 said = f"{figure['low']:#.3g} to {figure['high']:#.3g}"
                 assert said in html
                 assert said in text
-    assert "ageing (66% of the variance)" in html
+    assert "ageing (62% of the variance)" in html
     for source in states[-1]["uncertainty"]["sources"]:
         assert source["standard_uncertainty"] == 0 or source["name"] in text
 
@@ -117,17 +117,6 @@ def test_the_air_on_the_sheet_is_computed_and_no_longer_a_fixed_factor(evaluated
     ):
         assert f"{numbers[0]:.2f} and {numbers[-1]:.2f} {unit}" in html
     assert "1.4 times" not in html
-
-
-def test_sheet_and_text_warn_of_the_sway(built, html, pdf_text):
-    from pneutouch.cli.text import prediction_text
-
-    prediction = json.loads((built("paper-dome") / "prediction.json").read_text())
-    (event,) = [event for event in prediction["states"][0]["events"] if event["kind"] == "sway"]
-    warning = f"sway at {event['indentation_mm']:.2f} mm and 0 kPa: {event['message']}"
-    assert f"Warning: {warning}." in html
-    assert f"Warning: {warning}." in " ".join("\n".join(pdf_text).split())
-    assert f"\nwarning: {warning}\n" in prediction_text(prediction)
 
 
 @pytest.mark.slow
@@ -153,6 +142,19 @@ def page(monkeypatch):
 
     monkeypatch.setattr(pages, "pdf", lambda *_: b"")
     return lambda evaluation: datasheet(sheet_data(evaluation, "0"))["datasheet.html"].decode()
+
+
+def test_sheet_and_text_warn_of_the_sway(evaluated, page):
+    from pneutouch.cli.text import prediction_text
+    from pneutouch.evaluation.document import full_document
+
+    # A wall that passes through its base sways; one that lies down on it does not: docs/sway.md.
+    evaluation = evaluated("paper-dome", "pneumatics.driving_pressures_kPa=[0]", "contact.base=false")
+    prediction = full_document(evaluation)
+    (event,) = [event for event in prediction["states"][0]["events"] if event["kind"] == "sway"]
+    warning = f"sway at {event['indentation_mm']:.2f} mm and 0 kPa: {event['message']}"
+    assert f"Warning: {warning}." in page(evaluation)
+    assert f"\nwarning: {warning}\n" in prediction_text(prediction)
 
 
 @pytest.mark.slow
