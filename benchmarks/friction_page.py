@@ -17,6 +17,7 @@ from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, ind
 from pneutouch.mechanics.solid.inflate import FreeState, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.units import KPA
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -32,7 +33,7 @@ Scene = tuple[SolidModel, FreeState]
 
 def scene(modulus: float, pressure: float) -> Scene:
     """The paper's dome in a modulus (MPa) at a driving pressure (MPa)."""
-    solid = SolidModel(dome(RADIUS, WALL), neo_hookean(modulus))
+    solid = SolidModel(dome(RADIUS, WALL), neo_hookean(modulus), base=RigidBase())
     return solid, state_at(solid, pressure)
 
 

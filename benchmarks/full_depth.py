@@ -80,9 +80,9 @@ def section() -> list[str]:
         HEADING,
         "",
         "TangoPlus, no dead volume, fitted from first contact to 5.75 mm and to the whole depth of 6.94 mm, as far as the "
-        "path goes. With a base (`contact.base = true` in a design) the wall lies down next to its clamp on what it "
+        "path goes. With a base, the default, the wall lies down next to its clamp on what it "
         "stands on: on the rigid base plane, or on the free top of its own flange where the rim is held as printed. "
-        "Without, it passes through, and refined meshes fold at the clamp. Extrapolated from 32 x 2, 64 x 4 and 128 x 8 "
+        "Without (`contact.base = false` in a design) it passes through, and refined meshes fold at the clamp. Extrapolated from 32 x 2, 64 x 4 and 128 x 8 "
         "cells. Times over the default mesh without base.",
         "",
         "| held at | base | driving kPa | mesh | cells | time | S to 5.75 mm | S to 6.94 mm | events, mm |",

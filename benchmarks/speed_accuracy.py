@@ -222,6 +222,7 @@ def measure(scenes: tuple[Scene, ...] = SCENES) -> dict[str, Any]:
             rows.append({**row, **model_note(method, scene)})
     return {
         "refinements": [list(r) for r in REFINEMENTS],
+        "base": all(scene.sensor.dome.base is not None for scene in scenes),
         "scenes": [describe(scene, truths[scene.name]) for scene in scenes],
         "rows": rows,
         "atlas_at_once_s": statistics.median(seconds_at_once(s) for s in scenes if outside_atlas(s.sensor) is None),
