@@ -9,7 +9,9 @@ from pneutouch.arrays import Array, Index
 from pneutouch.selection.pool import CandidatePool, evaluated, joined, margins
 from pneutouch.selection.problem import CandidateResin, SelectionProblem
 
-_RATIOS, _RADII = 30, 8
+_RATIOS, _RADII = 44, 8
+"""Places of the scan. For the README's target the fronts are then at most 1.0 % below a brute-force grid in force; with
+30 wall ratios 2.7 %, for a tenth less time."""
 _FINER = (6, 24)
 """Parts that each cell of the scan is cut into, along wall ratio and radius, to interpolate in it."""
 _LEVELS = 48

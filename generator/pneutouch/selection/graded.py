@@ -16,6 +16,8 @@ from pneutouch.selection.problem import CandidateResin, SelectionProblem
 
 _FRACTIONS = 401
 """Constant fractions that the atlas evaluates."""
+_SPARE = 0.8
+"""Share of a tolerance within which the atlas looks for the widest range: the solid, which solves it next, differs a little."""
 _WALLS = 60
 
 
@@ -89,6 +91,7 @@ def nearest_fraction(
                     tuple(float(np.fmin(line.force_high[k], line.saturation_force[k])) for line in lines),
                     RATED_SHARE * float(np.fmin(answers[0].limit_pressure[k], problem.gauge_limit)),
                 ),
+                _SPARE,
             )
             for k in range(at.size)
         ]
