@@ -17,7 +17,7 @@ from pneutouch.selection.problem import CandidateResin, SelectionProblem
 _FRACTIONS = 401
 """Constant fractions that the atlas evaluates."""
 _SPARE = 0.8
-"""Share of a tolerance within which the atlas looks for the widest range: the solid, which solves it next, differs a little."""
+"""Share of a tolerance within which the atlas looks for the widest range: the solid, solved next, differs a little."""
 _WALLS = 60
 
 
