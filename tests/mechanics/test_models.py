@@ -14,6 +14,7 @@ from pneutouch.errors import BeyondLimitError, InputError
 from pneutouch.mechanics import predict
 from pneutouch.mechanics.models import MODELS, NUMERICAL, models_for, parse_tolerance
 from pneutouch.mechanics.sensor import Dome, GasCircuit, IndentationProtocol, Sensor, WallMaterial
+from pneutouch.mechanics.solid.indenter import ball
 from pneutouch.units import KPA, ML
 
 PAPER = Sensor(
@@ -86,6 +87,14 @@ def test_at_one_point_two_percent_the_solid_answers():
 def test_below_what_the_solid_can_state_is_an_error(tolerance):
     with pytest.raises(InputError, match=r"the best is the solid's 1\.1%"):
         predict("x", PAPER, [0.0], model="auto", tolerance=tolerance)
+
+
+def test_under_a_ball_the_solid_states_its_greater_error_and_answers_no_smaller_tolerance():
+    pressed = PAPER.replace(steps=4, body=ball(10.0), plate_radius=10.0)
+    answered = predict("x", pressed, [0.022], model="auto", tolerance=0.02)
+    assert answered.model == "solid" and "stated error, 2.0% in sensitivity, meets 2.0%" in said(answered)
+    with pytest.raises(InputError, match=r"the best is the solid's 2%"):
+        predict("x", pressed, [0.022], model="auto", tolerance=0.019)
 
 
 def test_a_tolerance_of_many_times_takes_the_membrane():

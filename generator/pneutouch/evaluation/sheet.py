@@ -16,7 +16,7 @@ from pneutouch.evaluation.table_s1 import published_sensitivities
 from pneutouch.evaluation.uncertainty import unknown
 from pneutouch.evaluation.variants import resin_curves
 from pneutouch.mechanics import Sensor, SensorPrediction, SensorState
-from pneutouch.mechanics.models import NUMERICAL
+from pneutouch.mechanics.models import stated_error
 from pneutouch.mechanics.uncertainty.gas_notes import REFERENCE_TEMPERATURE
 from pneutouch.units import KPA
 
@@ -39,7 +39,7 @@ def sheet_data(evaluation: Evaluation, input_hash: str) -> SheetData:
         uncertainty=evaluation.uncertainty,
         estimates=evaluation.estimates,
         rating=evaluation.rating,
-        numerical_error=NUMERICAL[prediction.model],
+        numerical_error=stated_error(prediction.model, sensor),
         zero_drift_kPa_per_K=zero_drift_kPa_per_K(scene, prediction, states[0]),
         resin_curves=resin_curves(sensor, evaluation.resins, highest, prediction.model, prediction.closure),
         viscous=viscous_data(evaluation.viscous_runs),

@@ -46,18 +46,23 @@ class ModelSequence:
     passed: tuple[str, ...]
 
 
+def stated_error(model: str, sensor: Sensor) -> float:
+    """`NUMERICAL` of a model on a sensor: that of the solid is larger under an object that is no plate."""
+    return OBJECT_DISCRETISATION if model == "solid" and sensor.protocol.body is not None else NUMERICAL[model]
+
+
 def models_for(sensor: Sensor, tolerance: float) -> ModelSequence:
     """The models whose stated error meets a tolerance (a fraction), cheapest first.
 
     Raises InputError for a tolerance that none can state.
     """
-    least = min(NUMERICAL.values())
+    least = stated_error("solid", sensor)
     if not tolerance >= least:
         problem = f"no model can state so small an error; the best is the solid's {100 * least:g}% in sensitivity"
         raise InputError(problem, key="tolerance", value=f"{100 * tolerance:g}%")
     passed, models = [], []
     for model in MODELS:
-        error = NUMERICAL[model]
+        error = stated_error(model, sensor)
         why = _outside(model, sensor)
         if error > tolerance:
             passed.append(f"{model}: its stated error of {error:.1%} is more than {tolerance:.1%}")

@@ -19,6 +19,7 @@ from pneutouch.mechanics.models import (
     OBJECT_DISCRETISATION,
     TABULATION,
     models_for,
+    stated_error,
 )
 from pneutouch.mechanics.prediction import ErrorEstimate, ModelResult, SensorPrediction
 from pneutouch.mechanics.sensor import IndentationProtocol, ResponseCorrection, Sensor
@@ -167,7 +168,7 @@ def _answer(
         if limitation is None:
             break
         passed.append(f"{model}: {limitation.why}")
-    why = f"the cheapest whose stated error, {NUMERICAL[model]:.1%} in sensitivity, meets {tolerance:.1%}"
+    why = f"the cheapest whose stated error, {stated_error(model, sensor):.1%} in sensitivity, meets {tolerance:.1%}"
     return model, result, "; ".join([why, *(f"passed over {text}" for text in passed)])
 
 

@@ -90,8 +90,12 @@ def shapes(prediction: SensorPrediction) -> list[str]:
         high *= 1.3
     texts = []
     with figure(SIZE[0], 0.75 * SIZE[1]) as drawn:
+        # The axes are narrower than the figure: they stand in its middle, with their colour scale beside them.
+        drawn.set_layout_engine("compressed")
         ax = drawn.add_subplot()
+        # The base plane is drawn: a second line just below it would be read as part of the sensor.
         ax.axhline(0, color=INK, lw=0.8)
+        ax.spines["bottom"].set_visible(False)
         ax.set(aspect="equal", xlabel="radius  (mm)", ylabel="height  (mm)", xlim=(0, right), ylim=(low, high))
         ax.grid(False)
         colours = ScalarMappable(cmap="cividis_r")

@@ -56,8 +56,6 @@ CAPTIONS = {
     "response": "Response: pressure rise over contact force at each driving pressure, with the fitted lines.",
     "indentation": "Contact force over indentation at each driving pressure.",
     "shares": "What makes the sensitivity uncertain: shares of its variance. The longest bar is what to measure first.",
-    "drawing": "Lengths in mm; tolerances are the stated accuracies of the printers; bracketed sizes are for "
-    "reference.",
 }
 """Captions that are the same on every sheet."""
 
@@ -71,12 +69,18 @@ SHAPES = "Half sections of the deformed wall, shaded by the greatest principal s
 NO_SHAPES = "Half sections of the deformed wall are drawn by the solid alone: build with model solid."
 
 
+def drawing(has_object: bool) -> str:
+    """Caption of the mechanical drawing; ``has_object`` where an object that is no plate is drawn into it."""
+    text = "Lengths in mm; tolerances are the stated accuracies of the printers; bracketed sizes are for reference"
+    return f"{text}; dashed above the dome: the object that presses it, at first contact." if has_object else f"{text}."
+
+
 def tradeoff(driving_pressure_kPa: float, dead_volume_mL: float, note: str = "") -> str:
     """Caption of the trade-off chart; kPa and mL; ``note`` belongs next to the dead volume."""
     idealised = f" ({note})" if note else ""
     return (
         f"Trade-off at {driving_pressure_kPa:g} kPa: the greatest force range that goes with each sensitivity, one "
-        "line a resin of this printer with the sensitivities it reaches, wall and radius free to 60 mm, "
+        "line for each resin of this printer with the sensitivities it reaches, wall and radius free to 60 mm, "
         f"{dead_volume_mL:.3g} mL dead volume{idealised}, by the atlas; no line crosses a limit."
     )
 

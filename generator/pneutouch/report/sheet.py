@@ -133,6 +133,7 @@ def _captions(sheet: SheetData) -> dict[str, str]:
         "shapes": prose.SHAPES if sheet.prediction.states[0].shapes else prose.NO_SHAPES,
         "view": "" if sheet.scene.membrane_material.along is None else prose.GRADE,
         **prose.CAPTIONS,
+        "drawing": prose.drawing(sheet.object_section is not None),
     }
 
 
@@ -174,7 +175,7 @@ def _operating(sheet: SheetData) -> list[list[str]]:
         ["Medium", "air", "", "trapped, isothermal"],
         ["Ambient pressure", f"{design.pneumatics.ambient_pressure_kPa:g}", "kPa", "absolute"],
         ["Dead volume", f"{sheet.prediction.dead_volume / ML:.3f}", "mL", stated],
-        ["Contact body", *prose.contact_body(sheet.scene)],
+        ["Contact object", *prose.contact_body(sheet.scene)],
         ["Indentation", f"0 to {design.depth_mm:.2f}", "mm", f"{design.indentation.steps} steps from first contact"],
     ]
 

@@ -87,6 +87,6 @@ def _gauge(ax: Axes, tradeoff: TradeOff) -> None:
     """Where the cavity pressure reaches the end of the pressure sensor's range: no design is beyond."""
     low, high = ax.get_xlim()
     label = f"end of the gauge's range: force × sensitivity = {tradeoff.gauge_kPa:g} kPa"
-    ax.plot(
-        [low, high], [tradeoff.gauge_kPa / low, tradeoff.gauge_kPa / high], color=FAINT, lw=5, zorder=2, label=label
-    )
+    edge = [tradeoff.gauge_kPa / low, tradeoff.gauge_kPa / high]
+    # Cut off straight: so wide a line would run into its own text in the legend.
+    ax.plot([low, high], edge, color=FAINT, lw=5, zorder=2, label=label, solid_capstyle="butt")
