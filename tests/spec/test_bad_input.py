@@ -32,6 +32,7 @@ CASES = [
         "[membrane]\ninner_radius_mm = 5\nwall_thickness_mm = 5",
         ["wall_thickness_mm = 5", "less than", "inner_radius_mm = 5"],
     ),
+    ('[contact]\nfriction = "grip"', ['contact.friction = "grip"', "must be a number: Coefficient of friction"]),
     ("[membrane]\nmaterial = 3", ["membrane.material = 3", "text"]),
     ('[membrane]\nmaterial = "TangoPlsu"', ['membrane.material = "TangoPlsu"', "Did you mean TangoPlus?"]),
     ('[membrane]\nmaterial = "ABS"', ["membrane.material", "ABS", "elastomer"]),

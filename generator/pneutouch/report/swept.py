@@ -25,7 +25,7 @@ _OUTSIDE, _MOST_TEXTS = "#EFEFEF", 120
 
 @dataclass(frozen=True)
 class SweptAxis:
-    """A parameter: its key, its words, its unit, and its values: numbers, or names of a catalogue."""
+    """A parameter: its key, its words, its unit, and its values: numbers, or names."""
 
     key: str
     words: str
@@ -34,8 +34,8 @@ class SweptAxis:
 
     @property
     def numeric(self) -> bool:
-        """Whether the values are numbers."""
-        return all(isinstance(value, int | float) for value in self.values)
+        """Whether the values are numbers that have a place on an axis; infinity, a surface that grips, has none."""
+        return all(isinstance(value, int | float) and math.isfinite(value) for value in self.values)
 
     @property
     def label(self) -> str:
@@ -45,13 +45,15 @@ class SweptAxis:
     def text(self, place: int) -> str:
         """A value with its unit."""
         value = self.values[place]
-        if not self.numeric:
-            return str(value)
+        if isinstance(value, str):
+            return value
         return f"{value:g}" if self.unit in ("", "1") else f"{value:g} {self.unit}"
 
     def named(self, place: int) -> str:
-        """A value with its words, where it is a number."""
-        return f"{self.words} {self.text(place)}" if self.numeric else self.text(place)
+        """A value with its words; a name of a catalogue stands alone."""
+        value = self.values[place]
+        alone = isinstance(value, str) and value not in ("true", "false")
+        return self.text(place) if alone else f"{self.words} {self.text(place)}"
 
 
 @dataclass(frozen=True)
@@ -190,7 +192,7 @@ def _lines(ax: Axes, swept: SweptFigure, span: tuple[float, float]) -> dict[str,
         line = Line2D([], [], ls=style, lw=1.2, **look)
         handles[_plain(lines.text(n))] = (band_key(n, _TONES[n]), line) if axis.numeric else line
     if not axis.numeric:
-        ax.set_xticks(range(len(axis.values)), [str(v) for v in axis.values])
+        ax.set_xticks(range(len(axis.values)), [f"{v:g}" if isinstance(v, float) else str(v) for v in axis.values])
         ax.tick_params(axis="x", labelrotation=30 if len(axis.values) > 4 else 0)
     slack = 0.05 * (span[1] - span[0] or abs(span[1]) or 1.0)
     ax.set(xlabel=axis.label, ylabel=swept.label, ylim=(min(0.0, span[0]), span[1] + slack))

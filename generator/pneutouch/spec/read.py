@@ -127,7 +127,11 @@ def _explain(model: type[BaseModel], detail: Any, where: str) -> InputError:
         known = str(detail["ctx"]["expected"]).replace("'", '"')
         return InputError(f"must be {known}", file=where, key=key, value=detail["input"])
     label = f"{key}[{index}]" if index is not None else key
-    right = f"{_expected(detail)}{_right(owner, path)}".strip()
+    kind, right = _expected(detail), _right(owner, path)
+    if kind and right[:1].isupper():
+        # The help of a field without bounds is a sentence of its own.
+        kind = f"{kind.rstrip(' ,:')}: "
+    right = f"{kind}{right}".strip()
     return InputError(f"must be {right}" if right else detail["msg"], file=where, key=label, value=detail["input"])
 
 

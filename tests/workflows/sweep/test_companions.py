@@ -139,3 +139,21 @@ def test_the_printed_table_has_the_rated_pressure_and_one_number_of_decimals_a_c
     for row, cells in zip(rows, shown, strict=False):
         if row["rated_pressure_kPa"] is not None:
             assert 0 <= row["rated_pressure_kPa"] - float(cells["rated kPa"]) < 0.1
+
+
+def test_friction_to_grip_objects_and_flags_are_swept_as_categories(tmp_path, library):
+    """The membrane's closed form refuses them all; what counts here is that table, dataset and axes hold them."""
+    over = ["contact.friction=0,0.3,inf", "contact.object=plate,ball", "contact.base=true,false"]
+    plan = small(over, settings=["contact.ball_radius_mm=10"])
+    sweep(plan, out := tmp_path / "x.nc", ALONE, library=library)
+    data = load(out)
+    assert data.contact_friction.values.tolist() == [0.0, 0.3, np.inf]
+    assert data.contact_object.values.tolist() == ["plate", "ball"]
+    assert data.contact_base.values.tolist() == ["true", "false"]
+    rows = table_rows(data)
+    ok = {(row["contact_friction"], row["contact_object"]) for row in rows if row["status"] == "ok"}
+    assert ok == {(0.0, "plate")} and {row["contact_base"] for row in rows} == {"true", "false"}
+    assert "inf" in table_csv(rows).decode().splitlines()[-1].split(",")
+    friction = next(axis for axis in swept_figure(data).axes if axis.key == "contact_friction")
+    assert not friction.numeric and [friction.text(k) for k in range(3)] == ["0", "0.3", "inf"]
+    assert "over-contact_friction" in pictures(swept_figure(data))

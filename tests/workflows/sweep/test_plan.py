@@ -66,6 +66,12 @@ BAD = {
     "one value": (f"{BASE}[grid]\n{WALL} = 1.5", ["membrane.wall_thickness_mm = 1.5", "must be a list"]),
     "infinite": (f"{BASE}[grid]\n{WALL} = [1, inf]", ["membrane.wall_thickness_mm[1] = inf", "finite number"]),
     "true": (f"{BASE}[grid]\n{WALL} = [true]", ["membrane.wall_thickness_mm[0] = true", "finite number"]),
+    "no friction": (f'{BASE}[grid]\n"contact.friction" = [0, nan]', ["contact.friction[1] = nan", "finite number"]),
+    "no flag": (f'{BASE}[grid]\n"contact.friction" = [true]', ["contact.friction[0] = true", "finite number"]),
+    "infinite in a list": (
+        f'{BASE}[grid]\n{WALL} = [1]\n[set]\n"contact.profile_mm" = [[0, 0], [4, inf]]',
+        ["contact.profile_mm[1][1] = inf", "finite number"],
+    ),
     "half a range": (f"{BASE}[grid]\n{WALL} = {{from = 1, to = 2}}", ["from, to and count"]),
     "range of one": (
         f"{BASE}[grid]\n{WALL} = {{from = 1, to = 2, count = 1}}",

@@ -18,6 +18,7 @@ from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import declaration, table_of
 from pneutouch.workflows.sweep.plan import PRESSURES
 from pneutouch.workflows.sweep.study import SweepStudy
+from pneutouch.workflows.sweep.swept_field import takes_words
 from pneutouch.workflows.sweep.variables import POINT, STATE, SweepVariable
 from pneutouch.workflows.sweep.work import Record
 
@@ -132,8 +133,8 @@ def _column(key: str, values: Sequence[Any]) -> tuple[Any, dict[str, str]]:
     assert table is not None
     declared = declaration(table, field)
     names = {"long_name": declared.help, "key": key}
-    if declared.registry is not None:
-        return np.array(values, object), names
+    if declared.registry is not None or takes_words(key):
+        return np.array([str(value).lower() if isinstance(value, bool) else value for value in values], object), names
     if table.model_fields[field].annotation is int:
         return np.array(values, np.int32), {"units": declared.unit or "1", **names}
     return np.array(values, float), {"units": declared.unit or "1", **names}

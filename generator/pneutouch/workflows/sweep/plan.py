@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 from pneutouch.catalogue import DesignSource
 from pneutouch.errors import InputError, nearest, shown
@@ -16,7 +17,7 @@ PRESSURES = "pneumatics.driving_pressures_kPa"
 
 MAX_POINTS = 100_000
 
-Value = float | int | str | list[float]
+Value = float | int | str | bool | list[Any]
 Settings = dict[str, Value]
 
 
@@ -25,7 +26,7 @@ class SweepAxis:
     """One field of the design, ``table.key``, and the values it takes."""
 
     key: str
-    values: tuple[float | int | str, ...]
+    values: tuple[float | int | str | bool, ...]
 
     @property
     def name(self) -> str:

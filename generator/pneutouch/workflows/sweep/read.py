@@ -12,6 +12,7 @@ from pneutouch.spec.names import file_name, name_of
 from pneutouch.spec.over import MAX_VALUES, parse_over, spread
 from pneutouch.spec.read import Changes, read_toml
 from pneutouch.workflows.sweep.plan import PRESSURES, Settings, SweepAxis, SweepPlan, Value
+from pneutouch.workflows.sweep.swept_field import takes_flags, takes_infinity
 
 KEYS = ("design", "model", "closure", "clamp", "set", "grid", "point")
 """What a sweep file may hold."""
@@ -40,7 +41,7 @@ def plan_of_file(path: Path, changes: Changes | None = None, **options: str | No
     if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
         raise InputError("point: must be a list of tables, each headed [[point]]", file=where)
     points = tuple(
-        {key: _value(where, f"point[{k}]: {key}", v) for key, v in _flat(where, f"point[{k}]", entry).items()}
+        {key: _value(where, key, v, f"point[{k}]: ") for key, v in _flat(where, f"point[{k}]", entry).items()}
         for k, entry in enumerate(entries)
     )
     fixed |= _checked(changes)
@@ -99,7 +100,7 @@ def _values(where: str, key: str, given: Any) -> list[Any]:
     if not isinstance(given, list) or not 1 <= len(given) <= MAX_VALUES:
         problem = f"must be a list of 1 to {MAX_VALUES} values, or {{from=, to=, count=}}"
         raise InputError(problem, file=where, key=key, value=given)
-    values = [_scalar(where, f"{key}[{k}]", value) for k, value in enumerate(given)]
+    values = [_scalar(where, key, value, f"{key}[{k}]") for k, value in enumerate(given)]
     seen: set[Any] = set()
     for k, value in enumerate(values):
         if value in seen:
@@ -113,17 +114,30 @@ def _unwrapped(values: list[Any]) -> list[Any]:
     return values[0] if len(values) == 1 and isinstance(values[0], list) else values
 
 
-def _value(where: str, key: str, given: Any) -> Value:
-    """The value of one field at one point: a number, a text, or a list of numbers."""
+def _value(where: str, key: str, given: Any, before: str = "") -> Value:
+    """The value of one field at one point: a number, a text, true or false, or a list of numbers or of such lists.
+
+    ``before`` stands before the key in messages.
+    """
+    return _entries(where, key, given, f"{before}{key}")
+
+
+def _entries(where: str, key: str, given: Any, label: str) -> Value:
     if isinstance(given, list):
-        return [_scalar(where, f"{key}[{k}]", value) for k, value in enumerate(given)]  # type: ignore[misc]
-    return _scalar(where, key, given)
+        return [_entries(where, key, value, f"{label}[{k}]") for k, value in enumerate(given)]
+    return _scalar(where, key, given, label)
 
 
-def _scalar(where: str, key: str, given: Any) -> float | int | str:
-    number = isinstance(given, int | float) and not isinstance(given, bool) and math.isfinite(given)
-    if not number and not isinstance(given, str):
-        raise InputError("must be a finite number or a name", file=where, key=key, value=given)
+def _scalar(where: str, key: str, given: Any, label: str) -> float | int | str | bool:
+    """A value as a journal in JSON can hold it: infinity, where the field takes it, is the text "inf"."""
+    if isinstance(given, bool):
+        allowed = takes_flags(key)
+    else:
+        allowed = isinstance(given, str) or (isinstance(given, int | float) and math.isfinite(given))
+    if given == math.inf and takes_infinity(key):
+        return "inf"
+    if not allowed:
+        raise InputError("must be a finite number or a name", file=where, key=label, value=given)
     return given  # type: ignore[no-any-return]
 
 
