@@ -113,7 +113,7 @@ def calculix_section(data: dict[str, Any]) -> list[str]:
     return [
         "### CalculiX in three dimensions",
         "",
-        f"`python -m benchmarks.sway_calculix {arc} {through} {around}` presses half of the paper's dome without driving pressure in "
+        f"`python -m benchmarks.sway_calculix {arc} {through} {around}` presses half of the paper's dome without driving pressure and without a base in "
         f"CalculiX 2.20: {arc} x {through} x {around} C3D20R cells, a frictionless plate, the pressure that the solid finds at each "
         "depth, and a sideways force of 0.02 N on a ring at 45 degrees as the imperfection. Force over displacement of the pole is "
         "a stiffness that falls to zero where the dome sways. The same stiffness by the second variation of the solid on "
@@ -169,7 +169,7 @@ def page(data: dict[str, Any], calculix: dict[str, Any]) -> str:
             "",
             "Both events end no range and change no figure. Beyond them the curve and what is fitted to it are those of the axisymmetric path, which the "
             "sensor leaves there, and the message states so. Friction counts: points of the wall that stick to the plate hold the dome in both directions, so that "
-            "a coefficient of 0.05 already keeps the paper's sensor on its axis; points that slide are taken as free. The atlas and the membrane do not make the check, and state so among their "
+            "a coefficient of 0.05 already keeps the paper's sensor on its axis, also without a base; points that slide are taken as free. The atlas and the membrane do not make the check, and state so among their "
             "assumptions. It costs a quarter of the solid's time (`make ratios`, at most 30 %).",
             "",
             "## The paper's sensor",

@@ -90,7 +90,7 @@ def shapes(prediction: SensorPrediction) -> list[str]:
         high *= 1.3
     texts = []
     with figure(SIZE[0], 0.75 * SIZE[1]) as drawn:
-        # The axes are narrower than the figure: they stand in its middle, with their colour scale beside them.
+        # The axes are narrower than the figure: they stand in its middle, next to their colour scale.
         drawn.set_layout_engine("compressed")
         ax = drawn.add_subplot()
         # The base plane is drawn: a second line just below it would be read as part of the sensor.

@@ -22,7 +22,7 @@ It leaves out FLX9995-DM, which reads twice too sensitive for a reason not known
 MODEL_CORRELATION = 0.756
 """Correlation between the model's errors of two sensors in one resin, each error the logarithm of model over
 measurement: 1 - mean((e22 - e0)^2) / (2 mean(e^2)) over the errors at 0 and 22 kPa of the six resins of the paper's
-Table S1 that the model's error is pooled from gives 0.756. Between resins it is 0.04, taken as none."""
+Table S1 that the model's error is pooled from gives 0.756. Between resins it is 0.03, taken as none."""
 
 MODEL = "model"
 """Name of the sources of `model_sources`."""
