@@ -16,7 +16,7 @@ from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid_states import _curve, _events
+from pneutouch.mechanics.solid_states import curve_between, reported_events
 from pneutouch.units import KPA
 
 _FINE_STEPS = 140
@@ -54,10 +54,10 @@ def solid_answer(scene: Scene, arc: int | None, through: int | None, depth: floa
         s.gas.gauge_limit,
     )
     found = indent(solid, free, press)
-    happened = _events(found)
+    happened = reported_events(found)
     end = min(range_end(happened, press.depth), found.path[-1].indentation)
     ends = next((event.kind for event in happened if event.ends_range), "depth")
-    return Answer(free.inner_apex, end, ends, lambda grid: _curve(found.path, grid))
+    return Answer(free.inner_apex, end, ends, lambda grid: curve_between(found.path, grid))
 
 
 def membrane_answer(scene: Scene, closure: str) -> Answer:

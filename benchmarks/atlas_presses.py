@@ -23,7 +23,7 @@ from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.rigid_base import RigidBase
-from pneutouch.mechanics.solid_states import _curve, _events
+from pneutouch.mechanics.solid_states import curve_between, reported_events
 from pneutouch.units import KPA
 
 STEPS = 14
@@ -118,7 +118,7 @@ def compare(case: Case) -> Gap | None:
     free = state_at(solid, case.share * run.limit.pressure, run)
     press = PressSettings(case.depth, STEPS, None, case.ambient, case.dead, case.gauge, case.tear - 1.0)
     found = indent(solid, free, press)
-    happened = _events(found)
+    happened = reported_events(found)
     end = min(range_end(happened, case.depth), found.path[-1].indentation)
     ends = next((event.kind for event in happened if event.ends_range), ENDS[0])
     batch = case.batch(run.limit.pressure)
@@ -130,13 +130,13 @@ def compare(case: Case) -> Gap | None:
         return None
     lookup = AtlasPress(batch, shipped().slices(batch.wall_ratio), np.zeros(1, dtype=np.intp))
     grid, whole = (np.linspace(0.0, reach, STEPS + 1) for reach in (common, end))
-    theirs, full = figures(grid, *_curve(found.path, grid)), figures(whole, *_curve(found.path, whole))
+    theirs, full = figures(grid, *curve_between(found.path, grid)), figures(whole, *curve_between(found.path, whole))
     ours = figures(grid, *_looked_up(lookup, grid))
     assert ours is not None and theirs is not None and full is not None
     travel = np.maximum([s.indentation for s in found.path if s.indentation <= common * (1 + 1e-9)], 0.0)
     if travel.size < 3:  # the range ends within the solid's first step: between its states then, on its own slopes
         travel = grid
-    force, rise = _differences(lookup, travel, _curve(found.path, travel))
+    force, rise = _differences(lookup, travel, curve_between(found.path, travel))
     return Gap(
         case,
         force.error,

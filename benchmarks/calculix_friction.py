@@ -7,14 +7,9 @@ friction (`calculix_grip`).
 
 from __future__ import annotations
 
-import os
-import subprocess
-import tempfile
-from pathlib import Path
-
 import numpy as np
 
-from benchmarks.calculix_sweep import calculix_model
+from benchmarks.calculix_sweep import calculix_model, calculix_prints
 from pneutouch.arrays import Array
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.laws import neo_hookean
@@ -92,13 +87,7 @@ def calculix_press(sensor: Sensor, friction: float, depths: Array, pressures: Ar
         "CF",
         "*END STEP",
     ]
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        (folder / "press.inp").write_text("\n".join([*deck, ""]), encoding="ascii")
-        alone = {**os.environ, "OMP_NUM_THREADS": "1"}
-        subprocess.run(["ccx", "press"], cwd=folder, capture_output=True, check=False, env=alone)
-        lines = (folder / "press.dat").read_text(encoding="ascii").splitlines()
-    return _forces(lines, depths)
+    return _forces(calculix_prints(deck), depths)
 
 
 def _forces(lines: list[str], depths: Array) -> Array:

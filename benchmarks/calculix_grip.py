@@ -9,14 +9,9 @@ that CalculiX itself found (`*BOUNDARY,FIXED`). Which nodes touch at a depth, an
 
 from __future__ import annotations
 
-import os
-import subprocess
-import tempfile
-from pathlib import Path
-
 import numpy as np
 
-from benchmarks.calculix_sweep import calculix_model
+from benchmarks.calculix_sweep import calculix_model, calculix_prints
 from pneutouch.arrays import Array, Index
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.solid.indent import IndentationPath
@@ -69,12 +64,7 @@ def _forces(deck: list[str], count: int) -> Array:
     """Vertical force of the whole turn at the ends of the steps of a deck, the first of none."""
     out = np.full(count + 1, np.nan)
     out[0] = 0.0
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        (folder / "press.inp").write_text("\n".join([*deck, ""]), encoding="ascii")
-        alone = {**os.environ, "OMP_NUM_THREADS": "1"}
-        subprocess.run(["ccx", "press"], cwd=folder, capture_output=True, check=False, env=alone)
-        lines = (folder / "press.dat").read_text(encoding="ascii").splitlines()
+    lines = calculix_prints(deck)
     for k, line in enumerate(lines):
         if line.startswith(" total force"):
             step = round(count * float(line.split()[-1]))

@@ -6,6 +6,7 @@ did is its limit pressure. CAX8R is expanded to a wedge of three-dimensional ele
 
 from __future__ import annotations
 
+import os
 import resource
 import subprocess
 import tempfile
@@ -45,6 +46,16 @@ def calculix_model(sensor: Sensor, arc: int, through: int) -> list[str]:
         "BASE,1,2",
         "AXIS,1,1",
     ]
+
+
+def calculix_prints(deck: list[str]) -> list[str]:
+    """Lines that CalculiX prints (its .dat file) on a deck, in one thread."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "press.inp").write_text("\n".join([*deck, ""]), encoding="ascii")
+        alone = {**os.environ, "OMP_NUM_THREADS": "1"}
+        subprocess.run(["ccx", "press"], cwd=folder, capture_output=True, check=False, env=alone)
+        return (folder / "press.dat").read_text(encoding="ascii").splitlines()
 
 
 def _seconds(folder: Path, deck: list[str]) -> float:

@@ -17,7 +17,7 @@ from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.printed import printed_dome
 from pneutouch.mechanics.solid.rigid_base import RigidBase
-from pneutouch.mechanics.solid_states import KINDS, _curve
+from pneutouch.mechanics.solid_states import KINDS, curve_between
 from pneutouch.units import KPA
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "accuracy.md"
@@ -63,7 +63,7 @@ def pressed(mesh: tuple[int | None, int | None], pressure: float, held: str, bas
         if last < depth - 1e-9:
             return np.nan
         grid = np.linspace(0.0, depth, s.protocol.steps + 1)
-        force, rise = _curve(run.path, grid)
+        force, rise = curve_between(run.path, grid)
         found = figures(grid, force, rise / KPA)
         return np.nan if found is None else found.sensitivity_kPa_per_N
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.outcome_map import draw_outcomes
 from pneutouch.errors import PneutouchError
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.solid.indent import PressSettings, indent
@@ -80,18 +81,13 @@ def draw(rows: list[dict[str, Any]]) -> str:
             for k, gas in enumerate(DEAD):
                 ax = axes[i, k]
                 here = [row for row in rows if (row["resin"], row["gas"]) == (resin, gas)]
-                for outcome, look in LOOKS.items():
-                    points = [(r["wall_ratio"], r["limit_fraction"]) for r in here if r["outcome"] == outcome]
-                    x, y = zip(*points, strict=True) if points else ((), ())
-                    ax.plot(x, y, ls="", label=outcome, clip_on=False, in_layout=False, **look)
+                draw_outcomes(ax, here, LOOKS, WALL_RATIOS)
                 for row in here:
                     if row["outcome"] in list(LOOKS)[:3]:
                         place = (row["wall_ratio"], row["limit_fraction"])
                         text = f"{row['depth_ratio']:.2f}"
                         ax.annotate(text, place, (0, 5), textcoords="offset points", ha="center", fontsize=5.5)
-                ax.set(xscale="log", xlim=(0.026, 0.42), ylim=(-0.06, 0.92))
-                ax.set_xticks(WALL_RATIOS, [f"{r:g}" for r in WALL_RATIOS], rotation=90, fontsize=6)
-                ax.minorticks_off()
+                ax.set(xlim=(0.026, 0.42), ylim=(-0.06, 0.92))
                 if i == 0:
                     ax.set_title(gas, fontsize=7.5)
                 if k == 0:

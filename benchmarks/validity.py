@@ -12,6 +12,7 @@ import numpy as np
 
 from benchmarks.answer import Answer, membrane_answer, solid_answer, solid_limit
 from benchmarks.models import ATLAS, atlas_answer
+from benchmarks.outcome_map import draw_outcomes
 from benchmarks.scenes import PAPER, Scene
 from pneutouch.errors import PneutouchError
 from pneutouch.report.style import ACCENT, INK, MUTED, figure, svg
@@ -92,17 +93,9 @@ def draw(rows: list[dict[str, Any]]) -> str:
         for i, method in enumerate(METHODS):
             for k, depth in enumerate(DEPTHS):
                 ax = axes[i, k]
-                for outcome, look in LOOKS.items():
-                    mine = [
-                        (row["wall_ratio"], row["limit_fraction"])
-                        for row in rows
-                        if (row["method"], row["depth_ratio"], row["outcome"]) == (method, depth, outcome)
-                    ]
-                    x, y = zip(*mine, strict=True) if mine else ((), ())
-                    ax.plot(x, y, ls="", label=outcome, clip_on=False, in_layout=False, **look)
-                ax.set(xscale="log", xlim=(0.016, 0.62), ylim=(-0.08, 1.03))
-                ax.set_xticks(WALL_RATIOS, [f"{r:g}" for r in WALL_RATIOS], rotation=90, fontsize=6)
-                ax.minorticks_off()
+                here = [row for row in rows if (row["method"], row["depth_ratio"]) == (method, depth)]
+                draw_outcomes(ax, here, LOOKS, WALL_RATIOS)
+                ax.set(xlim=(0.016, 0.62), ylim=(-0.08, 1.03))
                 if i == 0:
                     ax.set_title(f"to {depth:g} R0", fontsize=7.5)
                 if k == 0:

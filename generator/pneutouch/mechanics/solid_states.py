@@ -155,10 +155,10 @@ def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) 
         waves=test.waves,
     )
     pressed = indent(probe.solid, free, press, probe)
-    happened = _events(pressed)
+    happened = reported_events(pressed)
     end = min(range_end(happened, test.depth), pressed.path[-1].indentation)
     grid = np.linspace(0.0, end, test.steps + 1)
-    force, rise = _curve(pressed.path, grid)
+    force, rise = curve_between(pressed.path, grid)
     return SensorState(
         driving_pressure=pressure,
         apex_inner=free.inner_apex,
@@ -177,12 +177,13 @@ def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) 
     )
 
 
-def _events(pressed: IndentationPath) -> list[Event]:
+def reported_events(pressed: IndentationPath) -> list[Event]:
+    """The solver's events as they are reported, in the order of the travel."""
     events = [Event(KINDS[e.kind][0], max(e.indentation, 0.0), KINDS[e.kind][1], e.detail) for e in pressed.events]
     return sorted(events, key=lambda event: event.indentation)
 
 
-def _curve(path: list[PressState], grid: Array) -> tuple[Array, Array]:
+def curve_between(path: list[PressState], grid: Array) -> tuple[Array, Array]:
     """Force (N) and pressure rise (MPa) at indentations between the solved states, on their Hermite cubics."""
     x = np.array([s.indentation for s in path])
     keep = np.concatenate([[True], np.diff(x) > 1e-9])
