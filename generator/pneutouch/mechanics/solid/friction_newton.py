@@ -8,6 +8,7 @@ half way after 739. The line search goes by the energy with the largest traction
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,9 +17,11 @@ from pneutouch.arrays import Array, Flags
 from pneutouch.mechanics.solid.contact import ContactEvaluation
 from pneutouch.mechanics.solid.friction import FrictionPoints, FrictionStep, FrictionTerm
 from pneutouch.mechanics.solid.general_band import OneSidedBlocks
+from pneutouch.mechanics.solid.line_search import line_search
 from pneutouch.mechanics.solid.newton import (
     GAIN,
     RESIDUAL,
+    SETTLING,
     NewtonFailure,
     SolidScene,
     SolverState,
@@ -29,9 +32,6 @@ from pneutouch.mechanics.solid.newton import (
     tangent,
 )
 
-_ARMIJO = 1.0e-4
-_SHORTEST = 1.0e-6
-_SETTLING = 10
 _MOST = 24
 
 
@@ -107,7 +107,7 @@ class FrictionSolver:
         linear = self.solid.contact.linear(here.touch, np.zeros_like(here.state.x))
         active, sign = linear > 0.0, np.where(here.points.sliding, np.sign(here.points.slip), 0.0)
         seen, lifted = {active.tobytes() + sign.tobytes()}, False
-        for k in range(_SETTLING):
+        for k in range(SETTLING):
             pull, both, one_sided = self._model(here, linear, active, sign)
             full = self.solid.contact_pattern.added(band, [both])
             # The symmetric part is factorised once, for its definiteness; where it is lifted, friction stays held.
@@ -166,23 +166,15 @@ class FrictionSolver:
         )
 
     def _search(self, here: HeldState, step: Array, slope: float) -> HeldState | None:
-        """Backtrack until the energy with friction held falls; `newton` states the same search without friction."""
+        """The state at the end of a line search by the energy with friction held; None where no step lowers it."""
         move = self.solid.expand(step)
         state = here.state
         noise = 1.0e-13 * (abs(here.energy) + state.local.energy + self.solid.wall)
-        share = 1.0
-        while share > _SHORTEST:
-            trial = evaluate(self.scene, state.x + share * move)
-            if trial is None:
-                share *= 0.4
-                continue
-            drop = trial.energy + here.term.energy(trial.x) - here.energy
-            if drop <= _ARMIJO * share * slope:
-                return self.hold(trial)
-            if abs(drop) <= noise:
-                after = self.hold(trial)
-                if abs(float(step @ after.residual)) <= 0.9 * abs(slope):
-                    return after
-            curve = 2.0 * (drop - share * slope)
-            share = float(np.clip(-slope * share**2 / curve, 0.1 * share, 0.5 * share)) if curve > 0.0 else 0.3 * share
-        return None
+
+        def trial(share: float) -> tuple[float, Callable[[], HeldState]] | None:
+            there = evaluate(self.scene, state.x + share * move)
+            if there is None:
+                return None
+            return there.energy + here.term.energy(there.x) - here.energy, lambda: self.hold(there)
+
+        return line_search(trial, step, slope, noise)

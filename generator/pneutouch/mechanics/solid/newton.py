@@ -1,5 +1,6 @@
 """Newton's method on the total energy of wall, filling and contact, with an energy line search."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -8,6 +9,7 @@ from pneutouch.arrays import Array, Flags
 from pneutouch.mechanics.solid.banded import negative_pivots, solve, solve_definite
 from pneutouch.mechanics.solid.contact import ContactEvaluation
 from pneutouch.mechanics.solid.indenter import Indenter
+from pneutouch.mechanics.solid.line_search import line_search
 from pneutouch.mechanics.solid.model import PointFields, SolidModel
 from pneutouch.mechanics.solid.supply import FillingState, Supply
 from pneutouch.mechanics.solid.terms import EnergyTerm, TermState
@@ -17,10 +19,8 @@ RESIDUAL = 1.0e-9
 #: and the energy still to be gained, estimated from the last step, below this share of the energy scale.
 GAIN = 1.0e-14
 MAX_ITERATIONS = 40
-_ARMIJO = 1.0e-4
-_SHORTEST = 1.0e-6
 #: Rounds in which the set of touching points is settled inside one quadratic model.
-_SETTLING = 10
+SETTLING = 10
 
 
 @dataclass(frozen=True)
@@ -168,7 +168,7 @@ def direction(scene: SolidScene, state: SolverState) -> NewtonDirection:
     linear = contact.linear(touch, np.zeros_like(state.x))
     active = linear > 0.0
     seen = {active.tobytes()}
-    for _ in range(_SETTLING):
+    for _ in range(SETTLING):
         pull = state.inner + scene.solid.push(contact.force(np.where(active, linear, 0.0), touch.slope))
         newton = downhill(state, _touching(scene, band, touch, active), pull)
         if newton.lift:
@@ -268,24 +268,12 @@ def _energy_scale(scene: SolidScene, state: SolverState) -> float:
 
 
 def _search(scene: SolidScene, state: SolverState, step: Array, slope: float) -> SolverState | None:
-    """Backtrack from the full step until the energy falls by Armijo's condition; None where it never does.
-
-    Near convergence the energy difference drowns in rounding: there a step is also taken when it lowers the slope.
-    """
+    """The state at the end of a line search; None where no step lowers the energy."""
     move = scene.solid.expand(step)
     noise = 1.0e-13 * (abs(state.energy) + state.local.energy + scene.solid.wall)
-    share = 1.0
-    while share > _SHORTEST:
-        trial = evaluate(scene, state.x + share * move)
-        if trial is None:
-            share *= 0.4
-            continue
-        drop = trial.energy - state.energy
-        if drop <= _ARMIJO * share * slope:
-            return trial
-        along = float(step @ trial.residual)
-        if abs(drop) <= noise and abs(along) <= 0.9 * abs(slope):
-            return trial
-        curve = 2.0 * (drop - share * slope)
-        share = float(np.clip(-slope * share * share / curve, 0.1 * share, 0.5 * share)) if curve > 0.0 else 0.3 * share
-    return None
+
+    def trial(share: float) -> tuple[float, Callable[[], SolverState]] | None:
+        there = evaluate(scene, state.x + share * move)
+        return None if there is None else (there.energy - state.energy, lambda: there)
+
+    return line_search(trial, step, slope, noise)
