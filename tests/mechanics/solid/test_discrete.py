@@ -13,15 +13,7 @@ from pneutouch.mechanics.solid.newton import SolidScene, evaluate, full_tangent
 from pneutouch.mechanics.solid.printed import printed_dome
 from pneutouch.mechanics.solid.supply import Gas, Liquid
 from pneutouch.mechanics.solid.terms import TermState
-
-
-def _dense(band):
-    n = band.shape[1]
-    out = np.zeros((n, n))
-    for k in range(band.shape[0]):
-        i = np.arange(n - k)
-        out[i + k, i] = out[i, i + k] = band[k, : n - k]
-    return out
+from tests.mechanics.solid.derivatives import assert_derivatives, dense
 
 
 class Springs:
@@ -53,18 +45,7 @@ def test_residual_and_tangent_are_derivatives_of_the_energy(order, law, terms):
     scene = SolidScene(
         solid, Gas.filled(0.1, 2.1, 0.6, 0.2), Plate(1.1, 0.3, 0.1), tuple(term(solid) for term in terms)
     )
-    state = evaluate(scene, x)
-    d = rng.normal(size=solid.size)
-    d /= np.linalg.norm(d)
-    step = 1e-7
-    up, down = (evaluate(scene, x + s * step * solid.expand(d)) for s in (1, -1))
-    slope = float(state.residual @ d)
-    assert (up.energy - down.energy) / (2 * step) == pytest.approx(
-        slope, rel=1e-5, abs=1e-9 * abs(state.energy) / step * 1e-5
-    )
-    k = _dense(full_tangent(scene, state)) + state.filling.rate * np.outer(state.by_volume, state.by_volume)
-    change = (up.residual - down.residual) / (2 * step)
-    assert np.abs(k @ d - change).max() < 1e-6 * np.abs(change).max()
+    assert_derivatives(scene, x, rng, step=1e-7, rel=1e-5, absolute=1e-7)
 
 
 def test_cavity_volume_is_exact_and_converges_to_the_hemisphere():
@@ -85,7 +66,7 @@ def test_inertia_matches_eigenvalues():
     for shift in (-3.0, 0.0, 2.0, 9.0):
         band = rng.normal(size=(6, 47))
         band[0] += shift
-        assert negative_pivots(band) == (np.linalg.eigvalsh(_dense(band)) < 0).sum()
+        assert negative_pivots(band) == (np.linalg.eigvalsh(dense(band)) < 0).sum()
 
 
 def test_inertia_of_band_plus_rank_one():
@@ -94,7 +75,7 @@ def test_inertia_of_band_plus_rank_one():
         band = rng.normal(size=(4, 23))
         band[0] += rng.uniform(0, 6)
         g, c = rng.normal(size=23), rng.uniform(0.1, 30)
-        k = _dense(band)
+        k = dense(band)
         denominator = 1 + c * g @ np.linalg.solve(k, g)
         predicted = negative_pivots(band) - (denominator < 0)
         assert predicted == (np.linalg.eigvalsh(k + c * np.outer(g, g)) < 0).sum()

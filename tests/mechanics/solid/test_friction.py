@@ -23,7 +23,7 @@ from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolidScene, evaluate, full_tangent
 from pneutouch.mechanics.solid.supply import Gas
-from tests.mechanics.solid.test_discrete import _dense
+from tests.mechanics.solid.derivatives import dense
 
 DEPTH = 0.5 * 9.25
 
@@ -150,7 +150,7 @@ def test_the_tangent_is_the_derivative_of_the_residual(friction):
     up, down = (solver.hold(evaluate(scene, x + s * step * solid.expand(d))).residual for s in (1, -1))
     sign = np.where(at.points.sliding, np.sign(at.points.slip), 0.0)
     slope = at.touch.slope
-    k = _dense(
+    k = dense(
         solid.contact_pattern.added(full_tangent(scene, at.state), [solver.step.stick(at.points.sticking, slope)])
     )
     k += at.state.filling.rate * np.outer(at.state.by_volume, at.state.by_volume)
@@ -174,7 +174,7 @@ def test_systems_with_one_sided_blocks_are_solved():
     x = OneSidedBlocks(solid).solve(band, blocks, b)
     for k in range(2):
         edges = solid.expand(x[:, k])[solid.mesh.outer].reshape(len(blocks), -1, 1)
-        assert np.allclose(_dense(band) @ x[:, k] + solid.push((blocks @ edges)[..., 0]), b[:, k])
+        assert np.allclose(dense(band) @ x[:, k] + solid.push((blocks @ edges)[..., 0]), b[:, k])
 
 
 def test_friction_lowers_the_sensitivity_of_a_stiff_wall_evenly():

@@ -21,13 +21,13 @@ from pneutouch.mechanics.solid.indent import PressSettings, indent
 from pneutouch.mechanics.solid.inflate import inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid.newton import SolidScene, evaluate, full_tangent
+from pneutouch.mechanics.solid.newton import SolidScene
 from pneutouch.mechanics.solid.supply import Gas
 from pneutouch.mechanics.solid_states import solid_result
 from pneutouch.meridian.arc import arc_share
 from pneutouch.spec.grade import Grade
 from pneutouch.units import KPA
-from tests.mechanics.solid.test_discrete import _dense
+from tests.mechanics.solid.derivatives import assert_derivatives
 
 TOP = 0.668
 """Last fraction of the mixing curve: 31 times the soft resin's modulus."""
@@ -90,14 +90,7 @@ def test_residual_and_tangent_are_derivatives_of_the_graded_energy():
     rng = np.random.default_rng(7)
     x = solid.rest + solid.expand(2e-3 * rng.normal(size=solid.size))
     scene = SolidScene(solid, Gas.filled(0.1, 2.1, 0.6, 0.2), Plate(1.1, 0.3, 0.1))
-    state, step = evaluate(scene, x), 1e-7
-    way = rng.normal(size=solid.size)
-    way /= np.linalg.norm(way)
-    up, down = (evaluate(scene, x + sign * step * solid.expand(way)) for sign in (1, -1))
-    assert (up.energy - down.energy) / (2 * step) == pytest.approx(float(state.residual @ way), rel=1e-5)
-    k = _dense(full_tangent(scene, state)) + state.filling.rate * np.outer(state.by_volume, state.by_volume)
-    change = (up.residual - down.residual) / (2 * step)
-    assert np.abs(k @ way - change).max() < 1e-6 * np.abs(change).max()
+    assert_derivatives(scene, x, rng, step=1e-7, rel=1e-5)
 
 
 def test_a_sphere_graded_through_its_wall_has_the_exact_limit_point():
