@@ -22,12 +22,12 @@ class _Balanced(Protocol):
         ...
 
 
-Found = TypeVar("Found", bound=_Balanced)
+State = TypeVar("State", bound=_Balanced)
 
 
 def line_search(
-    trial: Callable[[float], tuple[float, Callable[[], Found]] | None], step: Array, slope: float, noise: float
-) -> Found | None:
+    trial: Callable[[float], tuple[float, Callable[[], State]] | None], step: Array, slope: float, noise: float
+) -> State | None:
     """Backtrack from the full step until the energy falls by Armijo's condition; None where it never does.
 
     trial: at a share of the step the change of the energy and what completes the state there; None where there is none.
