@@ -1,5 +1,6 @@
 """Coulomb friction between wall and plate: the law at every point, its derivatives, its limits and its energy."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -16,6 +17,7 @@ from pneutouch.mechanics.solid.first_touch import first_touch
 from pneutouch.mechanics.solid.friction import FrictionStep
 from pneutouch.mechanics.solid.friction_newton import FrictionSolver
 from pneutouch.mechanics.solid.general_band import OneSidedBlocks
+from pneutouch.mechanics.solid.harmonics import HarmonicSolid
 from pneutouch.mechanics.solid.indent import PressSettings, follower_of, indent
 from pneutouch.mechanics.solid.indenter import ball
 from pneutouch.mechanics.solid.inflate import inflate, state_at
@@ -181,6 +183,19 @@ def test_friction_lowers_the_sensitivity_of_a_stiff_wall_evenly():
     runs = [press(f, mu=0.91, gauge_range=np.inf) for f in (0.0, 0.1, 0.3, 0.6, 1.0, np.inf)]
     slopes = [np.polyfit(run.column("force"), run.column("rise"), 1)[0] for run in runs]
     assert (np.diff(slopes) < 0.0).all() and slopes[-1] < 0.9 * slopes[0]
+
+
+def test_springs_hold_a_displacement_across_the_axis_in_all_directions_of_the_plate():
+    """One wave with a = 1 and c = -1 moves all points alike: the energy of the springs of those that stick."""
+    path = follow(np.inf, 0.91).path
+    here, solid = path[-1].state, path[-1].scene.solid
+    harmonic = HarmonicSolid(solid)
+    held, bare = (harmonic.blocks(s)[2].at(1) for s in (here, replace(here, terms=here.terms[:-1])))
+    across = np.tile([1.0, 0.0, -1.0], solid.mesh.outer.shape[1])
+    friction = path[-1].friction
+    stiffness = friction.stiffness * solid.contact.weight[friction.points.sticking].sum()
+    # The form of a number of waves is twice the energy's.
+    assert ((held - bare) @ across @ across).sum() == pytest.approx(2.0 * stiffness)
 
 
 @pytest.mark.slow

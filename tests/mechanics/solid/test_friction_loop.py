@@ -25,12 +25,13 @@ def test_without_friction_the_plate_gets_its_work_back():
 
 
 def test_the_loop_loses_what_friction_dissipates_and_ends_where_it_began():
-    open_loop = loop(0.3)
+    open_loop = loop(0.3, steps=28)
     there, back = open_loop.loading, open_loop.unloading
     assert open_loop.ended is None
     assert open_loop.lost_share > 0.02
-    # At this step the sum over points misses what points do in the step in which they touch or let go.
-    assert open_loop.dissipated / there.work == pytest.approx(open_loop.lost_share, rel=0.2)
+    # The sum over points misses part of what they do in the step in which they touch or let go: 13, 6 and 2 % with 14,
+    # 28 and 56 steps.
+    assert open_loop.dissipated / there.work == pytest.approx(open_loop.lost_share, rel=0.08)
     assert back.indentation[0] == there.indentation[-1] and back.indentation[-1] == pytest.approx(0.0, abs=1e-12)
     assert back.force[-1] == pytest.approx(0.0, abs=1e-9) and back.rise[-1] == pytest.approx(0.0, abs=1e-9)
     # Friction resists the plate while it comes down and holds the wall back while it goes up.
