@@ -144,14 +144,15 @@ TEXT = {
     "what": [
         "# Friction between wall and plate",
         "",
-        "`make friction-page` computes this page. The sensor is the paper's, without dead volume.",
+        "`make friction-page` computes this page. The sensor is the paper's, without dead volume; its wall may lie down on the "
+        "base plane, which is the default and has no friction.",
         "",
         "`predict` takes a coefficient: `pneutouch predict paper-dome --set contact.friction=0.6`. The default is 0, as in "
         "the paper's finite elements; `inf` is a surface that grips. Friction is solved by the solid.",
         "",
-        "The law is Coulomb's. A point of the wall that touches is held, where it first touched, by a stiff spring along "
-        "the object's surface; where the spring's traction would pass the coefficient times the normal traction, the "
-        "point slides. Each accepted state keeps where its points stick, and every step starts from there.",
+        "The law is Coulomb's. A stiff spring along the object's surface holds each point of the wall where it first touched. "
+        "Where the traction of the spring would pass the coefficient times the normal traction, the point slips. Each "
+        "accepted state stores where its points stick, and every step starts from there.",
         "",
         "## Sensitivity",
         "",
@@ -162,10 +163,11 @@ TEXT = {
     "loop": [
         "## The loop that friction alone makes",
         "",
-        f"The plate goes {LOOP_DEPTH:.2f} mm down at 0 kPa and up again. Each cell: greatest difference of the rise over full "
-        "scale / area of the loop of rise over force / work that the plate does not get back over what it put in, all "
-        "in percent. Measured: the paper's Table S1, normalised, without a formula. The resin's relaxation is not in "
-        "the loop (viscous.md).",
+        f"The plate goes {LOOP_DEPTH:.2f} mm down at 0 kPa and up again. Each cell has three shares in percent: the greatest "
+        "difference of the pressure rise between loading and unloading, over full scale; the area of the loop of pressure "
+        "rise over force, over the area below its loading; the work that the plate does not get back, over the work that it "
+        "put in. Measured is the normalised hysteresis of the paper's Table S1, for which the paper gives no formula. The "
+        "resin's relaxation is not in the loop ([viscous.md](viscous.md)).",
         "",
     ],
     "steps": [
@@ -185,14 +187,14 @@ TEXT = {
         "## CalculiX",
         "",
         "`tests/mechanics/solid/test_calculix_friction.py` presses the sensor in FLX9960 with CalculiX 2.20 on the same "
-        "cells, with the solid's pressure over the depth, at coefficients 0 and 0.6, where nearly all points slide: the "
+        "cells, with the solid's pressure over the depth, at coefficients 0 and 0.6, where nearly all points slip: the "
         "forces from 1.2 to 2.4 mm agree within 1 %. "
         "CalculiX counts the slip of a point from the beginning of its computation, not from where the point first "
         "touches, so that a surface that grips pulls the points that touch later back to their radii at rest: a "
         "coefficient of 10 gives a force 8 to 13 % higher, and so does this solid, within 2 %, where its points rest at "
         "those radii. A plate that grips is therefore pressed without CalculiX's friction: each node that touches keeps "
         "the radius that CalculiX found for it. On 96 x 2 cells the forces from 0.6 to 2.4 mm then agree within 1 %, as "
-        "they do where nodes slide. "
+        "they do where nodes slip. "
         "Without CalculiX, `tests/mechanics/solid/test_grip.py` compares grip with points that are held one by one where "
         "they first touched, and a disc that is gripped with one that is bonded.",
         "",

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from benchmarks.table_s1_cells import FRICTIONS, PRESSURES, Assumptions, CellRow
-from pneutouch.report.style import ACCENT, FAINT, INK, figure, svg
+from pneutouch.report.style import ACCENT, FAINT, INK, figure, legend_above, svg
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,7 +25,7 @@ def draw(rows: list[CellRow], size: tuple[float, float] = (175.0, 80.0)) -> str:
         for ax, pressure in zip(panels, PRESSURES, strict=True):
             _panel(ax, [row for row in rows if row.pressure_kPa == pressure], pressure)
         panels[0].set_ylabel("sensitivity  (kPa/N)")
-        panels[1].legend(fontsize=6.5, frameon=False, loc="upper right")
+        legend_above(panels[0], columns=len(FRICTIONS) + 2)
         return svg(drawn)
 
 
@@ -33,7 +33,7 @@ def _panel(ax: Axes, rows: list[CellRow], pressure: float) -> None:
     for k, row in enumerate(rows):
         values = np.array(list(row.sensitivity.values()))
         low, high = float(np.nanmin(values)), float(np.nanmax(values))
-        ax.bar(k, high - low, bottom=low, width=0.85, fc=FAINT, ec="none", alpha=0.7, zorder=1, label=_once(k, "all"))
+        ax.bar(k, high - low, bottom=low, width=0.85, fc=FAINT, ec="none", alpha=0.7, zorder=1, label=_once(k, "all combinations"))
         for friction, mark, place in zip(FRICTIONS, _MARKS, np.linspace(-0.5, 0.5, len(FRICTIONS)), strict=True):
             label = "grip" if friction == np.inf else f"friction {friction:g}"
             here = (k + _WIDTH * place, row.sensitivity[Assumptions(friction=friction)])

@@ -11,6 +11,7 @@ from benchmarks.table_s1_cells import ALL, FRICTIONS, Assumptions, CellRow, cell
 from benchmarks.table_s1_chart import draw
 from pneutouch.arrays import Array
 from pneutouch.catalogue import Library
+from pneutouch.wording import counted
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"
@@ -85,8 +86,8 @@ def _head() -> list[str]:
         "",
         "![Sensitivity of each cell over friction, with the measured value](table-s1.svg)",
         "",
-        "Sensitivity over friction for each resin (default otherwise), with what was measured (diamonds). The bar is the span of "
-        "all assumptions.",
+        "Sensitivity over friction for each resin (default otherwise), with what was measured (diamonds). The bar is the span over "
+        "all combinations.",
         "",
     ]
 
@@ -152,10 +153,10 @@ def _combinations(rows: list[CellRow]) -> list[str]:
     return [
         "## Which combinations fit the table",
         "",
-        f"Over the {len(rows)} cells without {OTHER_SOURCE}, whose modulus is from another source and whose prediction is far off "
+        f"This section takes the {len(rows)} cells without {OTHER_SOURCE}, whose modulus is from another source and whose prediction is far off "
         "under every assumption. A combination fits where every cell is within twice the repeatability of its resin (0.002 to "
-        f"0.014 kPa/N). **None of the {len(order)} does; the most cells that one meets is {best}.** The nearest by root mean "
-        "square error, and the default:",
+        f"0.014 kPa/N). **None of the {len(order)} combinations does; the best of them meets {counted(best, 'cell')}.** The nearest by "
+        "root mean square error, and the default:",
         "",
         "| rank | combination | median error | root mean square | worst | cells met |",
         "|---|---|---|---|---|---|",
