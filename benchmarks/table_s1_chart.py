@@ -33,7 +33,17 @@ def _panel(ax: Axes, rows: list[CellRow], pressure: float) -> None:
     for k, row in enumerate(rows):
         values = np.array(list(row.sensitivity.values()))
         low, high = float(np.nanmin(values)), float(np.nanmax(values))
-        ax.bar(k, high - low, bottom=low, width=0.85, fc=FAINT, ec="none", alpha=0.7, zorder=1, label=_once(k, "all combinations"))
+        ax.bar(
+            k,
+            high - low,
+            bottom=low,
+            width=0.85,
+            fc=FAINT,
+            ec="none",
+            alpha=0.7,
+            zorder=1,
+            label=_once(k, "all combinations"),
+        )
         for friction, mark, place in zip(FRICTIONS, _MARKS, np.linspace(-0.5, 0.5, len(FRICTIONS)), strict=True):
             label = "grip" if friction == np.inf else f"friction {friction:g}"
             here = (k + _WIDTH * place, row.sensitivity[Assumptions(friction=friction)])

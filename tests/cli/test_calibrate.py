@@ -218,3 +218,19 @@ def test_one_that_was_to_be_saved_is_an_error_with_its_report(campaign, place, s
     assert "(the fit is in out/mine-TangoPlus-1-calibration); leave out modulus" in said
     assert (place / "out/mine-TangoPlus-1-calibration/calibration.json").is_file()
     assert not (place / "calibrations").exists()
+
+
+def test_a_design_that_cannot_be_fitted_is_refused_at_once_and_compared_instead(campaign, place):
+    """The fit needs the atlas, which has no friction; the last line of characterize is a command that works."""
+    content = tomllib.loads((place / "designs" / "mine.toml").read_text())
+    (place / "designs" / "rough.toml").write_text(toml_text({**content, "contact": {"friction": 0.6}}))
+    refused = run("calibrate", str(campaign), "--design", "rough", "--out", "out")
+    assert refused.exit_code == 2
+    for word in ("rough.toml: contact.friction = 0.6", "atlas does not cover", "`compare` sets"):
+        assert word in refused.stderr
+    assert not (place / "out").exists() and not (place / "calibrations").exists()
+    words = ("characterize", str(campaign), "--design", "rough", "--evidence", "none", "--out", "out")
+    shown = run(*words)
+    assert shown.exit_code == 0, shown.stderr
+    folder = "out/paper-dome-campaign-measured"
+    assert shown.stderr.splitlines()[-1] == f"next: pneutouch compare rough {folder}"

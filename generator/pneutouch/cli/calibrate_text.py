@@ -1,6 +1,7 @@
 """A calibration as text for people."""
 
 from pneutouch.cli.table import table_text
+from pneutouch.wording import counted
 from pneutouch.workflows.calibrate.record import EstimateRecord, OutcomeRecord, ResponseRecord
 
 
@@ -11,8 +12,8 @@ def calibration_text(document: OutcomeRecord) -> str:
     ]
     fit = document["fit"]
     head = (
-        f"{document['sensor']}, {document['design']}: {document['runs']} curves, {document['injections']} injections, "
-        f"{fit['points_used']} values"
+        f"{document['sensor']}, {document['design']}: {counted(document['runs'], 'curve')}, "
+        f"{counted(document['injections'], 'injection')}, {counted(fit['points_used'], 'value')}"
     )
     chi = fit["chi_squared_per_degree"]
     parts = [

@@ -77,6 +77,9 @@ def characterize(
         runs = outcome.measured.campaign.runs
         fitted = sorted({run.sensor for run in runs if run.kind in ("steps", "injection")})
         if not json and fitted and (data.is_dir() or data.suffix == ".toml"):
-            named = ["--sensor", fitted[0]] if len({run.sensor for run in runs}) > 1 else []
-            given_words = [*(["--design", design] if design else []), *reading_words(columns, fields)]
-            report_next("calibrate", data, *named, *given_words)
+            if outcome.fitted:
+                named = ["--sensor", fitted[0]] if len({run.sensor for run in runs}) > 1 else []
+                given_words = [*(["--design", design] if design else []), *reading_words(columns, fields)]
+                report_next("calibrate", data, *named, *given_words)
+            else:
+                report_next("compare", outcome.design_given, folder)

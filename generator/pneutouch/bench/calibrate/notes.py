@@ -15,6 +15,7 @@ from pneutouch.bench.calibrate.observations import clipped
 from pneutouch.bench.calibrate.parameters import DEAD, LOGARITHMIC
 from pneutouch.bench.calibrate.response import ASSUMED_SCATTER, response_gap
 from pneutouch.units import ML
+from pneutouch.wording import counted
 
 CHANNELS = ("force", "pressure rise", "injection's pressure")
 WORDS = ("shear modulus", "wall thickness", "dead volume", "contact offset")
@@ -64,25 +65,27 @@ def _counted(fit: CalibrationFit) -> list[str]:
     return [*parts, *([f"but no gain error that all runs share: {'; '.join(moved)}"] if moved else [])]
 
 
+def _points(count: int) -> str:
+    return f"{counted(count, 'point')} {'is' if count == 1 else 'are'}"
+
+
 def _left_out(fit: CalibrationFit) -> list[str]:
     notes = []
     over = [(curve.run.label, int(clipped(curve, fit.observations.rig).sum())) for curve in fit.observations.curves]
     if any(count for _, count in over):
         notes.append(
-            f"{sum(count for _, count in over)} points at the end of the force sensor's range are left out "
+            f"{_points(sum(count for _, count in over))} left out: at the end of the force sensor's range "
             f"({_few([label for label, count in over if count])})"
         )
     for curve, lost, travel in zip(fit.observations.curves, fit.left_out, fit.points.travel, strict=True):
         if lost.any():
             notes.append(
-                f"{curve.run.label}: {int(lost.sum())} points from {travel[lost].min():.2f} mm on are left out: the "
+                f"{curve.run.label}: {_points(int(lost.sum()))} left out from {travel[lost].min():.2f} mm on: the "
                 "model's range ends before them (buckling, the plate's edge, or a depth beyond the atlas)"
             )
     for injection, lost in zip(fit.observations.injections, fit.injections_left_out, strict=True):
         if lost.any():
-            notes.append(
-                f"{injection.label}: {int(lost.sum())} points are left out: beyond the limit point of the dome"
-            )
+            notes.append(f"{injection.label}: {_points(int(lost.sum()))} left out: beyond the limit point of the dome")
     return notes
 
 

@@ -7,7 +7,10 @@ from pathlib import Path
 from pneutouch.bench.calibrate import NAMES, Observations
 from pneutouch.catalogue import DesignSource, Library, load_scene, split_calibration, user_folder
 from pneutouch.errors import InputError
+from pneutouch.evaluation.evaluate import sensor_of
+from pneutouch.evaluation.fitted import check_fitted
 from pneutouch.output.files import check_writable
+from pneutouch.parts import assemble
 from pneutouch.spec.campaign_file import CAMPAIGN, design_of
 from pneutouch.spec.design import CALIBRATION
 from pneutouch.spec.read import parse_changes
@@ -83,6 +86,7 @@ def run_calibration(
     # A design that is calibrated already is fitted from its drawing again, or the prior would hold the data twice.
     changes = {**parse_changes(loaded.campaign.assignments), CALIBRATION: None}
     scene = load_scene(design, changes, library)
+    check_fitted(scene, sensor_of(assemble(scene)))
     pairs = [(curve.run.resin, curve.run.driving_pressure_kPa) for curve in loaded.curves]
     expected = answers(design, changes, pairs, "atlas", library)
     curves, refused, questions = sound(loaded, expected)

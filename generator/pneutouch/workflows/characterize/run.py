@@ -13,8 +13,11 @@ from pneutouch.bench.summary import summarize
 from pneutouch.bench.trace import Trace
 from pneutouch.catalogue import DesignSource, Library, load_scene
 from pneutouch.errors import InputError
+from pneutouch.evaluation.evaluate import sensor_of
+from pneutouch.evaluation.fitted import check_fitted
 from pneutouch.output.files import MANIFEST, check_writable, json_bytes, write_folder
 from pneutouch.output.manifest import entry, input_hash, manifest
+from pneutouch.parts import assemble
 from pneutouch.report.measured import CampaignReport
 from pneutouch.spec.campaign import AS_DESIGNED
 from pneutouch.spec.campaign_file import CAMPAIGN, campaign_of, design_of
@@ -34,13 +37,24 @@ EVIDENCE = ("doubtful", "all", "none")
 
 @dataclass(frozen=True)
 class CharacterizationResult:
-    """What became of a campaign: the sheet's content, the folder written, the traces of the runs by file, and how the
-    files were read (`reading.read_as`)."""
+    """What became of a campaign: the sheet's content, the folder written, the traces of the runs by file, how the files
+    were read (`reading.read_as`), and the design as a command takes it."""
 
     measured: CampaignReport
     traces: Mapping[str, Trace]
     name: str
     read_as: Sequence[Mapping[str, Any]] = ()
+    design_given: str = ""
+
+    @property
+    def fitted(self) -> bool:
+        """Whether a sensor of the campaign can be fitted: the model of the fit covers its design."""
+        scene = self.measured.scene
+        try:
+            check_fitted(scene, sensor_of(assemble(scene)))
+        except InputError:
+            return False
+        return True
 
     @property
     def document(self) -> dict[str, Any]:
@@ -106,7 +120,11 @@ def characterize(
         input_hash=_hash(loaded, scene.design.model_dump(mode="json")),
     )
     return CharacterizationResult(
-        measured, loaded.traces, f"{_stem(data)}-measured", read_as(loaded.sources, len(loaded.campaign.runs))
+        measured,
+        loaded.traces,
+        f"{_stem(data)}-measured",
+        read_as(loaded.sources, len(loaded.campaign.runs)),
+        name.name if isinstance(name, DesignSource) else name,
     )
 
 

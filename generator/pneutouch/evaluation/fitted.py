@@ -1,0 +1,28 @@
+"""Whether parameters of a design's sensor can be fitted to measured runs."""
+
+from pneutouch.catalogue import ResolvedDesign
+from pneutouch.errors import InputError
+from pneutouch.mechanics.atlas_states import outside_atlas
+from pneutouch.mechanics.sensor import Sensor
+
+
+def check_fitted(scene: ResolvedDesign, sensor: Sensor) -> None:
+    """Raise InputError where the atlas, which every fit is made with, does not cover the sensor at a depth it has."""
+    why = outside_atlas(sensor.replace(depth=min(sensor.protocol.depth, 0.75 * sensor.dome.inner_radius)))
+    if why is None:
+        return
+    contact = scene.design.contact
+    keys = {
+        "object": not contact.is_plate,
+        "friction": contact.friction > 0.0,
+        "plate_rim_mm": contact.plate_rim_mm is not None,
+        "base": not contact.base,
+    }
+    key = next((key for key, other in keys.items() if other), None)
+    raise InputError(
+        f"the atlas does not cover this sensor, {why}, and the fit is made with the atlas",
+        file=scene.where,
+        key=None if key is None else f"contact.{key}",
+        value=None if key is None else getattr(contact, key),
+        remedy="`compare` sets design and measurement side by side without a fit",
+    )
