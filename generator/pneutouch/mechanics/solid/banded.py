@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import lapack
 
 from pneutouch.arrays import Array, Index
+from pneutouch.mechanics.solid import lapack
 
 
 class AssemblyPattern:

@@ -1,9 +1,9 @@
 """Banded systems whose matrix is symmetric but for blocks of the outer wall."""
 
 import numpy as np
-from scipy.linalg import lapack
 
 from pneutouch.arrays import Array
+from pneutouch.mechanics.solid import lapack
 from pneutouch.mechanics.solid.model import SolidModel
 
 
