@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import shlex
+import shutil
 import subprocess
 import sys
 
@@ -10,6 +12,8 @@ import pytest
 
 from pneutouch.cli.commands import COMMANDS
 from pneutouch.cli.terminal import _wrapped
+from pneutouch.parts.coupons import COUPONS
+from pneutouch.spec.coupon import COUPON_NAMES
 from pneutouch.spec.read import parse_changes
 
 NAMES = [name for group in COMMANDS.values() for name in group]
@@ -57,12 +61,60 @@ def completed(line):
         ("pneutouch compare soft-pad paper-d", ["paper-dome"]),
         ("pneutouch scan texture-s", ["texture-specimen"]),
         ("pneutouch sweep --over membrane.mat", ["membrane.material="]),
+        ("pneutouch tray paper-d", ["paper-dome"]),
+        ("pneutouch tray x --over membrane.mat", ["membrane.material="]),
+        ("pneutouch coupons --only puck,le", ["puck,leak-cap"]),
+        # Bash takes a word apart at these characters and completes what follows.
+        ("pneutouch tray x --over membrane.material = TangoPlus,FLX9940,Agilus30", ["TangoPlus,FLX9940,Agilus30"]),
+        ("pneutouch predict x --set connector.port = barb-4x", ["barb-4x2.5"]),
     ],
 )
 def test_names_and_keys_are_completed_without_numpy(line, offered):
     words, modules = completed(line)
     assert words == offered
     assert "numpy" not in modules
+
+
+@pytest.mark.parametrize(
+    ("line", "offered"),
+    [
+        ("pneutouch compare soft-pad paper-dome @", ["@mine", "@other"]),
+        ("pneutouch compare soft-pad paper-dome @ mi", ["@mine"]),
+        ("pneutouch predict paper-dome @ mi", ["@mine"]),
+        ("pneutouch predict paper-dome@mi", ["paper-dome@mine"]),
+        ("pneutouch predict paper-dome --calibration mi", ["mine"]),
+        ("pneutouch compare soft-pad@mine paper-d", ["paper-dome"]),
+        ("pneutouch compare soft-pad @ mine paper-d", ["paper-dome"]),
+    ],
+)
+def test_a_design_is_completed_with_its_calibration(line, offered, tmp_path, monkeypatch):
+    (tmp_path / "calibrations").mkdir()
+    for name in ("mine", "other"):
+        (tmp_path / "calibrations" / f"{name}.toml").touch()
+    monkeypatch.setenv("PNEUTOUCH_HOME", str(tmp_path))
+    assert completed(line)[0] == offered
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="needs bash")
+def test_bash_gets_what_follows_the_sign(tmp_path):
+    """The shell itself splits the line and inserts the answer."""
+    python = f"{shlex.quote(sys.executable)} -m pneutouch"
+    (tmp_path / "pneutouch").write_text(f'#!/bin/sh\nexec {python} "$@"\n')
+    (tmp_path / "pneutouch").chmod(0o755)
+    script = f"""
+        eval "$(_PNEUTOUCH_COMPLETE=source_bash {python})"
+        COMP_WORDS=(pneutouch predict x --set membrane.material = TangoPlus,FLX99) COMP_CWORD=6
+        _pneutouch_completion ./pneutouch
+        printf '%s\n' "${{COMPREPLY[@]}}"
+    """
+    result = subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=False, cwd=tmp_path)
+    assert result.stderr == ""
+    assert "TangoPlus,FLX9940" in result.stdout.splitlines()
+    assert all(line.startswith("TangoPlus,FLX99") for line in result.stdout.splitlines())
+
+
+def test_coupons_are_completed_by_their_names():
+    assert list(COUPONS) == list(COUPON_NAMES)
 
 
 def test_numbers_with_commas_are_a_list():

@@ -11,7 +11,9 @@ import pytest
 from pneutouch.mechanics.prediction import DeformedShape
 from pneutouch.printability import PrintSubject, check
 from pneutouch.printability.rules import freedom, layers
+from pneutouch.printability.rules.layers import WallStep
 from pneutouch.printability.view import PrintView
+from pneutouch.units import UM
 from tests.printability.gallery import box, cup, item
 from tests.printability.working import WORKING, dome, working
 
@@ -99,6 +101,25 @@ def test_the_wall_that_is_advised_is_no_finding_any_more(wall):
         advised = float(re.fullmatch(r"draw the wall ([\d.]+) mm thick: .*", finding.fix)[1])
         assert abs(advised - wall) <= 2 * 0.0424
         assert not of(working([0], wall=advised), "layers")
+
+
+def test_the_wall_that_is_advised_has_whole_layers():
+    """1.522 mm suit both, but are 95.1 layers of 16 um."""
+    (found,) = of(working([0, 12], wall=1.5), "layers")
+    assert found.fix == "draw the wall 1.520 mm thick: 95 layers and 35.9 pixels"
+
+
+@pytest.mark.parametrize("printer", ["objet260-connex", "j735", "abs-filament"])
+def test_each_printer_has_a_near_wall_of_whole_layers_that_suits_its_pixels(printer, library):
+    machine = library.load("printers", printer)
+    pixel = WallStep("pixels", "rim", UM * max(machine.resolution.x_um, machine.resolution.y_um))
+    for mode in machine.mode:
+        layer = WallStep("layers", "pole", UM * mode.layer_height_um)
+        for wall in np.linspace(0.5, 3.0, 101):
+            advised = layers._advised(wall, layer, pixel)
+            assert layer.off(advised) < 1e-9
+            assert pixel.off(advised) <= 0.1 + 1e-9
+            assert abs(advised - wall) <= 4 * max(pixel.size, layer.size)
 
 
 def test_the_wall_of_a_calibrated_sensor_is_printed_already():

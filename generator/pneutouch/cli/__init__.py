@@ -19,6 +19,9 @@ _KEPT_BYTES = 1 << 20
 Without it the arrays of each Newton step are returned and requested again: a tenth of the time of ``predict``.
 """
 
+_UNWOUND = 2
+"""Exit codes from this one on are those of commands that an error or a stop signal ended."""
+
 
 def run() -> None:
     """Entry point of the ``pneutouch`` command."""
@@ -32,7 +35,9 @@ def run() -> None:
     # SIGINT for it; the next code given as text clears the note.
     exec("")
     # What is left ends with the process: to search it for garbage takes Python up to a tenth of a command's time.
-    gc.freeze()
+    # A stop or an error leaves frames in reference cycles, whose objects libraries would report as leaked.
+    if code < _UNWOUND:
+        gc.freeze()
     sys.exit(code)
 
 

@@ -4,17 +4,32 @@ from collections.abc import Callable
 
 
 def names(*kinds: str, listed: bool = False) -> Callable[[str], list[str]]:
-    """Completes the names of these kinds, such as materials; ``listed``: the last of a list with commas between."""
+    """Completes the names of these kinds, such as materials, and of designs ``DESIGN@CALIBRATION``.
+
+    ``listed``: the last of a list with commas between.
+    """
 
     def complete(incomplete: str) -> list[str]:
         from pneutouch.catalogue.library import Library
 
         library = Library.default()
         before, comma, word = incomplete.rpartition(",") if listed else ("", "", incomplete)
-        matching = [name for kind in kinds for name in library.paths(kind) if name.startswith(word)]
-        return [f"{before}{comma}{name}" for name in matching]
+        design, at, _ = word.rpartition("@") if "designs" in kinds else ("", "", word)
+        if at:
+            known = [f"{design}@{name}" for name in library.paths("calibrations")]
+        else:
+            known = [name for kind in kinds for name in library.paths(kind)]
+        return [f"{before}{comma}{name}" for name in known if name.startswith(word)]
 
     return complete
+
+
+def coupon_names(incomplete: str) -> list[str]:
+    """Completes the last of a list of coupons."""
+    from pneutouch.spec.coupon import COUPON_NAMES
+
+    before, comma, word = incomplete.rpartition(",")
+    return [f"{before}{comma}{name}" for name in COUPON_NAMES if name.startswith(word)]
 
 
 def assignment(incomplete: str) -> list[str]:

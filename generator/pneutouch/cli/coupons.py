@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from pneutouch.cli.app import JsonOption, app, print_json, reporting
-from pneutouch.cli.complete import names
+from pneutouch.cli.complete import coupon_names, names
 from pneutouch.cli.progress import bar
 from pneutouch.cli.terminal import echo
 
@@ -50,7 +50,10 @@ def coupons(
         str | None,
         typer.Option(metavar="DESIGN", help="Design that cap and plug belong to.", autocompletion=names("designs")),
     ] = None,
-    only: Annotated[list[str] | None, typer.Option(help="Coupons, such as puck,dumbbell; left out: all.")] = None,
+    only: Annotated[
+        list[str] | None,
+        typer.Option(help="Coupons, such as puck,dumbbell; left out: all.", autocompletion=coupon_names),
+    ] = None,
     copies: Annotated[
         list[str] | None, typer.Option(metavar="COUPON=N", help="Copies, such as puck=4; may be repeated.")
     ] = None,

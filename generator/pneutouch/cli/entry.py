@@ -1,9 +1,11 @@
 """A command line taken apart and run, with every outcome turned into an exit code."""
 
 import re
+import sys
 from typing import Any
 
 from pneutouch.cli.app import app
+from pneutouch.cli.bash_words import words_of_bash
 from pneutouch.cli.terminal import notify, open_closed_streams
 
 
@@ -11,7 +13,8 @@ def invoked(words: list[str]) -> int:
     """Run the command of ``words`` and return its exit code; words that are no command end in one line and code 2."""
     open_closed_streams()
     try:
-        outcome = app(args=words or ["--help"], prog_name="pneutouch", standalone_mode=False)
+        with words_of_bash(sys.stdout.write):
+            outcome = app(args=words or ["--help"], prog_name="pneutouch", standalone_mode=False)
     except Exception as error:
         # Typer has its own errors and click's, by its version; each formats its message.
         if not hasattr(error, "format_message"):

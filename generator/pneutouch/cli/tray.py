@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from pneutouch.cli.app import JsonOption, OutOption, SetOption, app, changes, print_json, reporting
-from pneutouch.cli.complete import names
+from pneutouch.cli.complete import assignment, names
 from pneutouch.cli.terminal import echo, notify
 from pneutouch.errors import InputError
 from pneutouch.wording import counted
@@ -21,12 +21,20 @@ if TYPE_CHECKING:
 @app.command()
 def tray(
     what: Annotated[
-        list[str], typer.Argument(metavar="TRAY.toml | DESIGN...", help="Tray file, or names or paths of designs.")
+        list[str],
+        typer.Argument(
+            metavar="TRAY.toml | DESIGN...",
+            help="Tray file, or names or paths of designs.",
+            autocompletion=names("designs"),
+        ),
     ],
     over: Annotated[
         list[str] | None,
         typer.Option(
-            "--over", metavar="TABLE.KEY=VALUES", help="One part a value: A,B,C or FROM:TO:COUNT. Not with a tray file."
+            "--over",
+            metavar="TABLE.KEY=VALUES",
+            help="One part a value: A,B,C or FROM:TO:COUNT. Not with a tray file.",
+            autocompletion=assignment,
         ),
     ] = None,
     copies: Annotated[int | None, typer.Option("--copies", help="Copies of each. Not with a tray file.")] = None,

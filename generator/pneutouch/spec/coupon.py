@@ -17,6 +17,9 @@ from pneutouch.spec.design import Printable
 from pneutouch.spec.fields import Table, table_of
 from pneutouch.spec.read import read_toml
 
+COUPON_NAMES = ("puck", "dumbbell", "gauge", "leak-cap", "volume-plug")
+"""What there are tables of: the coupons, as the command line calls them as well."""
+
 LEAST_READINGS = 2
 
 

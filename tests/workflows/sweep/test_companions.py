@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import io
 import re
@@ -113,6 +114,38 @@ def test_a_dataset_that_lacks_a_column_is_refused_by_its_name(swept, tmp_path):
     with pytest.raises(InputError, match=r"x\.nc: the dataset is damaged, .*r_squared"):
         write_companions(out)
     assert [path.name for path in tmp_path.iterdir()] == ["x.nc"]
+
+
+def test_a_finished_sweep_whose_states_were_removed_is_refused(library, tmp_path):
+    out = tmp_path / "x.nc"
+    sweep(small(), out, ALONE, library=library)
+    load(out).drop_vars("status").to_netcdf(tmp_path / "y.nc", engine="scipy")
+    with pytest.raises(InputError, match=r"y\.nc: the dataset is damaged, column status is missing; move it"):
+        sweep(small(), tmp_path / "y.nc", ALONE, library=library)
+
+
+@pytest.mark.parametrize(
+    ("name", "changed", "said"),
+    [
+        ("status", lambda values: values.astype("S"), "column status does not hold text"),
+        ("r_squared", lambda values: np.full(values.shape, "0.9", object), "column r_squared does not hold numbers"),
+        ("membrane_wall_thickness_mm", lambda values: values.astype("S"), "membrane_wall_thickness_mm does not hold"),
+    ],
+)
+def test_a_dataset_with_a_column_of_another_type_is_refused_by_its_name(
+    swept, tmp_path, monkeypatch, name, changed, said
+):
+    """Damage to the file's attributes makes bytes of text: they are no cell of a table."""
+    import xarray
+
+    content = load(swept)
+    kept = content[name]
+    damaged = content.assign_coords if name in content.coords else content.assign
+    content = damaged({name: (kept.dims, changed(kept.values))})
+    monkeypatch.setattr(xarray, "open_dataset", lambda *_, **__: contextlib.nullcontext(content))
+    with pytest.raises(InputError, match=rf"the dataset is damaged, .*{said}"):
+        write_companions(tmp_path / "x.nc")
+    assert not list(tmp_path.iterdir())
 
 
 def test_bands_of_several_lines_are_hatched_apart():

@@ -15,7 +15,7 @@ _OFF = 0.1
 """Share of a step by which a wall may miss a whole number of them."""
 
 
-_FAR = 2.0
+_FAR = 4.0
 """The advised wall is at most this many of the coarser steps from the one drawn."""
 
 
@@ -61,7 +61,7 @@ def check(view: PrintView) -> list[Finding]:
     ends = [end for step in missed for end in step.printed(wall)]
     read = _sensitivities(context.sensor, context.prediction.states[-1].driving_pressure, min(ends), max(ends))
     best, radius = _advised(wall, layer, pixel), context.sensor.dome.inner_radius + 0.5 * wall
-    counts = f"{best / layer.size:.1f} layers and {best / pixel.size:.1f} pixels"
+    counts = f"{best / layer.size:.0f} layers and {best / pixel.size:.1f} pixels"
     fix = part.item.hints.get("layers", f"draw the wall {best:.3f} mm thick: {counts}")
     at = (0.0, 0.0, radius) if missed[0].place == "pole" else (radius, 0.0, 0.0)
     excess = Excess(missed[0].off(wall), _OFF, missed[0].unit)
@@ -70,26 +70,11 @@ def check(view: PrintView) -> list[Finding]:
 
 
 def _advised(wall: float, layer: WallStep, pixel: WallStep) -> float:
-    """The nearest wall, mm, that is close to whole numbers of both steps; where there is none, the closest to them.
-
-    Between a number of layers and one of pixels the wall that misses both by one share of a step is the best.
-    """
+    """The nearest wall, mm, of whole layers that is close to whole pixels; where there is none, the closest to them."""
     far = _FAR * max(layer.size, pixel.size)
-    steps = layer.size + pixel.size
-    walls = [
-        round((n + m) * layer.size * pixel.size / steps, 3)
-        for n in _numbers(wall, far, layer)
-        for m in _numbers(wall, far, pixel)
-        if abs(n * layer.size - m * pixel.size) <= 0.5 * steps
-    ]
-    near = [one for one in walls if abs(one - wall) <= far] or [wall]
-    worst = {one: max(layer.off(one), pixel.off(one)) for one in near}
-    return min(near, key=lambda one: (max(worst[one], _OFF), abs(one - wall)))
-
-
-def _numbers(wall: float, far: float, step: WallStep) -> range:
-    """The numbers of steps of walls at most ``far`` mm from a wall."""
-    return range(max(1, math.floor((wall - far) / step.size)), math.ceil((wall + far) / step.size) + 1)
+    numbers = range(max(1, math.ceil((wall - far) / layer.size)), math.floor((wall + far) / layer.size) + 1)
+    walls = [number * layer.size for number in numbers]
+    return min(walls, key=lambda one: (max(pixel.off(one), _OFF), abs(one - wall)))
 
 
 def _sensitivities(sensor: Sensor, pressure: float, low: float, high: float) -> str:

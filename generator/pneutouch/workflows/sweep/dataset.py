@@ -82,12 +82,19 @@ def stored_fingerprint(path: Path) -> str:
 
 
 def stored_states(path: Path) -> list[str]:
-    """Status of every state of a finished sweep's file."""
+    """Status of every state of a finished sweep's file. Raises InputError where there is none."""
     import xarray
 
     with xarray.open_dataset(path, engine="scipy") as content:
+        if "status" not in content:
+            raise damaged(path, "column status is missing")
         states: list[str] = content["status"].values.ravel().tolist()
         return states
+
+
+def damaged(path: Path, why: str) -> InputError:
+    """The error for a dataset that was changed since a sweep wrote it."""
+    return InputError(f"the dataset is damaged, {why}", file=path, remedy="move it, or compute it again with `fresh`")
 
 
 def _by_pressure(
