@@ -113,6 +113,7 @@ def _indent(
         read=_read_times(blocks, one.hold),
         release=math.nan if contact is None else _release(blocks, one, base, max(RELEASED * sign * force, least), sign),
         onset=math.nan if contact is None else contact.position,
+        fitted=contact is not None and contact.fitted,
         indentation=math.nan if contact is None else float(blocks.position[at].mean()) - onset,
         force=force,
         rise=float(blocks.pressure[at].mean()) - base.mean[1],

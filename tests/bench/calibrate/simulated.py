@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from pneutouch.bench.blocks import blocks_of
 from pneutouch.bench.calibrate import CalibrationFit, CalibrationParameters, Observations, fit
+from pneutouch.bench.calibrate.discrepancy import FLOOR
 from pneutouch.bench.calibrate.parameters import DEAD, MODULUS
 from pneutouch.bench.curve import curve_of
 from pneutouch.bench.record import MeasuredCurve
-from pneutouch.bench.simulate import SimulatedSpecimens, SimulationTruth, press_curves, simulate_run
+from pneutouch.bench.simulate import PressCurve, SimulatedSpecimens, SimulationTruth, press_curves, simulate_run
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.spec.campaign import CampaignRun, Rig
@@ -43,9 +44,17 @@ def trial(
     """A specimen drawn around ``nominal`` and its runs at driving pressures in kPa."""
     specimen = SimulatedSpecimens.draw(TRUTH.scatter, 1, rng).sensor(nominal, 0)
     pressed = press_curves(specimen, [p * KPA for p in pressures], 0.75 * nominal.dome.inner_radius, model)
-    return Trial(
-        specimen, Observations(tuple(_runs(pressed.curves, pressures, runs, nominal, rng)), rig=Rig(rate_Hz=RATE))
-    )
+    curves = _deviated(pressed.curves, rng.spawn(1)[0])
+    return Trial(specimen, Observations(tuple(_runs(curves, pressures, runs, nominal, rng)), rig=Rig(rate_Hz=RATE)))
+
+
+def _deviated(curves: Sequence[PressCurve], rng: np.random.Generator) -> list[PressCurve]:
+    """The curves with the least discrepancy that every interval counts: one share of all forces and one of all rises.
+
+    Intervals hold a truth without it more often than they state.
+    """
+    force, rise = np.exp(FLOOR[:2] * rng.standard_normal(2))
+    return [replace(curve, force=curve.force * force, rise=curve.rise * rise) for curve in curves]
 
 
 def _runs(curves, pressures, runs: int, nominal: Sensor, rng: np.random.Generator) -> Iterator[MeasuredCurve]:

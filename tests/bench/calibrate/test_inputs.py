@@ -76,12 +76,14 @@ def test_names_of_parameters_are_checked(names, words):
         parse_names(names)
 
 
+def _touched(onset: float, fitted: bool = True) -> MeasuredIndentation:
+    return MeasuredIndentation(0.0, (1.0, 5.0), (4.0, 5.0), 6.0, onset, fitted, 1.0, 0.0, 0.0, 0.022, 0.0)
+
+
 def test_an_uncertain_first_contact_moves_force_and_rise_of_its_run_together(library):
     """A contact that is the middle of three 0.1 mm apart is known to 0.1 mm over root 3, a little worse than their mean."""
     (clean,) = exact(DESIGNED, (22.0,))
-    indents = tuple(
-        MeasuredIndentation(0.0, (1.0, 5.0), (4.0, 5.0), 6.0, 0.1 * k, 1.0, 0.0, 0.0, 0.022, 0.0) for k in (-1, 0, 1)
-    )
+    indents = tuple(_touched(0.1 * k) for k in (-1, 0, 1))
     exact_contact = shared_of(points_of(Observations((clean,))))
     points = points_of(Observations((replace(clean, indents=indents), replace(clean, indents=indents))))
     wandering = shared_of(points)
@@ -93,6 +95,20 @@ def test_an_uncertain_first_contact_moves_force_and_rise_of_its_run_together(lib
         slope = np.gradient(values, clean.indentation)[1:]
         assert column == pytest.approx(0.1 / np.sqrt(3) * np.sqrt(0.5 * np.pi) * slope, rel=1e-6)
     assert not columns[points.clusters == 1, 0].any()
+
+
+def test_a_first_contact_that_was_not_fitted_makes_a_run_no_surer():
+    """It equals the median of those that were: counted as one of them it would narrow their spread."""
+    (clean,) = exact(DESIGNED, (22.0,))
+    fitted = tuple(_touched(0.1 * k) for k in (-1, 0, 1))
+    short = tuple(_touched(0.0, fitted=False) for _ in range(4))
+    errors = [
+        points_of(Observations((replace(clean, indents=indents),))).travel_error
+        for indents in (fitted, (*short, *fitted), short)
+    ]
+    assert errors[1] == pytest.approx(errors[0])
+    assert errors[0] > 0.0
+    assert errors[2] == 0.0
 
 
 def test_forces_at_the_end_of_the_sensors_range_are_not_fitted(library):

@@ -195,8 +195,7 @@ def _travel_errors(curves: Sequence[MeasuredCurve]) -> Array:
     """
     groups = []
     for curve in curves:
-        onsets = np.array([indent.onset for indent in curve.indents])
-        groups.append(onsets[np.isfinite(onsets)][:EARLY])
+        groups.append(np.array([indent.onset for indent in curve.indents if indent.fitted])[:EARLY])
     free = sum(max(onsets.size - 1, 0) for onsets in groups)
     squares = sum(float(((onsets - onsets.mean()) ** 2).sum()) for onsets in groups if onsets.size > 1)
     spread = np.sqrt(squares / free) if free else 0.0
