@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pneutouch.bench.calibrate.discrepancy import FLOOR
 from pneutouch.bench.simulate import ModelDeviation, ScatterModel, SimulationTruth
 from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
@@ -110,8 +111,10 @@ def _outcomes(name, truth, rng) -> dict[float, Outcome]:
     # What the rig reads is off by its gauges; the year changes the sensor, either way.
     read = (1 + GAUGE * rng.uniform(-1, 1)) / (1 + FORCE_GAUGE * rng.uniform(-1, 1))
     year = 1 + AGEING * rng.uniform(-1, 1)
-    # What the simulator has right and the budget counts: discretisation.
+    # What the simulator has right and the budget counts: discretisation, and the least shares of force and of rise.
     other = 1 + NUMERICAL["atlas"] * rng.uniform(-1, 1)
+    force, rise = np.exp(FLOOR[:2] * rng.standard_normal(2))
+    other *= rise / force
     library, outcomes = Library.default(), {}
     plain, calibrated = (
         evaluate(design, changes, model="atlas", library=library).uncertainty for design in (DESIGN, f"{DESIGN}@{name}")

@@ -60,6 +60,7 @@ class _Section:
         self.soft, self.rigid = f"±{soft:.2f}", f"±{rigid:.2f}"
 
     def draw(self, body: Array | None = None) -> None:
+        """Draw the section with its dimensions, and ``body`` as in `section_drawing`."""
         draw_section(self.ax, self.assembly)
         axis = [self.bottom - 2 * self.unit, self.layout.outer_radius + 2 * self.unit]
         self.ax.plot([0, 0], axis, color=MUTED, lw=THIN, ls=CENTRE)

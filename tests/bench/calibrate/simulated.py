@@ -10,8 +10,8 @@ import numpy as np
 
 from pneutouch.bench.blocks import blocks_of
 from pneutouch.bench.calibrate import CalibrationFit, CalibrationParameters, Observations, fit
-from pneutouch.bench.calibrate.discrepancy import FLOOR
-from pneutouch.bench.calibrate.parameters import DEAD, MODULUS
+from pneutouch.bench.calibrate.discrepancy import FLOOR, _shape
+from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, OFFSET_PRIOR
 from pneutouch.bench.curve import curve_of
 from pneutouch.bench.record import MeasuredCurve
 from pneutouch.bench.simulate import PressCurve, SimulatedSpecimens, SimulationTruth, press_curves, simulate_run
@@ -41,20 +41,29 @@ def designed(library, resin: str) -> Sensor:
 def trial(
     nominal: Sensor, pressures: Sequence[float], runs: int, rng: np.random.Generator, model: str = "atlas"
 ) -> Trial:
-    """A specimen drawn around ``nominal`` and its runs at driving pressures in kPa."""
+    """A specimen drawn around ``nominal`` and its runs at driving pressures in kPa, first contact read late or early."""
     specimen = SimulatedSpecimens.draw(TRUTH.scatter, 1, rng).sensor(nominal, 0)
     pressed = press_curves(specimen, [p * KPA for p in pressures], 0.75 * nominal.dome.inner_radius, model)
-    curves = _deviated(pressed.curves, rng.spawn(1)[0])
-    return Trial(specimen, Observations(tuple(_runs(curves, pressures, runs, nominal, rng)), rig=Rig(rate_Hz=RATE)))
+    counted = rng.spawn(1)[0]
+    curves = _runs(_deviated(pressed.curves, counted), pressures, runs, nominal, rng)
+    late = OFFSET_PRIOR * counted.standard_normal()
+    seen = tuple(replace(curve, indentation=curve.indentation - late) for curve in curves)
+    return Trial(specimen, Observations(seen, rig=Rig(rate_Hz=RATE)))
 
 
 def _deviated(curves: Sequence[PressCurve], rng: np.random.Generator) -> list[PressCurve]:
-    """The curves with the least discrepancy that every interval counts: one share of all forces and one of all rises.
+    """The curves with the least discrepancy that every interval counts (`discrepancy`): of all forces and of all rises
+    one share each, and at each driving pressure a smooth one along the travel.
 
-    Intervals hold a truth without it more often than they state.
+    Intervals hold a truth without an error that they count more often than they state.
     """
-    force, rise = np.exp(FLOOR[:2] * rng.standard_normal(2))
-    return [replace(curve, force=curve.force * force, rise=curve.rise * rise) for curve in curves]
+    common, deviated = rng.standard_normal(2), []
+    for curve in curves:
+        shape = _shape(curve.indentation / curve.indentation[-1])
+        smooth = shape @ rng.standard_normal((shape.shape[1], 2))
+        force, rise = np.exp(FLOOR[:2] * (common + smooth)).T
+        deviated.append(replace(curve, force=curve.force * force, rise=curve.rise * rise))
+    return deviated
 
 
 def _runs(curves, pressures, runs: int, nominal: Sensor, rng: np.random.Generator) -> Iterator[MeasuredCurve]:
