@@ -47,7 +47,10 @@ def test_a_ball_is_answered_by_the_solid_alone_and_stated(ball):
     assert document["contact"] == stated
     assert any("rigid ball of 10 mm radius, frictionless" in text for text in document["assumptions"])
     assert not any("plate" in text for text in document["assumptions"])
-    assert "not a plate" in document["states"][0]["uncertainty"]["unknown"]
+    said = document["states"][0]["uncertainty"]
+    assert any("not a plate" in note for note in said["notes"])
+    own = said["figures"]["sensitivity_kPa_per_N"]
+    assert own["low"] < document["states"][0]["sensitivity_kPa_per_N"] < own["high"]
     assert document["error_estimate"]["sensitivity_relative"] is None
     # a ball meets less of the dome than the plate: less force, more pressure for each newton of it
     plate = evaluate("paper-dome", {"pneumatics.driving_pressures_kPa": [22.0]}).prediction.states[0]

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pneutouch.evaluation.chart_data import ChartPoint, TradeOff, TuningChart
-from pneutouch.evaluation.tuning import curve, interval
+from pneutouch.evaluation.tuning import curve, interval, under_contact
 from pneutouch.evaluation.variants import in_resin
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.atlas_states import outside_atlas
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.mechanics.uncertainty import GasNotes, batch_of, gas_notes
+from pneutouch.mechanics.uncertainty import GasNotes, batch_of, gas_notes, plate_alone
 from pneutouch.selection import CandidateResin, SelectionProblem
 from pneutouch.selection.front import front
 from pneutouch.units import KPA
@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 
 def air(evaluation: Evaluation) -> GasNotes:
     """What temperature and speed do to the sealed air, one entry a state."""
-    return gas_notes(batch_of(evaluation.sensor, [state.driving_pressure for state in evaluation.prediction.states]))
+    pressures = [state.driving_pressure for state in evaluation.prediction.states]
+    return gas_notes(batch_of(plate_alone(evaluation.sensor), pressures))
 
 
 def tuning(evaluation: Evaluation, highest: float) -> TuningChart | None:
@@ -33,8 +34,10 @@ def tuning(evaluation: Evaluation, highest: float) -> TuningChart | None:
     The sensitivities at its own driving pressures are those of the prediction's model.
     """
     scene, sensor, prediction = evaluation.scene, evaluation.sensor, evaluation.prediction
-    drawn = curve(sensor, highest, "this design")
-    if drawn is None:
+    drawn = curve(plate_alone(sensor), highest, "this design")
+    if drawn is not None and sensor.protocol.other_contact is not None:
+        drawn = under_contact(sensor, drawn)
+    if drawn is None or drawn.driving_pressure_kPa.size < 2:
         return None
     materials = list(evaluation.resins.values())
     low, high = interval(
@@ -47,8 +50,11 @@ def tuning(evaluation: Evaluation, highest: float) -> TuningChart | None:
 def tradeoff(evaluation: Evaluation) -> TradeOff | None:
     """Fronts at the design's highest driving pressure in every resin that its printer runs and the atlas covers.
 
-    None where the prediction has no figures there.
+    None where the prediction has no figures there, and under another contact than that of the fronts, a plate without
+    friction.
     """
+    if evaluation.sensor.protocol.other_contact is not None:
+        return None
     state = evaluation.prediction.states[-1]
     if state.figures is None:
         return None

@@ -71,7 +71,7 @@ def contact_document(scene: ResolvedDesign) -> dict[str, Any]:
     """``contact`` with what presses the sensor, by the keys of ``[contact]``; empty for a frictionless plate with its
     usual rim. A surface that grips has the friction "inf"."""
     contact = scene.design.contact
-    if contact.is_plate and contact.plate_rim_mm is None and not contact.friction:
+    if contact.is_atlas_plate:
         return {}
     plate = {"plate_diameter_mm": scene.design.indentation.plate_diameter_mm, "plate_rim_mm": contact.plate_rim_mm}
     friction = contact.model_dump(mode="json")["friction"]

@@ -10,7 +10,8 @@ from pneutouch.evaluation.uncertainty import known
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.atlas.respond import OUTSIDE, respond
 from pneutouch.mechanics.limits import RATED_SHARE
-from pneutouch.mechanics.uncertainty import FIGURES, batch_of
+from pneutouch.mechanics.uncertainty import FIGURES, ContactModel, batch_of, plate_alone
+from pneutouch.mechanics.uncertainty.neighbours import log_figures
 from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
@@ -39,6 +40,24 @@ def curve(sensor: Sensor, highest: float, label: str) -> TuningCurve | None:
         return None
     factor = np.array([sensor.correction.sensitivity_factor(pressure) for pressure in pressures[kept].tolist()])
     return TuningCurve(label, pressures[kept] / KPA, factor * response.lines.sensitivity_kPa_per_N[kept])
+
+
+def under_contact(sensor: Sensor, drawn: TuningCurve) -> TuningCurve:
+    """A curve of the sensor under a plate without friction made that of the sensor under its own contact.
+
+    The solid is solved at a few driving pressures; the ratio is straight in its logarithm between them. Pressures that
+    it cannot be solved at are left out.
+    """
+    at = np.linspace(drawn.driving_pressure_kPa[0], drawn.driving_pressure_kPa[-1], _BUDGETS)
+    contact = ContactModel(sensor, tuple((at * KPA).tolist()))
+    ratio = contact.logs[_SENSITIVITY] - log_figures(batch_of(plate_alone(sensor), contact.pressures))[_SENSITIVITY]
+    good = np.isfinite(ratio)
+    if not good.any():
+        return drawn._replace(driving_pressure_kPa=at[:0], sensitivity_kPa_per_N=at[:0])
+    kept = drawn.driving_pressure_kPa <= at[good][-1]
+    pressures_kPa = drawn.driving_pressure_kPa[kept]
+    factor = np.exp(np.interp(pressures_kPa, at[good], ratio[good]))
+    return TuningCurve(drawn.label, pressures_kPa, factor * drawn.sensitivity_kPa_per_N[kept])
 
 
 def interval(

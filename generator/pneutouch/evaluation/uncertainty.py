@@ -6,11 +6,14 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from pneutouch.catalogue import ResolvedDesign
+from pneutouch.evaluation.contact_notes import contact_notes
 from pneutouch.evaluation.graded_uncertainty import even_wall, notes_on
 from pneutouch.evaluation.table_s1 import is_near_paper
 from pneutouch.mechanics import Sensor, SensorPrediction, SensorState
-from pneutouch.mechanics.models import DISCRETISATION, NUMERICAL
+from pneutouch.mechanics.models import DISCRETISATION, NUMERICAL, stated_error
 from pneutouch.rounding import rounded
 from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.material import Material
@@ -19,7 +22,7 @@ from pneutouch.units import KPA
 
 if TYPE_CHECKING:
     from pneutouch.mechanics.atlas.press import SensorBatch
-    from pneutouch.mechanics.uncertainty import Budget
+    from pneutouch.mechanics.uncertainty import Budget, ContactModel
     from pneutouch.mechanics.uncertainty.record import FigureRecord, IntervalRecord, SampleRecord, UncertaintyRecord
 
 # The uncertainty, through the atlas, loads scipy; a prediction by the membrane alone must not pay for that.
@@ -38,19 +41,24 @@ _TREND = (
 
 @dataclass(frozen=True)
 class SensorBudget:
-    """A sensor at n driving pressures as the atlas takes it, and its budget."""
+    """A sensor at n driving pressures as the atlas takes it, its budget, and its contact if the atlas has another."""
 
     batch: SensorBatch
     budget: Budget
+    contact: ContactModel | None = None
 
 
 def unknown(sensor: Sensor, model: str) -> str | None:
-    """Why the uncertainty of a model's prediction is unknown, or None where it is known."""
+    """Why the uncertainty of a model's prediction is unknown, or None where it is known.
+
+    The atlas must cover the sensor under a plate without friction; what another contact changes is the solid's.
+    """
     if model == "membrane":
         return _TREND
     from pneutouch.mechanics.atlas_states import outside_atlas
+    from pneutouch.mechanics.uncertainty import plate_alone
 
-    why = outside_atlas(sensor)
+    why = outside_atlas(plate_alone(sensor))
     return None if why is None else f"the sensor is outside the atlas: {why}"
 
 
@@ -62,22 +70,33 @@ def known(
     printer: Printer,
     model: str,
     calibration: SensorCalibration | None = None,
+    states: Sequence[SensorState] | None = None,
 ) -> SensorBudget:
-    """The budget of a sensor inside the atlas at driving pressures (MPa).
+    """The budget of a sensor at ascending driving pressures (MPa) that the atlas covers under a plate without friction.
 
     ``materials`` are all that there are: the model's error is taken from those that were measured. ``model`` gives the
-    numerical error.
+    numerical error. ``states`` are the solid's of another contact, where it has been solved already.
     """
-    from pneutouch.mechanics.uncertainty import batch_of, budget, model_errors
+    from pneutouch.mechanics.uncertainty import ContactModel, batch_of, budget, model_errors, plate_alone
 
-    batch = batch_of(sensor, pressures)
+    contact = None
+    if sensor.protocol.other_contact is not None:
+        contact = ContactModel(sensor, tuple(float(p) for p in pressures), states)
+    batch = batch_of(plate_alone(sensor), pressures)
     limit_error = DISCRETISATION["limit_pressure_relative"]
-    numerical = {"sensitivity_kPa_per_N": NUMERICAL[model], "limit_pressure_kPa": limit_error}
+    numerical = {"sensitivity_kPa_per_N": stated_error(model, sensor), "limit_pressure_kPa": limit_error}
     near, errors = is_near_paper(sensor), model_errors(material, materials)
     estimate = budget(
-        batch, material, printer, near_paper=near, errors=errors, numerical=numerical, calibration=calibration
+        batch,
+        material,
+        printer,
+        near_paper=near,
+        errors=errors,
+        numerical=numerical,
+        calibration=calibration,
+        contact=contact,
     )
-    return SensorBudget(batch, estimate)
+    return SensorBudget(batch, estimate, contact)
 
 
 def documents(
@@ -97,13 +116,22 @@ def documents(
     why = unknown(sensor, model)
     if why is not None:
         return tuple({"unknown": why} for _ in states)
-    from pneutouch.mechanics.uncertainty import document, gas_text, text
+    from pneutouch.mechanics.uncertainty import FIGURES, document, gas_text, text
 
     pressures, materials = [state.driving_pressure for state in states], list(resins().values())
     calibrated = scene.calibration is not None
     estimate = known(
-        sensor, pressures, scene.membrane_material, materials, scene.printer, model, calibration=scene.calibration
+        sensor,
+        pressures,
+        scene.membrane_material,
+        materials,
+        scene.printer,
+        model,
+        calibration=scene.calibration,
+        states=states,
     )
+    friction = None if estimate.contact is None else estimate.contact.friction
+    notes_of_wall += contact_notes(sensor, estimate.contact)
     content = []
     for row, (state, notes) in enumerate(zip(states, gas_text(estimate.batch), strict=True)):
         values = _values(prediction, state)
@@ -111,6 +139,10 @@ def documents(
         missing = entry["figures"].keys() - values.keys()
         for name in missing:
             del entry["figures"][name], entry["elasticities"][name]
+        if friction is not None and friction.elasticities is not None:
+            for name, slope in zip(FIGURES, friction.elasticities[:, row], strict=True):
+                if name in entry["elasticities"] and np.isfinite(slope):
+                    entry["elasticities"][name]["friction"] = float(slope)
         entry["summary"] = text(estimate.budget, row, calibrated=calibrated)
         if samples:
             entry["monte_carlo"] = _sampled(estimate, row, samples, entry["figures"])
@@ -139,11 +171,12 @@ def _sampled(estimate: SensorBudget, row: int, samples: int, figures: Mapping[st
     """The 95.45 % intervals of the samples about the model's figures, and the share of samples without a figure."""
     from pneutouch.mechanics.uncertainty import FIGURES, monte_carlo
 
-    drawn = monte_carlo(estimate.batch, estimate.budget.sources, row, samples)
+    budget = estimate.budget
+    drawn = monte_carlo(estimate.batch, budget.sources, row, samples, shift=budget.shift)
     intervals: dict[str, IntervalRecord] = {}
     for i, name in enumerate(FIGURES):
         if name in figures and drawn.lost[i] < 1:
-            scale = figures[name]["value"] / float(estimate.budget.values[i, row])
+            scale = figures[name]["value"] / float(budget.values[i, row])
             intervals[name] = {
                 "low": scale * float(drawn.low[i]),
                 "high": scale * float(drawn.high[i]),

@@ -123,6 +123,11 @@ class ContactTable(Table):
         return self.object == "plate"
 
     @property
+    def is_atlas_plate(self) -> bool:
+        """Whether it is the contact of membrane and atlas: a plate with its usual rim, without friction."""
+        return self.is_plate and self.plate_rim_mm is None and not self.friction
+
+    @property
     def label(self) -> str:
         """The object in words, with its sizes; those of a plate are not all here."""
         if self.object == "ball":

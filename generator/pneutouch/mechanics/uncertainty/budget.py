@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 from pneutouch.arrays import Flags
 from pneutouch.mechanics.atlas.press import SensorBatch
+from pneutouch.mechanics.uncertainty.contact import ContactModel
 from pneutouch.mechanics.uncertainty.propagate import Budget, propagate
 from pneutouch.mechanics.uncertainty.sources import sources
 from pneutouch.mechanics.uncertainty.sources.model import ModelErrors
@@ -22,6 +23,7 @@ def budget(
     numerical: Mapping[str, float],
     aged: bool = True,
     calibration: SensorCalibration | None = None,
+    contact: ContactModel | None = None,
 ) -> Budget:
     """The uncertainty of the figures of n sensors that share a resin and a printer.
 
@@ -35,6 +37,7 @@ def budget(
         aged: Whether the sensor may be up to a year old; else it is fresh, or of the age at which it was calibrated.
         calibration: Of the sensor in hand; its parameters and its model error take the place of those of design and
             resin.
+        contact: What presses the sensor at the n driving pressures, where that is no plate without friction.
 
     Raises:
         InputError: ``numerical`` names a figure that there is not.
@@ -48,5 +51,6 @@ def budget(
         numerical=numerical,
         aged=aged,
         calibration=calibration,
+        contact=contact,
     )
-    return propagate(batch, source_list)
+    return propagate(batch, source_list, contact)

@@ -6,6 +6,7 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.mechanics.atlas.press import SensorBatch
+from pneutouch.mechanics.uncertainty.contact import ContactShift
 from pneutouch.mechanics.uncertainty.neighbours import joined, log_figures, moved, unit_step
 from pneutouch.mechanics.uncertainty.source import DEAD, INPUTS
 
@@ -41,7 +42,9 @@ class Derivatives:
     one_sided: Flags
 
 
-def derivatives(batch: SensorBatch, standard: Array, kurtosis: Array, step: float = STEP) -> Derivatives:
+def derivatives(
+    batch: SensorBatch, standard: Array, kurtosis: Array, step: float = STEP, shift: ContactShift | None = None
+) -> Derivatives:
     """Move every input of n sensors by a small step and over its spread.
 
     Args:
@@ -49,14 +52,18 @@ def derivatives(batch: SensorBatch, standard: Array, kurtosis: Array, step: floa
         standard: Standard uncertainties of the inputs as they count for each figure, (inputs, figures, n).
         kurtosis: Fourth moment over squared variance of each input's deviation, (inputs, n).
         step: Half of the central difference, relative.
+        shift: Of the figures from the plate's to those of another contact.
     """
     unit = unit_step(batch)
     widest = standard.max(axis=1)
     far = np.sqrt(kurtosis) * widest
     offsets = (step * unit, -step * unit, far, -far)
     rows = [moved(batch, name, offset[i]) for i, name in enumerate(INPUTS) for offset in offsets]
-    logs = log_figures(joined([batch, *rows]))
-    size = len(batch)
+    every, size = joined([batch, *rows]), len(batch)
+    logs = log_figures(every)
+    if shift is not None:
+        by = np.log(every.shear_modulus.reshape(-1, size) / batch.shear_modulus)
+        logs = logs + shift.at(by).reshape(logs.shape)
     here = logs[:, :size]
     around = logs[:, size:].reshape(len(logs), len(INPUTS), len(offsets), size).transpose(1, 2, 0, 3) - here
     local = _slope(around[:, 0], around[:, 1]) / (step * unit[:, None])

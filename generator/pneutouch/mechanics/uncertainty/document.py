@@ -9,6 +9,7 @@ from pneutouch.mechanics.uncertainty.gas_notes import ADIABATIC, REFERENCE_TEMPE
 from pneutouch.mechanics.uncertainty.propagate import COVERAGE, Budget
 from pneutouch.mechanics.uncertainty.record import FigureRecord, IntervalRecord, UncertaintyRecord
 from pneutouch.mechanics.uncertainty.source import FIGURES, INPUTS, SENSITIVITY
+from pneutouch.mechanics.uncertainty.sources.contact import FRICTION
 from pneutouch.mechanics.uncertainty.sources.modulus import AGEING
 
 _FEW = 10.0
@@ -18,7 +19,7 @@ _LEAST_SHARE = 5e-4
 
 _UNCOUNTED = (
     "not in the budget, because no number is known: the model's error in figures other than the sensitivity, creep and "
-    "temperature of the resin, misalignment, friction, the scatter of the break strain"
+    "temperature of the resin, misalignment, {friction}the scatter of the break strain"
 )
 
 
@@ -114,7 +115,8 @@ def _notes(budget: Budget, row: int) -> list[str]:
     ]
     if few:
         notes.append(f"k = {COVERAGE:g} covers less than 95 % with few degrees of freedom: {', '.join(few)}")
-    return [*notes, _UNCOUNTED]
+    counted = any(source.name == FRICTION for source in budget.sources)
+    return [*notes, _UNCOUNTED.format(friction="" if counted else "friction, ")]
 
 
 def text(budget: Budget, row: int = 0, *, calibrated: bool = False) -> str:

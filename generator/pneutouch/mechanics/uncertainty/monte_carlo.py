@@ -7,6 +7,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.press import SensorBatch
+from pneutouch.mechanics.uncertainty.contact import ContactShift
 from pneutouch.mechanics.uncertainty.neighbours import log_figures, moved
 from pneutouch.mechanics.uncertainty.source import FIGURE, FIGURES, JOINT, UncertaintySource
 
@@ -37,9 +38,14 @@ class SampledFigures:
 
 
 def monte_carlo(
-    batch: SensorBatch, sources: Sequence[UncertaintySource], row: int = 0, count: int = 20_000, seed: int = 1
+    batch: SensorBatch,
+    sources: Sequence[UncertaintySource],
+    row: int = 0,
+    count: int = 20_000,
+    seed: int = 1,
+    shift: ContactShift | None = None,
 ) -> SampledFigures:
-    """Sample the sources of sensor ``row``; the same seed gives the same samples.
+    """Sample the sources of sensor ``row``; the same seed gives the same samples. ``shift`` is that of the budget.
 
     Figures that the same sources count for are read off the same samples.
     """
@@ -49,7 +55,7 @@ def monte_carlo(
         through = tuple(bool(s.counts[figure, row]) for s in sources if s.acts_on != FIGURE)
         groups.setdefault(through, []).append(figure)
     for figures in groups.values():
-        logs[figures] = _through_model(batch, sources, row, count, seed, figures[0])[figures]
+        logs[figures] = _through_model(batch, sources, (row, count, seed), figures[0], shift)[figures]
     draw = np.random.default_rng([seed, 1])
     for source in sources:
         if source.acts_on == JOINT:
@@ -61,9 +67,17 @@ def monte_carlo(
 
 
 def _through_model(
-    batch: SensorBatch, sources: Sequence[UncertaintySource], row: int, count: int, seed: int, figure: int
+    batch: SensorBatch,
+    sources: Sequence[UncertaintySource],
+    drawn: tuple[int, int, int],
+    figure: int,
+    shift: ContactShift | None,
 ) -> Array:
-    """Logarithms of all figures, (figures, count), under the sources on inputs that count for one figure."""
+    """Logarithms of all figures, (figures, count), under the sources on inputs that count for one figure.
+
+    ``drawn`` is the row of the sensor, how many samples, and their seed.
+    """
+    row, count, seed = drawn
     many = batch.take(np.full(count, row))
     draw = np.random.default_rng([seed, 0])
     for source in sources:
@@ -74,7 +88,10 @@ def _through_model(
                 many = moved(many, name, by)
     grain = _GRAIN * float(batch.wall_ratio[row])
     ratio = grain * np.round(many.wall_ratio / grain)
-    return log_figures(replace(many, wall_thickness=ratio * many.inner_radius))
+    logs = log_figures(replace(many, wall_thickness=ratio * many.inner_radius))
+    if shift is None:
+        return logs
+    return logs + shift.row(row).at(np.log(many.shear_modulus / batch.shear_modulus[row])[:, None])[:, :, 0]
 
 
 def _summary(logs: Array) -> SampledFigures:

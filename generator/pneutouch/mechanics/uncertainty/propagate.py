@@ -6,6 +6,7 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags
 from pneutouch.mechanics.atlas.press import SensorBatch
+from pneutouch.mechanics.uncertainty.contact import ContactModel, ContactShift
 from pneutouch.mechanics.uncertainty.derivatives import Derivatives, derivatives
 from pneutouch.mechanics.uncertainty.source import FIGURES, INPUTS, UncertaintySource
 
@@ -33,6 +34,7 @@ class Budget:
         derivatives: Figures, elasticities, nonlinearities.
         variances: Of the logarithm, by source, (sources, figures, n).
         linear: Combined standard uncertainty by the derivatives alone, (figures, n).
+        shift: Of the figures from the plate's to those of another contact; None under a plate without friction.
         freedom: Effective degrees of freedom (Welch-Satterthwaite, JCGM 100, G.4.1), (figures, n).
     """
 
@@ -41,6 +43,7 @@ class Budget:
     variances: Array
     linear: Array
     freedom: Array
+    shift: ContactShift | None = None
 
     @property
     def values(self) -> Array:
@@ -82,19 +85,25 @@ class Budget:
         return np.asarray(self.derivatives.one_sided.any(axis=0))
 
 
-def propagate(batch: SensorBatch, sources: list[UncertaintySource]) -> Budget:
+def propagate(batch: SensorBatch, sources: list[UncertaintySource], contact: ContactModel | None = None) -> Budget:
     """Combine the sources of n sensors through the atlas; they are taken as independent of one another.
 
     Inputs that are correlated belong to one joint source.
     """
-    slopes_of = derivatives(batch, *_by_input(batch, sources))
+    standard, kurtosis = _by_input(batch, sources)
+    shift = None
+    if contact is not None:
+        modulus = INPUTS.index("shear_modulus")
+        shift = contact.shift(float((np.sqrt(kurtosis[modulus]) * standard[modulus].max(axis=0)).max()))
+    slopes_of = derivatives(batch, standard, kurtosis, shift=shift)
     by_source = variances(sources, slopes_of.slopes)
     linear = np.sqrt(variances(sources, slopes_of.local).sum(axis=0))
     freedom = np.array([source.freedom for source in sources])
     total = by_source.sum(axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):
         effective = total**2 / (by_source**2 / freedom[:, None, None]).sum(axis=0)
-    return Budget(tuple(sources), slopes_of, by_source, linear, np.where(np.isnan(effective), np.inf, effective))
+    effective = np.where(np.isnan(effective), np.inf, effective)
+    return Budget(tuple(sources), slopes_of, by_source, linear, effective, shift)
 
 
 def variances(sources: list[UncertaintySource], slopes: Array) -> Array:

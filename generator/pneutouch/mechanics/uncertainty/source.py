@@ -29,6 +29,13 @@ JOINT = "parameters"
 """Acts on several inputs together, whose deviations are correlated."""
 
 SENSITIVITY = FIGURES.index("sensitivity_kPa_per_N")
+CONTACT_FIGURES = (
+    SENSITIVITY,
+    FIGURES.index("stiffness_N_per_mm"),
+    FIGURES.index("force_at_range_end_N"),
+    FIGURES.index("range_end_mm"),
+)
+"""Those that depend on the contact; the last is the end of the range."""
 DEAD = INPUTS.index("dead_volume")
 
 Distribution = Literal["normal", "rectangular", "lognormal", "log-rectangular"]

@@ -6,9 +6,11 @@ import numpy as np
 
 from pneutouch.arrays import Flags
 from pneutouch.mechanics.atlas.press import SensorBatch
+from pneutouch.mechanics.uncertainty.contact import ContactModel
 from pneutouch.mechanics.uncertainty.source import UncertaintySource
 from pneutouch.mechanics.uncertainty.sources.build import build_sources
 from pneutouch.mechanics.uncertainty.sources.calibrated import calibrated_sources, kept_of_design, kept_of_model
+from pneutouch.mechanics.uncertainty.sources.contact import contact_sources
 from pneutouch.mechanics.uncertainty.sources.model import ModelErrors, model_sources, numerical_sources
 from pneutouch.mechanics.uncertainty.sources.modulus import ageing_sources, modulus_sources
 from pneutouch.spec.calibration import SensorCalibration
@@ -26,11 +28,14 @@ def sources(
     numerical: Mapping[str, float],
     aged: bool = True,
     calibration: SensorCalibration | None = None,
+    contact: ContactModel | None = None,
 ) -> list[UncertaintySource]:
     """Sources that count for at least one figure of one sensor; see `budget` for the arguments."""
     size = len(batch)
     near = np.broadcast_to(np.asarray(near_paper, dtype=bool), size)
     source_list = [*modulus_sources(material, near & bool(errors.resin_errors)), *build_sources(batch, printer)]
+    if contact is not None:
+        source_list += contact_sources(contact, source_list)
     model_error, remaining = model_sources(near, errors), 1.0
     if calibration is not None:
         remaining = calibration.remaining_year

@@ -17,6 +17,7 @@ from pneutouch.mechanics.uncertainty.source import (
     counting,
 )
 from pneutouch.mechanics.uncertainty.sources.build import GAUGE
+from pneutouch.mechanics.uncertainty.sources.contact import CORRECTION, FRICTION
 from pneutouch.mechanics.uncertainty.sources.model import MODEL_CORRELATION
 from pneutouch.spec.calibration import CalibratedResponse, SensorCalibration
 from pneutouch.units import KPA, ML
@@ -60,8 +61,8 @@ def kept_of_design(
 ) -> list[UncertaintySource]:
     """Sources of design and resin that the calibration leaves, for n sensors that are the calibrated one.
 
-    The inner radius is never fitted, but it is the specimen's own in the runs too: where curves were measured, the
-    correction holds what it does to sensitivity and force.
+    The inner radius is never fitted, but it is the specimen's own in the runs too, and so is the friction of what
+    presses it: where curves were measured, the correction holds what they do to sensitivity and force.
     """
     known = replaced(calibration)
     kept = [source for source in design if source.acts_on not in known]
@@ -69,7 +70,8 @@ def kept_of_design(
         return kept
     counts = counting(len(batch))
     counts[[SENSITIVITY, *_FORCES]] = _outside(batch, calibration)
-    return [replace(one, counts=one.counts & counts) if one.acts_on == "inner_radius" else one for one in kept]
+    held = ("inner radius", FRICTION, CORRECTION)
+    return [replace(one, counts=one.counts & counts) if one.name in held else one for one in kept]
 
 
 def kept_of_model(
