@@ -148,7 +148,7 @@ def test_the_interval_is_that_of_all_derivatives_by_the_solid(evaluated, library
     assert budget.standard[SENSITIVITY, 0] == pytest.approx(exact[SENSITIVITY, 0], rel=0.03)
     for name in ("stiffness_N_per_mm", "force_at_range_end_N"):
         figure = FIGURES.index(name)
-        assert budget.standard[figure, 0] == pytest.approx(exact[figure, 0], rel=0.06)
+        assert budget.standard[figure, 0] == pytest.approx(exact[figure, 0], rel=0.08)
 
 
 def test_a_prediction_already_solved_is_not_solved_again(rough, monkeypatch):

@@ -94,7 +94,7 @@ class ContactModel:
         plates = [batch_of(plate_alone(one), self.pressures) for one in (sides[0], self.sensor, sides[1])]
         plate = log_figures(joined(plates)).reshape(len(FIGURES), 3, -1).transpose(1, 0, 2)
         nodes = np.stack([self._solved(sides[0]), self.logs, self._solved(sides[1])]) - plate
-        # Neither the free state nor its limit point knows of the contact.
+        # Neither the free state nor its limit point depends on the contact.
         nodes[:, [i for i in range(len(FIGURES)) if i not in CONTACT_FIGURES]] = 0.0
         return ContactShift(half, np.where(np.isnan(nodes), nodes[1], nodes))
 
@@ -151,11 +151,11 @@ def _logs(states: Sequence[SensorState], size: int) -> Array:
     rows = np.full((len(FIGURES), size), np.nan)
     for k, state in enumerate(states):
         if state.figures is not None:
-            found = state.figures
+            fitted = state.figures
             rows[CONTACT_FIGURES, k] = (
-                found.sensitivity_kPa_per_N,
-                found.stiffness,
-                found.force_range[1],
+                fitted.sensitivity_kPa_per_N,
+                fitted.stiffness,
+                fitted.force_range[1],
                 state.range_end,
             )
     with np.errstate(invalid="ignore", divide="ignore"):
