@@ -18,6 +18,7 @@ from pneutouch.spec.campaign import Campaign
 from pneutouch.spec.campaign_file import campaign_of, design_of
 from pneutouch.spec.read import validate
 from pneutouch.spec.toml_text import toml_text
+from pneutouch.workflows.plan.run import make_plan, write_plan
 from pneutouch.workflows.simulate.options import KINDS, SimulationOptions
 from pneutouch.workflows.simulate.run import simulate
 
@@ -194,6 +195,31 @@ def test_a_plan_is_simulated_run_by_run(planned, library, tmp_path):
     assert (made / name).read_bytes() == (alone / name).read_bytes()
     assert (made / "runs/tip 2-b-0kPa-injection-1.csv").is_file()
     assert set(json.loads((made / "truth.json").read_text())["specimens"]) == {"TangoPlus-1", "tip 2/b"}
+
+
+def test_the_air_that_a_plan_states_is_pushed(library, tmp_path):
+    """As many rows as the plan has pushes, at its volumes, with the pressures that its sheet foretells."""
+    plan = make_plan("paper-dome", specimens=1, library=library)
+    expected = plan.document["resins"][0]["injection"]["sensor"]
+    (run,) = [run for run in plan.campaign.runs if run.kind == "injection"]
+    assert run.volumes_mL == pytest.approx([row["volume_mL"] for row in expected])
+    alone = plan.campaign.model_copy(update={"runs": [run]})
+    made = simulate(str(write_plan(replace(plan, campaign=alone), tmp_path)), tmp_path, None, QUICK, library)
+    (written,) = campaign_of(made)[0].runs
+    rows = np.loadtxt(made / written.file, delimiter=",", skiprows=2)
+    assert written.volumes_mL == run.volumes_mL
+    assert rows[:, 0] == pytest.approx(run.volumes_mL)
+    # The specimen differs from the design by its scatter.
+    assert rows[:, 1] == pytest.approx([row["pressure_kPa"] for row in expected], rel=0.25)
+
+
+def test_volumes_are_stated_of_an_injection_alone(planned, library, tmp_path):
+    content = (planned / "campaign.toml").read_text()
+    folder = tmp_path / "spoilt"
+    folder.mkdir()
+    (folder / "campaign.toml").write_text(content.replace('kind = "leak"', 'kind = "leak"\nvolumes_mL = [1, 2, 3]', 1))
+    with pytest.raises(InputError, match=r"volumes_mL: given to a run of kind leak; must be left out"):
+        simulate(str(folder), tmp_path / "out", None, QUICK, library)
 
 
 def test_what_a_plan_states_is_not_requested_again(planned, library, tmp_path):

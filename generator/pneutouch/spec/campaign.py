@@ -5,7 +5,7 @@ from __future__ import annotations
 import datetime
 import os
 from pathlib import PurePosixPath
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field, ValidationError, model_validator
 
@@ -114,6 +114,10 @@ class Rig(Table):
     rate_Hz: float = number(10_000.0, unit="Hz", low=1, high=1e6, help="Sampling rate.")
 
 
+Volume = Annotated[float, Field(ge=0, le=1e4)]
+"""A volume of room air, mL."""
+
+
 class CampaignRun(Table):
     """One [[runs]] entry: a file and what was measured in it."""
 
@@ -125,8 +129,17 @@ class CampaignRun(Table):
     run: int = Field(default=1, ge=1, le=10_000, description="Number of the repetition.")
     date: datetime.date | None = Field(default=None, description="Day of the run.")
     age_days: float = number(0.0, unit="d", low=0, high=36_500, help="Age of the print on that day.")
+    volumes_mL: list[Volume] | None = Field(
+        default=None, min_length=3, max_length=10_000, description="Of an injection: volumes to be pushed, mL in all."
+    )
     columns: ColumnMap | None = Field(default=None, description="Columns of this file, in place of the campaign's.")
     format: FileFormat | None = Field(default=None, description="How this file is written, likewise.")
+
+    @model_validator(mode="after")
+    def _volumes_are_pushed(self) -> CampaignRun:
+        if self.volumes_mL is not None and self.kind != "injection":
+            raise ValueError(f"volumes_mL: given to a run of kind {self.kind}; must be left out but of an injection")
+        return self
 
     @property
     def label(self) -> str:

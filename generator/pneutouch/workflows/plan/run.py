@@ -111,16 +111,22 @@ def make_plan(
         "total_s": sum(run["duration_s"] for run in listed),
         "warnings": [w.document() for w in travel_warnings(depths, rig)] + warnings,
     }
-    keys = ("file", "kind", "sensor", "resin", "driving_pressure_kPa", "run")
     campaign = Campaign(
         title=f"Campaign of {scene.design.document.title}"[:120],
         design=named,
         assignments=assignments(changes or {}),
         ambient_pressure_kPa=pneumatics.ambient_pressure_kPa,
         rig=rig,
-        runs=[CampaignRun(**{key: run[key] for key in keys}) for run in listed],
+        runs=[_campaign_run(run) for run in listed],
     )
     return CampaignPlan(str(document["name"]), document, campaign, copied)
+
+
+def _campaign_run(run: Mapping[str, Any]) -> CampaignRun:
+    """A run of the plan in the campaign's file."""
+    keys = ("file", "kind", "sensor", "resin", "driving_pressure_kPa", "run")
+    volumes_mL = [step["value"] for step in run["steps"] if step["action"] == "inject"]
+    return CampaignRun(**{key: run[key] for key in keys}, volumes_mL=volumes_mL or None)
 
 
 def _test(kind: str, test: RunProtocol, driving_pressures_kPa: tuple[float, ...]) -> dict[str, Any]:

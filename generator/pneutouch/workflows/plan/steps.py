@@ -59,7 +59,7 @@ def injection_steps(volume_mL: float) -> list[StepRecord]:
     steps = [_step("vent", 0.0, "kPa", SETTLE)]
     for share in (0.2, 0.4, 0.6, 0.8, 1.0):
         steps += [
-            _step("inject", share * volume_mL, "mL", PUSH),
+            _step("inject", round(share * volume_mL, 9), "mL", PUSH),
             _step("wait", None, "", SETTLE),
             _step("record", None, "", 0.0),
         ]

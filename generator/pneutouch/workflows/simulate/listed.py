@@ -28,7 +28,7 @@ def sensors_of(resin: str, options: SimulationOptions) -> list[str]:
 def runs_of(sensor: str, subject: SimulatedResin, age: float, options: SimulationOptions) -> Iterator[CampaignRun]:
     """Every run of one specimen at one age, with the file that it is written to."""
     suffix = "parquet" if options.parquet else "csv"
-    for kind, at_kPa, number in _keys(sensor, subject, age, options):
+    for kind, at_kPa, number, volumes_mL in _keys(sensor, subject, age, options):
         stem = f"{file_name(label(sensor, age, options))}-{at_kPa:g}kPa-{kind}-{number}"
         yield CampaignRun(
             file=f"runs/{stem}.{suffix}",
@@ -38,6 +38,7 @@ def runs_of(sensor: str, subject: SimulatedResin, age: float, options: Simulatio
             driving_pressure_kPa=at_kPa,
             run=number,
             age_days=age,
+            volumes_mL=volumes_mL,
         )
 
 
@@ -48,16 +49,16 @@ def label(sensor: str, age: float, options: SimulationOptions) -> str:
 
 def _keys(
     sensor: str, subject: SimulatedResin, age: float, options: SimulationOptions
-) -> Iterator[tuple[str, float, int]]:
-    """Kind, driving pressure in kPa and number of each run."""
+) -> Iterator[tuple[str, float, int, list[float] | None]]:
+    """Kind, driving pressure in kPa, number, and the injected volumes that a plan states, of each run."""
     if options.planned:
         for run in options.planned:
             if (run.sensor, run.age_days) == (sensor, age):
-                yield run.kind, run.driving_pressure_kPa, run.run
+                yield run.kind, run.driving_pressure_kPa, run.run, run.volumes_mL
         return
     for place, pressure_kPa in enumerate(driving_pressures_kPa(subject, options)):
         for kind in options.kinds:
             if kind == "injection" and place > 0:
                 continue
             for number in range(1, (options.runs if kind in REPEATED else 1) + 1):
-                yield kind, 0.0 if kind == "injection" else pressure_kPa, number
+                yield kind, 0.0 if kind == "injection" else pressure_kPa, number, None

@@ -38,7 +38,7 @@ from pneutouch.workflows.simulate.options import KINDS, PRESSED, SimulationOptio
 from pneutouch.workflows.simulate.planned import as_planned
 
 PUSHED = np.linspace(0.0, 0.5, 11) * ML
-"""Volumes of an injection run, mm3: 0 to 0.5 mL, our choice."""
+"""Volumes of an injection run that no plan states, mm3: 0 to 0.5 mL, our choice."""
 
 _OPTIONS = ("specimens", "driving_pressures_kPa", "runs", "kinds", "rate", "seed", "model", "ages_days", "parquet")
 """Options that a campaign depends on, in addition to its resins."""
@@ -202,7 +202,7 @@ def _specimen(
         rng = np.random.default_rng([options.seed, *key])
         if run.kind in PRESSED:
             _note_end(run, subject, curve.reach, curve.ends, truth)
-        samples = _columns(run.kind, subject, pressed_curves, place, options, rng)
+        samples = _columns(run, subject, pressed_curves, place, options, rng)
         yield run, encoded(samples, parquet=options.parquet)
 
 
@@ -215,7 +215,7 @@ def _note_end(
 
 
 def _columns(
-    kind: str,
+    run: CampaignRun,
     subject: SimulatedResin,
     pressed_curves: PressCurves,
     place: int,
@@ -224,16 +224,16 @@ def _columns(
 ) -> dict[str, Array]:
     """The columns of one run in the units of its file."""
     truth, curve, sensor = subject.truth, pressed_curves.curves[place], pressed_curves.sensor
-    if kind == "injection":
-        gas = sensor.gas
-        pressure = sensor_pressure(PUSHED, pressed_curves.inflation, gas.dead_volume, gas.ambient_pressure)
-        read = pressure + truth.rig.noise(options.rate)[1] * rng.standard_normal(PUSHED.size)
+    if run.kind == "injection":
+        gas, pushed = sensor.gas, PUSHED if run.volumes_mL is None else np.array(run.volumes_mL) * ML
+        pressure = sensor_pressure(pushed, pressed_curves.inflation, gas.dead_volume, gas.ambient_pressure)
+        read = pressure + truth.rig.noise(options.rate)[1] * rng.standard_normal(pushed.size)
         keep = np.isfinite(pressure)
-        return {"volume_mL": PUSHED[keep] / ML, "pressure_kPa": truth.rig.stepped(read[keep]) / KPA}
-    if kind == "leak":
+        return {"volume_mL": pushed[keep] / ML, "pressure_kPa": truth.rig.stepped(read[keep]) / KPA}
+    if run.kind == "leak":
         still = simulate_leak(curve.driving, LEAK_SECONDS, truth.rig, options.rate, rng)
         return {"time_s": still.time, "pressure_kPa": still.pressure / KPA}
-    protocol = truth.protocol(kind, sensor.dome.inner_radius, curve.reach)
+    protocol = truth.protocol(run.kind, sensor.dome.inner_radius, curve.reach)
     record: RecordSamples = simulate_run(
         curve, protocol, truth.rig, options.rate, rng, wall=truth.wall, scatter=truth.scatter
     )
@@ -254,7 +254,10 @@ def _inputs(subjects: list[SimulatedResin], options: SimulationOptions) -> dict[
     first = subjects[0]
     stated = ("specimens", "runs") if options.planned else ()
     chosen = {key: getattr(options, key) for key in _OPTIONS if key not in stated}
-    planned = [[run.sensor, run.kind, run.driving_pressure_kPa, run.run, run.age_days] for run in options.planned]
+    planned = [
+        [run.sensor, run.kind, run.driving_pressure_kPa, run.run, run.age_days, *(run.volumes_mL or ())]
+        for run in options.planned
+    ]
     return {
         "design": first.scene.design.model_dump(mode="json"),
         "resins": {subject.name: subject.scene.membrane_material.model_dump(mode="json") for subject in subjects},
