@@ -5,9 +5,11 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from pneutouch.catalogue import Library, load_scene
+from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.parts import assemble
 from pneutouch.spec.read import parse_changes
 from pneutouch.workflows.select import run as workflow
@@ -116,6 +118,20 @@ def test_a_design_for_a_finger_has_its_sleeve_and_keeps_the_footprint():
         # Across the port's direction the meshes are as wide as the sensor is said to be.
         wide = max(body.bounds[1][1] - body.bounds[0][1] for body in assembly.bodies)
         assert listed["footprint_mm"] == pytest.approx(wide, abs=0.02)
+
+
+def test_the_solid_confirms_each_design_with_the_clamping_ring_of_its_own_size():
+    """The base design's ring, 11.05 mm, would stand inside a wider dome: the solid finds no equilibrium at rest."""
+    wanted = {"sensitivity_kPa_per_N": 1.387, "max_diameter_mm": 65.0}
+    setting = {"assignments": ["connector.seat=clamped-flange-M2"]}
+    selection = answer(wanted, given={"materials": ["FLX9960"], "wall_thickness_mm": 0.8}, setting=setting)
+    assert len({choice.pool.radius[0] for choice in selection.answer.designs}) > 1
+    for choice in selection.answer.designs:
+        drawn = assemble(load_scene(source_of(selection.base, selection.assignments(choice)), None, LIBRARY))
+        base = selection.sensor_of(choice).dome.base
+        assert base == sensor_of(drawn).dome.base
+        assert base.ring > choice.pool.radius[0] + choice.pool.wall[0]
+    assert all(np.isfinite(confirmed.sensitivity_kPa_per_N) for confirmed in selection.confirmed)
 
 
 def test_a_footprint_that_nothing_keeps_is_named_as_what_to_drop():

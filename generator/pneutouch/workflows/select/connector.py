@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -10,8 +10,10 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError, PneutouchError
+from pneutouch.evaluation.contact_object import rigid_base
 from pneutouch.evaluation.evaluate import sensor_of
 from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.solid.rigid_base import RigidBase
 from pneutouch.parts import Assembly, assemble
 from pneutouch.parts.layout import lay_out_dome
 from pneutouch.parts.port import port_shape
@@ -45,7 +47,7 @@ def base_sensor(scene: ResolvedDesign) -> Sensor:
     try:
         return sensor_of(assemble(scene))
     except InputError:
-        other = next((drawn for radius in _RADII if (drawn := _resized(scene, float(radius))) is not None), None)
+        other = next((assembly for _, assembly in _sizes(scene) if assembly is not None), None)
         if other is None:
             raise
         return sensor_of(other)
@@ -55,17 +57,31 @@ def dead_volume(scene: ResolvedDesign, sensor: Sensor) -> Callable[[Array], Arra
     """Dead volume (mm3) over the inner radius: drawn at a few radii where the connector's channel follows it."""
     if scene.design.pneumatics.dead_volume_mL is not None:
         return lambda radius: np.full_like(radius, sensor.gas.dead_volume)
-    resized = [(float(radius), _resized(scene, float(radius))) for radius in _RADII]
-    drawn = [(radius, assembly.dead_volume) for radius, assembly in resized if assembly is not None]
+    drawn = [(radius, assembly.dead_volume) for radius, assembly in _sizes(scene) if assembly is not None]
     if not drawn:
         return lambda radius: np.full_like(radius, sensor.gas.dead_volume)
     at, volumes = np.array(drawn).T
     return lambda radius: np.interp(radius, at, volumes)
 
 
-def _resized(scene: ResolvedDesign, radius: float) -> Assembly | None:
-    """The scene with another dome, or None where its connector cannot be drawn."""
-    sizes = {"inner_radius_mm": radius, "wall_thickness_mm": _WALL_SHARE * radius}
+def base_around(scene: ResolvedDesign, radius: float, wall: float) -> RigidBase | None:
+    """What the wall of a dome of inner radius and wall (mm) can lie down on: the scene's connector as drawn for it.
+
+    None where the wall passes through; a plane where the connector cannot be drawn.
+    """
+    drawn = _resized(scene, radius, wall)
+    return RigidBase() if drawn is None else rigid_base(drawn)
+
+
+def _sizes(scene: ResolvedDesign) -> Iterator[tuple[float, Assembly | None]]:
+    """The scene with domes of several radii (mm), smallest first."""
+    for radius in _RADII.tolist():
+        yield radius, _resized(scene, radius, _WALL_SHARE * radius)
+
+
+def _resized(scene: ResolvedDesign, radius: float, wall: float) -> Assembly | None:
+    """The scene with another dome (mm), or None where its connector cannot be drawn."""
+    sizes = {"inner_radius_mm": radius, "wall_thickness_mm": wall}
     membrane = scene.design.membrane.model_copy(update=sizes)
     try:
         return assemble(replace(scene, design=scene.design.model_copy(update={"membrane": membrane})))

@@ -33,7 +33,7 @@ from pneutouch.spec.target import Target
 from pneutouch.spec.toml_text import value_text
 from pneutouch.units import KPA
 from pneutouch.workflows.select.base import base_scene, prints, requested_pair, setting_changes, with_connector
-from pneutouch.workflows.select.connector import base_sensor, connector_fit, dead_volume
+from pneutouch.workflows.select.connector import base_around, base_sensor, connector_fit, dead_volume
 from pneutouch.workflows.select.mix import ResinPair, mix_resins
 from pneutouch.workflows.select.passing import RejectedDesign, judge, source_of
 
@@ -104,6 +104,7 @@ class SelectionRun:
             law=None,
             poisson_ratio=self.problem.recipe.poisson_ratio,
             break_stretch=None if np.isinf(resin.break_stretch) else resin.break_stretch,
+            base=base_around(self.base, float(pool.radius[0]), float(pool.wall[0])),
         )
 
 
