@@ -12,6 +12,7 @@ from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.solid.contact import Plate
 from pneutouch.mechanics.solid.continuation import PathFollower
 from pneutouch.mechanics.solid.descend import descend
+from pneutouch.mechanics.solid.elimination import LeadingElimination
 from pneutouch.mechanics.solid.events import BREAKS_CURVE
 from pneutouch.mechanics.solid.first_touch import first_touch
 from pneutouch.mechanics.solid.friction import FrictionStep
@@ -72,7 +73,7 @@ def test_the_largest_coefficients_tend_to_grip():
 @pytest.mark.parametrize("friction", [0.3, 1.0])
 def test_no_traction_passes_the_largest_and_both_kinds_of_points_obey_the_law(friction):
     kinds = np.zeros(2)
-    for state in follow(friction, 0.91).path[1:]:
+    for state in follow(friction, 0.91, steps=20).path[1:]:
         points, touch = state.friction.points, state.state.touch
         largest = friction * touch.traction * np.hypot(1.0, touch.slope)
         assert (np.abs(points.traction) <= largest * (1 + 1e-12)).all()
@@ -177,6 +178,50 @@ def test_systems_with_one_sided_blocks_are_solved():
     for k in range(2):
         edges = solid.expand(x[:, k])[solid.mesh.outer].reshape(len(blocks), -1, 1)
         assert np.allclose(dense(band) @ x[:, k] + solid.push((blocks @ edges)[..., 0]), b[:, k])
+
+
+def test_systems_without_their_leading_unknowns_have_the_same_solution():
+    solid = coarse()
+    rng = np.random.default_rng(2)
+    scene = SolidScene(solid, Gas.filled(0.1, 2.1, 0.6, 0.2), None)
+    band = full_tangent(scene, evaluate(scene, solid.rest))
+    sides, edge = OneSidedBlocks(solid), 6
+    fore = LeadingElimination.of(band, sides.first_unknown(edge))
+    assert 0 < fore.first == sides.first_unknown(edge)
+    blocks = rng.normal(size=(len(solid.mesh.outer), 6, 6))
+    blocks[:edge] = 0.0
+    b = rng.normal(size=(solid.size, 2))
+    half = fore.leading(b[: fore.first])
+    rest = sides.solve_widened(sides.widened(fore.rest), blocks, b[fore.first :] - fore.onto_rest(half), fore.first)
+    whole = np.concatenate([half - fore.leading(fore.onto_leading(rest)), rest])
+    assert np.allclose(whole, sides.solve(band, blocks, b))
+
+
+def test_too_few_leading_unknowns_or_indefinite_ones_are_kept():
+    solid = coarse()
+    scene = SolidScene(solid, Gas.filled(0.1, 2.1, 0.6, 0.2), None)
+    band = full_tangent(scene, evaluate(scene, solid.rest))
+    assert LeadingElimination.of(band, 3).first == 0
+    band[0, 0] = -1.0
+    assert LeadingElimination.of(band, 60).first == 0
+
+
+@pytest.mark.parametrize(
+    ("friction", "mu", "wall", "share", "dead"), [(0.6, 2.2, 0.077, 0.28, 2000.0), (0.6, 4.0, 0.132, 0.06, 2000.0)]
+)
+def test_points_at_the_edge_of_the_contact_settle(friction, mu, wall, share, dead):
+    """Presses in which points come and go in turn where every round goes to its end: no step fails and is cut, and none
+    takes half of the Newton steps that it may."""
+    solid = SolidModel(dome(9.25, 9.25 * wall), neo_hookean(mu))
+    run = inflate(solid, past_limit=1.0)
+    free = state_at(solid, share * run.limit.pressure, run)
+    press = PressSettings(0.6 * 9.25, friction=friction, dead_volume=dead, gauge_range=np.inf)
+    follower = follower_of(solid, free, press, first_touch(solid, free, None, 30.0))
+    top = follower.here.height
+    for k in range(1, 15):
+        assert descend(follower, top - 0.6 * k / 14) is None
+    assert len(follower.path) == 15
+    assert max(state.iterations for state in follower.path) <= 12
 
 
 def test_friction_lowers_the_sensitivity_of_a_stiff_wall_evenly():

@@ -13,15 +13,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pneutouch.arrays import Array, Flags
+from pneutouch.arrays import Array
 from pneutouch.mechanics.solid.contact import ContactEvaluation
 from pneutouch.mechanics.solid.friction import FrictionPoints, FrictionStep, FrictionTerm
+from pneutouch.mechanics.solid.friction_settling import LinearContact, StepSettling
 from pneutouch.mechanics.solid.general_band import OneSidedBlocks
 from pneutouch.mechanics.solid.line_search import line_search
 from pneutouch.mechanics.solid.newton import (
     GAIN,
     RESIDUAL,
-    SETTLING,
     NewtonFailure,
     SolidScene,
     SolverState,
@@ -102,28 +102,15 @@ class FrictionSolver:
         return here.state.local.energy + here.scale * self.solid.wall
 
     def direction(self, here: HeldState) -> Array:
-        """Newton step (size,): which points touch, stick and slide is settled inside the linear model."""
+        """Newton step (size,): which points touch, stick and slide is settled inside the linear model; with the largest
+        tractions held where the consistent one is not definite or does not settle."""
         band = tangent(self.scene, here.state)
-        linear = self.solid.contact.linear(here.touch, np.zeros_like(here.state.x))
-        active, sign = linear > 0.0, np.where(here.points.sliding, np.sign(here.points.slip), 0.0)
-        seen, lifted = {active.tobytes() + sign.tobytes()}, False
-        for k in range(SETTLING):
-            pull, both, one_sided = self._model(here, linear, active, sign)
-            full = self.solid.contact_pattern.added(band, [both])
-            # The symmetric part is factorised once, for its definiteness; where it is lifted, friction stays held.
-            if k == 0 or lifted or one_sided is None:
-                newton = downhill(here.state, full, pull)
-                lifted, step = lifted or newton.lift > 0.0, newton.step
-                band[0] += newton.lift
-            if one_sided is not None and not lifted:
-                step = self.solve(here.state, full, one_sided, pull)
-            active, settled = self._settled(here, self.solid.expand(step))
-            # A point that would slide in reverse sticks first: else points of one sign would all turn over and back.
-            sign = np.where(settled == -sign, 0.0, settled)
-            key = active.tobytes() + sign.tobytes()
-            if key in seen:
+        for held in (False, True):
+            contact = LinearContact(self.solid, self.step, here.touch, here.points, held)
+            step = StepSettling(self.sides, here.state, band, contact).step()
+            if step is not None:
                 break
-            seen.add(key)
+        assert step is not None
         return step
 
     def _held_step(self, here: HeldState) -> Array:
@@ -132,27 +119,6 @@ class FrictionSolver:
         assert stick is not None
         band = self.solid.contact_pattern.added(full_tangent(self.scene, here.state), [stick])
         return downhill(here.state, band, here.residual).step
-
-    def _model(self, here: HeldState, linear: Array, active: Flags, sign: Array) -> tuple[Array, Array, Array | None]:
-        """Gradient (size,) of the linear model with given points in contact and sliding, where the step begins; its
-        stiffness there as symmetric blocks, and as blocks that are not."""
-        contact, touch, step = self.solid.contact, here.touch, self.step
-        slope = touch.slope
-        normal = np.where(active, linear, 0.0)
-        held = np.where(active, step.stiffness * here.points.slip, 0.0)
-        along = np.where(sign == 0.0, held, step.rate(sign, slope) * normal)
-        force = contact.force(normal, slope) + step.force(along, slope)
-        both = contact.hessian(touch, active) + step.stick(active & (sign == 0.0), slope)
-        one_sided = step.slide(along, touch, sign)
-        return here.state.inner + self.solid.push(force), both, one_sided
-
-    def _settled(self, here: HeldState, move: Array) -> tuple[Flags, Array]:
-        """Which points touch after a displacement in the linear model, and the sign of the slip of those that slide."""
-        step, touch = self.step, here.touch
-        linear = self.solid.contact.linear(touch, move)
-        trial = step.stiffness * (here.points.slip + step.change(move, touch.slope))
-        active = linear > 0.0
-        return active, np.where(active & (np.abs(trial) > step.cap(linear, touch.slope)), np.sign(trial), 0.0)
 
     def solve(self, state: SolverState, band: Array, one_sided: Array | None, load: Array) -> Array:
         """-(K + c g g')^-1 load (size,), g the gradient of the volume and c the stiffness of the filling."""

@@ -1,4 +1,4 @@
-"""LAPACK's routines for banded matrices as SciPy wraps them, without the package around them.
+"""LAPACK's routines for banded and triangular matrices as SciPy wraps them, without the package around them.
 
 `import scipy.linalg` loads most of NumPy's subpackages (f2py, random and testing among them) and costs three times as
 much as NumPy and these wrappers together: a sixth of the processor time of ``predict`` with the solid.
@@ -28,3 +28,4 @@ def _wrappers() -> ModuleType:
 _lapack = _wrappers()
 dpbtrf, dpbtrs = _lapack.dpbtrf, _lapack.dpbtrs
 dgbsv, dgbtrf, dgbtrs = _lapack.dgbsv, _lapack.dgbtrf, _lapack.dgbtrs
+dtrtrs = _lapack.dtrtrs
