@@ -221,12 +221,12 @@ def test_one_that_was_to_be_saved_is_an_error_with_its_report(campaign, place, s
 
 
 def test_a_design_that_cannot_be_fitted_is_refused_at_once_and_compared_instead(campaign, place):
-    """The fit needs the atlas, which has no friction; the last line of characterize is a command that works."""
+    """The fit needs the atlas, whose walls have a base; the last line of characterize is a command that works."""
     content = tomllib.loads((place / "designs" / "mine.toml").read_text())
-    (place / "designs" / "rough.toml").write_text(toml_text({**content, "contact": {"friction": 0.6}}))
+    (place / "designs" / "rough.toml").write_text(toml_text({**content, "contact": {"base": False}}))
     refused = run("calibrate", str(campaign), "--design", "rough", "--out", "out")
     assert refused.exit_code == 2
-    for word in ("rough.toml: contact.friction = 0.6", "atlas does not cover", "`compare` sets"):
+    for word in ("rough.toml: contact.base = ", "atlas does not cover", "`compare` sets"):
         assert word in refused.stderr
     assert not (place / "out").exists() and not (place / "calibrations").exists()
     words = ("characterize", str(campaign), "--design", "rough", "--evidence", "none", "--out", "out")

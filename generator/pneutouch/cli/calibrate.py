@@ -32,7 +32,7 @@ def calibrate(
         str | None, typer.Option(metavar="NAME", help="Sensor of the campaign.", show_default="its only one")
     ] = None,
     fit: Annotated[
-        str, typer.Option(metavar="NAMES", help="What to fit: modulus, wall, dead-volume, offset.")
+        str, typer.Option(metavar="NAMES", help="What to fit: modulus, wall, dead-volume, offset, friction.")
     ] = "modulus,dead-volume,wall,offset",
     hold_out: Annotated[
         list[str] | None, typer.Option(metavar="KPA,KPA", help="Driving pressures to predict by the others.")

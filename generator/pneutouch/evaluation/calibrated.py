@@ -5,11 +5,14 @@ import math
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.mechanics import Sensor
+from pneutouch.mechanics.contact_correction import GRIPS
 from pneutouch.mechanics.prediction import ErrorEstimate
 from pneutouch.mechanics.sensor import ResponseCorrection
 from pneutouch.spec.calibration import CalibratedResponse, SensorCalibration
 from pneutouch.spec.design import CALIBRATION
 from pneutouch.units import KPA, ML
+
+_PLATE = "flat plate, frictionless"
 
 BEYOND = 1.05
 """A depth up to this share above the greatest measured one counts as measured, like a driving pressure: our choice."""
@@ -25,6 +28,9 @@ def calibrated_sensor(sensor: Sensor, scene: ResolvedDesign) -> Sensor:
     if calibration is None:
         return sensor
     response = calibration.response
+    friction = friction_of(calibration)
+    if friction is not None:
+        sensor = sensor.replace(friction=friction)
     added = sensor.gas.dead_volume - calibration.design.dead_volume_mL * ML
     return sensor.replace(
         shear_modulus=calibration.value("shear_modulus_MPa"),
@@ -32,6 +38,20 @@ def calibrated_sensor(sensor: Sensor, scene: ResolvedDesign) -> Sensor:
         dead_volume=max(calibration.value("dead_volume_mL") * ML + added, 0.0),
         correction=ResponseCorrection() if response is None else correction_of(calibration, response),
     )
+
+
+def friction_of(calibration: SensorCalibration) -> float | None:
+    """The coefficient of friction that was fitted, inf for a contact that grips; None where it was not."""
+    fitted = [parameter.value for parameter in calibration.parameters if parameter.key == "friction"]
+    return None if not fitted else float("inf") if fitted[0] >= GRIPS else fitted[0]
+
+
+def friction_spread(calibration: SensorCalibration) -> float | None:
+    """Standard uncertainty of the coefficient of friction that was fitted; None where it was not."""
+    if "friction" not in calibration.covered:
+        return None
+    place = calibration.covered.index("friction")
+    return math.sqrt(calibration.covariance[place][place])
 
 
 def correction_of(calibration: SensorCalibration, response: CalibratedResponse) -> ResponseCorrection:
@@ -60,14 +80,16 @@ def assumption(scene: ResolvedDesign) -> str:
     source, response = calibration.source, calibration.response
     made = "simulated " if source.simulated else ""
     corrected, campaign = "", source.campaign or "unnamed"
+    coefficient = friction_of(calibration)
+    friction = "" if coefficient is None else f", friction {coefficient:.3g}"
     if response is not None:
         force, rise = (_span(factors) for factors in (response.force_factors, response.pressure_factors))
         corrected = f"; force times {force}, pressure rise times {rise}"
     return (
         f"calibration {scene.design.calibration}: sensor {source.sensor}, {made}campaign {campaign}, "
         f"modulus {calibration.value('shear_modulus_MPa'):.4g} MPa, wall "
-        f"{calibration.value('wall_thickness_mm'):.4g} mm{corrected}; the figures are of this specimen, not of another "
-        "print"
+        f"{calibration.value('wall_thickness_mm'):.4g} mm{friction}{corrected}; the figures are of this specimen, not "
+        "of another print"
     )
 
 
@@ -76,6 +98,14 @@ def unmeasured(scene: ResolvedDesign, depth: float) -> list[str]:
     calibration, notes = scene.calibration, []
     assert calibration is not None
     source, plate_mm = calibration.source, scene.design.indentation.plate_diameter_mm
+    contact = scene.design.contact
+    measured, here = source.contact or _PLATE, _PLATE if contact.is_atlas_plate else contact.words
+    if friction_of(calibration) is not None:
+        measured, here = measured.rpartition(",")[0], here.rpartition(",")[0]
+    if measured != here:
+        notes.append(
+            f"calibration {scene.design.calibration}: measured with a {measured}; this prediction is of a {here}"
+        )
     if source.depth_mm is not None and depth > BEYOND * source.depth_mm:
         notes.append(
             f"calibration {scene.design.calibration}: measured to a travel of {source.depth_mm:.3g} mm; this "

@@ -12,8 +12,9 @@ from pneutouch.evaluation.tuning import curve, interval, under_contact
 from pneutouch.evaluation.variants import in_resin
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.atlas_states import outside_atlas
+from pneutouch.mechanics.contact_correction import plate_alone
 from pneutouch.mechanics.paper_sensor import material_sensor
-from pneutouch.mechanics.uncertainty import GasNotes, batch_of, gas_notes, plate_alone
+from pneutouch.mechanics.uncertainty import GasNotes, batch_of, gas_notes
 from pneutouch.selection import CandidateResin, SelectionProblem
 from pneutouch.selection.front import front
 from pneutouch.units import KPA

@@ -3,26 +3,24 @@
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.mechanics.atlas_states import outside_atlas
+from pneutouch.mechanics.contact_correction import plate_alone
 from pneutouch.mechanics.sensor import Sensor
 
 
 def check_fitted(scene: ResolvedDesign, sensor: Sensor) -> None:
-    """Raise InputError where the atlas, which every fit is made with, does not cover the sensor at a depth it has."""
-    why = outside_atlas(sensor.replace(depth=min(sensor.protocol.depth, 0.75 * sensor.dome.inner_radius)))
+    """Raise InputError where the atlas, which every fit is made with, does not cover the sensor at a depth it has.
+
+    Friction and objects are the solid's correction of it (`mechanics.contact_correction`).
+    """
+    plate = plate_alone(sensor)
+    why = outside_atlas(plate.replace(depth=min(plate.protocol.depth, 0.75 * plate.dome.inner_radius)))
     if why is None:
         return
-    contact = scene.design.contact
-    keys = {
-        "object": not contact.is_plate,
-        "friction": contact.friction > 0.0,
-        "plate_rim_mm": contact.plate_rim_mm is not None,
-        "base": not contact.base,
-    }
-    key = next((key for key, other in keys.items() if other), None)
+    base = scene.design.contact.base
     raise InputError(
         f"the atlas does not cover this sensor, {why}, and the fit is made with the atlas",
         file=scene.where,
-        key=None if key is None else f"contact.{key}",
-        value=None if key is None else getattr(contact, key),
+        key=None if base else "contact.base",
+        value=None if base else base,
         remedy="`compare` sets design and measurement side by side without a fit",
     )

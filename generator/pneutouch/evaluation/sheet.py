@@ -46,6 +46,7 @@ def sheet_data(evaluation: Evaluation, input_hash: str) -> SheetData:
         ageing=ageing_data(prediction, material, sensor),
         constants=constant_membranes(sensor, prediction),
         published_kPa_per_N=published,
+        other_contact=sensor.protocol.other_contact is not None,
         object_section=object_section(sensor),
     )
     if unknown(sensor, prediction.model) is not None:

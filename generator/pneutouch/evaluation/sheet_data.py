@@ -110,6 +110,7 @@ class SheetData:
         gas: Effect of the air, one entry a state; None outside the atlas.
         tradeoff: The trade-off that the design is part of; None outside the atlas.
         tuning: Its sensitivity over the driving pressure; None outside the atlas.
+        other_contact: Whether something else than a plate without friction presses it.
         object_section: Section (n, 2) in mm, r and z, of the object that presses it, at first contact with the unloaded
             dome; None for a plate.
     """
@@ -132,4 +133,5 @@ class SheetData:
     gas: GasNotes | None = None
     tradeoff: TradeOff | None = None
     tuning: TuningChart | None = None
+    other_contact: bool = False
     object_section: Array | None = None

@@ -9,8 +9,9 @@ from pneutouch.evaluation.chart_data import TuningCurve
 from pneutouch.evaluation.uncertainty import known
 from pneutouch.mechanics import Sensor
 from pneutouch.mechanics.atlas.respond import OUTSIDE, respond
+from pneutouch.mechanics.contact_correction import plate_alone
 from pneutouch.mechanics.limits import RATED_SHARE
-from pneutouch.mechanics.uncertainty import FIGURES, ContactModel, batch_of, plate_alone
+from pneutouch.mechanics.uncertainty import FIGURES, ContactModel, batch_of
 from pneutouch.mechanics.uncertainty.neighbours import log_figures
 from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.material import Material

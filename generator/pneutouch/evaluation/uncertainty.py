@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pneutouch.catalogue import ResolvedDesign
+from pneutouch.evaluation.calibrated import friction_spread
 from pneutouch.evaluation.contact_notes import contact_notes
 from pneutouch.evaluation.graded_uncertainty import even_wall, notes_on
 from pneutouch.evaluation.table_s1 import is_near_paper
@@ -56,7 +57,7 @@ def unknown(sensor: Sensor, model: str) -> str | None:
     if model == "membrane":
         return _TREND
     from pneutouch.mechanics.atlas_states import outside_atlas
-    from pneutouch.mechanics.uncertainty import plate_alone
+    from pneutouch.mechanics.contact_correction import plate_alone
 
     why = outside_atlas(plate_alone(sensor))
     return None if why is None else f"the sensor is outside the atlas: {why}"
@@ -77,11 +78,13 @@ def known(
     ``materials`` are all that there are: the model's error is taken from those that were measured. ``model`` gives the
     numerical error. ``states`` are the solid's of another contact, where it has been solved already.
     """
-    from pneutouch.mechanics.uncertainty import ContactModel, batch_of, budget, model_errors, plate_alone
+    from pneutouch.mechanics.contact_correction import plate_alone
+    from pneutouch.mechanics.uncertainty import ContactModel, batch_of, budget, model_errors
 
     contact = None
     if sensor.protocol.other_contact is not None:
-        contact = ContactModel(sensor, tuple(float(p) for p in pressures), states)
+        spread = None if calibration is None else friction_spread(calibration)
+        contact = ContactModel(sensor, tuple(float(p) for p in pressures), states, spread)
     batch = batch_of(plate_alone(sensor), pressures)
     limit_error = DISCRETISATION["limit_pressure_relative"]
     numerical = {"sensitivity_kPa_per_N": stated_error(model, sensor), "limit_pressure_kPa": limit_error}

@@ -2,7 +2,6 @@
 
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.report.port_note import port_steps
-from pneutouch.spec.contact import ContactTable
 from pneutouch.spec.part import ClampedFlange, OnePiece, RobotFlange, Sleeve
 
 PAPER = (
@@ -66,9 +65,9 @@ SHAPES = "Half sections of the deformed wall, shaded by the greatest principal s
 NO_SHAPES = "Half sections of the deformed wall are drawn by the solid alone: build with model solid."
 
 
-def tuning(contact: ContactTable) -> str:
+def tuning(other_contact: bool) -> str:
     """Caption of the tuning chart; the solid's ratio makes the atlas's plate without friction any other contact."""
-    ratio = "" if contact.is_atlas_plate else " times the solid's ratio of this contact to a plate without friction"
+    ratio = " times the solid's ratio of this contact to a plate without friction" if other_contact else ""
     return (
         "Tuning: sensitivity of this design from no driving pressure to its rated one (its highest stated one where "
         f"that is above), by the atlas{ratio}, with its k = 2 interval (grey); circles: the predicted states."

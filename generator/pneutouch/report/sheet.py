@@ -122,7 +122,7 @@ def _captions(sheet: SheetData) -> dict[str, str]:
     unknown = (document["unknown"] for document in sheet.uncertainty if "unknown" in document)
     why = graded or next(unknown, "the prediction has no figures at the highest driving pressure")
     absent = f"Trade-off and tuning charts are not drawn: {why}."
-    if sheet.tuning is not None and not sheet.scene.design.contact.is_atlas_plate:
+    if sheet.tuning is not None and sheet.other_contact:
         absent = "The trade-off chart is not drawn: its fronts are those of a plate without friction."
     chart = sheet.tradeoff
     return {
@@ -131,7 +131,7 @@ def _captions(sheet: SheetData) -> dict[str, str]:
         else prose.tradeoff(
             chart.driving_pressure_kPa, sheet.prediction.dead_volume / ML, sheet.assembly.dead_volume_note
         ),
-        "tuning": "" if sheet.tuning is None else prose.tuning(sheet.scene.design.contact),
+        "tuning": "" if sheet.tuning is None else prose.tuning(sheet.other_contact),
         "shapes": prose.SHAPES if sheet.prediction.states[0].shapes else prose.NO_SHAPES,
         "view": "" if sheet.scene.membrane_material.along is None else prose.GRADE,
         **prose.CAPTIONS,

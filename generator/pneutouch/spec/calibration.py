@@ -13,7 +13,7 @@ from pneutouch.spec.grade import ResinOrMix
 FORMAT = 1
 """Number of the form that calibration files have; a file of another form is refused."""
 
-ParameterKey = Literal["shear_modulus_MPa", "wall_thickness_mm", "dead_volume_mL", "contact_offset_mm"]
+ParameterKey = Literal["shear_modulus_MPa", "wall_thickness_mm", "dead_volume_mL", "contact_offset_mm", "friction"]
 
 Factor = Annotated[float, Field(ge=0.2, le=5)]
 RelativeError = Annotated[float, Field(ge=0, le=2)]
@@ -25,9 +25,10 @@ _MOST_VARIANCE = {
     "wall_thickness_mm": 4.0,
     "dead_volume_mL": 100.0,
     "contact_offset_mm": 100.0,
+    "friction": 4.0,
 }
-"""Of a covariance's diagonal, in the units of `SensorCalibration`: a factor of 7, 10 mL, 10 mm. A fit that has more has
-not seen the parameter, and figures by it would not be finite."""
+"""Of a covariance's diagonal, in the units of `SensorCalibration`: a factor of 7, 10 mL, 10 mm, 2. A fit that has
+more has not seen the parameter, and figures by it would not be finite."""
 
 _BY_PRESSURE = ("force_factors", "pressure_factors", "sensitivity_errors_relative", "force_errors_relative")
 
@@ -56,6 +57,9 @@ class CalibrationSource(Table):
         default=None, gt=0, le=1000, description="Greatest travel that was measured and used."
     )
     plate_diameter_mm: float | None = Field(default=None, gt=0, le=500, description="Plate that it was measured with.")
+    contact: Printable | None = Field(
+        default=None, max_length=200, description="What it was measured with, where that is no frictionless plate."
+    )
 
 
 class CalibratedDesign(Table):
@@ -78,7 +82,9 @@ class CalibratedParameter(Table):
 
     @model_validator(mode="after")
     def _possible(self) -> "CalibratedParameter":
-        least = {"shear_modulus_MPa": 1e-6, "wall_thickness_mm": 1e-3, "dead_volume_mL": 0.0}.get(self.key, -10.0)
+        least = {"shear_modulus_MPa": 1e-6, "wall_thickness_mm": 1e-3, "dead_volume_mL": 0.0, "friction": 0.0}.get(
+            self.key, -10.0
+        )
         if not least <= self.value <= 1000.0:
             raise ValueError(f"{self.key} = {self.value:g}: must be from {least:g} to 1000")
         return self
@@ -108,14 +114,17 @@ class CalibratedResponse(Table):
 
 
 class SensorCalibration(Table):
-    """A calibration file. ``covariance`` is of ln MPa (modulus), ln mm (wall), mL (dead volume) and mm (offset)."""
+    """A calibration file.
+
+    ``covariance`` is of ln MPa (modulus), ln mm (wall), mL (dead volume), mm (offset) and 1 (friction).
+    """
 
     format: int = Field(description="Number of the form.")
     title: Printable = Field(min_length=1, max_length=200, description="What it is of.")
-    covariance: list[list[float]] = Field(max_length=4, description="Of the covered parameters, in their order.")
+    covariance: list[list[float]] = Field(max_length=5, description="Of the covered parameters, in their order.")
     source: CalibrationSource
     design: CalibratedDesign
-    parameters: list[CalibratedParameter] = Field(min_length=3, max_length=4)
+    parameters: list[CalibratedParameter] = Field(min_length=3, max_length=5)
     response: CalibratedResponse | None = Field(default=None, description="Left out where no curve was measured.")
 
     @model_validator(mode="after")

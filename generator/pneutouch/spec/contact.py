@@ -150,6 +150,11 @@ class ContactTable(Table):
             return "gripping"
         return f"friction coefficient {self.friction:g}" if self.friction else "frictionless"
 
+    @property
+    def words(self) -> str:
+        """Object and friction in words."""
+        return f"{self.label}, {self.hold}"
+
     def sizes(self) -> dict[str, Any]:
         """The keys that shape the object and their values, without those of other objects."""
         return {key: getattr(self, key) for key in SIZES[self.object]}

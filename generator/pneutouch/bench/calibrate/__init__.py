@@ -3,10 +3,11 @@
 from pneutouch.bench.calibrate.fit import CalibrationFit, fit
 from pneutouch.bench.calibrate.held_out import HeldOutPrediction, predict_held_out
 from pneutouch.bench.calibrate.observations import Injection, Observations
-from pneutouch.bench.calibrate.parameters import NAMES, CalibrationParameters, parameters
+from pneutouch.bench.calibrate.parameters import NAMES, USUAL, CalibrationParameters, parameters
 
 __all__ = [
     "NAMES",
+    "USUAL",
     "CalibrationFit",
     "CalibrationParameters",
     "HeldOutPrediction",

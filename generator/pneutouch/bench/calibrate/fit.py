@@ -7,7 +7,7 @@ import numpy as np
 from pneutouch.arrays import Array, Flags
 from pneutouch.bench.calibrate.discrepancy import FLOOR, SharedUnknowns, shared_of, sizes_of
 from pneutouch.bench.calibrate.intervals import Covariance, covariance, factor, half_widths
-from pneutouch.bench.calibrate.model import AtlasModel
+from pneutouch.bench.calibrate.model import AtlasModel, FittedContact
 from pneutouch.bench.calibrate.observations import ObservationPoints, Observations, points_of
 from pneutouch.bench.calibrate.parameters import MODULUS, NAMES, CalibrationParameters
 from pneutouch.bench.calibrate.solve import LeastSquaresProblem, LeastSquaresSolution, solve
@@ -20,6 +20,12 @@ _START_SHARE = 0.9
 
 _ROUNDS = 2
 """Repetitions of the fit with errors and sizes estimated from the residuals: our choice, a third changes nothing."""
+
+_CENTRED = 3
+"""Most repetitions of the fit with the solid's ratio of the contact at the estimate: our choice."""
+
+_NEAR = 0.05
+"""Distance of the estimate below which that ratio is kept: it moves the force by less than 0.01."""
 
 _SMOOTH = 0.1
 """Smooth share of a reading that may be anything while the scatter of points is estimated: our choice, generous."""
@@ -39,6 +45,7 @@ class CalibrationFit:
         channel_factor: Standard deviations of points over their stated ones: force, rise, injection.
         sizes: Of what the model leaves out of all runs alike, share of the reading: force, rise, injection.
         run_factor: Variance by which runs scatter more than independent points would.
+        contact: Where the contact is not a plate without friction: what the model takes the solid's ratio of.
     """
 
     observations: Observations
@@ -54,11 +61,16 @@ class CalibrationFit:
     channel_factor: Array
     sizes: Array
     run_factor: float
+    contact: FittedContact | None = None
 
     @property
     def full(self) -> Array:
-        """All four coordinates, (4,)."""
+        """All five coordinates, (5,)."""
         return self.parameters.full(self.solution.at)
+
+    def model_at(self, points: ObservationPoints) -> AtlasModel:
+        """The model that was fitted, at other points."""
+        return AtlasModel(self.sensor, points, self.contact)
 
     @property
     def left_out(self) -> Flags:
@@ -80,8 +92,30 @@ def fit(
 
     First with the errors stated for reading and atlas; then with those that the residuals show, channel by channel, and
     with the scatter between runs, so that the priors are weighed against the information in the data. The model
-    discrepancy is as large as the residuals show, at least ``floor`` (see `discrepancy`). Raises InputError for too few
+    discrepancy is as large as the residuals show, at least ``floor`` (see `discrepancy`). Under another contact than a
+    plate without friction the fit is repeated with the solid's ratio at the estimate. Raises InputError for too few
     points, ComputationError where no fit is found."""
+    contact = FittedContact.of(sensor, parameters, parameters.start)
+    fitted = _fit(observations, sensor, parameters, floor, contact)
+    for _ in range(_CENTRED):
+        if contact is None:
+            break
+        nearer = FittedContact.of(fitted.sensor, parameters, fitted.full)
+        if nearer is None or contact.distance(nearer) < _NEAR:
+            break
+        contact = nearer
+        fitted = _fit(observations, sensor, parameters, floor, contact)
+    return fitted
+
+
+def _fit(
+    observations: Observations,
+    sensor: Sensor,
+    parameters: CalibrationParameters,
+    floor: Array,
+    contact: FittedContact | None,
+) -> CalibrationFit:
+    """`fit` with the solid's ratio of a contact."""
     sensor = sensor.replace(ambient_pressure=observations.ambient)
     points = points_of(observations)
     fitted = len(parameters.fitted)
@@ -90,7 +124,7 @@ def fit(
             f"calibrate: {int(points.use.sum())} values for {fitted} parameters without priors; there must be more "
             "values, or fewer parameters with `fit`"
         )
-    model = AtlasModel(sensor, points)
+    model = AtlasModel(sensor, points, contact)
     # A start that trusts neither the shape of the model nor single points: all errors alike, as shares of full scale.
     rough = np.hypot(points.errors, points.full_scale * floor[points.channels])
     solution = solve(
@@ -114,11 +148,11 @@ def fit(
     stated = read.whitened((solution.residual * last.errors / points.errors)[:, None], solution.use)
     squares, freedom = float((stated**2).sum()), max(int(solution.use.sum()) - fitted, 0)
     fitting = observations, points, parameters, sensor, last, solution, spread, half_widths(spread)
-    return CalibrationFit(*fitting, squares, freedom, channels, sizes, run_factor=runs)
+    return CalibrationFit(*fitting, squares, freedom, channels, sizes, run_factor=runs, contact=contact)
 
 
 def _others(problem: LeastSquaresProblem, solution: LeastSquaresSolution) -> Array:
-    """Derivatives by the parameters that are not fitted but uncertain, (N, 4), over the errors; 0 by the others."""
+    """Derivatives by the parameters that are not fitted but uncertain, (N, 5), over the errors; 0 by the others."""
     slopes = np.zeros((solution.residual.size, len(NAMES)))
     others = list(problem.chosen.others)
     if others:

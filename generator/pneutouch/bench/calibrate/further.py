@@ -9,7 +9,6 @@ from pneutouch.arrays import Array
 from pneutouch.bench.calibrate.discrepancy import shared_of
 from pneutouch.bench.calibrate.fit import CalibrationFit
 from pneutouch.bench.calibrate.inject import free_pressure
-from pneutouch.bench.calibrate.model import AtlasModel
 from pneutouch.bench.calibrate.observations import ATLAS_FORCE, ATLAS_PRESSURE, READING, ObservationPoints
 from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, NAMES, WALL
 from pneutouch.bench.protocol import REPETITIONS, SHARE
@@ -76,7 +75,7 @@ def further_tests(fit: CalibrationFit, rated: float) -> list[SuggestedTest]:
 
 
 def _candidates(fit: CalibrationFit, rated: float) -> Iterator[tuple[str, Array]]:
-    """Tests with their information on all four parameters, (4, 4)."""
+    """Tests with their information on all five parameters, (5, 5)."""
     full, size = fit.full, fit.sensor.dome.inner_radius
     # Pressed, the cavity stays within the gauge's range.
     highest = min(0.5 * fit.sensor.gas.gauge_limit, rated, _estimated(fit))
@@ -116,9 +115,9 @@ def _alone(number: int, spread: float) -> Array:
 
 
 def _evaluated(fit: CalibrationFit, full: Array, points: ObservationPoints) -> tuple[Array, Array]:
-    """Values (N,) and derivatives (N, 4) at the estimate; both are 0 outside the model."""
+    """Values (N,) and derivatives (N, 5) at the estimate; both are 0 outside the model."""
     step = np.where(full + fit.parameters.step <= fit.parameters.high, fit.parameters.step, -fit.parameters.step)
-    values, ok = AtlasModel(fit.sensor, points).values(np.vstack([full, full + np.diag(step)]))
+    values, ok = fit.model_at(points).values(np.vstack([full, full + np.diag(step)]))
     known = np.asarray(ok.all(axis=0))
     derivatives = ((values[1:] - values[0]) / step[:, None]).T
     return np.where(known, values[0], 0.0), np.where(known[:, None], derivatives, 0.0)

@@ -4,7 +4,6 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.bench.calibrate.fit import CalibrationFit
-from pneutouch.bench.calibrate.model import AtlasModel
 
 GAIN = 0.01
 
@@ -17,7 +16,7 @@ def gain_shifts(fit: CalibrationFit) -> tuple[Array, Array]:
     """
     p, solution = fit.points, fit.solution
     size = p.there.size
-    more = AtlasModel(fit.sensor, p._replace(driving=p.driving * (1.0 - GAIN))).values(fit.full[None])[0][0]
+    more = fit.model_at(p._replace(driving=p.driving * (1.0 - GAIN))).values(fit.full[None])[0][0]
     force, pressure = np.zeros(p.values.size), np.where(solution.use, more - solution.model, 0.0)
     # True values are lower than read ones, and so would be the data.
     force[:size] = GAIN * p.values[:size]

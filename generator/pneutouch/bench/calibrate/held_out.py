@@ -6,7 +6,6 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.bench.calibrate.fit import fit
-from pneutouch.bench.calibrate.model import AtlasModel
 from pneutouch.bench.calibrate.observations import Observations, points_of
 from pneutouch.bench.calibrate.parameters import CalibrationParameters
 from pneutouch.bench.calibrate.response import response_gap
@@ -61,8 +60,7 @@ def predict_held_out(
         raise InputError(problem, key="hold_out_kPa", value=driving_pressure_kPa, remedy=remedy)
     fitted = fit(rest, sensor, parameters)
     points = points_of(observations.only(driving_pressure_kPa))
-    model = AtlasModel(sensor.replace(ambient_pressure=observations.ambient), points)
-    values, ok = model.values(fitted.full[None])
+    values, ok = fitted.model_at(points).values(fitted.full[None])
     shape = points.there.shape
     use = ok[0][: points.there.size].reshape(shape) & points.there
     if (use.sum(axis=1) < 2).any():

@@ -1,5 +1,6 @@
 """Values of the atlas at the measured travels and volumes, for many sets of parameters in one batch."""
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -8,29 +9,79 @@ from numpy.typing import NDArray
 from pneutouch.arrays import Array, Flags, Index
 from pneutouch.bench.calibrate.inject import injected
 from pneutouch.bench.calibrate.observations import ObservationPoints
-from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, OFFSET, WALL
+from pneutouch.bench.calibrate.parameters import (
+    DEAD,
+    FRICTION,
+    MODULUS,
+    OFFSET,
+    OFFSET_BOUND,
+    WALL,
+    CalibrationParameters,
+)
 from pneutouch.errors import InputError
 from pneutouch.mechanics.atlas.press import AtlasPress, SensorBatch
-from pneutouch.mechanics.atlas.table import AtlasSlices, shipped
+from pneutouch.mechanics.atlas.table import REST_VOLUME, AtlasSlices, shipped
 from pneutouch.mechanics.atlas_states import outside_atlas
+from pneutouch.mechanics.contact_correction import contact_ratio, plate_alone
 from pneutouch.mechanics.sensor import Sensor
 
 _GAP = 0.08
 """Longest step of the plate in R0; where points are further apart, the press goes by steps between them."""
 
 
-class AtlasModel:
-    """The atlas at ``points``. Parameter sets are (s, 4) coordinates, values (s, N) in the order of
-    `ObservationPoints.values`.
+@dataclass(frozen=True, slots=True)
+class FittedContact:
+    """Another contact than a plate without friction.
 
-    Raises InputError where the atlas does not cover the sensor.
+    Attributes:
+        centre: The sensor that the solid's ratio is of.
+        frictions: Coefficients that it is solved at, ascending.
     """
 
-    def __init__(self, sensor: Sensor, points: ObservationPoints) -> None:
+    centre: Sensor
+    frictions: tuple[float, ...]
+
+    @classmethod
+    def of(cls, sensor: Sensor, chosen: CalibrationParameters, full: Array) -> "FittedContact | None":
+        """That of a sensor with all parameters at their coordinates ``full``, (5,); None for the atlas's own plate."""
+        if not chosen.frictions:
+            return None
+        modulus, wall = (float(np.exp(full[k])) for k in (MODULUS, WALL))
+        centre = sensor.replace(shear_modulus=modulus, wall_thickness=wall, dead_volume=float(full[DEAD]))
+        return cls(centre, chosen.frictions)
+
+    def distance(self, other: "FittedContact") -> float:
+        """How far another one's sensor is: the greatest of its changes of ln modulus, ln wall and ln gas volume."""
+        pairs = [
+            (
+                one.wall.shear_modulus,
+                one.dome.wall_thickness,
+                one.gas.dead_volume + REST_VOLUME * one.dome.inner_radius**3,
+            )
+            for one in (self.centre, other.centre)
+        ]
+        return float(np.abs(np.diff(np.log(pairs), axis=0)).max())
+
+
+class AtlasModel:
+    """The atlas at ``points``. Parameter sets are (s, 5) coordinates, values (s, N) in the order of
+    `ObservationPoints.values`.
+
+    Under another contact than a plate without friction it is the atlas times the solid's ratio of both, of the sensor
+    ``contact.centre``. Raises InputError where the atlas does not cover the sensor, ComputationError where the solid
+    cannot press it.
+    """
+
+    def __init__(self, sensor: Sensor, points: ObservationPoints, contact: "FittedContact | None" = None) -> None:
+        sensor = plate_alone(sensor)
         why = outside_atlas(sensor)
         if why is not None:
             raise InputError(f"calibrate: the atlas does not cover this sensor: {why}; no fit without it")
         self.sensor, self.points = sensor, points
+        deep = float(points.travel.max(initial=0.0)) + OFFSET_BOUND
+        self._ratio = None
+        if contact is not None and points.travel.size:
+            self._ratio = contact_ratio(contact.centre, contact.frictions, points.driving, deep)
         self._last: tuple[bytes, Array, Flags] | None = None
         size, depth = sensor.dome.inner_radius, points.travel / sensor.dome.inner_radius
         deepest = float(depth.max(initial=0.0))
@@ -72,8 +123,12 @@ class AtlasModel:
         mu = batch.shear_modulus[:, None]
         edge = press.field("contact_radius", track) < press.batch.flat_radius[:, None]
         ok = track.ok & edge & (press.pressure < press.limit)[:, None]
-        force = track.point.force * mu * size**2
-        return at(force), at((track.point.pressure - press.pressure[:, None]) * mu), at(ok)
+        force, rise = track.point.force * mu * size**2, (track.point.pressure - press.pressure[:, None]) * mu
+        if self._ratio is not None:
+            travel = np.take_along_axis(rows, order, axis=1)
+            factors = np.exp(self._ratio.at(sets[each, FRICTION], np.tile(self.points.driving, s), travel))
+            force, rise = factors[0] * force, factors[1] * rise
+        return at(force), at(rise), at(ok)
 
     def _batch(self, sets: Array, driving: Array) -> SensorBatch:
         dome, gas, protocol = self.sensor.dome, self.sensor.gas, self.sensor.protocol

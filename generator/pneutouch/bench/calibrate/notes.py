@@ -12,13 +12,13 @@ from pneutouch.bench.calibrate.held_out import HeldOutPrediction
 from pneutouch.bench.calibrate.identify import UNSEEN, CorrelatedParameters, Identifiability
 from pneutouch.bench.calibrate.intervals import LEAST_RUNS
 from pneutouch.bench.calibrate.observations import clipped
-from pneutouch.bench.calibrate.parameters import DEAD, LOGARITHMIC
+from pneutouch.bench.calibrate.parameters import DEAD, FRICTION, LOGARITHMIC, USUAL
 from pneutouch.bench.calibrate.response import ASSUMED_SCATTER, response_gap
 from pneutouch.units import ML
 from pneutouch.wording import counted
 
 CHANNELS = ("force", "pressure rise", "injection's pressure")
-WORDS = ("shear modulus", "wall thickness", "dead volume", "contact offset")
+WORDS = ("shear modulus", "wall thickness", "dead volume", "contact offset", "friction")
 _WORTH = 1.2
 """A test that shrinks the widest interval by a smaller factor is not listed: our choice."""
 _FAR = 2.0
@@ -34,6 +34,8 @@ def amount(k: int, deviation: float) -> str:
         return (
             f"{100 * np.expm1(deviation):.2g} %" if deviation < np.log(2.0) else f"a factor of {np.exp(deviation):.2g}"
         )
+    if k == FRICTION:
+        return f"{deviation:.2g}"
     return f"{deviation / ML:.2g} mL" if k == DEAD else f"{deviation:.2g} mm"
 
 
@@ -59,7 +61,7 @@ def _counted(fit: CalibrationFit) -> list[str]:
     others = _joined([WORDS[k] for k in fit.parameters.others]) if fit.parameters.others else ""
     if others:
         parts.append(f"and the priors of {others}, not fitted")
-    elif not fit.parameters.priors and len(fit.parameters.fitted) < len(WORDS):
+    elif not fit.parameters.priors and len(fit.parameters.fitted) < len(USUAL):
         parts.append("without priors only the fitted parameters are uncertain: the others are taken as designed")
     moved = _shared(fit)
     return [*parts, *([f"but no gain error that all runs share: {'; '.join(moved)}"] if moved else [])]

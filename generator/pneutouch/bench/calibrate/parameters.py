@@ -9,7 +9,9 @@ from pneutouch.arrays import Array, Flags
 from pneutouch.errors import InputError, nearest
 from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.atlas.table import REST_VOLUME, shipped
+from pneutouch.mechanics.contact_correction import GRIPS, NODES
 from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.uncertainty.contact import SPREAD
 from pneutouch.mechanics.uncertainty.source import UncertaintySource
 from pneutouch.mechanics.uncertainty.sources.build import build_sources
 from pneutouch.mechanics.uncertainty.sources.modulus import modulus_sources
@@ -17,23 +19,30 @@ from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
 from pneutouch.units import ML
 
-NAMES = ("modulus", "wall", "dead-volume", "offset")
+NAMES = ("modulus", "wall", "dead-volume", "offset", "friction")
 """The parameters, in the order of every array over parameters."""
-MODULUS, WALL, DEAD, OFFSET = range(4)
+MODULUS, WALL, DEAD, OFFSET, FRICTION = range(5)
 
-KEYS = ("shear_modulus_MPa", "wall_thickness_mm", "dead_volume_mL", "contact_offset_mm")
+USUAL = NAMES[:FRICTION]
+"""Those that are fitted where nothing else is requested."""
+
+KEYS = ("shear_modulus_MPa", "wall_thickness_mm", "dead_volume_mL", "contact_offset_mm", "friction")
 """Their names outside, with unit."""
 
-UNITS = ("MPa", "mm", "mL", "mm")
-LOGARITHMIC = np.array([True, True, False, False])
+UNITS = ("MPa", "mm", "mL", "mm", "1")
+LOGARITHMIC = np.array([True, True, False, False, False])
 """Those fitted in their logarithm: positive, and uncertain by a factor."""
-_OUTSIDE = np.array([1.0, 1.0, ML, 1.0])
+_OUTSIDE = np.array([1.0, 1.0, ML, 1.0, 1.0])
 
 OFFSET_BOUND = 0.5
 """Greatest contact offset, mm: our choice, one step of the paper's protocol; more is a missed contact."""
 
 OFFSET_PRIOR = 0.05
 """Prior standard deviation of the contact offset, mm: our choice, the part of the first touch below the noise."""
+
+FRICTION_PRIOR = GRIPS / np.sqrt(12.0)
+"""Prior standard deviation of the coefficient of friction where it is fitted: our choice, that of anything from none to
+grip."""
 
 _STIFFEST = 100.0
 """Greatest shear modulus fitted, MPa: our choice, far above any elastomer."""
@@ -43,7 +52,7 @@ _LARGEST = 1e6
 
 @dataclass(frozen=True, slots=True)
 class CalibrationParameters:
-    """Coordinates of the four parameters: ln MPa, ln mm, mm3, mm; (4,) arrays.
+    """Coordinates of the five parameters: ln MPa, ln mm, mm3, mm, coefficient; (5,) arrays.
 
     Attributes:
         fitted: Numbers of those that are fitted, ascending.
@@ -54,6 +63,7 @@ class CalibrationParameters:
         step: Finite difference steps.
         origin: Origin of each prior.
         priors: Whether the priors are used in the fit.
+        frictions: Coefficients at which the solid is solved; none where the contact is a plate without friction.
     """
 
     fitted: tuple[int, ...]
@@ -65,11 +75,13 @@ class CalibrationParameters:
     step: Array
     origin: tuple[str, ...]
     priors: bool
+    frictions: tuple[float, ...] = ()
 
     @property
     def others(self) -> tuple[int, ...]:
         """Numbers of those that are not fitted but have a prior; none where the priors are not used."""
-        return tuple(k for k in range(len(NAMES)) if k not in self.fitted) if self.priors else ()
+        known = [k not in self.fitted and self.prior_spread[k] > 0.0 for k in range(len(NAMES))]
+        return tuple(k for k in range(len(NAMES)) if known[k]) if self.priors else ()
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -77,8 +89,8 @@ class CalibrationParameters:
         return tuple(NAMES[k] for k in self.fitted)
 
     def full(self, fitted: Array) -> Array:
-        """All four from the fitted ones, (..., k) to (..., 4)."""
-        full = np.broadcast_to(self.start, (*fitted.shape[:-1], 4)).copy()
+        """All five from the fitted ones, (..., k) to (..., 5)."""
+        full = np.broadcast_to(self.start, (*fitted.shape[:-1], len(NAMES))).copy()
         full[..., list(self.fitted)] = fitted
         return full
 
@@ -103,22 +115,62 @@ def parse_names(names: Iterable[str]) -> tuple[int, ...]:
 
 
 def parameters(
-    sensor: Sensor, material: Material, printer: Printer, names: Sequence[str] = NAMES, *, priors: bool = True
+    sensor: Sensor, material: Material, printer: Printer, names: Sequence[str] = USUAL, *, priors: bool = True
 ) -> CalibrationParameters:
     """Parameters of a sensor as designed. Raises InputError for unknown names."""
-    recipe, size = shipped().recipe, sensor.dome.inner_radius
+    recipe, size, numbers = shipped().recipe, sensor.dome.inner_radius, parse_names(names)
+    friction = min(sensor.protocol.friction, GRIPS)
     rest = REST_VOLUME * size**3
-    low = [np.log(sensor.gas.ambient_pressure / recipe.stiffest), np.log(recipe.thinnest * size), 0.0, -OFFSET_BOUND]
-    high = [np.log(_STIFFEST), np.log(recipe.thickest * size), _LARGEST, OFFSET_BOUND]
-    start = [np.log(sensor.wall.shear_modulus), np.log(sensor.dome.wall_thickness), sensor.gas.dead_volume, 0.0]
-    prior_spread, even, origin = _priors(sensor, material, printer)
-    step = np.array([1e-3, 1e-3, 1e-3 * (rest + sensor.gas.dead_volume), 1e-3 * size])
+    low = [
+        np.log(sensor.gas.ambient_pressure / recipe.stiffest),
+        np.log(recipe.thinnest * size),
+        0.0,
+        -OFFSET_BOUND,
+        0.0,
+    ]
+    high = [np.log(_STIFFEST), np.log(recipe.thickest * size), _LARGEST, OFFSET_BOUND, GRIPS]
+    start = [
+        np.log(sensor.wall.shear_modulus),
+        np.log(sensor.dome.wall_thickness),
+        sensor.gas.dead_volume,
+        0.0,
+        friction,
+    ]
+    prior_spread, even, origin = _priors(sensor, material, printer, fitted=FRICTION in numbers)
+    step = np.array([1e-3, 1e-3, 1e-3 * (rest + sensor.gas.dead_volume), 1e-3 * size, 1e-2])
     bounds = np.array(start), np.array(low), np.array(high)
-    return CalibrationParameters(parse_names(names), *bounds, prior_spread, even, step, origin, priors)
+    nodes = _frictions(sensor, fitted=FRICTION in numbers)
+    return CalibrationParameters(numbers, *bounds, prior_spread, even, step, origin, priors, nodes)
 
 
-def _priors(sensor: Sensor, material: Material, printer: Printer) -> tuple[Array, Flags, tuple[str, ...]]:
-    """Standard deviations, which are uniform, and origins: the sources of every prediction's uncertainty."""
+def _frictions(sensor: Sensor, *, fitted: bool) -> tuple[float, ...]:
+    """Coefficients at which the solid is solved: all where friction is fitted, else the design's and its neighbours."""
+    if fitted:
+        return NODES
+    if sensor.protocol.other_contact is None:
+        return ()
+    stated = min(sensor.protocol.friction, GRIPS)
+    return tuple(sorted({stated / SPREAD, stated, min(stated * SPREAD, GRIPS)}))
+
+
+def _friction_prior(sensor: Sensor, *, fitted: bool) -> tuple[float, str]:
+    """Standard deviation of the coefficient; none where it is neither fitted nor stated."""
+    stated = min(sensor.protocol.friction, GRIPS)
+    if fitted:
+        return float(FRICTION_PRIOR), f"normal, {FRICTION_PRIOR:.2g}: our choice, that of anything from 0 to {GRIPS:g}"
+    if not stated:
+        return 0.0, "none: a plate without friction"
+    u = float(np.log(SPREAD) / np.sqrt(3.0))
+    return u * stated, f"friction: assumed, even in its logarithm within a factor of {SPREAD:g}"
+
+
+def _priors(
+    sensor: Sensor, material: Material, printer: Printer, *, fitted: bool
+) -> tuple[Array, Flags, tuple[str, ...]]:
+    """Standard deviations, which are uniform, and origins: the sources of every prediction's uncertainty.
+
+    ``fitted``: whether the friction is.
+    """
     built = build_sources(batch_of(sensor, [0.0]), printer)
     groups = (
         modulus_sources(material, np.zeros(1, dtype=bool)),
@@ -127,9 +179,9 @@ def _priors(sensor: Sensor, material: Material, printer: Printer) -> tuple[Array
     )
     priors = [_together(group) for group in groups]
     offset = (OFFSET_PRIOR, f"normal, {OFFSET_PRIOR:g} mm: our choice, what is lost of the first touch below the noise")
-    spreads, origins = zip(*priors, offset, strict=True)
+    spreads, origins = zip(*priors, offset, _friction_prior(sensor, fitted=fitted), strict=True)
     even = [len(group) == 1 and group[0].distribution.endswith("rectangular") for group in groups]
-    return np.array(spreads), np.array([*even, False]), tuple(origins)
+    return np.array(spreads), np.array([*even, False, False]), tuple(origins)
 
 
 def _together(sources: Sequence[UncertaintySource]) -> tuple[float, str]:

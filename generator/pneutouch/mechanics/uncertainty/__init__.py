@@ -2,7 +2,7 @@
 
 from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.uncertainty.budget import budget
-from pneutouch.mechanics.uncertainty.contact import ContactModel, plate_alone
+from pneutouch.mechanics.uncertainty.contact import ContactModel
 from pneutouch.mechanics.uncertainty.document import document, gas_text, shares, text
 from pneutouch.mechanics.uncertainty.gas_notes import GasNotes, gas_notes
 from pneutouch.mechanics.uncertainty.monte_carlo import monte_carlo
@@ -27,7 +27,6 @@ __all__ = [
     "measured_errors",
     "model_errors",
     "monte_carlo",
-    "plate_alone",
     "shares",
     "text",
 ]

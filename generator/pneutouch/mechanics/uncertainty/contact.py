@@ -13,6 +13,7 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError
 from pneutouch.mechanics.atlas.batches import batch_of
+from pneutouch.mechanics.contact_correction import GRIPS, plate_alone
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.uncertainty.neighbours import joined, log_figures
@@ -75,12 +76,14 @@ class ContactShift:
 class ContactModel:
     """One sensor under its contact at n ascending driving pressures, MPa.
 
-    ``states`` are those of the solid where it has been solved already.
+    ``states`` are those of the solid where it has been solved already. ``fitted_spread`` is the standard uncertainty of
+    the coefficient where a calibration fitted it.
     """
 
     sensor: Sensor
     pressures: tuple[float, ...]
     states: Sequence[SensorState] | None = None
+    fitted_spread: float | None = None
 
     @cached_property
     def logs(self) -> Array:
@@ -102,6 +105,8 @@ class ContactModel:
     def friction(self) -> FrictionSpread | None:
         """What the unknown coefficient does; None without friction."""
         stated = self.sensor.protocol.friction
+        if self.fitted_spread is not None:
+            return self._fitted(min(stated, GRIPS), self.fitted_spread)
         if stated == 0.0:
             return None
         if np.isinf(stated):
@@ -125,6 +130,14 @@ class ContactModel:
         )
         return FrictionSpread(np.sqrt(variance), slope / far, origin)
 
+    def _fitted(self, value: float, spread: float) -> FrictionSpread:
+        """That of a fitted coefficient: the difference over its standard uncertainty, within 0 and grip."""
+        ends = max(value - spread, 0.0), min(value + spread, GRIPS)
+        down, up = (self._solved(self.sensor.replace(friction=np.inf if x >= GRIPS else x)) for x in ends)
+        slope = (up - down) / max(ends[1] - ends[0], 1e-9)
+        origin = f"fitted: {value:.3g}, standard uncertainty {spread:.2g}; the solid at {ends[0]:.2g} and {ends[1]:.2g}"
+        return FrictionSpread(np.abs(slope) * spread, value * slope, origin)
+
     def _solved(self, sensor: Sensor) -> Array:
         """Figures of the solid, (figures, n); NaN from the first driving pressure on that it cannot solve."""
         from pneutouch.mechanics.solid_states import solid_states
@@ -135,15 +148,6 @@ class ContactModel:
             except ComputationError:
                 continue
         return np.full((len(FIGURES), len(self.pressures)), np.nan)
-
-
-def plate_alone(sensor: Sensor) -> Sensor:
-    """The sensor under a plate without friction; one that is wide enough where an object was in its place."""
-    protocol = sensor.protocol
-    if protocol.other_contact is None:
-        return sensor
-    plate = protocol.plate_radius if protocol.body is None else max(protocol.plate_radius, 2 * sensor.dome.inner_radius)
-    return sensor.replace(body=None, plate_rim=None, friction=0.0, plate_radius=plate)
 
 
 def _logs(states: Sequence[SensorState], size: int) -> Array:

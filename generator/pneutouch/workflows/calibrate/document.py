@@ -6,7 +6,7 @@ from pneutouch.bench.calibrate import NAMES, CalibrationFit, HeldOutPrediction
 from pneutouch.bench.calibrate.further import SuggestedTest
 from pneutouch.bench.calibrate.goodness import RunResiduals, SystematicDeviation
 from pneutouch.bench.calibrate.identify import CorrelatedParameters
-from pneutouch.bench.calibrate.parameters import DEAD, KEYS, LOGARITHMIC, UNITS, outside_value
+from pneutouch.bench.calibrate.parameters import DEAD, FRICTION, KEYS, LOGARITHMIC, UNITS, outside_value
 from pneutouch.bench.calibrate.response import ResponseGap
 from pneutouch.units import KPA, ML
 from pneutouch.workflows.calibrate.record import (
@@ -42,8 +42,9 @@ def _estimate(fitted: CalibrationFit, place: int) -> EstimateRecord:
     at, half = float(fitted.solution.at[place]), float(fitted.half_width[place])
     interval = None
     if np.isfinite(half):
-        low = at - half if k != DEAD else max(at - half, 0.0)
-        interval = [outside_value(k, low), outside_value(k, at + half)]
+        low = at - half if k not in (DEAD, FRICTION) else max(at - half, 0.0)
+        high = at + half if k != FRICTION else min(at + half, float(fitted.parameters.high[k]))
+        interval = [outside_value(k, low), outside_value(k, high)]
     prior_spread = float(fitted.parameters.prior_spread[k])
     return {
         "parameter": NAMES[k],

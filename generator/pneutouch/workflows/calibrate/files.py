@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.bench.calibrate.parameters import DEAD, KEYS, NAMES, OFFSET, outside_value
+from pneutouch.bench.calibrate.parameters import DEAD, FRICTION, KEYS, NAMES, OFFSET, outside_value
 from pneutouch.bench.calibrate.response import ResponseGap
 from pneutouch.catalogue import KINDS
 from pneutouch.errors import InputError
@@ -108,8 +108,10 @@ def prepare(
 def savable(calibration: Calibration, source: CampaignSource) -> dict[str, Any]:
     """`calibration_content`, checked. Raises InputError with the key ``fit`` where it cannot be a calibration.
 
-    That is: a modulus or wall that was fitted has no interval, or a value or its uncertainty is beyond the bounds.
+    That is: a modulus, a wall or a friction that was fitted has no interval, the data do not determine the friction,
+    or a value or its uncertainty is beyond the bounds.
     """
+    _check_friction(calibration)
     content = calibration_content(calibration, source)
     try:
         KINDS["calibrations"].validate(content, "calibration")
@@ -117,6 +119,20 @@ def savable(calibration: Calibration, source: CampaignSource) -> dict[str, Any]:
         where = f"{error.key}: " if error.key else ""
         raise InputError(f"{where}{error.problem}", key="fit", remedy="fit fewer parameters") from None
     return content
+
+
+def _check_friction(calibration: Calibration) -> None:
+    """Raise InputError where friction was fitted and the data do not tell it from its prior or another parameter."""
+    identified = calibration.identified
+    groups = [group.members for group in identified.ambiguities if FRICTION in group.members]
+    if groups:
+        others = " and ".join(NAMES[k] for k in groups[0] if k != FRICTION)
+        why = f"the data do not tell friction from {others}"
+    elif FRICTION in identified.unseen:
+        why = "the data do not determine the friction"
+    else:
+        return
+    raise InputError(why, key="fit", value=",".join(calibration.fit.parameters.names), remedy="leave out friction")
 
 
 def save(saved: SavedCalibration) -> None:
@@ -154,6 +170,7 @@ def calibration_content(calibration: Calibration, source: CampaignSource) -> dic
                 if gap is None
                 else {"depth_mm": gap.depth, "plate_diameter_mm": float(design.indentation.plate_diameter_mm)}
             ),
+            **({} if design.contact.is_atlas_plate else {"contact": design.contact.words}),
         },
         "design": {
             "name": calibration.scene.name,
@@ -170,6 +187,7 @@ def calibration_content(calibration: Calibration, source: CampaignSource) -> dic
                 "covered": k in covered,
             }
             for k in range(len(NAMES))
+            if k != FRICTION or k in fitted.parameters.fitted
         ],
         **({} if gap is None else {"response": _response(gap, calibration)}),
     }
@@ -189,6 +207,8 @@ def _covariance(calibration: Calibration) -> tuple[list[int], Array]:
         if k not in (DEAD, OFFSET) and not np.isfinite(fit.half_width[place]):
             missing = f"{KEYS[k]} has no interval (on its bound, or not seen): there is no calibration to save"
             raise InputError(missing, key="fit", remedy=f"leave out {NAMES[k]}")
+    # A friction that was not fitted is a source of its own in every prediction.
+    others = tuple(k for k in others if k != FRICTION)
     size = len(NAMES)
     whole, grown = np.zeros((size, size)), np.ones(size)
     whole[np.ix_(fitted, fitted)] = fit.covariance.matrix

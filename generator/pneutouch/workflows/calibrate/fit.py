@@ -7,6 +7,7 @@ from functools import cached_property
 from pneutouch.arrays import Array
 from pneutouch.bench.calibrate import (
     NAMES,
+    USUAL,
     CalibrationFit,
     HeldOutPrediction,
     Injection,
@@ -94,7 +95,7 @@ class Calibration:
 def calibrate(
     observations: Observations,
     scene: ResolvedDesign,
-    names: Sequence[str] = NAMES,
+    names: Sequence[str] = USUAL,
     *,
     priors: bool = True,
     hold_out_kPa: Sequence[float] = (),

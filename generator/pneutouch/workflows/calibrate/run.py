@@ -86,9 +86,10 @@ def run_calibration(
     # A design that is calibrated already is fitted from its drawing again, or the prior would hold the data twice.
     changes = {**parse_changes(loaded.campaign.assignments), CALIBRATION: None}
     scene = load_scene(design, changes, library)
-    check_fitted(scene, sensor_of(assemble(scene)))
+    built = sensor_of(assemble(scene))
+    check_fitted(scene, built)
     pairs = [(curve.run.resin, curve.run.driving_pressure_kPa) for curve in loaded.curves]
-    expected = answers(design, changes, pairs, "atlas", library)
+    expected = answers(design, changes, pairs, "solid" if built.protocol.other_contact else "atlas", library)
     curves, refused, questions = sound(loaded, expected)
     sensor, observations, notes = observations_of(loaded.campaign, curves, loaded.injections, scene, options.sensor)
     used_files = {curve.run.file for curve in observations.curves}

@@ -1,0 +1,120 @@
+"""Friction and other objects as a correction of the atlas: the solid's curves under a contact over those under a plate.
+
+The atlas presses with a plate without friction. Its force and pressure rise times the ratio of the solid's curves with
+a contact to the solid's with that plate, at the same travels and driving pressures, are those under the contact. The
+ratio is of one sensor; nearby its logarithm is taken as the same. With friction that of the force moves by up to 0.04
+for a modulus 1.3 times as large, that of the sensitivity by up to 0.02 (`tests/mechanics/test_contact_correction.py`):
+a fit takes the ratio at its own estimate.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.errors import ComputationError
+from pneutouch.mechanics.sensor import Sensor
+from pneutouch.units import KPA
+
+GRIPS = 2.0
+"""From this coefficient on the contact is taken as one that grips: beyond it the sensitivity of the paper's sensor in
+its resins changes by less than 0.5 % (`tests/mechanics/test_contact_correction.py`)."""
+
+NODES = (0.0, 0.1, 0.25, 0.45, 0.7, 1.0, 1.4, GRIPS)
+"""Coefficients at which the solid is solved where friction is fitted."""
+
+_STEPS = 28
+_GRAIN = 0.5 * KPA
+"""Driving pressures nearer to each other than this have one ratio."""
+
+
+@dataclass(frozen=True)
+class ContactRatio:
+    """Logarithms of force and rise under a contact over those under the plate without friction.
+
+    Attributes:
+        frictions: Coefficients, ascending, (q,).
+        pressures: Driving pressures, MPa, ascending, (p,).
+        depths: Travels, mm, ascending, (m,).
+        logs: Of force and rise, (2, q, p, m).
+    """
+
+    frictions: Array
+    pressures: Array
+    depths: Array
+    logs: Array
+
+    def at(self, friction: Array, driving: Array, travel: Array) -> Array:
+        """Logarithms (2, n, m) at coefficients (n,), driving pressures (n,) and travels (n, m).
+
+        Between coefficients a monotone cubic, between pressures and travels straight lines, beyond all constant.
+        """
+        by_friction = self._by_friction(np.clip(friction, self.frictions[0], self.frictions[-1]))
+        where = np.interp(driving, self.pressures, np.arange(self.pressures.size))
+        low = np.minimum(where.astype(int), max(self.pressures.size - 2, 0))
+        high, share = np.minimum(low + 1, self.pressures.size - 1), (where - low)[:, None]
+        n = np.arange(driving.size)
+        rows = (1.0 - share) * by_friction[:, n, low] + share * by_friction[:, n, high]
+        pairs = [[np.interp(x, self.depths, row) for x, row in zip(travel, part, strict=True)] for part in rows]
+        return np.array(pairs).reshape(2, *travel.shape)
+
+    def _by_friction(self, friction: Array) -> Array:
+        """(2, n, p, m) at coefficients (n,)."""
+        if self.frictions.size == 1:
+            return np.repeat(self.logs, friction.size, axis=1)
+        from scipy.interpolate import PchipInterpolator
+
+        return np.asarray(PchipInterpolator(self.frictions, self.logs, axis=1)(friction))
+
+
+def contact_ratio(
+    sensor: Sensor, frictions: tuple[float, ...], driving_pressures: Array, deepest: float
+) -> ContactRatio:
+    """The ratio of a sensor with its object at coefficients, near driving pressures (MPa) and to a travel (mm).
+
+    Raises ComputationError where the solid cannot press the sensor at any of the pressures.
+    """
+    grains = np.unique(np.round(driving_pressures / _GRAIN)) * _GRAIN
+    bare = sensor.replace(depth=deepest, steps=_STEPS, waves=0, gauge_limit=np.inf, break_stretch=None, friction=0.0)
+    # A surface that grips in place of the largest coefficients: nothing slips there any more.
+    held = [bare.replace(friction=np.inf if friction >= GRIPS else friction) for friction in frictions]
+    depths, pressures = np.linspace(0.0, deepest, _STEPS + 1)[1:], tuple(grains.tolist())
+    under, over = _pressed(plate_alone(bare), pressures), [_pressed(one, pressures) for one in held]
+    count = min(len(under), *(len(presses) for presses in over))
+    if not count:
+        listed = ", ".join(f"{pressure / KPA:g}" for pressure in pressures)
+        raise ComputationError(f"calibrate: the solid cannot press the sensor with its contact at {listed} kPa")
+    logs = [[_log_ratio(presses[k], under[k], depths) for k in range(count)] for presses in over]
+    return ContactRatio(np.array(frictions), grains[:count], depths, np.array(logs).transpose(2, 0, 1, 3))
+
+
+def plate_alone(sensor: Sensor) -> Sensor:
+    """The sensor under a plate without friction; one that is wide enough where an object was in its place."""
+    protocol = sensor.protocol
+    if protocol.other_contact is None:
+        return sensor
+    plate = protocol.plate_radius if protocol.body is None else max(protocol.plate_radius, 2 * sensor.dome.inner_radius)
+    return sensor.replace(body=None, plate_rim=None, friction=0.0, plate_radius=plate)
+
+
+@lru_cache(maxsize=64)
+def _pressed(sensor: Sensor, pressures: tuple[float, ...]) -> tuple[Array, ...]:
+    """Travel, force and rise (3, n) by the solid at ascending pressures, without the highest that it cannot be driven
+    to; a fit and its checks need the same ones again."""
+    from pneutouch.mechanics.solid_states import solid_states
+
+    for count in range(len(pressures), 0, -1):
+        try:
+            states = solid_states(sensor, np.array(pressures[:count]))
+        except ComputationError:
+            continue
+        return tuple(np.array([one.indentation, one.force, one.pressure_rise]) for one in states)
+    return ()
+
+
+def _log_ratio(contact: Array, plate: Array, depths: Array) -> Array:
+    """Ln of force and rise (2, m) at travels, of two presses; beyond the end of either as at that end."""
+    at = np.minimum(depths, min(contact[0, -1], plate[0, -1]))
+    over, under = (np.array([np.interp(at, one[0], row) for row in one[1:]]) for one in (contact, plate))
+    return np.asarray(np.log(over / under))
