@@ -122,12 +122,12 @@ def savable(calibration: Calibration, source: CampaignSource) -> dict[str, Any]:
 
 
 def _check_friction(calibration: Calibration) -> None:
-    """Raise InputError where friction was fitted and the data do not tell it from its prior or another parameter."""
+    """Raise InputError where friction was fitted and the data do not distinguish it from its prior or another parameter."""
     identified = calibration.identified
     groups = [group.members for group in identified.ambiguities if FRICTION in group.members]
     if groups:
         others = " and ".join(NAMES[k] for k in groups[0] if k != FRICTION)
-        why = f"the data do not tell friction from {others}"
+        why = f"the data do not distinguish friction from {others}"
     elif FRICTION in identified.unseen:
         why = "the data do not determine the friction"
     else:
