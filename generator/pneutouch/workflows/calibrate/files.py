@@ -122,7 +122,7 @@ def savable(calibration: Calibration, source: CampaignSource) -> dict[str, Any]:
 
 
 def _check_friction(calibration: Calibration) -> None:
-    """Raise InputError where friction was fitted and the data do not distinguish it from its prior or another parameter."""
+    """Raise InputError where friction was fitted and the data do not separate it from prior and other parameters."""
     identified = calibration.identified
     groups = [group.members for group in identified.ambiguities if FRICTION in group.members]
     if groups:
