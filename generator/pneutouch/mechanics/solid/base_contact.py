@@ -64,39 +64,39 @@ class BaseContact:
 
     def __init__(self, solid: _Body, base: RigidBase) -> None:
         length = solid.length
-        self._outer = _Face(
+        self.outer = BaseFace(
             solid, solid.mesh.outer, base.flange / length, (base.ring / length, base.ring_height / length)
         )
-        self._inner = _Face(solid, solid.mesh.inner, base.opening / length)
+        self.inner = BaseFace(solid, solid.mesh.inner, base.opening / length)
         self._solid = solid
 
     def at(self, x: Array) -> TermState:
         """Energy and its derivatives at positions x (n_nodes, 2)."""
         solid = self._solid
-        outer, inner = self._outer.meet(x), self._inner.meet(x)
+        outer, inner = self.outer.meet(x), self.inner.meet(x)
         energy, gradient = 0.0, np.zeros(solid.size)
         if outer is not None:
-            energy += self._outer.energy(outer)
-            gradient = solid.push(self._outer.force(outer))
+            energy += self.outer.energy(outer)
+            gradient = solid.push(self.outer.force(outer))
         if inner is not None:
-            energy += self._inner.energy(inner)
-            gradient = gradient + solid.swell(self._inner.force(inner))
+            energy += self.inner.energy(inner)
+            gradient = gradient + solid.swell(self.inner.force(inner))
         return TermState(
             energy,
             gradient,
-            None if outer is None else self._outer.hessian(outer),
-            None if inner is None else self._inner.hessian(inner),
+            None if outer is None else self.outer.hessian(outer),
+            None if inner is None else self.inner.hessian(inner),
         )
 
     def waves(self, x: Array) -> list[tuple[Array, Array] | None]:
         """Of the inner and the outer face at positions x: second derivative by edge positions (n_edges, 2 n, 2 n), and
         by displacements around the axis (n_edges, n, n), by which a point moves outwards, too; None off the base."""
-        meetings = [(face, face.meet(x)) for face in (self._inner, self._outer)]
+        meetings = [(face, face.meet(x)) for face in (self.inner, self.outer)]
         return [None if met is None else (face.hessian(met), face.around(met)) for face, met in meetings]
 
     def load(self, x: Array) -> BaseLoad:
         """What the outer wall puts on the base at positions x (n_nodes, 2)."""
-        face, meeting = self._outer, self._outer.meet(x)
+        face, meeting = self.outer, self.outer.meet(x)
         if meeting is None:
             return BaseLoad()
         most = float(meeting.traction.max())
@@ -104,7 +104,7 @@ class BaseContact:
 
 
 @dataclass(frozen=True)
-class _Meeting:
+class BaseMeeting:
     """Radius and traction, slope and curvature of the base at the points of a face, (n_edges, n_points) each."""
 
     radius: Array
@@ -113,13 +113,13 @@ class _Meeting:
     curve: Array
 
 
-class _Face:
+class BaseFace:
     """The quadrature points of one face of the wall, and the base that they can meet: flat from ``start`` outward, with
     a ``ring``: radius and height (R0)."""
 
     def __init__(self, solid: _Body, edges: Index, start: float, ring: tuple[float, float] = (0.0, 0.0)) -> None:
         self.edges, self.start, self.stiffness = edges, start, solid.contact.stiffness
-        self._ring, self._high = ring
+        self._ring, self.high = ring
         x, w = np.polynomial.legendre.leggauss(_POINTS)
         self.shape, slope = line_shapes(x, edges.shape[1])
         line = solid.rest[edges]
@@ -129,23 +129,23 @@ class _Face:
         # Edges and corners of the base are as round as the longest cell, as the rim of a plate is.
         self._rim = solid.contact.longest
 
-    def meet(self, nodes: Array) -> _Meeting | None:
+    def meet(self, nodes: Array) -> BaseMeeting | None:
         """Points below the surface of the base at positions (n_nodes, 2); None where there are none."""
         line = nodes[self.edges]
         z = line[..., 1] @ self.shape.T
-        if z.min() >= self._high:
+        if z.min() >= self.high:
             return None
         r = line[..., 0] @ self.shape.T
-        height, slope, curve = self._surface(r)
+        height, slope, curve = self.surface(r)
         traction = np.maximum(self.stiffness * (height - z), 0.0)
-        return _Meeting(r, traction, slope, curve) if traction.any() else None
+        return BaseMeeting(r, traction, slope, curve) if traction.any() else None
 
-    def _surface(self, r: Array) -> tuple[Array, Array, Array]:
+    def surface(self, r: Array) -> tuple[Array, Array, Array]:
         """Height of the base at radii r and its first two derivatives."""
         rim, short = self._rim, np.maximum(self.start - r, 0.0)
         height, slope, curve = -0.5 * short**2 / rim, short / rim, np.where(short > 0.0, -1.0 / rim, 0.0)
-        if self._high:
-            for corner, sign in ((self._ring, 1.0), (self._ring + self._high, -1.0)):
+        if self.high:
+            for corner, sign in ((self._ring, 1.0), (self._ring + self.high, -1.0)):
                 along = np.clip((r - corner) / rim + 0.5, 0.0, 1.0)
                 beyond = np.maximum(r - corner - 0.5 * rim, 0.0)
                 height = height + sign * (0.5 * rim * along**2 + beyond)
@@ -153,10 +153,11 @@ class _Face:
                 curve = curve + sign * np.where((along > 0.0) & (along < 1.0), 1.0 / rim, 0.0)
         return height, slope, curve
 
-    def energy(self, meeting: _Meeting) -> float:
+    def energy(self, meeting: BaseMeeting) -> float:
+        """Energy of the contact, nondimensional."""
         return float(np.vdot(self.weight, meeting.traction**2)) / (2.0 * self.stiffness)
 
-    def force(self, meeting: _Meeting) -> Array:
+    def force(self, meeting: BaseMeeting) -> Array:
         """Derivative of the energy by edge positions, (n_edges, 2 n)."""
         load = self.weight * meeting.traction
         out = np.empty((load.shape[0], 2 * self.edges.shape[1]))
@@ -164,7 +165,7 @@ class _Face:
         out[:, RADIAL] = (load * meeting.slope) @ self.shape
         return out
 
-    def hessian(self, meeting: _Meeting) -> Array:
+    def hessian(self, meeting: BaseMeeting) -> Array:
         """Second derivative by edge positions, (n_edges, 2 n, 2 n)."""
         touching: Flags = meeting.traction > 0.0
         stiff = np.where(touching, self.stiffness, 0.0) * self.weight
@@ -178,7 +179,7 @@ class _Face:
             out[:, RADIAL, RADIAL] = (along @ self._pairs).reshape(-1, n, n)
         return out
 
-    def around(self, meeting: _Meeting) -> Array:
+    def around(self, meeting: BaseMeeting) -> Array:
         """Second derivative by displacements around the axis, (n_edges, n, n)."""
         load = self.weight * meeting.traction * meeting.slope / np.maximum(meeting.radius, 1.0e-300)
         n = self.edges.shape[1]

@@ -110,8 +110,12 @@ class Contact:
 
     def linear(self, touch: ContactEvaluation, move: Array) -> Array:
         """Tractions (unclipped) after a nodal displacement `move` (n_nodes, 2), the gap taken as linear in it."""
+        return np.asarray(-self.stiffness * self.opening(touch, move, touch.gap))
+
+    def opening(self, touch: ContactEvaluation, move: Array, lift: float | Array) -> Array:
+        """Gaps after a nodal displacement `move` (n_nodes, 2), taken as linear in it, where they were ``lift``."""
         r, z = self.positions(move)
-        return np.asarray(-self.stiffness * (touch.gap + touch.slope * r - z))
+        return np.asarray(lift + touch.slope * r - z)
 
     def force(self, traction: Array, slope: Array) -> Array:
         """Derivative of the energy by edge positions under given tractions, (n_edges, 2 n)."""

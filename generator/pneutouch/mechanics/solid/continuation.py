@@ -52,8 +52,7 @@ def plate_state(scene: SolidScene, state: SolverState, height: float, iterations
     active = np.where(touch.traction > 0.0, -contact.stiffness, 0.0)
     tangent = stability(scene, state, solid.push(contact.force(active, touch.slope)))
     move = solid.expand(tangent.step)
-    r, z = contact.positions(move)
-    stiffness = float(np.vdot(contact.weight * active, 1.0 + touch.slope * r - z))
+    stiffness = float(np.vdot(contact.weight * active, contact.opening(touch, move, 1.0)))
     rate = -state.filling.rate * float(tangent.step @ state.by_volume)
     force = float(np.vdot(contact.weight, touch.traction))
     return PlateState(

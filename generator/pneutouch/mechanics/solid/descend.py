@@ -100,15 +100,15 @@ def _stays_away(here: PlateState, other: PlateState) -> bool:
 def _kind(here: PlateState, beyond: PlateState) -> str:
     """clamp_fold where the wall moves most within a wall of its clamp, else snap."""
     solid = here.scene.solid
-    moved = solid.rest[np.hypot(*(beyond.state.x - here.state.x).T).argmax()]
+    moved = solid.rest[np.linalg.norm(beyond.state.x - here.state.x, axis=1).argmax()]
     held = solid.rest[solid.mesh.clamped]
-    near = held.size > 0 and np.hypot(*(held - moved).T).min() < solid.wall
+    near = held.size > 0 and np.linalg.norm(held - moved, axis=1).min() < solid.wall
     return "clamp_fold" if near else "snap"
 
 
 def _describe(path: list[PlateState], after: PlateState) -> str:
     solid = after.scene.solid
-    r, z = solid.mesh.nodes[np.hypot(*(after.state.x - path[-1].state.x).T).argmax()]
+    r, z = solid.mesh.nodes[np.linalg.norm(after.state.x - path[-1].state.x, axis=1).argmax()]
     place = f"the wall point at rest at r {r:.2f}, z {z:.2f} mm moves most"
     if not after.stable:
         return f"the tangent has a negative mode; {place}"

@@ -166,13 +166,18 @@ def indent(
 
 def follower_of(solid: SolidModel, free: FreeState, press: PressSettings, touch: FirstTouch) -> PathFollower:
     """The follower of a press with its gas shut in, at first contact."""
-    length, mu = solid.length, solid.mu
-    if free.pressure + press.ambient < -_ROUNDING * mu:
-        raise UnreachableLoadError(free.pressure, -press.ambient, "it lies below absolute vacuum")
-    gas = Gas.filled(free.pressure / mu, free.volume / length**3, press.ambient / mu, press.dead_volume / length**3)
+    gas = shut_in(solid, free, press)
     if press.friction:
         return FrictionFollower(solid, gas, touch.body, free.unit.x, press.friction)
     return PathFollower(solid, gas, touch.body, free.unit.x)
+
+
+def shut_in(solid: SolidModel, free: FreeState, press: PressSettings) -> Gas:
+    """The gas of a free state, shut in. Raises UnreachableLoadError below absolute vacuum."""
+    length, mu = solid.length, solid.mu
+    if free.pressure + press.ambient < -_ROUNDING * mu:
+        raise UnreachableLoadError(free.pressure, -press.ambient, "it lies below absolute vacuum")
+    return Gas.filled(free.pressure / mu, free.volume / length**3, press.ambient / mu, press.dead_volume / length**3)
 
 
 def _ended(events: list[SolidEvent], solid: SolidModel) -> bool:

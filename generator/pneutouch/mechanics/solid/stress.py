@@ -32,7 +32,11 @@ class WallExtremes:
 
 class StrainProbe:
     """Evaluates strains on the faces eta = +-1 of every cell: at Gauss stations along the arc that are far enough from
-    the clamp, and exactly where far enough begins, so that no station comes and goes with the wall."""
+    the clamp, and exactly where far enough begins, so that no station comes and goes with the wall.
+
+    operator (n_cells, 5 n_stations, 2 n_nodes): strains at the stations; ``far`` picks those that count.
+    edge_operator (n_edges, 5, 2 n_nodes): strains where far enough begins, in the cells ``edge_cells``.
+    """
 
     def __init__(self, solid: SolidModel) -> None:
         self.solid = solid
@@ -41,14 +45,14 @@ class StrainProbe:
         points = np.stack([np.tile(stations, 2), np.repeat([-1.0, 1.0], 3)], axis=1)
         b, _, position = strain_operator(rest, cells, points)
         flat = position.reshape(-1, 2)
-        self._far = self._distance(flat) > CLAMP_REACH * solid.wall
-        self._b = b.reshape(b.shape[0], -1, b.shape[-1])
+        self.far = self._distance(flat) > CLAMP_REACH * solid.wall
+        self.operator = b.reshape(b.shape[0], -1, b.shape[-1])
         edges = self._edges()
-        self._edge_cells = np.array([cell for cell, _ in edges], dtype=np.intp)
+        self.edge_cells = np.array([cell for cell, _ in edges], dtype=np.intp)
         extra = [strain_operator(rest, cells[[cell]], point[None, :]) for cell, point in edges]
-        self._edge_b = np.array([operator[0, 0] for operator, _, _ in extra]).reshape(len(edges), 5, b.shape[-1])
-        places = np.concatenate([flat[self._far], *(place[0] for _, _, place in extra)])
-        outer = np.concatenate([np.tile(points[:, 1] > 0.0, b.shape[0])[self._far], [p[1] > 0.0 for _, p in edges]])
+        self.edge_operator = np.array([operator[0, 0] for operator, _, _ in extra]).reshape(len(edges), 5, b.shape[-1])
+        places = np.concatenate([flat[self.far], *(place[0] for _, _, place in extra)])
+        outer = np.concatenate([np.tile(points[:, 1] > 0.0, b.shape[0])[self.far], [p[1] > 0.0 for _, p in edges]])
         self._relative = solid.grade(places[:, 0], places[:, 1])
         third = np.clip(np.arctan2(places[:, 1], places[:, 0]) / (np.pi / 6.0), 0, 2).astype(np.intp)
         self._zone = third + 3 * outer.astype(np.intp)
@@ -78,8 +82,8 @@ class StrainProbe:
     def _strains(self, x: Array) -> tuple[Array, Array, Array, Array]:
         """Squared norm and area ratio in plane, hoop stretch (n_points,); principal stretches (3, n_points)."""
         nodes = x[self.solid.mesh.cells].reshape(self.solid.mesh.cells.shape[0], -1, 1)
-        f = np.matmul(self._b, nodes).reshape(-1, 5)[self._far]
-        f = np.concatenate([f, np.matmul(self._edge_b, nodes[self._edge_cells])[..., 0]])
+        f = np.matmul(self.operator, nodes).reshape(-1, 5)[self.far]
+        f = np.concatenate([f, np.matmul(self.edge_operator, nodes[self.edge_cells])[..., 0]])
         # At the tip of a crease a face can turn over between sound integration points: shown as an immense fold.
         j = np.maximum(area_ratio(f), _TURNED_OVER)
         a, h = np.maximum((f[:, IN_PLANE] ** 2).sum(axis=1), 2.0 * j), np.maximum(f[:, HOOP], _TURNED_OVER)

@@ -1,0 +1,81 @@
+"""Contact of the outer wall with a rigid surface at equally spaced angles: the solid's penalty at points in space."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pneutouch.arrays import Array, Flags, Index
+from pneutouch.mechanics.harmonic.fields import Harmonics
+from pneutouch.mechanics.harmonic.operators import FieldGroup, FieldOperator
+from pneutouch.mechanics.harmonic.surface import Surface
+from pneutouch.mechanics.solid.contact import Contact, ContactEvaluation
+from pneutouch.mechanics.solid.elements import line_shapes
+from pneutouch.mechanics.solid.indenter import Indenter
+
+X, Y, Z = range(3)
+"""Cartesian fields of a point of a face."""
+
+
+def face_operator(edges: Index, points: int, harmonics: Harmonics, signs: Array) -> FieldOperator:
+    """Positions (x, y, z) at the Gauss points of edges and at the angles."""
+    shape, _ = line_shapes(np.polynomial.legendre.leggauss(points)[0], edges.shape[1])
+    return FieldOperator([FieldGroup(shape, harmonics.cartesian(harmonics.contact_angles))], edges, signs)
+
+
+class HarmonicContact(Contact):
+    """The solid's contact with every quadrature point of the outer wall taken at each angle: arrays of points are
+    (n_edges, n_points, n_angles), slopes have one axis more and curvatures two, by x and y."""
+
+    def __init__(self, axisymmetric: Contact, harmonics: Harmonics, signs: Array) -> None:
+        vars(self).update(vars(axisymmetric))
+        self._operator = face_operator(self.edges, self.shape.shape[0], harmonics, signs)
+        angles = harmonics.contact_angles.size
+        self.weight = np.repeat(axisymmetric.weight[..., None], angles, axis=2) / angles
+        self.noise = float(np.finfo(np.float64).eps * self.stiffness * np.linalg.norm(self.weight))
+
+    def points(self, nodes: Array) -> Array:
+        """Positions (x, y, z) of the points, (n_edges, n_points, n_angles, 3)."""
+        return self._operator.fields(nodes)
+
+    def touch(self, nodes: Array, plate: Indenter) -> ContactEvaluation:
+        """Energy and tractions against a surface for coefficients (n_nodes, columns)."""
+        place = self.points(nodes)
+        assert isinstance(plate, Surface)
+        under = plate.over(place[..., X], place[..., Y])
+        gap = under.height - place[..., Z]
+        traction = np.maximum(-self.stiffness * gap, 0.0)
+        energy = float(np.vdot(self.weight, traction**2)) / (2.0 * self.stiffness)
+        return ContactEvaluation(energy, traction, gap, under.slope, under.curve)
+
+    def opening(self, touch: ContactEvaluation, move: Array, lift: float | Array) -> Array:
+        """Gaps after a displacement of the nodes, taken as linear in it, where the surface was ``lift`` above."""
+        place = self.points(move)
+        along = touch.slope[..., 0] * place[..., X] + touch.slope[..., 1] * place[..., Y]
+        return np.asarray(lift + along - place[..., Z])
+
+    def force(self, traction: Array, slope: Array) -> Array:
+        """Derivative of the energy by edge coefficients under given tractions, (n_edges, n columns)."""
+        return self._operator.forces((self.weight * traction)[..., None] * upward(slope))
+
+    def hessian(self, touch: ContactEvaluation, active: Flags) -> Array:
+        """Second derivative with `active` points in contact, (n_edges, n columns, n columns)."""
+        normal = upward(touch.slope)
+        stiff = np.where(active, self.stiffness, 0.0) * self.weight
+        form = (stiff[..., None] * normal)[..., :, None] * normal[..., None, :]
+        form[..., :Z, :Z] -= (self.weight * touch.traction)[..., None, None] * touch.curve
+        return self._operator.stiffness(form)
+
+    def resultant(self, nodes: Array, touch: ContactEvaluation) -> Array:
+        """Force (x, y, z) on the object and its moment (x, y, z) about the origin; nondimensional, (2, 3).
+
+        Each angle stands for its mirror image too, so the force in y and the moments about x and z are zero.
+        """
+        place = self.points(nodes)
+        load = (self.weight * touch.traction)[..., None] * upward(touch.slope)
+        out = np.stack([load.sum(axis=(0, 1, 2)), np.cross(place, load).sum(axis=(0, 1, 2))])
+        return np.asarray(out * [[1.0, 0.0, 1.0], [0.0, 1.0, 0.0]])
+
+
+def upward(slope: Array) -> Array:
+    """Direction upwards on a surface of a slope, of height 1: (-d/dx, -d/dy, 1)."""
+    return np.concatenate([-slope, np.ones((*slope.shape[:-1], 1))], axis=-1)

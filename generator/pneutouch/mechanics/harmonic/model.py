@@ -1,0 +1,171 @@
+"""The discrete body with harmonics: energy, forces and stiffness of a wall that is no body of revolution."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pneutouch.arrays import Array, Index
+from pneutouch.mechanics.harmonic.base import HarmonicBase
+from pneutouch.mechanics.harmonic.cavity import HarmonicCavity
+from pneutouch.mechanics.harmonic.contact import HarmonicContact
+from pneutouch.mechanics.harmonic.fields import AXIAL, Harmonics
+from pneutouch.mechanics.harmonic.material import GradientLaw, LawFields
+from pneutouch.mechanics.harmonic.operators import FieldGroup, FieldOperator
+from pneutouch.mechanics.solid.banded import AssemblyPattern
+from pneutouch.mechanics.solid.base_contact import BaseLoad
+from pneutouch.mechanics.solid.elements import gauss_square, strain_operator
+from pneutouch.mechanics.solid.kinematics import F_RR, F_RZ, HOOP, RADIAL
+from pneutouch.mechanics.solid.model import PointFields, SolidModel
+
+
+@dataclass(frozen=True)
+class HarmonicFields(PointFields):
+    """Fields at the integration points and angles: ``strains`` (n_points n_angles, 9) are the deformation gradient
+    transposed, by R, by Z and around; ``jets`` its determinant and ``basis`` its cofactors.
+
+    pressure: derivative of the averaged volume's energy by det F, (n_points n_angles,), weighted.
+    """
+
+    law: LawFields
+    pressure: Array
+
+
+class HarmonicModel(SolidModel):
+    """A solid whose nodes carry harmonics around the axis to an order. Positions are coefficients (n_nodes, columns) in
+    units of the inner radius, see `fields.Harmonics`; with order 0 they and all results are the solid's.
+
+    The volume is averaged in the meridian as in the solid, and around the axis over the harmonics to the same order.
+    """
+
+    def __init__(self, solid: SolidModel, order: int) -> None:
+        if solid.fold is not None:
+            raise ValueError("a wall that can lie down on its own flange has no harmonics yet")
+        vars(self).update(vars(solid))
+        self.harmonics = harmonics = Harmonics(order)
+        mesh = self.mesh
+        self.rest = harmonics.lifted(solid.rest)
+        self.dofs, signs = _number(solid, harmonics)
+        self._sign = signs
+        self.size = int(self.dofs.max()) + 1
+        tables = [self.dofs[x].reshape(x.shape[0], -1) for x in (mesh.cells, mesh.inner, mesh.outer)]
+        self.pattern = AssemblyPattern(tables[:2], self.size)
+        self.contact_pattern = AssemblyPattern(tables[2:], self.size, self.pattern.width)
+        self.edge_pattern = AssemblyPattern(tables[1:2], self.size, self.pattern.width)
+        self._operators(signs)
+        self.cavity = HarmonicCavity(mesh.inner, harmonics, signs)
+        self.contact = HarmonicContact(solid.contact, harmonics, signs)
+        self.harmonic_base = None if solid.base is None else HarmonicBase(self, solid.base, harmonics, signs)
+        self.supports = () if self.harmonic_base is None else (self.harmonic_base,)
+        idle = self.forces(self.local(self.rest))
+        self.noise = float(np.linalg.norm(self.pattern.vector([idle, np.zeros((len(mesh.inner), tables[1].shape[1]))])))
+
+    def base_load(self, x: Array) -> BaseLoad:
+        """What the outer wall puts on its base at coefficients x (n_nodes, columns)."""
+        return BaseLoad() if self.harmonic_base is None else self.harmonic_base.load(x)
+
+    def lowest(self, x: Array, edges: Index) -> float:
+        """Least height of the nodes of a face at the angles, in R0."""
+        heights = self.harmonics.values(self.harmonics.angles)[:, AXIAL] @ x[np.unique(edges)].T
+        return float(heights.min())
+
+    def _operators(self, signs: Array) -> None:
+        """Constant operators: deformation gradients, weights and the tested modes of the averaged volume."""
+        points, _ = gauss_square(self.scheme.gauss)
+        b, _, _ = strain_operator(self.mesh.nodes / self.length, self.mesh.cells, points)
+        by_r, by_z, over = (b[:, :, row, RADIAL] for row in (F_RR, F_RZ, HOOP))
+        angles = self.harmonics.angles
+        values, turned = self.harmonics.values(angles), self.harmonics.turned(angles)
+        self._field = FieldOperator(
+            [FieldGroup(by_r, values), FieldGroup(by_z, values), FieldGroup(over, turned)], self.mesh.cells, signs
+        )
+        self._share = (self._stiff_weight[:, None] / angles.size / self.mu).repeat(angles.size, axis=1).ravel()
+        self._law = GradientLaw(self.material)
+        self._cosines = self.harmonics.cosines(angles)
+        n_cells, n_points = self._weight.shape
+        shape = np.stack([by_r, by_z, over], axis=2).reshape(n_cells, 1, n_points, 3, -1)
+        tested = self._tested[:, :, :, None, None] * shape
+        self._tested_shape = np.ascontiguousarray(
+            np.moveaxis(tested, 4, 2).reshape(n_cells, tested.shape[1] * shape.shape[-1], -1)
+        )
+        waves = [self._cosines[:, :, None, None] * rows for rows in (values, values, turned)]
+        self._waves = [np.ascontiguousarray(w.transpose(1, 2, 0, 3).reshape(3 * angles.size, -1)) for w in waves]
+
+    def expand(self, step: Array) -> Array:
+        """Displacement of the coefficients (n_nodes, columns) of a vector of free unknowns (size,)."""
+        return np.asarray(np.where(self.dofs >= 0, step[self.dofs], 0.0) * self._sign)
+
+    def local(self, x: Array) -> PointFields:
+        """Deformation gradients, energy and its derivatives at the integration points for coefficients x."""
+        f = self._field.fields(x)
+        gradient = f.reshape(-1, 3, 3)
+        cofactor = _cofactors(gradient)
+        volume = np.einsum("ni,ni->n", gradient[:, 0], cofactor[:, 0])
+        if not volume.min() > 0.0:
+            return PointFields(np.inf, f, f, f)
+        n_cells, n_points = self._weight.shape
+        change = (volume - 1.0).reshape(n_cells, n_points, -1)
+        content = np.matmul(np.matmul(self._tested, change), self._cosines.T)
+        stored = 0.5 * float(np.vdot(self._kappa * content, content))
+        by_content = np.matmul(np.swapaxes(self._tested, 1, 2), self._kappa * content)
+        pressure = np.matmul(by_content, self._cosines).ravel()
+        law = self._law.at(gradient, cofactor, volume, self._share)
+        return HarmonicFields(law.energy + stored, gradient, volume, cofactor, law, pressure)
+
+    def forces(self, local: PointFields) -> Array:
+        """Derivative of the stored energy by the coefficients of the cells, (n_cells, n)."""
+        assert isinstance(local, HarmonicFields)
+        by_gradient = local.law.stress() + local.pressure[:, None, None] * local.basis
+        return self._field.forces(by_gradient.reshape(*self._weight.shape, -1, 9))
+
+    def stiffness(self, local: PointFields) -> Array:
+        """Second derivative of the stored energy by the coefficients of the cells, (n_cells, n, n)."""
+        assert isinstance(local, HarmonicFields)
+        form = local.law.moduli(local.pressure)
+        blocks = self._field.stiffness(form.reshape(*self._weight.shape, -1, 9, 9))
+        swelling = self._swelling(local)
+        blocks += self._kappa * np.matmul(np.swapaxes(swelling, 1, 2), swelling)
+        return blocks
+
+    def _swelling(self, local: PointFields) -> Array:
+        """Derivative of the averaged volume's modes and harmonics, (n_cells, n_modes (M + 1), n)."""
+        n_cells, n_points = self._weight.shape
+        cofactor = local.basis.reshape(n_cells * n_points, -1, 3, 3)
+        along = [cofactor[:, :, k].reshape(n_cells * n_points, -1) @ waves for k, waves in enumerate(self._waves)]
+        stacked = np.stack(along, axis=1).reshape(n_cells, 3 * n_points, -1)
+        modes, waves = self._tested.shape[1], self.harmonics.order + 1
+        out = np.matmul(self._tested_shape, stacked).reshape(n_cells, modes, -1, waves, self.harmonics.columns)
+        swelling = np.swapaxes(out, 2, 3).reshape(n_cells, modes * waves, -1)
+        sign = self._sign[self.mesh.cells].reshape(n_cells, 1, -1)
+        return np.asarray(swelling * sign)
+
+
+def _cofactors(f: Array) -> Array:
+    """Derivative of the determinant of matrices (n, 3, 3)."""
+    return np.stack([np.cross(f[:, (k + 1) % 3], f[:, (k + 2) % 3]) for k in range(3)], axis=1)
+
+
+def _number(solid: SolidModel, harmonics: Harmonics) -> tuple[Index, Array]:
+    """Unknown of each node and coefficient (n_nodes, columns), -1 where fixed, node by node in the solid's order; and
+    its sign.
+
+    On the axis only z_0 moves, and across it r_1 = -s_1: one unknown.
+    """
+    mesh, columns = solid.mesh, harmonics.columns
+    free = np.ones((mesh.nodes.shape[0], columns), dtype=bool)
+    axial = [1, *(3 * m for m in range(1, harmonics.order + 1))]
+    free[mesh.axis] = False
+    free[mesh.axis, 1] = True
+    free[mesh.axis, 2:3] = True
+    for column in axial:
+        free[mesh.sliding, column] = False
+    free[mesh.clamped] = False
+    order = np.argsort(solid.dofs.max(axis=1), kind="stable")
+    numbers = np.empty(free.shape, dtype=np.intp)
+    ranked = free[order]
+    numbers[order] = np.where(ranked, np.cumsum(ranked).reshape(ranked.shape) - 1, -1)
+    signs = np.ones(free.shape)
+    if harmonics.order:
+        numbers[mesh.axis, 4], signs[mesh.axis, 4] = numbers[mesh.axis, 2], -1.0
+    return numbers, signs

@@ -1,0 +1,198 @@
+"""An object comes straight down on an inflated dome, beside its axis or leaning."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.mechanics.harmonic.contact import HarmonicContact, X, Y
+from pneutouch.mechanics.harmonic.model import HarmonicModel
+from pneutouch.mechanics.harmonic.placement import first_height
+from pneutouch.mechanics.harmonic.strain import HarmonicProbe
+from pneutouch.mechanics.harmonic.surface import Surface
+from pneutouch.mechanics.response import Figures, figures
+from pneutouch.mechanics.solid.continuation import PathFollower, PlateState
+from pneutouch.mechanics.solid.descend import PathJump, descend
+from pneutouch.mechanics.solid.events import (
+    BASE_SHARE,
+    BREAKS_CURVE,
+    DETAIL,
+    OBJECT_EDGE,
+    OVERHANG,
+    PathPoint,
+    SolidEvent,
+    crossing,
+)
+from pneutouch.mechanics.solid.indent import PressSettings, shut_in
+from pneutouch.mechanics.solid.inflate import FreeState
+from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.stress import StrainProbe
+from pneutouch.units import KPA
+
+_ALONG = 33
+"""Points of every edge of the outer wall at which an object may touch first."""
+
+
+@dataclass(frozen=True)
+class OffAxisState:
+    """One equilibrium; mm, N, MPa.
+
+    force: of the wall on the object, upwards.  sideways: the same along x, towards angle 0 of the plane of symmetry.
+    moment: of the wall on the object about the y axis through the centre of the base plane, N mm; it is positive where
+    it presses the object up at negative x.  contact_radius: greatest horizontal distance of a touching point from the
+    middle of the contact's forces.  stiffness, slope: see `indent.PressState`.  positions: coefficients, see
+    `fields.Harmonics`.
+    """
+
+    indentation: float
+    force: float
+    sideways: float
+    moment: float
+    pressure: float
+    rise: float
+    volume: float
+    contact_radius: float
+    contact_pressure: float
+    object_distance: float
+    stiffness: float
+    slope: float
+    stretch: float
+    penetration: float
+    inner_height: float
+    overhang: float
+    base_force: float
+    positions: Array
+
+
+@dataclass(frozen=True)
+class OffAxisPath:
+    """States at the steps of the protocol, all solved states, and events, as `indent.IndentationPath` has them, with
+    harmonics to ``order``."""
+
+    order: int
+    states: list[OffAxisState]
+    path: list[OffAxisState]
+    events: list[SolidEvent]
+    complete: bool
+
+    def column(self, name: str) -> Array:
+        """One field of every state, (n_states,)."""
+        return np.array([getattr(s, name) for s in self.states])
+
+    def figures(self) -> Figures | None:
+        """Figures of the curve before the first event that breaks it; None with too few states."""
+        ends = [e.indentation for e in self.events if e.kind in BREAKS_CURVE]
+        keep = self.column("indentation") < min(ends, default=np.inf)
+        indentation, force, rise = (self.column(name)[keep] for name in ("indentation", "force", "rise"))
+        return figures(indentation, force, rise / KPA)
+
+
+class OffAxisPress:
+    """Presses of one dome from one free state by one object, with any number of harmonics.
+
+    ``surface`` is the object in R0 at any height; ``press`` as for the axisymmetric solid, its object left aside.
+    """
+
+    def __init__(
+        self, solid: SolidModel, free: FreeState, press: PressSettings, surface: Surface, probe: StrainProbe
+    ) -> None:
+        self._solid, self._free, self._press, self._probe = solid, free, press, probe
+        self._gas = shut_in(solid, free, press)
+        outline = solid.contact.outline(free.positions / solid.length, _ALONG)
+        self.surface = surface.at(first_height(surface, outline))
+
+    def run(self, order: int) -> OffAxisPath:
+        """The press with harmonics to an order. Raises NoConvergenceError where first contact has no equilibrium."""
+        model, press, start = HarmonicModel(self._solid, order), self._press, self.surface.height
+        probe = HarmonicProbe(model, self._probe)
+        follower = PathFollower(model, self._gas, self.surface, model.harmonics.lifted(self._free.unit.x))
+        states = [self._state(model, probe, follower.here)]
+        events, jump = self._events(states[0], states[0]), None
+        for k in range(1, press.steps + 1):
+            begun = len(follower.path)
+            jump = descend(follower, start - press.depth / model.length * k / press.steps)
+            for plate_state in follower.path[begun:]:
+                if not self._ended(events):
+                    states.append(self._state(model, probe, plate_state))
+                    events += self._events(states[-2], states[-1])
+            if jump is not None or self._ended(events):
+                break
+        return self._finish(order, states, events, jump)
+
+    def _ended(self, events: list[SolidEvent]) -> bool:
+        """Whether the inner wall is on a base that is not there."""
+        return self._solid.base is None and any(e.kind == "floor" for e in events)
+
+    def _finish(
+        self, order: int, states: list[OffAxisState], events: list[SolidEvent], jump: PathJump | None
+    ) -> OffAxisPath:
+        if jump is not None:
+            where = (self.surface.height - jump.height) * self._solid.length
+            events = [*events, SolidEvent(jump.kind, where, jump.why)]
+        step = self._press.depth / self._press.steps
+        at_steps = [s for s in states if abs(s.indentation / step - round(s.indentation / step)) < 1.0e-9]
+        return OffAxisPath(order, at_steps, states, events, len(at_steps) == self._press.steps + 1)
+
+    def _state(self, model: HarmonicModel, probe: HarmonicProbe, plate_state: PlateState) -> OffAxisState:
+        x, touch, filling = plate_state.state.x, plate_state.state.touch, plate_state.state.filling
+        contact = model.contact
+        assert touch is not None and isinstance(contact, HarmonicContact)
+        length, mu = model.length, model.mu
+        base = model.base_load(x)
+        (sideways, _, force), moment = contact.resultant(x, touch)
+        touching = touch.traction > 0.0
+        place = contact.points(x)[touching]
+        load = (contact.weight * touch.traction)[touching]
+        middle = float(load @ place[:, X]) / float(load.sum()) if load.size else 0.0
+        slope = plate_state.pressure_rate / plate_state.stiffness / length**2 if plate_state.stiffness else np.nan
+        here = self.surface.at(plate_state.height)
+        return OffAxisState(
+            indentation=(self.surface.height - plate_state.height) * length,
+            force=force * mu * length**2,
+            sideways=sideways * mu * length**2,
+            moment=moment[1] * mu * length**3,
+            pressure=filling.pressure * mu,
+            rise=filling.pressure * mu - self._free.pressure,
+            volume=plate_state.state.volume * length**3,
+            contact_radius=float(np.hypot(place[:, X] - middle, place[:, Y]).max(initial=0.0)) * length,
+            contact_pressure=float(touch.traction.max()) * mu,
+            object_distance=float(here.distance(place[:, X], place[:, Y]).max(initial=0.0)) * length,
+            stiffness=-plate_state.stiffness * mu * length,
+            slope=slope,
+            stretch=probe.greatest_stretch(x),
+            penetration=max(base.penetration, -float(touch.gap.min())) * length,
+            inner_height=model.lowest(x, model.mesh.inner) * length,
+            overhang=max(0.0, float(model.rest[:, 1].min()) - model.lowest(x, model.mesh.outer)) * length,
+            base_force=base.force * mu * length**2,
+            positions=x * length,
+        )
+
+    def _events(self, a: OffAxisState, b: OffAxisState) -> list[SolidEvent]:
+        """Levels passed between two neighbouring states."""
+        press, wall = self._press, self._solid.mesh.wall
+        levels = {
+            "gauge_range": press.gauge_range,
+            "break": press.break_strain,
+            OBJECT_EDGE: self.surface.span[1] * self._solid.length,
+            "floor": 0.0,
+            "overhang": OVERHANG * wall,
+            "base": BASE_SHARE,
+        }
+        before, after = _watched(a), _watched(b)
+        places = {kind: crossing(before[kind], after[kind], level) for kind, level in levels.items()}
+        return [SolidEvent(kind, where, DETAIL[kind]) for kind, where in places.items() if where is not None]
+
+
+def _watched(s: OffAxisState) -> dict[str, PathPoint]:
+    """The quantities whose levels are events, at one state."""
+    rate = s.slope * s.stiffness if np.isfinite(s.slope) else None
+    return {
+        "gauge_range": PathPoint(s.indentation, s.pressure, rate),
+        "break": PathPoint(s.indentation, s.stretch - 1.0),
+        OBJECT_EDGE: PathPoint(s.indentation, s.object_distance),
+        "floor": PathPoint(s.indentation, -s.inner_height),
+        "overhang": PathPoint(s.indentation, s.overhang),
+        "base": PathPoint(s.indentation, s.base_force / max(s.force, 1.0e-300)),
+    }
