@@ -10,7 +10,7 @@ import numpy as np
 
 from pneutouch.arrays import Array, Index
 
-Wave = Callable[[Array], Array]
+AngleFunction = Callable[[Array], Array]
 """A function of the angle times the harmonic's number."""
 
 RADIAL, AXIAL, AROUND = range(3)
@@ -93,7 +93,7 @@ class Harmonics:
         out[:, : positions.shape[1]] = positions
         return out
 
-    def _rows(self, angles: Array, even: Wave, odd: Wave, by_order: bool = False) -> Array:
+    def _rows(self, angles: Array, even: AngleFunction, odd: AngleFunction, by_order: bool = False) -> Array:
         out = np.zeros((angles.size, 3, self.columns))
         for m in range(self.order + 1):
             factor, first = (m if by_order else 1), 0 if m == 0 else 3 * m - 1

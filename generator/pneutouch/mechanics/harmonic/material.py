@@ -114,7 +114,7 @@ _BY_COFACTOR = _by_cofactor()
 
 
 class _OtherInvariantError(Exception):
-    """A law asked for more than the first invariant."""
+    """A law needs more than the first invariant."""
 
 
 class _FirstInvariant(Strain):

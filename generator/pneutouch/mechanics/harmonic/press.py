@@ -1,4 +1,4 @@
-"""An object comes straight down on an inflated dome, beside its axis or leaning."""
+"""An object comes straight down on an inflated dome, off its axis or leaning."""
 
 from __future__ import annotations
 

@@ -102,9 +102,9 @@ class PlacedObject(Surface):
         cos, slope = np.cos(self.tilt), np.tan(self.tilt)
         level = self.body.at(0.0)
         # In the plane of the plate a horizontal length along x is longer by 1/cos, and so is a rise upright.
-        own = revolved(level.underside, along / cos, y)
+        shape = revolved(level.underside, along / cos, y)
         stretch = np.array([1.0 / cos, 1.0])
-        by_xy = own.slope * stretch / cos
+        by_xy = shape.slope * stretch / cos
         by_xy[..., 0] += slope
-        curve = own.curve * stretch[:, None] * stretch / cos
-        return SurfaceHeight(self.height + along * slope + own.height / cos, by_xy, curve)
+        curve = shape.curve * stretch[:, None] * stretch / cos
+        return SurfaceHeight(self.height + along * slope + shape.height / cos, by_xy, curve)
