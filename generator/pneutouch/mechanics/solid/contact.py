@@ -117,6 +117,23 @@ class Contact:
         r, z = self.positions(move)
         return np.asarray(lift + touch.slope * r - z)
 
+    def least_share(self, here: Array, there: Array, slope_here: float, slope_there: float) -> float:
+        """Share in (0, 1] of a move at which the energy of contact and the rest of a quadratic model is least.
+
+        The tractions (unclipped) go from ``here`` to ``there`` (n_edges, n_points), the slope of the rest along the
+        move from ``slope_here`` to ``slope_there``; 1 where the whole still falls there.
+        """
+        begun, change = here.ravel(), (there - here).ravel()
+        turning = begun * (begun + change) < 0.0
+        at = np.concatenate([[0.0], np.sort(-begun[turning] / change[turning]), [1.0]])
+        pushed = np.maximum(begun + at[:, None] * change, 0.0) @ (self.weight.ravel() * change / self.stiffness)
+        slope = slope_here + at * (slope_there - slope_here) + pushed
+        past = int(np.argmax(slope > 0.0))
+        if not slope[0] < 0.0 < slope[past]:
+            return 1.0
+        before = past - 1
+        return float(at[before] - slope[before] * (at[past] - at[before]) / (slope[past] - slope[before]))
+
     def force(self, traction: Array, slope: Array) -> Array:
         """Derivative of the energy by edge positions under given tractions, (n_edges, 2 n)."""
         load = self.weight * traction

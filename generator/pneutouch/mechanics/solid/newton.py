@@ -159,27 +159,35 @@ def direction(scene: SolidScene, state: SolverState) -> NewtonDirection:
     """Newton step: the least of the quadratic model of wall and filling with the plate met exactly in it.
 
     Which points touch is settled inside the model, where a change costs one banded solve and no assembly; the outer
-    steps then converge as without contact, and full steps survive the line search.
+    steps then converge as without contact, and full steps survive the line search. The model is convex, with a slope
+    that bends where points come and go: each round goes to the least of one set of touching points, and where another
+    set holds there, only to the model's least on the way, so that no two sets take turns for ever.
     """
     band = tangent(scene, state)
     if state.touch is None:
         return downhill(state, band, state.residual)
-    touch, contact = state.touch, scene.solid.contact
-    linear = contact.linear(touch, np.zeros_like(state.x))
-    active = linear > 0.0
-    seen = {active.tobytes()}
+    touch, contact, push = state.touch, scene.solid.contact, scene.solid.push
+    linear = start = contact.linear(touch, np.zeros_like(state.x))
+    step, pull = np.zeros_like(state.residual), state.inner
     for _ in range(SETTLING):
-        pull = state.inner + scene.solid.push(contact.force(np.where(active, linear, 0.0), touch.slope))
-        newton = downhill(state, _touching(scene, band, touch, active), pull)
+        active = linear > 0.0
+        load = state.inner + push(contact.force(np.where(active, start, 0.0), touch.slope))
+        newton = downhill(state, _touching(scene, band, touch, active), load)
         if newton.lift:
             # Keep what made this tangent definite for the rest of the settling: fewer failed factorisations.
             band = band.copy(order="F")
             band[0] += newton.lift
-        active = contact.linear(touch, scene.solid.expand(newton.step)) > 0.0
-        if active.tobytes() in seen:
-            break
-        seen.add(active.tobytes())
-    return newton
+            pull = pull + newton.lift * step
+        ahead = contact.linear(touch, scene.solid.expand(newton.step))
+        if ((ahead > 0.0) == active).all():
+            return newton
+        # At the answer the points in contact balance what wall and filling pull.
+        pull_ahead = -push(contact.force(np.where(active, ahead, 0.0), touch.slope))
+        move = newton.step - step
+        share = contact.least_share(linear, ahead, float(move @ pull), float(move @ pull_ahead))
+        step, pull = step + share * move, pull + share * (pull_ahead - pull)
+        linear = linear + share * (ahead - linear)
+    return replace(newton, step=step)
 
 
 def stability(
