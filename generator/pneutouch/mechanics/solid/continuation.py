@@ -154,7 +154,17 @@ class PathFollower:
         return plate_state(scene, solved.state, height, solved.iterations)
 
     def _extrapolate(self, height: float) -> Array:
-        """Positions ahead along the tangent of the path; at first contact, a point, there is none."""
+        """Positions ahead along the tangent of the path; at first contact, a point, there is none.
+
+        The tangent turns on as it did in the last step, where that was no shorter than half the next.
+        """
         if len(self.path) < 2 and self.down > 0.0:
             return self.here.state.x
-        return np.asarray(self.here.state.x + (height - self.here.height) * self.here.by_height)
+        ahead = height - self.here.height
+        guess = self.here.state.x + ahead * self.here.by_height
+        if len(self.path) > 2:
+            before = self.path[-2]
+            past = self.here.height - before.height
+            if 2.0 * past / ahead >= 1.0:
+                guess = guess + 0.5 * ahead**2 / past * (self.here.by_height - before.by_height)
+        return np.asarray(guess)
