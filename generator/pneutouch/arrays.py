@@ -1,7 +1,11 @@
-"""The array types that the package's annotations use; shapes and units stand in each docstring."""
+"""The array types that the package's annotations use, whose shapes and units stand in each docstring."""
+
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+
+Scalar = TypeVar("Scalar", bound=np.generic)
 
 Array = NDArray[np.float64]
 """Numbers."""
@@ -26,3 +30,14 @@ Labels = NDArray[np.uint8]
 
 Pixels = NDArray[np.uint32]
 """Packed RGBA colours."""
+
+
+def distinct(values: NDArray[Scalar]) -> NDArray[Scalar]:
+    """The distinct numbers of an array of any shape, ascending, (n,).
+
+    `numpy.unique` of them loads the masked arrays, which takes a tenth as long as NumPy itself.
+    """
+    ordered = np.sort(values, axis=None)
+    first = np.ones(ordered.size, dtype=bool)
+    first[1:] = ordered[1:] != ordered[:-1]
+    return ordered[first]

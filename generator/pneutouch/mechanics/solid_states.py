@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from pneutouch.arrays import Array
+from pneutouch.arrays import Array, distinct
 from pneutouch.mechanics.events import LOBES, SWAY, Event, range_end
 from pneutouch.mechanics.hermite import hermite
 from pneutouch.mechanics.limits import LimitPoint, Limits
@@ -111,7 +111,7 @@ def _limit_point(sensor: Sensor, run: Inflation) -> LimitPoint | None:
 def _inflation(solid: SolidModel, run: Inflation) -> InflationCurve:
     """The curve between the solved states: Hermite cubics in the volume, with the solid's own slopes."""
     volume = run.volume
-    grid = np.unique(np.concatenate([np.linspace(volume[0], volume[-1], 90), volume]))
+    grid = distinct(np.concatenate([np.linspace(volume[0], volume[-1], 90), volume]))
 
     def along(values: list[float], slopes: list[float]) -> Array:
         return hermite(grid, volume, np.array(values), np.array(slopes))

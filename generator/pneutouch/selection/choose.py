@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pneutouch.arrays import Array, Flags, Index
+from pneutouch.arrays import Array, Flags, Index, distinct
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.selection.pool import REQUIREMENTS, CandidatePool, evaluated, margins
@@ -112,7 +112,7 @@ def _shortlist(pool: CandidatePool, margin_of: dict[str, Array], fits: Flags) ->
     """For each resin a few candidates that are not nearly the same, those with the greatest margin first."""
     least = _least_margin(margin_of) + 0.5 * margin_of.get("sensitivity", np.zeros_like(pool.radius))
     chosen: list[int] = []
-    for resin in np.unique(pool.resin[fits]):
+    for resin in distinct(pool.resin[fits]):
         rows = np.flatnonzero(fits & (pool.resin == resin))
         kept: list[int] = []
         for row in rows[np.argsort(-least[rows], kind="stable")]:
@@ -150,7 +150,7 @@ def _judged(
     least = _least_margin(margin_of)
     highest, span = _span(problem, pool)
     expanded = np.full(pool.radius.size, np.nan)
-    for number in np.unique(pool.resin):
+    for number in distinct(pool.resin):
         rows = pool.resin == number
         part = pool.take(rows)
         batch = problem.batch(part.resin, part.radius, part.wall, part.pressure)

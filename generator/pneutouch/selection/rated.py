@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from pneutouch.arrays import Array
+from pneutouch.arrays import Array, distinct
 from pneutouch.mechanics.atlas.inflated import least_limit
 from pneutouch.mechanics.rating import rated_pressure
 from pneutouch.selection.problem import SelectionProblem
@@ -17,7 +17,7 @@ def rated(problem: SelectionProblem, resin: Array, radius: Array, wall: Array) -
     limit = batch.shear_modulus * least_limit(batch.wall_ratio, batch.break_stretch)
     spread = np.zeros_like(limit)
     if problem.limit_spread is not None:
-        for number in np.unique(resin):
+        for number in distinct(resin):
             rows = resin == number
             spread[rows] = problem.limit_spread(problem.resins[int(number)], batch.take(rows))
     return rated_pressure(limit, spread, batch.gauge_limit)

@@ -4,7 +4,7 @@ from functools import cache
 
 import numpy as np
 
-from pneutouch.arrays import Array
+from pneutouch.arrays import Array, distinct
 from pneutouch.mechanics.atlas.table import shipped
 
 _RATIOS, _VOLUMES = 60, 91
@@ -19,7 +19,7 @@ def least_limit(wall_ratio: Array, break_stretch: Array) -> Array:
     """
     ratios, limit, stretch, pressure = _inflations()
     least = np.interp(wall_ratio, ratios, limit)
-    for value in np.unique(break_stretch[break_stretch < stretch.max()]):
+    for value in distinct(break_stretch[break_stretch < stretch.max()]):
         rows = break_stretch == value
         ruptured = np.interp(wall_ratio[rows], ratios, _ruptured(float(value), stretch, pressure))
         least[rows] = np.fmin(least[rows], ruptured)

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from pneutouch.arrays import Array, Index
+from pneutouch.arrays import Array, Index, distinct
 
 #: Walls up to this share of R0 need one cell across (S within 0.2 % of a refined mesh), thicker ones two. The
 #: atlas begins above it, so that one family of meshes serves all of its box.
@@ -94,7 +94,7 @@ def _from_grid(grid: Array, n_columns: int, n_rows: int, order: int, scales: tup
     inner, outer = boundary(n_columns, height, 0), boundary(n_columns, height, height - 1)
     if order == 1:
         inner, outer = inner[:, :2], outer[:, :2]
-    keep = np.unique(cells)
+    keep = distinct(cells)
     renumber = np.full(nodes.shape[0], -1, dtype=np.intp)
     renumber[keep] = np.arange(keep.size)
     base, top = (renumber[x][renumber[x] >= 0] for x in (base, top))

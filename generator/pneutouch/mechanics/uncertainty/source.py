@@ -1,5 +1,7 @@
 """One source of uncertainty: what it acts on, how far it spreads, and where its number comes from."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal

@@ -10,7 +10,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from pneutouch.arrays import Array, Flags, Indices
+from pneutouch.arrays import Array, Flags, Indices, distinct
 from pneutouch.printability.measure.chords import FLANK, Chords, Side, continues, described
 from pneutouch.printability.measure.joined import components
 from pneutouch.printability.measure.surface import SurfaceMesh
@@ -74,7 +74,7 @@ def thin_places(
         tapered = lengths + BLUNT * _slope(surface, short)
         for rows in _connected(short, surface.groups, round_):
             sized = _Sized(short.take(rows), lengths[rows], tapered[rows], flat[rows], round_[rows])
-            around = np.unique(surface.groups[short.near[rows]])
+            around = distinct(surface.groups[short.near[rows]])
             turn = float(surface.group_turns[around].max())
             places.append(replace(_place(side, sized, len(around)), turn=turn))
     return sorted(places, key=lambda place: place.size)
@@ -132,7 +132,10 @@ def _place(side: Side, some: _Sized, faces: int) -> ThinPlace:
 
 def _length(some: _Sized, row: int, faces: int) -> float:
     """Length along a pin or hole, mm: its extent along its axis, or by its area where it is bent."""
-    middles, around = some.chords.middle, float(np.median(some.lengths[some.round])) * (np.pi if faces == 1 else 4.0)
+    ordered = np.sort(some.lengths[some.round])
+    # numpy.median loads the masked arrays, a tenth of NumPy's import.
+    median = 0.5 * float(ordered[(len(ordered) - 1) // 2] + ordered[len(ordered) // 2])
+    middles, around = some.chords.middle, median * (np.pi if faces == 1 else 4.0)
     extent = float(np.ptp((middles - middles.mean(axis=0)) @ some.chords.axis[row]))
     bent = float(some.chords.area[some.round].sum()) / around
     return bent if bent > _BENT * extent else extent
@@ -155,7 +158,7 @@ def _thinned(chords: Chords, groups: Indices) -> Chords:
         if not count:
             continue
         share = max(1.0, count / _PER_GROUP)
-        rows = order[low + np.unique((np.arange(0, count, share)).astype(np.int64))]
+        rows = order[low + distinct((np.arange(0, count, share)).astype(np.int64))]
         kept.append(rows)
         scale.append(np.full(len(rows), chords.area[order[low:high]].sum() / max(chords.area[rows].sum(), 1e-12)))
     if not kept:
@@ -171,7 +174,7 @@ def _connected(some: Chords, groups: Indices, round_: Flags) -> list[Indices]:
     one = np.concatenate([near, *[near[round_]] * 2])
     other = groups[np.concatenate([some.far, *some.sides[round_].T])]
     label = components(int(groups.max()) + 1, one, other)[near]
-    return [np.flatnonzero(label == number) for number in np.unique(label)]
+    return [np.flatnonzero(label == number) for number in distinct(label)]
 
 
 def _in_wedge(surface: SurfaceMesh, chords: Chords, side: Side) -> Flags:

@@ -70,8 +70,10 @@ def _fine(part: PrintPart) -> list[Finding]:
     curved = sagittas[sagittas > 1e-9]
     if len(curved) < 100:
         return []
+    # Nine tenths of them are no higher; numpy.percentile loads the masked arrays, a tenth of NumPy's import.
+    highest = np.interp(0.9 * (len(curved) - 1), np.arange(len(curved)), np.sort(curved))
     # A sagitta goes with the square of the chord's width.
-    finer = float(np.sqrt(step / np.percentile(curved, 90)))
+    finer = float(np.sqrt(step / highest))
     if finer <= _FINER:
         return []
     text = f"its chords are {finer:.0f} times narrower than the machine's finest step of {step / UM:g} um needs"

@@ -11,6 +11,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.catalogue import Library, ResolvedDesign
+from pneutouch.catalogue.cached_library import CachedLibrary
 from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.evaluation.table_s1 import is_near_paper
 from pneutouch.mechanics.atlas.press import SensorBatch
@@ -125,7 +126,7 @@ def select(
     The best design and that of rank ``written``, to be saved, pass all that ``check`` looks at; those between them
     the print rules. Designs that do not are taken out of the answer.
     """
-    library = library or Library.default()
+    library = CachedLibrary((library or Library.default()).folders)
     progress("base")
     scene = base_scene(target, where, library)
     sensor = base_sensor(scene)

@@ -6,13 +6,13 @@ from typing import Any
 
 from pneutouch import __version__
 from pneutouch.catalogue import KINDS, DesignSource, Library, load_scene
+from pneutouch.catalogue.cached_library import CachedLibrary
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import elastomers
 from pneutouch.output.files import digest, json_bytes
 from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION, DesignFile
 from pneutouch.spec.fields import declaration, table_of
 from pneutouch.spec.toml_text import toml_text
-from pneutouch.workflows.sweep.cached_library import CachedLibrary
 from pneutouch.workflows.sweep.plan import PRESSURES, Settings, SweepPlan
 
 

@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from pneutouch.catalogue import Library
+from pneutouch.catalogue.cached_library import CachedLibrary
 from pneutouch.errors import BeyondLimitError, InputError, PneutouchError
 from pneutouch.evaluation.document import prediction_document
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.units import KPA
-from pneutouch.workflows.sweep.cached_library import CachedLibrary
 from pneutouch.workflows.sweep.plan import PRESSURES
 from pneutouch.workflows.sweep.study import SweepPoint, SweepStudy
 from pneutouch.workflows.sweep.variables import point_values, state_values

@@ -1,10 +1,11 @@
-"""A library that reads every file once: thousands of points name the same few materials, printers and parts."""
+"""A library that reads every file once: the points of a sweep name the same few materials, printers and parts, and a
+selection needs every resin several times."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from pneutouch.catalogue import Library
+from pneutouch.catalogue.library import Library
 
 
 @dataclass(frozen=True)
