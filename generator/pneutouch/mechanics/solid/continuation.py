@@ -146,7 +146,7 @@ class PathFollower:
     def solve(self, height: float) -> PlateState | NewtonFailure:
         """State at `height` from the extrapolated path; not kept."""
         scene = replace(self.here.scene, plate=self._plate.at(height))
-        solved = minimise(scene, self._extrapolate(height))
+        solved = minimise(scene, self._turning(height))
         if isinstance(solved, NewtonFailure):
             solved = minimise(scene, self.here.state.x)
         if isinstance(solved, NewtonFailure):
@@ -154,17 +154,21 @@ class PathFollower:
         return plate_state(scene, solved.state, height, solved.iterations)
 
     def _extrapolate(self, height: float) -> Array:
-        """Positions ahead along the tangent of the path; at first contact, a point, there is none.
-
-        The tangent turns on as it did in the last step, where that was no shorter than half the next.
-        """
+        """Positions ahead along the tangent of the path; at first contact, a point, there is none."""
         if len(self.path) < 2 and self.down > 0.0:
             return self.here.state.x
-        ahead = height - self.here.height
-        guess = self.here.state.x + ahead * self.here.by_height
-        if len(self.path) > 2:
-            before = self.path[-2]
-            past = self.here.height - before.height
-            if 2.0 * past / ahead >= 1.0:
-                guess = guess + 0.5 * ahead**2 / past * (self.here.by_height - before.by_height)
-        return np.asarray(guess)
+        return np.asarray(self.here.state.x + (height - self.here.height) * self.here.by_height)
+
+    def _turning(self, height: float) -> Array:
+        """Positions ahead where the tangent turns on as it did in the last step, if that was half the next or longer.
+
+        With friction it does not: points stick or slide on as they last did.
+        """
+        guess = self._extrapolate(height)
+        if len(self.path) < 3:
+            return guess
+        before, ahead = self.path[-2], height - self.here.height
+        past = self.here.height - before.height
+        if 2.0 * past / ahead < 1.0:
+            return guess
+        return np.asarray(guess + 0.5 * ahead**2 / past * (self.here.by_height - before.by_height))
