@@ -161,7 +161,7 @@ def direction(scene: SolidScene, state: SolverState) -> NewtonDirection:
     Which points touch is settled inside the model, where a change costs one banded solve and no assembly; the outer
     steps then converge as without contact, and full steps survive the line search. The model is convex, with a slope
     that bends where points come and go: each round goes to the least of one set of touching points, and where another
-    set holds there, only to the model's least on the way, so that no two sets take turns for ever.
+    set holds there, only to the least of the model before it, so that no two sets take turns for ever.
     """
     band = tangent(scene, state)
     if state.touch is None:
