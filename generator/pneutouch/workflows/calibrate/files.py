@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from pneutouch.arrays import Array
+from pneutouch.bench.calibrate.identify import UNSEEN
 from pneutouch.bench.calibrate.parameters import DEAD, FRICTION, KEYS, NAMES, OFFSET, outside_value
 from pneutouch.bench.calibrate.response import ResponseGap
 from pneutouch.catalogue import KINDS
@@ -122,17 +123,18 @@ def savable(calibration: Calibration, source: CampaignSource) -> dict[str, Any]:
 
 
 def _check_friction(calibration: Calibration) -> None:
-    """Raise InputError where friction was fitted and the data do not separate it from prior and other parameters."""
-    identified = calibration.identified
-    groups = [group.members for group in identified.ambiguities if FRICTION in group.members]
-    if groups:
-        others = " and ".join(NAMES[k] for k in groups[0] if k != FRICTION)
-        why = f"the data do not distinguish friction from {others}"
-    elif FRICTION in identified.unseen:
-        why = "the data do not determine the friction"
-    else:
+    """Raise InputError where friction was fitted and more than `UNSEEN` of its prior standard deviation remains."""
+    fit, identified = calibration.fit, calibration.identified
+    if FRICTION not in fit.parameters.fitted:
         return
-    raise InputError(why, key="fit", value=",".join(calibration.fit.parameters.names), remedy="leave out friction")
+    place = fit.parameters.fitted.index(FRICTION)
+    left = float(np.sqrt(fit.covariance.matrix[place, place]) / fit.parameters.prior_spread[FRICTION])
+    if FRICTION not in identified.unseen and not left > UNSEEN:
+        return
+    groups = [group.members for group in identified.ambiguities if FRICTION in group.members]
+    others = " and ".join(NAMES[k] for k in groups[0] if k != FRICTION) if groups else ""
+    why = f"the data do not distinguish friction from {others}" if others else "the data do not determine the friction"
+    raise InputError(why, key="fit", value=",".join(fit.parameters.names), remedy="leave out friction")
 
 
 def save(saved: SavedCalibration) -> None:
