@@ -154,6 +154,7 @@ def balls() -> list[str]:
     line = f"|---|{'---|' * len(TAU)}"
     thin = [_row(ratio, [one.value / one.thin - 1 for one in found]) for ratio, found in spheres.items()]
     sheared = [_row(ratio, [one.value / one.sheared - 1 for one in found]) for ratio, found in spheres.items()]
+    share = [_row(ratio, [one.sheared / one.thin - 1 for one in found]) for ratio, found in spheres.items()]
     return [
         "## Balls: Hertz and a pressurised shell",
         "",
@@ -180,6 +181,13 @@ def balls() -> list[str]:
         f"| t/R | {' | '.join(f'tau {tau:g}' for tau in TAU)} |",
         line,
         *sheared,
+        "",
+        "What the shear and the spread of the load take from the closed form, by the same linear theory and without the solid. Of a wall of 0.01 R "
+        "it is 2.7 to 3.2 %, so that 3 % of the closed form is not within reach there; it vanishes with the wall:",
+        "",
+        f"| t/R | {' | '.join(f'tau {tau:g}' for tau in TAU)} |",
+        line,
+        *share,
         "",
     ]
 
