@@ -16,9 +16,8 @@ TRUTH = {"shear_modulus": 0.21, "wall_thickness": 1.56, "dead_volume": 1400.0}
 
 
 def coordinates(truth, offset=0.0):
-    return np.array(
-        [np.log(truth.wall.shear_modulus), np.log(truth.dome.wall_thickness), truth.gas.dead_volume, offset]
-    )
+    modulus, wall, friction = truth.wall.shear_modulus, truth.dome.wall_thickness, truth.protocol.friction
+    return np.array([np.log(modulus), np.log(wall), truth.gas.dead_volume, offset, friction])
 
 
 def test_clean_curves_give_all_four_parameters_back(library):
