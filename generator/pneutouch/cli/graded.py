@@ -52,6 +52,8 @@ def select_graded(target: Target, where: str, place: DesignPlace | None, *, json
 
 def graded_text(selection: GradedSelectionRun) -> str:
     """The grade and the constant membranes of its size, or what is missed."""
+    from pneutouch.evaluation.contact_object import contact_document
+    from pneutouch.workflows.select.contact import contact_text
     from pneutouch.workflows.select.graded_document import missed, rated_warning
 
     best, sensor, grade_target = selection.search.best, selection.sensor, selection.grade_target
@@ -62,7 +64,8 @@ def graded_text(selection: GradedSelectionRun) -> str:
     rows += [[constant.name, *_row(selection, constant.trial)] for constant in selection.constants]
     size = f"R0 {sensor.dome.inner_radius:g} mm, t0 {sensor.dome.wall_thickness:g} mm, on {selection.base.where}"
     met = "a grade meets the target" if selection.search.met else "no grade of this size meets the target; the nearest"
-    lines = [f"{met}: {size}", "", table_text(head, rows), ""]
+    contact = [f"contact: {contact_text(selection.base)}"] if contact_document(selection.base) else []
+    lines = [f"{met}: {size}", *contact, "", table_text(head, rows), ""]
     if not selection.search.met:
         lines += [f"it misses {line}" if k == 0 else line for k, line in enumerate(missed(selection))]
     warning = rated_warning(selection)

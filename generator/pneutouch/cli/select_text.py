@@ -1,12 +1,14 @@
 """A selection as text for people."""
 
+import numpy as np
+
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.cli.table import table_text
-from pneutouch.mechanics.atlas.respond import DEPTH, ENDS
 from pneutouch.selection import Candidate
 from pneutouch.selection.missed import missed_percent
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA
+from pneutouch.workflows.select.contact import contact_notes
 from pneutouch.workflows.select.document import would_need
 from pneutouch.workflows.select.passing import RejectedDesign
 from pneutouch.workflows.select.run import SelectionRun
@@ -21,21 +23,22 @@ _FEW = 9.95
 def selection_text(selection: SelectionRun) -> str:
     """Ranked designs, or why there are none."""
     answer = selection.answer
+    notes = [] if selection.by_solid is None else contact_notes(selection.by_solid, selection.base)
+    head = _HEAD if selection.by_solid is None else [*_HEAD[:-1], "plate S"]
     left = [*mount_note(selection.target, selection.base), *(_rejected(one) for one in selection.rejected)]
     left += [f"left out: {name}: {why}" for name, why in selection.left_out.items()]
     if answer.designs:
         seen: set[str] = set()
         rows = []
         for rank, choice in enumerate(answer.designs):
-            solid = f"{selection.confirmed[rank].sensitivity_kPa_per_N:.3f}" if rank < len(selection.confirmed) else "-"
             label = f"{rank + 1}" + (" runner-up" if choice.resin.name in seen else "")
             seen.add(choice.resin.name)
-            rows.append([label, *_row(selection, choice), solid])
+            rows.append([label, *_row(selection, choice), _other(selection, choice, rank)])
         first = f"{len(answer.designs)} designs of {answer.candidates} candidates, on {selection.base.where}"
-        return "\n".join([first, "", table_text(_HEAD, rows), "", *left]).rstrip()
+        return "\n".join([first, *notes, "", table_text(head, rows), "", *left]).rstrip()
     if selection.rejected:
-        return "\n".join(["no design that meets the target passes the check", "", *left])
-    lines = ["no design meets the target"]
+        return "\n".join(["no design that meets the target passes the check", *notes, "", *left])
+    lines = ["no design meets the target", *notes]
     if answer.nearest is not None:
         lines += [
             "",
@@ -54,6 +57,13 @@ def selection_text(selection: SelectionRun) -> str:
     if not answer.dropped:
         lines.append("no design fits with any single requirement dropped")
     return "\n".join([*lines, *left]).rstrip()
+
+
+def _other(selection: SelectionRun, choice: Candidate, rank: int) -> str:
+    """The sensitivity of the model that the row is not of: the solid's, or the atlas's under its plate."""
+    if choice.contact is not None:
+        return f"{choice.contact.plate_kPa_per_N:.3f}"
+    return f"{selection.confirmed[rank].sensitivity_kPa_per_N:.3f}" if rank < len(selection.confirmed) else "-"
 
 
 def mount_note(target: Target, base: ResolvedDesign) -> list[str]:
@@ -83,7 +93,6 @@ def _missed(selection: SelectionRun, nearest: Candidate) -> str:
 
 def _row(selection: SelectionRun, choice: Candidate) -> list[str]:
     pool = choice.pool
-    end = int(pool.response.ends[0])
     return [
         choice.resin.name,
         f"{pool.radius[0]:.2f}",
@@ -91,10 +100,10 @@ def _row(selection: SelectionRun, choice: Candidate) -> list[str]:
         f"{selection.footprint(choice):.1f}",
         f"{pool.pressure[0] / KPA:.2f}",
         f"{pool.response.lines.sensitivity_kPa_per_N[0]:.3f}",
-        f"{100 * choice.expanded:.0f} %",
+        "-" if choice.contact is not None else f"{100 * choice.expanded:.0f} %",
         f"0-{pool.force[0]:.2f}",
-        f"{'depth' if end == DEPTH else ENDS[end]}",
-        f"{choice.span[0]:.2f}..{choice.span[1]:.2f}",
+        choice.ends_with,
+        "..".join(f"{end:.2f}" if np.isfinite(end) else "none" for end in choice.span),
         f"{choice.rated / KPA:.1f}",
         f"{choice.binding} ({100 * choice.margins[choice.binding]:+.0f} %)",
     ]

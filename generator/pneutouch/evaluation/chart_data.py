@@ -40,19 +40,21 @@ class TuningChart:
 
     Attributes:
         chosen: The curve.
-        low_kPa_per_N: Lower end of its k = 2 interval, kPa/N, (n,).
+        low_kPa_per_N: Lower end of its k = 2 interval, kPa/N, (n,); None where that is not known.
         high_kPa_per_N: Upper end, (n,).
         working_kPa_per_N: Driving pressures it is meant for and the sensitivities there, kPa to kPa/N.
         others: Designs to compare with.
         published_kPa_per_N: Measured sensitivities of this very sensor, kPa to kPa/N.
+        caption: What the curves leave out, below the chart; none where it is empty.
     """
 
     chosen: TuningCurve
-    low_kPa_per_N: Array
-    high_kPa_per_N: Array
+    low_kPa_per_N: Array | None
+    high_kPa_per_N: Array | None
     working_kPa_per_N: dict[float, float]
     others: tuple[TuningCurve, ...] = ()
     published_kPa_per_N: tuple[tuple[float, float], ...] = ()
+    caption: str = ""
 
 
 class ChartPoint(NamedTuple):
@@ -75,6 +77,7 @@ class TradeOff:
         window_kPa_per_N: Least and greatest required sensitivity (kPa/N), None where free.
         force: Least required force range, N; None where free.
         spots: Designs, the first picked out.
+        caption: What the fronts leave out, below the chart; none where it is empty.
     """
 
     fronts: tuple[TradeOffFront, ...]
@@ -83,6 +86,7 @@ class TradeOff:
     spots: tuple[ChartPoint, ...]
     window_kPa_per_N: tuple[float, float] | None = None
     force: float | None = None
+    caption: str = ""
 
     @property
     def known(self) -> tuple[TradeOffFront, ...]:

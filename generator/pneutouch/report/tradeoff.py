@@ -30,6 +30,7 @@ def tradeoff_chart(tradeoff: TradeOff, size: tuple[float, float]) -> str:
     with figure(*size) as drawn:
         ax = drawn.add_subplot()
         sensitivity = f"sensitivity at {tradeoff.driving_pressure_kPa:g} kPa  (kPa/N)"
+        sensitivity += f"\n{tradeoff.caption}" if tradeoff.caption else ""
         ax.set(xscale="log", yscale="log", xlabel=sensitivity, ylabel="greatest force range  (N)", **_limits(tradeoff))
         _window(ax, tradeoff)
         _gauge(ax, tradeoff)

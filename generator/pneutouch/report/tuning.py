@@ -18,10 +18,7 @@ def tuning_chart(tuning: TuningChart, size: tuple[float, float]) -> str:
     chosen = tuning.chosen
     with figure(*size) as drawn:
         ax = drawn.add_subplot()
-        look: dict[str, Any] = {"fc": FAINT, "alpha": 0.55, "ec": "none", "zorder": 1}
-        ax.fill_between(chosen.driving_pressure_kPa, tuning.low_kPa_per_N, tuning.high_kPa_per_N, **look)
-        for edge in (tuning.low_kPa_per_N, tuning.high_kPa_per_N):
-            ax.plot(chosen.driving_pressure_kPa, edge, color=MUTED, lw=0.6, zorder=2)
+        _band(ax, tuning)
         at = float(chosen.driving_pressure_kPa[-1]), float(chosen.sensitivity_kPa_per_N[-1])
         ends: list[Label] = [(*at, chosen.label, {"fontsize": 6.5, "color": INK, **BOLD})]
         for k, other in enumerate(tuning.others):
@@ -33,15 +30,28 @@ def tuning_chart(tuning: TuningChart, size: tuple[float, float]) -> str:
         if tuning.published_kPa_per_N:
             points = np.array(tuning.published_kPa_per_N).T
             ax.plot(*points, "D", color=INK, mfc="white", ms=4.5, zorder=6, clip_on=False)
-        most = [float(tuning.high_kPa_per_N.max())]
+        highest = chosen.sensitivity_kPa_per_N if tuning.high_kPa_per_N is None else tuning.high_kPa_per_N
+        most = [float(highest.max())]
         most += [float(other.sensitivity_kPa_per_N.max()) for other in tuning.others]
         top = 1.12 * max(most + [value for _, value in tuning.published_kPa_per_N])
         right_kPa = float(max(chosen.driving_pressure_kPa[-1], *tuning.working_kPa_per_N))
-        ax.set(xlabel="driving pressure  (kPa)", ylabel="sensitivity  (kPa/N)", ylim=(0, top), xlim=(0, right_kPa))
+        across = "\n".join(["driving pressure  (kPa)", *([tuning.caption] if tuning.caption else [])])
+        ax.set(xlabel=across, ylabel="sensitivity  (kPa/N)", ylim=(0, top), xlim=(0, right_kPa))
         _mark(ax, tuning)
         if tuning.others:
             label_ends(ax, ends)
         return svg(drawn)
+
+
+def _band(ax: Axes, tuning: TuningChart) -> None:
+    """The k = 2 interval, where it is known."""
+    if tuning.low_kPa_per_N is None or tuning.high_kPa_per_N is None:
+        return
+    look: dict[str, Any] = {"fc": FAINT, "alpha": 0.55, "ec": "none", "zorder": 1}
+    along_kPa = tuning.chosen.driving_pressure_kPa
+    ax.fill_between(along_kPa, tuning.low_kPa_per_N, tuning.high_kPa_per_N, **look)
+    for edge_kPa_per_N in (tuning.low_kPa_per_N, tuning.high_kPa_per_N):
+        ax.plot(along_kPa, edge_kPa_per_N, color=MUTED, lw=0.6, zorder=2)
 
 
 def _mark(ax: Axes, tuning: TuningChart) -> None:
@@ -52,7 +62,8 @@ def _mark(ax: Axes, tuning: TuningChart) -> None:
     last, value = list(tuning.working_kPa_per_N.items())[-1]
     side = -1.0 if last > 0.5 * ax.get_xlim()[1] else 1.0
     note(ax, f"{value:.2f} kPa/N\nat {last:g} kPa", (last, 0.3 * value), (side, 0.0))
-    middle = len(tuning.high_kPa_per_N) // 2
-    note(ax, "k = 2", (tuning.chosen.driving_pressure_kPa[middle], tuning.high_kPa_per_N[middle]), (1.0, 1.0))
+    if tuning.high_kPa_per_N is not None:
+        middle = len(tuning.high_kPa_per_N) // 2
+        note(ax, "k = 2", (tuning.chosen.driving_pressure_kPa[middle], tuning.high_kPa_per_N[middle]), (1.0, 1.0))
     if tuning.published_kPa_per_N:
         note(ax, "published measurement", tuning.published_kPa_per_N[0], (1.0, 0.5))

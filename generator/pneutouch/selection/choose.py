@@ -7,13 +7,14 @@ import numpy as np
 
 from pneutouch.arrays import Array, Flags, Index, distinct
 from pneutouch.mechanics.atlas.press import SensorBatch
-from pneutouch.mechanics.atlas.respond import respond
+from pneutouch.mechanics.atlas.respond import ENDS, respond
+from pneutouch.selection.contact_figures import ContactFigures
 from pneutouch.selection.pool import REQUIREMENTS, CandidatePool, evaluated, margins
 from pneutouch.selection.problem import CandidateResin, SelectionProblem
 from pneutouch.selection.rated import rated
 from pneutouch.selection.search import search
 
-_EACH = 3
+EACH = 3
 """Candidates of one resin that are looked at closely."""
 _APART = 1.1
 """Candidates of one resin must differ by this factor in wall ratio or driving pressure to count as two."""
@@ -38,7 +39,7 @@ class Candidate:
 
     margins: by name. binding: the smallest but the sensitivity's. expanded: relative expanded uncertainty of the
     sensitivity. span: sensitivities at no pressure and at the rated one. rated: that pressure, MPa. cost: what the
-    ranking sorts by, less is better.
+    ranking sorts by, less is better. contact: where the solid was searched with, for a contact outside the atlas.
     """
 
     resin: CandidateResin
@@ -48,6 +49,12 @@ class Candidate:
     span: tuple[float, float]
     rated: float
     cost: float
+    contact: ContactFigures | None = None
+
+    @property
+    def ends_with(self) -> str:
+        """What ends the range of force."""
+        return ENDS[int(self.pool.response.ends[0])] if self.contact is None else self.contact.ends_with
 
     @property
     def binding(self) -> str:
@@ -80,57 +87,69 @@ def choose(
     problem: SelectionProblem, weights: tuple[float, float], uncertainty: Uncertainty, refine: Refine | None = None
 ) -> SelectionResult:
     """Search, keep what meets every limit, and rank it; weights on robustness and on tunability."""
-    pool = search(problem) if problem.resins else None
-    if pool is None and problem.resins:
-        # No size keeps the size limits: the search without them finds what is nearest, and what to drop.
-        pool = search(replace(problem, max_diameter=None, max_footprint=None))
+    pool = searched(problem)
     if pool is None:
         return SelectionResult([], None, [], 0)
     margin_of = margins(problem, pool)
-    wide = (
-        margin_of if refine is None else margins(replace(problem, tolerance=max(problem.tolerance, _REFINABLE)), pool)
-    )
+    wide = margin_of if refine is None else margins(refinable(problem), pool)
     fits = np.all([margin >= 0.0 for margin in wide.values()], axis=0)
-    rows = _shortlist(pool, wide, fits)
+    rows = shortlist(pool, wide, fits)
     if rows.size:
-        close = _rounded(problem, pool.take(rows))
+        close = rounded(problem, pool.take(rows))
         refined_problem, close = (problem, close) if refine is None else refine(problem, close)
         judged = _judged(refined_problem, close, weights, uncertainty)
         good = [choice for choice in judged if min(choice.margins.values()) >= 0.0]
         if good:
-            return SelectionResult(_ranked(good), None, [], pool.resin.size)
+            return SelectionResult(ranked(good), None, [], pool.resin.size)
     return _impossible(problem, pool, margin_of, weights, uncertainty)
 
 
-def _least_margin(margin_of: dict[str, Array]) -> Array:
+def searched(problem: SelectionProblem) -> CandidatePool | None:
+    """The candidates of a search; None without resins or where no size can be searched at all."""
+    if not problem.resins:
+        return None
+    pool = search(problem)
+    if pool is not None:
+        return pool
+    # No size keeps the size limits: the search without them finds what is nearest, and what to drop.
+    return search(replace(problem, max_diameter=None, max_footprint=None))
+
+
+def refinable(problem: SelectionProblem) -> SelectionProblem:
+    """The problem with a tolerance inside which a sensitivity is met by refining a mix."""
+    return replace(problem, tolerance=max(problem.tolerance, _REFINABLE))
+
+
+def least_margin(margin_of: dict[str, Array]) -> Array:
     """The least margin but the sensitivity's, no more than 1."""
     rest = [margin for name, margin in margin_of.items() if name != "sensitivity"]
     return np.asarray(np.minimum(np.min(rest, axis=0), 1.0))
 
 
-def _shortlist(pool: CandidatePool, margin_of: dict[str, Array], fits: Flags) -> Index:
+def shortlist(pool: CandidatePool, margin_of: dict[str, Array], fits: Flags, each: int = EACH) -> Index:
     """For each resin a few candidates that are not nearly the same, those with the greatest margin first."""
-    least = _least_margin(margin_of) + 0.5 * margin_of.get("sensitivity", np.zeros_like(pool.radius))
+    least = least_margin(margin_of) + 0.5 * margin_of.get("sensitivity", np.zeros_like(pool.radius))
     chosen: list[int] = []
     for resin in distinct(pool.resin[fits]):
         rows = np.flatnonzero(fits & (pool.resin == resin))
         kept: list[int] = []
         for row in rows[np.argsort(-least[rows], kind="stable")]:
-            if all(_differ(pool, row, other) for other in kept):
+            if all(differ(pool, row, other) for other in kept):
                 kept.append(int(row))
-            if len(kept) == _EACH:
+            if len(kept) == each:
                 break
         chosen += kept
     return np.array(chosen, dtype=np.intp)
 
 
-def _differ(pool: CandidatePool, a: int, b: int) -> bool:
+def differ(pool: CandidatePool, a: int, b: int) -> bool:
+    """Whether two candidates of one resin differ enough to count as two."""
     ratio = (pool.wall[a] / pool.radius[a]) / (pool.wall[b] / pool.radius[b])
     high, low = max(pool.pressure[a], pool.pressure[b]), min(pool.pressure[a], pool.pressure[b])
     return bool(max(ratio, 1 / ratio) >= _APART or high > _APART * low + 1e-3)
 
 
-def _rounded(problem: SelectionProblem, pool: CandidatePool) -> CandidatePool:
+def rounded(problem: SelectionProblem, pool: CandidatePool) -> CandidatePool:
     """The same at round sizes, still inside the atlas and the size limit; what was given stays as given."""
     unit, box = 10.0**-_DIGITS, problem.recipe
     radius = pool.radius if problem.inner_radius is not None else np.floor(pool.radius / unit) * unit
@@ -147,7 +166,7 @@ def _judged(
     problem: SelectionProblem, pool: CandidatePool, weights: tuple[float, float], uncertainty: Uncertainty
 ) -> list[Candidate]:
     margin_of = margins(problem, pool)
-    least = _least_margin(margin_of)
+    least = least_margin(margin_of)
     highest, span = _span(problem, pool)
     expanded = np.full(pool.radius.size, np.nan)
     for number in distinct(pool.resin):
@@ -155,9 +174,7 @@ def _judged(
         part = pool.take(rows)
         batch = problem.batch(part.resin, part.radius, part.wall, part.pressure)
         expanded[rows] = uncertainty(problem.resins[int(number)], batch)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        moves = np.abs(np.log(span[1] / span[0]))
-    cost = weights[0] * np.nan_to_num(expanded, nan=1.0) - weights[1] * np.nan_to_num(moves) - 0.1 * least
+    cost = costs(weights, expanded, span, least)
     return [
         Candidate(
             problem.resins[int(pool.resin[i])],
@@ -172,6 +189,13 @@ def _judged(
     ]
 
 
+def costs(weights: tuple[float, float], expanded: Array, span: tuple[Array, Array], least: Array) -> Array:
+    """What the ranking sorts by, (n,): from uncertainties, sensitivities at none and rated pressure, least margins."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        moves = np.abs(np.log(span[1] / span[0]))
+    return np.asarray(weights[0] * np.nan_to_num(expanded, nan=1.0) - weights[1] * np.nan_to_num(moves) - 0.1 * least)
+
+
 def _span(problem: SelectionProblem, pool: CandidatePool) -> tuple[Array, tuple[Array, Array]]:
     """The rated driving pressure, and the sensitivities at none and at that one."""
     highest = rated(problem, pool.resin, pool.radius, pool.wall)
@@ -182,7 +206,8 @@ def _span(problem: SelectionProblem, pool: CandidatePool) -> tuple[Array, tuple[
     return highest, (both[0].lines.sensitivity_kPa_per_N, both[1].lines.sensitivity_kPa_per_N)
 
 
-def _ranked(choices: list[Candidate]) -> list[Candidate]:
+def ranked(choices: list[Candidate]) -> list[Candidate]:
+    """The best of each resin in order of cost, then the others in order of cost."""
     ordered = sorted(choices, key=lambda choice: (choice.cost, choice.resin.name))
     first: dict[str, Candidate] = {}
     for choice in ordered:
@@ -204,7 +229,7 @@ def _impossible(
     nearest = int(np.argmax(worst))
 
     def close(row: int) -> Candidate:
-        return _judged(problem, _rounded(problem, pool.take(np.array([row]))), weights, uncertainty)[0]
+        return _judged(problem, rounded(problem, pool.take(np.array([row]))), weights, uncertainty)[0]
 
     dropped = []
     for requirement in REQUIREMENTS:

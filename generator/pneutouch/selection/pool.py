@@ -39,9 +39,12 @@ class CandidatePool(NamedTuple):
 
 
 def evaluated(problem: SelectionProblem, resin: Array, radius: Array, wall: Array, pressure: Array) -> CandidatePool:
-    """Candidates with their responses from the atlas."""
+    """Candidates with their responses from the atlas, times the factors of the problem where there are any."""
     batch = problem.batch(resin, radius, wall, pressure)
-    return CandidatePool(resin, radius, wall, pressure, respond(batch, problem.steps))
+    response = respond(batch, problem.steps)
+    if problem.factors is not None:
+        response = problem.factors.corrected(batch, response)
+    return CandidatePool(resin, radius, wall, pressure, response)
 
 
 def joined(pools: list[CandidatePool]) -> CandidatePool:

@@ -9,6 +9,7 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.recipe import AtlasRecipe
+from pneutouch.selection.contact_factors import ContactFactors
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
 
@@ -48,7 +49,8 @@ class SelectionProblem:
 
     plate_share: the plate's radius over R0 where it is larger than ``plate_radius``, for a plate that goes with the
     dome. connector: of domes of inner radius and wall (n,), mm; None where no connector matters. limit_spread: where
-    it is None, designs may be driven above their rated pressure.
+    it is None, designs may be driven above their rated pressure. factors: on the atlas's figures, for a contact that it
+    does not cover.
     """
 
     resins: tuple[CandidateResin, ...]
@@ -72,6 +74,7 @@ class SelectionProblem:
     max_footprint: float | None = None
     connector: Callable[[Array, Array], ConnectorFit] | None = None
     limit_spread: LimitUncertainty | None = None
+    factors: ContactFactors | None = None
 
     def plate(self, radius: Array) -> Array:
         """Radius of the plate for domes of inner radius (n,), mm."""

@@ -61,7 +61,6 @@ def base_scene(target: Target, where: str, library: Library) -> ResolvedDesign:
             changes["membrane.inner_radius_mm"] = given.wall_thickness_mm / _WALL_SHARE
     elif given.inner_radius_mm is not None and membrane.wall_thickness_mm >= given.inner_radius_mm:
         changes["membrane.wall_thickness_mm"] = _WALL_SHARE * given.inner_radius_mm
-    _check_contact(source.changed(chosen), source.where)
     try:
         changes["membrane.material"] = _some_resin(target, where, chosen, library)
         return load_scene(source, changes, library)
@@ -69,24 +68,6 @@ def base_scene(target: Target, where: str, library: Library) -> ResolvedDesign:
         if error.file is None and error.key not in chosen:
             error.file = where
         raise
-
-
-def _check_contact(design: DesignFile, where: str) -> None:
-    """Raise InputError where the atlas, which the search is made with, does not cover what presses the sensor."""
-    contact = design.contact
-    remedy = (
-        "select with a plate without friction, then `sweep` wall and radius of the selected design with `[contact]`"
-    )
-    if not contact.is_plate:
-        problem = f"the search is made with the atlas, whose domes are pressed by a plate, not by a {contact.label}"
-        raise InputError(problem, file=where, key="contact.object", value=contact.object, remedy=remedy)
-    if contact.friction:
-        problem = "the search is made with the atlas, whose plate has no friction"
-        raise InputError(problem, file=where, key="contact.friction", value=contact.friction, remedy=remedy)
-    if not contact.base:
-        problem = "the search is made with the atlas, whose domes lie down on their base next to the clamp"
-        remedy = "select with contact.base = true, then predict the selected design with false"
-        raise InputError(problem, file=where, key="contact.base", value=False, remedy=remedy)
 
 
 def requested_pair(target: Target, where: str, printer: Printer, library: Library) -> ResinPair | None:

@@ -3,8 +3,10 @@
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from pneutouch.catalogue import Library
-from pneutouch.evaluation.chart_data import ChartPoint, TradeOff, TuningChart
+from pneutouch.evaluation.chart_data import ChartPoint, TradeOff, TuningChart, TuningCurve
 from pneutouch.evaluation.tuning import curve, interval
 from pneutouch.output.files import replace_files
 from pneutouch.report.tradeoff import tradeoff_chart
@@ -13,10 +15,14 @@ from pneutouch.selection import Candidate
 from pneutouch.selection.front import front
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
+from pneutouch.workflows.select.contact import CandidateSolver, contact_text
 from pneutouch.workflows.select.run import SelectionRun
 
 _SIZE = (130.0, 90.0)
 """Width and height of a chart, mm."""
+
+_SOLVED, _LEAST = 9, 2
+"""Driving pressures of a tuning curve by the solid, and how many must have figures."""
 
 _DESIGNS = 5
 """Designs marked on the trade-off, and resins compared with the chosen one on the tuning chart."""
@@ -59,6 +65,9 @@ def tradeoff(selection: SelectionRun) -> TradeOff:
         if target_kPa_per_N is None
         else (target_kPa_per_N * (1 - problem.tolerance), target_kPa_per_N * (1 + problem.tolerance)),
         problem.force_range,
+        ""
+        if selection.by_solid is None
+        else f"curves: a plate without friction, atlas\npoints: {contact_text(selection.base)}, solid",
     )
 
 
@@ -68,6 +77,8 @@ def tuning(selection: SelectionRun, library: Library, chosen: Candidate | None =
     if not designs:
         return None
     chosen = chosen or designs[0]
+    if chosen.contact is not None:
+        return _tuned_by_solid(selection, library, chosen)
     material = chosen.resin.material
     drawn = curve(selection.sensor_of(chosen), chosen.rated, material.title)
     if drawn is None:
@@ -85,8 +96,26 @@ def tuning(selection: SelectionRun, library: Library, chosen: Candidate | None =
         for choice in designs
         if choice.resin.name != chosen.resin.name
     )
-    working = {float(chosen.pool.pressure[0]) / KPA: float(chosen.pool.response.lines.sensitivity_kPa_per_N[0])}
-    return TuningChart(drawn, low, high, working, tuple(other for other in others if other is not None))
+    return TuningChart(drawn, low, high, _working(chosen), tuple(other for other in others if other is not None))
+
+
+def _tuned_by_solid(selection: SelectionRun, library: Library, chosen: Candidate) -> TuningChart | None:
+    """The curve of a design under a contact that the atlas does not cover; its interval is not known."""
+    solve = CandidateSolver(selection.base, selection.assignments, library)
+    pressures = np.unique([*np.linspace(0.0, chosen.rated, _SOLVED), float(chosen.pool.pressure[0])])
+    states = [state for state in solve(chosen.resin, chosen.pool, pressures.tolist()).states if state.figures]
+    if len(states) < _LEAST:
+        return None
+    at_kPa = np.array([state.driving_pressure for state in states]) / KPA
+    solved_kPa_per_N = np.array([state.figures.sensitivity_kPa_per_N for state in states if state.figures])
+    drawn = TuningCurve(chosen.resin.material.title, at_kPa, solved_kPa_per_N)
+    caption = f"{contact_text(selection.base)}: by the solid, its uncertainty is not known"
+    return TuningChart(drawn, None, None, _working(chosen), caption=caption)
+
+
+def _working(chosen: Candidate) -> dict[float, float]:
+    """The driving pressure that a design is for and its sensitivity there, kPa to kPa/N."""
+    return {float(chosen.pool.pressure[0]) / KPA: float(chosen.pool.response.lines.sensitivity_kPa_per_N[0])}
 
 
 def _best(selection: SelectionRun) -> list[Candidate]:

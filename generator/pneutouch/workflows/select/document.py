@@ -6,11 +6,12 @@ from typing import Any
 import numpy as np
 
 from pneutouch.errors import InputError
-from pneutouch.mechanics.atlas.respond import ENDS
+from pneutouch.evaluation.contact_object import contact_document
 from pneutouch.parts import assemble
 from pneutouch.selection import Candidate, DroppedRequirement
 from pneutouch.selection.missed import missed_percent
 from pneutouch.units import KPA, ML
+from pneutouch.workflows.select.contact import contact_notes, contact_text
 from pneutouch.workflows.select.passing import RejectedDesign, write_assigned
 from pneutouch.workflows.select.run import Confirmation, SelectionRun
 
@@ -24,6 +25,7 @@ def document(selection: SelectionRun) -> dict[str, Any]:
         "target": selection.target.model_dump(mode="json"),
         "base": selection.base.where,
         **({"dead_volume_note": idealised} if idealised else {}),
+        **_contact(selection),
         "met": bool(answer.designs),
         "candidates": answer.candidates,
         "designs": [
@@ -45,6 +47,16 @@ def document(selection: SelectionRun) -> dict[str, Any]:
         "rejected": [_rejected(selection, rejected) for rejected in selection.rejected],
         "left_out": selection.left_out,
     }
+
+
+def _contact(selection: SelectionRun) -> dict[str, Any]:
+    """What presses the sensor and how the solid was searched with; nothing for what the atlas covers."""
+    found = selection.by_solid
+    if found is None:
+        return {}
+    notes = contact_notes(found, selection.base)
+    record = contact_document(selection.base).get("contact", {"label": contact_text(selection.base)})
+    return {"contact": {**record, "notes": notes, "rounds": found.rounds, "solves": found.solves}}
 
 
 def _rejected(selection: SelectionRun, rejected: RejectedDesign) -> dict[str, Any]:
@@ -75,26 +87,38 @@ def _choice(selection: SelectionRun, choice: Candidate, solid: Confirmation | No
         "footprint_mm": selection.footprint(choice),
         "dead_volume_mL": float(batch.dead_volume[0]) / ML,
         "sensitivity_kPa_per_N": sensitivity_kPa_per_N,
-        "expanded_uncertainty_kPa_per_N": sensitivity_kPa_per_N * choice.expanded,
-        "expanded_uncertainty_relative": choice.expanded,
+        "expanded_uncertainty_kPa_per_N": _known(sensitivity_kPa_per_N * choice.expanded),
+        "expanded_uncertainty_relative": _known(choice.expanded),
         "coverage_factor": 2,
         "r_squared": float(lines.r_squared[0]),
         "force_range_N": [0.0, float(pool.force[0])],
         "range_end_mm": float(pool.response.range_end[0]),
-        "range_ends_with": ENDS[int(pool.response.ends[0])],
+        "range_ends_with": choice.ends_with,
         "stiffness_N_per_mm": float(lines.stiffness[0]),
         "limit_point_kPa": float(pool.response.limit_pressure[0]) / KPA,
         "rated_pressure_kPa": choice.rated / KPA,
         "above_rated_pressure": choice.margins["rated pressure"] < 0,
-        "sensitivity_at_0kPa_and_rated_kPa_per_N": list(choice.span),
-        "margins": {name: margin if np.isfinite(margin) else None for name, margin in choice.margins.items()},
+        "sensitivity_at_0kPa_and_rated_kPa_per_N": [_known(end) for end in choice.span],
+        "margins": {name: _known(margin) for name, margin in choice.margins.items()},
         "binding": choice.binding,
-        "model": "atlas",
+        **_how(choice),
         "solid": None
         if solid is None
         else {"sensitivity_kPa_per_N": solid.sensitivity_kPa_per_N, "within_expanded_uncertainty": solid.within},
         "set": selection.assignments(choice),
     }
+
+
+def _known(value: float) -> float | None:
+    return value if np.isfinite(value) else None
+
+
+def _how(choice: Candidate) -> dict[str, Any]:
+    """The model of the figures; of the solid's also the atlas's sensitivity under its plate, and the searches made."""
+    if choice.contact is None:
+        return {"model": "atlas"}
+    plate_kPa_per_N = choice.contact.plate_kPa_per_N
+    return {"model": "solid", "plate_sensitivity_kPa_per_N": plate_kPa_per_N, "rounds": choice.contact.rounds}
 
 
 def would_need(selection: SelectionRun, dropped: DroppedRequirement) -> str:

@@ -18,6 +18,7 @@ from pneutouch.parts import assemble
 from pneutouch.selection.grade_search import GradeSearch, GradeTarget, GradeTrial, TrialReport, grade_search, shares
 from pneutouch.selection.graded import UniformMembrane, middle_wall, nearest_fraction, trial_of
 from pneutouch.selection.mixes import levels
+from pneutouch.selection.pool import evaluated
 from pneutouch.selection.problem import SelectionProblem
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
@@ -26,6 +27,7 @@ from pneutouch.spec.read import assignments
 from pneutouch.spec.target import Target
 from pneutouch.units import KPA
 from pneutouch.workflows.select.base import base_scene, requested_pair, setting_changes
+from pneutouch.workflows.select.contact import other_contact, without_plate
 from pneutouch.workflows.select.mix import ResinPair
 from pneutouch.workflows.select.passing import judge, source_of
 from pneutouch.workflows.select.run import grade_text, problem_of
@@ -33,6 +35,8 @@ from pneutouch.workflows.select.run import grade_text, problem_of
 _LEVELS = 4
 """Fractions of the scan at pole and rim: moduli 3 times apart for TangoPlus and VeroClear, 16 trials."""
 _TRIALS = 48
+_WALL_ROUNDS = 2
+"""Corrections of the wall under a contact that the atlas does not cover; the grade is searched for by the solid."""
 _SMALLER = "give a smaller given.inner_radius_mm (`inner_radius`)"
 
 
@@ -152,7 +156,7 @@ def _wall(target: Target, where: str, grade_target: GradeTarget, problem: Select
     thickest = np.inf if most is None else 0.5 * most - radius
     wall = target.given.wall_thickness_mm
     if wall is None:
-        wall = middle_wall(grade_target, problem, radius, thickest) or base.dome.wall_thickness
+        wall = _middle_wall(grade_target, problem, base, thickest) or base.dome.wall_thickness
     if wall > thickest + 1e-9:
         raise InputError(
             f"a dome of inner radius {radius:g} mm and wall {wall:g} mm is {2 * (radius + wall):g} mm wide",
@@ -171,6 +175,25 @@ def _wall(target: Target, where: str, grade_target: GradeTarget, problem: Select
             file=where,
             remedy="give given.wall_thickness_mm (`wall`) or another given.inner_radius_mm (`inner_radius`)",
         )
+    return wall
+
+
+def _middle_wall(grade_target: GradeTarget, problem: SelectionProblem, base: Sensor, thickest: float) -> float | None:
+    """The wall of `middle_wall`; under a contact that the atlas does not cover for a target that it has corrected."""
+    radius, required = base.dome.inner_radius, grade_target.sensitivity_kPa_per_N
+    problem = without_plate(problem, base)
+    wall = middle_wall(grade_target, problem, radius, thickest)
+    for _ in range(_WALL_ROUNDS if other_contact(base) is not None else 0):
+        if wall is None:
+            break
+        middle = in_resin(base.replace(wall_thickness=wall), problem.resins[0].material)
+        solved = trial_of(middle, grade_target.pressures[:1], lambda limits: limits.lowest)
+        place = np.zeros(1), np.array([radius]), np.array([wall]), np.array(grade_target.pressures[:1])
+        atlas_kPa_per_N = evaluated(problem, *place).response.lines.sensitivity_kPa_per_N[0]
+        factor = solved.sensitivity_kPa_per_N[0] / float(atlas_kPa_per_N)
+        if not np.isfinite(factor):
+            break
+        wall = middle_wall(replace(grade_target, sensitivity_kPa_per_N=required / factor), problem, radius, thickest)
     return wall
 
 
@@ -235,7 +258,8 @@ def _nearest(
     fraction = None
     soft = float(pair.law.modulus_at(np.array(0.0)))
     if (
-        material_sensor(middle).wall.poisson_ratio == recipe.poisson_ratio
+        other_contact(sensor) is None
+        and material_sensor(middle).wall.poisson_ratio == recipe.poisson_ratio
         and sensor.gas.ambient_pressure <= recipe.stiffest * soft
     ):
         fraction = nearest_fraction(

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from pneutouch.evaluation.contact_object import contact_document
 from pneutouch.rounding import tenths_below
 from pneutouch.selection.grade_search import GradeTrial, shares
 from pneutouch.units import KPA, ML
@@ -18,6 +19,7 @@ def graded_document(selection: GradedSelectionRun) -> dict[str, Any]:
     return {
         "target": selection.target.model_dump(mode="json"),
         "base": selection.base.where,
+        **contact_document(selection.base),
         "met": search.met,
         "design": {
             "material": selection.grade.model_dump(by_alias=True, exclude_none=True),

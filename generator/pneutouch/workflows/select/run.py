@@ -25,8 +25,9 @@ from pneutouch.mechanics.uncertainty import ModelErrors, budget, measured_errors
 from pneutouch.mechanics.uncertainty.limit import limit_spread
 from pneutouch.mechanics.uncertainty.source import FIGURES, SENSITIVITY
 from pneutouch.selection import Candidate, CandidateResin, SelectionProblem, SelectionResult, choose
+from pneutouch.selection.choose import Refine
+from pneutouch.selection.contact_search import ContactSelection, choose_by_solid
 from pneutouch.selection.mixes import met_by_fraction
-from pneutouch.selection.pool import CandidatePool
 from pneutouch.spec.grade import Grade
 from pneutouch.spec.material import Material
 from pneutouch.spec.read import assignments
@@ -35,11 +36,13 @@ from pneutouch.spec.toml_text import value_text
 from pneutouch.units import KPA
 from pneutouch.workflows.select.base import base_scene, prints, requested_pair, setting_changes, with_connector
 from pneutouch.workflows.select.connector import base_around, base_sensor, connector_fit, dead_volume
+from pneutouch.workflows.select.contact import CandidateSolver, other_contact, without_plate
 from pneutouch.workflows.select.mix import ResinPair, mix_resins
 from pneutouch.workflows.select.passing import RejectedDesign, judge, source_of
 
 _CONFIRMED = 3
 """Designs that are confirmed by the solid."""
+_NOTHING = SelectionResult([], None, [], 0)
 _PLATE_SHARE = 1.25
 """Radius over R0 of a plate that no base states: the contact of an inflated dome grows past R0."""
 
@@ -58,6 +61,7 @@ class SelectionRun:
 
     changes: what the target changes in its base, by ``table.key``. left_out: resins and why. rejected: designs that
     ``check`` would reject, best first. judged: designs of the answer that pass ``check``, as it predicts them, by rank.
+    by_solid: how the search went where the solid answers the base's contact and the atlas does not.
     """
 
     target: Target
@@ -70,6 +74,7 @@ class SelectionRun:
     rejected: tuple[RejectedDesign, ...] = ()
     judged: Mapping[int, Evaluation] = field(default_factory=dict)
     confirmed: tuple[Confirmation, ...] = ()
+    by_solid: ContactSelection | None = None
 
     def assignments(self, choice: Candidate) -> list[str]:
         """What turns the base design into a choice, as ``table.key=value``."""
@@ -86,7 +91,7 @@ class SelectionRun:
             # A depth in millimetres belongs to the base's own dome: it goes with the radius.
             values.append(f"indentation.depth_mm={self.problem.depth_share * radius:.8g}")
         plate = 2 * float(self.problem.plate(pool.radius)[0])
-        if plate > self.base.design.indentation.plate_diameter_mm:
+        if self.base.design.contact.is_plate and plate > self.base.design.indentation.plate_diameter_mm:
             values.append(f"indentation.plate_diameter_mm={plate:g}")
         return values + assignments(self.changes)
 
@@ -137,18 +142,29 @@ def select(
         resins, left_out = mix_resins(pair, sensor.gas.ambient_pressure)
     problem = problem_of(target, scene, sensor, resins)
     progress("search")
-    answer = choose(
-        problem,
-        (target.weights.robustness, target.weights.tunability),
-        partial(_uncertainty, scene, sensor, measured_errors(library.all("materials", Material))),
-        None if pair is None else _refined(pair),
-    )
-    run = SelectionRun(target, scene, setting_changes(target, library), sensor, problem, answer, left_out)
+    run = SelectionRun(target, scene, setting_changes(target, library), sensor, problem, _NOTHING, left_out)
+    run = _answered(run, None if pair is None else _refined(pair), library)
     progress("print rules")
     run = _passing(run, written, library)
+    if run.by_solid is not None:
+        return run
     progress("solid")
     best = enumerate(run.answer.designs[:_CONFIRMED], start=1)
     return replace(run, confirmed=tuple(_confirm(run, choice, run.judged.get(rank)) for rank, choice in best))
+
+
+def _answered(run: SelectionRun, refine: Refine | None, library: Library) -> SelectionRun:
+    """The run with its answer: by the atlas, or by the solid where that alone knows the base's contact."""
+    target, problem = run.target, run.problem
+    weights = target.weights.robustness, target.weights.tunability
+    errors = measured_errors(library.all("materials", Material))
+    uncertainty = partial(_uncertainty, run.base, run.sensor, errors)
+    if other_contact(run.sensor) is None:
+        return replace(run, answer=choose(problem, weights, uncertainty, refine))
+    run = replace(run, problem=without_plate(problem, run.sensor))
+    solver = CandidateSolver(run.base, run.assignments, library)
+    found = choose_by_solid(run.problem, weights, uncertainty, solver, refine)
+    return replace(run, answer=found.result, by_solid=found, left_out=run.left_out | found.unsettled)
 
 
 def _passing(run: SelectionRun, written: int | None, library: Library) -> SelectionRun:
@@ -181,7 +197,7 @@ def grade_text(grade: Grade) -> str:
     return value_text(grade.model_dump(by_alias=True, exclude_none=True))
 
 
-def _refined(pair: ResinPair) -> Callable[[SelectionProblem, CandidatePool], tuple[SelectionProblem, CandidatePool]]:
+def _refined(pair: ResinPair) -> Refine:
     return lambda problem, pool: met_by_fraction(problem, pool, pair.law, pair.resin)
 
 

@@ -1,0 +1,262 @@
+"""The search under a contact that the atlas does not cover: the atlas searched, the solid asked, the atlas corrected.
+
+Space mapping: each round searches the atlas times the factors that the solid gave so far, and solves what it finds.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from pneutouch.arrays import Array, Flags, Index
+from pneutouch.selection.choose import (
+    EACH,
+    Candidate,
+    DroppedRequirement,
+    Refine,
+    SelectionResult,
+    Uncertainty,
+    differ,
+    ranked,
+    refinable,
+    rounded,
+    searched,
+    shortlist,
+)
+from pneutouch.selection.contact_factors import ContactFactors, places
+from pneutouch.selection.contact_trial import UNSOLVED, ContactTrial, SolveCandidate, tried
+from pneutouch.selection.pool import REQUIREMENTS, CandidatePool, joined, margins
+from pneutouch.selection.problem import SelectionProblem
+
+ROUNDS = 8
+"""Searches at most."""
+_AFRESH = 2
+"""Searches that take the best anywhere; the later ones stay near what was solved."""
+_FEW = 2
+"""Up to so many resins each is followed at several candidates, as without this contact; of more, at its best."""
+_PROBED, _HOPELESS = 3, 4
+"""Where no candidate fits by the corrected atlas: resins whose nearest is solved all the same, and for how many rounds.
+"""
+
+
+@dataclass
+class _Group:
+    """Candidates that are followed together: those of one resin, or of all mixes.
+
+    last: those of the last round that have not settled. rounds: searches until the last of them was solved.
+    """
+
+    last: list[ContactTrial] = field(default_factory=list)
+    trials: list[ContactTrial] = field(default_factory=list)
+    rounds: int = 0
+    done: bool = False
+
+
+@dataclass(frozen=True)
+class ContactSelection:
+    """An answer whose figures are the solid's. unsettled: resins and why the search did not come to an end.
+
+    rounds: searches made. solves: candidates that the solid answered in them.
+    """
+
+    result: SelectionResult
+    unsettled: dict[str, str]
+    rounds: int
+    solves: int
+
+
+def choose_by_solid(
+    problem: SelectionProblem,
+    weights: tuple[float, float],
+    uncertainty: Uncertainty,
+    solve: SolveCandidate,
+    refine: Refine | None = None,
+) -> ContactSelection:
+    """As `choose`, under a contact that the solid alone answers.
+
+    A candidate is settled where it keeps every limit and the sensitivity within a quarter of the tolerance, all by the
+    solid. One that keeps the tolerance when nothing nearer is found is an answer too.
+    """
+    run = _Run(problem, solve, refine)
+    while run.searching():
+        run.round()
+    solved = run.solved
+    designs = [
+        trial.candidate(solve, weights, uncertainty, group.rounds)
+        for group in run.groups.values()
+        for trial in _best(group.trials, run.each)
+    ]
+    result = SelectionResult(ranked(designs), None, [], run.candidates)
+    if not designs and solved:
+        result = _impossible(run, weights, uncertainty)
+    return ContactSelection(result, run.unsettled(), run.rounds, len(run.solved))
+
+
+class _Run:
+    """The rounds of one search."""
+
+    def __init__(self, problem: SelectionProblem, solve: SolveCandidate, refine: Refine | None) -> None:
+        self.problem, self.solve, self.refine = problem, solve, refine
+        names = [resin.name for resin in problem.resins] if refine is None else ["mix"] if problem.resins else []
+        self.groups = {name: _Group() for name in names}
+        self.each = EACH if len(names) <= _FEW else 1
+        self.factors, self.rounds, self.candidates = ContactFactors.none(), 0, 0
+        self._known: dict[tuple[object, ...], ContactTrial] = {}
+
+    @property
+    def solved(self) -> list[ContactTrial]:
+        """All candidates that the solid was asked for."""
+        return list(self._known.values())
+
+    def searching(self) -> bool:
+        return self.rounds < ROUNDS and not all(group.done for group in self.groups.values())
+
+    def corrected(self) -> SelectionProblem:
+        """The problem of the resins that are not done, with the factors found so far."""
+        open_ = tuple(r for r in self.problem.resins if not self.groups[self._group(r.name)].done)
+        return replace(self.problem, resins=open_, factors=self.factors if len(self.factors.places) else None)
+
+    def round(self) -> None:
+        """Search, and solve what is found; a group is done when it has settled or when nothing new is found."""
+        self.rounds += 1
+        problem = self.corrected()
+        pool = searched(problem)
+        if pool is None:
+            for group in self.groups.values():
+                group.done = True
+            return
+        self.candidates = max(self.candidates, pool.resin.size)
+        margin_of = margins(problem if self.refine is None else refinable(problem), pool)
+        names = np.array([self._group(resin.name) for resin in problem.resins])[pool.resin.astype(np.intp)]
+        worst = np.min(list(margin_of.values()), axis=0)
+        least = {name: float(worst[names == name].max()) for name in dict.fromkeys(names.tolist())}
+        for name in self._followed(least):
+            self._follow(self.groups[name], problem, pool, margin_of, names == name)
+
+    def _followed(self, least: dict[str, float]) -> list[str]:
+        """Groups to solve in this round, by their best margin: those that fit; where none does, those nearest to it.
+
+        The first round waits for the factors of others, which may make more of them fit.
+        """
+        fit = [name for name, margin in least.items() if margin >= 0.0]
+        known = sorted((name for name in least if least[name] > -np.inf), key=lambda name: -least[name])
+        chosen = fit or (known[:_PROBED] if self.rounds <= _HOPELESS else [])
+        if self.rounds > 1 or not chosen:
+            for name, group in self.groups.items():
+                group.done = group.done or name not in (fit or chosen)
+        return chosen
+
+    def _follow(
+        self, group: _Group, problem: SelectionProblem, pool: CandidatePool, margin_of: dict[str, Array], own: Flags
+    ) -> None:
+        rows = self._rows(group, problem, pool, margin_of, own)
+        close = rounded(problem, pool.take(rows))
+        refined, close = (problem, close) if self.refine is None else self.refine(problem, close)
+        count = min(len(close.radius), self.each)
+        found = [self.trial(refined, close.take(np.array([i]))) for i in range(count)]
+        new = [trial for trial in found if trial not in group.trials]
+        group.rounds, group.trials = self.rounds, group.trials + new
+        # What has settled, and what comes back unchanged, is not followed further.
+        group.last = [trial for trial in new if not trial.settled]
+        group.done = not group.last
+
+    def _rows(
+        self, group: _Group, problem: SelectionProblem, pool: CandidatePool, margin_of: dict[str, Array], own: Flags
+    ) -> Index:
+        """What fits: the best anywhere, later what is nearest to the last; else what breaks the least."""
+        fits = own & np.all([margin >= 0.0 for margin in margin_of.values()], axis=0)
+        if not fits.any():
+            return np.array([np.where(own, np.min(list(margin_of.values()), axis=0), -np.inf).argmax()])
+        if self.rounds <= _AFRESH or not group.last:
+            return shortlist(pool, margin_of, fits, self.each)
+        rows = np.flatnonzero(fits)
+        batch = problem.batch(pool.resin[rows], pool.radius[rows], pool.wall[rows], pool.pressure[rows])
+        where = places(batch, pool.response.take(rows))
+        nearest = [int(np.linalg.norm(where - trial.place, axis=1).argmin()) for trial in group.last]
+        return rows[np.unique(nearest)]
+
+    def trial(self, problem: SelectionProblem, pool: CandidatePool) -> ContactTrial:
+        """A candidate solved, once; what the solid says of it corrects the next search."""
+        resin = problem.resins[int(pool.resin[0])]
+        key = (resin.name, float(pool.radius[0]), float(pool.wall[0]), float(pool.pressure[0]))
+        if key not in self._known:
+            self._known[key] = tried(problem, pool, self.solve)
+            self.factors = self._known[key].added_to(self.factors)
+        return self._known[key]
+
+    def unsettled(self) -> dict[str, str]:
+        """Resins without a design that the rounds did not settle, and what the solid says of the last candidate."""
+        return {name: why for name, group in self.groups.items() if (why := self._why(group)) is not None}
+
+    def _why(self, group: _Group) -> str | None:
+        if not group.trials or any(trial.worst >= 0.0 for trial in group.trials):
+            return None
+        last = group.trials[-1]
+        if last.why:
+            return last.why
+        if group.rounds < ROUNDS or not last.off_target_alone:
+            return None
+        value_kPa_per_N = float(last.pool.response.lines.sensitivity_kPa_per_N[0])
+        return (
+            f"the search did not settle in {group.rounds} rounds: at the last the solid's sensitivity is "
+            f"{value_kPa_per_N:.3g} kPa/N instead of {self.problem.sensitivity_kPa_per_N:g}"
+        )
+
+    def _group(self, resin: str) -> str:
+        return resin if self.refine is None else "mix"
+
+
+def _best(trials: list[ContactTrial], each: int) -> list[ContactTrial]:
+    """The few answers of one group that are not nearly the same, the greatest margin first."""
+    good = [trial for trial in trials if trial.worst >= 0.0]
+    if not good:
+        return []
+    pool = joined([trial.pool for trial in good])
+    order = sorted(range(len(good)), key=lambda k: -_quality(good[k]))
+    kept: list[int] = []
+    for k in order:
+        if len(kept) < each and all(differ(pool, k, other) for other in kept):
+            kept.append(k)
+    return [good[k] for k in kept]
+
+
+def _quality(trial: ContactTrial) -> float:
+    rest = [margin for name, margin in trial.margins.items() if name != "sensitivity"]
+    return min(1.0, *rest) + 0.5 * trial.margins.get("sensitivity", 0.0)
+
+
+def _impossible(run: _Run, weights: tuple[float, float], uncertainty: Uncertainty) -> SelectionResult:
+    """The solved candidate that breaks the least, and each requirement without which a solved one is a design."""
+
+    def choice(trial: ContactTrial) -> Candidate:
+        return trial.candidate(run.solve, weights, uncertainty, run.rounds)
+
+    _solve_without_each(run)
+    solved = run.solved
+    nearest = max(solved, key=lambda trial: trial.worst)
+    dropped = []
+    for requirement in REQUIREMENTS:
+        rest = [
+            trial
+            for trial in solved
+            if requirement in trial.margins and min(m for name, m in trial.margins.items() if name != requirement) >= 0
+        ]
+        if rest:
+            best = max(rest, key=lambda trial: trial.margins[requirement])
+            dropped.append(DroppedRequirement(requirement, choice(best)))
+    return SelectionResult([], choice(nearest) if nearest.worst > UNSOLVED else None, dropped, run.candidates)
+
+
+def _solve_without_each(run: _Run) -> None:
+    """Solve the candidate that the corrected atlas finds best without each requirement."""
+    problem = replace(run.problem, factors=run.factors if len(run.factors.places) else None)
+    pool = searched(problem)
+    if pool is None:
+        return
+    margin_of = margins(problem, pool)
+    for requirement in REQUIREMENTS:
+        rest = np.all([margin >= 0.0 for name, margin in margin_of.items() if name != requirement], axis=0)
+        if requirement in margin_of and rest.any():
+            row = np.flatnonzero(rest)[np.argmax(margin_of[requirement][rest])]
+            run.trial(problem, rounded(problem, pool.take(np.array([row]))))

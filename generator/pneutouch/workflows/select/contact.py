@@ -1,0 +1,77 @@
+"""Selection under a contact that the atlas does not cover: each candidate's own design, answered by the solid."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from pneutouch.catalogue import Library, ResolvedDesign, load_scene
+from pneutouch.errors import ComputationError, InputError
+from pneutouch.evaluation.contact_object import check_object
+from pneutouch.evaluation.evaluate import sensor_of
+from pneutouch.mechanics.sensor import Sensor
+from pneutouch.parts import assemble
+from pneutouch.selection import Candidate, CandidateResin, SelectionProblem
+from pneutouch.selection.contact_search import ContactSelection
+from pneutouch.selection.contact_trial import SolvedStates
+from pneutouch.selection.pool import CandidatePool
+from pneutouch.spec.read import Changes
+from pneutouch.workflows.select.passing import source_of
+
+AssignmentsOf = Callable[[Candidate], list[str]]
+"""What turns the base into a candidate, as ``table.key=value``."""
+
+
+def other_contact(sensor: Sensor) -> str | None:
+    """Why the search with the atlas alone does not do, None where it does: what presses, or the missing base."""
+    if sensor.protocol.other_contact is not None:
+        return sensor.protocol.other_contact
+    return "the wall passes through its base plane" if sensor.dome.base is None else None
+
+
+def contact_text(scene: ResolvedDesign) -> str:
+    """What presses the sensor of a base, in words."""
+    contact = scene.design.contact
+    rim = "" if contact.plate_rim_mm is None else f" with a rim of {contact.plate_rim_mm:g} mm radius"
+    base = "" if contact.base else ", the wall passing through its base"
+    return f"{contact.label}{rim}, {contact.hold}{base}"
+
+
+def without_plate(problem: SelectionProblem, sensor: Sensor) -> SelectionProblem:
+    """The problem without a plate's edge, where an object that is no plate presses."""
+    return problem if sensor.protocol.body is None else replace(problem, plate_radius=np.inf, plate_share=0.0)
+
+
+def contact_notes(selection: ContactSelection, scene: ResolvedDesign) -> list[str]:
+    """What is said of an answer by the solid, line by line."""
+    settled = f"{selection.rounds} rounds, {selection.solves} candidates solved"
+    return [
+        f"contact: {contact_text(scene)}",
+        f"every figure is the solid's with this contact ({settled}); U is known for a plate without friction alone",
+    ]
+
+
+class CandidateSolver:
+    """Candidates as `predict` answers their designs: base and assignments drawn, pressed by the solid.
+
+    ``assignments`` gives what turns the base into a candidate.
+    """
+
+    def __init__(self, base: ResolvedDesign, assignments: AssignmentsOf, library: Library) -> None:
+        self._base, self._assignments, self._library = base, assignments, library
+
+    def __call__(self, resin: CandidateResin, pool: CandidatePool, pressures: list[float]) -> SolvedStates:
+        """States at driving pressures, MPa, rising; or why there are none."""
+        from pneutouch.mechanics.solid_states import solid_states
+
+        choice = Candidate(resin, pool, {}, np.nan, (np.nan, np.nan), np.nan, np.nan)
+        unchecked: Changes = {"indentation.checked_waves": 0}
+        try:
+            scene = load_scene(source_of(self._base, self._assignments(choice)), unchecked, self._library)
+            sensor = sensor_of(assemble(scene))
+            check_object(scene, sensor)
+            return SolvedStates(solid_states(sensor, np.array(pressures)))
+        except (InputError, ComputationError) as error:
+            return SolvedStates((), "; ".join(part for part in (error.problem, error.remedy) if part))
