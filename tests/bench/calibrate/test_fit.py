@@ -9,7 +9,7 @@ from pneutouch.bench.calibrate import NAMES, Observations, fit
 from pneutouch.bench.calibrate.discrepancy import FLOOR
 from pneutouch.bench.calibrate.gains import gain_shifts
 from pneutouch.bench.calibrate.goodness import misses, residuals
-from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, OFFSET, WALL
+from pneutouch.bench.calibrate.parameters import DEAD, MODULUS, OFFSET, USUAL, WALL
 from tests.bench.calibrate.sensors import DESIGNED, chosen, curves, exact, injections, other
 
 TRUTH = {"shear_modulus": 0.21, "wall_thickness": 1.56, "dead_volume": 1400.0}
@@ -22,7 +22,7 @@ def coordinates(truth, offset=0.0):
 
 def test_clean_curves_give_all_four_parameters_back(library):
     truth = other(**TRUTH)
-    result = fit(Observations(exact(truth, (0.0, 12.0, 22.0))), DESIGNED, chosen(library, *NAMES, priors=False))
+    result = fit(Observations(exact(truth, (0.0, 12.0, 22.0))), DESIGNED, chosen(library, *USUAL, priors=False))
     assert result.full == pytest.approx(coordinates(truth), rel=1e-4, abs=1e-3)
     assert result.chi_squared / result.freedom < 1e-4
 
@@ -30,7 +30,7 @@ def test_clean_curves_give_all_four_parameters_back(library):
 def test_clean_injections_and_curves_agree(library):
     truth = other(**TRUTH)
     pushed = injections(truth, np.linspace(100, 1500, 12), 3, np.random.default_rng(0), 0.0, 0.0)
-    result = fit(Observations(exact(truth, (0.0, 22.0)), pushed), DESIGNED, chosen(library, *NAMES, priors=False))
+    result = fit(Observations(exact(truth, (0.0, 22.0)), pushed), DESIGNED, chosen(library, *USUAL, priors=False))
     assert result.full == pytest.approx(coordinates(truth), rel=1e-4, abs=1e-3)
 
 
@@ -45,10 +45,10 @@ def test_a_missed_first_touch_is_found(library):
 
 def test_derivatives_are_those_of_the_model(library):
     """Each parameter moves the curves as its derivative predicts: a step of ten times the difference's."""
-    result = fit(Observations(exact(DESIGNED, (0.0, 22.0))), DESIGNED, chosen(library, *NAMES, priors=False))
+    result = fit(Observations(exact(DESIGNED, (0.0, 22.0))), DESIGNED, chosen(library, *USUAL, priors=False))
     step = 10 * result.parameters.step
     for k in (MODULUS, WALL, DEAD, OFFSET):
-        moved = result.full + step * np.eye(4)[k]
+        moved = result.full + step * np.eye(len(NAMES))[k]
         change = (result.problem.model.values(moved[None])[0][0] - result.solution.model) / result.problem.errors
         expected = result.solution.jacobian[:, k] * step[k]
         assert np.linalg.norm(change - expected) < 0.05 * np.linalg.norm(change), NAMES[k]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pneutouch.bench.calibrate import NAMES, Observations, fit
+from pneutouch.bench.calibrate import USUAL, Observations, fit
 from pneutouch.bench.calibrate.further import further_tests
 from pneutouch.bench.calibrate.goodness import misses
 from pneutouch.bench.calibrate.identify import identify
@@ -104,7 +104,7 @@ def test_an_estimate_far_from_the_design_is_remarked(library):
 
 
 def test_one_curve_rests_on_its_points(library):
-    result = fit(Observations(curves(DESIGNED, (0.0,), 1, np.random.default_rng(7))), DESIGNED, chosen(library, *NAMES))
+    result = fit(Observations(curves(DESIGNED, (0.0,), 1, np.random.default_rng(7))), DESIGNED, chosen(library, *USUAL))
     assert any("rest on the scatter of the points and the instruments alone (1 run" in line for line in notes(result))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pneutouch.bench.calibrate import NAMES, Observations, fit
+from pneutouch.bench.calibrate import USUAL, Observations, fit
 from pneutouch.bench.calibrate.discrepancy import FLOOR
 from pneutouch.bench.calibrate.identify import identify
 from pneutouch.bench.calibrate.notes import fit_notes
@@ -25,7 +25,7 @@ def test_the_assumed_scatter_is_that_of_the_papers_runs(library):
 def test_runs_that_were_not_repeated_are_not_taken_to_agree(library):
     """Runs without any noise, one a pressure: their scatter is not known, so it is not none."""
     seen = Observations(exact(other(shear_modulus=0.2), (0.0, 12.0)))
-    fitted = fit(seen, DESIGNED, chosen(library, *NAMES))
+    fitted = fit(seen, DESIGNED, chosen(library, *USUAL))
     gap = response_gap(fitted)
     assert gap.freedom == 0.0
     assert gap.force_errors == pytest.approx(np.hypot(ASSUMED_SCATTER, FLOOR[0]))
