@@ -30,8 +30,8 @@ def tuning_chart(tuning: TuningChart, size: tuple[float, float]) -> str:
         if tuning.published_kPa_per_N:
             points = np.array(tuning.published_kPa_per_N).T
             ax.plot(*points, "D", color=INK, mfc="white", ms=4.5, zorder=6, clip_on=False)
-        highest = chosen.sensitivity_kPa_per_N if tuning.high_kPa_per_N is None else tuning.high_kPa_per_N
-        most = [float(highest.max())]
+        highest_kPa_per_N = chosen.sensitivity_kPa_per_N if tuning.high_kPa_per_N is None else tuning.high_kPa_per_N
+        most = [float(highest_kPa_per_N.max())]
         most += [float(other.sensitivity_kPa_per_N.max()) for other in tuning.others]
         top = 1.12 * max(most + [value for _, value in tuning.published_kPa_per_N])
         right_kPa = float(max(chosen.driving_pressure_kPa[-1], *tuning.working_kPa_per_N))

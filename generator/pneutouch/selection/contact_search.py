@@ -1,4 +1,4 @@
-"""The search under a contact that the atlas does not cover: the atlas searched, the solid asked, the atlas corrected.
+"""The search under a contact that the atlas does not cover: the atlas corrected by the solid.
 
 Space mapping: each round searches the atlas times the factors that the solid gave so far, and solves what it finds.
 """
@@ -31,11 +31,11 @@ from pneutouch.selection.problem import SelectionProblem
 
 ROUNDS = 8
 """Searches at most."""
-_AFRESH = 2
+_ANYWHERE = 2
 """Searches that take the best anywhere; the later ones stay near what was solved."""
 _FEW = 2
 """Up to so many resins each is followed at several candidates, as without this contact; of more, at its best."""
-_PROBED, _HOPELESS = 3, 4
+_PROBED, _WITHOUT_FIT = 3, 4
 """Where no candidate fits by the corrected atlas: resins whose nearest is solved all the same, and for how many rounds.
 """
 
@@ -106,7 +106,7 @@ class _Run:
 
     @property
     def solved(self) -> list[ContactTrial]:
-        """All candidates that the solid was asked for."""
+        """All candidates that the solid was run for."""
         return list(self._known.values())
 
     def searching(self) -> bool:
@@ -141,34 +141,34 @@ class _Run:
         """
         fit = [name for name, margin in least.items() if margin >= 0.0]
         known = sorted((name for name in least if least[name] > -np.inf), key=lambda name: -least[name])
-        chosen = fit or (known[:_PROBED] if self.rounds <= _HOPELESS else [])
+        chosen = fit or (known[:_PROBED] if self.rounds <= _WITHOUT_FIT else [])
         if self.rounds > 1 or not chosen:
             for name, group in self.groups.items():
                 group.done = group.done or name not in (fit or chosen)
         return chosen
 
     def _follow(
-        self, group: _Group, problem: SelectionProblem, pool: CandidatePool, margin_of: dict[str, Array], own: Flags
+        self, group: _Group, problem: SelectionProblem, pool: CandidatePool, margin_of: dict[str, Array], rows_of: Flags
     ) -> None:
-        rows = self._rows(group, problem, pool, margin_of, own)
+        rows = self._rows(group, problem, pool, margin_of, rows_of)
         close = rounded(problem, pool.take(rows))
         refined, close = (problem, close) if self.refine is None else self.refine(problem, close)
         count = min(len(close.radius), self.each)
-        found = [self.trial(refined, close.take(np.array([i]))) for i in range(count)]
-        new = [trial for trial in found if trial not in group.trials]
+        solved = [self.trial(refined, close.take(np.array([i]))) for i in range(count)]
+        new = [trial for trial in solved if trial not in group.trials]
         group.rounds, group.trials = self.rounds, group.trials + new
         # What has settled, and what comes back unchanged, is not followed further.
         group.last = [trial for trial in new if not trial.settled]
         group.done = not group.last
 
     def _rows(
-        self, group: _Group, problem: SelectionProblem, pool: CandidatePool, margin_of: dict[str, Array], own: Flags
+        self, group: _Group, problem: SelectionProblem, pool: CandidatePool, margin_of: dict[str, Array], rows_of: Flags
     ) -> Index:
         """What fits: the best anywhere, later what is nearest to the last; else what breaks the least."""
-        fits = own & np.all([margin >= 0.0 for margin in margin_of.values()], axis=0)
+        fits = rows_of & np.all([margin >= 0.0 for margin in margin_of.values()], axis=0)
         if not fits.any():
-            return np.array([np.where(own, np.min(list(margin_of.values()), axis=0), -np.inf).argmax()])
-        if self.rounds <= _AFRESH or not group.last:
+            return np.array([np.where(rows_of, np.min(list(margin_of.values()), axis=0), -np.inf).argmax()])
+        if self.rounds <= _ANYWHERE or not group.last:
             return shortlist(pool, margin_of, fits, self.each)
         rows = np.flatnonzero(fits)
         batch = problem.batch(pool.resin[rows], pool.radius[rows], pool.wall[rows], pool.pressure[rows])
@@ -177,16 +177,16 @@ class _Run:
         return rows[np.unique(nearest)]
 
     def trial(self, problem: SelectionProblem, pool: CandidatePool) -> ContactTrial:
-        """A candidate solved, once; what the solid says of it corrects the next search."""
+        """A candidate solved, once; its figures correct the next search."""
         resin = problem.resins[int(pool.resin[0])]
-        key = (resin.name, float(pool.radius[0]), float(pool.wall[0]), float(pool.pressure[0]))
+        key = (resin.name, resin.shear_modulus, float(pool.radius[0]), float(pool.wall[0]), float(pool.pressure[0]))
         if key not in self._known:
             self._known[key] = tried(problem, pool, self.solve)
             self.factors = self._known[key].added_to(self.factors)
         return self._known[key]
 
     def unsettled(self) -> dict[str, str]:
-        """Resins without a design that the rounds did not settle, and what the solid says of the last candidate."""
+        """Resins without a design that the rounds did not settle, and the solid's figure of the last candidate."""
         return {name: why for name, group in self.groups.items() if (why := self._why(group)) is not None}
 
     def _why(self, group: _Group) -> str | None:

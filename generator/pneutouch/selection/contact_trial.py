@@ -42,7 +42,7 @@ class ContactTrial:
     """A candidate with the solid's figures.
 
     problem: of its resin alone, without factors. pool: one row, with the solid's response; the atlas's where ``why``
-    says why there is none. atlas: the atlas's response. margins: by the solid; empty without its figures. ends_with:
+    is why there is none. atlas: the atlas's response. margins: by the solid; empty without its figures. ends_with:
     what ends its range.
     """
 
@@ -98,8 +98,8 @@ class ContactTrial:
     def _span(self, solve: SolveCandidate, highest: float) -> tuple[float, float]:
         """Sensitivities at no pressure and at the rated one; NaN where the solid has none."""
         pressures = [0.0, highest]
-        own = float(self.pool.pressure[0])
-        solved = {own: float(self.pool.response.lines.sensitivity_kPa_per_N[0])}
+        driven = float(self.pool.pressure[0])
+        solved = {driven: float(self.pool.response.lines.sensitivity_kPa_per_N[0])}
         missing = [p for p in pressures if p not in solved]
         if missing:
             answer = solve(self.resin, self.pool, missing)

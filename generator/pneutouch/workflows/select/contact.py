@@ -45,7 +45,7 @@ def without_plate(problem: SelectionProblem, sensor: Sensor) -> SelectionProblem
 
 
 def contact_notes(selection: ContactSelection, scene: ResolvedDesign) -> list[str]:
-    """What is said of an answer by the solid, line by line."""
+    """What is stated of an answer by the solid, line by line."""
     settled = f"{selection.rounds} rounds, {selection.solves} candidates solved"
     return [
         f"contact: {contact_text(scene)}",

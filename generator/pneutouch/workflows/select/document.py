@@ -51,12 +51,12 @@ def document(selection: SelectionRun) -> dict[str, Any]:
 
 def _contact(selection: SelectionRun) -> dict[str, Any]:
     """What presses the sensor and how the solid was searched with; nothing for what the atlas covers."""
-    found = selection.by_solid
-    if found is None:
+    search = selection.by_solid
+    if search is None:
         return {}
-    notes = contact_notes(found, selection.base)
+    notes = contact_notes(search, selection.base)
     record = contact_document(selection.base).get("contact", {"label": contact_text(selection.base)})
-    return {"contact": {**record, "notes": notes, "rounds": found.rounds, "solves": found.solves}}
+    return {"contact": {**record, "notes": notes, "rounds": search.rounds, "solves": search.solves}}
 
 
 def _rejected(selection: SelectionRun, rejected: RejectedDesign) -> dict[str, Any]:

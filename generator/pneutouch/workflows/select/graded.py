@@ -180,7 +180,7 @@ def _wall(target: Target, where: str, grade_target: GradeTarget, problem: Select
 
 def _middle_wall(grade_target: GradeTarget, problem: SelectionProblem, base: Sensor, thickest: float) -> float | None:
     """The wall of `middle_wall`; under a contact that the atlas does not cover for a target that it has corrected."""
-    radius, required = base.dome.inner_radius, grade_target.sensitivity_kPa_per_N
+    radius, target_kPa_per_N = base.dome.inner_radius, grade_target.sensitivity_kPa_per_N
     problem = without_plate(problem, base)
     wall = middle_wall(grade_target, problem, radius, thickest)
     for _ in range(_WALL_ROUNDS if other_contact(base) is not None else 0):
@@ -193,7 +193,9 @@ def _middle_wall(grade_target: GradeTarget, problem: SelectionProblem, base: Sen
         factor = solved.sensitivity_kPa_per_N[0] / float(atlas_kPa_per_N)
         if not np.isfinite(factor):
             break
-        wall = middle_wall(replace(grade_target, sensitivity_kPa_per_N=required / factor), problem, radius, thickest)
+        wall = middle_wall(
+            replace(grade_target, sensitivity_kPa_per_N=target_kPa_per_N / factor), problem, radius, thickest
+        )
     return wall
 
 

@@ -154,7 +154,7 @@ def select(
 
 
 def _answered(run: SelectionRun, refine: Refine | None, library: Library) -> SelectionRun:
-    """The run with its answer: by the atlas, or by the solid where that alone knows the base's contact."""
+    """The run with its answer: by the atlas, or by the solid where that alone covers the base's contact."""
     target, problem = run.target, run.problem
     weights = target.weights.robustness, target.weights.tunability
     errors = measured_errors(library.all("materials", Material))
@@ -163,8 +163,8 @@ def _answered(run: SelectionRun, refine: Refine | None, library: Library) -> Sel
         return replace(run, answer=choose(problem, weights, uncertainty, refine))
     run = replace(run, problem=without_plate(problem, run.sensor))
     solver = CandidateSolver(run.base, run.assignments, library)
-    found = choose_by_solid(run.problem, weights, uncertainty, solver, refine)
-    return replace(run, answer=found.result, by_solid=found, left_out=run.left_out | found.unsettled)
+    selection = choose_by_solid(run.problem, weights, uncertainty, solver, refine)
+    return replace(run, answer=selection.result, by_solid=selection, left_out=run.left_out | selection.unsettled)
 
 
 def _passing(run: SelectionRun, written: int | None, library: Library) -> SelectionRun:
