@@ -109,7 +109,7 @@ def _tuned_by_solid(selection: SelectionRun, library: Library, chosen: Candidate
     at_kPa = np.array([state.driving_pressure for state in states]) / KPA
     solved_kPa_per_N = np.array([state.figures.sensitivity_kPa_per_N for state in states if state.figures])
     drawn = TuningCurve(chosen.resin.material.title, at_kPa, solved_kPa_per_N)
-    caption = f"{contact_text(selection.base)}: by the solid, its uncertainty is not known"
+    caption = f"{contact_text(selection.base)}: by the solid"
     return TuningChart(drawn, None, None, _working(chosen), caption=caption)
 
 

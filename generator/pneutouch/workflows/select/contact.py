@@ -49,7 +49,7 @@ def contact_notes(selection: ContactSelection, scene: ResolvedDesign) -> list[st
     settled = f"{selection.rounds} rounds, {selection.solves} candidates solved"
     return [
         f"contact: {contact_text(scene)}",
-        f"every figure is the solid's with this contact ({settled}); U is known for a plate without friction alone",
+        f"every figure is the solid's with this contact ({settled}); `predict` of the saved design states U",
     ]
 
 
