@@ -10,7 +10,8 @@ import numpy as np
 import pypdfium2
 import pytest
 
-from pneutouch.report import curves
+from pneutouch.catalogue import load_scene
+from pneutouch.report import curves, prose
 
 SECTIONS = [
     "Performance",
@@ -252,3 +253,17 @@ def test_print_sheet_names_files_resins_machines_and_the_measured_deviation(buil
         "greatest measured distance",
     ):
         assert word in text
+
+
+@pytest.mark.parametrize(
+    ("changes", "kind", "held"),
+    [
+        ({}, "rigid, flat, frictionless plate", "a flat rigid body."),
+        ({"contact.friction": 0.6}, "rigid flat plate, friction coefficient 0.6", "(friction coefficient 0.6)."),
+        ({"contact.friction": float("inf")}, "rigid, flat, gripping plate", "(gripping)."),
+    ],
+)
+def test_the_friction_stands_with_the_conditions_of_use(changes, kind, held):
+    scene = load_scene("paper-dome", changes)
+    assert prose.contact_body(scene) == ("Ø30", "mm", kind)
+    assert prose.limits_of_use(scene).endswith(held)

@@ -2,6 +2,7 @@
 
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.report.port_note import port_steps
+from pneutouch.spec.contact import ContactTable
 from pneutouch.spec.part import ClampedFlange, OnePiece, RobotFlange, Sleeve
 
 PAPER = (
@@ -106,12 +107,19 @@ def contact_body(scene: ResolvedDesign) -> tuple[str, str, str]:
     """Size, unit and kind of what presses the sensor, for the table of operating conditions."""
     contact = scene.design.contact
     if contact.is_plate:
-        return f"Ø{scene.design.indentation.plate_diameter_mm:g}", "mm", f"rigid, flat, {contact.hold} plate"
+        return f"Ø{scene.design.indentation.plate_diameter_mm:g}", "mm", _rigid(contact, "plate", "flat, ")
     sizes = {"ball": contact.ball_radius_mm, "cone": contact.cone_tip_radius_mm, "ring": contact.ring_radius_mm}
     if contact.object in sizes:
-        return f"R{sizes[contact.object]:g}", "mm", f"rigid, {contact.hold} {contact.label}"
+        return f"R{sizes[contact.object]:g}", "mm", _rigid(contact, contact.label)
     widest = max(corner[0] for corner in contact.profile_mm or [])
-    return f"Ø{2 * widest:g}", "mm", f"rigid, {contact.hold} body with the profile that the section shows"
+    return f"Ø{2 * widest:g}", "mm", _rigid(contact, "body with the profile that the section shows")
+
+
+def _rigid(contact: ContactTable, name: str, shape: str = "") -> str:
+    """A rigid object with its friction, a coefficient after its name."""
+    if 0.0 < contact.friction < float("inf"):
+        return f"rigid {shape.replace(', ', ' ')}{name}, {contact.hold}"
+    return f"rigid, {shape}{contact.hold} {name}"
 
 
 def presser(scene: ResolvedDesign) -> str:
@@ -123,8 +131,10 @@ def presser(scene: ResolvedDesign) -> str:
 
 def limits_of_use(scene: ResolvedDesign) -> str:
     """What the sensor and its figures are for."""
-    body = "flat rigid body" if scene.design.contact.is_plate else presser(scene)
-    return f"{LIMITS_OF_USE} The figures hold for slow, central contact with a {body}."
+    contact = scene.design.contact
+    body = "flat rigid body" if contact.is_plate else presser(scene)
+    hold = f" ({contact.hold})" if contact.friction else ""
+    return f"{LIMITS_OF_USE} The figures hold for slow, central contact with a {body}{hold}."
 
 
 def method(scene: ResolvedDesign) -> tuple[str, ...]:
