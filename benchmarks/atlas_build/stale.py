@@ -13,7 +13,9 @@ from pneutouch.mechanics.atlas.recipe import RECIPE, AtlasRecipe
 
 _WALLS = (0.07, 0.16, 0.3)
 _ROWS = (0, 12)
-_DEPTH = 0.4
+_DEPTH, _STEP = 0.4, 0.025
+"""Of the presses at held volume: the solid takes such a step whole, so that the answers follow from the equations and
+not from where a step was cut."""
 _AMBIENT = 0.45
 """Gas of the press that goes to the greatest depth, in mu: there the wall lies on its base."""
 _DIGITS = 6
@@ -38,7 +40,7 @@ def solid_fingerprint() -> str:
         answers += [sampler.limit.volume, sampler.limit.pressure]
         for row in _ROWS:
             start = here = sampler.touching(sampler.free[row])
-            for depth in np.arange(0.05, _DEPTH + 1e-9, 0.05):
+            for depth in np.arange(_STEP, _DEPTH + 1e-9, _STEP):
                 equilibrium = sampler.step(here, start.state.volume, start.height - depth)
                 assert equilibrium is not None
                 here = equilibrium

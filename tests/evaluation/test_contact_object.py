@@ -6,15 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pneutouch.catalogue import DEFAULT, Library
+from pneutouch.catalogue import DEFAULT
 from pneutouch.errors import InputError
 from pneutouch.evaluation.document import prediction_document
 from pneutouch.evaluation.evaluate import evaluate
 from pneutouch.report.curves import shapes
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.read import validate
-from pneutouch.spec.target import Target
-from pneutouch.workflows.select.base import base_scene
 
 BALL = {"contact.object": "ball", "contact.ball_radius_mm": 10.0, "pneumatics.driving_pressures_kPa": [22.0]}
 
@@ -96,17 +94,3 @@ def test_friction_reaches_the_solid_and_the_document(friction, stated):
         evaluate("paper-dome", given, model="atlas")
     table = json.loads(json.dumps(rough.scene.design.contact.model_dump(mode="json"), allow_nan=False))
     assert validate(DesignFile, {"contact": table}, "here").contact == rough.scene.design.contact
-
-
-@pytest.mark.parametrize(
-    ("key", "assignments"),
-    [
-        ("contact.object", ["contact.object=ball", "contact.ball_radius_mm=10"]),
-        ("contact.friction", ["contact.friction=0.3"]),
-    ],
-)
-def test_a_search_with_the_atlas_refuses_what_the_atlas_does_not_cover(key, assignments):
-    content = {"target": {"sensitivity_kPa_per_N": 1.9}, "setting": {"base": "paper-dome", "assignments": assignments}}
-    with pytest.raises(InputError, match="atlas") as refused:
-        base_scene(validate(Target, content, "here"), "here", Library.default())
-    assert refused.value.key == key

@@ -11,10 +11,11 @@ import pytest
 from pneutouch.evaluation import evaluate
 from pneutouch.evaluation.tuning import curve, under_contact
 from pneutouch.evaluation.uncertainty import documents, known
+from pneutouch.mechanics.contact_correction import plate_alone
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.indenter import ball, cone
 from pneutouch.mechanics.solid_states import solid_states
-from pneutouch.mechanics.uncertainty import FIGURES, INPUTS, plate_alone
+from pneutouch.mechanics.uncertainty import FIGURES, INPUTS
 from pneutouch.mechanics.uncertainty.contact import SPREAD
 from pneutouch.mechanics.uncertainty.source import CONTACT_FIGURES, DEAD, SENSITIVITY
 from pneutouch.spec.material import Material

@@ -6,8 +6,6 @@ import pytest
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import evaluate, sensor_of
 from pneutouch.mechanics.solid.rigid_base import RigidBase
-from pneutouch.spec.target import Target
-from pneutouch.workflows.select.base import base_scene
 
 OFF = {"contact.base": False}
 
@@ -33,12 +31,6 @@ def test_a_clamping_ring_is_part_of_the_base():
     assert np.allclose(ends, [(base.ring, 0.0), (base.ring + base.ring_height, base.ring_height)])
 
 
-def test_the_atlas_does_not_answer_and_no_search_is_made(library):
+def test_the_atlas_does_not_answer_without_it(library):
     with pytest.raises(InputError, match="passes through its base plane"):
         evaluate("paper-dome", OFF, model="atlas")
-    target = Target.model_validate(
-        {"target": {"sensitivity_kPa_per_N": 1.9}, "setting": {"assignments": ["contact.base=false"]}}
-    )
-    with pytest.raises(InputError, match="lie down on their base") as refused:
-        base_scene(target, "target.toml", library)
-    assert refused.value.key == "contact.base" and "predict" in refused.value.remedy

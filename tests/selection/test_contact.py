@@ -71,6 +71,7 @@ def test_what_is_said_names_the_contact_and_no_uncertainty():
     assert "points: ball of 10 mm radius" in tradeoff(selection).caption
 
 
+@pytest.mark.slow
 def test_python_selects_under_friction_within_the_tolerance():
     """The friction moves this sensor by more than the tolerance: the atlas's own design would miss it."""
     found = pt.select(
