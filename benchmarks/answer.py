@@ -54,7 +54,7 @@ def solid_answer(scene: Scene, arc: int | None, through: int | None, depth: floa
         s.gas.gauge_limit,
     )
     found = indent(solid, free, press)
-    happened = reported_events(found)
+    happened = reported_events(found.events)
     end = min(range_end(happened, press.depth), found.path[-1].indentation)
     ends = next((event.kind for event in happened if event.ends_range), "depth")
     return Answer(free.inner_apex, end, ends, lambda grid: curve_between(found.path, grid))

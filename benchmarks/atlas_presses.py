@@ -118,7 +118,7 @@ def compare(case: Case) -> Gap | None:
     free = state_at(solid, case.share * run.limit.pressure, run)
     press = PressSettings(case.depth, STEPS, None, case.ambient, case.dead, case.gauge, case.tear - 1.0)
     found = indent(solid, free, press)
-    happened = reported_events(found)
+    happened = reported_events(found.events)
     end = min(range_end(happened, case.depth), found.path[-1].indentation)
     ends = next((event.kind for event in happened if event.ends_range), ENDS[0])
     batch = case.batch(run.limit.pressure)

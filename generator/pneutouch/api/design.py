@@ -115,8 +115,9 @@ class Design(show.Shown):
     ) -> Prediction:
         """Predict the figures at driving pressures in kPa (None: the design's).
 
-        ``model`` is "membrane", "atlas", "solid" (None) or "auto": the cheapest whose error meets ``tolerance``, a
-        fraction. See `evaluation.evaluate` for the rest. Raises InputError where the design cannot work.
+        ``model`` is "membrane", "atlas", "solid", "harmonic", "auto", the cheapest whose error meets ``tolerance``, a
+        fraction, or None: the solid, and harmonic for contact off the axis. See `evaluation.evaluate` for the rest.
+        Raises InputError where the design cannot work.
         """
         changed, options = pressures_changed(driving_pressures_kPa), model_options(model, tolerance)
         with named_by_keyword():

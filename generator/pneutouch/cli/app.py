@@ -67,8 +67,8 @@ ModelOption = Annotated[
     str | None,
     typer.Option(
         "--model",
-        help="Model: membrane, atlas, solid or auto (the cheapest that is good enough).",
-        show_default="solid",
+        help="Model: membrane, atlas, solid, harmonic or auto (the cheapest that is good enough).",
+        show_default="solid; harmonic for contact off the axis",
     ),
 ]
 ToleranceOption = Annotated[

@@ -11,6 +11,7 @@ from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import InputError
 from pneutouch.mechanics import Sensor, SensorPrediction
 from pneutouch.mechanics.object_mesh import MOST_CELLS, object_cells
+from pneutouch.mechanics.solid.contact import RIM, flat_radius
 from pneutouch.mechanics.solid.indenter import (
     CELLS_PER_RADIUS,
     ObjectShapeError,
@@ -28,6 +29,9 @@ from pneutouch.spec.part import ClampedFlange
 
 _AT_ONCE = 1e-6
 """Share of R0 within which the contact reaches an edge at first touch."""
+
+_FARTHEST = math.sin(math.radians(60.0))
+"""Offset of a ball that touches a sphere at 60 degrees to the axis, over the distance of their centres."""
 
 _POINTS = 2001
 """Points of the unloaded dome that an object may touch first."""
@@ -74,9 +78,11 @@ def contact_document(scene: ResolvedDesign) -> dict[str, Any]:
     if contact.is_atlas_plate:
         return {}
     plate = {"plate_diameter_mm": scene.design.indentation.plate_diameter_mm, "plate_rim_mm": contact.plate_rim_mm}
+    places = {"offset_mm": contact.offset_mm, "tilt_deg": contact.tilt_deg}
+    off_axis = {key: value for key, value in places.items() if value}
     friction = contact.model_dump(mode="json")["friction"]
     sizes = {key: size for key, size in plate.items() if size is not None} if contact.is_plate else contact.sizes()
-    return {"contact": {"object": contact.object, "label": contact.label, **sizes, "friction": friction}}
+    return {"contact": {"object": contact.object, "label": contact.label, **sizes, "friction": friction, **off_axis}}
 
 
 def _check_cells(scene: ResolvedDesign, sensor: Sensor) -> None:
@@ -95,6 +101,7 @@ def _check_cells(scene: ResolvedDesign, sensor: Sensor) -> None:
 
 def check_object(scene: ResolvedDesign, sensor: Sensor) -> None:
     """Raise InputError for an object that the mesh cannot follow or that meets the unloaded dome with its edge."""
+    _check_offset(scene, sensor)
     body = sensor.protocol.body
     if body is None:
         return
@@ -102,6 +109,31 @@ def check_object(scene: ResolvedDesign, sensor: Sensor) -> None:
     _, at = _at_rest(body, sensor)
     if not body.span[0] <= at <= body.span[1]:
         raise _edge_first(scene)
+
+
+def _check_offset(scene: ResolvedDesign, sensor: Sensor) -> None:
+    """Raise InputError for an object so far off the axis that it touches the dome lower than at 60 degrees, or not."""
+    test, dome = sensor.protocol, sensor.dome
+    if not test.offset:
+        return
+    reach = dome.inner_radius + dome.wall_thickness
+    if test.body is None:
+        flat = float(flat_radius(np.array(test.plate_radius), RIM * np.array(test.plate_radius)))
+        largest, problem = (
+            flat * math.cos(test.tilt) - reach * math.sin(test.tilt),
+            "the plate's edge would touch the dome first",
+        )
+    else:
+        largest = (reach + test.body.smallest) * _FARTHEST
+        problem = "the ball would touch the dome on a flank steeper than 60 degrees, or beyond it"
+    if test.offset > largest:
+        raise InputError(
+            problem,
+            file=scene.where,
+            key="contact.offset_mm",
+            value=test.offset,
+            remedy=f"for this dome and object give at most {max(0.0, math.floor(100 * largest) / 100):g} mm",
+        )
 
 
 def object_section(sensor: Sensor) -> Array | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -15,7 +16,7 @@ from pneutouch.evaluation.calibrated import assumption, calibrated_error, calibr
 from pneutouch.evaluation.contact_object import check_first_touch, check_object, contact_object, rigid_base
 from pneutouch.evaluation.table_s1 import sensitivity_error
 from pneutouch.mechanics import Sensor, SensorPrediction, predict
-from pneutouch.mechanics.models import DEFAULT_TOLERANCE
+from pneutouch.mechanics.models import DEFAULT_TOLERANCE, USUAL
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.prediction import ErrorEstimate
 from pneutouch.mechanics.viscous.known import AGED, ageing_ratio
@@ -156,6 +157,8 @@ def evaluate_scene(scene: ResolvedDesign, find_resins: Callable[[], Resins], opt
 
     Raises InputError where the scene cannot work.
     """
+    if options.model == USUAL:
+        options = replace(options, model="harmonic" if scene.design.contact.off_axis else "solid")
     check_options(scene, options.model, options.clamp)
     assembly = assemble(scene)
     sensor = sensor_of(assembly, options.clamp)
@@ -175,6 +178,10 @@ def evaluate_scene(scene: ResolvedDesign, find_resins: Callable[[], Resins], opt
         )
     except BeyondLimitError as error:
         raise _beyond_limit(scene, error) from None
+    except InputError as error:
+        if error.file is None and (error.key or "").startswith("contact."):
+            error.file = scene.where
+        raise
     _check_plate(scene, prediction)
     check_first_touch(scene, prediction)
     more = [shift] if options.aged else []
@@ -216,6 +223,8 @@ def sensor_of(assembly: Assembly, clamp: str = "base") -> Sensor:
         body=contact_object(assembly.scene),
         plate_rim=design.contact.plate_rim_mm,
         friction=design.contact.friction,
+        offset=design.contact.offset_mm,
+        tilt=math.radians(design.contact.tilt_deg),
         base=rigid_base(assembly),
         flange=(layout.flange_width, layout.flange_thickness) if clamp == "flange" else None,
     )

@@ -32,8 +32,10 @@ def resin_curves(
     """Sensitivity over driving pressure, from 0 to ``highest`` (MPa), by resin title.
 
     Each curve stops short of its own resin's limit point. A sheet of the membrane's is drawn by the membrane, any other
-    by the atlas where the sensor is inside it, by the solid where not.
+    by the atlas where the sensor is inside it, by the solid where not; there is none for contact off the axis.
     """
+    if sensor.protocol.off_axis is not None:
+        return {}
     variants = {m.title: in_resin(sensor, m) for m in materials.values() if m.kind == "elastomer"}
     looked_up = {} if model == "membrane" else _by_atlas(variants, highest)
     model = "membrane" if model == "membrane" else "solid"

@@ -9,11 +9,17 @@ from pneutouch.mechanics.sensor import Sensor
 from pneutouch.spec.number import plain_number
 
 MODELS = ("membrane", "atlas", "solid")
-"""The models, cheapest first."""
+"""The models of central contact, cheapest first; contact off the axis has one, harmonic."""
 
-MODEL_CHOICES = (*MODELS, "auto")
+MODEL_CHOICES = (*MODELS, "harmonic", "auto")
+
+USUAL = "usual"
+"""The model where none is named: harmonic for contact off the axis, else the solid."""
 
 DEFAULT_TOLERANCE = 0.02
+
+HARMONICS_SETTLED = 0.01
+"""The last raise of the harmonics changes sensitivity, force and pressure by less than this share."""
 
 DISCRETISATION: ErrorEstimate = {"sensitivity_discretisation_relative": 0.011, "limit_pressure_relative": 0.002}
 """Greatest relative errors of the solid at its default resolution against a refined mesh (docs/accuracy.md)."""
@@ -47,7 +53,10 @@ class ModelSequence:
 
 
 def stated_error(model: str, sensor: Sensor) -> float:
-    """`NUMERICAL` of a model on a sensor: that of the solid is larger under an object that is no plate."""
+    """`NUMERICAL` of a model on a sensor: that of the solid is larger under an object that is no plate, and so is that
+    of harmonic under any."""
+    if model == "harmonic":
+        return OBJECT_DISCRETISATION
     return OBJECT_DISCRETISATION if model == "solid" and sensor.protocol.body is not None else NUMERICAL[model]
 
 
@@ -56,12 +65,13 @@ def models_for(sensor: Sensor, tolerance: float) -> ModelSequence:
 
     Raises InputError for a tolerance that none can state.
     """
-    least = stated_error("solid", sensor)
+    best = "solid" if sensor.protocol.off_axis is None else "harmonic"
+    least = stated_error(best, sensor)
     if not tolerance >= least:
-        problem = f"no model can state so small an error; the best is the solid's {100 * least:g}% in sensitivity"
+        problem = f"no model can state so small an error; the best is the {best}'s {100 * least:g}% in sensitivity"
         raise InputError(problem, key="tolerance", value=f"{100 * tolerance:g}%")
     passed, models = [], []
-    for model in MODELS:
+    for model in MODELS if best == "solid" else (*MODELS, best):
         error = stated_error(model, sensor)
         why = _outside(model, sensor)
         if error > tolerance:
@@ -79,12 +89,30 @@ def _outside(model: str, sensor: Sensor) -> str | None:
         from pneutouch.mechanics.atlas_states import outside_atlas
 
         return outside_atlas(sensor)
+    if model == "solid":
+        return sensor.protocol.off_axis
+    if model == "harmonic":
+        return outside_harmonic(sensor)
     if model == "membrane" and sensor.protocol.other_contact is not None:
         return sensor.protocol.other_contact
     if model == "membrane" and not (
         sensor.wall.law is None and sensor.dome.flange is None and sensor.wall.grade is None
     ):
         return "it covers neither other laws, nor a clamped flange, nor a graded wall"
+    return None
+
+
+def usual_model(sensor: Sensor) -> str:
+    """The model of a sensor where none is named."""
+    return "solid" if sensor.protocol.off_axis is None else "harmonic"
+
+
+def outside_harmonic(sensor: Sensor) -> str | None:
+    """Why the model with harmonics does not cover a sensor, or None where it does."""
+    if sensor.protocol.friction:
+        return f"the contact has friction ({sensor.protocol.friction:g})"
+    if sensor.dome.flange is not None:
+        return "the flange is held as printed, and the wall's contact with its top is axisymmetric"
     return None
 
 
@@ -98,7 +126,7 @@ class ModelOptions(TypedDict):
 def model_options(model: str | None, tolerance: float | str | None) -> ModelOptions:
     """The model and the tolerance of a prediction; a tolerance alone requires the cheapest model that meets it."""
     if tolerance is None:
-        return {"model": model or "solid", "tolerance": DEFAULT_TOLERANCE}
+        return {"model": model or USUAL, "tolerance": DEFAULT_TOLERANCE}
     if model not in (None, "auto"):
         problem = f"with `model` {model}: a tolerance is for `model` auto"
         raise InputError(problem, key="tolerance", value=str(tolerance), remedy="give one of both")

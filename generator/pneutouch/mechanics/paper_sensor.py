@@ -25,7 +25,7 @@ def is_paper_sensor(sensor: Sensor) -> bool:
         (protocol.depth, PAPER_DEPTH),
         (gas.ambient_pressure, STANDARD_ATMOSPHERE),
     ]
-    if protocol.body is not None:
+    if protocol.body is not None or protocol.off_axis is not None:
         return False
     same = all(math.isclose(value, paper, rel_tol=_SAME) for value, paper in pairs)
     return same and gas.dead_volume <= _SAME * dome.inner_radius**3

@@ -14,12 +14,16 @@ from pneutouch.mechanics.membrane import error_against_exact_membrane, membrane_
 from pneutouch.mechanics.models import (
     DEFAULT_TOLERANCE,
     DISCRETISATION,
+    HARMONICS_SETTLED,
     MODEL_CHOICES,
     NUMERICAL,
     OBJECT_DISCRETISATION,
     TABULATION,
+    USUAL,
     models_for,
+    outside_harmonic,
     stated_error,
+    usual_model,
 )
 from pneutouch.mechanics.prediction import ErrorEstimate, ModelResult, SensorPrediction
 from pneutouch.mechanics.sensor import IndentationProtocol, ResponseCorrection, Sensor
@@ -59,6 +63,12 @@ _ON_BASE = (
 
 _BODY = "axisymmetric hyperelastic solid with the wall's full stiffness"
 
+_HARMONIC_BODY = "hyperelastic solid with Fourier sums around the axis and the wall's full stiffness"
+_HARMONIC_SUMMARY = (
+    f"Discretisation: sensitivity within {OBJECT_DISCRETISATION:.0%} by the mesh; the last raise of the harmonics "
+    f"changed sensitivity, force and pressure by less than {HARMONICS_SETTLED:.0%} (docs/off-axis.md)."
+)
+
 _SOLID_ASSUMPTIONS = (
     "R0 is the inner radius; heights are those of the inner and the outer surface",
     *_THROUGH_BASE,
@@ -79,6 +89,7 @@ _COMMON_ASSUMPTIONS = (
 
 
 _OTHER = "take `model` auto or solid"
+_OFF_AXIS = "take `model` auto or harmonic"
 
 
 def _merged(one: ErrorEstimate, other: ErrorEstimate) -> ErrorEstimate:
@@ -102,11 +113,13 @@ def predict(
     an unknown model or closure and for a sensor outside the atlas's box, BeyondLimitError beyond the limit point,
     ComputationError where no equilibrium is found.
     """
-    if model not in MODEL_CHOICES:
+    if model not in (*MODEL_CHOICES, USUAL):
         raise InputError(f"unknown model.{nearest(model, MODEL_CHOICES)}", key="model", value=model)
     if closure not in CLOSURES:
         raise InputError(f"unknown closure.{nearest(closure, CLOSURES)}", key="closure", value=closure)
     pressures = np.array(driving_pressures, float)
+    if model == USUAL:
+        model = usual_model(sensor)
     chosen, answer, why = _answer(sensor, pressures, model, closure, tolerance)
     # The factors were found against the solid's answers: the membrane's errors are others.
     correction = ResponseCorrection() if chosen == "membrane" else sensor.correction
@@ -136,11 +149,16 @@ def predict(
 
 def _contact(protocol: IndentationProtocol) -> str:
     """What presses the sensor, in words."""
-    if protocol.body is None and not protocol.friction:
+    if protocol.body is None and not protocol.friction and not protocol.off_axis:
         return _PLATE
     body = "flat plate" if protocol.body is None else protocol.body.label
     hold = f"friction coefficient {protocol.friction:g} (Coulomb)" if protocol.friction else "frictionless"
-    return f"rigid {body}, {'a surface that grips' if protocol.friction == np.inf else hold}, central and straight down"
+    hold = "a surface that grips" if protocol.friction == np.inf else hold
+    if protocol.off_axis is None:
+        return f"rigid {body}, {hold}, central and straight down"
+    places = [f"its axis {protocol.offset:g} mm off the dome's"] if protocol.offset else []
+    places += [f"leaning by {np.degrees(protocol.tilt):.4g}°"] if protocol.tilt else []
+    return f"rigid {body}, {hold}, {' and '.join(places)}, straight down"
 
 
 def _edge(protocol: IndentationProtocol) -> str:
@@ -176,7 +194,8 @@ def _result(model: str, sensor: Sensor, pressures: Array, closure: str) -> tuple
     """The result of one model and its limitation."""
     if model == "membrane":
         if sensor.protocol.other_contact is not None:
-            raise InputError(sensor.protocol.other_contact, key="model", value=model, remedy=_OTHER)
+            remedy = _OTHER if sensor.protocol.off_axis is None else _OFF_AXIS
+            raise InputError(sensor.protocol.other_contact, key="model", value=model, remedy=remedy)
         if sensor.wall.grade is not None:
             raise InputError("the wall is graded along its arc", key="model", value=model, remedy=_OTHER)
         return membrane_result(sensor, pressures, closure), None
@@ -185,10 +204,20 @@ def _result(model: str, sensor: Sensor, pressures: Array, closure: str) -> tuple
 
         why = outside_atlas(sensor)
         if why is not None:
-            raise InputError(why, key="model", value=model, remedy=_OTHER)
+            remedy = _OTHER if sensor.protocol.off_axis is None else _OFF_AXIS
+            raise InputError(why, key="model", value=model, remedy=remedy)
         return atlas_result(sensor, pressures)
     from pneutouch.mechanics.solid_states import solid_result
 
+    if model == "harmonic":
+        from pneutouch.mechanics.harmonic_states import harmonic_result
+
+        why = outside_harmonic(sensor)
+        if why is not None:
+            raise InputError(why, key="model", value=model, remedy=_OTHER)
+        return harmonic_result(sensor, pressures), None
+    if sensor.protocol.off_axis is not None:
+        raise InputError(sensor.protocol.off_axis, key="model", value=model, remedy=_OFF_AXIS)
     return solid_result(sensor, pressures), None
 
 
@@ -205,6 +234,10 @@ def _stated(model: str, sensor: Sensor, pressures: Array) -> tuple[ErrorEstimate
         }
         return errors, (law, f"{_BODY}; {_NOT_CHECKED}", *_solid_assumptions(sensor))
     waves = sensor.protocol.waves
+    if model == "harmonic":
+        text = f"{_HARMONIC_BODY}; what is not symmetric about the plane of the offset or tilt is left out"
+        errors = {**DISCRETISATION, "sensitivity_discretisation_relative": stated_error(model, sensor)}
+        return {**errors, "summary": [_HARMONIC_SUMMARY]}, (law, text, *_solid_assumptions(sensor))
     checked = f"sway and lobes are looked for with up to {waves} waves around the axis" if waves else _NOT_CHECKED
     errors = {**DISCRETISATION, "summary": [_DISCRETISATION_SUMMARY]}
     if sensor.protocol.body is not None:

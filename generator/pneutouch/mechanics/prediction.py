@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TypedDict
+from typing import NotRequired, TypedDict
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.events import LOBES, SWAY, Event, EventRecord
@@ -52,6 +52,16 @@ class CurveRecord(StressRecord):
     tangent_stiffness_N_per_mm: list[float]
 
 
+class OffAxisRecord(TypedDict):
+    """What contact off the axis adds to a curve: the harmonics it took, what the last raise of their order changed
+    (greatest of sensitivity, force and pressure rise), and lists as long as the curve's."""
+
+    harmonics: int
+    last_change_percent: float
+    sideways_force_N: list[float]
+    moment_N_mm: list[float]
+
+
 class StateRecord(TypedDict):
     """A state as ``predict`` prints it; figures are None where no line can be fitted."""
 
@@ -69,6 +79,7 @@ class StateRecord(TypedDict):
     saturation_force_N: float | None
     curve: CurveRecord
     events: list[EventRecord]
+    off_axis: NotRequired[OffAxisRecord]
 
 
 class LimitsRecord(TypedDict):
@@ -112,6 +123,30 @@ class DeformedShape:
 
 
 @dataclass(frozen=True, slots=True)
+class OffAxisCurve:
+    """What contact off the axis adds to a loading curve (N, N mm; see `harmonic.press.OffAxisState`), the order of its
+    harmonics, and the share by which the last raise of the order changed sensitivity, force or pressure rise."""
+
+    order: int
+    last_change: float
+    sideways: Array
+    moment: Array
+
+    def scaled(self, force: float) -> OffAxisCurve:
+        """With all forces times a factor."""
+        return replace(self, sideways=force * self.sideways, moment=force * self.moment)
+
+    def document(self) -> OffAxisRecord:
+        """The curve in boundary units."""
+        return {
+            "harmonics": self.order,
+            "last_change_percent": 100 * self.last_change,
+            "sideways_force_N": self.sideways.tolist(),
+            "moment_N_mm": self.moment.tolist(),
+        }
+
+
+@dataclass(frozen=True, slots=True)
 class SensorState:
     """One driving pressure: the inflated dome and its loading curve (arrays of one length, mm, N, MPa).
 
@@ -132,6 +167,7 @@ class SensorState:
     events: tuple[Event, ...]
     max_von_mises: Array | None = None
     shapes: tuple[DeformedShape, ...] = ()
+    beyond_axis: OffAxisCurve | None = None
 
     def __repr__(self) -> str:
         return f"SensorState({self.driving_pressure / KPA:g} kPa, {len(self.indentation)} points)"
@@ -151,6 +187,7 @@ class SensorState:
             force=by_force * self.force,
             pressure_rise=by_rise * self.pressure_rise,
             figures=None if self.figures is None else self.figures.scaled(by_force, by_rise),
+            beyond_axis=None if self.beyond_axis is None else self.beyond_axis.scaled(by_force),
         )
 
     def document(self) -> StateRecord:
@@ -159,7 +196,7 @@ class SensorState:
         stress: StressRecord = {}
         if self.max_von_mises is not None:
             stress["max_von_mises_MPa"] = self.max_von_mises.tolist()
-        return {
+        record: StateRecord = {
             "driving_pressure_kPa": self.driving_pressure / KPA,
             "apex_height_inner_mm": self.apex_inner,
             "apex_height_outer_mm": self.apex_outer,
@@ -183,6 +220,9 @@ class SensorState:
             },
             "events": [event.document() for event in self.events],
         }
+        if self.beyond_axis is not None:
+            record["off_axis"] = self.beyond_axis.document()
+        return record
 
 
 @dataclass(frozen=True, slots=True)

@@ -65,7 +65,8 @@ class IndentationProtocol:
 
     The solid checks the stability of the press for 1 to ``waves`` waves around the axis; 0: no check. ``body`` in place
     of the flat plate; ``plate_rim`` of a plate whose rim is stated; ``friction`` is Coulomb's coefficient, inf for a
-    surface that grips.
+    surface that grips. The axis of the object stands ``offset`` off the dome's, and a plate leans by ``tilt`` (rad),
+    upwards on that side.
     """
 
     plate_radius: float
@@ -75,10 +76,21 @@ class IndentationProtocol:
     body: RigidObject | None = None
     plate_rim: float | None = None
     friction: float = 0.0
+    offset: float = 0.0
+    tilt: float = 0.0
+
+    @property
+    def off_axis(self) -> str | None:
+        """How the contact is not central, in words; None where it is."""
+        if self.offset:
+            return f"the object stands {self.offset:g} mm off the axis"
+        return f"the plate leans by {np.degrees(self.tilt):.4g}°" if self.tilt else None
 
     @property
     def other_contact(self) -> str | None:
         """What is not the contact that membrane and atlas cover, a plate without friction; None where it is that."""
+        if self.off_axis is not None:
+            return self.off_axis
         if self.body is not None:
             return f"the object is a {self.body.label}, not a plate"
         if self.friction > 0.0:

@@ -1,7 +1,8 @@
 """The model ``solid``: the paper's finite element study (section 2-C and Supplement B) run for a sensor."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Protocol
 
 import numpy as np
 
@@ -13,8 +14,9 @@ from pneutouch.mechanics.object_mesh import object_cells
 from pneutouch.mechanics.prediction import DeformedShape, InflationCurve, ModelResult, SensorState
 from pneutouch.mechanics.response import figures
 from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.solid.events import SolidEvent
 from pneutouch.mechanics.solid.first_touch import first_touch
-from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, PressState, indent
+from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, indent
 from pneutouch.mechanics.solid.indenter import Indenter
 from pneutouch.mechanics.solid.inflate import FreeState, Inflation, inflate, state_at
 from pneutouch.mechanics.solid.mesh import dome
@@ -51,18 +53,44 @@ KINDS = {
 """The solver's events as they are reported, and whether figures must not be fitted beyond them."""
 
 
+class _CurvePoint(Protocol):
+    """A solved state of a press with its slopes; mm, N, MPa. See `indent.PressState`."""
+
+    @property
+    def indentation(self) -> float: ...
+
+    @property
+    def force(self) -> float: ...
+
+    @property
+    def rise(self) -> float: ...
+
+    @property
+    def stiffness(self) -> float: ...
+
+    @property
+    def slope(self) -> float: ...
+
+
 def solid_result(
-    sensor: Sensor, driving_pressures: Array, *, cells: int | None = None, past_limit: float = _PAST_LIMIT
+    sensor: Sensor,
+    driving_pressures: Array,
+    *,
+    cells: int | None = None,
+    past_limit: float = _PAST_LIMIT,
+    pressed_state: Callable[[Sensor, StrainProbe, Inflation, float], SensorState] | None = None,
 ) -> ModelResult:
     """Inflate through the limit point, then press at every driving pressure (MPa, ascending).
 
     ``cells`` is the number of cells along the arc; left out, the wall ratio decides (reasons in docs/accuracy.md).
     ``past_limit`` is the multiple of the limit volume to which inflation goes on: 1 where only the figures are needed.
+    ``pressed_state`` presses at a driving pressure in place of the axisymmetric solid.
     Raises BeyondLimitError beyond the limit point, ComputationError where no equilibrium is found.
     """
     probe = _probe(sensor, cells)
     run = inflate(probe.solid, past_limit=past_limit)
-    states = tuple(_state(sensor, probe, run, float(p)) for p in driving_pressures)
+    press = pressed_state or _state
+    states = tuple(press(sensor, probe, run, float(p)) for p in driving_pressures)
     return ModelResult(_limit_point(sensor, run), _limits(sensor, probe, run), _inflation(probe.solid, run), states)
 
 
@@ -138,10 +166,10 @@ def _limits(sensor: Sensor, probe: StrainProbe, run: Inflation) -> Limits:
     )
 
 
-def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) -> SensorState:
-    free = state_at(probe.solid, pressure, run)
+def press_settings(sensor: Sensor) -> PressSettings:
+    """The test of a sensor as the solid takes it."""
     test, gas, stretch = sensor.protocol, sensor.gas, sensor.wall.break_stretch
-    press = PressSettings(
+    return PressSettings(
         depth=test.depth,
         steps=test.steps,
         plate_diameter=2 * test.plate_radius,
@@ -154,8 +182,13 @@ def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) 
         break_strain=np.inf if stretch is None else stretch - 1,
         waves=test.waves,
     )
+
+
+def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) -> SensorState:
+    free = state_at(probe.solid, pressure, run)
+    test, press = sensor.protocol, press_settings(sensor)
     pressed = indent(probe.solid, free, press, probe)
-    happened = reported_events(pressed)
+    happened = reported_events(pressed.events)
     end = min(range_end(happened, test.depth), pressed.path[-1].indentation)
     grid = np.linspace(0.0, end, test.steps + 1)
     force, rise = curve_between(pressed.path, grid)
@@ -177,13 +210,13 @@ def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) 
     )
 
 
-def reported_events(pressed: IndentationPath) -> list[Event]:
+def reported_events(events: list[SolidEvent]) -> list[Event]:
     """The solver's events as they are reported, in the order of the travel."""
-    events = [Event(KINDS[e.kind][0], max(e.indentation, 0.0), KINDS[e.kind][1], e.detail) for e in pressed.events]
-    return sorted(events, key=lambda event: event.indentation)
+    reported = [Event(KINDS[e.kind][0], max(e.indentation, 0.0), KINDS[e.kind][1], e.detail) for e in events]
+    return sorted(reported, key=lambda event: event.indentation)
 
 
-def curve_between(path: list[PressState], grid: Array) -> tuple[Array, Array]:
+def curve_between(path: Sequence[_CurvePoint], grid: Array) -> tuple[Array, Array]:
     """Force (N) and pressure rise (MPa) at indentations between the solved states, on their Hermite cubics."""
     x = np.array([s.indentation for s in path])
     keep = np.concatenate([[True], np.diff(x) > 1e-9])

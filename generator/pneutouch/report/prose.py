@@ -117,9 +117,10 @@ def contact_body(scene: ResolvedDesign) -> tuple[str, str, str]:
 
 def _rigid(contact: ContactTable, name: str, shape: str = "") -> str:
     """A rigid object with its friction, a coefficient after its name."""
+    place = f", {contact.place}" if contact.off_axis else ""
     if 0.0 < contact.friction < float("inf"):
         return f"rigid {shape.replace(', ', ' ')}{name}, {contact.hold}"
-    return f"rigid, {shape}{contact.hold} {name}"
+    return f"rigid, {shape}{contact.hold} {name}{place}"
 
 
 def presser(scene: ResolvedDesign) -> str:
@@ -134,7 +135,7 @@ def limits_of_use(scene: ResolvedDesign) -> str:
     contact = scene.design.contact
     body = "flat rigid body" if contact.is_plate else presser(scene)
     hold = f" ({contact.hold})" if contact.friction else ""
-    return f"{LIMITS_OF_USE} The figures hold for slow, central contact with a {body}{hold}."
+    return f"{LIMITS_OF_USE} The figures hold for slow, {contact.kind_of_place} contact with a {body}{hold}."
 
 
 def method(scene: ResolvedDesign) -> tuple[str, ...]:
@@ -142,7 +143,7 @@ def method(scene: ResolvedDesign) -> tuple[str, ...]:
     indentation = scene.design.indentation
     step = scene.design.depth_mm / indentation.steps
     return (
-        f"Press a {presser(scene)} centrally, in {indentation.steps} steps of "
+        f"Press a {presser(scene)} {scene.design.contact.where}, in {indentation.steps} steps of "
         f"{step:.2f} mm to {scene.design.depth_mm:.2f} mm; hold 4 s.",
         "Return to no contact, rest 30 s and reset the driving pressure between indentations.",
         "Three runs at each driving pressure; record force, cavity pressure and plate position.",

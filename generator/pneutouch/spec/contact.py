@@ -56,7 +56,7 @@ Friction = Annotated[
 
 
 class ContactTable(Table):
-    """[contact]: the object that presses the sensor, centrally and straight down."""
+    """[contact]: the object that presses the sensor, straight down; centrally where it has no offset and no tilt."""
 
     object: ContactKind = Field(
         default="plate", description="What presses the sensor: plate, ball, cone, ring or profile."
@@ -92,6 +92,12 @@ class ContactTable(Table):
         allow_inf_nan=True,
         description="Coefficient of friction between sensor and object, from 0 to 10; inf for a surface that grips.",
     )
+    offset_mm: float = number(
+        0.0, unit="mm", low=0, high=LARGEST, help="How far the axis of a plate or ball stands off the dome's, sideways."
+    )
+    tilt_deg: float = number(
+        0.0, unit="deg", low=0, high=45, help="How far a plate leans about its middle, towards its offset upwards."
+    )
     base: bool = Field(
         default=True,
         description="Whether the wall lies down on the connector next to its clamp and inside, without friction; "
@@ -117,6 +123,44 @@ class ContactTable(Table):
                 )
         return self
 
+    @model_validator(mode="after")
+    def _stands_off_the_axis(self) -> ContactTable:
+        if self.offset_mm and self.object not in ("plate", "ball"):
+            raise ValueError(
+                f"offset_mm = {self.offset_mm:g}: a {self.object} presses centrally; only a plate or a ball "
+                "can stand off the axis"
+            )
+        if self.tilt_deg and not self.is_plate:
+            raise ValueError(f"tilt_deg = {self.tilt_deg:g}: only a plate can lean, not a {self.object}")
+        if self.off_axis and self.friction:
+            key = "offset_mm" if self.offset_mm else "tilt_deg"
+            raise ValueError(
+                f"friction = {self.friction:g} with {key}: contact off the axis is without friction; give friction = 0"
+            )
+        return self
+
+    @property
+    def off_axis(self) -> bool:
+        """Whether the object stands off the dome's axis or leans."""
+        return bool(self.offset_mm or self.tilt_deg)
+
+    @property
+    def place(self) -> str:
+        """Where the object presses and how it leans, in words; empty where it is central and level."""
+        parts = [f"{self.offset_mm:g} mm off the axis"] if self.offset_mm else []
+        parts += [f"leaning by {self.tilt_deg:g}°"] if self.tilt_deg else []
+        return " and ".join(parts)
+
+    @property
+    def kind_of_place(self) -> str:
+        """Whether contact is central, in words before the noun."""
+        return "off-axis" if self.off_axis else "central"
+
+    @property
+    def where(self) -> str:
+        """Where to press, in words after the object."""
+        return self.place if self.off_axis else "centrally"
+
     @property
     def is_plate(self) -> bool:
         """Whether a flat plate presses the sensor."""
@@ -124,8 +168,8 @@ class ContactTable(Table):
 
     @property
     def is_atlas_plate(self) -> bool:
-        """Whether it is the contact of membrane and atlas: a plate with its usual rim, without friction."""
-        return self.is_plate and self.plate_rim_mm is None and not self.friction
+        """Whether it is the contact of membrane and atlas: a central plate with its usual rim, without friction."""
+        return self.is_plate and self.plate_rim_mm is None and not self.friction and not self.off_axis
 
     @property
     def label(self) -> str:
@@ -152,8 +196,8 @@ class ContactTable(Table):
 
     @property
     def words(self) -> str:
-        """Object and friction in words."""
-        return f"{self.label}, {self.hold}"
+        """Object, friction and a place off the axis in words."""
+        return ", ".join([self.label, self.hold, *([self.place] if self.off_axis else [])])
 
     def sizes(self) -> dict[str, Any]:
         """The keys that shape the object and their values, without those of other objects."""

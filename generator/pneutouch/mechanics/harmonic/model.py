@@ -65,9 +65,11 @@ class HarmonicModel(SolidModel):
         """What the outer wall puts on its base at coefficients x (n_nodes, columns)."""
         return BaseLoad() if self.harmonic_base is None else self.harmonic_base.load(x)
 
-    def lowest(self, x: Array, edges: Index) -> float:
-        """Least height of the nodes of a face at the angles, in R0."""
-        heights = self.harmonics.values(self.harmonics.angles)[:, AXIAL] @ x[np.unique(edges)].T
+    def lowest(self, x: Array, edges: Index, above: float = -np.inf) -> float:
+        """Least height at the angles of the nodes of a face that are higher than ``above`` at rest, in R0."""
+        nodes = np.unique(edges)
+        nodes = nodes[self.rest[nodes, 1] > above]
+        heights = self.harmonics.values(self.harmonics.angles)[:, AXIAL] @ x[nodes].T
         return float(heights.min())
 
     def _operators(self, signs: Array) -> None:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.harmonic.contact import HarmonicContact, X, Y
+from pneutouch.mechanics.harmonic.fields import Harmonics
 from pneutouch.mechanics.harmonic.model import HarmonicModel
 from pneutouch.mechanics.harmonic.placement import first_height
 from pneutouch.mechanics.harmonic.strain import HarmonicProbe
@@ -35,15 +38,19 @@ _ALONG = 33
 """Points of every edge of the outer wall at which an object may touch first."""
 
 
+_UPPER = 0.5
+"""Height at rest in R0 above which the inner wall can come down on to the base plane."""
+
+
 @dataclass(frozen=True)
 class OffAxisState:
     """One equilibrium; mm, N, MPa.
 
     force: of the wall on the object, upwards.  sideways: the same along x, towards angle 0 of the plane of symmetry.
-    moment: of the wall on the object about the y axis through the centre of the base plane, N mm; it is positive where
-    it presses the object up at negative x.  contact_radius: greatest horizontal distance of a touching point from the
-    middle of the contact's forces.  stiffness, slope: see `indent.PressState`.  positions: coefficients, see
-    `fields.Harmonics`.
+    moment: of the wall on the object about the y axis through the centre of the base plane, N mm: the sum of z times
+    the force along x less x times the force upwards.
+    contact_radius: greatest horizontal distance of a touching point from the middle of the contact's forces.
+    stiffness, slope: see `indent.PressState`.  positions: coefficients, see `fields.Harmonics`.
     """
 
     indentation: float
@@ -89,6 +96,19 @@ class OffAxisPath:
         return figures(indentation, force, rise / KPA)
 
 
+class GuidedFollower(PathFollower):
+    """A follower that starts at a state of fewer harmonics where it has one at the height, else from its path."""
+
+    guide: Mapping[float, Array] = MappingProxyType({})
+
+    def _extrapolate(self, height: float) -> Array:
+        known = [(at, x) for at, x in self.guide.items() if abs(at - height) < 1.0e-9]
+        if not known:
+            return super()._extrapolate(height)
+        harmonics = Harmonics((self.here.state.x.shape[1] - 2) // 3)
+        return harmonics.lifted(known[0][1])
+
+
 class OffAxisPress:
     """Presses of one dome from one free state by one object, with any number of harmonics.
 
@@ -103,11 +123,16 @@ class OffAxisPress:
         outline = solid.contact.outline(free.positions / solid.length, _ALONG)
         self.surface = surface.at(first_height(surface, outline))
 
-    def run(self, order: int) -> OffAxisPath:
-        """The press with harmonics to an order. Raises NoConvergenceError where first contact has no equilibrium."""
+    def run(self, order: int, guide: OffAxisPath | None = None) -> OffAxisPath:
+        """The press with harmonics to an order, near the states of a ``guide`` of fewer harmonics where there is one.
+
+        Raises NoConvergenceError where first contact has no equilibrium.
+        """
         model, press, start = HarmonicModel(self._solid, order), self._press, self.surface.height
         probe = HarmonicProbe(model, self._probe)
-        follower = PathFollower(model, self._gas, self.surface, model.harmonics.lifted(self._free.unit.x))
+        follower = GuidedFollower(model, self._gas, self.surface, model.harmonics.lifted(self._free.unit.x))
+        if guide is not None:
+            follower.guide = {start - s.indentation / model.length: s.positions / model.length for s in guide.path}
         states = [self._state(model, probe, follower.here)]
         events, jump = self._events(states[0], states[0]), None
         for k in range(1, press.steps + 1):
@@ -163,7 +188,7 @@ class OffAxisPress:
             slope=slope,
             stretch=probe.greatest_stretch(x),
             penetration=max(base.penetration, -float(touch.gap.min())) * length,
-            inner_height=model.lowest(x, model.mesh.inner) * length,
+            inner_height=model.lowest(x, model.mesh.inner, _UPPER) * length,
             overhang=max(0.0, float(model.rest[:, 1].min()) - model.lowest(x, model.mesh.outer)) * length,
             base_force=base.force * mu * length**2,
             positions=x * length,

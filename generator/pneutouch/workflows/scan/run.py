@@ -137,7 +137,11 @@ def load_both(
         draw(context)
     scene = load_scene(design, changes, library)
     # The specimen is flat: what presses the sensor elsewhere does not count here.
-    return context, scene, sensor_of(assemble(scene)).replace(body=None, plate_rim=None, friction=0.0)
+    return (
+        context,
+        scene,
+        sensor_of(assemble(scene)).replace(body=None, plate_rim=None, friction=0.0, offset=0.0, tilt=0.0),
+    )
 
 
 def bars_of(context: ResolvedSpecimen) -> tuple[BarRow, ...]:

@@ -63,11 +63,28 @@ def base_scene(target: Target, where: str, library: Library) -> ResolvedDesign:
         changes["membrane.wall_thickness_mm"] = _WALL_SHARE * given.inner_radius_mm
     try:
         changes["membrane.material"] = _some_resin(target, where, chosen, library)
-        return load_scene(source, changes, library)
+        scene = load_scene(source, changes, library)
     except PneutouchError as error:
         if error.file is None and error.key not in chosen:
             error.file = where
         raise
+    check_central(scene)
+    return scene
+
+
+def check_central(scene: ResolvedDesign) -> None:
+    """Raise InputError for contact off the axis, with which no search is made."""
+    contact = scene.design.contact
+    if not contact.off_axis:
+        return
+    key, value = ("offset_mm", contact.offset_mm) if contact.offset_mm else ("tilt_deg", contact.tilt_deg)
+    raise InputError(
+        "the search is made with central and level contact",
+        file=scene.where,
+        key=f"contact.{key}",
+        value=value,
+        remedy="select without it, then `predict` the selected design with it",
+    )
 
 
 def requested_pair(target: Target, where: str, printer: Printer, library: Library) -> ResinPair | None:

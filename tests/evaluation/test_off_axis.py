@@ -1,0 +1,102 @@
+"""Designs pressed off the axis: which model answers, what is refused and why, and what the answer has."""
+
+import numpy as np
+import pytest
+
+from pneutouch.catalogue import Library
+from pneutouch.catalogue.scene import load_scene
+from pneutouch.errors import InputError
+from pneutouch.evaluation.evaluate import evaluate, sensor_of
+from pneutouch.mechanics.atlas_states import outside_atlas
+from pneutouch.mechanics.models import USUAL, models_for
+from pneutouch.parts import assemble
+from pneutouch.workflows.select.base import check_central
+
+BALL = {"contact.object": "ball", "contact.ball_radius_mm": 8.0, "contact.offset_mm": 2.0}
+SHORT = {"pneumatics.driving_pressures_kPa": [0.0], "indentation.depth_mm": 3.0, "indentation.steps": 6}
+
+
+def _sensor(changes):
+    return sensor_of(assemble(load_scene("paper-dome", changes)))
+
+
+@pytest.mark.parametrize(
+    ("changes", "why"), [(BALL, "2 mm off the axis"), ({"contact.tilt_deg": 5.0}, "leans by 5°")], ids=["ball", "plate"]
+)
+def test_other_models_refuse_by_name_with_the_reason(changes, why):
+    for model in ("membrane", "atlas", "solid"):
+        with pytest.raises(InputError, match=why) as caught:
+            evaluate("paper-dome", changes, model=model)
+        assert caught.value.key == "model" and caught.value.value == model
+        assert "harmonic" in str(caught.value.remedy)
+    sensor = _sensor(changes)
+    assert models_for(sensor, 0.02).models == ("harmonic",)
+    assert why in str(outside_atlas(sensor))
+
+
+def test_a_central_scene_is_left_to_the_cheaper_models():
+    assert "harmonic" not in models_for(_sensor({}), 0.02).models
+
+
+@pytest.mark.parametrize(
+    ("changes", "key", "text"),
+    [
+        ({"contact.offset_mm": 1.0, "contact.friction": 0.3}, "contact", "without friction"),
+        ({**BALL, "contact.tilt_deg": 5.0}, "contact", "only a plate can lean"),
+        (
+            {"contact.object": "cone", "contact.cone_half_angle_deg": 60.0, "contact.cone_tip_radius_mm": 2.0}
+            | {"contact.offset_mm": 1.0},
+            "contact",
+            "only a plate or a ball",
+        ),
+        ({"contact.tilt_deg": 60.0}, "contact.tilt_deg", "45"),
+        ({"contact.offset_mm": -1.0}, "contact.offset_mm", "0"),
+    ],
+)
+def test_what_cannot_stand_off_the_axis_is_refused(changes, key, text):
+    with pytest.raises(InputError, match=text) as caught:
+        load_scene("paper-dome", changes)
+    assert str(caught.value.key).startswith(key)
+
+
+def test_an_offset_off_the_dome_is_refused_with_the_largest_that_works():
+    with pytest.raises(InputError, match="60 degrees") as caught:
+        evaluate("paper-dome", {**BALL, "contact.offset_mm": 17.0})
+    assert caught.value.key == "contact.offset_mm"
+    # A sphere of 10.75 mm and one of 8 mm touch at 60 degrees where their centres are 18.75 sin 60 apart.
+    assert f"{np.floor(100 * 18.75 * np.sin(np.pi / 3)) / 100:g} mm" in str(caught.value.remedy)
+
+
+def test_a_tilt_that_touches_the_connector_is_refused_with_the_largest_that_works():
+    with pytest.raises(InputError, match="connector") as caught:
+        evaluate("paper-dome", {"contact.tilt_deg": 30.0, "pneumatics.driving_pressures_kPa": [0.0]}, model=USUAL)
+    assert caught.value.key == "contact.tilt_deg" and caught.value.file
+    largest = float(str(caught.value.remedy).split("at most ")[1].split("°")[0])
+    # The middle of a plate that touches a sphere of 10.75 mm is at 10.75/cos, its low edge 15 sin lower.
+    low = 10.75 / np.cos(np.radians(largest)) - 15.0 * np.sin(np.radians(largest))
+    top = _sensor({}).dome.base.ring_height
+    assert low - top == pytest.approx(0.75 * 9.25, abs=0.01)
+
+
+def test_the_search_and_friction_of_the_flange_refuse_it():
+    with pytest.raises(InputError, match="central and level") as caught:
+        check_central(load_scene("paper-dome", {"contact.offset_mm": 2.0}))
+    assert caught.value.key == "contact.offset_mm"
+    with pytest.raises(InputError, match="flange"):
+        evaluate("paper-dome", {"contact.offset_mm": 2.0}, model=USUAL, clamp="flange")
+
+
+@pytest.mark.slow
+def test_the_answer_states_its_harmonics_and_the_forces_in_all_directions():
+    evaluation = evaluate("paper-dome", {**BALL, **SHORT}, model=USUAL, library=Library.default())
+    assert evaluation.prediction.model == evaluation.options.model == "harmonic"
+    (state,) = evaluation.prediction.document()["states"]
+    off_axis = state["off_axis"]
+    assert off_axis["harmonics"] in (6, 8, 12) and 0 < off_axis["last_change_percent"] < 1.0
+    assert len(off_axis["sideways_force_N"]) == len(off_axis["moment_N_mm"]) == 7
+    # The ball pushes the dome away from its side.
+    assert 0.05 < off_axis["sideways_force_N"][-1] / state["curve"]["contact_force_N"][-1] < 0.5
+    central = evaluate("paper-dome", {**BALL, **SHORT, "contact.offset_mm": 0.0})
+    (middle,) = central.prediction.document()["states"]
+    assert middle["curve"]["contact_force_N"][-1] > state["curve"]["contact_force_N"][-1]
+    assert any("2 mm off the dome's" in line for line in evaluation.prediction.assumptions)
