@@ -83,7 +83,7 @@ def test_the_limit_pressure_and_the_height_know_of_no_friction(rough):
 @pytest.mark.slow
 def test_the_tuning_curve_passes_through_the_solids_states(rough):
     drawn = curve(plate_alone(rough.sensor), 30 * KPA, "here")
-    bent = under_contact(rough.sensor, drawn)
+    bent = under_contact(rough.sensor, drawn, rough.prediction.states)
     for pressure in (5 * KPA, 20 * KPA):
         found = np.interp(pressure / KPA, bent.driving_pressure_kPa, bent.sensitivity_kPa_per_N)
         plate = np.interp(pressure / KPA, drawn.driving_pressure_kPa, drawn.sensitivity_kPa_per_N)

@@ -37,12 +37,19 @@ def tuning(evaluation: Evaluation, highest: float) -> TuningChart | None:
     scene, sensor, prediction = evaluation.scene, evaluation.sensor, evaluation.prediction
     drawn = curve(plate_alone(sensor), highest, "this design")
     if drawn is not None and sensor.protocol.other_contact is not None:
-        drawn = under_contact(sensor, drawn)
+        drawn = under_contact(sensor, drawn, prediction.states)
     if drawn is None or drawn.driving_pressure_kPa.size < 2:
         return None
     materials = list(evaluation.resins.values())
     low, high = interval(
-        sensor, drawn, scene.membrane_material, materials, scene.printer, prediction.model, scene.calibration
+        sensor,
+        drawn,
+        scene.membrane_material,
+        materials,
+        scene.printer,
+        prediction.model,
+        scene.calibration,
+        prediction.states,
     )
     working = {s.driving_pressure / KPA: s.figures.sensitivity_kPa_per_N for s in prediction.states if s.figures}
     return TuningChart(drawn, low, high, working)

@@ -7,12 +7,10 @@ import numpy as np
 from pneutouch.arrays import Array
 from pneutouch.evaluation.chart_data import TuningCurve
 from pneutouch.evaluation.uncertainty import known
-from pneutouch.mechanics import Sensor
+from pneutouch.mechanics import Sensor, SensorState
 from pneutouch.mechanics.atlas.respond import OUTSIDE, respond
-from pneutouch.mechanics.contact_correction import plate_alone
 from pneutouch.mechanics.limits import RATED_SHARE
 from pneutouch.mechanics.uncertainty import FIGURES, ContactModel, batch_of
-from pneutouch.mechanics.uncertainty.neighbours import log_figures
 from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
@@ -43,22 +41,17 @@ def curve(sensor: Sensor, highest: float, label: str) -> TuningCurve | None:
     return TuningCurve(label, pressures[kept] / KPA, factor * response.lines.sensitivity_kPa_per_N[kept])
 
 
-def under_contact(sensor: Sensor, drawn: TuningCurve) -> TuningCurve:
+def under_contact(sensor: Sensor, drawn: TuningCurve, states: Sequence[SensorState]) -> TuningCurve:
     """A curve of the sensor under a plate without friction made that of the sensor under its own contact.
 
-    The solid is solved at a few driving pressures; the ratio is straight in its logarithm between them. Pressures that
-    it cannot be solved at are left out.
+    ``states`` are the solid's, at a few driving pressures; the ratio is straight in its logarithm between them.
+    Pressures that it cannot be solved at are left out.
     """
-    at = np.linspace(drawn.driving_pressure_kPa[0], drawn.driving_pressure_kPa[-1], _BUDGETS)
-    contact = ContactModel(sensor, tuple((at * KPA).tolist()))
-    ratio = contact.logs[_SENSITIVITY] - log_figures(batch_of(plate_alone(sensor), contact.pressures))[_SENSITIVITY]
-    good = np.isfinite(ratio)
-    if not good.any():
-        return drawn._replace(driving_pressure_kPa=at[:0], sensitivity_kPa_per_N=at[:0])
-    kept = drawn.driving_pressure_kPa <= at[good][-1]
-    pressures_kPa = drawn.driving_pressure_kPa[kept]
-    factor = np.exp(np.interp(pressures_kPa, at[good], ratio[good]))
-    return TuningCurve(drawn.label, pressures_kPa, factor * drawn.sensitivity_kPa_per_N[kept])
+    contact = ContactModel(sensor, tuple((drawn.driving_pressure_kPa * KPA).tolist()), states)
+    ratio = contact.ratio[_SENSITIVITY]
+    kept = np.isfinite(ratio)
+    sensitivity_kPa_per_N = np.exp(ratio[kept]) * drawn.sensitivity_kPa_per_N[kept]
+    return TuningCurve(drawn.label, drawn.driving_pressure_kPa[kept], sensitivity_kPa_per_N)
 
 
 def interval(
@@ -69,13 +62,15 @@ def interval(
     printer: Printer,
     model: str,
     calibration: SensorCalibration | None = None,
+    states: Sequence[SensorState] = (),
 ) -> tuple[Array, Array]:
     """Lower and upper end of a curve's k = 2 interval, kPa/N, (n,) each.
 
-    ``materials`` are all that there are; ``model`` gives the numerical error.
+    ``materials`` are all that there are; ``model`` gives the numerical error. ``states`` are the solid's of another
+    contact than a plate without friction.
     """
     at = np.linspace(drawn.driving_pressure_kPa[0], drawn.driving_pressure_kPa[-1], _BUDGETS)
-    estimate = known(sensor, (at * KPA).tolist(), material, materials, printer, model, calibration)
+    estimate = known(sensor, (at * KPA).tolist(), material, materials, printer, model, calibration, states)
     widths = estimate.budget.expanded[_SENSITIVITY]
     good = np.isfinite(widths)
     width = np.interp(drawn.driving_pressure_kPa, at[good], widths[good])

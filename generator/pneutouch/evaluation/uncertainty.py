@@ -71,12 +71,12 @@ def known(
     printer: Printer,
     model: str,
     calibration: SensorCalibration | None = None,
-    states: Sequence[SensorState] | None = None,
+    states: Sequence[SensorState] = (),
 ) -> SensorBudget:
     """The budget of a sensor at ascending driving pressures (MPa) that the atlas covers under a plate without friction.
 
     ``materials`` are all that there are: the model's error is taken from those that were measured. ``model`` gives the
-    numerical error. ``states`` are the solid's of another contact, where it has been solved already.
+    numerical error. ``states`` are the solid's of another contact, at the pressures where it has been solved already.
     """
     from pneutouch.mechanics.contact_correction import plate_alone
     from pneutouch.mechanics.uncertainty import ContactModel, batch_of, budget, model_errors

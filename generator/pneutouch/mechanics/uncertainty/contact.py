@@ -11,11 +11,11 @@ from functools import cached_property
 import numpy as np
 
 from pneutouch.arrays import Array
-from pneutouch.errors import ComputationError
 from pneutouch.mechanics.atlas.batches import batch_of
 from pneutouch.mechanics.contact_correction import GRIPS, plate_alone
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.mechanics.sensor import Sensor
+from pneutouch.mechanics.uncertainty.contact_presses import LEAST, SAME, between, pressed_logs, solved_at
 from pneutouch.mechanics.uncertainty.neighbours import joined, log_figures
 from pneutouch.mechanics.uncertainty.source import CONTACT_FIGURES, FIGURES
 
@@ -31,6 +31,10 @@ _KURTOSIS = 1.8
 
 _LEAST_STEP = 0.1
 """Least half step in ln modulus: below it the noise of the ends of ranges shows in a difference."""
+
+_RANGE = CONTACT_FIGURES[-1]
+_SAME_END = 1e-6
+"""Ends of ranges nearer to each other than this, in the logarithm, are one."""
 
 
 @dataclass(frozen=True)
@@ -76,27 +80,41 @@ class ContactShift:
 class ContactModel:
     """One sensor under its contact at n ascending driving pressures, MPa.
 
-    ``states`` are those of the solid where it has been solved already. ``fitted_spread`` is the standard uncertainty of
-    the coefficient where a calibration fitted it.
+    ``states`` are those of the solid where it has been solved already, at these or at other driving pressures; between
+    them, and ``least`` pressures at the least, the logarithm of the figures over those under the plate is straight.
+    What another modulus or friction changes is solved at the lowest and the highest pressure and is straight between,
+    unless an event ends the range. ``fitted_spread`` is the standard uncertainty of the coefficient where a calibration
+    fitted it.
     """
 
     sensor: Sensor
     pressures: tuple[float, ...]
-    states: Sequence[SensorState] | None = None
+    states: Sequence[SensorState] = ()
     fitted_spread: float | None = None
+    least: int = LEAST
 
     @cached_property
     def logs(self) -> Array:
         """Logarithms of the figures under the contact, (figures, n)."""
-        return self._solved(self.sensor) if self.states is None else _logs(self.states, len(self.pressures))
+        at, solved = self._solved
+        if at.size == len(self.pressures) and np.abs(at - np.array(self.pressures)).max() <= SAME:
+            return solved
+        return self.ratio + log_figures(batch_of(plate_alone(self.sensor), self.pressures))
+
+    @cached_property
+    def ratio(self) -> Array:
+        """Logarithms of the figures under the contact over those under the plate, by the atlas, (figures, n)."""
+        at, solved = self._solved
+        plate = log_figures(batch_of(plate_alone(self.sensor), at))
+        return between(np.array(self.pressures), at, solved - plate)
 
     def shift(self, half: float) -> ContactShift:
         """The shift over a spread of the modulus; a side that the solid cannot solve is as the middle."""
         half = max(half, _LEAST_STEP)
-        sides = [self.sensor.replace(shear_modulus=f * self.sensor.wall.shear_modulus) for f in np.exp([-half, half])]
-        plates = [batch_of(plate_alone(one), self.pressures) for one in (sides[0], self.sensor, sides[1])]
-        plate = log_figures(joined(plates)).reshape(len(FIGURES), 3, -1).transpose(1, 0, 2)
-        nodes = np.stack([self._solved(sides[0]), self.logs, self._solved(sides[1])]) - plate
+        here = self.logs - log_figures(batch_of(plate_alone(self.sensor), self.pressures))
+        modulus = self.sensor.wall.shear_modulus
+        less, more = (self._change(self.sensor.replace(shear_modulus=f * modulus)) for f in np.exp([-half, half]))
+        nodes = np.stack([here + less, here, here + more])
         # Neither the free state nor its limit point depends on the contact.
         nodes[:, [i for i in range(len(FIGURES)) if i not in CONTACT_FIGURES]] = 0.0
         return ContactShift(half, np.where(np.isnan(nodes), nodes[1], nodes))
@@ -110,17 +128,16 @@ class ContactModel:
         if stated == 0.0:
             return None
         if np.isinf(stated):
-            change = self._solved(self.sensor.replace(friction=LEAST_GRIP)) - self.logs
+            change = self._change(self.sensor.replace(friction=LEAST_GRIP))
             # As likely anywhere from none of the change to the whole of it, about an end: mean square c^2 / 3.
             origin = f"assumed: a coefficient from {LEAST_GRIP:g} to grip; the solid at both ends"
             return FrictionSpread(np.abs(change) / np.sqrt(3.0), None, origin)
         u = np.log(SPREAD) / np.sqrt(3.0)
         far = np.sqrt(_KURTOSIS) * u
-        down, up = (self._solved(self.sensor.replace(friction=stated * float(np.exp(x)))) for x in (-far, far))
+        down, up = (self._change(self.sensor.replace(friction=stated * float(np.exp(x)))) for x in (-far, far))
         half = 0.5 * (up - down)
-        one_sided = np.where(np.isnan(up), self.logs - down, up - self.logs)
-        slope = np.where(np.isnan(half), one_sided, half)
-        bend = np.nan_to_num(0.5 * (up + down) - self.logs)
+        slope = np.where(np.isnan(half), np.where(np.isnan(up), -down, up), half)
+        bend = np.nan_to_num(0.5 * (up + down))
         # Three-point rule with the moments of the rectangle: weights 1/(2 kurtosis) at both sides.
         weight = 1.0 / _KURTOSIS
         variance = weight * (slope**2 + bend**2) - (weight * bend) ** 2
@@ -133,34 +150,36 @@ class ContactModel:
     def _fitted(self, value: float, spread: float) -> FrictionSpread:
         """That of a fitted coefficient: the difference over its standard uncertainty, within 0 and grip."""
         ends = max(value - spread, 0.0), min(value + spread, GRIPS)
-        down, up = (self._solved(self.sensor.replace(friction=np.inf if x >= GRIPS else x)) for x in ends)
+        down, up = (self._change(self.sensor.replace(friction=np.inf if x >= GRIPS else x)) for x in ends)
         slope = (up - down) / max(ends[1] - ends[0], 1e-9)
         origin = f"fitted: {value:.3g}, standard uncertainty {spread:.2g}; the solid at {ends[0]:.2g} and {ends[1]:.2g}"
         return FrictionSpread(np.abs(slope) * spread, value * slope, origin)
 
-    def _solved(self, sensor: Sensor) -> Array:
-        """Figures of the solid, (figures, n); NaN from the first driving pressure on that it cannot solve."""
-        from pneutouch.mechanics.solid_states import solid_states
+    @cached_property
+    def _solved(self) -> tuple[Array, Array]:
+        """Driving pressures (k,) that the sensor is solved at, and the logarithms of its figures (figures, k)."""
+        return solved_at(self.sensor, self.pressures, self.states, self.least)
 
-        for count in range(len(self.pressures), 0, -1):
-            try:
-                return _logs(solid_states(sensor, np.array(self.pressures[:count])), len(self.pressures))
-            except ComputationError:
-                continue
-        return np.full((len(FIGURES), len(self.pressures)), np.nan)
+    def _change(self, sensor: Sensor) -> Array:
+        """How the logarithms of another sensor under its contact differ, less what they do under the plate, (figures,
+        n); NaN beyond the highest driving pressure that the solid can solve it at."""
+        at, solved = self._solved
+        for count in range(at.size, 0, -1):
+            rows = np.unique([0, count - 1])
+            found = pressed_logs(sensor.replace(waves=0), tuple(at[rows].tolist())) - solved[:, rows]
+            if not np.isnan(found).all():
+                break
+        if count > rows.size and not self._to_the_depth(solved[:, :count], found):
+            inner = pressed_logs(sensor.replace(waves=0), tuple(at[1 : count - 1].tolist())) - solved[:, 1 : count - 1]
+            rows, found = np.arange(count), np.hstack([found[:, :1], inner, found[:, 1:]])
+        if sensor.wall != self.sensor.wall:
+            plates = [batch_of(plate_alone(one), at[rows]) for one in (sensor, self.sensor)]
+            there, here = np.split(log_figures(joined(plates)), 2, axis=1)
+            found = found - (there - here)
+        return between(np.array(self.pressures), at[rows], found)
 
-
-def _logs(states: Sequence[SensorState], size: int) -> Array:
-    """Logarithms of the figures of solved states, (figures, size); NaN for what is none."""
-    rows = np.full((len(FIGURES), size), np.nan)
-    for k, state in enumerate(states):
-        if state.figures is not None:
-            fitted = state.figures
-            rows[CONTACT_FIGURES, k] = (
-                fitted.sensitivity_kPa_per_N,
-                fitted.stiffness,
-                fitted.force_range[1],
-                state.range_end,
-            )
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return np.asarray(np.log(rows))
+    def _to_the_depth(self, solved: Array, changes: Array) -> bool:
+        """Whether no event ends the range: where one does, it does so at a travel that jumps from pressure to
+        pressure."""
+        ends = np.abs([*(solved[_RANGE] - np.log(self.sensor.protocol.depth)), *changes[_RANGE]])
+        return bool((ends < _SAME_END).all())

@@ -1,0 +1,93 @@
+"""What the solid has of a sensor under its contact, at the few driving pressures that suffice."""
+
+from collections.abc import Sequence
+from functools import lru_cache
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.errors import ComputationError
+from pneutouch.mechanics.prediction import SensorState
+from pneutouch.mechanics.sensor import ResponseCorrection, Sensor
+from pneutouch.mechanics.uncertainty.source import CONTACT_FIGURES, FIGURES
+
+SAME = 1e-6
+"""Driving pressures nearer to each other than this, MPa, are one."""
+
+LEAST = 3
+"""A span of driving pressures is solved at no fewer: both ends and its middle."""
+
+
+@lru_cache(maxsize=128)
+def pressed_logs(sensor: Sensor, pressures: tuple[float, ...]) -> Array:
+    """Logarithms of the figures at ascending driving pressures, MPa, (figures, n), read-only; all NaN where the solid
+    cannot solve the highest. The chart, the budget and the curves of a datasheet need the same ones again."""
+    from pneutouch.mechanics.solid_states import solid_states
+
+    try:
+        logs = state_logs(solid_states(sensor, np.array(pressures)))
+    except ComputationError:
+        logs = np.full((len(FIGURES), len(pressures)), np.nan)
+    logs.setflags(write=False)
+    return logs
+
+
+def state_logs(states: Sequence[SensorState], correction: ResponseCorrection | None = None) -> Array:
+    """Logarithms of the figures of solved states, (figures, n); NaN for what is none. The factors of a ``correction``
+    that the states hold are taken out."""
+    rows = np.full((len(FIGURES), len(states)), np.nan)
+    for k, state in enumerate(states):
+        if state.figures is not None:
+            force, rise = (1.0, 1.0) if correction is None else correction.at(state.driving_pressure)
+            found = state.figures.scaled(1.0 / force, 1.0 / rise)
+            rows[CONTACT_FIGURES, k] = (
+                found.sensitivity_kPa_per_N,
+                found.stiffness,
+                found.force_range[1],
+                state.range_end,
+            )
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.asarray(np.log(rows))
+
+
+def solved_at(
+    sensor: Sensor, pressures: Sequence[float], states: Sequence[SensorState], least: int = LEAST
+) -> tuple[Array, Array]:
+    """Driving pressures (k,) from which those at ``pressures`` follow, and the logarithms of the figures (figures, k).
+
+    ``states`` of the sensor are taken as they are. What lies beyond them is solved at its ends, without the highest
+    that the solid cannot be driven to, and the middle of all where there are fewer than ``least`` then.
+    """
+    given, bare = state_logs(states, sensor.correction), sensor.replace(waves=0)
+    known = {state.driving_pressure: given[:, k] for k, state in enumerate(states)}
+    outside = [p for p in pressures if not known or not min(known) - SAME <= p <= max(known) + SAME]
+    for count in range(len(outside), 0, -1):
+        some = tuple(dict.fromkeys((outside[0], outside[count - 1])))
+        found = pressed_logs(bare, some)
+        if not np.isnan(found).all():
+            known.update(zip(some, found.T, strict=True))
+            break
+    between_them = any(not _among(p, known) for p in pressures)
+    if between_them and 2 <= len(known) < least:
+        middle = 0.5 * (min(known) + max(known))
+        known[middle] = pressed_logs(bare, (middle,))[:, 0]
+    if not known:
+        return np.array(pressures), np.full((len(FIGURES), len(pressures)), np.nan)
+    at = sorted(known)
+    return np.array(at), np.stack([known[p] for p in at], axis=1)
+
+
+def _among(pressure: float, others: dict[float, Array]) -> bool:
+    return any(abs(pressure - other) <= SAME for other in others)
+
+
+def between(where: Array, at: Array, values: Array) -> Array:
+    """Straight lines between values (figures, k) at driving pressures (k,), at others (n,); NaN above the highest, and
+    below the lowest, that have one."""
+    rows = np.full((len(values), where.size), np.nan)
+    for row, own in zip(rows, values, strict=True):
+        good = np.isfinite(own)
+        if good.any():
+            inside = (where >= at[good][0] - SAME) & (where <= at[good][-1] + SAME)
+            row[inside] = np.interp(where[inside], at[good], own[good])
+    return rows
