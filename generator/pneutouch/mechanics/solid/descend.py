@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pneutouch.arrays import Array
 from pneutouch.mechanics.solid.continuation import DISSIPATION, PathFollower, PlateState, lost_work
 from pneutouch.mechanics.solid.errors import NoConvergenceError
 from pneutouch.mechanics.solid.newton import NewtonFailure, minimise
@@ -15,6 +16,8 @@ _BEYOND_STALL = 3.5e-3
 _MOST_TRIES = 40
 #: Two equilibria whose positions differ by more than this, in R0, are two.
 _APART = 1.0e-3
+#: How often the wall's speed grows at least over three states that run into a limit point.
+_GROWS = 2.0
 
 
 @dataclass(frozen=True)
@@ -35,7 +38,9 @@ def descend(follower: PathFollower, height: float) -> PathJump | None:
         try:
             after = follower.step(height)
         except NoConvergenceError as failure:
-            return PathJump("lost", before.height, failure.why)
+            if before.friction is None:
+                return PathJump("lost", before.height, failure.why)
+            return _past_a_stall(follower, NewtonFailure(failure.why))
         if _sound(follower.path[:-1], after):
             continue
         jump = _close_in(follower, after.height)
@@ -72,11 +77,18 @@ def _close_in(follower: PathFollower, end: float) -> PathJump | None:
         bad, tried_from_here = end if closed else bad, False
     if isinstance(beyond, NewtonFailure):
         return _past_a_stall(follower, beyond)
-    return PathJump(_kind(follower.here, beyond), follower.here.height, _describe(follower.path, beyond))
+    return _jump(follower.path, beyond)
 
 
 def _past_a_stall(follower: PathFollower, stalled: NewtonFailure) -> PathJump:
-    """A solver that failed is no evidence of another branch: search a little further before naming the end."""
+    """A solver that failed is no evidence of another branch: search a little further before naming the end.
+
+    With friction the search is by no energy and often finds nothing: there the end is read from the path itself.
+    """
+    here = follower.here
+    if here.friction is not None and _turns_back(follower.path):
+        why = f"the wall moves {_speed(here):.0f} times as far as the object, and the path turns back"
+        return PathJump(_kind(here, here.by_height), here.height, f"{why}; {_place(here, here.by_height)}")
     for further in (1, 2, 4, 8):
         other = follower.solve(follower.here.height - follower.down * further * _BEYOND_STALL)
         if (
@@ -84,8 +96,29 @@ def _past_a_stall(follower: PathFollower, stalled: NewtonFailure) -> PathJump:
             and not _sound(follower.path, other)
             and _stays_away(follower.here, other)
         ):
-            return PathJump(_kind(follower.here, other), follower.here.height, _describe(follower.path, other))
-    return PathJump("lost", follower.here.height, stalled.why)
+            return _jump(follower.path, other)
+    return PathJump("lost", here.height, stalled.why)
+
+
+def _turns_back(path: list[PlateState]) -> bool:
+    """Whether the last three states run into a limit point.
+
+    Near one the wall's speed grows with the inverse root of the distance that is left: its inverse square falls evenly
+    to nothing (Seydel 2010, Practical Bifurcation and Stability Analysis, sec. 2.2, doi:10.1007/978-1-4419-1740-9).
+    """
+    if len(path) < 3:
+        return False
+    height = np.array([state.height for state in path[-3:]])
+    left = np.array([_speed(state) for state in path[-3:]]) ** -2.0
+    if (np.diff(left) >= 0.0).any() or left[0] < _GROWS**2 * left[-1]:
+        return False
+    ends = height[1:] - left[1:] * np.diff(height) / np.diff(left)
+    return bool((np.abs(ends - height[-1]) <= (_BEYOND_STALL, JUMP_WITHIN)).all())
+
+
+def _speed(state: PlateState) -> float:
+    """Largest travel of the wall over that of the object."""
+    return float(np.linalg.norm(state.by_height, axis=1).max())
 
 
 def _stays_away(here: PlateState, other: PlateState) -> bool:
@@ -97,19 +130,27 @@ def _stays_away(here: PlateState, other: PlateState) -> bool:
     return moved > _APART and back.state.energy < here.state.energy
 
 
-def _kind(here: PlateState, beyond: PlateState) -> str:
-    """clamp_fold where the wall moves most within a wall of its clamp, else snap."""
+def _jump(path: list[PlateState], after: PlateState) -> PathJump:
+    here = path[-1]
+    return PathJump(_kind(here, after.state.x - here.state.x), here.height, _describe(path, after))
+
+
+def _kind(here: PlateState, move: Array) -> str:
+    """clamp_fold where the wall moves most, by (n_nodes, 2), within a wall of its clamp, else snap."""
     solid = here.scene.solid
-    moved = solid.rest[np.linalg.norm(beyond.state.x - here.state.x, axis=1).argmax()]
+    moved = solid.rest[np.linalg.norm(move, axis=1).argmax()]
     held = solid.rest[solid.mesh.clamped]
     near = held.size > 0 and np.linalg.norm(held - moved, axis=1).min() < solid.wall
     return "clamp_fold" if near else "snap"
 
 
+def _place(here: PlateState, move: Array) -> str:
+    r, z = here.scene.solid.mesh.nodes[np.linalg.norm(move, axis=1).argmax()]
+    return f"the wall point at rest at r {r:.2f}, z {z:.2f} mm moves most"
+
+
 def _describe(path: list[PlateState], after: PlateState) -> str:
-    solid = after.scene.solid
-    r, z = solid.mesh.nodes[np.linalg.norm(after.state.x - path[-1].state.x, axis=1).argmax()]
-    place = f"the wall point at rest at r {r:.2f}, z {z:.2f} mm moves most"
+    place = _place(after, after.state.x - path[-1].state.x)
     if not after.stable:
         return f"the tangent has a negative mode; {place}"
     share = 100.0 * lost_work(path, after)

@@ -187,20 +187,24 @@ class FrictionState:
 
 
 def _dissipated(before: FrictionState | None, step: FrictionStep, points: FrictionPoints) -> float:
-    """Work of the largest tractions over the sliding of a step, by the trapezium.
+    """Work of the tractions over the sliding of a step, by the trapezium.
 
-    A point that is released slides for half of the step on average, under a traction that falls to nothing; springs of
-    points that are released lose what they held.
+    A point that stuck slides from where its traction has risen, or the largest one has fallen, to the other. A point
+    that slid and is released does so in the middle of the step on average. A point that stuck and is released gives up
+    half its traction times its path from where it rested, as when a crack opens by that point (Rybicki & Kanninen 1977,
+    Eng. Fract. Mech. 9, 931, doi:10.1016/0013-7944(77)90013-3): what its spring held is part of that.
     """
     weight = step.contact.weight
     slid = points.sliding
     beyond = np.abs(points.slip[slid]) - np.abs(points.traction[slid]) / step.stiffness
-    cap = points.cap[slid] if before is None else 0.5 * (points.cap[slid] + before.points.cap[slid])
-    work = float(np.vdot(weight[slid], cap * beyond))
     if before is None:
-        return work
+        return float(np.vdot(weight[slid], points.cap[slid] * beyond))
     past, touching = before.points, points.sticking | points.sliding
-    held = (past.sticking | past.sliding) & ~touching
-    work += float(np.vdot(weight[held], past.traction[held] ** 2)) / (2.0 * step.stiffness)
-    let_go = past.sliding & ~touching
+    begun = np.maximum(np.abs(past.traction), np.minimum(past.cap, points.cap))[slid]
+    work = float(np.vdot(weight[slid], 0.5 * (begun + points.cap[slid]) * beyond))
+    path = np.sign(past.traction) * points.slip
+    stuck, let_go = past.sticking & ~touching, past.sliding & ~touching
+    spring = np.abs(past.traction) / step.stiffness
+    work += 0.5 * float(np.vdot(weight[stuck], (np.abs(past.traction) * np.maximum(path, spring))[stuck]))
+    work += 0.5 * float(np.vdot(weight[let_go], (np.abs(past.traction) * spring)[let_go]))
     return work + 0.25 * float(np.vdot(weight[let_go], past.cap[let_go] * np.abs(points.slip[let_go])))
