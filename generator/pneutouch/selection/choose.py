@@ -1,6 +1,6 @@
 """From candidates to an answer: the few best of each resin, or the requirements that prevent one."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -26,8 +26,8 @@ _REFINABLE = 0.1
 
 _UNKNOWN = -1.0e9
 
-Uncertainty = Callable[[CandidateResin, SensorBatch], Array]
-"""Relative expanded uncertainty of the sensitivity of sensors of one resin, (n,)."""
+Uncertainty = Callable[[Sequence[tuple[CandidateResin, SensorBatch]]], list[Array]]
+"""Relative expanded uncertainties of the sensitivity of the sensors of each resin, (n,) each."""
 
 Refine = Callable[[SelectionProblem, CandidatePool], tuple[SelectionProblem, CandidatePool]]
 """Candidates at sizes that can be written down made better in what is still free, in a problem of their own resins."""
@@ -169,11 +169,11 @@ def _judged(
     least = least_margin(margin_of)
     highest, span = _span(problem, pool)
     expanded = np.full(pool.radius.size, np.nan)
-    for number in distinct(pool.resin):
-        rows = pool.resin == number
-        part = pool.take(rows)
-        batch = problem.batch(part.resin, part.radius, part.wall, part.pressure)
-        expanded[rows] = uncertainty(problem.resins[int(number)], batch)
+    batch = problem.batch(pool.resin, pool.radius, pool.wall, pool.pressure)
+    numbers = distinct(pool.resin)
+    groups = [(problem.resins[int(number)], batch.take(pool.resin == number)) for number in numbers]
+    for number, known in zip(numbers, uncertainty(groups), strict=True):
+        expanded[pool.resin == number] = known
     cost = costs(weights, expanded, span, least)
     return [
         Candidate(
@@ -199,11 +199,12 @@ def costs(weights: tuple[float, float], expanded: Array, span: tuple[Array, Arra
 def _span(problem: SelectionProblem, pool: CandidatePool) -> tuple[Array, tuple[Array, Array]]:
     """The rated driving pressure, and the sensitivities at none and at that one."""
     highest = rated(problem, pool.resin, pool.radius, pool.wall)
-    both = [
-        respond(problem.batch(pool.resin, pool.radius, pool.wall, pressure), problem.steps)
-        for pressure in (np.zeros_like(highest), highest)
-    ]
-    return highest, (both[0].lines.sensitivity_kPa_per_N, both[1].lines.sensitivity_kPa_per_N)
+    pressure = np.concatenate([np.zeros_like(highest), highest])
+    resin, radius, wall = (np.tile(column, 2) for column in (pool.resin, pool.radius, pool.wall))
+    batch = problem.batch(resin, radius, wall, pressure)
+    groups = np.repeat([0, 1], highest.size)
+    none, most = respond(batch, problem.steps, groups=groups).lines.sensitivity_kPa_per_N.reshape(2, -1)
+    return highest, (none, most)
 
 
 def ranked(choices: list[Candidate]) -> list[Candidate]:

@@ -85,7 +85,7 @@ class ContactTrial:
         """As a choice: ranked by the uncertainty under the plate, which is not stated; the span by the solid."""
         highest = float(rated(self.problem, self.pool.resin, self.pool.radius, self.pool.wall)[0])
         span = self._span(solve, highest)
-        known = uncertainty(self.resin, self._batch())
+        known = uncertainty([(self.resin, self._batch())])[0]
         least = least_margin({name: np.array([margin]) for name, margin in self.margins.items()})
         cost = costs(weights, known, (np.array([span[0]]), np.array([span[1]])), least)
         plate_kPa_per_N = float(self.atlas.lines.sensitivity_kPa_per_N[0])

@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.uncertainty import COVERAGE, FIGURES, batch_of, model_errors
-from pneutouch.mechanics.uncertainty.propagate import propagate
+from pneutouch.mechanics.uncertainty.propagate import propagate, propagate_groups
 from pneutouch.mechanics.uncertainty.source import SENSITIVITY
 from tests.mechanics.test_contact import PAPER
-from tests.mechanics.uncertainty.designs import budget_for, materials
+from tests.mechanics.uncertainty.designs import TEN, batch_for, budget_for, materials
 
 
 def test_the_limit_pressure_adds_up_by_hand(library):
@@ -91,3 +91,16 @@ def test_few_degrees_of_freedom_are_told(library):
     material = materials(library)["FLX9995"]
     found = budget_for(library, batch_of(material_sensor(material), [0.0]), "FLX9995", True)
     assert 2.0 <= found.freedom[SENSITIVITY, 0] < 10.0
+
+
+def test_groups_in_one_pass_are_the_groups_one_by_one(library):
+    """Ends of ranges close in group by group: a sensor's figures do not depend on what else is in the pass."""
+    groups = []
+    for case in TEN[:5]:
+        batch = batch_for(library, case)
+        batch = replace(batch, depth=0.74 * batch.inner_radius)
+        groups.append((batch, list(budget_for(library, batch, case.resin, case.near_paper).sources)))
+    for (batch, sources), budget in zip(groups, propagate_groups(groups), strict=True):
+        alone = propagate(batch, sources)
+        assert budget.derivatives.logs == pytest.approx(alone.derivatives.logs, rel=1e-11, abs=1e-11, nan_ok=True)
+        assert budget.expanded == pytest.approx(alone.expanded, rel=1e-10, nan_ok=True)

@@ -90,16 +90,21 @@ class AtlasSolution(NamedTuple):
 
 
 class AtlasPress:
-    """A batch with its slices, gas and inflated states; all nondimensional from here on."""
+    """A batch with its slices, gas and inflated states; all nondimensional from here on.
 
-    def __init__(self, batch: SensorBatch, slices: AtlasSlices, k: Index) -> None:
+    ``groups`` are numbers from 0 on, (n,), of what several calls would ask, joined because a call costs the most:
+    the sensors of a group end their iterations together, with the result of a call of their own.
+    """
+
+    def __init__(self, batch: SensorBatch, slices: AtlasSlices, k: Index, groups: Index | None = None) -> None:
         self.batch, self.slices, self.k = batch, slices, k
+        self.groups = np.zeros(len(batch), dtype=np.intp) if groups is None else groups
         mu, radius = batch.shear_modulus, batch.inner_radius
         self.pressure = batch.driving_pressure / mu
         self.ambient = batch.ambient_pressure / mu
         self.dead = batch.dead_volume / radius**3
         self.reach, self.limit = slices.reach(k), slices.limit_pressure[k]
-        self.free = _inflated(slices, k, self.pressure)
+        self.free = _inflated(slices, k, self.pressure, self.groups)
         self.apex = slices.free_apex(k, self.free)[:, 0]
         gas_volume = self.volume(self.free) + self.dead
         self.content = (self.pressure + self.ambient) * gas_volume
@@ -112,7 +117,7 @@ class AtlasPress:
         """Some of the sensors, inflated states kept."""
         part = object.__new__(AtlasPress)
         part.batch, part.slices, part.k = self.batch.take(rows), self.slices, self.k[rows]
-        for name in ("pressure", "ambient", "dead", "reach", "limit", "free", "apex", "content"):
+        for name in ("groups", "pressure", "ambient", "dead", "reach", "limit", "free", "apex", "content"):
             setattr(part, name, getattr(self, name)[rows])
         return part
 
@@ -138,10 +143,10 @@ class AtlasPress:
             excess = gas - self.ambient - stiffening * point.pressure - memory
             step = excess / np.where(margin > 0, margin, 1.0) / self.reach
             reached = np.abs(step) < _LAST_STEP
-            sound = margin > 0
-            if (reached | (margin <= 0)).all():
+            moving = waiting(self.groups, reached | (margin <= 0))
+            if not moving.any():
                 break
-            nu = nu + np.where(sound, np.minimum(np.maximum(step, -_LONGEST), _LONGEST), 0.0)
+            nu = nu + np.where(moving & (margin > 0), np.minimum(np.maximum(step, -_LONGEST), _LONGEST), 0.0)
         step = np.where(reached, step, 0.0)
         swell = step * self.reach
         point = point._replace(
@@ -183,13 +188,19 @@ class AtlasPress:
         return [values.reshape(track.nu.shape) for values in flat]
 
 
-def _inflated(slices: AtlasSlices, k: Index, pressure: Array) -> Array:
+def waiting(groups: Index, settled: Flags) -> Flags:
+    """Sensors of the groups, (n,) numbers, that hold one which is not settled yet."""
+    return np.asarray(np.bincount(groups, weights=~settled)[groups] > 0.0)
+
+
+def _inflated(slices: AtlasSlices, k: Index, pressure: Array, groups: Index) -> Array:
     """The volume nu of the free dome at a pressure on the rising branch; 1 at and beyond the limit point.
 
     Newton's method, kept between brackets and halving where it would leave them: near the limit point the slope goes.
     """
     low, high = np.full_like(pressure, -_BELOW_REST), np.ones_like(pressure)
     nu = np.clip(1.0 - np.sqrt(np.maximum(1.0 - pressure / slices.limit_pressure[k], 0.0)), 0.0, 1.0)
+    moving = np.ones(nu.size, dtype=bool)
     for _ in range(_INFLATING):
         apex = slices.free_apex(k, nu)
         point = slices.point(k, nu, apex[:, 0])
@@ -200,7 +211,8 @@ def _inflated(slices: AtlasSlices, k: Index, pressure: Array) -> Array:
         newton = nu - gap / np.where(slope > 0, slope, 1.0)
         inside = (newton > low) & (newton < high) & (slope > 0)
         step = np.where(inside, newton, 0.5 * (low + high)) - nu
-        nu = nu + step
-        if np.abs(step).max() < _CLOSE:
+        nu = nu + np.where(moving, step, 0.0)
+        moving = moving & waiting(groups, np.abs(step) < _CLOSE)
+        if not moving.any():
             break
     return nu

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from pneutouch.arrays import Array, Flags, Index
-from pneutouch.mechanics.atlas.press import AtlasPress, PressTrack, SensorBatch
+from pneutouch.mechanics.atlas.press import AtlasPress, PressTrack, SensorBatch, waiting
 from pneutouch.mechanics.atlas.table import REST_VOLUME, Atlas, shipped
 from pneutouch.mechanics.response import FigureArrays, lines
 from pneutouch.units import KPA
@@ -93,22 +93,27 @@ def _harmless(batch: SensorBatch, good: Flags, atlas: Atlas) -> SensorBatch:
     return SensorBatch(*(np.where(good, getattr(batch, f.name), getattr(plain, f.name)) for f in fields(SensorBatch)))
 
 
-def respond(batch: SensorBatch, steps: int = 14, atlas: Atlas | None = None) -> AtlasResponse:
-    """Press every sensor to its depth, or to the first event that ends the range, and read off the figures."""
+def respond(
+    batch: SensorBatch, steps: int = 14, atlas: Atlas | None = None, groups: Index | None = None
+) -> AtlasResponse:
+    """Press every sensor to its depth, or to the first event that ends the range, and read off the figures.
+
+    ``groups`` are those of `AtlasPress`: calls joined into one, each with its own result.
+    """
     chosen = atlas or shipped()
-    parts = [
-        _respond(batch.take(slice(start, start + _CHUNK)), steps, chosen) for start in range(0, len(batch), _CHUNK)
-    ]
+    groups = np.zeros(len(batch), dtype=np.intp) if groups is None else groups
+    chunks = [slice(start, start + _CHUNK) for start in range(0, len(batch), _CHUNK)]
+    parts = [_respond(batch.take(chunk), steps, chosen, groups[chunk]) for chunk in chunks]
     return parts[0] if len(parts) == 1 else AtlasResponse.join(parts)
 
 
-def _respond(batch: SensorBatch, steps: int, atlas: Atlas) -> AtlasResponse:
+def _respond(batch: SensorBatch, steps: int, atlas: Atlas, groups: Index) -> AtlasResponse:
     good = inside(batch, atlas)
     batch = _harmless(batch, good, atlas)
     walls, k = np.unique(batch.wall_ratio, return_inverse=True)
     slices = atlas.slices(walls, _FIELDS)
     limit = slices.limit_pressure[k] * batch.shear_modulus
-    press = AtlasPress(batch, slices, k)
+    press = AtlasPress(batch, slices, k, groups)
     share = np.linspace(0.0, 1.0, steps + 1)
     depth = batch.depth / batch.inner_radius
     track = press.march(share * depth[:, None])
@@ -173,29 +178,33 @@ def _first_end(press: AtlasPress, indentation: Array, track: PressTrack) -> tupl
         part = press.rows(hit)
         start = track.nu[hit, column - 1]
         bracket = indentation[hit, column - 1], indentation[hit, column]
-        low, ends[hit] = _closed_in(part, start, *bracket)
+        low, ends[hit] = _closed_in(part, start, bracket)
         end[hit] = np.where(broken[hit, 0], 0.0, low)
     return end, ends
 
 
-def _closed_in(press: AtlasPress, nu: Array, low: Array, high: Array) -> tuple[Array, Index]:
+def _closed_in(press: AtlasPress, nu: Array, bracket: tuple[Array, Array]) -> tuple[Array, Index]:
     """Close in on the first end between a sound travel and one past it; the last sound travel, and the reason.
 
     By false position with halved weights (Illinois) on the greatest margin, by halves where the state itself is lost.
     """
+    low, high = bracket
     before, _, _ = _worst(press, nu, low)
     after, ends, _ = _worst(press, nu, high)
+    open_ = np.ones(nu.size, dtype=bool)
     for _ in range(_ROUNDS):
         with np.errstate(invalid="ignore", divide="ignore"):
             share = before / (before - after)
         share = np.where(np.isfinite(before) & np.isfinite(after), np.clip(share, 0.02, 0.98), 0.5)
         middle = low + share * (high - low)
         worst, reason, solved = _worst(press, nu, middle)
-        over = worst > 0.0
-        low, high = np.where(over, low, middle), np.where(over, middle, high)
-        before, after = np.where(over, 0.5 * before, worst), np.where(over, worst, 0.5 * after)
-        ends, nu = np.where(over, reason, ends), np.where(over, nu, solved)
-        if np.all((high - low < _WITHIN) | (np.abs(worst) < _WITHIN)):
+        over, under = open_ & (worst > 0.0), open_ & ~(worst > 0.0)
+        low, high = np.where(under, middle, low), np.where(over, middle, high)
+        before = np.where(under, worst, np.where(over, 0.5 * before, before))
+        after = np.where(over, worst, np.where(under, 0.5 * after, after))
+        ends, nu = np.where(over, reason, ends), np.where(under, solved, nu)
+        open_ = open_ & waiting(press.groups, (high - low < _WITHIN) | (np.abs(worst) < _WITHIN))
+        if not open_.any():
             break
     return np.where(np.abs(after) < np.abs(before), high, low), ends
 

@@ -1,10 +1,12 @@
 """How the figures of many sensors move with their inputs: local derivatives, and what the inputs' whole spread does."""
 
-from dataclasses import dataclass
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
 
 import numpy as np
 
-from pneutouch.arrays import Array, Flags
+from pneutouch.arrays import Array, Flags, Index
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.uncertainty.contact import ContactShift
 from pneutouch.mechanics.uncertainty.neighbours import joined, log_figures, moved, unit_step
@@ -41,9 +43,18 @@ class Derivatives:
     slopes: Array
     one_sided: Flags
 
+    def part(self, rows: slice) -> Derivatives:
+        """Those of some of the sensors."""
+        return Derivatives(*(getattr(self, each.name)[..., rows] for each in fields(self)))
+
 
 def derivatives(
-    batch: SensorBatch, standard: Array, kurtosis: Array, step: float = STEP, shift: ContactShift | None = None
+    batch: SensorBatch,
+    standard: Array,
+    kurtosis: Array,
+    step: float = STEP,
+    shift: ContactShift | None = None,
+    groups: Index | None = None,
 ) -> Derivatives:
     """Move every input of n sensors by a small step and over its spread.
 
@@ -53,6 +64,7 @@ def derivatives(
         kurtosis: Fourth moment over squared variance of each input's deviation, (inputs, n).
         step: Half of the central difference, relative.
         shift: Of the figures from the plate's to those of another contact.
+        groups: Numbers from 0 on, (n,), of what several calls would ask; see `respond`.
     """
     unit = unit_step(batch)
     widest = standard.max(axis=1)
@@ -60,7 +72,7 @@ def derivatives(
     offsets = (step * unit, -step * unit, far, -far)
     rows = [moved(batch, name, offset[i]) for i, name in enumerate(INPUTS) for offset in offsets]
     every, size = joined([batch, *rows]), len(batch)
-    logs = log_figures(every)
+    logs = log_figures(every, None if groups is None else np.tile(groups, 1 + len(rows)))
     if shift is not None:
         by = np.log(every.shear_modulus.reshape(-1, size) / batch.shear_modulus)
         logs = logs + shift.at(by).reshape(logs.shape)

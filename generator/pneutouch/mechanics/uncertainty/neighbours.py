@@ -5,7 +5,7 @@ from functools import cache
 
 import numpy as np
 
-from pneutouch.arrays import Array
+from pneutouch.arrays import Array, Index
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.respond import respond
 from pneutouch.mechanics.atlas.table import REST_VOLUME, Atlas, shipped
@@ -63,11 +63,14 @@ def unit_step(batch: SensorBatch) -> Array:
     return steps
 
 
-def log_figures(batch: SensorBatch) -> Array:
-    """Natural logarithms of the figures, (figures, n); NaN where there is none. Units as stated in `FIGURES`."""
+def log_figures(batch: SensorBatch, groups: Index | None = None) -> Array:
+    """Natural logarithms of the figures, (figures, n); NaN where there is none. Units as stated in `FIGURES`.
+
+    ``groups`` are those of `respond`.
+    """
     # In order of the wall ratio, because the atlas cuts its tables once for each ratio of a chunk.
     order = np.argsort(batch.wall_ratio, kind="stable")
-    response = respond(batch.take(order), atlas=neighbourhood())
+    response = respond(batch.take(order), atlas=neighbourhood(), groups=None if groups is None else groups[order])
     figures = np.empty((len(FIGURES), len(batch)))
     figures[:, order] = [
         response.lines.sensitivity_kPa_per_N,

@@ -1,5 +1,6 @@
 """From sources and derivatives to combined uncertainties and the share of each source (JCGM 100, 5.1)."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,6 +9,7 @@ from pneutouch.arrays import Array, Flags
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.uncertainty.contact import ContactModel, ContactShift
 from pneutouch.mechanics.uncertainty.derivatives import Derivatives, derivatives
+from pneutouch.mechanics.uncertainty.neighbours import joined
 from pneutouch.mechanics.uncertainty.source import FIGURES, INPUTS, UncertaintySource
 
 COVERAGE = 2.0
@@ -95,7 +97,23 @@ def propagate(batch: SensorBatch, sources: list[UncertaintySource], contact: Con
     if contact is not None:
         modulus = INPUTS.index("shear_modulus")
         shift = contact.shift(float((np.sqrt(kurtosis[modulus]) * standard[modulus].max(axis=0)).max()))
-    slopes_of = derivatives(batch, standard, kurtosis, shift=shift)
+    return _combined(sources, derivatives(batch, standard, kurtosis, shift=shift), shift)
+
+
+def propagate_groups(groups: Sequence[tuple[SensorBatch, list[UncertaintySource]]]) -> list[Budget]:
+    """`propagate` of groups of sensors, each with its sources: one pass through the atlas, as its calls cost most."""
+    batches = [batch for batch, _ in groups]
+    spreads = [_by_input(batch, sources) for batch, sources in groups]
+    standard, kurtosis = (np.concatenate(part, axis=-1) for part in zip(*spreads, strict=True))
+    sizes = [len(batch) for batch in batches]
+    slopes_of = derivatives(joined(batches), standard, kurtosis, groups=np.repeat(np.arange(len(groups)), sizes))
+    return [
+        _combined(sources, slopes_of.part(slice(end - size, end)), None)
+        for (_, sources), size, end in zip(groups, sizes, np.cumsum(sizes), strict=True)
+    ]
+
+
+def _combined(sources: list[UncertaintySource], slopes_of: Derivatives, shift: ContactShift | None) -> Budget:
     by_source = variances(sources, slopes_of.slopes)
     linear = np.sqrt(variances(sources, slopes_of.local).sum(axis=0))
     freedom = np.array([source.freedom for source in sources])

@@ -9,21 +9,16 @@ from typing import Any
 
 import numpy as np
 
-from pneutouch.arrays import Array
 from pneutouch.catalogue import Library, ResolvedDesign
 from pneutouch.catalogue.cached_library import CachedLibrary
 from pneutouch.evaluation.evaluate import Evaluation
-from pneutouch.evaluation.table_s1 import is_near_paper
-from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.atlas_states import resin_outside_atlas
-from pneutouch.mechanics.models import NUMERICAL
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.rating import LIMIT_ERROR
 from pneutouch.mechanics.sensor import Sensor
-from pneutouch.mechanics.uncertainty import ModelErrors, budget, measured_errors
+from pneutouch.mechanics.uncertainty import measured_errors
 from pneutouch.mechanics.uncertainty.limit import limit_spread
-from pneutouch.mechanics.uncertainty.source import FIGURES, SENSITIVITY
 from pneutouch.selection import Candidate, CandidateResin, SelectionProblem, SelectionResult, choose
 from pneutouch.selection.choose import Refine
 from pneutouch.selection.contact_search import ContactSelection, choose_by_solid
@@ -35,6 +30,7 @@ from pneutouch.spec.target import Target
 from pneutouch.spec.toml_text import value_text
 from pneutouch.units import KPA
 from pneutouch.workflows.select.base import base_scene, prints, requested_pair, setting_changes, with_connector
+from pneutouch.workflows.select.candidate_uncertainty import sensitivity_uncertainties, sized_as
 from pneutouch.workflows.select.connector import base_around, base_sensor, connector_fit, dead_volume
 from pneutouch.workflows.select.contact import CandidateSolver, other_contact, without_plate
 from pneutouch.workflows.select.mix import ResinPair, mix_resins
@@ -104,7 +100,7 @@ class SelectionRun:
         """A choice as a sensor, in everything else the base design's."""
         pool, resin = choice.pool, choice.resin
         batch = self.problem.batch(pool.resin, pool.radius, pool.wall, pool.pressure)
-        return _like(self.sensor, batch, 0).replace(
+        return sized_as(self.sensor, batch, 0).replace(
             depth=float(batch.depth[0]),
             shear_modulus=resin.shear_modulus,
             law=None,
@@ -158,7 +154,7 @@ def _answered(run: SelectionRun, refine: Refine | None, library: Library) -> Sel
     target, problem = run.target, run.problem
     weights = target.weights.robustness, target.weights.tunability
     errors = measured_errors(library.all("materials", Material))
-    uncertainty = partial(_uncertainty, run.base, run.sensor, errors)
+    uncertainty = partial(sensitivity_uncertainties, run.base, run.sensor, errors)
     if other_contact(run.sensor) is None:
         return replace(run, answer=choose(problem, weights, uncertainty, refine))
     run = replace(run, problem=without_plate(problem, run.sensor))
@@ -248,33 +244,6 @@ def problem_of(
         max_footprint=required.max_footprint_mm,
         connector=connector_fit(scene),
         limit_spread=lambda resin, batch: limit_spread(batch, resin.material, scene.printer, LIMIT_ERROR).standard,
-    )
-
-
-def _uncertainty(
-    scene: ResolvedDesign, sensor: Sensor, known: Mapping[str, ModelErrors], resin: CandidateResin, batch: SensorBatch
-) -> Array:
-    """Relative expanded uncertainty of the sensitivity of each design of a batch, (b,)."""
-    errors = known.get(resin.name) or ModelErrors(pool=next(iter(known.values())).pool if known else ())
-    near = np.array([is_near_paper(_like(sensor, batch, i)) for i in range(len(batch))])
-    uncertainty = budget(
-        batch,
-        resin.material,
-        scene.printer,
-        near_paper=near,
-        errors=errors,
-        numerical={FIGURES[SENSITIVITY]: NUMERICAL["atlas"]},
-    )
-    return np.asarray(uncertainty.expanded[SENSITIVITY])
-
-
-def _like(sensor: Sensor, batch: SensorBatch, i: int) -> Sensor:
-    return sensor.replace(
-        inner_radius=float(batch.inner_radius[i]),
-        wall_thickness=float(batch.wall_thickness[i]),
-        dead_volume=float(batch.dead_volume[i]),
-        plate_radius=float(batch.plate_radius[i]),
-        flange=None,
     )
 
 
