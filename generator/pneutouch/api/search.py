@@ -85,7 +85,7 @@ def sweep(
     design: Design | str | Path,
     out: str | Path | None = None,
     *,
-    model: str = "solid",
+    model: str | None = None,
     closure: str = "variational",
     clamp: str = "base",
     workers: int = 1,

@@ -17,7 +17,7 @@ from pneutouch.errors import InputError
 if TYPE_CHECKING:
     from pneutouch.workflows.sweep import SweepPlan, SweepResult
 
-_MODEL_HELP = "Model; solid where neither this nor the file gives one."
+_MODEL_HELP = "Model; solid, or harmonic off the axis, where neither this nor the file gives one."
 
 
 @app.command()

@@ -64,6 +64,7 @@ GRADE = "The darker the membrane, the more of the stiff resin."
 
 SHAPES = "Half sections of the deformed wall, shaded by the greatest principal stretch; thin outlines at rest."
 NO_SHAPES = "Half sections of the deformed wall are drawn by the solid alone: build with model solid."
+NO_SHAPES_OFF_AXIS = "No deformed wall is drawn: off the axis a half section does not show it."
 
 
 def tuning(other_contact: bool) -> str:

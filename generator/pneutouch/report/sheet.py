@@ -8,6 +8,7 @@ from pneutouch.mechanics.prediction import SensorState
 from pneutouch.report import ordering, prose
 from pneutouch.report.certainty import interval, uncertainty_section
 from pneutouch.report.environment import NOT_TESTED, environment
+from pneutouch.report.off_axis import CAPTION, OFF_AXIS, off_axis_rows
 from pneutouch.units import KPA, ML
 from pneutouch.wording import SIMULATED, counted
 
@@ -51,6 +52,7 @@ def content_of(sheet: SheetData) -> dict[str, Any]:
         "operating": _operating(sheet),
         "performance_head": PERFORMANCE,
         "performance": _performance(sheet),
+        "off_axis": {"head": OFF_AXIS, "rows": off_axis_rows(sheet.prediction.states), "caption": CAPTION},
         "model_error": _model_error(sheet),
         "uncertainty": uncertainty_section(sheet),
         "captions": _captions(sheet),
@@ -132,11 +134,17 @@ def _captions(sheet: SheetData) -> dict[str, str]:
             chart.driving_pressure_kPa, sheet.prediction.dead_volume / ML, sheet.assembly.dead_volume_note
         ),
         "tuning": "" if sheet.tuning is None else prose.tuning(sheet.other_contact),
-        "shapes": prose.SHAPES if sheet.prediction.states[0].shapes else prose.NO_SHAPES,
+        "shapes": _shapes(sheet.prediction.states[0]),
         "view": "" if sheet.scene.membrane_material.along is None else prose.GRADE,
         **prose.CAPTIONS,
         "drawing": prose.drawing(sheet.object_section is not None),
     }
+
+
+def _shapes(state: SensorState) -> str:
+    if state.shapes:
+        return prose.SHAPES
+    return prose.NO_SHAPES if state.beyond_axis is None else prose.NO_SHAPES_OFF_AXIS
 
 
 def _ratings(sheet: SheetData) -> list[list[str]]:

@@ -8,10 +8,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pneutouch.catalogue import Library
 from pneutouch.errors import InputError
 from pneutouch.spec.over import spread
 from pneutouch.workflows.sweep import plan_of_file, plan_of_flags, sweep, work
 from pneutouch.workflows.sweep.run import ComputeResources
+from pneutouch.workflows.sweep.study import study
 
 BASE = 'design = "paper-dome"\nmodel = "membrane"\n'
 WALL = '"membrane.wall_thickness_mm"'
@@ -242,3 +244,20 @@ def test_a_name_that_every_point_replaces_need_not_exist(library, tmp_path):
             fresh=True,
         )
         assert outcome.states["ok"] == 1
+
+
+@pytest.mark.parametrize(
+    ("over", "settings", "model"),
+    [
+        (["membrane.wall_thickness_mm=1.4,1.5"], {}, "solid"),
+        (["membrane.wall_thickness_mm=1.4,1.5"], {"contact.tilt_deg": 5.0}, "harmonic"),
+        (["contact.tilt_deg=5,10"], {"contact.offset_mm": 0.0}, "harmonic"),
+        (["contact.tilt_deg=0,5", "contact.offset_mm=1,2"], {}, "harmonic"),
+        (["contact.tilt_deg=0,5"], {}, "usual"),
+    ],
+)
+def test_a_sweep_that_names_no_model_takes_the_one_of_its_contact(over, settings, model):
+    plan = plan_of_flags("paper-dome", over, settings)
+    assert study(plan, Library.default()).plan.model == model
+    named = plan_of_flags("paper-dome", over, settings, model="membrane")
+    assert study(named, Library.default()).plan.model == "membrane"

@@ -14,6 +14,7 @@ import numpy as np
 
 from pneutouch import __version__
 from pneutouch.errors import InputError
+from pneutouch.mechanics.models import USUAL
 from pneutouch.spec.design import DesignFile
 from pneutouch.spec.fields import declaration, table_of
 from pneutouch.workflows.sweep.plan import PRESSURES
@@ -154,7 +155,7 @@ def _attributes(study: SweepStudy, rows: list[list[dict[str, Any]]], content: di
     return {
         "title": f"pneutouch sweep {plan.name}",
         "pneutouch_version": __version__,
-        "model": plan.model,
+        "model": "solid, harmonic off the axis" if plan.model == USUAL else plan.model,
         **({"closure": plan.closure} if plan.model == "membrane" else {"clamp": plan.clamp}),
         "base_design": study.name,
         "base_design_content": json.dumps(design, sort_keys=True, ensure_ascii=False),

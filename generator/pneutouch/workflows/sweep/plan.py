@@ -9,6 +9,7 @@ from pneutouch.errors import InputError, nearest, shown
 from pneutouch.evaluation.evaluate import CLAMPS
 from pneutouch.mechanics import MODEL_CHOICES
 from pneutouch.mechanics.contact import CLOSURES
+from pneutouch.mechanics.models import USUAL
 from pneutouch.spec.design import CALIBRATION, DesignFile
 from pneutouch.spec.fields import table_of
 
@@ -47,7 +48,7 @@ class SweepPlan:
     settings: Settings
     axes: tuple[SweepAxis, ...] = ()
     points: tuple[Settings, ...] = ()
-    model: str = "solid"
+    model: str = USUAL
     closure: str = "variational"
     clamp: str = "base"
 
@@ -58,7 +59,7 @@ class SweepPlan:
             ("closure", self.closure, CLOSURES),
             ("clamp", self.clamp, CLAMPS),
         ):
-            if value not in known:
+            if value not in known and (option, value) != ("model", USUAL):
                 raise InputError(f"{option} = {shown(value)}: unknown.{nearest(value, known)}", file=self.where)
         if bool(self.axes) == bool(self.points):
             raise InputError("give either a grid or a list of points, one of them and not both", file=self.where)

@@ -1,7 +1,7 @@
 """A plan with every name in it resolved: checked before any work starts, and carrying all that the work reads."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from pneutouch import __version__
@@ -9,6 +9,7 @@ from pneutouch.catalogue import KINDS, DesignSource, Library, load_scene
 from pneutouch.catalogue.cached_library import CachedLibrary
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import elastomers
+from pneutouch.mechanics.models import USUAL
 from pneutouch.output.files import digest, json_bytes
 from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION, DesignFile
 from pneutouch.spec.fields import declaration, table_of
@@ -58,6 +59,7 @@ def study(plan: SweepPlan, library: Library) -> SweepStudy:
     source = DesignSource.of(plan.design, library)
     base = source.changed({})
     _check(plan, library)
+    plan = replace(plan, model=_model(plan, base))
     files, things = {f"designs/{source.name}.toml": toml_text(source.content)}, {}
     names = _names(plan, base)
     # A design that names no tube takes one of its port's.
@@ -82,6 +84,18 @@ def study(plan: SweepPlan, library: Library) -> SweepStudy:
         "points": plan.points,
     }
     return SweepStudy(plan, source.name, base, files, digest(json_bytes(facts)))
+
+
+def _model(plan: SweepPlan, base: DesignFile) -> str:
+    """The model of a plan; where it names none, the usual one of all points, or USUAL where the points differ."""
+    if plan.model != USUAL:
+        return plan.model
+    keys = {"contact.offset_mm": base.contact.offset_mm, "contact.tilt_deg": base.contact.tilt_deg}
+    if not any(value for key, usual in keys.items() for value in _chosen(plan, key, plan.settings.get(key, usual))):
+        return "solid"
+    points = (plan.overrides(index) for index in range(plan.count))
+    off_axis = (any(point.get(key, usual) for key, usual in keys.items()) for point in points)
+    return "harmonic" if all(off_axis) else USUAL
 
 
 def _names(plan: SweepPlan, base: DesignFile) -> set[tuple[str, str]]:
