@@ -94,8 +94,9 @@ def sweep(
 ) -> xarray.Dataset:
     """Predict every combination of values of a design's fields, given as lists or as ``{"from", "to", "count"}``.
 
-    A field with a single value has it in all designs. ``out`` (a netCDF file) keeps the dataset, and the progress of a
-    sweep that is interrupted. Raises InputError, and ComputationError where it stopped; Ctrl-C interrupts it.
+    A field with a single value has it in all designs. Without ``model`` the solid answers, and off the axis the model
+    harmonic. ``out`` (a netCDF file) keeps the dataset, and the progress of a sweep that is interrupted. Raises
+    InputError, and ComputationError where it stopped; Ctrl-C interrupts it.
     """
     import xarray
 

@@ -38,15 +38,15 @@ def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) 
     _check_clearance(sensor, probe, free)
     press = _press(sensor, probe, free)
     if sensor.protocol.off_axis is None:
-        return _record(sensor, free, press.run(0), 0.0)
+        return _record(sensor, pressure, free, press.run(0), 0.0)
     guide = press.run(ORDERS[0])
-    before, changes = _record(sensor, free, guide, np.inf), []
+    before, changes = _record(sensor, pressure, free, guide, np.inf), []
     for order in ORDERS[1:]:
         guide = press.run(order, guide)
-        after = _record(sensor, free, guide, np.inf)
+        after = _record(sensor, pressure, free, guide, np.inf)
         changes.append(change(before, after))
         if changes[-1] <= HARMONICS_SETTLED:
-            return _record(sensor, free, guide, changes[-1])
+            return _record(sensor, pressure, free, guide, changes[-1])
         before = after
     steps = ", ".join(f"{c:.1%} from {a} to {b}" for c, (a, b) in zip(changes, pairwise(ORDERS), strict=True))
     raise ComputationError(
@@ -106,12 +106,12 @@ def _press(sensor: Sensor, probe: StrainProbe, free: FreeState) -> OffAxisPress:
     return OffAxisPress(solid, free, press, placed, probe)
 
 
-def _record(sensor: Sensor, free: FreeState, pressed: OffAxisPath, last_change: float) -> SensorState:
+def _record(sensor: Sensor, pressure: float, free: FreeState, pressed: OffAxisPath, last_change: float) -> SensorState:
     """The state of a sensor as a prediction has it."""
     test, happened = sensor.protocol, reported_events(pressed.events)
     end = min(range_end(happened, test.depth), pressed.path[-1].indentation)
     return SensorState(
-        driving_pressure=free.pressure,
+        driving_pressure=pressure,
         apex_inner=free.inner_apex,
         apex_outer=free.outer_apex,
         cavity_volume=free.volume,
