@@ -166,17 +166,17 @@ class ContactModel:
         at, solved = self._solved
         for count in range(at.size, 0, -1):
             rows = np.unique([0, count - 1])
-            found = pressed_logs(sensor.replace(waves=0), tuple(at[rows].tolist())) - solved[:, rows]
-            if not np.isnan(found).all():
+            changes = pressed_logs(sensor.replace(waves=0), tuple(at[rows].tolist())) - solved[:, rows]
+            if not np.isnan(changes).all():
                 break
-        if count > rows.size and not self._to_the_depth(solved[:, :count], found):
+        if count > rows.size and not self._to_the_depth(solved[:, :count], changes):
             inner = pressed_logs(sensor.replace(waves=0), tuple(at[1 : count - 1].tolist())) - solved[:, 1 : count - 1]
-            rows, found = np.arange(count), np.hstack([found[:, :1], inner, found[:, 1:]])
+            rows, changes = np.arange(count), np.hstack([changes[:, :1], inner, changes[:, 1:]])
         if sensor.wall != self.sensor.wall:
             plates = [batch_of(plate_alone(one), at[rows]) for one in (sensor, self.sensor)]
             there, here = np.split(log_figures(joined(plates)), 2, axis=1)
-            found = found - (there - here)
-        return between(np.array(self.pressures), at[rows], found)
+            changes = changes - (there - here)
+        return between(np.array(self.pressures), at[rows], changes)
 
     def _to_the_depth(self, solved: Array, changes: Array) -> bool:
         """Whether no event ends the range: where one does, it does so at a travel that jumps from pressure to

@@ -39,11 +39,11 @@ def state_logs(states: Sequence[SensorState], correction: ResponseCorrection | N
     for k, state in enumerate(states):
         if state.figures is not None:
             force, rise = (1.0, 1.0) if correction is None else correction.at(state.driving_pressure)
-            found = state.figures.scaled(1.0 / force, 1.0 / rise)
+            fitted = state.figures.scaled(1.0 / force, 1.0 / rise)
             rows[CONTACT_FIGURES, k] = (
-                found.sensitivity_kPa_per_N,
-                found.stiffness,
-                found.force_range[1],
+                fitted.sensitivity_kPa_per_N,
+                fitted.stiffness,
+                fitted.force_range[1],
                 state.range_end,
             )
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -63,9 +63,9 @@ def solved_at(
     outside = [p for p in pressures if not known or not min(known) - SAME <= p <= max(known) + SAME]
     for count in range(len(outside), 0, -1):
         some = tuple(dict.fromkeys((outside[0], outside[count - 1])))
-        found = pressed_logs(bare, some)
-        if not np.isnan(found).all():
-            known.update(zip(some, found.T, strict=True))
+        solved = pressed_logs(bare, some)
+        if not np.isnan(solved).all():
+            known.update(zip(some, solved.T, strict=True))
             break
     between_them = any(not _among(p, known) for p in pressures)
     if between_them and 2 <= len(known) < least:
@@ -85,9 +85,9 @@ def between(where: Array, at: Array, values: Array) -> Array:
     """Straight lines between values (figures, k) at driving pressures (k,), at others (n,); NaN above the highest, and
     below the lowest, that have one."""
     rows = np.full((len(values), where.size), np.nan)
-    for row, own in zip(rows, values, strict=True):
-        good = np.isfinite(own)
+    for row, line in zip(rows, values, strict=True):
+        good = np.isfinite(line)
         if good.any():
             inside = (where >= at[good][0] - SAME) & (where <= at[good][-1] + SAME)
-            row[inside] = np.interp(where[inside], at[good], own[good])
+            row[inside] = np.interp(where[inside], at[good], line[good])
     return rows
