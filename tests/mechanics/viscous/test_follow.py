@@ -50,6 +50,7 @@ def springs(gas: float) -> SimpleNamespace:
     press = SimpleNamespace(
         slices=Springs(),
         k=np.zeros(1, dtype=np.intp),
+        groups=np.zeros(1, dtype=np.intp),
         ambient=gas * one,
         dead=0 * one,
         reach=one,

@@ -92,7 +92,7 @@ class AtlasSolution(NamedTuple):
 class AtlasPress:
     """A batch with its slices, gas and inflated states; all nondimensional from here on.
 
-    ``groups`` are numbers from 0 on, (n,), of what several calls would ask, joined because a call costs the most:
+    ``groups`` are numbers from 0 on, (n,), of what several calls would compute, joined because a call costs the most:
     the sensors of a group end their iterations together, with the result of a call of their own.
     """
 

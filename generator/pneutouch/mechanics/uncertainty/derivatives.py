@@ -64,7 +64,7 @@ def derivatives(
         kurtosis: Fourth moment over squared variance of each input's deviation, (inputs, n).
         step: Half of the central difference, relative.
         shift: Of the figures from the plate's to those of another contact.
-        groups: Numbers from 0 on, (n,), of what several calls would ask; see `respond`.
+        groups: Numbers from 0 on, (n,), of what several calls would compute; see `respond`.
     """
     unit = unit_step(batch)
     widest = standard.max(axis=1)
