@@ -212,4 +212,5 @@ def test_random_targets_under_friction_and_balls(tmp_path, capsys):
         print(f"\n{fates}")  # noqa: T201
     met = [rounds for what, rounds in fates if what == "met"]
     assert len(met) >= LEAST_MET
-    assert np.median(met) <= 3
+    # docs/select.md states three or four.
+    assert np.median(met) <= 4

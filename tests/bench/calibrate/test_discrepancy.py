@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
-from pneutouch.bench.calibrate import NAMES, Observations, fit, parameters
+from pneutouch.bench.calibrate import USUAL, Observations, fit, parameters
 from pneutouch.bench.calibrate.discrepancy import FLOOR
 from pneutouch.bench.calibrate.intervals import _half
 from pneutouch.bench.calibrate.parameters import WALL
 from tests.bench.calibrate.sensors import DESIGNED, chosen, curves, other
 from tests.bench.calibrate.simulated import designed, held, trial
 
-BOTH = (NAMES, ("modulus", "dead-volume"))
+BOTH = (USUAL, ("modulus", "dead-volume"))
 PLANS = (((0.0, 22.0), 2), ((0.0, 22.0), 3), ((0.0, 12.0, 22.0), 2), ((0.0, 12.0, 22.0), 3))
 
 
