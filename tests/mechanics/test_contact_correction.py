@@ -53,7 +53,7 @@ def test_between_its_coefficients_the_ratio_is_the_solids(library, resin):
         exact = contact_ratio(one, (friction,), pressures, DEPTH).logs[:, 0]
         found = [ratio.at(np.array([friction]), np.array([p]), ratio.depths[None])[:, 0] for p in pressures]
         gap = np.abs(np.stack(found, axis=1) - exact)[..., 3:]
-        assert gap.max() < 0.006
+        assert gap.max() < 0.007
 
 
 @pytest.mark.slow
