@@ -10,6 +10,7 @@ def names(*kinds: str, listed: bool = False) -> Callable[[str], list[str]]:
     """
 
     def complete(incomplete: str) -> list[str]:
+        """The names that begin so."""
         from pneutouch.catalogue.library import Library
 
         library = Library.default()

@@ -15,24 +15,13 @@ from pneutouch.mechanics.harmonic.model import HarmonicModel
 from pneutouch.mechanics.harmonic.placement import first_height
 from pneutouch.mechanics.harmonic.strain import HarmonicProbe
 from pneutouch.mechanics.harmonic.surface import Surface
-from pneutouch.mechanics.response import Figures, figures
 from pneutouch.mechanics.solid.continuation import PathFollower, PlateState
 from pneutouch.mechanics.solid.descend import PathJump, descend
-from pneutouch.mechanics.solid.events import (
-    BASE_SHARE,
-    BREAKS_CURVE,
-    DETAIL,
-    OBJECT_EDGE,
-    OVERHANG,
-    PathPoint,
-    SolidEvent,
-    crossing,
-)
+from pneutouch.mechanics.solid.events import BASE_SHARE, DETAIL, OBJECT_EDGE, OVERHANG, PathPoint, SolidEvent, crossing
 from pneutouch.mechanics.solid.indent import PressSettings, shut_in
 from pneutouch.mechanics.solid.inflate import FreeState
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.stress import StrainProbe
-from pneutouch.units import KPA
 
 _ALONG = 33
 """Points of every edge of the outer wall at which an object may touch first."""
@@ -87,13 +76,6 @@ class OffAxisPath:
     def column(self, name: str) -> Array:
         """One field of every state, (n_states,)."""
         return np.array([getattr(s, name) for s in self.states])
-
-    def figures(self) -> Figures | None:
-        """Figures of the curve before the first event that breaks it; None with too few states."""
-        ends = [e.indentation for e in self.events if e.kind in BREAKS_CURVE]
-        keep = self.column("indentation") < min(ends, default=np.inf)
-        indentation, force, rise = (self.column(name)[keep] for name in ("indentation", "force", "rise"))
-        return figures(indentation, force, rise / KPA)
 
 
 class GuidedFollower(PathFollower):

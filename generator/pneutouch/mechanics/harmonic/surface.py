@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -20,31 +21,31 @@ class SurfaceHeight(NamedTuple):
     curve: Array
 
 
-class Surface:
+class Surface(ABC):
     """A rigid body above the dome that need not be a body of revolution about the dome's axis; lengths in R0. As an
     `Indenter` it is its section in the plane of symmetry, at negative x too."""
 
     @property
+    @abstractmethod
     def height(self) -> float:
         """Height of its reference point."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def span(self) -> tuple[float, float]:
         """Distances from its own axis between which its underside is the object's own."""
-        raise NotImplementedError
 
+    @abstractmethod
     def over(self, x: Array, y: Array) -> SurfaceHeight:
         """Its underside at points of any one shape."""
-        raise NotImplementedError
 
+    @abstractmethod
     def distance(self, x: Array, y: Array) -> Array:
         """Distance from its own axis, at which `span` ends."""
-        raise NotImplementedError
 
+    @abstractmethod
     def at(self, height: float) -> Surface:
         """The same body at another height."""
-        raise NotImplementedError
 
     def underside(self, r: Array) -> tuple[Array, Array, Array]:
         """Height of the section in the plane of symmetry at x = r and its first two derivatives."""
