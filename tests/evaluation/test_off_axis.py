@@ -7,6 +7,7 @@ from pneutouch.catalogue import Library
 from pneutouch.catalogue.scene import load_scene
 from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import evaluate, sensor_of
+from pneutouch.evaluation.fitted import check_fitted
 from pneutouch.mechanics.atlas_states import outside_atlas
 from pneutouch.mechanics.models import USUAL, models_for
 from pneutouch.parts import assemble
@@ -101,3 +102,10 @@ def test_the_answer_states_its_harmonics_and_the_forces_in_all_directions():
     (middle,) = central.prediction.document()["states"]
     assert middle["curve"]["contact_force_N"][-1] > state["curve"]["contact_force_N"][-1]
     assert any("2 mm off the dome's" in line for line in evaluation.prediction.assumptions)
+
+
+@pytest.mark.parametrize(("key", "value"), [("contact.offset_mm", 2.0), ("contact.tilt_deg", 5.0)])
+def test_a_fit_refuses_it_by_its_key(key, value):
+    with pytest.raises(InputError, match="atlas does not cover") as caught:
+        check_fitted(load_scene("paper-dome", {key: value}), _sensor({key: value}))
+    assert (caught.value.key, caught.value.value) == (key, value)

@@ -16,11 +16,13 @@ def check_fitted(scene: ResolvedDesign, sensor: Sensor) -> None:
     why = outside_atlas(plate.replace(depth=min(plate.protocol.depth, 0.75 * plate.dome.inner_radius)))
     if why is None:
         return
-    base = scene.design.contact.base
+    contact = scene.design.contact
+    keys = {"offset_mm": contact.offset_mm != 0.0, "tilt_deg": contact.tilt_deg != 0.0, "base": not contact.base}
+    key = next((key for key, other in keys.items() if other), None)
     raise InputError(
         f"the atlas does not cover this sensor, {why}, and the fit is made with the atlas",
         file=scene.where,
-        key=None if base else "contact.base",
-        value=None if base else base,
+        key=None if key is None else f"contact.{key}",
+        value=None if key is None else getattr(contact, key),
         remedy="`compare` sets design and measurement side by side without a fit",
     )
