@@ -69,3 +69,7 @@ def test_seven_resins_are_compared_and_stop_at_their_own_limits(evaluated, libra
     assert set(found) == {m.title for m in materials.values() if m.kind == "elastomer"}
     assert found["TangoPlus"][0][-1] <= 1e3 * limits(sensor).limit_point
     assert found["FLX9970-DM"][0][-1] == pytest.approx(60.0)
+
+
+def test_a_chart_without_curves_names_no_model():
+    assert curves.drawn_by({}) == "no curve of a resin was computed"

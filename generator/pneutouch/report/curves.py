@@ -227,6 +227,8 @@ def _holds(curve: ResinCurve, pressures_kPa: Array, sensitivities_kPa_per_N: Arr
 def drawn_by(curves: dict[str, ResinCurve]) -> str:
     """Which model drew which resins, in words."""
     models = sorted({curve.model for curve in curves.values()})
+    if not models:
+        return "no curve of a resin was computed"
     if len(models) == 1:
         return f"drawn by the {models[0]}"
     solid = ", ".join(title for title, curve in curves.items() if curve.model != "atlas")
