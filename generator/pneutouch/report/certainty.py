@@ -18,6 +18,8 @@ _FIGURES = {
     "apex_height_outer_mm": ("Apex height, outside", "mm"),
 }
 
+_ONLY_MODEL = "the contact is not symmetric about the axis, which the other models take it to be"
+
 _INPUTS = {
     "shear_modulus": "shear modulus",
     "wall_thickness": "wall",
@@ -111,7 +113,8 @@ def _model_rows(sheet: SheetData) -> list[list[str]]:
     exact = f"within {error:.1%} in sensitivity"
     if prediction.model == "membrane":
         exact = f"up to {1 + error:.0f} times off the solid's sensitivity"
-    why = prediction.error_estimate.get("model_choice", "requested by name, or the default")
+    usual = _ONLY_MODEL if prediction.model == "harmonic" else "requested by name, or the default"
+    why = prediction.error_estimate.get("model_choice", usual)
     rows = [["Model", prediction.model], ["Numerical error", exact], ["Why this model", why]]
     calibration = sheet.scene.calibration
     if calibration is not None:
