@@ -42,7 +42,7 @@ def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) 
     guide = press.run(ORDERS[0])
     before, changes = _record(sensor, pressure, free, guide, np.inf), []
     for order in ORDERS[1:]:
-        guide = press.run(order, guide)
+        guide = press.run(order)
         after = _record(sensor, pressure, free, guide, np.inf)
         changes.append(change(before, after))
         if changes[-1] <= HARMONICS_SETTLED:

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 
 import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.harmonic.contact import HarmonicContact, X, Y
-from pneutouch.mechanics.harmonic.fields import Harmonics
 from pneutouch.mechanics.harmonic.model import HarmonicModel
 from pneutouch.mechanics.harmonic.placement import first_height
+from pneutouch.mechanics.harmonic.settling import ContactNewton, Foreseen
 from pneutouch.mechanics.harmonic.strain import HarmonicProbe
 from pneutouch.mechanics.harmonic.surface import Surface
 from pneutouch.mechanics.solid.continuation import PathFollower, PlateState
@@ -21,6 +19,7 @@ from pneutouch.mechanics.solid.events import BASE_SHARE, DETAIL, OBJECT_EDGE, OV
 from pneutouch.mechanics.solid.indent import PressSettings, shut_in
 from pneutouch.mechanics.solid.inflate import FreeState
 from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.newton import NewtonFailure, NewtonResult, SolidScene, minimise
 from pneutouch.mechanics.solid.stress import StrainProbe
 
 _ALONG = 33
@@ -78,17 +77,26 @@ class OffAxisPath:
         return np.array([getattr(s, name) for s in self.states])
 
 
-class GuidedFollower(PathFollower):
-    """A follower that starts at a state of fewer harmonics where it has one at the height, else from its path."""
+class OffAxisFollower(PathFollower):
+    """A follower that foresees from the last state which points touch."""
 
-    guide: Mapping[float, Array] = MappingProxyType({})
+    def _least(self, scene: SolidScene, x: Array) -> NewtonResult | NewtonFailure:
+        # Without harmonics the steps are the solid's, and with them the last digits of its figures.
+        if x.shape[1] == 2:
+            return super()._least(scene, x)
+        return minimise(scene, x, find=ContactNewton(self._foreseen(scene)))
 
-    def _extrapolate(self, height: float) -> Array:
-        known = [(at, x) for at, x in self.guide.items() if abs(at - height) < 1.0e-9]
-        if not known:
-            return super()._extrapolate(height)
-        harmonics = Harmonics((self.here.state.x.shape[1] - 2) // 3)
-        return harmonics.lifted(known[0][1])
+    def _foreseen(self, scene: SolidScene) -> Foreseen | None:
+        """Points that touch, and their tractions, at the rates of the last state."""
+        here, contact = self.here, scene.solid.contact
+        touch = here.state.touch
+        assert touch is not None and scene.plate is not None
+        down = scene.plate.height - here.height
+        ahead = -contact.stiffness * (touch.gap + contact.opening(touch, down * here.by_height, down))
+        touching = touch.traction > 0.0
+        if not touching.any():
+            return None
+        return Foreseen(ahead > 0.0, np.where(touching, np.maximum(ahead, 0.0), 0.0))
 
 
 class OffAxisPress:
@@ -105,16 +113,14 @@ class OffAxisPress:
         outline = solid.contact.outline(free.positions / solid.length, _ALONG)
         self.surface = surface.at(first_height(surface, outline))
 
-    def run(self, order: int, guide: OffAxisPath | None = None) -> OffAxisPath:
-        """The press with harmonics to an order, near the states of a ``guide`` of fewer harmonics where there is one.
+    def run(self, order: int) -> OffAxisPath:
+        """The press with harmonics to an order.
 
         Raises NoConvergenceError where first contact has no equilibrium.
         """
         model, press, start = HarmonicModel(self._solid, order), self._press, self.surface.height
         probe = HarmonicProbe(model, self._probe)
-        follower = GuidedFollower(model, self._gas, self.surface, model.harmonics.lifted(self._free.unit.x))
-        if guide is not None:
-            follower.guide = {start - s.indentation / model.length: s.positions / model.length for s in guide.path}
+        follower = OffAxisFollower(model, self._gas, self.surface, model.harmonics.lifted(self._free.unit.x))
         states = [self._state(model, probe, follower.here)]
         events, jump = self._events(states[0], states[0]), None
         for k in range(1, press.steps + 1):

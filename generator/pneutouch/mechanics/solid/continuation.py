@@ -11,7 +11,7 @@ from pneutouch.mechanics.solid.errors import NoConvergenceError
 from pneutouch.mechanics.solid.friction import FrictionState
 from pneutouch.mechanics.solid.indenter import Indenter
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid.newton import NewtonFailure, SolidScene, SolverState, minimise, stability
+from pneutouch.mechanics.solid.newton import NewtonFailure, NewtonResult, SolidScene, SolverState, minimise, stability
 from pneutouch.mechanics.solid.supply import Supply
 
 #: Longest plate travel in one solve, in R0: longer steps can land on another branch.
@@ -146,12 +146,16 @@ class PathFollower:
     def solve(self, height: float) -> PlateState | NewtonFailure:
         """State at `height` from the extrapolated path; not kept."""
         scene = replace(self.here.scene, plate=self._plate.at(height))
-        solved = minimise(scene, self._turning(height))
+        solved = self._least(scene, self._turning(height))
         if isinstance(solved, NewtonFailure):
             solved = minimise(scene, self.here.state.x)
         if isinstance(solved, NewtonFailure):
             return solved
         return plate_state(scene, solved.state, height, solved.iterations)
+
+    def _least(self, scene: SolidScene, x: Array) -> NewtonResult | NewtonFailure:
+        """Least energy near positions x ahead."""
+        return minimise(scene, x)
 
     def _extrapolate(self, height: float) -> Array:
         """Positions ahead along the tangent of the path; at first contact, a point, there is none."""

@@ -148,10 +148,11 @@ def tangent(scene: SolidScene, state: SolverState) -> Array:
 def full_tangent(scene: SolidScene, state: SolverState) -> Array:
     """`tangent` with the contact stiffness at the state's own active points."""
     band = tangent(scene, state)
-    return band if state.touch is None else _touching(scene, band, state.touch, state.touch.traction > 0.0)
+    return band if state.touch is None else with_contact(scene, band, state.touch, state.touch.traction > 0.0)
 
 
-def _touching(scene: SolidScene, band: Array, touch: ContactEvaluation, active: Flags) -> Array:
+def with_contact(scene: SolidScene, band: Array, touch: ContactEvaluation, active: Flags) -> Array:
+    """`tangent` with the contact stiffness at the ``active`` points."""
     return scene.solid.contact_pattern.added(band, [scene.solid.contact.hessian(touch, active)])
 
 
@@ -172,7 +173,7 @@ def direction(scene: SolidScene, state: SolverState) -> NewtonDirection:
     for _ in range(SETTLING):
         active = linear > 0.0
         load = state.inner + push(contact.force(np.where(active, start, 0.0), touch.slope))
-        newton = downhill(state, _touching(scene, band, touch, active), load)
+        newton = downhill(state, with_contact(scene, band, touch, active), load)
         if newton.lift:
             # Keep what made this tangent definite for the rest of the settling: fewer failed factorisations.
             band = band.copy(order="F")
@@ -188,6 +189,9 @@ def direction(scene: SolidScene, state: SolverState) -> NewtonDirection:
         step, pull = step + share * move, pull + share * (pull_ahead - pull)
         linear = linear + share * (ahead - linear)
     return replace(newton, step=step)
+
+
+DirectionFinder = Callable[[SolidScene, SolverState], NewtonDirection]
 
 
 def stability(
@@ -244,8 +248,13 @@ def _safe_step(state: SolverState, band: Array, residual: Array) -> tuple[Array,
     return -residual, 0.0
 
 
-def minimise(scene: SolidScene, x: Array, max_iterations: int = MAX_ITERATIONS) -> NewtonResult | NewtonFailure:
-    """Least total energy near x.  Returns the state, or why there is none; never an unconverged state."""
+def minimise(
+    scene: SolidScene, x: Array, max_iterations: int = MAX_ITERATIONS, find: DirectionFinder = direction
+) -> NewtonResult | NewtonFailure:
+    """Least total energy near x.  Returns the state, or why there is none; never an unconverged state.
+
+    ``find`` gives the step at a state.
+    """
     state = evaluate(scene, x)
     if state is None:
         return NewtonFailure("the starting guess turns the wall inside out")
@@ -254,7 +263,7 @@ def minimise(scene: SolidScene, x: Array, max_iterations: int = MAX_ITERATIONS) 
         size = float(np.linalg.norm(state.residual))
         if size <= RESIDUAL * state.scale and left <= GAIN * _energy_scale(scene, state):
             return NewtonResult(state, iteration)
-        newton = direction(scene, state)
+        newton = find(scene, state)
         slope = float(newton.step @ state.residual)
         if slope >= 0.0 and scene.plate is not None:
             newton = downhill(state, full_tangent(scene, state), state.residual)
