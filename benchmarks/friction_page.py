@@ -148,7 +148,8 @@ TEXT = {
         "base plane, which is the default and has no friction.",
         "",
         "`predict` takes a coefficient: `pneutouch predict paper-dome --set contact.friction=0.6`. The default is 0, as in "
-        "the paper's finite elements; `inf` is a surface that grips. Friction is solved by the solid.",
+        "the paper's finite elements; `inf` is a surface that grips. Friction is solved by the solid, off the axis by "
+        "`harmonic` with two directions along the surface ([off-axis.md](off-axis.md#how-it-is-solved)).",
         "",
         "The law is Coulomb's. A stiff spring along the object's surface holds each point of the wall where it first touched. "
         "Where the traction of the spring would pass the coefficient times the normal traction, the point slips. Each "

@@ -42,7 +42,6 @@ def test_a_central_scene_is_left_to_the_cheaper_models():
 @pytest.mark.parametrize(
     ("changes", "key", "text"),
     [
-        ({"contact.offset_mm": 1.0, "contact.friction": 0.3}, "contact", "without friction"),
         ({**BALL, "contact.tilt_deg": 5.0}, "contact", "only a plate can lean"),
         (
             {"contact.object": "cone", "contact.cone_half_angle_deg": 60.0, "contact.cone_tip_radius_mm": 2.0}
@@ -102,6 +101,30 @@ def test_the_answer_states_its_harmonics_and_the_forces_in_all_directions():
     (middle,) = central.prediction.document()["states"]
     assert middle["curve"]["contact_force_N"][-1] > state["curve"]["contact_force_N"][-1]
     assert any("2 mm off the dome's" in line for line in evaluation.prediction.assumptions)
+
+
+def test_a_central_press_with_friction_by_name_is_the_solids():
+    changes = {**SHORT, "contact.friction": 0.6}
+    by_name, solid = (
+        evaluate("paper-dome", changes, model=model).prediction.document() for model in ("harmonic", USUAL)
+    )
+    (ours,), (theirs,) = by_name["states"], solid["states"]
+    assert (by_name["model"], solid["model"], ours["off_axis"]["harmonics"]) == ("harmonic", "solid", 0)
+    assert ours["sensitivity_kPa_per_N"] == pytest.approx(theirs["sensitivity_kPa_per_N"], rel=1e-8)
+    for name in ("contact_force_N", "pressure_rise_kPa"):
+        assert ours["curve"][name] == pytest.approx(theirs["curve"][name], rel=1e-8, abs=1e-9)
+
+
+@pytest.mark.slow
+def test_friction_holds_a_ball_that_would_slide_off():
+    slips, held = (
+        evaluate("paper-dome", {**BALL, **SHORT, "contact.friction": friction}, model=USUAL).prediction.document()
+        for friction in (0.0, 0.6)
+    )
+    assert held["model"] == "harmonic" and any("friction coefficient 0.6" in line for line in held["assumptions"])
+    (without,), (state,) = slips["states"], held["states"]
+    assert 0 < state["off_axis"]["last_change_percent"] < 1.0
+    assert state["off_axis"]["sideways_force_N"][-1] < 0.5 * without["off_axis"]["sideways_force_N"][-1]
 
 
 @pytest.mark.parametrize(("key", "value"), [("contact.offset_mm", 2.0), ("contact.tilt_deg", 5.0)])

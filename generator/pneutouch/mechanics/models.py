@@ -109,8 +109,6 @@ def usual_model(sensor: Sensor) -> str:
 
 def outside_harmonic(sensor: Sensor) -> str | None:
     """Why the model with harmonics does not cover a sensor, or None where it does."""
-    if sensor.protocol.friction:
-        return f"the contact has friction ({sensor.protocol.friction:g})"
     if sensor.dome.flange is not None:
         return "the flange is held as printed, and the wall's contact with its top is axisymmetric"
     return None

@@ -132,11 +132,6 @@ class ContactTable(Table):
             )
         if self.tilt_deg and not self.is_plate:
             raise ValueError(f"tilt_deg = {self.tilt_deg:g}: only a plate can lean, not a {self.object}")
-        if self.off_axis and self.friction:
-            key = "offset_mm" if self.offset_mm else "tilt_deg"
-            raise ValueError(
-                f"friction = {self.friction:g} with {key}: contact off the axis is without friction; give friction = 0"
-            )
         return self
 
     @property

@@ -55,23 +55,36 @@ class HarmonicContact(Contact):
 
     def force(self, traction: Array, slope: Array) -> Array:
         """Derivative of the energy by edge coefficients under given tractions, (n_edges, n columns)."""
-        return self._operator.forces((self.weight * traction)[..., None] * upward(slope))
+        return self.load_forces(traction[..., None] * upward(slope))
 
     def hessian(self, touch: ContactEvaluation, active: Flags) -> Array:
         """Second derivative with `active` points in contact, (n_edges, n columns, n columns)."""
-        normal = upward(touch.slope)
-        stiff = np.where(active, self.stiffness, 0.0) * self.weight
-        form = (stiff[..., None] * normal)[..., :, None] * normal[..., None, :]
-        form[..., :Z, :Z] -= (self.weight * touch.traction)[..., None, None] * touch.curve
-        return self._operator.stiffness(form)
+        return self.form_blocks(self.form(touch, active))
 
-    def resultant(self, nodes: Array, touch: ContactEvaluation) -> Array:
+    def form(self, touch: ContactEvaluation, active: Flags) -> Array:
+        """Derivative of the tractions in space by the positions of the points, (n_edges, n_points, n_angles, 3, 3)."""
+        normal = upward(touch.slope)
+        form = (np.where(active, self.stiffness, 0.0)[..., None] * normal)[..., :, None] * normal[..., None, :]
+        form[..., :Z, :Z] -= touch.traction[..., None, None] * touch.curve
+        return form
+
+    def form_blocks(self, form: Array) -> Array:
+        """Such a derivative by the coefficients of the edges, (n_edges, n columns, n columns)."""
+        return self._operator.stiffness(self.weight[..., None, None] * form)
+
+    def load_forces(self, load: Array) -> Array:
+        """Derivative of the energy by edge coefficients (n_edges, n columns) of tractions in space, (..., 3)."""
+        return self._operator.forces(self.weight[..., None] * load)
+
+    def resultant(self, nodes: Array, touch: ContactEvaluation, held: Array | float = 0.0) -> Array:
         """Force (x, y, z) on the object and its moment (x, y, z) about the origin; nondimensional, (2, 3).
+
+        held: tractions of friction in space, (n_edges, n_points, n_angles, 3).
 
         Each angle stands for its mirror image too, so the force in y and the moments about x and z are zero.
         """
         place = self.points(nodes)
-        load = (self.weight * touch.traction)[..., None] * upward(touch.slope)
+        load = self.weight[..., None] * (touch.traction[..., None] * upward(touch.slope) + held)
         out = np.stack([load.sum(axis=(0, 1, 2)), np.cross(place, load).sum(axis=(0, 1, 2))])
         return np.asarray(out * [[1.0, 0.0, 1.0], [0.0, 1.0, 0.0]])
 

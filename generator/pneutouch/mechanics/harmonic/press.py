@@ -8,6 +8,7 @@ import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.harmonic.contact import HarmonicContact, X, Y
+from pneutouch.mechanics.harmonic.friction_path import SurfaceFrictionFollower, held_back
 from pneutouch.mechanics.harmonic.model import HarmonicModel
 from pneutouch.mechanics.harmonic.placement import first_height
 from pneutouch.mechanics.harmonic.settling import ContactNewton, Foreseen
@@ -120,7 +121,7 @@ class OffAxisPress:
         """
         model, press, start = HarmonicModel(self._solid, order), self._press, self.surface.height
         probe = HarmonicProbe(model, self._probe)
-        follower = OffAxisFollower(model, self._gas, self.surface, model.harmonics.lifted(self._free.unit.x))
+        follower = self._follower(model)
         states = [self._state(model, probe, follower.here)]
         events, jump = self._events(states[0], states[0]), None
         for k in range(1, press.steps + 1):
@@ -133,6 +134,13 @@ class OffAxisPress:
             if jump is not None or self._ended(events):
                 break
         return self._finish(order, states, events, jump)
+
+    def _follower(self, model: HarmonicModel) -> PathFollower:
+        """The follower of the press, at first contact."""
+        start, friction = model.harmonics.lifted(self._free.unit.x), self._press.friction
+        if friction:
+            return SurfaceFrictionFollower(model, self._gas, self.surface, start, friction)
+        return OffAxisFollower(model, self._gas, self.surface, start)
 
     def _ended(self, events: list[SolidEvent]) -> bool:
         """Whether the inner wall is on a base that is not there."""
@@ -154,7 +162,7 @@ class OffAxisPress:
         assert touch is not None and isinstance(contact, HarmonicContact)
         length, mu = model.length, model.mu
         base = model.base_load(x)
-        (sideways, _, force), moment = contact.resultant(x, touch)
+        (sideways, _, force), moment = contact.resultant(x, touch, held_back(plate_state))
         touching = touch.traction > 0.0
         place = contact.points(x)[touching]
         load = (contact.weight * touch.traction)[touching]

@@ -42,6 +42,20 @@ class FrictionPoints:
         """Length along the surface over that along the radius."""
         return np.hypot(1.0, self.slope)
 
+    @property
+    def pull(self) -> Array:
+        """Size of the traction."""
+        return np.abs(self.traction)
+
+    @property
+    def travel(self) -> Array:
+        """Length of the slip."""
+        return np.abs(self.slip)
+
+    def path(self, past: FrictionPoints) -> Array:
+        """Slip in the direction of an earlier traction."""
+        return np.asarray(np.sign(past.traction) * self.slip)
+
 
 @dataclass(frozen=True)
 class FrictionStep:
@@ -133,7 +147,11 @@ class FrictionStep:
 
     def stored(self, points: FrictionPoints) -> float:
         """Energy in the springs of the points that touch."""
-        return float(np.vdot(self.contact.weight, points.traction**2)) / (2.0 * self.stiffness)
+        return float(np.vdot(self.contact.weight, points.pull**2)) / (2.0 * self.stiffness)
+
+    def held(self, solid: SolidModel, points: FrictionPoints) -> FrictionTerm:
+        """Friction with the largest tractions and the slopes of given points."""
+        return FrictionTerm(solid, self, points)
 
     def moved(self, x: Array, points: FrictionPoints) -> Array:
         """Radii at which the points rest after the step; NaN where a point does not touch."""
@@ -196,15 +214,15 @@ def _dissipated(before: FrictionState | None, step: FrictionStep, points: Fricti
     """
     weight = step.contact.weight
     slid = points.sliding
-    beyond = np.abs(points.slip[slid]) - np.abs(points.traction[slid]) / step.stiffness
+    beyond = points.travel[slid] - points.pull[slid] / step.stiffness
     if before is None:
         return float(np.vdot(weight[slid], points.cap[slid] * beyond))
     past, touching = before.points, points.sticking | points.sliding
-    begun = np.maximum(np.abs(past.traction), np.minimum(past.cap, points.cap))[slid]
+    begun = np.maximum(past.pull, np.minimum(past.cap, points.cap))[slid]
     work = float(np.vdot(weight[slid], 0.5 * (begun + points.cap[slid]) * beyond))
-    path = np.sign(past.traction) * points.slip
+    path = points.path(past)
     stuck, let_go = past.sticking & ~touching, past.sliding & ~touching
-    spring = np.abs(past.traction) / step.stiffness
-    work += 0.5 * float(np.vdot(weight[stuck], (np.abs(past.traction) * np.maximum(path, spring))[stuck]))
-    work += 0.5 * float(np.vdot(weight[let_go], (np.abs(past.traction) * spring)[let_go]))
-    return work + 0.25 * float(np.vdot(weight[let_go], past.cap[let_go] * np.abs(points.slip[let_go])))
+    spring = past.pull / step.stiffness
+    work += 0.5 * float(np.vdot(weight[stuck], (past.pull * np.maximum(path, spring))[stuck]))
+    work += 0.5 * float(np.vdot(weight[let_go], (past.pull * spring)[let_go]))
+    return work + 0.25 * float(np.vdot(weight[let_go], past.cap[let_go] * points.travel[let_go]))

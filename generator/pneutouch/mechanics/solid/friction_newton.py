@@ -33,6 +33,8 @@ from pneutouch.mechanics.solid.newton import (
 )
 
 _MOST = 24
+#: Rounds in which is settled which points slide on.
+SETTLING = 6
 
 
 @dataclass(frozen=True)
@@ -92,7 +94,7 @@ class FrictionSolver:
         """Friction at an evaluated state."""
         assert state.touch is not None
         points = self.step.at(state.x, state.touch)
-        term = FrictionTerm(self.solid, self.step, points)
+        term = self.step.held(self.solid, points)
         pull = self.solid.push(self.step.force(points.traction, points.slope))
         scale = state.scale + float(np.linalg.norm(pull)) + 10.0 * term.noise / RESIDUAL
         energy = state.energy + term.energy(state.x)
@@ -106,12 +108,14 @@ class FrictionSolver:
         tractions held where the consistent one is not definite or does not settle."""
         band = tangent(self.scene, here.state)
         for held in (False, True):
-            contact = LinearContact(self.solid, self.step, here.touch, here.points, held)
-            step = StepSettling(self.sides, here.state, band, contact).step()
+            step = StepSettling(self.sides, here.state, band, self._linear(here, held)).step()
             if step is not None:
                 break
         assert step is not None
         return step
+
+    def _linear(self, here: HeldState, held: bool) -> LinearContact:
+        return LinearContact(self.solid, self.step, here.touch, here.points, held)
 
     def _held_step(self, here: HeldState) -> Array:
         """Newton step (size,) of the energy with the largest tractions held: downhill always."""
@@ -130,6 +134,38 @@ class FrictionSolver:
         return np.asarray(
             plain - soft * (rate * float(state.by_volume @ plain) / (1.0 + rate * float(state.by_volume @ soft)))
         )
+
+    def by_height(self, held: HeldState, band: Array, down: float) -> tuple[Array, float, float]:
+        """Rate of the unknowns (size,), force on the plate and its rate, by the plate's height where it goes on;
+        band: the tangent without friction; down: 1 while the plate comes down, -1 while it goes up.
+
+        Points that slid in the step slide on where that lengthens their path, else they stick.
+        """
+        solid, step, touch, points = self.solid, self.step, held.touch, held.points
+        contact, slope, secant = solid.contact, held.touch.slope, held.points.secant
+        normal = np.where(touch.traction > 0.0, -contact.stiffness, 0.0)
+        slid = np.where(points.sliding, np.sign(points.slip), 0.0)
+        sign = slid
+        for _ in range(SETTLING):
+            sticking = (points.sticking | points.sliding) & (sign == 0.0)
+            follow, stick = step.rate(sign, slope), np.where(sticking, step.stiffness, 0.0)
+            load = contact.force(normal, slope) + step.force(follow * normal - stick * slope / secant, slope)
+            full = solid.contact_pattern.added(band, [step.stick(sticking, slope)])
+            move = self.solve(held.state, full, step.slide(points.traction, touch, sign), solid.push(load))
+            nodes = solid.expand(move)
+            r, z = contact.positions(nodes)
+            pressing = normal * (1.0 + slope * r - z)
+            slips = step.change(nodes, slope) - slope / secant
+            turning = slope * touch.curve / secant**2 * r
+            bears = step.rate(slid, slope) * (pressing + touch.traction * turning)
+            on = np.where(sign == 0.0, down * slid * (bears - step.stiffness * slips) > 0.0, down * slid * slips < 0.0)
+            if (np.where(on, slid, 0.0) == sign).all():
+                break
+            sign = np.where(on, slid, 0.0)
+        along = stick * slips + np.where(sign == 0.0, 0.0, bears)
+        turned = points.traction * touch.curve / secant**3 * r
+        force = float(np.vdot(contact.weight, touch.traction + points.traction * slope / secant))
+        return move, force, float(np.vdot(contact.weight, pressing + along * slope / secant + turned))
 
     def _search(self, here: HeldState, step: Array, slope: float) -> HeldState | None:
         """The state at the end of a line search by the energy with friction held; None where no step lowers it."""

@@ -4,6 +4,7 @@ its points stick, and every step, also one that is cut or repeated, starts from 
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Self
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from pneutouch.arrays import Array
 from pneutouch.mechanics.solid.continuation import PathFollower, PlateState
 from pneutouch.mechanics.solid.errors import NoConvergenceError
 from pneutouch.mechanics.solid.friction import TANGENTIAL, FrictionState, FrictionStep
-from pneutouch.mechanics.solid.friction_newton import FrictionSolver, HeldState, SlidingResult
+from pneutouch.mechanics.solid.friction_newton import FrictionSolver, SlidingResult
 from pneutouch.mechanics.solid.general_band import OneSidedBlocks
 from pneutouch.mechanics.solid.indenter import Indenter
 from pneutouch.mechanics.solid.model import SolidModel
@@ -26,7 +27,6 @@ GRIP = 100.0
 #: Share of its present speed that a free point keeps on average until it is held: next to the edge of a held zone the
 #: speed grows with the square root of the distance, as at the tip of a crack, and the distance closes evenly.
 _KEPT_SPEED = 2.0 / 3.0
-_SETTLING = 6
 
 
 class FrictionFollower(PathFollower):
@@ -40,8 +40,7 @@ class FrictionFollower(PathFollower):
 
     def _first(self, scene: SolidScene, start: Array) -> PlateState:
         self._bare = scene
-        rest, _ = self._solid.contact.positions(start)
-        solver = self._solver(self._plate.height, rest)
+        solver = self._solver(self._plate.height, self._places(start))
         solved = solver.minimise(start)
         if isinstance(solved, NewtonFailure):
             raise NoConvergenceError("first contact", solved.why, "a finer mesh")
@@ -52,26 +51,35 @@ class FrictionFollower(PathFollower):
         step = FrictionStep(self._solid.contact, plate, self._coefficient, rest, self._stiffness)
         return FrictionSolver(replace(self._bare, plate=plate), step, self._sides)
 
-    def turned(self) -> FrictionFollower:
+    def turned(self) -> Self:
         """A follower that starts at the newest state in the opposite direction, in which all points stick at first."""
-        other, here = super().turned(), self.here
+        other = super().turned()
+        other.path = [other._stuck()]
+        return other
+
+    def _stuck(self) -> PlateState:
+        """The newest state with the rates of a path on which all points that touch stick."""
+        here = self.here
         assert here.friction is not None
-        r, _ = self._solid.contact.positions(here.state.x)
-        solver = self._solver(here.height, np.where(np.isnan(here.friction.rest), r, here.friction.rest))
+        solver = self._solver(here.height, _known(here.friction.rest, self._places(here.state.x)))
         state = evaluate(solver.scene, here.state.x)
         assert state is not None
         held = solver.hold(state)
         touching, none = held.points.sticking | held.points.sliding, np.zeros_like(held.points.sliding)
         held = replace(held, points=replace(held.points, sticking=touching, sliding=none))
-        move, _, stiffness = _by_height(solver, held, full_tangent(solver.scene, state), other.down)
+        move, force, stiffness = solver.by_height(held, full_tangent(solver.scene, state), self.down)
         rate = -state.filling.rate * float(state.by_volume @ move)
         by_height = self._solid.expand(move)
-        other.path = [replace(here, by_height=by_height, stiffness=stiffness, pressure_rate=rate)]
-        return other
+        return replace(here, force=force, by_height=by_height, stiffness=stiffness, pressure_rate=rate)
+
+    def _places(self, x: Array) -> Array:
+        """Radii at which the points of the wall now are, (n_edges, n_points)."""
+        return self._solid.contact.positions(x)[0]
 
     def solve(self, height: float) -> PlateState | NewtonFailure:
         """State at `height` from the extrapolated path; not kept."""
-        solver = self._solver(height, self._rest(height))
+        assert self.here.friction is not None
+        solver = self._solver(height, _known(self.here.friction.rest, self._ahead(height)))
         solved = solver.minimise(self._extrapolate(height))
         if isinstance(solved, NewtonFailure):
             solved = solver.minimise(self.here.state.x)
@@ -79,22 +87,32 @@ class FrictionFollower(PathFollower):
             return solved
         return friction_plate_state(solver, solved, self.here, self.down)
 
-    def _rest(self, height: float) -> Array:
-        """Radii at which points rest, or will touch: the gap before the contact's edge opens with the square of the
+    def _ahead(self, height: float) -> Array:
+        """Radii at which points are, or will touch: the gap before the contact's edge opens with the square of the
         distance, so its root closes evenly, and the wall slows down evenly to where it is held."""
         here = self.here
-        assert here.friction is not None and here.state.touch is not None
+        assert here.state.touch is not None
         contact, touch = self._solid.contact, here.state.touch
         r, _ = contact.positions(here.state.x)
         if len(self.path) > 1:
             rate_r, rate_z = contact.positions(here.by_height)
             travel = height - here.height
             closing = (1.0 + touch.slope * rate_r - rate_z) * travel
-            share = np.where(
-                closing < 0.0, np.clip(-2.0 * touch.gap / np.where(closing < 0.0, closing, -1.0), 0.0, 1.0), 1.0
-            )
-            r = r + _KEPT_SPEED * share * rate_r * travel
-        return np.where(np.isnan(here.friction.rest), r, here.friction.rest)
+            r = r + approach(touch.gap, closing) * rate_r * travel
+        return np.asarray(r)
+
+
+def approach(gap: Array, closing: Array) -> Array:
+    """Share of its present speed that a point keeps on average over a step, until it is held where its gap, which
+    changes by ``closing`` at its present speed, is closed before."""
+    closes = closing < 0.0
+    share = np.where(closes, np.clip(-2.0 * gap / np.where(closes, closing, -1.0), 0.0, 1.0), 1.0)
+    return np.asarray(_KEPT_SPEED * share)
+
+
+def _known(rest: Array, place: Array) -> Array:
+    """Where points rest, or else are."""
+    return np.where(np.isnan(rest), place, rest)
 
 
 def friction_plate_state(
@@ -116,7 +134,7 @@ def friction_plate_state(
     )
     scene = replace(solver.scene, terms=(*solver.scene.terms, held.term))
     band = full_tangent(solver.scene, held.state)
-    move, force, stiffness = _by_height(solver, held, band, down)
+    move, force, stiffness = solver.by_height(held, band, down)
     assert term.blocks is not None
     whole = solver.solid.contact_pattern.added(band, [term.blocks])
     rate = -state.filling.rate * float(state.by_volume @ move)
@@ -132,35 +150,3 @@ def friction_plate_state(
         stable=stability(scene, state, band=whole).stable,
         friction=friction,
     )
-
-
-def _by_height(solver: FrictionSolver, held: HeldState, band: Array, down: float) -> tuple[Array, float, float]:
-    """Rate of the unknowns (size,), force on the plate and its rate, by the plate's height where it goes on.
-
-    Points that slid in the step slide on where that lengthens their path, else they stick.
-    """
-    solid, step, touch, points = solver.solid, solver.step, held.touch, held.points
-    contact, slope, secant = solid.contact, held.touch.slope, held.points.secant
-    normal = np.where(touch.traction > 0.0, -contact.stiffness, 0.0)
-    slid = np.where(points.sliding, np.sign(points.slip), 0.0)
-    sign = slid
-    for _ in range(_SETTLING):
-        sticking = (points.sticking | points.sliding) & (sign == 0.0)
-        follow, stick = step.rate(sign, slope), np.where(sticking, step.stiffness, 0.0)
-        load = contact.force(normal, slope) + step.force(follow * normal - stick * slope / secant, slope)
-        full = solid.contact_pattern.added(band, [step.stick(sticking, slope)])
-        move = solver.solve(held.state, full, step.slide(points.traction, touch, sign), solid.push(load))
-        nodes = solid.expand(move)
-        r, z = contact.positions(nodes)
-        pressing = normal * (1.0 + slope * r - z)
-        slips = step.change(nodes, slope) - slope / secant
-        turning = slope * touch.curve / secant**2 * r
-        bears = step.rate(slid, slope) * (pressing + touch.traction * turning)
-        on = np.where(sign == 0.0, down * slid * (bears - step.stiffness * slips) > 0.0, down * slid * slips < 0.0)
-        if (np.where(on, slid, 0.0) == sign).all():
-            break
-        sign = np.where(on, slid, 0.0)
-    along = stick * slips + np.where(sign == 0.0, 0.0, bears)
-    turned = points.traction * touch.curve / secant**3 * r
-    force = float(np.vdot(contact.weight, touch.traction + points.traction * slope / secant))
-    return move, force, float(np.vdot(contact.weight, pressing + along * slope / secant + turned))

@@ -8,15 +8,16 @@ of the wall before the contact do not take part in it: they are eliminated once.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from pneutouch.arrays import Array, Flags
+from pneutouch.arrays import Array
 from pneutouch.mechanics.solid.contact import ContactEvaluation
 from pneutouch.mechanics.solid.elimination import LeadingElimination
 from pneutouch.mechanics.solid.friction import FrictionPoints, FrictionStep
+from pneutouch.mechanics.solid.friction_status import PointStatus, PointTractions, touched
 from pneutouch.mechanics.solid.general_band import OneSidedBlocks
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.newton import SolverState, downhill
@@ -30,39 +31,6 @@ _SEARCHED = 0.1
 #: Shares of a round at which it is looked at.
 _SHARES = np.concatenate([[0.0], np.geomspace(1.0e-3, 0.1, 9), np.linspace(0.15, 1.0, 18)])
 _WHOLE = np.array([0.0, 1.0])
-
-
-@dataclass(frozen=True)
-class PointStatus:
-    """touching: points in contact.  bearing: those that friction may hold.  sign: of the slip of those that slide."""
-
-    touching: Flags
-    bearing: Flags
-    sign: Array
-
-    @property
-    def sticking(self) -> Flags:
-        """Points that friction holds."""
-        return np.asarray(self.bearing & (self.sign == 0.0))
-
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, PointStatus):
-            return NotImplemented
-        return bool((self.touching == other.touching).all() and (self.sign == other.sign).all())
-
-
-@dataclass(frozen=True)
-class PointTractions:
-    """Tractions that the linear model has before they are cut: normal, and along the surface; (n_edges, n_points)."""
-
-    normal: Array
-    trial: Array
-
-    def towards(self, other: PointTractions, share: float | Array) -> PointTractions:
-        """What they are at a share of the change to others."""
-        return PointTractions(
-            self.normal + share * (other.normal - self.normal), self.trial + share * (other.trial - self.trial)
-        )
 
 
 @dataclass(frozen=True)
@@ -126,7 +94,7 @@ class LinearContact:
 
     def works(self, begun: PointTractions, ended: PointTractions, shares: Array) -> Array:
         """Work over the displacement between two tractions of those that the points bear at shares of it (n,), (n,)."""
-        change = begun.towards(ended, shares[:, None, None])
+        change = begun.towards(ended, shares)
         normal = np.maximum(change.normal, 0.0)
         cap = self._cap(normal)
         trial = np.minimum(np.maximum(change.trial, -cap), cap)
@@ -218,7 +186,7 @@ class StepSettling:
         With held tractions there always is one: the diagonal is raised until the model is definite, and a step that is
         not settled lowers its energy all the same.
         """
-        touching = np.flatnonzero((self._still.normal > 0.0).any(axis=1))
+        touching = touched(self._still)
         edge = int(touching[0]) if touching.size else self._still.normal.shape[0] - 1
         while True:
             kept = max(edge - _MARGIN, 0)
@@ -227,7 +195,7 @@ class StepSettling:
                 continue
             if step is None or not np.isfinite(step).all():
                 return step
-            met = np.flatnonzero((self._contact.at(self._solid.expand(step)).normal[:kept] > 0.0).any(axis=1))
+            met = touched(self._contact.at(self._solid.expand(step)), kept)
             if met.size == 0:
                 return step
             edge = int(met[0])
@@ -235,7 +203,7 @@ class StepSettling:
     def _settle(self, first: int) -> Array | None:
         """A step with the unknowns before ``first`` free of contact; None also where the band was raised."""
         contact, system = self._contact, _System(self._sides, self._band, self._state, first)
-        none = PointTractions(np.zeros_like(self._still.normal), np.zeros_like(self._still.normal))
+        none = PointTractions(np.zeros_like(self._still.normal), np.zeros_like(self._still.trial))
         place, status = _Place(np.zeros_like(system.begun), self._still, 1.0, none), contact.status(self._still)
         for k in range(ROUNDS):
             there = self._solve(system, status, k == 0)
@@ -251,8 +219,7 @@ class StepSettling:
             elif contact.held:
                 status = new
             else:
-                # A point that would slide in reverse sticks first: else points of one sign would turn over and back.
-                status = replace(new, sign=np.where(new.sign == -status.sign, 0.0, new.sign))
+                status = status.then(new)
         return system.whole(place.unknowns) if contact.held else None
 
     def _solve(self, system: _System, status: PointStatus, first_round: bool) -> Array | None:

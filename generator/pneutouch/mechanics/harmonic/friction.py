@@ -1,0 +1,210 @@
+"""Coulomb friction of a wall that is no body of revolution: the solid's law with two directions along the surface.
+
+A spring holds each point in the tangent plane of the object; its traction is mapped back to the disc whose radius is
+the coefficient times the normal traction. Tractions and slips have two components, by `tangents`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pneutouch.arrays import Array, Flags
+from pneutouch.mechanics.harmonic.contact import HarmonicContact, X, Y, Z, upward
+from pneutouch.mechanics.harmonic.surface import Surface
+from pneutouch.mechanics.solid.contact import ContactEvaluation
+from pneutouch.mechanics.solid.friction import FrictionPoints, FrictionStep, FrictionTerm
+from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.terms import TermState
+
+
+def tangents(slope: Array) -> Array:
+    """Two perpendicular unit vectors along a surface of slopes (..., 2), the first in the plane of x and z;
+    (..., 2, 3)."""
+    by_x, by_y = slope[..., X], slope[..., Y]
+    first, secant, none = np.hypot(1.0, by_x), secants(slope), np.zeros_like(by_x)
+    along = np.stack([1.0 / first, none, by_x / first], axis=-1)
+    across = np.stack([-by_x * by_y / first, first, by_y / first], axis=-1) / secant[..., None]
+    return np.stack([along, across], axis=-2)
+
+
+def secants(slope: Array) -> Array:
+    """Area along a surface of slopes (..., 2) over that of its plan."""
+    return np.asarray(np.sqrt(1.0 + np.einsum("...i,...i->...", slope, slope)))
+
+
+def lengths(vectors: Array) -> Array:
+    """Lengths of vectors (..., 2)."""
+    return np.hypot(vectors[..., 0], vectors[..., 1])
+
+
+def directions(vectors: Array) -> Array:
+    """Unit vectors of vectors (..., 2); zero where they are."""
+    size = lengths(vectors)[..., None]
+    return np.divide(vectors, size, out=np.zeros_like(vectors), where=size > 0.0)
+
+
+def clipped(trial: Array, cap: Array) -> Array:
+    """Tractions (..., 2) mapped back to discs of radii cap (...)."""
+    size = lengths(trial)
+    share = np.divide(cap, size, out=np.ones_like(size), where=size > cap)
+    return np.asarray(trial * share[..., None])
+
+
+def springs(sticking: Flags, direction: Array, turn: Array) -> Array:
+    """Derivative of the traction by the slip, over the stiffness of a spring, (..., 2, 2), symmetric.
+
+    direction: of the traction of sliding points, else zero, (..., 2).  turn: their largest traction over that of a
+    spring without limit: what is left of the spring across the direction.
+    """
+    kept = np.where(sticking, 1.0, np.where(direction.any(axis=-1), turn, 0.0))
+    across = np.where(sticking, 0.0, turn)[..., None, None] * direction[..., :, None] * direction[..., None, :]
+    return kept[..., None, None] * np.eye(2) - across
+
+
+@dataclass(frozen=True)
+class SurfacePoints(FrictionPoints):
+    """Friction at the points of the outer wall and angles: ``traction`` and ``slip`` (n_edges, n_points, n_angles, 2)
+    by `tangents`, positive where the spring pulls the wall back; ``slope`` alike by x and y; the others without the
+    last axis."""
+
+    @property
+    def secant(self) -> Array:
+        """Area along the surface over that of its plan."""
+        return secants(self.slope)
+
+    @property
+    def pull(self) -> Array:
+        """Size of the traction."""
+        return lengths(self.traction)
+
+    @property
+    def travel(self) -> Array:
+        """Length of the slip."""
+        return lengths(self.slip)
+
+    def path(self, past: FrictionPoints) -> Array:
+        """Slip in the direction of an earlier traction."""
+        return np.asarray(np.einsum("...i,...i->...", directions(past.traction), self.slip))
+
+    @property
+    def direction(self) -> Array:
+        """Direction of the traction of sliding points; zero where a point does not slide."""
+        return np.where(self.sliding[..., None], directions(self.slip), 0.0)
+
+    @property
+    def load(self) -> Array:
+        """Tractions in space, (..., 3)."""
+        return in_space(self.traction, self.slope)
+
+
+def in_space(vectors: Array, slope: Array) -> Array:
+    """Vectors (..., 2) by the `tangents` of slopes as (x, y, z)."""
+    return np.asarray(np.einsum("...i,...ij->...j", vectors, tangents(slope)))
+
+
+@dataclass(frozen=True)
+class SurfaceFriction(FrictionStep):
+    """Friction while the object stands at one place: ``rest`` (n_edges, n_points, n_angles, 2) are the places (x, y)
+    at which the points rest or first touch, from the object that has moved by ``along`` in x.
+
+    drift: velocity of the object in space along its path, (3,).
+    """
+
+    contact: HarmonicContact
+    plate: Surface
+    along: float
+    drift: Array
+
+    def slip(self, x: Array, slope: Array) -> Array:
+        """Distance of the points from their places of rest, by the tangents of given slopes."""
+        at = self.rest + np.array([self.along, 0.0])
+        height = self.plate.over(at[..., X], at[..., Y]).height
+        gone = self.contact.points(x) - np.concatenate([at, height[..., None]], axis=-1)
+        return np.asarray(np.einsum("...ij,...j->...i", tangents(slope), gone))
+
+    def change(self, move: Array, slope: Array) -> Array:
+        """Change of `slip` with a displacement of the coefficients (n_nodes, columns)."""
+        return np.asarray(np.einsum("...ij,...j->...i", tangents(slope), self.contact.points(move)))
+
+    def cap(self, traction: Array, slope: Array) -> Array:
+        """Largest tangential traction under given vertical tractions per area at rest; none where there is none."""
+        return self.coefficient * np.maximum(traction, 0.0) * secants(slope)
+
+    def at(self, x: Array, touch: ContactEvaluation) -> SurfacePoints:
+        """Return mapping at coefficients x (n_nodes, columns) with the contact evaluated there."""
+        cap, slip = self.cap(touch.traction, touch.slope), self.slip(x, touch.slope)
+        trial = self.stiffness * slip
+        touching = touch.traction > 0.0
+        sliding = touching & (lengths(trial) > cap)
+        return SurfacePoints(clipped(trial, cap), cap, touch.slope, slip, touching & ~sliding, sliding)
+
+    def turn(self, points: FrictionPoints) -> Array:
+        """What is left of the springs of sliding points across their slip."""
+        trial = self.stiffness * points.travel
+        return np.divide(points.cap, trial, out=np.zeros_like(trial), where=points.sliding)
+
+    def force(self, traction: Array, slope: Array) -> Array:
+        """Force on the outer edges (n_edges, n columns) of tractions along the surface: gradient of the energy."""
+        return self.contact.load_forces(in_space(traction, slope))
+
+    def spring_form(self, slope: Array, sticking: Flags, direction: Array, turn: Array) -> Array:
+        """Symmetric derivative of the tractions in space by the positions, (..., 3, 3), see `springs`."""
+        frame = tangents(slope)
+        held = self.stiffness * springs(sticking, direction, turn)
+        return np.asarray(np.matmul(np.swapaxes(frame, -1, -2), np.matmul(held, frame)))
+
+    def sliding_form(self, load: Array, touch: ContactEvaluation, direction: Array) -> Array | None:
+        """What the symmetric derivative leaves out, (..., 3, 3), or None: the traction of sliding points (their
+        ``direction`` (..., 2) is not zero) follows the normal one, and that of all, ``load``, turns with the surface.
+        """
+        touching = touch.traction > 0.0
+        bent = bool((touch.curve.any(axis=(-1, -2)) & touching).any())
+        if not (direction.any() or bent):
+            return None
+        normal, secant = upward(touch.slope), secants(touch.slope)[..., None]
+        by_place = secant * self.contact.stiffness * normal
+        steeper = np.einsum("...i,...ij->...j", touch.slope, touch.curve)
+        by_place[..., :Z] += touch.traction[..., None] * steeper / secant
+        form = self.coefficient * in_space(direction, touch.slope)[..., :, None] * by_place[..., None, :]
+        if bent:
+            turned = np.einsum("...i,...ij->...j", load[..., :Z], touch.curve) / secant**2
+            form[..., :Z] += normal[..., :, None] * turned[..., None, :]
+        return form
+
+    def held(self, solid: SolidModel, points: FrictionPoints) -> FrictionTerm:
+        """Friction with the largest tractions and the slopes of given points."""
+        return SurfaceFrictionTerm(solid, self, points)
+
+    def moved(self, x: Array, points: FrictionPoints) -> Array:
+        """Places at which the points rest after the step; NaN where a point does not touch."""
+        assert isinstance(points, SurfacePoints)
+        place = self.contact.points(x)[..., :Z] - points.load[..., :Z] / self.stiffness - [self.along, 0.0]
+        sliding, sticking = points.sliding[..., None], points.sticking[..., None]
+        return np.where(sliding, place, np.where(sticking, self.rest, np.nan))
+
+
+class SurfaceFrictionTerm(FrictionTerm):
+    """Friction with the largest tractions and the slopes held: the pseudo-potential of a step."""
+
+    step: SurfaceFriction
+
+    def energy(self, x: Array) -> float:
+        """Energy stored in the springs, and traction times slip beyond what they bear."""
+        trial = self.step.stiffness * self.step.slip(x, self.held.slope)
+        bears = clipped(trial, self.held.cap)
+        work = np.einsum("...i,...i->...", bears, trial - 0.5 * bears)
+        return float(np.vdot(self.step.contact.weight, work)) / self.step.stiffness
+
+    def at(self, x: Array) -> TermState:
+        """Energy and its derivatives at coefficients x (n_nodes, columns)."""
+        cap, slope = self.held.cap, self.held.slope
+        trial = self.step.stiffness * self.step.slip(x, slope)
+        size = lengths(trial)
+        sliding = (cap > 0.0) & (size > cap)
+        turn = np.divide(cap, size, out=np.zeros_like(cap), where=sliding)
+        direction = np.where(sliding[..., None], directions(trial), 0.0)
+        form = self.step.spring_form(slope, (cap > 0.0) & ~sliding, direction, turn)
+        force = self.step.force(clipped(trial, cap), slope)
+        return TermState(self.energy(x), self.solid.push(force), self.step.contact.form_blocks(form))

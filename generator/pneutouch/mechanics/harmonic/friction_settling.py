@@ -1,0 +1,172 @@
+"""Newton's steps with friction in space: what touches, sticks and slides is settled in a linear model, as in the solid.
+
+A sliding point keeps the direction in which it was found to slide; across it, what is left of its spring acts. The
+directions turn from one Newton step to the next.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pneutouch.arrays import Array, Flags
+from pneutouch.mechanics.harmonic.contact import Z, upward
+from pneutouch.mechanics.harmonic.friction import (
+    SurfaceFriction,
+    SurfacePoints,
+    clipped,
+    directions,
+    in_space,
+    lengths,
+    secants,
+)
+from pneutouch.mechanics.solid.friction_newton import SETTLING, FrictionSolver, HeldState
+from pneutouch.mechanics.solid.friction_settling import LinearContact
+from pneutouch.mechanics.solid.friction_status import PointStatus, PointTractions
+
+
+@dataclass(frozen=True)
+class SurfaceStatus(PointStatus):
+    """The status of points in space: ``sign`` is the direction of sliding, (..., 2), zero where a point does not slide;
+    turn: what is left of its spring across that."""
+
+    turn: Array
+
+    @property
+    def sliding(self) -> Flags:
+        """Points that slide."""
+        return np.asarray(self.sign.any(axis=-1))
+
+    @property
+    def sticking(self) -> Flags:
+        """Points that friction holds."""
+        return np.asarray(self.bearing & ~self.sliding)
+
+    def _reversed(self, other: SurfaceStatus) -> Flags:
+        return np.asarray(np.einsum("...i,...i->...", self.sign, other.sign) < 0.0)
+
+    def then(self, new: PointStatus) -> SurfaceStatus:
+        """The status to try after this one led to a new one: directions are kept, but where they would be reversed."""
+        assert isinstance(new, SurfaceStatus)
+        both, back = self.sliding & new.sliding, self._reversed(new)
+        sign = np.where(both[..., None], self.sign, new.sign) * ~back[..., None]
+        return replace(new, sign=sign, turn=np.where(both, self.turn, new.turn) * ~back)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, SurfaceStatus):
+            return NotImplemented
+        same = (self.touching == other.touching) & (self.sliding == other.sliding)
+        return bool((same & ~self._reversed(other)).all())
+
+
+@dataclass(frozen=True)
+class SurfaceLinearContact(LinearContact):
+    """Contact and friction linear in a displacement of the coefficients; tractions along the surface (..., 2)."""
+
+    step: SurfaceFriction
+    points: SurfacePoints
+
+    def at(self, move: Array) -> PointTractions:
+        """Tractions after a displacement of the coefficients (n_nodes, columns)."""
+        contact, touch = self.step.contact, self.touch
+        return PointTractions(
+            -contact.stiffness * contact.opening(touch, move, touch.gap),
+            self.step.stiffness * (self.points.slip + self.step.change(move, touch.slope)),
+        )
+
+    def status(self, at: PointTractions) -> SurfaceStatus:
+        """Which points touch, stick and slide, and where to."""
+        touching, cap, size = at.normal > 0.0, self._cap(at.normal), lengths(at.trial)
+        bearing = cap > 0.0 if self.held else touching
+        sliding = bearing & (size > cap)
+        turn = np.divide(cap, size, out=np.zeros_like(size), where=sliding)
+        return SurfaceStatus(touching, bearing, np.where(sliding[..., None], directions(at.trial), 0.0), turn)
+
+    def under(self, status: PointStatus, at: PointTractions) -> PointTractions:
+        """Tractions of points that keep a status."""
+        assert isinstance(status, SurfaceStatus)
+        normal = np.where(status.touching, at.normal, 0.0)
+        cap = self.points.cap if self.held else self._grip * normal
+        along = np.einsum("...i,...i->...", status.sign, at.trial)
+        slides = (cap - status.turn * along)[..., None] * status.sign + status.turn[..., None] * at.trial
+        return PointTractions(normal, np.where(status.sticking[..., None], at.trial, slides))
+
+    def force(self, tractions: PointTractions) -> Array:
+        """Gradient (size,) of tractions."""
+        slope = self.touch.slope
+        load = tractions.normal[..., None] * upward(slope) + in_space(tractions.trial, slope)
+        return self.solid.push(self.step.contact.load_forces(load))
+
+    def blocks(self, status: PointStatus, begun: PointTractions) -> tuple[Array, Array | None]:
+        """Stiffness of points that keep a status, symmetric and not; ``begun``: their tractions without a move."""
+        assert isinstance(status, SurfaceStatus)
+        contact, touch = self.step.contact, self.touch
+        held = self.step.spring_form(touch.slope, status.sticking, status.sign, status.turn)
+        both = contact.hessian(touch, status.touching) + contact.form_blocks(held)
+        if self.held:
+            return both, None
+        follows = self.step.sliding_form(in_space(begun.trial, touch.slope), touch, status.sign)
+        return both, None if follows is None else contact.form_blocks(follows)
+
+    def work(self, tractions: PointTractions, begun: PointTractions, ended: PointTractions) -> float:
+        """Work of tractions over the displacement between two others."""
+        across, along = self._travel(begun, ended)
+        return float(np.vdot(tractions.normal, across) + np.vdot(tractions.trial, along))
+
+    def works(self, begun: PointTractions, ended: PointTractions, shares: Array) -> Array:
+        """Work over the displacement between two tractions of those that the points bear at shares of it (n,), (n,)."""
+        across, along = self._travel(begun, ended)
+        change = begun.towards(ended, shares)
+        normal = np.maximum(change.normal, 0.0)
+        trial = clipped(change.trial, np.broadcast_to(self._cap(normal), normal.shape))
+        n = shares.size
+        return np.asarray(normal.reshape(n, -1) @ across.ravel() + trial.reshape(n, -1) @ along.ravel())
+
+    def _travel(self, begun: PointTractions, ended: PointTractions) -> tuple[Array, Array]:
+        """Displacement between two tractions, times the areas of the points."""
+        weight = self.step.contact.weight
+        across = weight * (ended.normal - begun.normal) / self.step.contact.stiffness
+        return across, weight[..., None] * (ended.trial - begun.trial) / self.step.stiffness
+
+
+class SurfaceFrictionSolver(FrictionSolver):
+    """Solves the steps of a path of an object in space."""
+
+    step: SurfaceFriction
+
+    def _linear(self, here: HeldState, held: bool) -> SurfaceLinearContact:
+        assert isinstance(here.points, SurfacePoints)
+        return SurfaceLinearContact(self.solid, self.step, here.touch, here.points, held)
+
+    def by_height(self, held: HeldState, band: Array, down: float) -> tuple[Array, float, float]:
+        """Rate of the unknowns (size,), force on the object against its path and its rate, by the place on the path.
+
+        Points that slid in the step slide on where that lengthens their path, else they stick.
+        """
+        step, touch, points = self.step, held.touch, held.points
+        assert isinstance(points, SurfacePoints)
+        contact, slope, drift, touching = step.contact, touch.slope, step.drift, touch.traction > 0.0
+        normal, slid, turn, load = upward(slope), points.direction, step.turn(points), points.load
+        pressed = contact.form(touch, touching)
+        on = points.sliding
+        for _ in range(SETTLING):
+            sign = np.where(on[..., None], slid, 0.0)
+            springs = step.spring_form(slope, touching & ~on, sign, np.where(on, turn, 0.0))
+            follows = step.sliding_form(load, touch, sign)
+            form = pressed + springs if follows is None else pressed + springs + follows
+            full = self.solid.contact_pattern.added(band, [contact.form_blocks(springs)])
+            one_sided = None if follows is None else contact.form_blocks(follows)
+            move = self.solve(held.state, full, one_sided, self.solid.push(contact.load_forces(-(form @ drift))))
+            gone = contact.points(self.solid.expand(move)) - drift
+            pressing = np.where(touching, contact.stiffness * np.einsum("...i,...i->...", normal, gone), 0.0)
+            steeper = np.einsum("...i,...ij,...j->...", slope, touch.curve, gone[..., :Z]) / secants(slope)
+            bears = step.coefficient * (secants(slope) * pressing + touch.traction * steeper)
+            slips = np.einsum("...i,...i->...", in_space(slid, slope), gone)
+            goes = np.where(on, down * slips < 0.0, down * (bears - step.stiffness * slips) > 0.0) & points.sliding
+            if (goes == on).all():
+                break
+            on = goes
+        total = contact.weight[..., None] * (touch.traction[..., None] * normal + load)
+        rate = contact.weight[..., None] * np.einsum("...ij,...j->...i", form, gone)
+        return move, float((total @ drift).sum()), float((rate @ drift).sum())
