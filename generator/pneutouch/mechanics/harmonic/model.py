@@ -12,7 +12,8 @@ from pneutouch.mechanics.harmonic.cavity import HarmonicCavity
 from pneutouch.mechanics.harmonic.contact import HarmonicContact
 from pneutouch.mechanics.harmonic.fields import AXIAL, Harmonics
 from pneutouch.mechanics.harmonic.material import GradientLaw, LawFields
-from pneutouch.mechanics.harmonic.operators import FieldGroup, FieldOperator
+from pneutouch.mechanics.harmonic.node_pairs import NodePairOperator
+from pneutouch.mechanics.harmonic.operators import FieldGroup
 from pneutouch.mechanics.solid.banded import AssemblyPattern
 from pneutouch.mechanics.solid.base_contact import BaseLoad
 from pneutouch.mechanics.solid.elements import gauss_square, strain_operator
@@ -50,10 +51,10 @@ class HarmonicModel(SolidModel):
         self._sign = signs
         self.size = int(self.dofs.max()) + 1
         tables = [self.dofs[x].reshape(x.shape[0], -1) for x in (mesh.cells, mesh.inner, mesh.outer)]
-        self.pattern = AssemblyPattern(tables[:2], self.size)
+        self._operators(signs)
+        self.pattern = AssemblyPattern(tables[:2], self.size, forms={0: self._field.entries(self.dofs)})
         self.contact_pattern = AssemblyPattern(tables[2:], self.size, self.pattern.width)
         self.edge_pattern = AssemblyPattern(tables[1:2], self.size, self.pattern.width)
-        self._operators(signs)
         self.cavity = HarmonicCavity(mesh.inner, harmonics, signs)
         self.contact = HarmonicContact(solid.contact, harmonics, signs)
         self.harmonic_base = None if solid.base is None else HarmonicBase(self, solid.base, harmonics, signs)
@@ -79,9 +80,8 @@ class HarmonicModel(SolidModel):
         by_r, by_z, over = (b[:, :, row, RADIAL] for row in (F_RR, F_RZ, HOOP))
         angles = self.harmonics.angles
         values, turned = self.harmonics.values(angles), self.harmonics.turned(angles)
-        self._field = FieldOperator(
-            [FieldGroup(by_r, values), FieldGroup(by_z, values), FieldGroup(over, turned)], self.mesh.cells, signs
-        )
+        groups = [FieldGroup(by_r, values), FieldGroup(by_z, values), FieldGroup(over, turned)]
+        self._field = NodePairOperator(groups, self.mesh.cells, signs, self.harmonics)
         self._share = (self._stiff_weight[:, None] / angles.size / self.mu).repeat(angles.size, axis=1).ravel()
         self._law = GradientLaw(self.material)
         self._cosines = self.harmonics.cosines(angles)
@@ -122,12 +122,12 @@ class HarmonicModel(SolidModel):
         return self._field.forces(by_gradient.reshape(*self._weight.shape, -1, 9))
 
     def stiffness(self, local: PointFields) -> Array:
-        """Second derivative of the stored energy by the coefficients of the cells, (n_cells, n, n)."""
+        """Second derivative of the stored energy by the coefficients of the cells, see `NodePairOperator`."""
         assert isinstance(local, HarmonicFields)
         form = local.law.moduli(local.pressure)
         blocks = self._field.stiffness(form.reshape(*self._weight.shape, -1, 9, 9))
         swelling = self._swelling(local)
-        blocks += self._kappa * np.matmul(np.swapaxes(swelling, 1, 2), swelling)
+        blocks += self._field.picked(np.matmul(np.swapaxes(self._kappa * swelling, 1, 2), swelling))
         return blocks
 
     def _swelling(self, local: PointFields) -> Array:

@@ -1,8 +1,9 @@
 """Banded storage of a symmetric matrix assembled from blocks, its factorisations and its inertia."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,20 +12,29 @@ from pneutouch.arrays import Array, Index
 from pneutouch.mechanics.solid import lapack
 
 
+class BlockEntries(NamedTuple):
+    """Row and column of every entry of a family of blocks of any form, in the order in which they lie; entries above
+    the diagonal, or with -1 in place of a fixed dof, are left out."""
+
+    row: Index
+    column: Index
+
+
 class AssemblyPattern:
-    """Where block entries go: blocks (n_blocks, d, d) with dof tables (n_blocks, d), -1 for a fixed dof.
+    """Where block entries go: blocks (n_blocks, d, d) with dof tables (n_blocks, d), -1 for a fixed dof, or other
+    blocks for the vectors of which the table serves, with their ``forms``.
 
     Several block families share one flat vector, in the order given.  Entries of one place are summed by `bincount`:
     as fast as a product with a sparse 0/1 matrix, whose package costs a tenth of SciPy's import.
     """
 
-    def __init__(self, tables: list[Index], size: int, width: int = 0) -> None:
+    def __init__(
+        self, tables: list[Index], size: int, width: int = 0, forms: Mapping[int, BlockEntries] = MappingProxyType({})
+    ) -> None:
         self.size = size
         rows, cols, self._entries = [], [], []
-        for table in tables:
-            d = table.shape[1]
-            i = np.broadcast_to(table[:, :, None], (table.shape[0], d, d)).ravel()
-            j = np.broadcast_to(table[:, None, :], (table.shape[0], d, d)).ravel()
+        for family, table in enumerate(tables):
+            i, j = forms.get(family) or _square(table)
             keep = np.flatnonzero((i >= j) & (j >= 0))
             rows.append(i[keep])
             cols.append(j[keep])
@@ -52,6 +62,13 @@ class AssemblyPattern:
         """Sum (size,) of block vectors, each (n_blocks, d)."""
         entries = _gathered(blocks, self._free)
         return np.asarray(np.bincount(self._unknown, entries, self.size), dtype=np.float64)
+
+
+def _square(table: Index) -> BlockEntries:
+    """Entries of square blocks."""
+    shape = (*table.shape, table.shape[1])
+    row, column = (np.broadcast_to(t, shape).ravel() for t in (table[:, :, None], table[:, None, :]))
+    return BlockEntries(row, column)
 
 
 def _gathered(blocks: Sequence[NDArray[Any]], rows: Sequence[Index]) -> NDArray[Any]:
