@@ -53,7 +53,8 @@ class NodePairOperator(FieldOperator):
 
     def picked(self, blocks: Array) -> Array:
         """Blocks (n_blocks, n, n) by pairs of nodes, as `stiffness` gives them."""
-        return blocks.reshape(blocks.shape[0], -1).take(self._picked.reshape(self.first.size, -1), axis=1)
+        flat = blocks.reshape(blocks.shape[0], -1)
+        return np.asarray(flat.take(self._picked.reshape(self.first.size, -1), axis=1))
 
     def stiffness(self, by_fields: Array) -> Array:
         """Second derivative by the coefficients of pairs of nodes, (n_blocks, n_pairs, columns columns), of one by the
@@ -83,11 +84,11 @@ def _columns(harmonics: Harmonics) -> list[Index]:
 
 
 def _separate(rows: Array, parts: list[Index]) -> bool:
-    """Whether each component depends on its own coefficients alone."""
-    own = np.zeros(rows.shape[1:], dtype=bool)
+    """Whether each component depends on the coefficients of that component alone."""
+    alone = np.zeros(rows.shape[1:], dtype=bool)
     for component, part in enumerate(parts):
-        own[component, part] = True
-    return not rows[:, ~own].any()
+        alone[component, part] = True
+    return not rows[:, ~alone].any()
 
 
 def _waves(left: Array, right: Array, parts: list[tuple[slice, slice]]) -> list[Array]:

@@ -14,8 +14,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pneutouch.arrays import Array, Flags
+from pneutouch.mechanics.harmonic.point_sets import PointSets
 from pneutouch.mechanics.solid.contact import ContactEvaluation
-from pneutouch.mechanics.solid.newton import NewtonDirection, SolidScene, SolverState, downhill, tangent, with_contact
+from pneutouch.mechanics.solid.newton import NewtonDirection, SolidScene, SolverState, tangent
 
 _FREE = 5
 """Rounds in which each set of touching points is the one that the last one brought about."""
@@ -42,8 +43,7 @@ class ContactNewton:
     def __call__(self, scene: SolidScene, state: SolverState) -> NewtonDirection:
         """The step at a state."""
         assert state.touch is not None
-        model = _ContactModel(scene, state, state.touch, tangent(scene, state))
-        newton, traction = model.least(self._foreseen)
+        newton, traction = _ContactModel(scene, state, state.touch, self._foreseen).least()
         self._foreseen = Foreseen(traction > 0.0, np.maximum(traction, 0.0))
         return newton
 
@@ -52,35 +52,35 @@ class _ContactModel:
     """The quadratic model of wall, filling and contact at a state: convex, with a slope that bends where points come
     and go. Tractions are not clipped."""
 
-    def __init__(self, scene: SolidScene, state: SolverState, touch: ContactEvaluation, band: Array) -> None:
-        self._scene, self._state, self._touch, self._band = scene, state, touch, band
+    def __init__(self, scene: SolidScene, state: SolverState, touch: ContactEvaluation, foreseen: Foreseen | None):
+        self._scene, self._state, self._touch = scene, state, touch
         self._contact, self._push = scene.solid.contact, scene.solid.push
         self._here = self._contact.linear(touch, np.zeros_like(state.x))
+        self._foreseen = foreseen or Foreseen(self._here > 0.0, np.zeros_like(self._here))
+        held = replace(touch, traction=self._foreseen.traction)
+        self._sets = PointSets(scene, state, held, self._here, tangent(scene, state))
 
-    def least(self, foreseen: Foreseen | None) -> tuple[NewtonDirection, Array]:
+    def least(self) -> tuple[NewtonDirection, Array]:
         """The step to the least of the model, or to a lower point of it, and the tractions there.
 
         Each set of points brings about the next. Where sets come again, the rest of the rounds go from the last answer
         to the least of the model before the next one.
         """
-        here = self._here
-        active, held = here > 0.0, np.zeros_like(here)
-        if foreseen is not None:
-            active, held = foreseen.touching, foreseen.traction
-        touch = replace(self._touch, traction=held)
+        here, active = self._here, self._foreseen.touching
         step, pull, searching, seen = np.zeros_like(self._state.residual), self._state.inner, False, set[bytes]()
         for number in range(_ROUNDS):
-            newton, ahead = self._round(touch, active)
+            newton = self._sets.at(active)
             if newton.lift:
                 pull = pull + newton.lift * step
-            if ((ahead > 0.0) == active).all():
+            ahead = self._contact.linear(self._touch, self._scene.solid.expand(newton.step))
+            following = ahead > 0.0
+            if (following == active).all():
                 return newton, ahead
             seen.add(active.tobytes())
-            pull_ahead = self._pull(active, ahead)
-            following = ahead > 0.0
             if number + 1 < _FREE and following.tobytes() not in seen:
                 active = following
                 continue
+            pull_ahead = self._pull(active, ahead)
             if not searching and self._lower(newton.step, ahead, pull_ahead):
                 share = 1.0
             else:
@@ -91,16 +91,6 @@ class _ContactModel:
             here = here + share * (ahead - here)
             active = here > 0.0
         return replace(newton, step=step), here
-
-    def _round(self, touch: ContactEvaluation, active: Flags) -> tuple[NewtonDirection, Array]:
-        """The least of the model with a set of touching points, and the tractions there."""
-        load = self._state.inner - self._pull(active, self._here)
-        newton = downhill(self._state, with_contact(self._scene, self._band, touch, active), load)
-        if newton.lift:
-            # What made this tangent definite is kept for the rest of the rounds: fewer failed factorisations.
-            self._band = self._band.copy(order="F")
-            self._band[0] += newton.lift
-        return newton, self._contact.linear(self._touch, self._scene.solid.expand(newton.step))
 
     def _pull(self, active: Flags, traction: Array) -> Array:
         """What wall and filling pull where the tractions of a set of points balance them (size,)."""

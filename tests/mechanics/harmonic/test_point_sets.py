@@ -1,0 +1,47 @@
+"""Sets of touching points: solving by the points that changed is solving with the tangent of the new set."""
+
+import numpy as np
+
+from pneutouch.mechanics.harmonic.model import HarmonicModel
+from pneutouch.mechanics.harmonic.point_sets import PointSets
+from pneutouch.mechanics.harmonic.surface import PlacedObject
+from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.solid.indent import PressSettings, shut_in
+from pneutouch.mechanics.solid.indenter import ball
+from pneutouch.mechanics.solid.inflate import state_at
+from pneutouch.mechanics.solid.mesh import dome
+from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.mechanics.solid.newton import SolidScene, evaluate, tangent
+
+RADIUS = 9.25
+
+
+def test_changed_points_give_the_step_of_the_new_set() -> None:
+    solid = SolidModel(dome(RADIUS, 1.5, arc=8, through=1), neo_hookean(0.27))
+    free = state_at(solid, 0.005)
+    model = HarmonicModel(solid, 2)
+    gas = shut_in(solid, free, PressSettings(depth=1.0, steps=1))
+    body = PlacedObject(ball(8.0).scaled(1.0 / RADIUS), 0.2).at(float(free.outer_apex / RADIUS) - 0.05)
+    scene = SolidScene(model, gas, body)
+    state = evaluate(scene, model.harmonics.lifted(free.unit.x))
+    assert state is not None and state.touch is not None
+    start = model.contact.linear(state.touch, np.zeros_like(state.x))
+    band = tangent(scene, state)
+    first = start > 0.0
+    assert 4 < first.sum() < first.size - 8
+    other = first.copy()
+    other.ravel()[np.flatnonzero(first)[:2]] = False
+    other.ravel()[np.flatnonzero(~first)[-4:]] = True
+
+    def sets() -> PointSets:
+        return PointSets(scene, state, state.touch, start, band)  # type: ignore[arg-type]
+
+    one = sets()
+    before = one.at(first)
+    changed, direct = one.at(other), sets().at(other)
+    scale = float(np.abs(direct.step).max())
+    assert np.abs(before.step - direct.step).max() > 1e-3 * scale
+    # To take away a stiff point cancels digits: as many as its stiffness is greater than the wall's.
+    np.testing.assert_allclose(changed.step, direct.step, atol=1e-6 * scale)
+    np.testing.assert_allclose(changed.soft, direct.soft, atol=1e-6 * float(np.abs(direct.soft).max()))
+    assert changed.stable and direct.stable
