@@ -39,9 +39,9 @@ class PointSets:
         changed = None if self._factor is None else np.flatnonzero(active != self._base)
         if changed is None or changed.size > _MOST:
             changed = self._factored(active)
-        found = None if changed is None else self._changed(active, changed)
-        if found is not None:
-            return found
+        newton = None if changed is None else self._changed(active, changed)
+        if newton is not None:
+            return newton
         newton = downhill(self._state, with_contact(self._scene, self._band, self._held, active), self.load(active))
         if newton.lift:
             # What made this tangent definite is kept for the rest of the sets: fewer failed factorisations.
