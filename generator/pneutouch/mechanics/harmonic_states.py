@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,6 +25,9 @@ from pneutouch.units import KPA
 ORDERS = (4, 6, 8, 12)
 """Orders of the harmonics, raised until the figures settle."""
 
+_COMPARED = 3
+"""States at which an answer is compared with fewer harmonics."""
+
 
 def harmonic_result(sensor: Sensor, driving_pressures: Array) -> ModelResult:
     """Inflate as the solid does, then press at every driving pressure (MPa, ascending) off the axis.
@@ -39,15 +43,18 @@ def _state(sensor: Sensor, probe: StrainProbe, run: Inflation, pressure: float) 
     press = _press(sensor, probe, free)
     if sensor.protocol.off_axis is None:
         return _record(sensor, pressure, free, press.run(0), 0.0)
-    guide = press.run(ORDERS[0])
-    before, changes = _record(sensor, pressure, free, guide, np.inf), []
-    for order in ORDERS[1:]:
-        guide = press.run(order)
-        after = _record(sensor, pressure, free, guide, np.inf)
-        changes.append(change(before, after))
+    changes: list[float] = []
+    before: OffAxisPath | None = None
+    for coarse, order in pairwise(ORDERS):
+        pressed = press.run(order)
+        if sensor.protocol.friction:
+            before = press.run(coarse) if before is None else before
+            changes.append(change(_curve(sensor, before), _curve(sensor, pressed)))
+            before = pressed
+        else:
+            changes.append(_change_from(press, coarse, pressed, sensor))
         if changes[-1] <= HARMONICS_SETTLED:
-            return _record(sensor, pressure, free, guide, changes[-1])
-        before = after
+            return _record(sensor, pressure, free, pressed, changes[-1])
     steps = ", ".join(f"{c:.1%} from {a} to {b}" for c, (a, b) in zip(changes, pairwise(ORDERS), strict=True))
     raise ComputationError(
         f"at {pressure / KPA:g} kPa the figures do not settle with {ORDERS[-1]} harmonics around the axis: "
@@ -86,16 +93,51 @@ def _free_travel(sensor: Sensor, probe: StrainProbe, free: FreeState) -> float:
     return float(_press(sensor, probe, free).surface.height * probe.solid.length - leaning - top)
 
 
-def change(before: SensorState, after: SensorState) -> float:
+class _Curve(NamedTuple):
+    """Force (N) and pressure rise (MPa) at indentations (mm) on equal steps of a range."""
+
+    indentation: Array
+    force: Array
+    rise: Array
+
+    @property
+    def sensitivity(self) -> float | None:
+        """Sensitivity (kPa/N), where the range has one."""
+        fit = figures(self.indentation, self.force, self.rise / KPA)
+        return None if fit is None else fit.sensitivity_kPa_per_N
+
+
+def _curve(sensor: Sensor, pressed: OffAxisPath) -> _Curve:
+    """The curve of a press to the end of its range."""
+    grid = np.linspace(0.0, _range_end(sensor, pressed), sensor.protocol.steps + 1)
+    return _Curve(grid, *curve_between(pressed.path, grid))
+
+
+def change(before: _Curve, after: _Curve) -> float:
     """Greatest relative change of sensitivity, and of force and pressure rise at the end of the common range."""
-    end = min(before.range_end, after.range_end)
+    end = min(before.indentation[-1], after.indentation[-1])
     pairs = [
-        tuple(float(np.interp(end, state.indentation, getattr(state, name))) for state in (before, after))
-        for name in ("force", "pressure_rise")
+        (float(np.interp(end, before.indentation, old)), float(np.interp(end, after.indentation, new)))
+        for old, new in ((before.force, after.force), (before.rise, after.rise))
     ]
-    if before.figures is not None and after.figures is not None:
-        pairs.append((before.figures.sensitivity_kPa_per_N, after.figures.sensitivity_kPa_per_N))
+    if before.sensitivity is not None and after.sensitivity is not None:
+        pairs.append((before.sensitivity, after.sensitivity))
     return max((abs(old / new - 1.0) for old, new in pairs if new), default=0.0)
+
+
+def _change_from(press: OffAxisPress, coarse: int, pressed: OffAxisPath, sensor: Sensor) -> float:
+    """The change from fewer harmonics, which are solved for at a few states of the range: between them the difference
+    of the curves is taken as linear. Infinite where they have no equilibrium there."""
+    after = _curve(sensor, pressed)
+    inside = [s for s in pressed.path if s.indentation <= after.indentation[-1] * (1.0 + 1e-9)]
+    chosen = [inside[round(k * (len(inside) - 1) / _COMPARED)] for k in range(1, _COMPARED + 1)]
+    rough = press.coarser(coarse, chosen)
+    if rough is None:
+        return np.inf
+    at = [0.0, *(s.indentation for s in chosen)]
+    less = np.array([(f - s.force, p - s.rise) for (f, p), s in zip(rough, chosen, strict=True)])
+    force, rise = (np.interp(after.indentation, at, np.append(0.0, part)) for part in less.T)
+    return change(_Curve(after.indentation, after.force + force, after.rise + rise), after)
 
 
 def _press(sensor: Sensor, probe: StrainProbe, free: FreeState) -> OffAxisPress:
@@ -106,17 +148,21 @@ def _press(sensor: Sensor, probe: StrainProbe, free: FreeState) -> OffAxisPress:
     return OffAxisPress(solid, free, press, placed, probe)
 
 
+def _range_end(sensor: Sensor, pressed: OffAxisPath) -> float:
+    """Indentation at which the range of a press ends, mm."""
+    return min(range_end(reported_events(pressed.events), sensor.protocol.depth), pressed.path[-1].indentation)
+
+
 def _record(sensor: Sensor, pressure: float, free: FreeState, pressed: OffAxisPath, last_change: float) -> SensorState:
     """The state of a sensor as a prediction has it."""
-    test, happened = sensor.protocol, reported_events(pressed.events)
-    end = min(range_end(happened, test.depth), pressed.path[-1].indentation)
+    happened, end = reported_events(pressed.events), _range_end(sensor, pressed)
     return SensorState(
         driving_pressure=pressure,
         apex_inner=free.inner_apex,
         apex_outer=free.outer_apex,
         cavity_volume=free.volume,
         range_end=end,
-        figures=_figures(pressed, end, test.steps),
+        figures=_figures(pressed, end, sensor.protocol.steps),
         indentation=pressed.column("indentation"),
         force=pressed.column("force"),
         pressure_rise=pressed.column("rise"),

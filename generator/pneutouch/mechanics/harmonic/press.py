@@ -135,6 +135,24 @@ class OffAxisPress:
                 break
         return self._finish(order, states, events, jump)
 
+    def coarser(self, order: int, states: list[OffAxisState]) -> list[tuple[float, float]] | None:
+        """Force (N) and pressure rise (MPa) near solved states with fewer harmonics; None where one has no equilibrium.
+
+        Without friction, with which a state follows from those before it.
+        """
+        model, out = HarmonicModel(self._solid, order), []
+        for state in states:
+            plate = self.surface.at(self.surface.height - state.indentation / model.length)
+            start = state.positions[:, : model.harmonics.columns] / model.length
+            solved = minimise(SolidScene(model, self._gas, plate), start, find=ContactNewton())
+            if isinstance(solved, NewtonFailure):
+                return None
+            touch, filling = solved.state.touch, solved.state.filling
+            assert touch is not None
+            force = float(np.vdot(model.contact.weight, touch.traction)) * model.mu * model.length**2
+            out.append((force, filling.pressure * model.mu - self._free.pressure))
+        return out
+
     def _follower(self, model: HarmonicModel) -> PathFollower:
         """The follower of the press, at first contact."""
         start, friction = model.harmonics.lifted(self._free.unit.x), self._press.friction
