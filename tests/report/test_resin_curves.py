@@ -71,5 +71,27 @@ def test_seven_resins_are_compared_and_stop_at_their_own_limits(evaluated, libra
     assert found["FLX9970-DM"][0][-1] == pytest.approx(60.0)
 
 
+@pytest.mark.parametrize(
+    ("resin", "model"),
+    [("FLX9940", "atlas corrected by the solid"), ("FLX9985", "solid")],
+    ids=["to depth", "to event"],
+)
+def test_curves_under_friction_are_the_solids_within_a_percent(resin, model, evaluated, library):
+    """Between the pressures at which they were solved; the hard resin's ranges end by an event."""
+    from pneutouch.evaluation.variants import in_resin, resin_curves
+    from pneutouch.mechanics.solid_states import solid_states
+
+    material = library.load("materials", resin)
+    sensor = evaluated("paper-dome").sensor.replace(friction=0.6)
+    found = resin_curves(sensor, {resin: material}, 0.022, "solid", None)
+    (curve,) = found.values()
+    assert curve.model == model and curves.drawn_by(found) == f"drawn by the {model}"
+    at = np.array([5.5, 16.5])
+    states = solid_states(in_resin(sensor, material).replace(waves=0), 1e-3 * at)
+    solid = [state.figures.sensitivity_kPa_per_N for state in states]
+    shown = np.interp(at, curve.driving_pressure_kPa, curve.sensitivity_kPa_per_N)
+    np.testing.assert_allclose(shown, solid, rtol=0.01)
+
+
 def test_a_chart_without_curves_names_no_model():
     assert curves.drawn_by({}) == "no curve of a resin was computed"

@@ -1,10 +1,13 @@
 """The same sensor in every resin: the curves that show what the offline parameter does."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from pneutouch.errors import ComputationError
 from pneutouch.evaluation.chart_data import ResinCurve
-from pneutouch.mechanics import Sensor, predict
+from pneutouch.mechanics import Sensor, SensorState, predict
+from pneutouch.mechanics.contact_correction import plate_alone
 from pneutouch.mechanics.limits import limit_point
 from pneutouch.mechanics.paper_sensor import material_sensor
 from pneutouch.mechanics.sensor import ResponseCorrection
@@ -17,6 +20,9 @@ _POINTS = {"membrane": 12, "atlas": 25, "solid": 4}
 _MARGIN = 0.95
 """Curves stop at this share of a resin's own limit."""
 
+_AT_DEPTH = 1e-3
+"""A range ends at the depth where the logarithm of its end is nearer to it than this."""
+
 _LIMIT_SHARE = {"membrane": 1.0, "solid": 0.8}
 """A safe share of the membrane's limit pressure: thick compressible walls reach theirs earlier."""
 
@@ -27,21 +33,31 @@ def in_resin(sensor: Sensor, material: Material) -> Sensor:
 
 
 def resin_curves(
-    sensor: Sensor, materials: dict[str, Material], highest: float, model: str, closure: str | None
+    sensor: Sensor,
+    materials: dict[str, Material],
+    highest: float,
+    model: str,
+    closure: str | None,
+    states: Sequence[SensorState] = (),
 ) -> dict[str, ResinCurve]:
     """Sensitivity over driving pressure, from 0 to ``highest`` (MPa), by resin title.
 
     Each curve stops short of its own resin's limit point. A sheet of the membrane's is drawn by the membrane, any other
-    by the atlas where the sensor is inside it, by the solid where not; there is none for contact off the axis.
+    by the atlas where the sensor is inside it, by the solid where not. Under friction or another object a few of the
+    solid's suffice with the atlas; ``states`` of the sensor are what has been solved already. There is none for contact
+    off the axis.
     """
     if sensor.protocol.off_axis is not None:
         return {}
     variants = {m.title: in_resin(sensor, m) for m in materials.values() if m.kind == "elastomer"}
-    looked_up = {} if model == "membrane" else _by_atlas(variants, highest)
+    looked_up = {} if model == "membrane" else _by_atlas({t: plate_alone(v) for t, v in variants.items()}, highest)
     model = "membrane" if model == "membrane" else "solid"
     curves = {}
     for title, variant in variants.items():
-        curve = looked_up.get(title) or _by_model(variant, highest, model, closure)
+        curve = looked_up.get(title)
+        if curve is not None and variant.protocol.other_contact is not None:
+            curve = _under_contact(variant, curve, states if variant == sensor else ())
+        curve = curve or _by_model(variant, highest, model, closure)
         if curve is not None:
             curves[title] = curve
     return curves
@@ -77,6 +93,32 @@ def _by_atlas(variants: dict[str, Sensor], highest: float) -> dict[str, ResinCur
         for title, grid, values, kept in rows
         if kept.sum() > 1
     }
+
+
+def _under_contact(variant: Sensor, plate: ResinCurve, states: Sequence[SensorState]) -> ResinCurve | None:
+    """A resin's curve under its own contact, from few of the solid's; None where it cannot be solved at both ends.
+
+    Where the ranges at both ends go to the depth, the atlas's curve ``plate`` times the ratio of the solid to it, whose
+    logarithm is straight in between, or between the ``states`` where there are any. Where an event ends a range, the
+    plate's range ends elsewhere: there a parabola through the logarithms of the solid's at both ends and the middle.
+    """
+    from pneutouch.mechanics.uncertainty import FIGURES, ContactModel
+    from pneutouch.mechanics.uncertainty.contact_presses import pressed_logs
+
+    at = plate.driving_pressure_kPa
+    s, end = FIGURES.index("sensitivity_kPa_per_N"), FIGURES.index("range_end_mm")
+    few = np.array([at[0], at[-1]])
+    ends = ContactModel(variant, tuple((few * KPA).tolist()), states).logs
+    if states or np.abs(ends[end] - np.log(variant.protocol.depth)).max() < _AT_DEPTH:
+        ratio = ContactModel(variant, tuple((at * KPA).tolist()), states, least=2).ratio[s]
+        kept = np.isfinite(ratio)
+        values, model = np.exp(ratio[kept]) * plate.sensitivity_kPa_per_N[kept], "atlas corrected by the solid"
+        return ResinCurve(at[kept], values, model) if kept.sum() > 1 else None
+    middle = 0.5 * (at[0] + at[-1])
+    three = np.append(ends[s], pressed_logs(variant.replace(waves=0), (middle * KPA,))[s])
+    if not np.isfinite(three).all():
+        return None
+    return ResinCurve(at, np.exp(np.polyval(np.polyfit([*few, middle], three, 2), at)), "solid")
 
 
 def _by_model(variant: Sensor, highest: float, model: str, closure: str | None) -> ResinCurve | None:

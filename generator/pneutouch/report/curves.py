@@ -231,5 +231,6 @@ def drawn_by(curves: dict[str, ResinCurve]) -> str:
         return "no curve of a resin was computed"
     if len(models) == 1:
         return f"drawn by the {models[0]}"
-    solid = ", ".join(title for title, curve in curves.items() if curve.model != "atlas")
-    return f"drawn by the atlas, {solid} by the solid"
+    solid = ", ".join(title for title, curve in curves.items() if curve.model == "solid")
+    looked_up = next(model for model in models if model != "solid")
+    return f"drawn by the {looked_up}, {solid} by the solid"

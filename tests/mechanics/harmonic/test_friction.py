@@ -16,6 +16,7 @@ from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.solid.descend import descend
 from pneutouch.mechanics.solid.first_touch import first_touch
 from pneutouch.mechanics.solid.friction_newton import HeldState
+from pneutouch.mechanics.solid.friction_system import ContactSystem
 from pneutouch.mechanics.solid.indent import PressSettings, indent, shut_in
 from pneutouch.mechanics.solid.indenter import RigidObject, ball
 from pneutouch.mechanics.solid.inflate import FreeState, state_at
@@ -141,8 +142,10 @@ def test_the_tangent_is_the_derivative_of_the_forces() -> None:
     begun = linear.at(np.zeros_like(x))
     status = linear.status(begun)
     both, one_sided = linear.blocks(status, linear.under(status, begun))
-    band = model.contact_pattern.added(tangent(solver.scene, there.state), [both])
-    step = 1e-7 * solver.solve(there.state, band, one_sided, -load / np.linalg.norm(load))
+    assert one_sided is not None
+    band = tangent(solver.scene, there.state)
+    system = ContactSystem(solver.sides, band, there.state, np.zeros(model.size), 0)
+    step = 1e-7 * system.solve(-load / np.linalg.norm(load), both + one_sided)
     change = (held(step).residual - held(-step).residual) / 2e-7
     np.testing.assert_allclose(change, load / np.linalg.norm(load), atol=1e-4)
 

@@ -94,6 +94,10 @@ class SurfaceFrictionFollower(FrictionFollower):
         along = self._plate.at(self.here.height).along if isinstance(self._plate, SlidObject) else 0.0
         return self._contact.points(x)[..., :Z] - [along, 0.0]
 
+    def _signs(self) -> None:
+        """Directions of slip are not kept: that of a point that comes to touch is not that of its neighbour."""
+        return
+
     def _ahead(self, height: float) -> Array:
         """The same at a place of the path ahead, or where points will touch before it, as in the solid."""
         here, travel = self.here, height - self.here.height

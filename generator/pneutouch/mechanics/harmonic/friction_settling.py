@@ -21,9 +21,10 @@ from pneutouch.mechanics.harmonic.friction import (
     lengths,
     secants,
 )
+from pneutouch.mechanics.solid.friction_linear import LinearContact
 from pneutouch.mechanics.solid.friction_newton import SETTLING, FrictionSolver, HeldState
-from pneutouch.mechanics.solid.friction_settling import LinearContact
 from pneutouch.mechanics.solid.friction_status import PointStatus, PointTractions
+from pneutouch.mechanics.solid.friction_system import ContactSystem
 
 
 @dataclass(frozen=True)
@@ -139,7 +140,7 @@ class SurfaceFrictionSolver(FrictionSolver):
         assert isinstance(here.points, SurfacePoints)
         return SurfaceLinearContact(self.solid, self.step, here.touch, here.points, held)
 
-    def by_height(self, held: HeldState, band: Array, down: float) -> tuple[Array, float, float]:
+    def by_height(self, held: HeldState, system: ContactSystem, down: float) -> tuple[Array, float, float]:
         """Rate of the unknowns (size,), force on the object against its path and its rate, by the place on the path.
 
         Points that slid in the step slide on where that lengthens their path, else they stick.
@@ -155,9 +156,9 @@ class SurfaceFrictionSolver(FrictionSolver):
             springs = step.spring_form(slope, touching & ~on, sign, np.where(on, turn, 0.0))
             follows = step.sliding_form(load, touch, sign)
             form = pressed + springs if follows is None else pressed + springs + follows
-            full = self.solid.contact_pattern.added(band, [contact.form_blocks(springs)])
-            one_sided = None if follows is None else contact.form_blocks(follows)
-            move = self.solve(held.state, full, one_sided, self.solid.push(contact.load_forces(-(form @ drift))))
+            blocks = contact.form_blocks(springs if follows is None else springs + follows)
+            push = self.solid.push(contact.load_forces(-(form @ drift)))
+            move = system.whole(system.solve(push, blocks))
             gone = contact.points(self.solid.expand(move)) - drift
             pressing = np.where(touching, contact.stiffness * np.einsum("...i,...i->...", normal, gone), 0.0)
             steeper = np.einsum("...i,...ij,...j->...", slope, touch.curve, gone[..., :Z]) / secants(slope)

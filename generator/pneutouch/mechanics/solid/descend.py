@@ -14,6 +14,8 @@ JUMP_WITHIN = 5.0e-4
 #: How far past a stall a second equilibrium is first looked for, in R0.
 _BEYOND_STALL = 3.5e-3
 _MOST_TRIES = 40
+#: How often, with friction, the end of a suspect step is tried again from half way: in most presses that is enough.
+_RETRIES = 2
 #: Two equilibria whose positions differ by more than this, in R0, are two.
 _APART = 1.0e-3
 #: How often the wall's speed grows at least over three states that run into a limit point.
@@ -59,14 +61,18 @@ def _close_in(follower: PathFollower, end: float) -> PathJump | None:
     A suspect height may prove sound when approached in shorter steps, so the last bracket is repeated in short steps.
     """
     follower.path.pop()
+    begun = follower.here
     beyond: PlateState | NewtonFailure = NewtonFailure("no equilibrium follows without a jump")
     bad, tried_from_here = end, False
+    retries = _RETRIES if follower.here.friction is not None else 0
     for _ in range(_MOST_TRIES):
         here = follower.here
         closed = follower.left(bad) <= JUMP_WITHIN
         if closed and tried_from_here:
             break
-        height = bad if closed else 0.5 * (here.height + bad)
+        again = retries > 0 and not tried_from_here and here is not begun
+        retries -= again
+        height = bad if closed or again else 0.5 * (here.height + bad)
         other = follower.solve(height)
         if isinstance(other, NewtonFailure) or not _sound(follower.path, other):
             beyond, bad, tried_from_here = other, height, True
@@ -74,7 +80,7 @@ def _close_in(follower: PathFollower, end: float) -> PathJump | None:
         follower.path.append(other)
         if follower.left(end) <= 1.0e-12:
             return None
-        bad, tried_from_here = end if closed else bad, False
+        bad, tried_from_here = end if closed or again else bad, False
     if isinstance(beyond, NewtonFailure):
         return _past_a_stall(follower, beyond)
     return _jump(follower.path, beyond)

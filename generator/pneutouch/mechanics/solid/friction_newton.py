@@ -9,14 +9,16 @@ half way after 739. The line search goes by the energy with the largest traction
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from pneutouch.arrays import Array
 from pneutouch.mechanics.solid.contact import ContactEvaluation
 from pneutouch.mechanics.solid.friction import FrictionPoints, FrictionStep, FrictionTerm
-from pneutouch.mechanics.solid.friction_settling import LinearContact, StepSettling
+from pneutouch.mechanics.solid.friction_linear import LinearContact
+from pneutouch.mechanics.solid.friction_settling import StepSettling
+from pneutouch.mechanics.solid.friction_system import ContactSystem
 from pneutouch.mechanics.solid.general_band import OneSidedBlocks
 from pneutouch.mechanics.solid.line_search import line_search
 from pneutouch.mechanics.solid.newton import (
@@ -28,11 +30,13 @@ from pneutouch.mechanics.solid.newton import (
     downhill,
     evaluate,
     full_tangent,
-    rank_one,
     tangent,
 )
 
 _MOST = 24
+#: A full step that leaves no more than this share of the residual is taken without a search. The energy with the
+#: largest tractions held is not that of points that slide: by it alone, steps next to a solution were cut by half.
+_BALANCES = 0.5
 #: Rounds in which is settled which points slide on.
 SETTLING = 6
 
@@ -66,8 +70,13 @@ class FrictionSolver:
         self.scene, self.step, self.sides = scene, step, sides
         self.solid = scene.solid
 
-    def minimise(self, x: Array, max_iterations: int = _MOST) -> SlidingResult | NewtonFailure:
-        """Equilibrium near x (n_nodes, 2). Returns the state, or why there is none; never an unconverged state."""
+    def minimise(
+        self, x: Array, kept: Array | None = None, max_iterations: int = _MOST
+    ) -> SlidingResult | NewtonFailure:
+        """Equilibrium near x (n_nodes, 2). Returns the state, or why there is none; never an unconverged state.
+
+        kept: signs of slip (n_edges, n_points) of the points in the first step, see `friction_settling`.
+        """
         state = evaluate(self.scene, x)
         if state is None:
             return NewtonFailure("the starting guess turns the wall inside out")
@@ -76,7 +85,7 @@ class FrictionSolver:
             size = float(np.linalg.norm(here.residual))
             if size <= RESIDUAL * here.scale and left <= GAIN * self._energy_scale(here):
                 return SlidingResult(here, iteration)
-            step = self.direction(here)
+            step = self.direction(here, kept if iteration == 0 else None)
             slope = float(step @ here.residual)
             if slope >= 0.0:
                 step = self._held_step(here)
@@ -103,13 +112,13 @@ class FrictionSolver:
     def _energy_scale(self, here: HeldState) -> float:
         return here.state.local.energy + here.scale * self.solid.wall
 
-    def direction(self, here: HeldState) -> Array:
+    def direction(self, here: HeldState, kept: Array | None = None) -> Array:
         """Newton step (size,): which points touch, stick and slide is settled inside the linear model; with the largest
         tractions held where the consistent one is not definite or does not settle."""
         band = tangent(self.scene, here.state)
-        for held in (False, True):
-            step = StepSettling(self.sides, here.state, band, self._linear(here, held)).step()
-            if step is not None:
+        for model in (replace(self._linear(here, False), kept=kept), self._linear(here, True)):
+            step = StepSettling(self.sides, here.state, band, model).step()
+            if step is not None and np.isfinite(step).all():
                 break
         assert step is not None
         return step
@@ -124,20 +133,17 @@ class FrictionSolver:
         band = self.solid.contact_pattern.added(full_tangent(self.scene, here.state), [stick])
         return downhill(here.state, band, here.residual).step
 
-    def solve(self, state: SolverState, band: Array, one_sided: Array | None, load: Array) -> Array:
-        """-(K + c g g')^-1 load (size,), g the gradient of the volume and c the stiffness of the filling."""
-        if one_sided is None:
-            return rank_one(state, band, load).step
-        solved = self.sides.solve(band, one_sided, np.stack([-load, state.by_volume], axis=1))
-        plain, soft = solved.T
-        rate = state.filling.rate
-        return np.asarray(
-            plain - soft * (rate * float(state.by_volume @ plain) / (1.0 + rate * float(state.by_volume @ soft)))
-        )
+    def reached(self, held: HeldState) -> ContactSystem:
+        """Wall, filling and the points that touch, without friction; what the contact does not reach is eliminated."""
+        traction = held.touch.traction
+        touching = np.flatnonzero(traction.reshape(len(traction), -1).any(axis=1))
+        first = self.sides.first_unknown(int(touching[0])) if touching.size else 0
+        band = full_tangent(self.scene, held.state)
+        return ContactSystem(self.sides, band, held.state, np.zeros(self.solid.size), first)
 
-    def by_height(self, held: HeldState, band: Array, down: float) -> tuple[Array, float, float]:
+    def by_height(self, held: HeldState, system: ContactSystem, down: float) -> tuple[Array, float, float]:
         """Rate of the unknowns (size,), force on the plate and its rate, by the plate's height where it goes on;
-        band: the tangent without friction; down: 1 while the plate comes down, -1 while it goes up.
+        system: `reached` there; down: 1 while the plate comes down, -1 while it goes up.
 
         Points that slid in the step slide on where that lengthens their path, else they stick.
         """
@@ -150,8 +156,8 @@ class FrictionSolver:
             sticking = (points.sticking | points.sliding) & (sign == 0.0)
             follow, stick = step.rate(sign, slope), np.where(sticking, step.stiffness, 0.0)
             load = contact.force(normal, slope) + step.force(follow * normal - stick * slope / secant, slope)
-            full = solid.contact_pattern.added(band, [step.stick(sticking, slope)])
-            move = self.solve(held.state, full, step.slide(points.traction, touch, sign), solid.push(load))
+            both, one_sided = step.stick(sticking, slope), step.slide(points.traction, touch, sign)
+            move = system.whole(system.solve(solid.push(load), both if one_sided is None else both + one_sided))
             nodes = solid.expand(move)
             r, z = contact.positions(nodes)
             pressing = normal * (1.0 + slope * r - z)
@@ -168,15 +174,21 @@ class FrictionSolver:
         return move, force, float(np.vdot(contact.weight, pressing + along * slope / secant + turned))
 
     def _search(self, here: HeldState, step: Array, slope: float) -> HeldState | None:
-        """The state at the end of a line search by the energy with friction held; None where no step lowers it."""
+        """The state at the end of a step that balances the forces better, else of a line search by the energy with
+        friction held; None where no step lowers it."""
         move = self.solid.expand(step)
         state = here.state
         noise = 1.0e-13 * (abs(here.energy) + state.local.energy + self.solid.wall)
 
         def trial(share: float) -> tuple[float, Callable[[], HeldState]] | None:
-            there = evaluate(self.scene, state.x + share * move)
+            there = whole if share == 1.0 else evaluate(self.scene, state.x + share * move)
             if there is None:
                 return None
             return there.energy + here.term.energy(there.x) - here.energy, lambda: self.hold(there)
 
+        whole = evaluate(self.scene, state.x + move)
+        if whole is not None:
+            held = self.hold(whole)
+            if float(np.linalg.norm(held.residual)) <= _BALANCES * float(np.linalg.norm(here.residual)):
+                return held
         return line_search(trial, step, slope, noise)

@@ -16,7 +16,7 @@ from pneutouch.mechanics.solid.friction_newton import FrictionSolver, SlidingRes
 from pneutouch.mechanics.solid.general_band import OneSidedBlocks
 from pneutouch.mechanics.solid.indenter import Indenter
 from pneutouch.mechanics.solid.model import SolidModel
-from pneutouch.mechanics.solid.newton import NewtonFailure, SolidScene, evaluate, full_tangent, stability
+from pneutouch.mechanics.solid.newton import NewtonFailure, SolidScene, evaluate, stability
 from pneutouch.mechanics.solid.supply import Supply
 from pneutouch.mechanics.solid.terms import TermState
 
@@ -67,7 +67,7 @@ class FrictionFollower(PathFollower):
         held = solver.hold(state)
         touching, none = held.points.sticking | held.points.sliding, np.zeros_like(held.points.sliding)
         held = replace(held, points=replace(held.points, sticking=touching, sliding=none))
-        move, force, stiffness = solver.by_height(held, full_tangent(solver.scene, state), self.down)
+        move, force, stiffness = solver.by_height(held, solver.reached(held), self.down)
         rate = -state.filling.rate * float(state.by_volume @ move)
         by_height = self._solid.expand(move)
         return replace(here, force=force, by_height=by_height, stiffness=stiffness, pressure_rate=rate)
@@ -80,12 +80,25 @@ class FrictionFollower(PathFollower):
         """State at `height` from the extrapolated path; not kept."""
         assert self.here.friction is not None
         solver = self._solver(height, _known(self.here.friction.rest, self._ahead(height)))
-        solved = solver.minimise(self._extrapolate(height))
+        kept = self._signs() if len(self.path) > 1 else None
+        solved = solver.minimise(self._extrapolate(height), kept)
         if isinstance(solved, NewtonFailure):
-            solved = solver.minimise(self.here.state.x)
+            solved = solver.minimise(self.here.state.x, kept)
         if isinstance(solved, NewtonFailure):
             return solved
         return friction_plate_state(solver, solved, self.here, self.down)
+
+    def _signs(self) -> Array | None:
+        """Signs of slip (n_edges, n_points) of the newest state; points that do not touch have that of the next one
+        towards the clamp, and beyond the contact that of its edge."""
+        assert self.here.friction is not None
+        points = self.here.friction.points
+        sign = np.where(points.sliding, np.sign(points.slip), 0.0)
+        touching = np.flatnonzero(points.sticking | points.sliding)
+        if touching.size == 0:
+            return sign
+        last = np.searchsorted(touching, np.arange(sign.size), side="right") - 1
+        return np.asarray(sign.ravel()[touching[np.maximum(last, 0)]].reshape(sign.shape))
 
     def _ahead(self, height: float) -> Array:
         """Radii at which points are, or will touch: the gap before the contact's edge opens with the square of the
@@ -133,10 +146,9 @@ def friction_plate_state(
         terms=(*held.state.terms, there),
     )
     scene = replace(solver.scene, terms=(*solver.scene.terms, held.term))
-    band = full_tangent(solver.scene, held.state)
-    move, force, stiffness = solver.by_height(held, band, down)
+    system = solver.reached(held)
+    move, force, stiffness = solver.by_height(held, system, down)
     assert term.blocks is not None
-    whole = solver.solid.contact_pattern.added(band, [term.blocks])
     rate = -state.filling.rate * float(state.by_volume @ move)
     return PlateState(
         height=step.plate.height,
@@ -147,6 +159,6 @@ def friction_plate_state(
         stiffness=stiffness,
         by_height=solver.solid.expand(move),
         pressure_rate=rate,
-        stable=stability(scene, state, band=whole).stable,
+        stable=system.definite(term.blocks) or stability(scene, state).stable,
         friction=friction,
     )

@@ -81,7 +81,7 @@ class ContactModel:
     """One sensor under its contact at n ascending driving pressures, MPa.
 
     ``states`` are those of the solid where it has been solved already, at these or at other driving pressures; between
-    them, and three pressures at the least, the logarithm of the figures over those under the plate is straight.
+    them, and ``least`` pressures, the logarithm of the figures over those under the plate is straight.
     What another modulus or friction changes is solved at the lowest and the highest pressure and is straight between,
     unless an event ends the range. ``fitted_spread`` is the standard uncertainty of the coefficient where a calibration
     fitted it.
@@ -91,6 +91,7 @@ class ContactModel:
     pressures: tuple[float, ...]
     states: Sequence[SensorState] = ()
     fitted_spread: float | None = None
+    least: int = 3
 
     @cached_property
     def logs(self) -> Array:
@@ -157,7 +158,7 @@ class ContactModel:
     @cached_property
     def _solved(self) -> tuple[Array, Array]:
         """Driving pressures (k,) that the sensor is solved at, and the logarithms of its figures (figures, k)."""
-        return solved_at(self.sensor, self.pressures, self.states)
+        return solved_at(self.sensor, self.pressures, self.states, self.least)
 
     def _change(self, sensor: Sensor) -> Array:
         """How the logarithms of another sensor under its contact differ, less what they do under the plate, (figures,

@@ -14,9 +14,6 @@ from pneutouch.mechanics.uncertainty.source import CONTACT_FIGURES, FIGURES
 SAME = 1e-6
 """Driving pressures nearer to each other than this, MPa, are one."""
 
-_LEAST = 3
-"""A span of driving pressures is solved at no fewer: both ends and its middle."""
-
 
 @lru_cache(maxsize=128)
 def pressed_logs(sensor: Sensor, pressures: tuple[float, ...]) -> Array:
@@ -50,11 +47,13 @@ def state_logs(states: Sequence[SensorState], correction: ResponseCorrection | N
         return np.asarray(np.log(rows))
 
 
-def solved_at(sensor: Sensor, pressures: Sequence[float], states: Sequence[SensorState]) -> tuple[Array, Array]:
+def solved_at(
+    sensor: Sensor, pressures: Sequence[float], states: Sequence[SensorState], least: int = 3
+) -> tuple[Array, Array]:
     """Driving pressures (k,) from which those at ``pressures`` follow, and the logarithms of the figures (figures, k).
 
     ``states`` of the sensor are taken as they are. What lies beyond them is solved at its ends, without the highest
-    that the solid cannot be driven to, and the middle of all where there are fewer than `_LEAST` then.
+    that the solid cannot be driven to, and the middle of all where there are fewer than ``least`` then.
     """
     given, bare = state_logs(states, sensor.correction), sensor.replace(waves=0)
     known = {state.driving_pressure: given[:, k] for k, state in enumerate(states)}
@@ -66,7 +65,7 @@ def solved_at(sensor: Sensor, pressures: Sequence[float], states: Sequence[Senso
             known.update(zip(some, solved.T, strict=True))
             break
     between_them = any(not _among(p, known) for p in pressures)
-    if between_them and 2 <= len(known) < _LEAST:
+    if between_them and 2 <= len(known) < least:
         middle = 0.5 * (min(known) + max(known))
         known[middle] = pressed_logs(bare, (middle,))[:, 0]
     if not known:
