@@ -105,20 +105,21 @@ def _under_contact(variant: Sensor, plate: ResinCurve, states: Sequence[SensorSt
     from pneutouch.mechanics.uncertainty import FIGURES, ContactModel
     from pneutouch.mechanics.uncertainty.contact_presses import pressed_logs
 
-    at = plate.driving_pressure_kPa
+    at = plate.driving_pressure_kPa * KPA
     s, end = FIGURES.index("sensitivity_kPa_per_N"), FIGURES.index("range_end_mm")
-    few = np.array([at[0], at[-1]])
-    ends = ContactModel(variant, tuple((few * KPA).tolist()), states).logs
+    lowest, highest = float(at[0]), float(at[-1])
+    ends = ContactModel(variant, (lowest, highest), states).logs
     if states or np.abs(ends[end] - np.log(variant.protocol.depth)).max() < _AT_DEPTH:
-        ratio = ContactModel(variant, tuple((at * KPA).tolist()), states, least=2).ratio[s]
+        ratio = ContactModel(variant, tuple(at.tolist()), states, least=2).ratio[s]
         kept = np.isfinite(ratio)
         values, model = np.exp(ratio[kept]) * plate.sensitivity_kPa_per_N[kept], "atlas corrected by the solid"
-        return ResinCurve(at[kept], values, model) if kept.sum() > 1 else None
-    middle = 0.5 * (at[0] + at[-1])
-    three = np.append(ends[s], pressed_logs(variant.replace(waves=0), (middle * KPA,))[s])
+        return ResinCurve(at[kept] / KPA, values, model) if kept.sum() > 1 else None
+    middle = 0.5 * (lowest + highest)
+    three = np.append(ends[s], pressed_logs(variant.replace(waves=0), (middle,))[s])
     if not np.isfinite(three).all():
         return None
-    return ResinCurve(at, np.exp(np.polyval(np.polyfit([*few, middle], three, 2), at)), "solid")
+    parabola = np.polyfit([lowest, highest, middle], three, 2)
+    return ResinCurve(at / KPA, np.exp(np.polyval(parabola, at)), "solid")
 
 
 def _by_model(variant: Sensor, highest: float, model: str, closure: str | None) -> ResinCurve | None:

@@ -14,7 +14,7 @@ from pneutouch.mechanics.solid.newton import SolverState
 
 class ContactSystem:
     """K + c g g', K a band, g the gradient of the volume and c the stiffness of the filling, the unknowns before
-    ``first`` eliminated once; ``load`` (size,) is what pulls on the unknowns besides the contact."""
+    ``first`` eliminated once; ``load`` (size,) are all forces but those of the contact."""
 
     def __init__(self, sides: OneSidedBlocks, band: Array, state: SolverState, load: Array, first: int) -> None:
         self.sides, self.state = sides, state
