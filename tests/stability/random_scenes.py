@@ -1,6 +1,7 @@
 """Random presses: objects, friction, walls, resins, dead volumes, driving pressures, with a base and without.
 
-``python -m tests.stability.random_scenes [FIRST LAST]`` prints the table of how the presses of these domes end.
+``python -m tests.stability.random_scenes [FIRST LAST]`` prints the table of how the presses of these domes end, and which
+end before their depth.
 """
 
 from __future__ import annotations
@@ -165,11 +166,13 @@ def ends(seed: int) -> list[str]:
 
 
 def main(words: list[str]) -> None:
-    """Print the table of ends."""
+    """Print the table of ends, and the presses that end before their depth."""
     seeds = range(*(int(word) for word in words)) if words else range(DOMES)
-    counts = Counter(kind for seed in seeds for kind in ends(seed))
+    kinds = {f"{seed}.{one}": kind for seed in seeds for one, kind in enumerate(ends(seed))}
+    counts = Counter(kinds.values())
     rows = [f"| {kind} | {count} |" for kind, count in counts.most_common()]
-    sys.stdout.write("\n".join([f"| end | of {counts.total()} |", "| --- | ---: |", *rows, ""]))
+    before = [f"{name} {kind}" for name, kind in kinds.items() if kind != "depth"]
+    sys.stdout.write("\n".join([f"| end | of {counts.total()} |", "| --- | ---: |", *rows, "", *before, ""]))
 
 
 if __name__ == "__main__":
