@@ -54,5 +54,5 @@ def _between(here: Array, there: Array, share: float | Array) -> Array:
 
 def touched(tractions: PointTractions, before: int | None = None) -> Index:
     """Edges of the outer wall, of those before a number, with points in contact."""
-    meets = tractions.normal > 0.0
-    return np.flatnonzero(meets.any(axis=tuple(range(1, meets.ndim)))[:before])
+    normal = tractions.normal[:before]
+    return np.flatnonzero((normal > 0.0).any(axis=tuple(range(1, normal.ndim))))
