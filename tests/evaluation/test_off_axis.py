@@ -6,6 +6,7 @@ import pytest
 from pneutouch.catalogue import Library
 from pneutouch.catalogue.scene import load_scene
 from pneutouch.errors import InputError
+from pneutouch.evaluation.contact_object import object_section
 from pneutouch.evaluation.evaluate import evaluate, sensor_of
 from pneutouch.evaluation.fitted import check_fitted
 from pneutouch.mechanics.atlas_states import outside_atlas
@@ -14,6 +15,7 @@ from pneutouch.parts import assemble
 from pneutouch.workflows.select.base import check_central
 
 BALL = {"contact.object": "ball", "contact.ball_radius_mm": 8.0, "contact.offset_mm": 2.0}
+EDGE = {"contact.object": "edge", "contact.edge_radius_mm": 3.0}
 SHORT = {"pneumatics.driving_pressures_kPa": [0.0], "indentation.depth_mm": 3.0, "indentation.steps": 6}
 
 
@@ -22,7 +24,9 @@ def _sensor(changes):
 
 
 @pytest.mark.parametrize(
-    ("changes", "why"), [(BALL, "2 mm off the axis"), ({"contact.tilt_deg": 5.0}, "leans by 5°")], ids=["ball", "plate"]
+    ("changes", "why"),
+    [(BALL, "2 mm off the axis"), ({"contact.tilt_deg": 5.0}, "leans by 5°"), (EDGE, "no body of revolution: edge of")],
+    ids=["ball", "plate", "edge"],
 )
 def test_other_models_refuse_by_name_with_the_reason(changes, why):
     for model in ("membrane", "atlas", "solid"):
@@ -127,8 +131,46 @@ def test_friction_holds_a_ball_that_would_slide_off():
     assert state["off_axis"]["sideways_force_N"][-1] < 0.5 * without["off_axis"]["sideways_force_N"][-1]
 
 
-@pytest.mark.parametrize(("key", "value"), [("contact.offset_mm", 2.0), ("contact.tilt_deg", 5.0)])
+@pytest.mark.parametrize(
+    ("changes", "key", "text"),
+    [
+        ({**EDGE, "contact.edge_radius_mm": 0.2}, "contact.edge_radius_mm", "at least 0.36 mm"),
+        ({**EDGE, "contact.offset_mm": 12.0}, "contact.offset_mm", "at most 11.9 mm"),
+    ],
+)
+def test_an_edge_that_the_mesh_or_the_dome_does_not_take_is_refused_with_what_works(changes, key, text):
+    with pytest.raises(InputError, match=text) as caught:
+        evaluate("paper-dome", changes, model=USUAL)
+    assert (caught.value.key, caught.value.value) == (key, changes[key])
+
+
+def test_the_section_has_a_bar_where_it_stands():
+    section = object_section(_sensor({**EDGE, "contact.offset_mm": 2.0}))
+    assert section is not None
+    x, z = section[~np.isnan(section[:, 0])].T
+    assert (x.min(), x.max()) == pytest.approx((-1.0, 5.0))
+    # The nose touches the sphere of 10.75 mm where the line of their centres meets it.
+    centre = np.sqrt(13.75**2 - 2.0**2)
+    assert z.min() == pytest.approx(centre - 3.0, abs=1e-5)
+    assert np.isclose(z[np.isclose(x, 5.0)], centre).any() and z.max() == pytest.approx(centre + 12.0, abs=1e-5)
+
+
+@pytest.mark.slow
+def test_a_cylinder_across_the_dome_pushes_straight_down():
+    lying = {"contact.object": "cylinder", "contact.cylinder_radius_mm": 12.0}
+    (state,) = evaluate("paper-dome", {**lying, **SHORT}, model=USUAL).prediction.document()["states"]
+    assert np.abs(state["off_axis"]["sideways_force_N"]).max() < 1e-6
+    round_, flat = ({"contact.object": "ball", "contact.ball_radius_mm": 12.0}, {})
+    ends = [evaluate("paper-dome", {**c, **SHORT}).prediction.states[0].force[-1] for c in (round_, flat)]
+    # It meets more of the dome than a ball of its radius and less than a plate.
+    assert ends[0] < state["curve"]["contact_force_N"][-1] < ends[1]
+
+
+@pytest.mark.parametrize(
+    ("key", "value"), [("contact.offset_mm", 2.0), ("contact.tilt_deg", 5.0), ("contact.object", "edge")]
+)
 def test_a_fit_refuses_it_by_its_key(key, value):
     with pytest.raises(InputError, match="atlas does not cover") as caught:
-        check_fitted(load_scene("paper-dome", {key: value}), _sensor({key: value}))
+        changes = EDGE if value == "edge" else {key: value}
+        check_fitted(load_scene("paper-dome", changes), _sensor(changes))
     assert (caught.value.key, caught.value.value) == (key, value)

@@ -19,6 +19,8 @@ from pneutouch.mechanics.solid.indenter import (
     RigidObject,
     ball,
     cone,
+    cylinder,
+    edge,
     first_contact,
     profile,
     ring,
@@ -31,7 +33,7 @@ _AT_ONCE = 1e-6
 """Share of R0 within which the contact reaches an edge at first touch."""
 
 _FARTHEST = math.sin(math.radians(60.0))
-"""Offset of a ball that touches a sphere at 60 degrees to the axis, over the distance of their centres."""
+"""Offset of a round object that touches a sphere at 60 degrees to the axis, over the distance of their centres."""
 
 _POINTS = 2001
 """Points of the unloaded dome that an object may touch first."""
@@ -43,6 +45,8 @@ _MAKE = {
     "ball": lambda sizes: ball(sizes["ball_radius_mm"]),
     "cone": lambda sizes: cone(math.radians(sizes["cone_half_angle_deg"]), sizes["cone_tip_radius_mm"]),
     "ring": lambda sizes: ring(sizes["ring_radius_mm"], sizes["ring_section_radius_mm"]),
+    "edge": lambda sizes: edge(sizes["edge_radius_mm"]),
+    "cylinder": lambda sizes: cylinder(sizes["cylinder_radius_mm"]),
     "profile": lambda sizes: profile([ProfileVertex(*corner) for corner in sizes["profile_mm"]]),
 }
 
@@ -125,7 +129,8 @@ def _check_offset(scene: ResolvedDesign, sensor: Sensor) -> None:
         )
     else:
         largest = (reach + test.body.smallest) * _FARTHEST
-        problem = "the ball would touch the dome on a flank steeper than 60 degrees, or beyond it"
+        name = scene.design.contact.object
+        problem = f"the {name} would touch the dome on a flank steeper than 60 degrees, or beyond it"
     if test.offset > largest:
         raise InputError(
             problem,
@@ -137,19 +142,25 @@ def _check_offset(scene: ResolvedDesign, sensor: Sensor) -> None:
 
 
 def object_section(sensor: Sensor) -> Array | None:
-    """Section (n, 2) of the object, r and z in mm, at first contact with the unloaded dome; None for a plate."""
+    """Section (n, 2) of the object in the plane of symmetry, x and z in mm, at first contact with the unloaded dome;
+    a row of NaN lies between its halves. None for a plate."""
     body = sensor.protocol.body
     if body is None:
         return None
     reach = _DRAWN * (sensor.dome.inner_radius + sensor.dome.wall_thickness)
-    return body.at(_at_rest(body, sensor)[0]).outline(reach)
+    half = body.at(_at_rest(body, sensor)[0]).outline(reach)
+    section = np.concatenate([half * [-1.0, 1.0], [[np.nan, np.nan]], half])
+    section[:, 0] += sensor.protocol.offset
+    return np.asarray(section)
 
 
 def _at_rest(body: RigidObject, sensor: Sensor) -> tuple[float, float]:
-    """Height of the object at first contact with the unloaded dome, and the radius of that contact, mm."""
+    """Height of the object at first contact with the unloaded dome, and the distance of that contact from its axis,
+    mm."""
+    # An object off the axis touches first on its side of the plane of symmetry.
     angle = np.linspace(0.0, 0.5 * np.pi, _POINTS)
     outer = sensor.dome.inner_radius + sensor.dome.wall_thickness
-    return first_contact(body, outer * np.sin(angle), outer * np.cos(angle))
+    return first_contact(body, np.abs(outer * np.sin(angle) - sensor.protocol.offset), outer * np.cos(angle))
 
 
 def check_first_touch(scene: ResolvedDesign, prediction: SensorPrediction) -> None:

@@ -90,9 +90,12 @@ def contact_ratio(
 
 
 def plate_alone(sensor: Sensor) -> Sensor:
-    """The sensor under a plate without friction; one that is wide enough where an object was in its place."""
+    """The sensor under a plate without friction; one that is wide enough where an object was in its place.
+
+    A place off the axis and an object that lies across the dome are kept: the correction is axisymmetric.
+    """
     protocol = sensor.protocol
-    if protocol.other_contact is None:
+    if protocol.other_contact is None or (protocol.body is not None and protocol.body.lying):
         return sensor
     plate = protocol.plate_radius if protocol.body is None else max(protocol.plate_radius, 2 * sensor.dome.inner_radius)
     return sensor.replace(body=None, plate_rim=None, friction=0.0, plate_radius=plate)

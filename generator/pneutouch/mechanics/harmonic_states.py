@@ -11,7 +11,7 @@ from pneutouch.arrays import Array
 from pneutouch.errors import ComputationError, InputError
 from pneutouch.mechanics.events import range_end
 from pneutouch.mechanics.harmonic.press import OffAxisPath, OffAxisPress
-from pneutouch.mechanics.harmonic.surface import PlacedObject
+from pneutouch.mechanics.harmonic.surface import LyingObject, PlacedObject
 from pneutouch.mechanics.models import HARMONICS_SETTLED
 from pneutouch.mechanics.prediction import ModelResult, OffAxisCurve, SensorState
 from pneutouch.mechanics.response import Figures, figures
@@ -67,7 +67,7 @@ def _check_clearance(sensor: Sensor, probe: StrainProbe, free: FreeState) -> Non
     """Raise InputError for an object that would come down to the connector within the depth."""
     test = sensor.protocol
     travel = _free_travel(sensor, probe, free)
-    if test.off_axis is None or travel > test.depth:
+    if not (test.offset or test.tilt) or travel > test.depth:
         return
     name, value = ("tilt", test.tilt) if test.tilt else ("offset", test.offset)
     low, high = 0.0, value
@@ -101,7 +101,7 @@ class _Curve(NamedTuple):
     rise: Array
 
     @property
-    def sensitivity(self) -> float | None:
+    def sensitivity_kPa_per_N(self) -> float | None:
         """Sensitivity (kPa/N), where the range has one."""
         fit = figures(self.indentation, self.force, self.rise / KPA)
         return None if fit is None else fit.sensitivity_kPa_per_N
@@ -120,8 +120,8 @@ def change(before: _Curve, after: _Curve) -> float:
         (float(np.interp(end, before.indentation, old)), float(np.interp(end, after.indentation, new)))
         for old, new in ((before.force, after.force), (before.rise, after.rise))
     ]
-    if before.sensitivity is not None and after.sensitivity is not None:
-        pairs.append((before.sensitivity, after.sensitivity))
+    if before.sensitivity_kPa_per_N is not None and after.sensitivity_kPa_per_N is not None:
+        pairs.append((before.sensitivity_kPa_per_N, after.sensitivity_kPa_per_N))
     return max((abs(old / new - 1.0) for old, new in pairs if new), default=0.0)
 
 
@@ -144,7 +144,9 @@ def _press(sensor: Sensor, probe: StrainProbe, free: FreeState) -> OffAxisPress:
     """The sensor's test with its object in place."""
     press, test, solid = press_settings(sensor), sensor.protocol, probe.solid
     body = first_touch(solid, free, press.body, press.plate_diameter, press.plate_rim).body
-    placed = PlacedObject(body, test.offset / solid.length, test.tilt)
+    offset = test.offset / solid.length
+    lying = test.body is not None and test.body.lying
+    placed = LyingObject(body, offset) if lying else PlacedObject(body, offset, test.tilt)
     return OffAxisPress(solid, free, press, placed, probe)
 
 

@@ -157,6 +157,7 @@ def _contact(protocol: IndentationProtocol) -> str:
     if protocol.off_axis is None:
         return f"rigid {body}, {hold}, central and straight down"
     places = [f"its axis {protocol.offset:g} mm off the dome's"] if protocol.offset else []
+    places += ["endless across its plane of symmetry"] if protocol.body is not None and protocol.body.lying else []
     places += [f"leaning by {np.degrees(protocol.tilt):.4g}°"] if protocol.tilt else []
     return f"rigid {body}, {hold}, {' and '.join(places)}, straight down"
 

@@ -84,6 +84,8 @@ class IndentationProtocol:
         """How the contact is not central, in words; None where it is."""
         if self.offset:
             return f"the object stands {self.offset:g} mm off the axis"
+        if self.body is not None and self.body.lying:
+            return f"the object is no body of revolution: {self.body.label}"
         return f"the plate leans by {np.degrees(self.tilt):.4g}°" if self.tilt else None
 
     @property

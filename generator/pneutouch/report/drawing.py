@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 def section_drawing(assembly: Assembly, body: Array | None = None) -> dict[str, str]:
     """Section through the axis, and the plan from above, as SVG: ``drawing`` and ``plan``.
 
-    ``body`` (n, 2), r and z in mm, is the section of what presses the dome; drawn to scale where it is given.
+    ``body`` (n, 2), x and z in mm, is the section of what presses the dome; drawn to scale where it is given.
     """
     with figure(_WIDE, 76) as drawn:
         ax = drawn.add_subplot()
@@ -77,9 +77,8 @@ class _Section:
     def _body(self, body: Array, high: float) -> None:
         """What presses the dome, in the dashes of a neighbouring part; cut off where the drawing ends."""
         wide = self.layout.plate_radius
-        shown = (body[:, 1] <= high) & (body[:, 0] <= wide)
-        for side in (-1.0, 1.0):
-            self.ax.plot(side * np.where(shown, body[:, 0], np.nan), body[:, 1], color=INK, lw=THIN, ls=NEIGHBOUR)
+        shown = (body[:, 1] <= high) & (np.abs(body[:, 0]) <= wide)
+        self.ax.plot(np.where(shown, body[:, 0], np.nan), body[:, 1], color=INK, lw=THIN, ls=NEIGHBOUR)
 
     def _heights(self) -> None:
         layout, ax, right, plate = self.layout, self.ax, self.right, self.layout.plate_radius

@@ -110,6 +110,7 @@ def contact_body(scene: ResolvedDesign) -> tuple[str, str, str]:
     if contact.is_plate:
         return f"Ø{scene.design.indentation.plate_diameter_mm:g}", "mm", _rigid(contact, "plate", "flat, ")
     sizes = {"ball": contact.ball_radius_mm, "cone": contact.cone_tip_radius_mm, "ring": contact.ring_radius_mm}
+    sizes |= {"edge": contact.edge_radius_mm, "cylinder": contact.cylinder_radius_mm}
     if contact.object in sizes:
         return f"R{sizes[contact.object]:g}", "mm", _rigid(contact, contact.label)
     widest = max(corner[0] for corner in contact.profile_mm or [])

@@ -8,7 +8,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer, mo
 
 from pneutouch.spec.fields import EntryError, Table, number
 
-ContactKind = Literal["plate", "ball", "cone", "ring", "profile"]
+ContactKind = Literal["plate", "ball", "cone", "ring", "profile", "edge", "cylinder"]
 
 SIZES: dict[ContactKind, tuple[str, ...]] = {
     "plate": (),
@@ -16,8 +16,16 @@ SIZES: dict[ContactKind, tuple[str, ...]] = {
     "cone": ("cone_half_angle_deg", "cone_tip_radius_mm"),
     "ring": ("ring_radius_mm", "ring_section_radius_mm"),
     "profile": ("profile_mm",),
+    "edge": ("edge_radius_mm",),
+    "cylinder": ("cylinder_radius_mm",),
 }
 """Keys that each object needs; those of the plate have defaults."""
+
+LYING: tuple[ContactKind, ...] = ("edge", "cylinder")
+"""Objects that are straight across the plane of symmetry, in place of bodies of revolution."""
+
+_MOVABLE: tuple[ContactKind, ...] = ("plate", "ball", *LYING)
+"""Objects that can stand off the axis."""
 
 LARGEST = 250.0
 """Greatest radius of an object, mm: that of the greatest plate."""
@@ -59,7 +67,7 @@ class ContactTable(Table):
     """[contact]: the object that presses the sensor, straight down; centrally where it has no offset and no tilt."""
 
     object: ContactKind = Field(
-        default="plate", description="What presses the sensor: plate, ball, cone, ring or profile."
+        default="plate", description="What presses the sensor: plate, ball, cone, ring, profile, edge or cylinder."
     )
     plate_diameter_mm: float | None = number(
         None, unit="mm", low=1, high=500, help="Diameter of the flat plate; left out: that of [indentation]."
@@ -80,6 +88,12 @@ class ContactTable(Table):
     ring_section_radius_mm: float | None = number(
         None, unit="mm", low=0.05, high=LARGEST, help="Radius of the ring's round section."
     )
+    edge_radius_mm: float | None = number(
+        None, unit="mm", low=0.05, high=LARGEST, help="Radius of the nose of a bar that presses with its edge."
+    )
+    cylinder_radius_mm: float | None = number(
+        None, unit="mm", low=0.05, high=LARGEST, help="Radius of a lying cylinder."
+    )
     profile_mm: Annotated[list[list[float]], AfterValidator(_corners)] | None = Field(
         default=None,
         json_schema_extra={"unit": "mm", "low": -LARGEST, "high": LARGEST},
@@ -93,7 +107,7 @@ class ContactTable(Table):
         description="Coefficient of friction between sensor and object, from 0 to 10; inf for a surface that grips.",
     )
     offset_mm: float = number(
-        0.0, unit="mm", low=0, high=LARGEST, help="How far the axis of a plate or ball stands off the dome's, sideways."
+        0.0, unit="mm", low=0, high=LARGEST, help="How far a plate, ball, edge or cylinder stands off the dome's axis."
     )
     tilt_deg: float = number(
         0.0, unit="deg", low=0, high=45, help="How far a plate leans about its middle, towards its offset upwards."
@@ -125,10 +139,10 @@ class ContactTable(Table):
 
     @model_validator(mode="after")
     def _stands_off_the_axis(self) -> ContactTable:
-        if self.offset_mm and self.object not in ("plate", "ball"):
+        if self.offset_mm and self.object not in _MOVABLE:
             raise ValueError(
-                f"offset_mm = {self.offset_mm:g}: a {self.object} presses centrally; only a plate or a ball "
-                "can stand off the axis"
+                f"offset_mm = {self.offset_mm:g}: a {self.object} presses centrally; only a plate or a ball, an edge "
+                "or a cylinder can stand off the axis"
             )
         if self.tilt_deg and not self.is_plate:
             raise ValueError(f"tilt_deg = {self.tilt_deg:g}: only a plate can lean, not a {self.object}")
@@ -136,14 +150,20 @@ class ContactTable(Table):
 
     @property
     def off_axis(self) -> bool:
-        """Whether the object stands off the dome's axis or leans."""
-        return bool(self.offset_mm or self.tilt_deg)
+        """Whether the object stands off the dome's axis, leans or lies across it."""
+        return bool(self.offset_mm or self.tilt_deg or self.is_lying)
+
+    @property
+    def is_lying(self) -> bool:
+        """Whether the object is straight across the plane of symmetry."""
+        return self.object in LYING
 
     @property
     def place(self) -> str:
         """Where the object presses and how it leans, in words; empty where it is central and level."""
         parts = [f"{self.offset_mm:g} mm off the axis"] if self.offset_mm else []
         parts += [f"leaning by {self.tilt_deg:g}°"] if self.tilt_deg else []
+        parts += ["across the middle of the dome"] if self.is_lying and not self.offset_mm else []
         return " and ".join(parts)
 
     @property
@@ -171,6 +191,10 @@ class ContactTable(Table):
         """The object in words, with its sizes; those of a plate are not all here."""
         if self.object == "ball":
             return f"ball of {self.ball_radius_mm:g} mm radius"
+        if self.object == "edge":
+            return f"edge of a bar, rounded to {self.edge_radius_mm:g} mm"
+        if self.object == "cylinder":
+            return f"lying cylinder of {self.cylinder_radius_mm:g} mm radius"
         if self.object == "cone":
             tip, angle = self.cone_tip_radius_mm, self.cone_half_angle_deg
             return f"cone of {angle:g}° half angle with a tip of {tip:g} mm radius"

@@ -7,13 +7,13 @@ import pytest
 
 from pneutouch.mechanics.harmonic.model import HarmonicModel
 from pneutouch.mechanics.harmonic.press import OffAxisPath, OffAxisPress, OffAxisState
-from pneutouch.mechanics.harmonic.surface import PlacedObject
+from pneutouch.mechanics.harmonic.surface import LyingObject, PlacedObject, Surface
 from pneutouch.mechanics.hermite import hermite
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.solid.contact import Plate
 from pneutouch.mechanics.solid.first_touch import first_touch
 from pneutouch.mechanics.solid.indent import IndentationPath, PressSettings, indent, shut_in
-from pneutouch.mechanics.solid.indenter import RigidObject, ball
+from pneutouch.mechanics.solid.indenter import RigidObject, ball, cylinder, edge
 from pneutouch.mechanics.solid.inflate import FreeState, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
@@ -44,7 +44,9 @@ def _central(body: RigidObject | None, depth: float) -> IndentationPath:
 def _placed(body: RigidObject | None, offset: float, tilt: float, depth: float, order: int) -> OffAxisPath:
     solid, free = _dome()
     object_ = first_touch(solid, free, body, 30.0).body
-    surface = PlacedObject(object_, offset / RADIUS, np.radians(tilt))
+    lying = body is not None and body.lying
+    surface: Surface = PlacedObject(object_, offset / RADIUS, np.radians(tilt))
+    surface = LyingObject(object_, offset / RADIUS) if lying else surface
     return OffAxisPress(solid, free, _press(body, depth), surface, StrainProbe(solid)).run(order)
 
 
@@ -57,7 +59,11 @@ def test_a_central_press_is_the_solids(body: RigidObject | None, order: int, acc
     assert np.abs(ours.column("moment")).max() < 1e-6
 
 
-@pytest.mark.parametrize(("body", "offset", "tilt"), [(BALL, 2.0, 0.0), (None, 0.0, 6.0)], ids=["ball", "plate"])
+@pytest.mark.parametrize(
+    ("body", "offset", "tilt"),
+    [(BALL, 2.0, 0.0), (None, 0.0, 6.0), (edge(3.0), 1.0, 0.0)],
+    ids=["ball", "plate", "edge"],
+)
 def test_the_mirrored_scene_has_mirrored_forces(body: RigidObject | None, offset: float, tilt: float) -> None:
     one, other = _placed(body, offset, tilt, 2.0, 2), _placed(body, -offset, -tilt, 2.0, 2)
     for name, sign in (("force", 1.0), ("rise", 1.0), ("sideways", -1.0), ("moment", -1.0), ("contact_radius", 1.0)):
@@ -108,6 +114,30 @@ def test_derivatives_under_a_ball_and_on_the_base() -> None:
     state = assert_derivatives(scene, x, rng, step=1e-7, rel=1e-5)
     assert state.touch is not None and (state.touch.traction > 0.0).any()
     assert state.terms[0].energy > 0.0
+
+
+def test_a_cylinder_across_the_dome_pushes_straight_down_and_a_great_one_is_the_plate() -> None:
+    plate = _placed(None, 0.0, 0.0, 2.0, 2).states[-1]
+    apart = []
+    for radius in (1e4, 1e5):
+        lying = _placed(cylinder(radius), 0.0, 0.0, 2.0, 2).states[-1]
+        assert abs(lying.sideways) < 1e-8 * lying.force
+        assert abs(lying.moment) < 1e-7 * lying.force
+        apart.append(1.0 - lying.force / plate.force)
+    # The sag of the cylinder over the contact goes with its curvature.
+    assert 0.0 < apart[1] < 1e-3
+    assert apart[0] == pytest.approx(10.0 * apart[1], rel=0.05)
+
+
+def test_a_lying_object_is_straight_along_y_and_has_the_section_of_its_body() -> None:
+    section = cylinder(4.0)
+    x, y = np.array([0.5, 3.0, -2.0]), np.array([0.0, -6.0, 9.0])
+    under = LyingObject(section, 1.0).over(x, y)
+    np.testing.assert_allclose(under.height, 4.0 - np.sqrt(16.0 - (x - 1.0) ** 2), rtol=1e-12)
+    np.testing.assert_allclose(under.slope[:, 0], (x - 1.0) / np.sqrt(16.0 - (x - 1.0) ** 2), rtol=1e-12)
+    assert not under.slope[:, 1].any()
+    assert not under.curve[:, 1].any()
+    np.testing.assert_allclose(under.curve[:, 0, 0], 16.0 / (16.0 - (x - 1.0) ** 2) ** 1.5, rtol=1e-12)
 
 
 def test_a_leaning_plate_is_a_plane_and_has_its_rim() -> None:

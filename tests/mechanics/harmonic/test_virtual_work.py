@@ -1,5 +1,6 @@
 """Forces and moments off the axis against differences of the energy of equilibria, with the gas shut in."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -7,11 +8,11 @@ import pytest
 
 from pneutouch.mechanics.harmonic.model import HarmonicModel
 from pneutouch.mechanics.harmonic.press import OffAxisPress, OffAxisState
-from pneutouch.mechanics.harmonic.surface import PlacedObject
+from pneutouch.mechanics.harmonic.surface import LyingObject, PlacedObject
 from pneutouch.mechanics.laws import neo_hookean
 from pneutouch.mechanics.solid.first_touch import first_touch
 from pneutouch.mechanics.solid.indent import PressSettings, shut_in
-from pneutouch.mechanics.solid.indenter import RigidObject, ball
+from pneutouch.mechanics.solid.indenter import RigidObject, ball, cylinder
 from pneutouch.mechanics.solid.inflate import FreeState, state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
@@ -35,7 +36,12 @@ class _Pressed:
     def __init__(self, body: RigidObject | None, offset: float, tilt: float, depth: float) -> None:
         solid, free = _dome()
         press = PressSettings(depth=depth, steps=3, body=body)
-        self.placed = PlacedObject(first_touch(solid, free, body, 30.0).body, offset / RADIUS, tilt)
+        shape = first_touch(solid, free, body, 30.0).body
+        self.placed: LyingObject | PlacedObject
+        if body is not None and body.lying:
+            self.placed = LyingObject(shape, offset / RADIUS)
+        else:
+            self.placed = PlacedObject(shape, offset / RADIUS, tilt)
         self.press = OffAxisPress(solid, free, press, self.placed, StrainProbe(solid))
         self.end: OffAxisState = self.press.run(ORDER).states[-1]
         self.height = self.press.surface.height - self.end.indentation / RADIUS
@@ -43,7 +49,9 @@ class _Pressed:
 
     def energy(self, offset: float = 0.0, tilt: float = 0.0, up: float = 0.0) -> float:
         """Energy of wall, gas and contact (N mm) with the object moved by these (mm, rad, mm)."""
-        placed = PlacedObject(self.placed.body, self.placed.offset + offset / RADIUS, self.placed.tilt + tilt)
+        placed = replace(self.placed, offset=self.placed.offset + offset / RADIUS)
+        if isinstance(placed, PlacedObject):
+            placed = replace(placed, tilt=placed.tilt + tilt)
         scene = SolidScene(self.model, self.gas, placed.at(self.height + up / RADIUS))
         solved = minimise(scene, self.end.positions / RADIUS)
         assert not isinstance(solved, NewtonFailure)
@@ -55,7 +63,9 @@ class _Pressed:
 
 
 @pytest.mark.parametrize(
-    ("body", "offset", "tilt"), [(ball(6.0), 3.0, 0.0), (None, 1.0, np.radians(6.0))], ids=["ball", "plate"]
+    ("body", "offset", "tilt"),
+    [(ball(6.0), 3.0, 0.0), (None, 1.0, np.radians(6.0)), (cylinder(6.0), 2.0, 0.0)],
+    ids=["ball", "plate", "cylinder"],
 )
 def test_force_and_sideways_force_are_the_slopes_of_the_energy(
     body: RigidObject | None, offset: float, tilt: float

@@ -68,6 +68,41 @@ def revolved(profile: Callable[[Array], tuple[Array, Array, Array]], x: Array, y
 
 
 @dataclass(frozen=True)
+class LyingObject(Surface):
+    """A straight body across the plane of symmetry, endless along y. Its section is that of ``body`` over the distance
+    from its middle at x = ``offset``."""
+
+    body: Indenter
+    offset: float = 0.0
+
+    @property
+    def height(self) -> float:
+        """Height of its lowest line."""
+        return self.body.height
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """That of the section."""
+        return self.body.span
+
+    def at(self, height: float) -> LyingObject:
+        """The same body at another height."""
+        return replace(self, body=self.body.at(height))
+
+    def distance(self, x: Array, y: Array) -> Array:
+        """Distance from its plane of symmetry."""
+        return np.asarray(np.abs(x - self.offset) + 0.0 * y)
+
+    def over(self, x: Array, y: Array) -> SurfaceHeight:
+        """Its underside at points of any one shape."""
+        along = x - self.offset + 0.0 * y
+        height, slope, curve = self.body.underside(np.abs(along))
+        by_xy, bend = np.zeros((*along.shape, 2)), np.zeros((*along.shape, 2, 2))
+        by_xy[..., 0], bend[..., 0, 0] = np.sign(along) * slope, curve
+        return SurfaceHeight(height, by_xy, bend)
+
+
+@dataclass(frozen=True)
 class PlacedObject(Surface):
     """A body of revolution whose axis stands at x = ``offset`` and leans by ``tilt`` (rad) about the y axis through its
     lowest point, or through the middle of a plate: with a positive tilt it is lower at negative x. Only a body whose

@@ -24,6 +24,9 @@ lowest point; with these the force is within 1 % of that on a refined mesh (docs
 
 _PER_EDGE = 4.0
 
+_FLANKS = 4.0
+"""Height of a bar's sides as drawn, over the radius of its edge."""
+
 
 class Indenter(Protocol):
     """A rigid body above the dome. All lengths in one unit: mm, or R0 inside the solver."""
@@ -91,6 +94,8 @@ class RigidObject:
     pieces: the underside from the axis outwards, with its lowest point at 0; the slope is continuous.
     span:   see `Indenter`.  smallest: least radius of curvature that the mesh must follow.
     circle: radius about the axis of the centre of a round section and its radius; None for another section.
+    lying:  a straight body across the plane of symmetry, with distances from its middle in place of radii.
+    flanks: height above the centre of a round section from which a bar's vertical sides come down.
     """
 
     label: str
@@ -99,6 +104,8 @@ class RigidObject:
     smallest: float
     height: float = 0.0
     circle: tuple[float, float] | None = None
+    lying: bool = False
+    flanks: float = 0.0
 
     @cached_property
     def _table(self) -> Array:
@@ -121,6 +128,11 @@ class RigidObject:
 
     def outline(self, reach: float, count: int = 181) -> Array:
         """Its section to draw, r from 0 to ``reach``, (n, 2): a whole circle where it is round, else the underside."""
+        if self.flanks:
+            angle = np.linspace(-0.5, 0.0, count) * np.pi
+            r, z = self.smallest * np.cos(angle), self.smallest * (1.0 + np.sin(angle))
+            top = self.smallest + self.flanks
+            return np.stack([np.append(r, self.smallest), self.height + np.append(z, top)], axis=1)
         if self.circle is not None:
             centre, radius = self.circle
             angle = np.linspace(-0.5, 1.5 if centre > 0.0 else 0.5, count) * np.pi
@@ -134,13 +146,14 @@ class RigidObject:
 
     def scaled(self, factor: float) -> RigidObject:
         """The body with all lengths times a factor."""
-        return RigidObject(
-            self.label,
-            tuple(piece.scaled(factor) for piece in self.pieces),
-            (factor * self.span[0], factor * self.span[1]),
-            factor * self.smallest,
-            factor * self.height,
-            None if self.circle is None else (factor * self.circle[0], factor * self.circle[1]),
+        return replace(
+            self,
+            pieces=tuple(piece.scaled(factor) for piece in self.pieces),
+            span=(factor * self.span[0], factor * self.span[1]),
+            smallest=factor * self.smallest,
+            height=factor * self.height,
+            circle=None if self.circle is None else (factor * self.circle[0], factor * self.circle[1]),
+            flanks=factor * self.flanks,
         )
 
 
@@ -148,6 +161,16 @@ def ball(radius: float) -> RigidObject:
     """A ball of a radius (mm): an arc to 60 degrees from its lowest point."""
     body = _body("ball", [_arc(0.0, radius, 0.0)], None, _end(0.0, radius, STEEPEST), radius)
     return replace(body, circle=(0.0, radius))
+
+
+def cylinder(radius: float) -> RigidObject:
+    """A lying cylinder of a radius (mm), endless across the plane of symmetry; its section is a ball's."""
+    return replace(ball(radius), label="cylinder", lying=True)
+
+
+def edge(radius: float) -> RigidObject:
+    """An endless bar with vertical sides, its edge a half circle of a radius (mm): to 60 degrees it is a cylinder."""
+    return replace(cylinder(radius), label="edge", flanks=_FLANKS * radius)
 
 
 def cone(half_angle: float, tip: float) -> RigidObject:

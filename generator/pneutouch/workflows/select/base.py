@@ -77,7 +77,8 @@ def check_central(scene: ResolvedDesign) -> None:
     contact = scene.design.contact
     if not contact.off_axis:
         return
-    key, value = ("offset_mm", contact.offset_mm) if contact.offset_mm else ("tilt_deg", contact.tilt_deg)
+    key = "offset_mm" if contact.offset_mm else "object" if contact.is_lying else "tilt_deg"
+    value = getattr(contact, key)
     raise InputError(
         "the search is made with central and level contact",
         file=scene.where,

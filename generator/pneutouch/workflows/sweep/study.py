@@ -11,6 +11,7 @@ from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import elastomers
 from pneutouch.mechanics.models import USUAL
 from pneutouch.output.files import digest, json_bytes
+from pneutouch.spec.contact import LYING
 from pneutouch.spec.design import CALIBRATION, NO_CALIBRATION, DesignFile
 from pneutouch.spec.fields import declaration, table_of
 from pneutouch.spec.toml_text import toml_text
@@ -90,12 +91,19 @@ def _model(plan: SweepPlan, base: DesignFile) -> str:
     """The model of a plan; where it names none, the usual one of all points, or USUAL where the points differ."""
     if plan.model != USUAL:
         return plan.model
-    keys = {"contact.offset_mm": base.contact.offset_mm, "contact.tilt_deg": base.contact.tilt_deg}
-    if not any(value for key, usual in keys.items() for value in _chosen(plan, key, plan.settings.get(key, usual))):
+    contact = base.contact
+    keys: dict[str, Any] = {"contact.offset_mm": contact.offset_mm, "contact.tilt_deg": contact.tilt_deg}
+    keys |= {"contact.object": contact.object}
+    if not any(_off_axis(v) for key, usual in keys.items() for v in _chosen(plan, key, plan.settings.get(key, usual))):
         return "solid"
     points = (plan.overrides(index) for index in range(plan.count))
-    off_axis = (any(point.get(key, usual) for key, usual in keys.items()) for point in points)
+    off_axis = (any(_off_axis(point.get(key, usual)) for key, usual in keys.items()) for point in points)
     return "harmonic" if all(off_axis) else USUAL
+
+
+def _off_axis(value: Any) -> bool:
+    """Whether an offset, a tilt or an object puts the contact off the axis."""
+    return value in LYING if isinstance(value, str) else bool(value)
 
 
 def _names(plan: SweepPlan, base: DesignFile) -> set[tuple[str, str]]:
