@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: venv demo test pytest lint review ratios check-slow chart table-s1-page friction-page chart-meshes texture-page coverage-page sway-page voxel-page mixing-page atlas atlas-page lock clean
+.PHONY: venv demo test pytest lint review ratios check-slow chart table-s1-page friction-page chart-meshes texture-page coverage-page sway-page voxel-page mixing-page atlas atlas-page contact-table lock clean
 
 venv: $(VENV)/.dev
 
@@ -94,6 +94,10 @@ atlas: $(VENV)/.dev
 
 atlas-page: $(VENV)/.dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.atlas_page
+
+# The shipped table of contact that is not central; goes on where it was stopped.
+contact-table: $(VENV)/.dev
+	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.contact_table
 
 # Voxel stacks: the dithers and the rasters, measured; writes docs/voxels.md and its pictures.
 voxel-page: $(VENV)/.dev

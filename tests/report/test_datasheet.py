@@ -11,10 +11,12 @@ import pypdfium2
 import pytest
 
 from pneutouch.catalogue import load_scene
+from pneutouch.evaluation.anywhere import contact_chart
 from pneutouch.report import curves, prose
 
 SECTIONS = [
     "Performance",
+    "Contact that is not central",
     "Uncertainty",
     "Absolute maximum ratings",
     "Operating conditions",
@@ -50,7 +52,7 @@ def test_page_and_pdf_have_every_section(section, html, pdf_text):
 
 
 def test_the_page_holds_its_figures(html):
-    assert html.count("<svg") == 13
+    assert html.count("<svg") == 14
 
 
 def test_sheet_states_the_predicted_figures(built, html, pdf_text):
@@ -67,6 +69,18 @@ def test_sheet_states_the_predicted_figures(built, html, pdf_text):
     ):
         assert word in html
         assert word in text
+
+
+def test_errors_of_contact_that_is_not_central_are_those_of_the_table(evaluated, html, pdf_text):
+    evaluation = evaluated("paper-dome")
+    chart = contact_chart(evaluation.prediction, evaluation.sensor)
+    text = "\n".join(pdf_text)
+    for row in chart.rows:
+        for error in (error for state in row.errors_percent for error in state if error is not None):
+            assert f">{error:+.0f} %</td>" in html
+            assert f"{error:+.0f} %" in text
+    for share in chart.standard_uncertainties:
+        assert f"{share:.0%} at" in html
 
 
 def test_what_was_not_tested_says_so(html, pdf_text):
@@ -163,7 +177,7 @@ def test_without_the_solid_the_sheet_says_where_shapes_come_from(evaluated, page
     page = page(evaluated("fingertip-dome", model="atlas"))
     assert "build with model solid" in page
     assert "greatest principal stretch; thin" not in page
-    assert page.count("<svg") == 9
+    assert page.count("<svg") == 10
 
 
 @pytest.mark.slow

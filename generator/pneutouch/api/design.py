@@ -112,14 +112,18 @@ class Design(show.Shown):
         closure: str = "variational",
         clamp: str = "base",
         aged: bool = False,
+        contact_anywhere: bool = False,
     ) -> Prediction:
         """Predict the figures at driving pressures in kPa (None: the design's).
 
         ``model`` is "membrane", "atlas", "solid", "harmonic", "auto", the cheapest whose error meets ``tolerance``, a
-        fraction, or None: the solid, and harmonic for contact off the axis. See `evaluation.evaluate` for the rest.
-        Raises InputError where the design cannot work.
+        fraction, or None: the solid, and harmonic for contact off the axis. ``contact_anywhere`` counts an unknown
+        object and place of contact in the interval, as ``contact.anywhere`` of a design does. See
+        `evaluation.evaluate` for the rest. Raises InputError where the design cannot work.
         """
         changed, options = pressures_changed(driving_pressures_kPa), model_options(model, tolerance)
+        if contact_anywhere:
+            changed["contact.anywhere"] = True
         with named_by_keyword():
             return Prediction(evaluate(self.source, changed, closure=closure, clamp=clamp, aged=aged, **options))
 

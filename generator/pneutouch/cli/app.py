@@ -63,6 +63,13 @@ CalibrationOption = Annotated[
         autocompletion=names("calibrations"),
     ),
 ]
+AnywhereOption = Annotated[
+    bool,
+    typer.Option(
+        "--contact-anywhere",
+        help="Count an unknown object and place of contact in the interval; short for --set contact.anywhere=true.",
+    ),
+]
 ModelOption = Annotated[
     str | None,
     typer.Option(
@@ -150,6 +157,7 @@ def predict(
         bool,
         typer.Option("--aged", help="After a year in light and air: the modulus shifted by the resin's hardness then."),
     ] = False,
+    anywhere: AnywhereOption = False,
     json: JsonOption = False,
 ) -> None:
     """Predict the figures and their uncertainty."""
@@ -160,7 +168,7 @@ def predict(
 
         evaluation = evaluate(
             design,
-            changes(set_, calibration),
+            changes(set_, calibration, anywhere=anywhere),
             closure=closure,
             clamp=clamp,
             aged=aged,
@@ -230,11 +238,12 @@ def design_folder(out: Path | None) -> Path:
     return user_folder() / "designs" if out is None else out
 
 
-def changes(set_: list[str] | None, calibration: str | None = None) -> dict[str, Any]:
-    """The fields that --set changes, and their values; --calibration is one of them."""
+def changes(set_: list[str] | None, calibration: str | None = None, *, anywhere: bool = False) -> dict[str, Any]:
+    """The fields that --set changes, and their values; --calibration and --contact-anywhere are among them."""
     from pneutouch.spec.read import parse_changes
 
-    return parse_changes(set_ or []) | ({} if calibration is None else {"calibration": calibration})
+    named = {} if calibration is None else {"calibration": calibration}
+    return parse_changes(set_ or []) | named | ({"contact.anywhere": True} if anywhere else {})
 
 
 def refuse_flags(context: typer.Context, flags: Mapping[str, str], what: str, file: str) -> None:

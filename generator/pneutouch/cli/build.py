@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from pneutouch.cli.app import (
+    AnywhereOption,
     CalibrationOption,
     ClampOption,
     ClosureOption,
@@ -36,7 +37,11 @@ if TYPE_CHECKING:
     from pneutouch.printability import Finding
     from pneutouch.workflows.build.voxels import VoxelPlan
 
-_FLAGS = {"set_": "--set", **{key: f"--{key}" for key in ("calibration", "model", "tolerance", "closure", "clamp")}}
+_FLAGS = {
+    "set_": "--set",
+    "anywhere": "--contact-anywhere",
+    **{key: f"--{key}" for key in ("calibration", "model", "tolerance", "closure", "clamp")},
+}
 
 _VOXEL_FLAGS = {"voxels": "--voxels", "voxel_mode": "--voxel-mode"}
 
@@ -66,6 +71,7 @@ def build(
     tolerance: ToleranceOption = None,
     closure: ClosureOption = "variational",
     clamp: ClampOption = "base",
+    anywhere: AnywhereOption = False,
     name: Annotated[
         str | None, typer.Option(help="Name of the output folder and its files.", show_default="the design's")
     ] = None,
@@ -88,7 +94,7 @@ def build(
                 if _is_3mf(design)
                 else _evaluated(
                     design,
-                    changes(set_, calibration),
+                    changes(set_, calibration, anywhere=anywhere),
                     model,
                     tolerance,
                     name=name or _calibrated_name(design, changes(set_, calibration)),

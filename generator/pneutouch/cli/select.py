@@ -71,6 +71,7 @@ _FIELDS = {
     "dead_volume": FieldOption("setting", "dead_volume_mL"),
     "robustness": FieldOption("weights", "robustness"),
     "tunability": FieldOption("weights", "tunability"),
+    "contact_anywhere": FieldOption("weights", "contact_anywhere"),
 }
 
 

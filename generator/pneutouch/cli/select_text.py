@@ -24,7 +24,8 @@ def selection_text(selection: SelectionRun) -> str:
     """Ranked designs, or why there are none."""
     answer = selection.answer
     notes = [] if selection.by_solid is None else contact_notes(selection.by_solid, selection.base)
-    head = _HEAD if selection.by_solid is None else [*_HEAD[:-1], "plate S"]
+    head = [*_HEAD[:8], *(["place (k=1)"] if selection.problem.anywhere else []), *_HEAD[8:]]
+    head = head if selection.by_solid is None else [*head[:-1], "plate S"]
     left = [*mount_note(selection.target, selection.base), *(_rejected(one) for one in selection.rejected)]
     left += [f"left out: {name}: {why}" for name, why in selection.left_out.items()]
     if answer.designs:
@@ -43,7 +44,7 @@ def selection_text(selection: SelectionRun) -> str:
         lines += [
             "",
             "nearest:",
-            table_text(_HEAD[:-1], [["", *_row(selection, answer.nearest)]]),
+            table_text(head[:-1], [["", *_row(selection, answer.nearest)]]),
             f"it misses: {_missed(selection, answer.nearest)}",
         ]
     lines += [
@@ -91,6 +92,11 @@ def _missed(selection: SelectionRun, nearest: Candidate) -> str:
     return ", ".join(parts) or "nothing once rounded"
 
 
+def _place(choice: Candidate) -> str:
+    """What an unknown place of contact adds to the uncertainty."""
+    return "not known" if choice.place is None else f"{100 * choice.place:.0f} %"
+
+
 def _row(selection: SelectionRun, choice: Candidate) -> list[str]:
     pool = choice.pool
     return [
@@ -101,6 +107,7 @@ def _row(selection: SelectionRun, choice: Candidate) -> list[str]:
         f"{pool.pressure[0] / KPA:.2f}",
         f"{pool.response.lines.sensitivity_kPa_per_N[0]:.3f}",
         "-" if choice.contact is not None else f"{100 * choice.expanded:.0f} %",
+        *([_place(choice)] if selection.problem.anywhere else []),
         f"0-{pool.force[0]:.2f}",
         choice.ends_with,
         "..".join(f"{end:.2f}" if np.isfinite(end) else "none" for end in choice.span),

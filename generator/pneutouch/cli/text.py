@@ -36,12 +36,26 @@ def prediction_text(document: PredictionRecord) -> str:
         *_off_axis(document["states"]),
         f"error in sensitivity {far}: {error['sensitivity_basis']}",
         *_uncertainty(document["states"]),
+        *_anywhere(document.get("contact_anywhere")),
         *_viscous(document["viscous"]),
     ]
     if aged := document.get("aged"):
         ratio = f"{aged['modulus_ratio']:.3f}"
         lines.append(f"aged one year: modulus times {ratio} by its hardness; {aged['assumes']}")
     return "\n".join(lines)
+
+
+def _anywhere(contact: dict[str, Any] | None) -> list[str]:
+    """How far a force is off that is read by the central calibration, where place and object are unknown."""
+    if contact is None:
+        return []
+    if "unknown" in contact:
+        return [f"contact anywhere: not stated, {contact['unknown']}"]
+    shares = [
+        f"{state['standard_uncertainty_relative']:.0%} at {state['driving_pressure_kPa']:g} kPa"
+        for state in contact["states"]
+    ]
+    return [f"contact anywhere: standard uncertainty of the force read {', '.join(shares)}, counted in the interval"]
 
 
 def _calibrated(calibration: dict[str, Any] | None) -> list[str]:

@@ -92,3 +92,52 @@ class TradeOff:
     def known(self) -> tuple[TradeOffFront, ...]:
         """The fronts with a line to draw."""
         return tuple(front for front in self.fronts if front.sensitivity_kPa_per_N.size > 1)
+
+
+class ErrorCurves(NamedTuple):
+    """Errors of the force read (percent, (n,) at each driving pressure, NaN where the reading is not reached) over a
+    size or a place of contact, (n,)."""
+
+    along: Array
+    errors_percent: tuple[Array, ...]
+
+
+class ContactRow(NamedTuple):
+    """A contact: its object, radius of a ball and offset in mm, tilt in degrees; errors of the force read in percent by
+    driving pressure and reading, None where the reading is not reached."""
+
+    kind: str
+    radius: float | None
+    offset: float
+    tilt_deg: float
+    errors_percent: tuple[tuple[float | None, ...], ...]
+
+
+@dataclass(frozen=True)
+class ContactChart:
+    """What the reading does when contact is not central, at one or two driving pressures.
+
+    Attributes:
+        driving_pressures_kPa: The lowest and the highest of the design, kPa.
+        rises_kPa: Pressure rises of the rows at each of them, kPa; the curves are at the first.
+        forces: Contact forces of the central plate at these, N.
+        by_radius: Central balls over their radius, mm.
+        by_offset: The ball of ``ball_radius`` over its offset, mm.
+        by_tilt: A leaning plate over its tilt, degrees.
+        ball_radius: mm.
+        rows: The table.
+        standard_uncertainties: What an unknown place of contact adds to the logarithm of the sensitivity, by driving
+            pressure.
+        free_offset: How far a plate may stand off the axis without effect, mm.
+    """
+
+    driving_pressures_kPa: tuple[float, ...]
+    rises_kPa: tuple[tuple[float, ...], ...]
+    forces: tuple[tuple[float, ...], ...]
+    by_radius: ErrorCurves
+    by_offset: ErrorCurves
+    by_tilt: ErrorCurves
+    ball_radius: float
+    rows: tuple[ContactRow, ...]
+    standard_uncertainties: tuple[float, ...]
+    free_offset: float

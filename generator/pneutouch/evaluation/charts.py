@@ -50,6 +50,7 @@ def tuning(evaluation: Evaluation, highest: float) -> TuningChart | None:
         prediction.model,
         scene.calibration,
         prediction.states,
+        anywhere=scene.design.contact.anywhere,
     )
     working = {s.driving_pressure / KPA: s.figures.sensitivity_kPa_per_N for s in prediction.states if s.figures}
     return TuningChart(drawn, low, high, working)

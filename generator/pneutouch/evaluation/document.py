@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NotRequired, TypedDict, cast
 
+from pneutouch.evaluation.anywhere import contact_anywhere_document
 from pneutouch.evaluation.contact_object import contact_document
 from pneutouch.evaluation.uncertainty import documents
 from pneutouch.mechanics.prediction import SensorRecord, StateRecord
@@ -36,6 +37,7 @@ class PredictionRecord(SensorRecord):
     """A prediction as ``predict`` prints it; ``prediction.json`` holds it up to ``states``."""
 
     contact: NotRequired[dict[str, Any]]
+    contact_anywhere: NotRequired[dict[str, Any]]
     dead_volume_note: NotRequired[str]
     rating: RatingRecord
     states: list[UncertainStateRecord]
@@ -58,7 +60,8 @@ def rating_document(evaluation: Evaluation) -> RatingRecord:
 def prediction_document(evaluation: Evaluation, samples: int = 0) -> PredictionRecord:
     """The prediction as ``predict`` prints it, with its ``rating``, every state with its ``uncertainty``.
 
-    ``contact`` stands there where something else than a plate presses the sensor, ``dead_volume_note`` where the stated
+    ``contact`` stands there where something else than a plate presses the sensor, ``contact_anywhere`` where the design
+    requests it, ``dead_volume_note`` where the stated
     dead volume is an idealisation.
     """
     content = evaluation.prediction.document()
@@ -74,6 +77,8 @@ def prediction_document(evaluation: Evaluation, samples: int = 0) -> PredictionR
     )
     if evaluation.assembly.dead_volume_note:
         record["dead_volume_note"] = evaluation.assembly.dead_volume_note
+    if evaluation.scene.design.contact.anywhere:
+        record["contact_anywhere"] = contact_anywhere_document(evaluation.prediction, evaluation.sensor)
     return record
 
 

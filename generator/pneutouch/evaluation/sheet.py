@@ -6,6 +6,7 @@ import numpy as np
 
 from pneutouch.catalogue import ResolvedDesign
 from pneutouch.errors import ComputationError
+from pneutouch.evaluation.anywhere import contact_chart
 from pneutouch.evaluation.chart_data import ComparedMembrane
 from pneutouch.evaluation.charts import air, tradeoff, tuning
 from pneutouch.evaluation.contact_object import object_section
@@ -46,6 +47,7 @@ def sheet_data(evaluation: Evaluation, input_hash: str) -> SheetData:
         ageing=ageing_data(prediction, material, sensor),
         constants=constant_membranes(sensor, prediction),
         published_kPa_per_N=published,
+        contact=contact_chart(prediction, sensor),
         other_contact=sensor.protocol.other_contact is not None,
         object_section=object_section(sensor),
     )

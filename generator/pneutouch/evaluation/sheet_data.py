@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:
     from pneutouch.arrays import Array
     from pneutouch.catalogue import ResolvedDesign
-    from pneutouch.evaluation.chart_data import ComparedMembrane, ResinCurve, TradeOff, TuningChart
+    from pneutouch.evaluation.chart_data import ComparedMembrane, ContactChart, ResinCurve, TradeOff, TuningChart
     from pneutouch.mechanics.prediction import SensorPrediction
     from pneutouch.mechanics.rating import Rating
     from pneutouch.mechanics.uncertainty import GasNotes
@@ -110,6 +110,7 @@ class SheetData:
         gas: Effect of the air, one entry a state; None outside the atlas.
         tradeoff: The trade-off that the design is part of; None outside the atlas.
         tuning: Its sensitivity over the driving pressure; None outside the atlas.
+        contact: Errors of the force read where contact is not central, or why they are not known.
         other_contact: Whether something else than a plate without friction presses it.
         object_section: Section (n, 2) in mm, r and z, of the object that presses it, at first contact with the unloaded
             dome; None for a plate.
@@ -133,5 +134,6 @@ class SheetData:
     gas: GasNotes | None = None
     tradeoff: TradeOff | None = None
     tuning: TuningChart | None = None
+    contact: ContactChart | str | None = None
     other_contact: bool = False
     object_section: Array | None = None

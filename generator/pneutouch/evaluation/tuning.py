@@ -63,6 +63,8 @@ def interval(
     model: str,
     calibration: SensorCalibration | None = None,
     states: Sequence[SensorState] = (),
+    *,
+    anywhere: bool = False,
 ) -> tuple[Array, Array]:
     """Lower and upper end of a curve's k = 2 interval, kPa/N, (n,) each.
 
@@ -70,7 +72,9 @@ def interval(
     contact than a plate without friction.
     """
     at = np.linspace(drawn.driving_pressure_kPa[0], drawn.driving_pressure_kPa[-1], _BUDGETS)
-    estimate = known(sensor, (at * KPA).tolist(), material, materials, printer, model, calibration, states)
+    estimate = known(
+        sensor, (at * KPA).tolist(), material, materials, printer, model, calibration, states, anywhere=anywhere
+    )
     widths = estimate.budget.expanded[_SENSITIVITY]
     good = np.isfinite(widths)
     width = np.interp(drawn.driving_pressure_kPa, at[good], widths[good])

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pneutouch.catalogue import ResolvedDesign
+from pneutouch.evaluation.anywhere import place_unknown
 from pneutouch.evaluation.calibrated import friction_spread
 from pneutouch.evaluation.contact_notes import contact_notes
 from pneutouch.evaluation.graded_uncertainty import even_wall, notes_on
@@ -72,16 +73,20 @@ def known(
     model: str,
     calibration: SensorCalibration | None = None,
     states: Sequence[SensorState] = (),
+    *,
+    anywhere: bool = False,
 ) -> SensorBudget:
     """The budget of a sensor at ascending driving pressures (MPa) that the atlas covers under a plate without friction.
 
     ``materials`` are all that there are: the model's error is taken from those that were measured. ``model`` gives the
     numerical error. ``states`` are the solid's of another contact, at the pressures where it has been solved already.
+    ``anywhere`` counts an unknown place of contact, where the design's own contact is the central plate.
     """
     from pneutouch.mechanics.contact_correction import plate_alone
     from pneutouch.mechanics.uncertainty import ContactModel, batch_of, budget, model_errors
 
     contact = None
+    anywhere = anywhere and sensor.protocol.other_contact is None
     if sensor.protocol.other_contact is not None:
         spread = None if calibration is None else friction_spread(calibration)
         contact = ContactModel(sensor, tuple(float(p) for p in pressures), states, spread)
@@ -98,6 +103,7 @@ def known(
         numerical=numerical,
         calibration=calibration,
         contact=contact,
+        anywhere=anywhere,
     )
     return SensorBudget(batch, estimate, contact)
 
@@ -132,9 +138,13 @@ def documents(
         model,
         calibration=scene.calibration,
         states=states,
+        anywhere=scene.design.contact.anywhere,
     )
     friction = None if estimate.contact is None else estimate.contact.friction
     notes_of_wall += contact_notes(sensor, estimate.contact)
+    if scene.design.contact.anywhere:
+        uncovered = place_unknown(prediction, sensor, states)
+        notes_of_wall += () if uncovered is None else (f"the place of contact is not in the budget: {uncovered}",)
     content = []
     for row, (state, notes) in enumerate(zip(states, gas_text(estimate.batch), strict=True)):
         values = _values(prediction, state)

@@ -6,6 +6,7 @@ from pneutouch import __version__
 from pneutouch.evaluation.sheet_data import SheetData
 from pneutouch.mechanics.prediction import SensorState
 from pneutouch.report import ordering, prose
+from pneutouch.report.anywhere import contact_section
 from pneutouch.report.certainty import interval, uncertainty_section
 from pneutouch.report.environment import NOT_TESTED, environment
 from pneutouch.report.off_axis import CAPTION, OFF_AXIS, off_axis_rows
@@ -53,6 +54,7 @@ def content_of(sheet: SheetData) -> dict[str, Any]:
         "performance_head": PERFORMANCE,
         "performance": _performance(sheet),
         "off_axis": {"head": OFF_AXIS, "rows": off_axis_rows(sheet.prediction.states), "caption": CAPTION},
+        "contact": contact_section(sheet.contact),
         "model_error": _model_error(sheet),
         "uncertainty": uncertainty_section(sheet),
         "captions": _captions(sheet),

@@ -8,6 +8,8 @@ import numpy as np
 from pneutouch.arrays import Array, Flags, Index, distinct
 from pneutouch.mechanics.atlas.press import SensorBatch
 from pneutouch.mechanics.atlas.respond import ENDS, respond
+from pneutouch.mechanics.uncertainty.propagate import COVERAGE
+from pneutouch.mechanics.uncertainty.sources.place import place_uncertainties
 from pneutouch.selection.contact_figures import ContactFigures
 from pneutouch.selection.pool import REQUIREMENTS, CandidatePool, evaluated, margins
 from pneutouch.selection.problem import CandidateResin, SelectionProblem
@@ -26,6 +28,12 @@ _REFINABLE = 0.1
 
 _UNKNOWN = -1.0e9
 
+_UNCOVERED = 10.0
+"""Stands for the uncertainty by the place of contact of a candidate outside its table."""
+
+MARGIN_WEIGHT = 0.1
+"""Weight of the least margin in the cost."""
+
 Uncertainty = Callable[[Sequence[tuple[CandidateResin, SensorBatch]]], list[Array]]
 """Relative expanded uncertainties of the sensitivity of the sensors of each resin, (n,) each."""
 
@@ -39,7 +47,8 @@ class Candidate:
 
     margins: by name. binding: the smallest but the sensitivity's. expanded: relative expanded uncertainty of the
     sensitivity. span: sensitivities at no pressure and at the rated one. rated: that pressure, MPa. cost: what the
-    ranking sorts by, less is better. contact: where the solid was searched with, for a contact outside the atlas.
+    ranking sorts by, less is better. place: relative standard uncertainty of the sensitivity by an unknown place of
+    contact, where the target counts it. contact: where the solid was searched with, for a contact outside the atlas.
     """
 
     resin: CandidateResin
@@ -50,6 +59,7 @@ class Candidate:
     rated: float
     cost: float
     contact: ContactFigures | None = None
+    place: float | None = None
 
     @property
     def ends_with(self) -> str:
@@ -93,7 +103,7 @@ def choose(
     margin_of = margins(problem, pool)
     wide = margin_of if refine is None else margins(refinable(problem), pool)
     fits = np.all([margin >= 0.0 for margin in wide.values()], axis=0)
-    rows = shortlist(pool, wide, fits)
+    rows = shortlist(pool, wide, fits, preferred=_least_moved(problem, pool, weights, fits))
     if rows.size:
         close = rounded(problem, pool.take(rows))
         refined_problem, close = (problem, close) if refine is None else refine(problem, close)
@@ -126,9 +136,15 @@ def least_margin(margin_of: dict[str, Array]) -> Array:
     return np.asarray(np.minimum(np.min(rest, axis=0), 1.0))
 
 
-def shortlist(pool: CandidatePool, margin_of: dict[str, Array], fits: Flags, each: int = EACH) -> Index:
-    """For each resin a few candidates that are not nearly the same, those with the greatest margin first."""
+def shortlist(
+    pool: CandidatePool, margin_of: dict[str, Array], fits: Flags, each: int = EACH, preferred: Array | None = None
+) -> Index:
+    """For each resin a few candidates that are not nearly the same, those with the greatest margin first.
+
+    ``preferred`` (n,) is added to the margin.
+    """
     least = least_margin(margin_of) + 0.5 * margin_of.get("sensitivity", np.zeros_like(pool.radius))
+    least = least if preferred is None else least + preferred
     chosen: list[int] = []
     for resin in distinct(pool.resin[fits]):
         rows = np.flatnonzero(fits & (pool.resin == resin))
@@ -140,6 +156,24 @@ def shortlist(pool: CandidatePool, margin_of: dict[str, Array], fits: Flags, eac
                 break
         chosen += kept
     return np.array(chosen, dtype=np.intp)
+
+
+def _least_moved(
+    problem: SelectionProblem, pool: CandidatePool, weights: tuple[float, float], fits: Flags
+) -> Array | None:
+    """What an unknown place of contact costs candidates, (n,), in margins as the ranking has them; None where the
+    target does not count it. Those that the table does not cover come last."""
+    if not problem.anywhere:
+        return None
+    known = np.full(fits.shape, np.nan)
+    known[fits] = places(problem, pool.take(fits))
+    return np.asarray(-weights[0] * COVERAGE * np.nan_to_num(known, nan=_UNCOVERED) / MARGIN_WEIGHT)
+
+
+def places(problem: SelectionProblem, pool: CandidatePool) -> Array:
+    """Relative standard uncertainty of the sensitivity by an unknown place of contact, (n,); NaN where not known."""
+    batch = problem.batch(pool.resin, pool.radius, pool.wall, pool.pressure)
+    return place_uncertainties(batch, pool.response)
 
 
 def differ(pool: CandidatePool, a: int, b: int) -> bool:
@@ -170,6 +204,7 @@ def _judged(
     highest, span = _span(problem, pool)
     expanded = np.full(pool.radius.size, np.nan)
     batch = problem.batch(pool.resin, pool.radius, pool.wall, pool.pressure)
+    place = places(problem, pool) if problem.anywhere else np.full(pool.radius.size, np.nan)
     numbers = distinct(pool.resin)
     groups = [(problem.resins[int(number)], batch.take(pool.resin == number)) for number in numbers]
     for number, known in zip(numbers, uncertainty(groups), strict=True):
@@ -184,6 +219,7 @@ def _judged(
             (float(span[0][i]), float(span[1][i])),
             float(highest[i]),
             float(cost[i]),
+            place=float(place[i]) if np.isfinite(place[i]) else None,
         )
         for i in range(pool.radius.size)
     ]
@@ -193,7 +229,9 @@ def costs(weights: tuple[float, float], expanded: Array, span: tuple[Array, Arra
     """What the ranking sorts by, (n,): from uncertainties, sensitivities at none and rated pressure, least margins."""
     with np.errstate(invalid="ignore", divide="ignore"):
         moves = np.abs(np.log(span[1] / span[0]))
-    return np.asarray(weights[0] * np.nan_to_num(expanded, nan=1.0) - weights[1] * np.nan_to_num(moves) - 0.1 * least)
+    return np.asarray(
+        weights[0] * np.nan_to_num(expanded, nan=1.0) - weights[1] * np.nan_to_num(moves) - MARGIN_WEIGHT * least
+    )
 
 
 def _span(problem: SelectionProblem, pool: CandidatePool) -> tuple[Array, tuple[Array, Array]]:

@@ -50,7 +50,7 @@ class SelectionProblem:
     plate_share: the plate's radius over R0 where it is larger than ``plate_radius``, for a plate that goes with the
     dome. connector: of domes of inner radius and wall (n,), mm; None where no connector matters. limit_spread: where
     it is None, designs may be driven above their rated pressure. factors: on the atlas's figures, for a contact that it
-    does not cover.
+    does not cover. anywhere: whether the ranking counts an unknown object and place of contact.
     """
 
     resins: tuple[CandidateResin, ...]
@@ -75,6 +75,7 @@ class SelectionProblem:
     connector: Callable[[Array, Array], ConnectorFit] | None = None
     limit_spread: LimitUncertainty | None = None
     factors: ContactFactors | None = None
+    anywhere: bool = False
 
     def plate(self, radius: Array) -> Array:
         """Radius of the plate for domes of inner radius (n,), mm."""

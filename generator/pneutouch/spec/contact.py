@@ -112,6 +112,11 @@ class ContactTable(Table):
     tilt_deg: float = number(
         0.0, unit="deg", low=0, high=45, help="How far a plate leans about its middle, towards its offset upwards."
     )
+    anywhere: bool = Field(
+        default=False,
+        description="Whether object and place of contact are unknown in use: their effect on the force read is counted "
+        "in the interval.",
+    )
     base: bool = Field(
         default=True,
         description="Whether the wall lies down on the connector next to its clamp and inside, without friction; "

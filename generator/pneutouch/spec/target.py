@@ -158,6 +158,11 @@ class Weights(Table):
     tunability: float = number(
         0.0, unit="", low=0, high=100, help="Weight on a sensitivity that moves with the driving pressure."
     )
+    contact_anywhere: bool = Field(
+        default=False,
+        description="Count an unknown object and place of contact in that uncertainty: the design whose reading they "
+        "move least comes first.",
+    )
 
 
 class Target(Table):
@@ -190,4 +195,6 @@ class Target(Table):
             raise ValueError("given.graded needs target.sensitivity_kPa_per_N")
         if graded and (target.stiffness_least_N_per_mm, target.stiffness_most_N_per_mm) != (None, None):
             raise ValueError("the search for a grade takes no bounds on the stiffness; leave them out")
+        if graded and self.weights.contact_anywhere:
+            raise ValueError("contact_anywhere ranks resins and mixes; the search for a grade does not take it")
         return self

@@ -24,6 +24,7 @@ def budget(
     aged: bool = True,
     calibration: SensorCalibration | None = None,
     contact: ContactModel | None = None,
+    anywhere: bool = False,
 ) -> Budget:
     """The uncertainty of the figures of n sensors that share a resin and a printer.
 
@@ -38,6 +39,7 @@ def budget(
         calibration: Of the sensor in hand; its parameters and its model error take the place of those of design and
             resin.
         contact: What presses the sensor at the n driving pressures, where that is no plate without friction.
+        anywhere: Whether object and place of contact are unknown; see `sources.place`.
 
     Raises:
         InputError: ``numerical`` names a figure that there is not.
@@ -52,5 +54,6 @@ def budget(
         aged=aged,
         calibration=calibration,
         contact=contact,
+        anywhere=anywhere,
     )
     return propagate(batch, source_list, contact)

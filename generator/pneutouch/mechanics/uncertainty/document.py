@@ -11,6 +11,7 @@ from pneutouch.mechanics.uncertainty.record import FigureRecord, IntervalRecord,
 from pneutouch.mechanics.uncertainty.source import FIGURES, INPUTS, SENSITIVITY
 from pneutouch.mechanics.uncertainty.sources.contact import FRICTION
 from pneutouch.mechanics.uncertainty.sources.modulus import AGEING
+from pneutouch.mechanics.uncertainty.sources.place import PLACE
 
 _FEW = 10.0
 """Below as many degrees of freedom k = 2 covers clearly less than 95 % (JCGM 100, G.6.4)."""
@@ -19,7 +20,7 @@ _LEAST_SHARE = 5e-4
 
 _UNCOUNTED = (
     "not in the budget, because no number is known: the model's error in figures other than the sensitivity, creep and "
-    "temperature of the resin, misalignment, {friction}the scatter of the break strain"
+    "temperature of the resin, {place}{friction}the scatter of the break strain"
 )
 
 
@@ -115,8 +116,12 @@ def _notes(budget: Budget, row: int) -> list[str]:
     ]
     if few:
         notes.append(f"k = {COVERAGE:g} covers less than 95 % with few degrees of freedom: {', '.join(few)}")
-    counted = any(source.name == FRICTION for source in budget.sources)
-    return [*notes, _UNCOUNTED.format(friction="" if counted else "friction, ")]
+    counted = {source.name for source in budget.sources}
+    left = {
+        "place": "" if PLACE in counted else "misalignment, ",
+        "friction": "" if FRICTION in counted else "friction, ",
+    }
+    return [*notes, _UNCOUNTED.format(**left)]
 
 
 def text(budget: Budget, row: int = 0, *, calibrated: bool = False) -> str:
@@ -125,9 +130,13 @@ def text(budget: Budget, row: int = 0, *, calibrated: bool = False) -> str:
     if not np.isfinite(width):
         return "The uncertainty of the sensitivity is not known: the sensor is outside the atlas."
     parts = shares(budget, FIGURES[SENSITIVITY], row)
+    # A measurement of the sensor does not make the place of contact known.
+    place = parts.pop(PLACE, None)
     first = ", then ".join(f"{name} ({share:.0%} of the variance)" for name, share in list(parts.items())[:2])
     assumed = [s.name for s in budget.sources if not s.known and s.name in parts and parts[s.name] >= 0.1]
     assumed_text = f" Assumed, not known: {', '.join(assumed)}." if assumed else ""
+    if place is not None:
+        assumed_text += f" An unknown place of contact has {place:.0%} of the variance."
     interval = f"{np.exp(-width) - 1:+.0%} to {np.exp(width) - 1:+.0%}"
     if calibrated:
         fresh = _fresh_width(budget, SENSITIVITY, row)

@@ -90,6 +90,7 @@ def _choice(selection: SelectionRun, choice: Candidate, solid: Confirmation | No
         "expanded_uncertainty_kPa_per_N": _known(sensitivity_kPa_per_N * choice.expanded),
         "expanded_uncertainty_relative": _known(choice.expanded),
         "coverage_factor": 2,
+        **({"place_uncertainty_relative": choice.place} if selection.problem.anywhere else {}),
         "r_squared": float(lines.r_squared[0]),
         "force_range_N": [0.0, float(pool.force[0])],
         "range_end_mm": float(pool.response.range_end[0]),

@@ -11,6 +11,7 @@ import numpy as np
 
 from pneutouch.catalogue import Library, ResolvedDesign
 from pneutouch.catalogue.cached_library import CachedLibrary
+from pneutouch.errors import InputError
 from pneutouch.evaluation.evaluate import Evaluation
 from pneutouch.mechanics.atlas.table import shipped
 from pneutouch.mechanics.atlas_states import resin_outside_atlas
@@ -154,8 +155,17 @@ def _answered(run: SelectionRun, refine: Refine | None, library: Library) -> Sel
     target, problem = run.target, run.problem
     weights = target.weights.robustness, target.weights.tunability
     errors = measured_errors(library.all("materials", Material))
-    uncertainty = partial(sensitivity_uncertainties, run.base, run.sensor, errors)
-    if other_contact(run.sensor) is None:
+    anywhere = target.weights.contact_anywhere
+    uncertainty = partial(sensitivity_uncertainties, run.base, run.sensor, errors, anywhere=anywhere)
+    other = other_contact(run.sensor)
+    if other is not None and anywhere:
+        raise InputError(
+            f"the table of contact anywhere is for designs that a central plate calibrates, and {other}",
+            key="weights.contact_anywhere",
+            value=True,
+            remedy="leave out contact_anywhere, or the contact",
+        )
+    if other is None:
         return replace(run, answer=choose(problem, weights, uncertainty, refine))
     run = replace(run, problem=without_plate(problem, run.sensor))
     solver = CandidateSolver(run.base, run.assignments, library)
@@ -243,6 +253,7 @@ def problem_of(
         plate_share=0.0 if "plate_diameter_mm" in scene.design.indentation.model_fields_set else _PLATE_SHARE,
         max_footprint=required.max_footprint_mm,
         connector=connector_fit(scene),
+        anywhere=target.weights.contact_anywhere,
         limit_spread=lambda resin, batch: limit_spread(batch, resin.material, scene.printer, LIMIT_ERROR).standard,
     )
 

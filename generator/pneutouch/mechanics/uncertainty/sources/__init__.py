@@ -13,6 +13,7 @@ from pneutouch.mechanics.uncertainty.sources.calibrated import calibrated_source
 from pneutouch.mechanics.uncertainty.sources.contact import contact_sources
 from pneutouch.mechanics.uncertainty.sources.model import ModelErrors, model_sources, numerical_sources
 from pneutouch.mechanics.uncertainty.sources.modulus import ageing_sources, modulus_sources
+from pneutouch.mechanics.uncertainty.sources.place import place_sources
 from pneutouch.spec.calibration import SensorCalibration
 from pneutouch.spec.material import Material
 from pneutouch.spec.printer import Printer
@@ -29,6 +30,7 @@ def sources(
     aged: bool = True,
     calibration: SensorCalibration | None = None,
     contact: ContactModel | None = None,
+    anywhere: bool = False,
 ) -> list[UncertaintySource]:
     """Sources that count for at least one figure of one sensor; see `budget` for the arguments."""
     size = len(batch)
@@ -45,5 +47,6 @@ def sources(
         *(ageing_sources(material, size, remaining) if aged else []),
         *model_error,
         *numerical_sources(size, numerical),
+        *(place_sources(batch) if anywhere else []),
     ]
     return [source for source in source_list if source.counts.any()]

@@ -1,0 +1,140 @@
+"""What the reading of a design does when contact is not central: from the shipped table, for sheet and prediction."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.evaluation.chart_data import ContactChart, ContactRow, ErrorCurves
+from pneutouch.mechanics import Sensor, SensorPrediction, SensorState
+from pneutouch.mechanics.anywhere.conditions import outside, state_conditions
+from pneutouch.mechanics.anywhere.reading import (
+    FARTHEST,
+    SMALLEST_BALL,
+    STEEPEST_TILT,
+    TABLE_ERROR,
+    ball_places,
+    force_logs,
+    place_uncertainty,
+    plate_places,
+)
+from pneutouch.mechanics.anywhere.table import ContactPlaces, DomeConditions
+from pneutouch.rounding import rounded
+from pneutouch.units import KPA
+
+_READINGS = (1.0 / 3.0, 2.0 / 3.0)
+"""Shares of the range's travel whose readings are tabulated; the first is drawn."""
+
+_BALLS = ((0.3, 0.0), (0.6, 0.0), (1.0, 0.0), (2.0, 0.0), (0.6, 0.3), (0.6, 0.6), (1.0, 0.6))
+"""Radii and offsets of the balls of the table, R0."""
+
+_TILTS_DEG = (10.0, 20.0)
+_DRAWN_BALL, _FLATTEST, _POINTS = 0.6, 10.0, 41
+_DIGITS = 4
+
+
+def contact_chart(prediction: SensorPrediction, sensor: Sensor) -> ContactChart | str:
+    """Errors of the force read at the lowest and the highest driving pressure; or why the table has none."""
+    states = prediction.states[:1] + prediction.states[1:][-1:]
+    why = place_unknown(prediction, sensor, states)
+    if why is not None:
+        return why
+    assert prediction.limits.limit_point is not None
+    domes = state_conditions(sensor, states, prediction.limits.limit_point)
+    size = sensor.dome.inner_radius
+    ends = np.array([state.range_end for state in states]) / size
+    levels = ends[:, None] * np.array(_READINGS)
+    radius = size * np.geomspace(SMALLEST_BALL, _FLATTEST, _POINTS)
+    offset, tilt = size * np.linspace(0.0, FARTHEST, _POINTS), np.linspace(0.0, STEEPEST_TILT, _POINTS)
+    ball = np.full(_POINTS, size * _DRAWN_BALL)
+    walls, still = domes.wall_ratio, np.zeros(_POINTS)
+
+    def drawn(places: ContactPlaces) -> tuple[Array, ...]:
+        return tuple(_percent(domes, places, levels[:, :1])[:, :, 0])
+
+    return ContactChart(
+        driving_pressures_kPa=tuple(state.driving_pressure / KPA for state in states),
+        rises_kPa=_at_travels(states, size * levels, lambda state: state.pressure_rise / KPA),
+        forces=_at_travels(states, size * levels, lambda state: state.force),
+        by_radius=ErrorCurves(radius, drawn(ball_places(walls, radius / size, still))),
+        by_offset=ErrorCurves(offset, drawn(ball_places(walls, ball / size, offset / size))),
+        by_tilt=ErrorCurves(np.degrees(tilt), drawn(plate_places(walls, tilt))),
+        ball_radius=size * _DRAWN_BALL,
+        rows=_rows(domes, levels, size),
+        standard_uncertainties=tuple(place_uncertainty(domes, ends).tolist()),
+        free_offset=_free_offset(sensor, states),
+    )
+
+
+def place_unknown(prediction: SensorPrediction, sensor: Sensor, states: Sequence[SensorState]) -> str | None:
+    """Why the shipped table does not cover a sensor in its states; None where it does."""
+    point = prediction.limits.limit_point
+    if point is None:
+        return "the pressure of the dome has no maximum"
+    why = outside(sensor, state_conditions(sensor, states, point))
+    return None if why is None else f"the table of contact anywhere does not cover the sensor: {why}"
+
+
+def contact_anywhere_document(prediction: SensorPrediction, sensor: Sensor) -> dict[str, Any]:
+    """``contact_anywhere`` of a prediction: errors of the force read, percent, null where a reading is not reached."""
+    chart = contact_chart(prediction, sensor)
+    if isinstance(chart, str):
+        return {"unknown": chart}
+    states = [
+        {
+            "driving_pressure_kPa": pressure_kPa,
+            "pressure_rise_kPa": list(chart.rises_kPa[k]),
+            "contact_force_N": list(chart.forces[k]),
+            "force_error_percent": [list(row.errors_percent[k]) for row in chart.rows],
+            "standard_uncertainty_relative": chart.standard_uncertainties[k],
+        }
+        for k, pressure_kPa in enumerate(chart.driving_pressures_kPa)
+    ]
+    contacts = [
+        {"object": row.kind, "radius_mm": row.radius, "offset_mm": row.offset, "tilt_deg": row.tilt_deg}
+        for row in chart.rows
+    ]
+    document = {
+        "contacts": contacts,
+        "states": states,
+        "plate_offset_without_effect_mm": chart.free_offset,
+        "table_error_relative": TABLE_ERROR,
+    }
+    return rounded(document, _DIGITS)
+
+
+def _percent(domes: DomeConditions, places: ContactPlaces, levels: Array) -> Array:
+    """Errors of the force read over the true one, percent, (n, m, k)."""
+    return np.asarray(100.0 * np.expm1(-force_logs(domes, places, levels)))
+
+
+def _rows(domes: DomeConditions, levels: Array, size: float) -> tuple[ContactRow, ...]:
+    radii, offsets = np.array(_BALLS).T
+    balls = _percent(domes, ball_places(domes.wall_ratio, radii, offsets), levels)
+    plates = _percent(domes, plate_places(domes.wall_ratio, np.radians(_TILTS_DEG)), levels)
+    rows = [
+        ContactRow("ball", size * radius, size * offset, 0.0, _numbers(balls[:, i]))
+        for i, (radius, offset) in enumerate(_BALLS)
+    ]
+    return (*rows, *(ContactRow("plate", None, 0.0, tilt, _numbers(plates[:, i])) for i, tilt in enumerate(_TILTS_DEG)))
+
+
+def _numbers(errors: Array) -> tuple[tuple[float | None, ...], ...]:
+    return tuple(tuple(float(e) if np.isfinite(e) else None for e in row) for row in errors)
+
+
+def _at_travels(
+    states: Sequence[SensorState], travels: Array, curve: Callable[[SensorState], Array]
+) -> tuple[tuple[float, ...], ...]:
+    """Values of each state's curve at its travels (n, k), mm."""
+    rows = [np.interp(row, state.indentation, curve(state)) for state, row in zip(states, travels, strict=True)]
+    return tuple(tuple(row.tolist()) for row in rows)
+
+
+def _free_offset(sensor: Sensor, states: Sequence[SensorState]) -> float:
+    """How far a plate may stand off the axis before the contact reaches its edge, mm."""
+    widest = max(float(np.interp(s.range_end, s.indentation, s.contact_radius)) for s in states)
+    return max(sensor.protocol.plate_radius - widest, 0.0)

@@ -1,0 +1,95 @@
+"""How far a force is off that is read by the central calibration, where contact is not central."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pneutouch.arrays import Array
+from pneutouch.mechanics.anywhere.conditions import covered
+from pneutouch.mechanics.anywhere.table import ContactPlaces, DomeConditions, PlaceTable, shipped
+
+SMALLEST_BALL, FARTHEST, STEEPEST_TILT = 0.3, 0.6, float(np.radians(20.0))
+"""What an unknown contact is assumed to be: a ball of this radius in R0 at the least, its axis at most this far off the
+dome's in R0, and a plate that leans by this angle at most."""
+
+TABLE_ERROR = 0.05
+"""Greatest error of the logarithm of the force found in presses that the table was not made from (docs/off-axis.md)."""
+
+_POINTS, _FEWER = 4, 3
+_LEVELS = 8
+_FIRST = 0.05
+"""Least travel of the central plate whose reading counts, in R0."""
+
+
+def ball_places(wall_ratio: Array, radius: Array, offset: Array) -> ContactPlaces:
+    """Balls of radii (m,) at offsets (m,), both in R0, on domes of wall ratios (n,); a radius may be infinite."""
+    curvature = np.broadcast_to(1.0 / radius, (wall_ratio.size, radius.size))
+    lean = offset * curvature / ((1.0 + wall_ratio)[:, None] * curvature + 1.0)
+    return ContactPlaces(curvature, lean)
+
+
+def plate_places(wall_ratio: Array, tilt: Array) -> ContactPlaces:
+    """Plates that lean by angles (m,), rad, on domes of wall ratios (n,)."""
+    lean = np.broadcast_to(np.sin(tilt), (wall_ratio.size, tilt.size))
+    return ContactPlaces(np.zeros_like(lean), lean)
+
+
+def force_logs(domes: DomeConditions, places: ContactPlaces, levels: Array, table: PlaceTable | None = None) -> Array:
+    """Logarithm of the force under objects over the central plate's at the readings that the plate has at travels
+    ``levels`` (n, k) in R0; (n, m, k), NaN where the object does not reach the reading within 0.75 R0.
+
+    A force that is read by the central calibration is exp(-logarithm) times the true one.
+    """
+    table = table or shipped()
+    nodes, known = np.array(table.recipe.levels), table.logs(domes, places)
+    at = np.clip(levels, nodes[0], nodes[-1])
+    k = np.clip(np.searchsorted(nodes, at, side="right") - 1, 0, nodes.size - 2)
+    share = ((at - nodes[k]) / (nodes[k + 1] - nodes[k]))[:, None]
+    low, high = (np.take_along_axis(known, index[:, None], axis=2) for index in (k, k + 1))
+    reached = levels[:, None] <= table.reach(domes, places)[..., None]
+    return np.asarray(np.where(reached, low + share * (high - low), np.nan))
+
+
+def place_uncertainty(domes: DomeConditions, range_end: Array) -> Array:
+    """Standard uncertainty (n,) of the logarithm of a force that is read by the central calibration where object and
+    place of contact are unknown; NaN outside the table.
+
+    A Type B evaluation (JCGM 100, 4.3.7). The object is a ball, its curvature even from none to that of 0.3 R0, its
+    axis even over the disc of 0.6 R0; a plate leans by an angle even from 0 to 20 degrees. Both are root mean squares
+    over the readings from first contact to the plate's travel ``range_end`` (n,) in R0, in equal steps of that travel,
+    as far as the object reaches them; the two are independent. A mean is not corrected: it counts in full.
+    """
+    inside = covered(domes) & (range_end > _FIRST)
+    result = np.full(range_end.shape, np.nan)
+    if not inside.any():
+        return result
+    domes = DomeConditions(*(values[inside] for values in domes))
+    levels = _FIRST + (range_end[inside, None] - _FIRST) * np.linspace(0.0, 1.0, _LEVELS)
+    result[inside] = np.sqrt(sum(_mean_square(domes, *unknown, levels) for unknown in (_balls(domes), _tilts(domes))))
+    return result
+
+
+def _balls(domes: DomeConditions) -> tuple[ContactPlaces, Array]:
+    """Balls at their places, (n, m), and their weights (m,)."""
+    curvature, by_curvature = _even(_POINTS, 1.0 / SMALLEST_BALL)
+    disc, by_disc = _even(_FEWER, 1.0)
+    radius, offset = np.repeat(1.0 / curvature, _FEWER), np.tile(FARTHEST * np.sqrt(disc), _POINTS)
+    return ball_places(domes.wall_ratio, radius, offset), np.outer(by_curvature, by_disc).ravel()
+
+
+def _tilts(domes: DomeConditions) -> tuple[ContactPlaces, Array]:
+    """Leaning plates and their weights."""
+    tilt, weight = _even(_FEWER, STEEPEST_TILT)
+    return plate_places(domes.wall_ratio, tilt), weight
+
+
+def _even(count: int, end: float) -> tuple[Array, Array]:
+    """Points of Gauss and Legendre from 0 to ``end`` and their weights, which sum to 1."""
+    points, weights = np.polynomial.legendre.leggauss(count)
+    return 0.5 * end * (points + 1.0), 0.5 * weights
+
+
+def _mean_square(domes: DomeConditions, places: ContactPlaces, weight: Array, levels: Array) -> Array:
+    square = force_logs(domes, places, levels) ** 2
+    counts = weight[:, None] * np.isfinite(square)
+    return np.asarray((weight[:, None] * np.nan_to_num(square)).sum(axis=(1, 2)) / counts.sum(axis=(1, 2)))

@@ -1,0 +1,98 @@
+"""The presses that the table of contact anywhere is made from."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from pneutouch.arrays import Array
+
+
+@dataclass(frozen=True)
+class PlaceTableRecipe:
+    """Nodes of the table, in units of R0 and mu.
+
+    An object of curvature ``R0/a`` (a: its radius; 0: a plate) first touches the unloaded dome where the normal leans
+    by an angle whose sine is its ``lean``: that of the tilt of a plate, or for a ball e/(Ro + a) by its offset e and
+    the outer radius Ro. A wall ratio, a share of the limit pressure and a gas stiffness state the dome before contact.
+    A reading is stated by the travel of the central plate that gives it, over R0: its ``level``.
+
+    Central presses by the solid: every combination of walls, shares, gases and curvatures, default mesh. Presses with a
+    lean, by the solid with harmonics to ``order`` on ``cells`` cells along the arc: every combination of leaning_walls,
+    leaning_shares, leaning_curvatures and leans, at ``leaning_gas``; of these the table has the difference from the
+    central press on the same mesh.
+    """
+
+    poisson_ratio: float = 0.49
+    walls: tuple[float, ...] = (0.06, 0.11, 0.2, 0.35)
+    shares: tuple[float, ...] = (0.0, 0.1, 0.25, 0.5, 0.9)
+    gases: tuple[float, ...] = (0.01, 0.1, 0.6)
+    curvatures: tuple[float, ...] = (0.5, 1.0, 2.0, 10.0 / 3.0)
+    levels: tuple[float, ...] = (0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7)
+    leaning_walls: tuple[float, ...] = (0.06, 0.15, 0.35)
+    leaning_shares: tuple[float, ...] = (0.0, 0.25, 0.9)
+    leaning_curvatures: tuple[float, ...] = (0.0, 1.0, 10.0 / 3.0)
+    leans: tuple[float, ...] = (0.44,)
+    leaning_gas: float = 0.1
+    order: int = 4
+    cells: int = 16
+    depth: float = 0.75
+    steps: int = 15
+
+    def text(self) -> str:
+        """The recipe as JSON, as the table carries it."""
+        return json.dumps(asdict(self), sort_keys=True)
+
+    @classmethod
+    def from_text(cls, text: str) -> PlaceTableRecipe:
+        """A recipe read back."""
+        content: dict[str, Any] = json.loads(text)
+        fields: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in content.items()}
+        return cls(**fields)
+
+
+class NodeAxis(NamedTuple):
+    """A direction of the table with its nodes (m,), ascending."""
+
+    nodes: Array
+
+    def weights(self, at: Array) -> Array:
+        """Weights (n, m) of the nodes for values at (n,): a cubic between two nodes through both, with the slopes that
+        a parabola through each node and its neighbours has; a parabola with three nodes. The ends hold beyond."""
+        x, size = self.nodes, self.nodes.size
+        if size == 1:
+            return np.ones((at.size, 1))
+        at = np.clip(at, x[0], x[-1])
+        slopes = _slopes(x)
+        k = np.clip(np.searchsorted(x, at, side="right") - 1, 0, size - 2)
+        span = x[k + 1] - x[k]
+        t = (at - x[k]) / span
+        one = np.eye(size)
+        left, right = (t * (1 - t) ** 2 * span)[:, None], (t**2 * (t - 1) * span)[:, None]
+        rise = (t**2 * (3 - 2 * t))[:, None]
+        return np.asarray((1 - rise) * one[k] + rise * one[k + 1] + left * slopes[k] + right * slopes[k + 1])
+
+    def straight(self, at: Array) -> Array:
+        """Weights (n, m) of straight lines between the nodes; the ends hold beyond."""
+        return np.asarray(np.stack([np.interp(at, self.nodes, row) for row in np.eye(self.nodes.size)], axis=-1))
+
+
+def _slopes(x: Array) -> Array:
+    """Weights (m, m) that give the slope at each node of the parabola through it and its neighbours."""
+    size = x.size
+    if size == 2:
+        return np.asarray(np.array([[-1.0, 1.0], [-1.0, 1.0]]) / (x[1] - x[0]))
+    rows = np.zeros((size, size))
+    for k in range(size):
+        first = min(max(k - 1, 0), size - 3)
+        near = x[first : first + 3]
+        for j in range(3):
+            others = np.delete(near, j)
+            rows[k, first + j] = (2 * x[k] - others.sum()) / np.prod(near[j] - others)
+    return np.asarray(rows)
+
+
+RECIPE = PlaceTableRecipe()

@@ -1,0 +1,94 @@
+"""The error of a force that is read by the central calibration, and what an unknown place of contact amounts to."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from benchmarks.contact_table_build.press import DomeState, at_equal_reading, pressed
+
+from pneutouch.mechanics.anywhere.conditions import batch_conditions, covered, outside, state_conditions
+from pneutouch.mechanics.anywhere.reading import ball_places, force_logs, place_uncertainty, plate_places
+from pneutouch.mechanics.anywhere.recipe import RECIPE
+from pneutouch.mechanics.anywhere.table import DomeConditions
+from pneutouch.mechanics.atlas.respond import respond
+from pneutouch.mechanics.uncertainty import batch_of
+
+PAPER = DomeConditions(np.array([0.162, 0.162]), np.array([0.0, 0.55]), np.array([0.18, 0.18]))
+
+
+def test_a_large_ball_is_a_plate_and_its_offset_a_tilt():
+    """A ball of endless radius touches where its normal leans as much as a tilted plate's."""
+    radius, tilt = 1e6, np.radians([5.0, 20.0])
+    offset = np.sin(tilt) * (1.162 + radius)
+    levels = np.full((2, 1), 0.25)
+    balls = force_logs(PAPER, ball_places(PAPER.wall_ratio, np.full(2, radius), offset), levels)
+    plates = force_logs(PAPER, plate_places(PAPER.wall_ratio, tilt), levels)
+    np.testing.assert_allclose(balls, plates, atol=1e-5)
+
+
+def test_what_an_object_does_not_reach_has_no_force():
+    logs = force_logs(PAPER, ball_places(PAPER.wall_ratio, np.array([0.3]), np.zeros(1)), np.array([[0.1, 0.7]] * 2))
+    assert np.isfinite(logs[:, 0, 0]).all() and np.isnan(logs[:, 0, 1]).all()
+
+
+def test_the_uncertainty_is_that_of_samples_of_what_it_assumes():
+    draw = np.random.default_rng(3)
+    n, ends = 4000, np.array([0.75, 0.75])
+    curvature, offset = draw.uniform(0, 1 / 0.3, n), 0.6 * np.sqrt(draw.uniform(0, 1, n))
+    levels = np.tile(np.linspace(0.05, 0.75, 8), (2, 1))
+    squares = [
+        np.nanmean(force_logs(PAPER, places, levels) ** 2, axis=(1, 2))
+        for places in (
+            ball_places(PAPER.wall_ratio, 1 / curvature, offset),
+            plate_places(PAPER.wall_ratio, np.radians(draw.uniform(0, 20, n))),
+        )
+    ]
+    np.testing.assert_allclose(place_uncertainty(PAPER, ends), np.sqrt(sum(squares)), rtol=0.05)
+
+
+def test_outside_the_table_it_is_not_known():
+    off = DomeConditions(np.array([0.05, 0.162, 0.162, 0.162]), np.array([0.0, 0.95, 0.0, 0.0]), np.array([0.2] * 4))
+    assert covered(off).tolist() == [False, False, True, True]
+    known = np.isfinite(place_uncertainty(off, np.array([0.75, 0.75, 0.75, 0.03])))
+    assert known.tolist() == [False, False, True, False]
+
+
+def test_the_reason_states_value_and_bounds(paper_sensor):
+    batch = batch_of(paper_sensor.replace(ambient_pressure=1.0), [0.0])
+    response = respond(batch)
+    domes = batch_conditions(batch, response.limit_pressure, np.array([1700.0]))
+    why = outside(paper_sensor, domes)
+    assert why is not None and "gas stiffness" in why and "0.01 to 0.6" in why
+    assert "flange" in str(outside(paper_sensor.replace(flange=(3.0, 2.0)), PAPER))
+    assert outside(paper_sensor, PAPER) is None
+
+
+def test_states_and_batches_give_the_same_variables(paper_sensor):
+    batch = batch_of(paper_sensor, [0.0, 0.012])
+    response = respond(batch)
+    by_batch = batch_conditions(batch, response.limit_pressure, response.cavity_volume)
+
+    class State:
+        def __init__(self, k):
+            self.driving_pressure, self.cavity_volume = batch.driving_pressure[k], response.cavity_volume[k]
+
+    by_state = state_conditions(paper_sensor, [State(0), State(1)], float(response.limit_pressure[0]))
+    for one, other in zip(by_batch, by_state, strict=True):
+        np.testing.assert_allclose(one, other, rtol=1e-12)
+    # No dead volume, 101 kPa, 0.27 MPa: the gas over 2/3 pi R0^3 and little more.
+    assert by_batch.gas[0] == pytest.approx(0.101325 / paper_sensor.wall.shear_modulus / (2 * np.pi / 3), rel=1e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("wall", [0.07, 0.2])
+def test_ambient_pressure_and_dead_volume_enter_by_the_gas_stiffness_alone(wall, monkeypatch):
+    """The same stiffness from little air at a low pressure and from much at a high one: one force at equal reading."""
+    logs = []
+    for ambient in (0.05, 0.8):
+        monkeypatch.setattr("benchmarks.contact_table_build.press._AMBIENT", ambient)
+        state = DomeState(wall, 0.1, 0.1)
+        plate, ball = (pressed(RECIPE, state, curvature, 0.0) for curvature in (0.0, 2.0))
+        logs.append(at_equal_reading(RECIPE, plate, ball)[0])
+    known = np.array(RECIPE.levels) <= 0.4
+    assert np.abs(logs[0]).max() > 0.2
+    np.testing.assert_allclose(logs[0][known], logs[1][known], atol=0.02)

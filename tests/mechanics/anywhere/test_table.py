@@ -1,0 +1,113 @@
+"""The shipped table of contact anywhere: whole, of today's model and recipe, and physical."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from benchmarks.contact_table_build.build import central
+from benchmarks.contact_table_build.fingerprint import model_answers
+from benchmarks.contact_table_build.held_out import compared, drawn
+from benchmarks.contact_table_build.press import DomeState
+
+from pneutouch.mechanics.anywhere.reading import TABLE_ERROR
+from pneutouch.mechanics.anywhere.recipe import RECIPE, NodeAxis, PlaceTableRecipe
+from pneutouch.mechanics.anywhere.table import SHIPPED, ContactPlaces, DomeConditions, digest, shipped
+
+
+def domes(wall=0.162, share=0.0, gas=0.18):
+    return DomeConditions(*(np.atleast_1d(np.array(value, dtype=float)) for value in (wall, share, gas)))
+
+
+def place(curvature, lean=0.0):
+    return ContactPlaces(np.atleast_2d(float(curvature)), np.atleast_2d(float(lean)))
+
+
+def test_the_shipped_file_is_whole_small_and_of_todays_recipe():
+    with np.load(SHIPPED, allow_pickle=False) as file:
+        tables = {name: file[name] for name in file.files if name not in ("recipe", "model", "digest")}
+        assert str(file["digest"]) == digest(tables)
+        assert str(file["recipe"]) == RECIPE.text()
+    assert PlaceTableRecipe.from_text(RECIPE.text()) == RECIPE == shipped().recipe
+    assert all(np.isfinite(table).all() for table in tables.values())
+    assert tables["central"].shape == tuple(
+        len(axis) for axis in (RECIPE.walls, RECIPE.shares, RECIPE.gases, RECIPE.curvatures, RECIPE.levels)
+    )
+    assert SHIPPED.stat().st_size < 100_000
+
+
+def test_a_changed_number_changes_the_digest():
+    tables = {"central": np.arange(6, dtype=np.float32), "leaning": np.ones(3, dtype=np.float32)}
+    other = {**tables, "leaning": np.array([1, 1, np.nextafter(np.float32(1), np.float32(2))], dtype=np.float32)}
+    assert digest(tables) == digest(dict(reversed(tables.items()))) != digest(other)
+
+
+@pytest.mark.slow
+def test_the_shipped_file_was_made_from_todays_model():
+    with np.load(SHIPPED) as file:
+        np.testing.assert_allclose(model_answers(RECIPE), file["model"], rtol=2e-4)
+
+
+@pytest.mark.slow
+def test_a_node_recomputes():
+    state = DomeState(RECIPE.walls[2], RECIPE.shares[2], RECIPE.gases[1])
+    logs, reach = central(RECIPE, state)
+    with np.load(SHIPPED) as file:
+        np.testing.assert_allclose(logs, file["central"][2, 2, 1], atol=2e-3)
+        np.testing.assert_allclose(reach, file["central_reach"][2, 2, 1], atol=2e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("seed", "leaning"), [*((seed, False) for seed in range(8)), *((s, True) for s in range(4))])
+def test_presses_that_the_table_was_not_made_from(seed, leaning):
+    press = compared(shipped(), *drawn(RECIPE, seed, leaning=leaning))
+    known = np.isfinite(press.model)
+    assert known.any()
+    assert np.abs(press.table - press.model)[known].max() < TABLE_ERROR
+
+
+def test_at_its_nodes_it_gives_the_tabulated_numbers():
+    with np.load(SHIPPED) as file:
+        for w, s, g, c in ((0, 0, 0, 0), (2, 3, 1, 2), (3, 4, 2, 3)):
+            at = domes(RECIPE.walls[w], RECIPE.shares[s], RECIPE.gases[g])
+            logs = shipped().logs(at, place(RECIPE.curvatures[c]))[0, 0]
+            np.testing.assert_allclose(logs, file["central"][w, s, g, c], atol=1e-6)
+
+
+def test_a_level_central_plate_takes_the_force_of_the_plate_at_every_reading():
+    assert np.abs(shipped().logs(domes(), place(0.0))).max() < 1e-12
+    assert shipped().reach(domes(), place(0.0)) == RECIPE.depth
+
+
+def test_the_mirrored_scene_has_the_same_force():
+    there, mirrored = (shipped().logs(domes(), place(1.0, lean)) for lean in (0.3, -0.3))
+    assert np.abs(there).max() > 0.05
+    np.testing.assert_array_equal(there, mirrored)
+
+
+def test_a_smaller_ball_takes_less_force_for_a_reading():
+    level = RECIPE.levels.index(0.3)
+    logs = [shipped().logs(domes(), place(curvature))[0, 0, level] for curvature in (0.0, 0.5, 1.0, 2.0, 10 / 3)]
+    assert np.all(np.diff(logs) < -0.01)
+
+
+def test_driving_pressure_makes_the_reading_depend_less_on_the_object():
+    level = RECIPE.levels.index(0.2)
+    logs = shipped().logs(domes(wall=[0.162] * 4, share=[0.0, 0.2, 0.5, 0.9], gas=[0.18] * 4), ball_of_r0(4))
+    sizes = np.abs(logs[:, 0, level])
+    assert np.all(np.diff(sizes) < 0.0) and sizes[-1] < 0.2 * sizes[0]
+
+
+def ball_of_r0(count):
+    return ContactPlaces(np.ones((count, 1)), np.zeros((count, 1)))
+
+
+def test_weights_give_back_parabolas_and_sum_to_one():
+    nodes = np.array([0.0, 0.3, 0.5, 1.1, 1.2])
+    at = np.linspace(0.0, 1.2, 41)
+    weights = NodeAxis(nodes).weights(at)
+    np.testing.assert_allclose(weights.sum(axis=1), 1.0, atol=1e-12)
+    np.testing.assert_allclose(weights @ (2 - nodes + 3 * nodes**2), 2 - at + 3 * at**2, atol=1e-12)
+    np.testing.assert_allclose(NodeAxis(nodes).weights(nodes), np.eye(5), atol=1e-12)
+    np.testing.assert_allclose(NodeAxis(nodes).weights(np.array([2.0])), [[0, 0, 0, 0, 1]], atol=1e-12)
+    line = NodeAxis(np.array([0.0, 0.44**2]))
+    np.testing.assert_allclose(line.weights(np.array([0.1])) @ np.array([1.0, 1.0 + 0.44**2]), [1.1], atol=1e-12)
