@@ -15,8 +15,9 @@ from pneutouch.mechanics.contact_correction import plate_alone
 from pneutouch.mechanics.sensor import Sensor
 from pneutouch.mechanics.solid.indenter import ball, cone
 from pneutouch.mechanics.solid_states import solid_states
-from pneutouch.mechanics.uncertainty import FIGURES, INPUTS
+from pneutouch.mechanics.uncertainty import FIGURES, INPUTS, ContactModel, batch_of
 from pneutouch.mechanics.uncertainty.contact import SPREAD
+from pneutouch.mechanics.uncertainty.neighbours import log_figures
 from pneutouch.mechanics.uncertainty.source import CONTACT_FIGURES, DEAD, SENSITIVITY
 from pneutouch.spec.material import Material
 from pneutouch.units import KPA
@@ -68,6 +69,25 @@ def test_the_derivative_by_the_modulus_is_the_solids_with_friction(rough):
     found = rough.uncertainty[1]["elasticities"][STATED]["shear_modulus"]
     assert found == pytest.approx((more - less) / 0.2, abs=0.02)
     assert any(note.startswith("the contact has friction (0.5)") for note in rough.uncertainty[1]["notes"])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("modulus", "friction"), [(0.17, 0.6), (0.27, 0.3)])
+def test_between_the_pressures_that_are_solved_the_derivatives_are_the_solids(evaluated, modulus, friction):
+    """In the middle of the driving pressures, of which the ends alone are solved where ranges end at the depth. The
+    greatest differences found are 0.006 for the sensitivity and 0.009 for stiffness and force, where d ln S / d ln
+    modulus is 0.1 and the modulus is known to 40 %."""
+    base = evaluated("paper-dome", model="atlas").sensor
+    sensor = base.replace(friction=friction, shear_modulus=modulus, waves=0)
+    middle, half = 11 * KPA, 0.35
+    nodes = ContactModel(sensor, (0.0, middle, 22 * KPA)).shift(half).nodes
+    found = (nodes[2] - nodes[0])[list(CONTACT_FIGURES), 1] / (2 * half)
+    up, down = (sensor.replace(shear_modulus=modulus * math.exp(x)) for x in (half, -half))
+    plates = [log_figures(batch_of(plate_alone(one), (middle,)))[list(CONTACT_FIGURES), 0] for one in (up, down)]
+    direct = (logs(up, middle) - logs(down, middle) - (plates[0] - plates[1])) / (2 * half)
+    assert np.abs(direct[:3]).max() > 0.02
+    np.testing.assert_allclose(found[0], direct[0], atol=0.01)
+    np.testing.assert_allclose(found[1:3], direct[1:3], atol=0.015)
 
 
 def test_the_limit_pressure_and_the_height_know_of_no_friction(rough):
