@@ -1,28 +1,29 @@
-"""Contact off the axis with CalculiX (an optional peer, found on PATH): ``python -m benchmarks.off_axis_calculix``.
+"""Contact off the axis with CalculiX in three dimensions (an optional peer, found on PATH).
 
-Half of the paper's dome as a three-dimensional body of C3D20R cells, clamped at its base, is pressed by a ball off the axis or a
-leaning plate, without friction, with the pressure that the solid with harmonics finds at each depth in it. Compared are the force,
-the sideways force, and the pressure that the gas has in the volume that CalculiX finds. Optional arguments: cells along the arc,
-through the wall and around half the axis, then harmonics. Writes docs/off-axis-calculix.json.
+``python -m benchmarks.off_axis_calculix [SCENE ...]`` presses the paper's sensor in the scenes of these numbers, or in all
+of them, with the harmonic solid and with half a dome of C3D20R cells, without the base. Compared are the force, the
+sideways force and the pressure rise of both, each with its own gas. Stores docs/off-axis-calculix.json, and writes its
+section into docs/validation.md. CalculiX counts slip from the beginning of its computation (`calculix_grip`): scenes with
+friction have a stiff wall and a coefficient at which nearly all points slip.
 """
 
 from __future__ import annotations
 
 import json
-import subprocess
 import sys
-import tempfile
-from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from benchmarks.scenes import PAPER
-from benchmarks.sway_calculix import RADIUS as INNER
-from benchmarks.sway_calculix import SPRING, WALL, Grid
+from benchmarks.calculix_half import INNER, WALL, HalfPress
+from benchmarks.page_section import replace_section
+from benchmarks.scenes import PAPER, paper
 from pneutouch.arrays import Array
-from pneutouch.mechanics.harmonic.press import OffAxisPath, OffAxisPress
-from pneutouch.mechanics.harmonic.surface import PlacedObject
+from pneutouch.mechanics.harmonic.press import OffAxisPress, OffAxisState
+from pneutouch.mechanics.harmonic.surface import PlacedObject, Surface
+from pneutouch.mechanics.sensor import Sensor, WallMaterial
 from pneutouch.mechanics.solid.contact import Plate
 from pneutouch.mechanics.solid.indent import PressSettings
 from pneutouch.mechanics.solid.indenter import ball
@@ -30,165 +31,159 @@ from pneutouch.mechanics.solid.inflate import state_at
 from pneutouch.mechanics.solid.mesh import dome
 from pneutouch.mechanics.solid.model import SolidModel
 from pneutouch.mechanics.solid.stress import StrainProbe
+from pneutouch.units import KPA
 
 ROOT = Path(__file__).resolve().parents[1]
-DEPTH, STEPS = 4.0, 8
-AMBIENT = 0.101325
-BALL, OFFSET, TILT = 6.0, 3.0, 10.0
+FLX9960 = paper(0.91)
+STORED, PAGE = ROOT / "docs" / "off-axis-calculix.json", ROOT / "docs" / "validation.md"
+HEADING = "## CalculiX: contact off the axis"
+ORDER = 6
+_FRICTION_STEPS = 16
+"""Steps of a press with friction."""
+FIGURES = ("force_N", "sideways_N", "rise_kPa")
 
-Scene = tuple[str, PlacedObject, list[float], list[float]]
-"""Name, object in R0, and the edges in x and y of the cells of its rigid body, mm."""
+
+@dataclass(frozen=True)
+class OffAxisScene:
+    """An object at any height, R0, the driving pressure (MPa), the edges of the object's cells (mm), and the cells of
+    CalculiX's dome, along the arc, through the wall and around half the axis, on a mesh or on a coarser and a finer one;
+    those in the upper half of the arc are ``closer`` times shorter than below. Compared at half of ``depth`` and at it.
+    ``increment``: see `HalfPress`."""
+
+    name: str
+    surface: Surface
+    driving: float
+    edges: tuple[Array, Array]
+    meshes: tuple[tuple[int, int, int], ...]
+    closer: float = 1.0
+    depth: float = 4.0
+    friction: float = 0.0
+    wall: WallMaterial = PAPER.wall
+    increment: float = 0.5
+
+    def rubs(self, friction: float, sensor: Sensor, depth: float) -> OffAxisScene:
+        """The same scene with friction on the wall of another sensor to another depth."""
+        name = f"{self.name}, friction {friction:g}, {sensor.wall.shear_modulus:g} MPa"
+        return replace(self, name=name, friction=friction, wall=sensor.wall, depth=depth)
 
 
-def scenes() -> list[Scene]:
-    """The ball and the plate."""
-    plate = Plate(0.0, np.inf, 1.0)
-    wide = list(np.linspace(-5.4, 5.4, 45))
-    return [
-        (f"plate tilted by {TILT:g} degrees", PlacedObject(plate, 0.0, np.radians(TILT)), [-16.0, 16.0], [-2.0, 16.0]),
-        (
-            f"ball of {BALL:g} mm offset by {OFFSET:g} mm",
-            PlacedObject(ball(BALL).scaled(1.0 / INNER), OFFSET / INNER),
-            [OFFSET + x for x in wide],
-            [y for y in wide if y > -0.5],
-        ),
+def _plate(tilt: float, driving: float, *meshes: tuple[int, int, int]) -> OffAxisScene:
+    leaning = PlacedObject(Plate(0.0, np.inf, 1.0), 0.0, float(np.radians(tilt)))
+    edges = (np.array([-16.0, 16.0]), np.array([-2.0, 16.0]))
+    name = f"plate tilted by {tilt:g} degrees, {driving / KPA:g} kPa"
+    return OffAxisScene(name, leaning, driving, edges, meshes or ((28, 2, 6),))
+
+
+def _ball(radius: float, offset: float, driving: float, *meshes: tuple[int, int, int]) -> OffAxisScene:
+    placed = PlacedObject(ball(radius).scaled(1.0 / INNER), offset / INNER)
+    across = 0.9 * radius * np.linspace(-1.0, 1.0, 13)
+    edges = (offset + across, np.append(across[5], across[6:]))
+    name = f"ball of {radius:g} mm radius, {offset:g} mm off the axis, {driving / KPA:g} kPa"
+    return OffAxisScene(name, placed, driving, edges, meshes or ((24, 2, 10),), closer=1.5, increment=0.25)
+
+
+SCENES = (
+    _plate(10.0, 0.0, (28, 2, 6), (40, 2, 6)),
+    _plate(10.0, 22.0 * KPA),
+    _ball(6.0, 3.0, 0.0, (24, 2, 10), (32, 2, 12)),
+    _ball(6.0, 3.0, 22.0 * KPA),
+    _plate(20.0, 0.0),
+    _ball(12.0, 4.0, 0.0),
+    _plate(10.0, 0.0).rubs(0.3, FLX9960, 2.0),
+    _ball(6.0, 3.0, 0.0).rubs(0.3, FLX9960, 2.0),
+)
+
+
+def harmonic_states(scene: OffAxisScene) -> tuple[Surface, list[OffAxisState]]:
+    """The object at first contact, and the states of the harmonic solid there, at half of the depth and at it."""
+    solid = SolidModel(dome(INNER, WALL), scene.wall.hyperelastic)
+    settings = PressSettings(scene.depth, _FRICTION_STEPS if scene.friction else 2, friction=scene.friction)
+    press = OffAxisPress(solid, state_at(solid, scene.driving), settings, scene.surface, StrainProbe(solid))
+    states = press.run(ORDER).states
+    return press.surface, states[:: (len(states) - 1) // 2]
+
+
+def compared(scene: OffAxisScene) -> dict[str, Any]:
+    """One scene by both programs, CalculiX on every mesh."""
+    surface, states = harmonic_states(scene)
+    depths, pressures = (np.array([getattr(s, name) for s in states]) for name in ("indentation", "pressure"))
+    rows: list[dict[str, Any]] = [
+        {"depth_mm": s.indentation, "harmonic": figures(s.force, s.sideways, s.rise), "calculix": []}
+        for s in states[1:]
     ]
-
-
-def harmonic_press(placed: PlacedObject, order: int) -> tuple[OffAxisPath, float]:
-    """The press of the sensor without driving pressure, and the height of the object at first contact (mm)."""
-    solid = SolidModel(dome(INNER, WALL), PAPER.wall.hyperelastic)
-    press = OffAxisPress(
-        solid, state_at(solid, 0.0), PressSettings(DEPTH, STEPS, ambient=AMBIENT), placed, StrainProbe(solid)
-    )
-    return press.run(order), press.surface.height * INNER
-
-
-def deck(grid: Grid, scene: Scene, height: float, depths: Array, pressures: Array) -> str:
-    """The input of CalculiX; the time of the step is the depth in mm."""
-    nu, mu = PAPER.wall.poisson_ratio, PAPER.wall.shear_modulus
-    bulk = 2 * mu * (1 + nu) / (3 * (1 - 2 * nu))
-    _, placed, xs, ys = scene
-    cells, count = grid.cells(), len(grid.points)
-    flat_x, flat_y = (a.ravel() for a in np.meshgrid(xs, ys, indexing="ij"))
-    under = height + INNER * placed.at(0.0).over(flat_x / INNER, flat_y / INNER).height
-    body = [(x, y, z + up) for up in (0.0, 1.0) for x, y, z in zip(flat_x, flat_y, under, strict=True)]
-    layer, row = len(flat_x), len(ys)
-    corners = [
-        (i * row + k, (i + 1) * row + k, (i + 1) * row + k + 1, i * row + k + 1)
-        for i in range(len(xs) - 1)
-        for k in range(row - 1)
-    ]
-    bricks = [[count + 1 + n for n in low] + [count + 1 + layer + n for n in low] for low in corners]
-    flat = {number for (_, _, k), number in grid.number.items() if k in (0, 2 * grid.around)}
-    held = {number for (i, _, _), number in grid.number.items() if i == 0}
-    inner = sorted(number for (_, j, _), number in grid.number.items() if j == 0)
-    lines = ["*NODE,NSET=ALL"]
-    lines += [f"{n},{x:.10g},{y:.10g},{z:.10g}" for n, (x, y, z) in enumerate([*grid.points, *body], start=1)]
-    lines += ["*ELEMENT,TYPE=C3D20R,ELSET=WALL"]
-    for n, (nodes, _, _) in enumerate(cells, start=1):
-        lines += [f"{n}," + ",".join(map(str, nodes[:10])) + ",", ",".join(map(str, nodes[10:]))]
-    lines += ["*ELEMENT,TYPE=C3D8,ELSET=BODY"]
-    lines += [f"{len(cells) + 1 + n}," + ",".join(map(str, brick)) for n, brick in enumerate(bricks)]
-    lines += ["*NSET,NSET=FLAT", *(f"{n}," for n in sorted(flat)), "*NSET,NSET=HELD", *(f"{n}," for n in sorted(held))]
-    lines += ["*NSET,NSET=OBJECT", *(f"{count + 1 + k}," for k in range(len(body)))]
-    lines += ["*NSET,NSET=INSIDE", *(f"{n}," for n in inner)]
-    lines += ["*ELSET,ELSET=INNER", *(f"{n}," for n, cell in enumerate(cells, start=1) if cell[1])]
-    lines += ["*SURFACE,NAME=OUT", *(f"{n},S5" for n, cell in enumerate(cells, start=1) if cell[2])]
-    lines += ["*SURFACE,NAME=UNDER", *(f"{len(cells) + 1 + n},S1" for n in range(len(bricks)))]
-    lines += ["*MATERIAL,NAME=RUBBER", "*HYPERELASTIC,NEO HOOKE", f"{0.5 * mu:.12g},{2 / bulk:.12g}"]
-    lines += ["*MATERIAL,NAME=STIFF", "*ELASTIC", "1000,0.3"]
-    lines += ["*SOLID SECTION,ELSET=WALL,MATERIAL=RUBBER", "*SOLID SECTION,ELSET=BODY,MATERIAL=STIFF"]
-    lines += ["*SURFACE INTERACTION,NAME=SLIPS", "*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=LINEAR", f"{SPRING}"]
-    lines += ["*CONTACT PAIR,INTERACTION=SLIPS,TYPE=SURFACE TO SURFACE", "OUT,UNDER"]
-    pairs = zip(depths, pressures, strict=True)
-    lines += ["*AMPLITUDE,NAME=GAS,TIME=TOTAL TIME", *(f"{d:.10g},{p:.10g}" for d, p in pairs)]
-    lines += ["*AMPLITUDE,NAME=DOWN,TIME=TOTAL TIME", "0,0", f"{DEPTH + 1},{DEPTH + 1}"]
-    lines += ["*TIME POINTS,NAME=STEPS,GENERATE", f"{DEPTH / STEPS},{DEPTH},{DEPTH / STEPS}"]
-    lines += ["*BOUNDARY", "HELD,1,3", "FLAT,2,2", "OBJECT,1,2"]
-    lines += ["*STEP,NLGEOM,INC=400", "*STATIC", f"0.1,{DEPTH},1e-4,0.5"]
-    lines += ["*CONTROLS,PARAMETERS=FIELD", "1e-3,1e-2", "*BOUNDARY,AMPLITUDE=DOWN", "OBJECT,3,3,-1"]
-    lines += ["*DLOAD,AMPLITUDE=GAS", "INNER,P3,1"]
-    lines += [
-        "*NODE PRINT,NSET=INSIDE,TIME POINTS=STEPS",
-        "U",
-        "*NODE PRINT,NSET=OBJECT,TOTALS=ONLY,TIME POINTS=STEPS",
-        "RF",
-    ]
-    return "\n".join([*lines, "*END STEP", ""])
-
-
-def calculix_press(grid: Grid, text: str) -> list[tuple[float, float, float, float]]:
-    """Depth (mm), force and sideways force on the object (N, whole dome) and volume (mm^3) at every step."""
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        (folder / "press.inp").write_text(text, encoding="ascii")
-        with (folder / "out").open("w") as out:
-            subprocess.run(["ccx", "press"], cwd=folder, stdout=out, check=False)
-        found = (folder / "press.dat").read_text(encoding="ascii")
-    rows, moved, time = [], dict[int, Array](), 0.0
-    for line in found.splitlines():
-        words = line.split()
-        if "time" in words:
-            time = float(words[-1])
-        elif len(words) == 4 and words[0].isdigit():
-            moved[int(words[0])] = np.array([float(w) for w in words[1:]])
-        elif len(words) == 3:
-            x, _, z = (float(w) for w in words)
-            rows.append((time, -2.0 * z, -2.0 * x, _volume(grid, lambda n: moved[n])))
-    return rows
-
-
-def _volume(grid: Grid, moved: Callable[[int], Array]) -> float:
-    """Volume inside the inner wall of the whole dome above z = 0: quadratic surfaces by 3 x 3 Gauss points a face."""
-    from pneutouch.mechanics.solid.elements import cell_shapes, gauss_square
-
-    points, weights = gauss_square(3)
-    value, slope = cell_shapes(points, 8)
-    total = 0.0
-    for k, i in np.ndindex(grid.around, grid.arc):
-        a, c = 2 * i, 2 * k
-        spots = [(a, c), (a + 2, c), (a + 2, c + 2), (a, c + 2), (a + 1, c), (a + 2, c + 1), (a + 1, c + 2), (a, c + 1)]
-        numbers = [grid.number[p, 0, q] for p, q in spots]
-        place = np.array([np.array(grid.points[n - 1]) + moved(n) for n in numbers])
-        at, along, turned = value @ place, slope[..., 0] @ place, slope[..., 1] @ place
-        # The horizontal position through the surface: half its flux is the volume.
-        normal = np.cross(turned, along)
-        total += float(weights @ (at[:, :2] * normal[:, :2]).sum(axis=1))
-    return abs(total)
-
-
-def compared(scene: Scene, sizes: tuple[int, int, int], order: int) -> dict[str, object]:
-    """One scene by both programs."""
-    path, height = harmonic_press(scene[1], order)
-    grid = Grid(*sizes)
-    text = deck(grid, scene, height, path.column("indentation"), path.column("pressure"))
-    rows: list[dict[str, float]] = []
-    rest = _volume(grid, lambda n: np.zeros(3))
-    for depth, force, sideways, volume in calculix_press(grid, text):
-        ours = min(path.states, key=lambda s: abs(s.indentation - depth))
-        if abs(ours.indentation - depth) > 1e-6 or any(row["depth_mm"] == ours.indentation for row in rows):
-            continue
-        theirs_kPa = 1e3 * (AMBIENT * rest / volume - AMBIENT)
-        rows.append(
-            {
-                "depth_mm": ours.indentation,
-                "harmonic_force_N": ours.force,
-                "calculix_force_N": force,
-                "harmonic_sideways_N": ours.sideways,
-                "calculix_sideways_N": sideways,
-                "harmonic_pressure_kPa": 1e3 * ours.pressure,
-                "calculix_pressure_kPa": theirs_kPa,
-            }
+    for cells in scene.meshes:
+        half = HalfPress(
+            surface,
+            scene.edges,
+            scene.driving,
+            depths,
+            cells,
+            scene.closer,
+            friction=scene.friction,
+            increment=scene.increment,
+            wall=(scene.wall.shear_modulus, scene.wall.poisson_ratio),
         )
-        print(" ".join(f"{name}={value:.5g}" for name, value in rows[-1].items()), flush=True)
-    return {"scene": scene[0], "cells": list(sizes), "harmonics": order, "rows": rows}
+        for row, stop in zip(rows, half.run(pressures), strict=False):
+            row["calculix"].append(figures(stop.force, stop.sideways, stop.pressure - scene.driving))
+            print(scene.name, cells, row["depth_mm"], row["harmonic"], row["calculix"][-1], flush=True)
+    return {"scene": scene.name, "cells": [list(m) for m in scene.meshes], "harmonics": ORDER, "rows": rows}
 
 
-def main(arc: int = 24, through: int = 2, around: int = 12, order: int = 8) -> None:
-    """Both scenes, and one table."""
-    data = [compared(scene, (arc, through, around), order) for scene in scenes()]
-    (ROOT / "docs" / "off-axis-calculix.json").write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+def figures(force: float, sideways: float, rise: float) -> dict[str, float]:
+    """The figures compared, from N, N and MPa."""
+    return dict(zip(FIGURES, (float(force), float(sideways), float(rise) / KPA), strict=True))
+
+
+def section(data: list[dict[str, Any]]) -> list[str]:
+    """The lines of the comparison for a page."""
+    worst = {figure: max(map(abs, differences(data, figure))) for figure in FIGURES}
+    refined = " and ".join(f"{_times(a)} to {_times(b)}" for a, b in (s["cells"] for s in data if len(s["cells"]) > 1))
+    return [
+        HEADING,
+        "",
+        f"The paper's sensor without its base by the harmonic solid (M = {ORDER}, 24 x 2 cells) and by "
+        "half a dome of C3D20R cells in three dimensions, each with its own gas shut in: CalculiX's pressure is that which "
+        "Boyle's law gives in the volume that CalculiX finds. Next to each figure of the harmonic solid is the difference "
+        "of CalculiX from it; where CalculiX was run on a coarser mesh too, the last column is the greatest change of its three "
+        f"figures by the refinement: {refined}. "
+        "`python -m benchmarks.off_axis_calculix` computes it. See [off-axis.md](off-axis.md).",
+        "",
+        "| scene | mm | force N | CalculiX | sideways N | CalculiX | pressure rise kPa | CalculiX | refinement |",
+        "|---|---|---|---|---|---|---|---|---|",
+        *(_line(scene["scene"], row) for scene in data for row in scene["rows"]),
+        "",
+        f"Greatest differences: force {worst['force_N']:.1%}, sideways force {worst['sideways_N']:.1%}, pressure rise "
+        f"{worst['rise_kPa']:.1%}.",
+        "",
+    ]
+
+
+def _times(cells: list[int]) -> str:
+    return " x ".join(map(str, cells))
+
+
+def _line(scene: str, row: dict[str, Any]) -> str:
+    ours, fine = row["harmonic"], row["calculix"][-1]
+    pairs = [f"{ours[figure]:.4g} | {fine[figure] / ours[figure] - 1.0:+.1%}" for figure in FIGURES]
+    changes = [abs(fine[figure] / coarse[figure] - 1.0) for coarse in row["calculix"][:-1] for figure in FIGURES]
+    settled = f"{max(changes):.1%}" if changes else ""
+    return f"| {scene} | {row['depth_mm']:g} | {' | '.join(pairs)} | {settled} |"
+
+
+def differences(data: list[dict[str, Any]], figure: str) -> list[float]:
+    """CalculiX's finer mesh over the harmonic solid, less 1, in every row."""
+    return [row["calculix"][-1][figure] / row["harmonic"][figure] - 1.0 for scene in data for row in scene["rows"]]
+
+
+def main(*numbers: int) -> None:
+    """The scenes of the numbers, from 1, or all; the others as they are stored."""
+    stored = {scene["scene"]: scene for scene in (json.loads(STORED.read_text("utf-8")) if STORED.exists() else [])}
+    for number in numbers or range(1, len(SCENES) + 1):
+        scene = SCENES[number - 1]
+        stored[scene.name] = compared(scene)
+    data = [stored[scene.name] for scene in SCENES if scene.name in stored]
+    STORED.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+    replace_section(PAGE, section(data))
 
 
 if __name__ == "__main__":

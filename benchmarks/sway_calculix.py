@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.scenes import PAPER
+from pneutouch.arrays import Array
 from pneutouch.mechanics.solid.banded import solve
 from pneutouch.mechanics.solid.contact import Plate
 from pneutouch.mechanics.solid.harmonics import HarmonicSolid
@@ -67,13 +68,17 @@ def solid_stiffness(solid: SolidModel, run: IndentationPath) -> list[float]:
 
 
 class Grid:
-    """Half a dome of C3D20R cells: ``arc`` from base to pole, ``through`` the wall, ``around`` half the axis."""
+    """Half a dome of C3D20R cells: ``arc`` from base to pole, ``through`` the wall, ``around`` half the axis.
 
-    def __init__(self, arc: int, through: int, around: int) -> None:
+    ``angles`` of the nodes above the base (rad), those in the middle of cells included; without them the cells are
+    equally long.
+    """
+
+    def __init__(self, arc: int, through: int, around: int, angles: Array | None = None) -> None:
         self.arc, self.through, self.around = arc, through, around
         self.number: dict[tuple[int, int, int], int] = {}
         self.points: list[tuple[float, float, float]] = []
-        angle = np.linspace(0.0, 0.5 * np.pi - HOLE, 2 * arc + 1)
+        angle = np.linspace(0.0, 0.5 * np.pi - HOLE, 2 * arc + 1) if angles is None else angles
         radius = RADIUS + WALL * np.linspace(0.0, 1.0, 2 * through + 1)
         turn = np.linspace(0.0, np.pi, 2 * around + 1)
         for k, i, j in np.ndindex(turn.size, angle.size, radius.size):

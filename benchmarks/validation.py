@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 import statistics
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
+from benchmarks import off_axis_calculix
 from benchmarks.calculix_sweep import calculix_limit
 from benchmarks.contact_references import balls
 from benchmarks.scenes import PAPER, Scene
@@ -208,6 +211,11 @@ def calculix() -> list[str]:
     ]
 
 
+def stored_section(benchmark: ModuleType) -> list[str]:
+    """The section of a comparison in three dimensions, from what that benchmark has stored."""
+    return list(benchmark.section(json.loads(benchmark.STORED.read_text(encoding="utf-8"))))
+
+
 def incompressibility() -> list[str]:
     """Poisson's ratio up to 0.4999 without locking."""
     ratio = 1.5 / 9.25
@@ -277,6 +285,7 @@ def page() -> str:
             *incompressibility(),
             *invariances(),
             *calculix(),
+            *stored_section(off_axis_calculix),
             *dead_volumes(Library((ROOT,))),
         ]
     )

@@ -146,6 +146,27 @@ def test_the_page_on_the_sway_is_made_of_the_stored_numbers():
     assert shares == sorted(shares) and all(abs(share / 0.8 - 1) < 0.05 for share in shares[:3])
 
 
+def test_presses_off_the_axis_agree_with_calculix_in_three_dimensions():
+    """Force, sideways force and pressure rise within 2 %; the section is made of the stored numbers."""
+    from benchmarks.off_axis_calculix import FIGURES, differences, section
+
+    data = stored("off-axis-calculix.json")
+    assert "\n".join(section(data)) in (DOCS / "validation.md").read_text(encoding="utf-8")
+    assert data and all(len(scene["rows"]) == 2 for scene in data)
+    for figure in FIGURES:
+        assert max(map(abs, differences(data, figure))) < 0.02, figure
+
+
+@pytest.mark.slow
+def test_the_press_under_a_leaning_plate_is_what_the_code_gives_today():
+    from benchmarks.off_axis_calculix import SCENES, figures, harmonic_states
+
+    _, (_, *states) = harmonic_states(SCENES[0])
+    rows = next(scene["rows"] for scene in stored("off-axis-calculix.json") if scene["scene"] == SCENES[0].name)
+    for state, row in zip(states, rows, strict=True):
+        assert figures(state.force, state.sideways, state.rise) == pytest.approx(row["harmonic"], rel=1e-4)
+
+
 @pytest.mark.slow
 def test_the_map_of_axisymmetry_is_what_the_code_gives_today():
     from benchmarks.sway_map import DEAD, RESINS, inflated, pressed

@@ -1,0 +1,225 @@
+"""Half a dome in three dimensions under a rigid object by CalculiX (an optional peer, found on PATH), with its own gas.
+
+C3D20R cells, clamped at the base. The object is a layer of C3D20 cells with quadratic faces on its underside: flat faces
+would turn the direction of the contact in jumps. CalculiX freezes which points of the two surfaces meet at the beginning
+of an increment (its manual, "Face-to-face penalty contact"). On a round object the direction of the force therefore lags
+behind: a ball's sideways force is 10 % off after 0.5 mm in one increment. Increments without any motion before every
+figure remove that. CalculiX has no trapped gas. At each depth the press therefore has two pressures, a given one and one
+a little higher. From the volumes that CalculiX finds, its own initial or inflated one included, Boyle's law gives the
+pressure that its dome has, and with it the forces.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from benchmarks.scenes import PAPER
+from benchmarks.sway_calculix import HOLE, SPRING, Grid
+from pneutouch.arrays import Array
+from pneutouch.mechanics.harmonic.surface import Surface
+from pneutouch.mechanics.solid.elements import cell_shapes, gauss_square
+from pneutouch.mechanics.solid.mesh import with_middles
+
+INNER, WALL = PAPER.dome.inner_radius, PAPER.dome.wall_thickness
+_RAISED = 2.0e-4
+"""How much the second pressure at a depth lies above the first, MPa."""
+_ALONG = 0.1
+"""Stiffness of the contact along the surface over that across it."""
+
+
+class Stop(NamedTuple):
+    """CalculiX's dome at one depth (mm): force on the object and its part along x (N), gauge pressure (MPa), and how far
+    that lies above the pressure that was given (MPa)."""
+
+    depth: float
+    force: float
+    sideways: float
+    pressure: float
+    added: float
+
+
+@dataclass(frozen=True)
+class HalfPress:
+    """A press of the paper's sensor from a driving pressure (MPa) to depths (mm, rising, the first 0).
+
+    surface: the object in R0 at first contact.  edges: of the object's cells, along x and y, mm.
+    cells: along the arc, through the wall, around half the axis; those in the upper half of the arc are ``closer`` times
+    shorter than below.  increment: greatest one, as a share of the way from depth to depth.
+    wall: shear modulus (MPa) and Poisson's ratio.
+    """
+
+    surface: Surface
+    edges: tuple[Array, Array]
+    driving: float
+    depths: Array
+    cells: tuple[int, int, int] = (30, 2, 16)
+    closer: float = 1.0
+    friction: float = 0.0
+    increment: float = 0.5
+    ambient: float = 0.101325
+    wall: tuple[float, float] = (PAPER.wall.shear_modulus, PAPER.wall.poisson_ratio)
+
+    @property
+    def grid(self) -> Grid:
+        """The nodes of the dome."""
+        half = 0.25 * np.pi
+        counted = np.array([0.0, 1.0, 1.0 + self.closer])
+        ends = np.interp(np.linspace(0.0, counted[-1], self.cells[0] + 1), counted, [0.0, half, 2.0 * half])
+        ends[-1] -= HOLE
+        return Grid(*self.cells, angles=with_middles(ends))
+
+    def run(self, pressures: Array) -> list[Stop]:
+        """CalculiX's answers near gauge pressures (MPa) at the depths; those that it does not reach are left out."""
+        grid = self.grid
+        found = calculix_stops(deck(self, grid, pressures), grid)
+        begin = 1 if self.driving else 0
+        first = found[1.0][1] if begin else np.array(grid.points)
+        amount = (self.ambient + self.driving) * inside_volume(grid, first)
+        out = []
+        for k, given in enumerate(pressures[1:].tolist()):
+            if begin + 2.0 * k + 2.0 not in found:
+                break
+            (low, inside), (high, swelling) = (found[begin + 2.0 * k + up] for up in (1.5, 2.0))
+            volume, swollen = inside_volume(grid, inside), inside_volume(grid, swelling)
+            lacks = amount / volume - self.ambient - given
+            share = lacks / (_RAISED + amount / volume - amount / swollen)
+            force = low + share * (high - low)
+            out.append(Stop(self.depths[k + 1], force[2], force[0], given + share * _RAISED, share * _RAISED))
+        return out
+
+
+def deck(press: HalfPress, grid: Grid, pressures: Array) -> str:
+    """The input of CalculiX for gauge pressures (MPa) at the depths of the press."""
+    mu, nu = press.wall
+    bulk = 2 * mu * (1 + nu) / (3 * (1 - 2 * nu))
+    spring = SPRING * mu / PAPER.wall.shear_modulus
+    lines = [*_dome(grid), *_object(press, len(grid.points), grid.around * grid.arc * grid.through)]
+    lines += ["*MATERIAL,NAME=RUBBER", "*HYPERELASTIC,NEO HOOKE", f"{0.5 * mu:.12g},{2 / bulk:.12g}"]
+    lines += ["*MATERIAL,NAME=STIFF", "*ELASTIC", "1000,0.3"]
+    lines += ["*SOLID SECTION,ELSET=WALL,MATERIAL=RUBBER", "*SOLID SECTION,ELSET=BODY,MATERIAL=STIFF"]
+    lines += ["*SURFACE INTERACTION,NAME=MEETS", "*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=LINEAR", f"{spring:.12g}"]
+    lines += ["*FRICTION", f"{press.friction:.12g},{_ALONG * spring:.12g}"] if press.friction else []
+    lines += ["*CONTACT PAIR,INTERACTION=MEETS,TYPE=SURFACE TO SURFACE", "OUT,UNDER"]
+    return "\n".join([*lines, *_step(press, pressures), ""])
+
+
+def _step(press: HalfPress, pressures: Array) -> list[str]:
+    """In one unit of time the dome is inflated, if at all. Then for each depth the object comes down in one unit and rests
+    for half of one, and the pressure is raised and rests in a quarter each."""
+    begin = [(0.0, 0.0, 0.0), (1.0, 0.0, press.driving)] if press.driving else [(0.0, 0.0, 0.0)]
+    course = list(begin)
+    for depth, pressure in zip(press.depths[1:], pressures[1:], strict=True):
+        at = course[-1][0]
+        course += [(at + 1.0, depth, pressure), (at + 1.5, depth, pressure)]
+        course += [(at + 1.75, depth, pressure + _RAISED), (at + 2.0, depth, pressure + _RAISED)]
+    last = course[-1][0]
+    return [
+        *("*AMPLITUDE,NAME=DOWN,TIME=TOTAL TIME", *(f"{t:.12g},{d:.12g}" for t, d, _ in course)),
+        *("*AMPLITUDE,NAME=GAS,TIME=TOTAL TIME", *(f"{t:.12g},{p:.12g}" for t, _, p in course)),
+        *("*TIME POINTS,NAME=STOPS,GENERATE", f"0.5,{last:.12g},0.5"),
+        *("*BOUNDARY", "HELD,1,3", "FLAT,2,2", "OBJECT,1,2"),
+        *("*STEP,NLGEOM,INC=2000", "*STATIC", f"0.1,{last:.12g},1e-5,{press.increment:.12g}"),
+        *("*CONTROLS,PARAMETERS=FIELD", "1e-3,1e-2"),
+        *("*BOUNDARY,AMPLITUDE=DOWN", "OBJECT,3,3,-1", "*DLOAD,AMPLITUDE=GAS", "INNER,P3,1"),
+        *("*NODE PRINT,NSET=INSIDE,TIME POINTS=STOPS", "U"),
+        *("*NODE PRINT,NSET=OBJECT,TOTALS=ONLY,TIME POINTS=STOPS", "RF", "*END STEP"),
+    ]
+
+
+def _dome(grid: Grid) -> list[str]:
+    """The nodes and cells of the wall and their sets."""
+    cells = grid.cells()
+    flat = [number for (_, _, k), number in grid.number.items() if k in (0, 2 * grid.around)]
+    held = [number for (i, _, _), number in grid.number.items() if i == 0]
+    inner = [number for (_, j, _), number in grid.number.items() if j == 0]
+    return [
+        "*NODE",
+        *(f"{n},{x:.12g},{y:.12g},{z:.12g}" for n, (x, y, z) in enumerate(grid.points, 1)),
+        "*ELEMENT,TYPE=C3D20R,ELSET=WALL",
+        *(_element(n, nodes) for n, (nodes, _, _) in enumerate(cells, 1)),
+        *_listed("*NSET,NSET=FLAT", flat),
+        *_listed("*NSET,NSET=HELD", held),
+        *_listed("*NSET,NSET=INSIDE", inner),
+        *_listed("*ELSET,ELSET=INNER", [n for n, cell in enumerate(cells, 1) if cell[1]]),
+        *("*SURFACE,NAME=OUT", *(f"{n},S5" for n, cell in enumerate(cells, 1) if cell[2])),
+    ]
+
+
+def _object(press: HalfPress, nodes: int, cells: int) -> list[str]:
+    """The nodes and cells of the object, after those of the dome; its underside is S1 of every cell."""
+    xs, ys = (with_middles(np.asarray(edges)) for edges in press.edges)
+    number: dict[tuple[int, int, int], int] = {}
+    lines = ["*NODE,NSET=OBJECT"]
+    for i, k, up in np.ndindex(xs.size, ys.size, 3):
+        if i % 2 + k % 2 + up % 2 > 1:
+            continue
+        number[i, k, up] = nodes + len(number) + 1
+        at = press.surface.over(np.array(xs[i] / INNER), np.array(ys[k] / INNER)).height
+        lines.append(f"{number[i, k, up]},{xs[i]:.12g},{ys[k]:.12g},{INNER * float(at) + 0.5 * up:.12g}")
+    lines.append("*ELEMENT,TYPE=C3D20,ELSET=BODY")
+    for n, (a, c) in enumerate(np.ndindex(len(press.edges[0]) - 1, len(press.edges[1]) - 1), 1):
+        i, k = 2 * a, 2 * c
+        corners = [(i, k), (i + 2, k), (i + 2, k + 2), (i, k + 2)]
+        sides = [(i + 1, k), (i + 2, k + 1), (i + 1, k + 2), (i, k + 1)]
+        order = [(*p, 0) for p in corners] + [(*p, 2) for p in corners]
+        order += [(*p, 0) for p in sides] + [(*p, 2) for p in sides] + [(*p, 1) for p in corners]
+        lines.append(_element(cells + n, [number[spot] for spot in order]))
+    return [*lines, "*SURFACE,NAME=UNDER", "BODY,S1"]
+
+
+def _element(number: int, nodes: list[int]) -> str:
+    """A cell of 20 nodes on two lines."""
+    return f"{number}," + ",".join(map(str, nodes[:10])) + ",\n" + ",".join(map(str, nodes[10:]))
+
+
+def _listed(head: str, numbers: list[int]) -> list[str]:
+    """A set under its heading."""
+    return [head, *(f"{n}," for n in sorted(numbers))]
+
+
+def calculix_stops(text: str, grid: Grid) -> dict[float, tuple[Array, Array]]:
+    """Force on the object of the whole dome (3,) and positions of the nodes of the inner wall (the others at rest,
+    (n, 3)) by the time, at every half unit that CalculiX reaches."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "press.inp").write_text(text, encoding="ascii")
+        alone = {**os.environ, "OMP_NUM_THREADS": "1"}
+        with (folder / "out").open("w") as out:
+            subprocess.run(["ccx", "press"], cwd=folder, stdout=out, check=False, env=alone)
+        lines = (folder / "press.dat").read_text(encoding="ascii").splitlines()
+    stops, place, time = dict[float, tuple[Array, Array]](), np.array(grid.points), 0.0
+    for line in lines:
+        words = line.split()
+        if "time" in words:
+            time = round(float(words[-1]), 6)
+        elif len(words) == 4 and words[0].isdigit():
+            place[int(words[0]) - 1] = grid.points[int(words[0]) - 1] + np.array(words[1:], dtype=np.float64)
+        elif len(words) == 3:
+            stops[time] = (-2.0 * np.array(words, dtype=np.float64), place.copy())
+    return stops
+
+
+def inside_volume(grid: Grid, places: Array) -> float:
+    """Volume inside the inner wall of the whole dome above z = 0 (mm^3) for positions of the nodes (n, 3).
+
+    Quadratic faces by 3 x 3 Gauss points each.
+    """
+    points, weights = gauss_square(3)
+    value, slope = cell_shapes(points, 8)
+    total = 0.0
+    for k, i in np.ndindex(grid.around, grid.arc):
+        a, c = 2 * i, 2 * k
+        spots = [(a, c), (a + 2, c), (a + 2, c + 2), (a, c + 2), (a + 1, c), (a + 2, c + 1), (a + 1, c + 2), (a, c + 1)]
+        place = places[[grid.number[p, 0, q] - 1 for p, q in spots]]
+        at, along, turned = value @ place, slope[..., 0] @ place, slope[..., 1] @ place
+        # The horizontal position through the surface: half its flux is the volume.
+        normal = np.cross(turned, along)
+        total += float(weights @ (at[:, :2] * normal[:, :2]).sum(axis=1))
+    return abs(total)
