@@ -37,7 +37,7 @@ class PlaceTableRecipe:
     leaning_curvatures: tuple[float, ...] = (0.0, 1.0, 10.0 / 3.0)
     leans: tuple[float, ...] = (0.44,)
     leaning_gas: float = 0.1
-    order: int = 4
+    order: int = 6
     cells: int = 16
     depth: float = 0.75
     steps: int = 15
