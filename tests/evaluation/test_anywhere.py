@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 import math
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 import pneutouch
+from pneutouch.cli.app import app
 from pneutouch.evaluation.anywhere import contact_anywhere_document, contact_chart
 from pneutouch.evaluation.document import prediction_document
 from pneutouch.mechanics.uncertainty.source import FIGURES
@@ -95,6 +98,16 @@ def test_the_python_interface_requests_it_for_a_prediction():
     assert SOURCE in state.uncertainty["figures"][S]["shares"]
     design = pneutouch.load("paper-dome").replace(anywhere=True)
     assert design.predict([12], model="atlas").at(12).uncertainty == state.uncertainty
+
+
+def test_the_flag_is_short_for_the_key_of_the_design():
+    words = ["predict", "paper-dome", "--model", "atlas", "--set", "pneumatics.driving_pressures_kPa=[12]", "--json"]
+    flag, key = (
+        CliRunner().invoke(app, [*words, *more])
+        for more in (["--contact-anywhere"], ["--set", "contact.anywhere=true"])
+    )
+    assert flag.exit_code == 0 and flag.stdout == key.stdout
+    assert "contact_anywhere" in json.loads(flag.stdout)
 
 
 @pytest.mark.parametrize(

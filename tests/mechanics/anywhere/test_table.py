@@ -57,7 +57,7 @@ def test_a_node_recomputes():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("seed", "leaning"), [*((seed, False) for seed in range(8)), *((s, True) for s in range(4))])
+@pytest.mark.parametrize(("seed", "leaning"), [*((seed, False) for seed in range(12)), *((s, True) for s in range(6))])
 def test_presses_that_the_table_was_not_made_from(seed, leaning):
     press = compared(shipped(), *drawn(RECIPE, seed, leaning=leaning))
     known = np.isfinite(press.model)
