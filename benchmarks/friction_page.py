@@ -200,6 +200,8 @@ TEXT = {
         "`tests/mechanics/solid/test_calculix_friction.py` presses the sensor in FLX9960 with CalculiX 2.20 on the same "
         "cells, with the solid's pressure over the depth, at coefficients 0 and 0.6, where nearly all points slip: the "
         "forces from 1.2 to 2.4 mm agree within 1 %. "
+        "[validation.md](validation.md#calculix-friction-in-three-dimensions) has the same press by half a dome in three "
+        "dimensions. "
         "CalculiX counts the slip of a point from the beginning of its computation, not from where the point first "
         "touches, so that a surface that grips pulls the points that touch later back to their radii at rest: a "
         "coefficient of 10 gives a force 8 to 13 % higher, and so does this solid, within 2 %, where its points rest at "

@@ -11,7 +11,7 @@ from types import ModuleType
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from benchmarks import off_axis_calculix
+from benchmarks import calculix_friction_half, off_axis_calculix
 from benchmarks.calculix_sweep import calculix_limit
 from benchmarks.contact_references import balls
 from benchmarks.scenes import PAPER, Scene
@@ -285,6 +285,7 @@ def page() -> str:
             *incompressibility(),
             *invariances(),
             *calculix(),
+            *stored_section(calculix_friction_half),
             *stored_section(off_axis_calculix),
             *dead_volumes(Library((ROOT,))),
         ]

@@ -167,6 +167,17 @@ def test_the_press_under_a_leaning_plate_is_what_the_code_gives_today():
         assert figures(state.force, state.sideways, state.rise) == pytest.approx(row["harmonic"], rel=1e-4)
 
 
+def test_presses_with_friction_agree_with_calculix_in_three_dimensions():
+    """Force and pressure rise within 1 %; the section is made of the stored numbers."""
+    from benchmarks.calculix_friction_half import COEFFICIENTS, STEPS, differences, section
+
+    data = stored("friction-calculix.json")
+    assert "\n".join(section(data)) in (DOCS / "validation.md").read_text(encoding="utf-8")
+    assert len(data["rows"]) == len(COEFFICIENTS) * STEPS
+    for figure in ("force_N", "rise_kPa"):
+        assert max(map(abs, differences(data, figure))) < 0.01, figure
+
+
 @pytest.mark.slow
 def test_the_map_of_axisymmetry_is_what_the_code_gives_today():
     from benchmarks.sway_map import DEAD, RESINS, inflated, pressed

@@ -1,0 +1,113 @@
+"""The press with friction by CalculiX in three dimensions (an optional peer, found on PATH).
+
+``python -m benchmarks.calculix_friction_half`` presses the paper's dome in FLX9960 centrally with the axisymmetric solid and
+with half a dome of C3D20R cells, each with its own gas. Stores docs/friction-calculix.json, and writes its section into
+docs/validation.md. CalculiX counts slip from the beginning of its computation (`calculix_grip`): the coefficient is one at
+which nearly all points slip.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchmarks.calculix_half import HalfPress
+from benchmarks.page_section import replace_section
+from benchmarks.scenes import paper
+from pneutouch.mechanics.harmonic.surface import PlacedObject
+from pneutouch.mechanics.laws import neo_hookean
+from pneutouch.mechanics.solid.contact import Plate
+from pneutouch.mechanics.solid.indent import PressSettings, indent
+from pneutouch.mechanics.solid.inflate import state_at
+from pneutouch.mechanics.solid.mesh import dome
+from pneutouch.mechanics.solid.model import SolidModel
+from pneutouch.units import KPA
+
+ROOT = Path(__file__).resolve().parents[1]
+STORED, PAGE = ROOT / "docs" / "friction-calculix.json", ROOT / "docs" / "validation.md"
+HEADING = "## CalculiX: friction in three dimensions"
+SENSOR = paper(0.91)
+DEPTH, STEPS = 2.4, 2
+CELLS = (36, 2, 6)
+COEFFICIENTS = (0.3,)
+_COLUMNS = ("indentation", "force", "pressure")
+_FINER = 8
+"""Steps of the solid to one depth that is compared."""
+_PLATE = 15.0
+
+
+def compared(friction: float, cells: tuple[int, int, int]) -> list[dict[str, float]]:
+    """The press by the solid on its default mesh and by CalculiX, one row a depth that CalculiX reaches."""
+    wall = neo_hookean(SENSOR.wall.shear_modulus, SENSOR.wall.poisson_ratio)
+    solid = SolidModel(dome(SENSOR.dome.inner_radius, SENSOR.dome.wall_thickness), wall)
+    settings = PressSettings(DEPTH, _FINER * STEPS, friction=friction, gauge_range=np.inf)
+    states = indent(solid, state_at(solid, 0.0), settings).states[::_FINER]
+    depths, forces, pressures = (np.array([getattr(s, name) for s in states]) for name in _COLUMNS)
+    top = 1.0 + SENSOR.dome.wall_thickness / SENSOR.dome.inner_radius
+    half = HalfPress(
+        surface=PlacedObject(Plate(top, np.inf, 1.0)),
+        edges=(np.array([-_PLATE, _PLATE]), np.array([-2.0, _PLATE])),
+        driving=0.0,
+        depths=depths,
+        cells=cells,
+        friction=friction,
+        increment=0.25,
+        wall=(SENSOR.wall.shear_modulus, SENSOR.wall.poisson_ratio),
+    )
+    return [
+        {
+            "depth_mm": round(stop.depth, 9),
+            "solid_force_N": float(force),
+            "calculix_force_N": stop.force,
+            "solid_rise_kPa": float(pressure) / KPA,
+            "calculix_rise_kPa": stop.pressure / KPA,
+        }
+        for stop, force, pressure in zip(half.run(pressures), forces[1:], pressures[1:], strict=False)
+    ]
+
+
+def section(data: dict[str, Any]) -> list[str]:
+    """The lines of the comparison for a page."""
+    rows = data["rows"]
+    force, rise = (differences(data, figure) for figure in ("force_N", "rise_kPa"))
+    return [
+        HEADING,
+        "",
+        "The paper's dome in FLX9960 without its base, pressed centrally by a plate, by the axisymmetric solid on its "
+        f"default mesh and by half a dome of {' x '.join(map(str, data['cells']))} C3D20R cells, each with its own gas shut in. "
+        "CalculiX counts slip from the beginning of its computation, so the coefficient is one at which nearly all points "
+        "slip. `python -m benchmarks.calculix_friction_half` computes it. See [friction.md](friction.md).",
+        "",
+        "| friction | mm | force N | CalculiX | pressure rise kPa | CalculiX |",
+        "|---|---|---|---|---|---|",
+        *(
+            f"| {row['friction']:g} | {row['depth_mm']:g} | {row['solid_force_N']:.4g} | {by_force:+.1%} | "
+            f"{row['solid_rise_kPa']:.4g} | {by_rise:+.1%} |"
+            for row, by_force, by_rise in zip(rows, force, rise, strict=True)
+        ),
+        "",
+    ]
+
+
+def differences(data: dict[str, Any], figure: str) -> list[float]:
+    """CalculiX over the solid, less 1, in every row."""
+    return [row[f"calculix_{figure}"] / row[f"solid_{figure}"] - 1.0 for row in data["rows"]]
+
+
+def main(*cells: int) -> None:
+    """All coefficients, and one table."""
+    mesh = (cells[0], cells[1], cells[2]) if cells else CELLS
+    rows = [{"friction": friction, **row} for friction in COEFFICIENTS for row in compared(friction, mesh)]
+    for row in rows:
+        print(" ".join(f"{name}={value:.5g}" for name, value in row.items()))
+    data = {"cells": list(mesh), "rows": rows}
+    STORED.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+    replace_section(PAGE, section(data))
+
+
+if __name__ == "__main__":
+    main(*map(int, sys.argv[1:]))
